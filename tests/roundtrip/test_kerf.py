@@ -287,7 +287,7 @@ def test_a_chamber_whose_mouth_the_kerf_closes_is_refused_with_a_kerf_that_does_
     pieces = [line(a, b) for a, b in zip(corners, corners[1:] + corners[:1], strict=True)]
     plain, place = WheelBlank(timing_marks=False), Workpiece(name="wheel 1", wheel=1, rim=2.7)
     made = make_part("g", [contour_of(pieces, 1e-3)], 5.0, plain, place)
-    with pytest.raises(InfeasibleError, match="no simple outline is left by this kerf") as caught:
+    with pytest.raises(InfeasibleError, match="this kerf leaves no simple outline") as caught:
         cut_drawing(wheel_drawing(made), 1.2)
     named = float(caught.value.nearest.split()[3])
     assert 0.98 < named <= 1.0

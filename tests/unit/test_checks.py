@@ -258,7 +258,7 @@ def test_a_pair_that_does_not_drive_is_an_error() -> None:
     assert found.severity == "error"
     assert found.value == pytest.approx(0.95, abs=1e-9)
     assert "No flanks touch" in found.message
-    assert "ends of flanks drive" in found.message
+    assert "tooth edges drive" in found.message
     assert "phi1 = " in found.message
     assert codes(overlap_of(1.01))["contact-ratio"].severity == "warning"
 

@@ -94,13 +94,13 @@ def test_rounded_edges_have_the_radius_asked_for_on_the_part_as_made() -> None:
 
 def test_too_much_clearance_is_refused_with_what_leaves_an_outline() -> None:
     contour = gear_contour(12, 5.0)
-    with pytest.raises(InfeasibleError, match="no simple outline is left by this clearance") as one:
+    with pytest.raises(InfeasibleError, match="this clearance leaves no simple outline") as one:
         made(contour, blank(clearance=4.0))
     assert one.value.where == "wheel 1, blank.clearance_mm"
     named = float(one.value.nearest.split()[3])
     assert 0.5 < named < 4.0
     assert made(contour, blank(clearance=named)).contour.area > 0.0
-    with pytest.raises(InfeasibleError, match="no simple outline is left by this radius") as two:
+    with pytest.raises(InfeasibleError, match="this radius leaves no simple outline") as two:
         made(contour, blank(tip_rounding=20.0))
     named = float(two.value.nearest.split()[3])
     assert made(contour, blank(tip_rounding=named)).contour.area > 0.0

@@ -79,7 +79,7 @@ def made(document: Any, key: str, beside: dict[str, Any], length: float) -> Any:
 
 def refused(document: Any, key: str, beside: dict[str, Any], length: float) -> float:
     """The limit that is told of a length."""
-    with pytest.raises(InfeasibleError, match="too fine for a part of this size") as caught:
+    with pytest.raises(InfeasibleError, match="too small for a part of this size") as caught:
         _ = made(document, key, beside, length).findings
     assert caught.value.where.endswith(f"blank.{key}")
     assert caught.value.limit is not None

@@ -327,7 +327,7 @@ def test_what_has_no_room_is_refused_and_what_has_is_made(
 
 
 def test_a_closed_wheel_has_no_stop() -> None:
-    with pytest.raises(InfeasibleError, match="turns for ever"):
+    with pytest.raises(InfeasibleError, match="turns all around"):
         made(disc_contour(50.0), blank(stop_pin=3.0))
 
 

@@ -89,7 +89,7 @@ def contact_ratio(subject: Sided, limit: float) -> Iterator[Remark]:
                 "range nothing drives at all."
             )
         elif worst < 1.0:
-            message = "This flank is in contact for less than a pitch; its neighbours then drive."
+            message = "This flank is in contact for less than a pitch; then its neighbours drive."
         place = f"{side_name(pairs)}, wheel 1, tooth {tooth}"
         told.setdefault(message, []).append((worst, place))
     for message, sides in told.items():

@@ -1,7 +1,7 @@
-"""Parts: wheels as they are ordered. Outlines with openings, hubs, marks, moved and rounded edges.
+"""Parts: wheels as ordered. Outlines with openings, hubs, marks, clearance and rounded edges.
 
-`blank` says what a design wants, `make` puts a part together out of `shapes`, `openings`, `marks`
-and `parallel`s; `mass` weighs it, `tools` finds the largest cutter or wire that can make it.
-Exporters and solids see parts, never laws. Parts know nothing of teeth but their outlines: they
-serve cams too.
+`blank` holds the settings of a design, `make` builds a part from `shapes`, `openings`, `marks` and
+`parallel`s; `mass` computes its mass properties, `tools` the largest cutter or wire that can make
+it. Exporters and solids use parts, never laws. Of teeth a part has the outlines only, so that
+parts serve cams too.
 """

@@ -1,4 +1,4 @@
-"""Whether openings keep apart from each other, from the hub's edge and from the outline.
+"""Check that openings do not meet each other, the hub's edge or the outline.
 
 Depends on parts' shapes; shapely inside the functions.
 """
@@ -24,11 +24,11 @@ _SMALLER: Final = (
     ("hub", "hub_diameter_mm", 0.1),
     ("bore", "bore_diameter_mm", 0.1),
 )
-"""Words of a refusal, and what may be made smaller then, down to mm."""
+"""Text of a refusal, and the keys to reduce, with their least values, mm."""
 
 _FARTHER: Final = 2.0
 _NEARER: Final = 0.05
-"""Times what tells where bolts are: as far as they are moved."""
+"""Factors by which bolt positions are moved in remedies."""
 
 
 def demand_apart(
@@ -45,19 +45,19 @@ def demand_apart(
     found : sequence of Opening
         The openings.
     blank : WheelBlank
-        With the hub, and how much wider bores are than given.
+        With the hub, and the widening of bores.
     solid : shapely.Polygon
-        What they go through.
+        The region they go through.
     work : Workpiece
-        What is ordered, for messages.
+        The part, for messages.
     places : mapping of str to float, optional
-        Keys of ``[blank]`` that tell where bolts are, with their values, mm; of a circle of bolts
-        where left out.
+        Keys of ``[blank]`` that position the bolts, with their values, mm; by default those of a
+        bolt circle.
 
     Raises
     ------
     InfeasibleError
-        If they do.
+        If any two meet.
     """
     given = {"bolt_circle_mm": blank.bolt_circle} if places is None else places
     from shapely import Polygon
@@ -83,19 +83,19 @@ def _no_room(
     widening: float,
     places: Mapping[str, float],
 ) -> InfeasibleError:
-    """Return the refusal of what meets something; diameters as the design gives them."""
+    """Return the refusal of an opening that meets something; diameters as given in the design."""
     from shapely import Point
 
     shape, value, limit = opening.shape, None, None
-    nearest = "each needs a place of its own"
+    nearest = "they must not overlap"
     if isinstance(shape, Circle) and what == work.within:
         center = Point(*shape.center)
         inside = solid.contains(center)
         value = shape.diameter - widening
         limit = 2.0 * solid.boundary.distance(center) - widening if inside else None
-        nearest = f"its middle does not lie within {what}"
+        nearest = f"its centre lies outside {what}"
         if limit:
-            nearest = "the limit is the room around its middle"
+            nearest = "the limit is the free space around its centre"
     told = f"{opening.name} {what}"
     ways = [Way(far={work.key(key): small}) for word, key, small in _SMALLER if word in told]
     if "bolt" in told:

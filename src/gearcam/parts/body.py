@@ -1,16 +1,14 @@
-"""Bodies: what is made as one piece. Parts are those that are stacks of layers.
+"""Bodies: solids made in one piece. A part is a body built from layers.
 
 A *body* has a name, a chord tolerance, a solid and moments of its volume; it need not be a prism
 (see `solids.solid`). A *layer* is a prism: the plane inside one edge, less openings, between two
-heights. Any edge may be toothed: an outline, an opening, or both.
+heights. Outlines, openings or both may be toothed.
 
 A *part* is a body of layers, in its wheel's frame: its toothed plate from z = 0 to its width, hubs
-beyond. A *stepped* part has several outlines, one above the other, each of the same height.
-*Openings* go right through, those within the hub through it too; each step may have an *inner*
-edge of its own, such as the teeth of a ring. *Pockets* are taken out of one face: a *mark* is a
-shallow round one, engraved in the upper face, a *recess* is milled out of either face.
-
-Refused: a contour that is not counter-clockwise, a width that is not positive.
+beyond. A *stepped* part has several outlines, one above the other, all of the same height.
+*Openings* go right through, also through the hub; each step may have an *inner* edge, such as the
+teeth of a ring. *Pockets* are cut into one face: a *mark* is a shallow round one, engraved in the
+upper face, a *recess* is milled into either face.
 
 Depends on numeric; shapely only inside `Part.region`.
 """
@@ -35,38 +33,38 @@ if TYPE_CHECKING:
 
 
 Kind = Literal["BORE", "HOLE", "SLOT", "INNER", "GROOVE"]
-"""What an opening is for: the shaft, bolts and lightness, a stop pin, inner teeth, a roller."""
+"""Purpose of an opening: shaft, bolts or lightening, stop pin, inner teeth, roller."""
 
 Edge = Contour | Circle | Loop
 """A closed plane curve, counter-clockwise, with moments, length, reach and points."""
 
 
 class Body(Protocol):
-    """What is made as one piece, prism or not."""
+    """A solid made in one piece, prism or not."""
 
     @property
     def name(self) -> str:
-        """Such as ``gear1``: the stem of its files."""
+        """Name, such as ``gear1``: the stem of its files."""
         ...
 
     @property
     def tolerance(self) -> float:
-        """Chord tolerance of everything on it, mm."""
+        """Chord tolerance of all its curves, mm."""
         ...
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Opening(Brief):
-    """Something that goes right through a part.
+    """An opening right through a part.
 
     Parameters
     ----------
     kind : {"BORE", "HOLE", "SLOT", "INNER", "GROOVE"}
-        What it is for, and its layer in drawings.
+        Purpose, and layer in drawings.
     shape : Contour or Circle or Loop
-        The edge within which nothing is left, in the part's frame.
+        Its edge, in the part's frame.
     name : str
-        What a person calls it, such as ``bolt hole 2``.
+        Its name in messages, such as ``bolt hole 2``.
     """
 
     kind: Kind
@@ -74,7 +72,7 @@ class Opening(Brief):
     name: str
 
     def as_dict(self) -> dict[str, Any]:
-        """Return the opening for JSON: of a circle its place and diameter."""
+        """Return the opening as JSON data: kind and name, for a circle also centre and diameter."""
         made: dict[str, Any] = {"kind": self.kind.lower(), "name": self.name}
         if isinstance(self.shape, Circle):
             made |= {"center_mm": self.shape.center.tolist(), "diameter_mm": self.shape.diameter}
@@ -83,7 +81,7 @@ class Opening(Brief):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Layer(Brief):
-    """A prism: what lies within an `edge` less `openings`, from z = `low` to `high`, mm."""
+    """A prism: the region within `edge` less `openings`, from z = `low` to `high`, mm."""
 
     edge: Edge
     low: float
@@ -92,12 +90,12 @@ class Layer(Brief):
 
     @property
     def height(self) -> float:
-        """From its lower to its upper face, mm."""
+        """Height from its lower to its upper face, mm."""
         return self.high - self.low
 
     @property
     def edges(self) -> tuple[Edge, ...]:
-        """Its edge, and those of its openings."""
+        """Its edge, and the edges of its openings."""
         return self.edge, *(opening.shape for opening in self.openings)
 
     @property
@@ -109,16 +107,16 @@ class Layer(Brief):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Recess(Layer):
-    """What is milled out of a face, such as a groove: the prism within its edge but for islands.
+    """A pocket milled into a face, such as a groove: the prism within its edge less islands.
 
     Parameters
     ----------
     width : float, mm
-        Diameter of the largest round tool that reaches every place.
+        Diameter of the largest round tool that can mill it.
     place : (float, float), mm
-        A place where no larger one goes.
+        A point where no larger tool fits.
     front : bool
-        Whether it is open to the upper face, or to the lower one.
+        Whether it is open to the upper face; if not, to the lower one.
     """
 
     width: float
@@ -128,7 +126,7 @@ class Recess(Layer):
 
 @dataclass(frozen=True, kw_only=True)
 class Hub:
-    """A round boss about the axis: its `diameter`, how far it stands out in `front` and `back`."""
+    """A round boss around the axis: `diameter`, and projection in `front` and at the `back`, mm."""
 
     diameter: float
     front: float = 0.0
@@ -144,7 +142,7 @@ class Mark(Brief):
     center : (2,) array, mm
         In the part's frame.
     diameter, depth : float, mm
-        Of the cylinder that is taken away.
+        Of the cylinder that is removed.
     """
 
     center: Array
@@ -162,29 +160,29 @@ class Mark(Brief):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Part(Brief, Displayed):
-    """A body of layers: a plate, stepped or not, with a hub.
+    """A body built from layers: a plate, stepped or not, with a hub.
 
     Parameters
     ----------
     name : str
-        Such as ``gear1``: the stem of its files.
+        Name, such as ``gear1``: the stem of its files.
     contours : tuple of Contour
         Outlines in the part's frame, counter-clockwise: one, or those of the steps from z = 0 up.
-        Of a ring they may be circles.
+        For a ring they may be circles.
     width : float, mm
-        From z = 0 to z = width, shared evenly by the steps.
+        From z = 0 to z = width, divided equally between the steps.
     openings : tuple of Opening
-        Right through; none meets another or an outline.
+        Openings right through; none meets another or an outline.
     inner : tuple of Contour
-        Toothed edges of the opening of a ring, one for each outline; none for wheels.
+        Toothed inner edges of a ring, one for each outline; none for wheels.
     hub : Hub or None
-        Within the roots.
+        Hub within the roots.
     marks : tuple of Mark
-        Engraved in the face z = width.
+        Marks engraved in the face z = width.
     recesses : tuple of Recess
-        Milled out of either face; those below one another do not overlap.
+        Pockets milled into either face; they do not overlap in depth.
     turns : bool
-        Whether it turns about the origin where that lies within its outline.
+        Whether it turns about the origin, if that lies within its outline.
 
     Raises
     ------
@@ -210,16 +208,16 @@ class Part(Brief, Displayed):
         if not self.width > 0:
             raise ValueError(f"{self.name}: the width must be positive, not {self.width} mm")
         if len(self.inner) not in (0, len(self.contours)):
-            raise ValueError(f"{self.name}: each outline has its inner edge, or none has")
+            raise ValueError(f"{self.name}: give an inner edge for each outline, or for none")
 
     @property
     def contour(self) -> Contour:
-        """The outline, of a ring its inner edge; of a stepped part the lowest."""
+        """The outline, or for a ring the inner edge; for a stepped part the lowest."""
         return cast("Contour", (self.inner or self.contours)[0])
 
     @cached_property
     def facts(self) -> Facts:
-        """What the part knows of itself; the facts of its result tell more."""
+        """Facts of the part; the facts of its result contain more."""
         tree = {
             "width_mm": self.width,
             "thickness_mm": Fact(self.thickness, "from face to face"),
@@ -237,7 +235,7 @@ class Part(Brief, Displayed):
         return Facts(tree, ("width_mm",), self.name)
 
     def picture(self) -> str:
-        """Return a picture of the (lowest) outline with its openings, SVG, in the part's frame."""
+        """Return a drawing of the (lowest) outline with its openings, SVG, in the part's frame."""
         from gearcam.markup import outlines
 
         step = self.steps[0]
@@ -248,12 +246,12 @@ class Part(Brief, Displayed):
 
     @property
     def outline(self) -> Array:
-        """Vertices of that outline as made, (n, 2), mm, counter-clockwise, in the part's frame."""
+        """Vertices of the finished outline, (n, 2), mm, counter-clockwise, in the part's frame."""
         return self.contour.vertices
 
     @property
     def tolerance(self) -> float:
-        """Chord tolerance of everything on it, mm."""
+        """Chord tolerance of all its curves, mm."""
         return self.contour.tolerance
 
     @cached_property
@@ -273,7 +271,7 @@ class Part(Brief, Displayed):
 
     @cached_property
     def bosses(self) -> tuple[Layer, ...]:
-        """The hub at the back and in front, where there is one, with what goes through it too."""
+        """The hub at the back and in front, if any, with the openings through it."""
         if self.hub is None:
             return ()
         disc = Circle(center=np.zeros(2), diameter=self.hub.diameter)
@@ -287,12 +285,12 @@ class Part(Brief, Displayed):
 
     @property
     def layers(self) -> tuple[Layer, ...]:
-        """All that the part is made of."""
+        """All layers of the part."""
         return self.steps + self.bosses
 
     @cached_property
     def pockets(self) -> tuple[Layer, ...]:
-        """What is taken out of layers, from one of their faces."""
+        """Marks and recesses, cut into one of the faces."""
         marks = (
             Layer(edge=mark.circle, low=self.width - mark.depth, high=self.width)
             for mark in self.marks
@@ -300,7 +298,7 @@ class Part(Brief, Displayed):
         return (*marks, *self.recesses)
 
     def cutters(self, overshoot: float) -> tuple[Layer, ...]:
-        """Return the recesses as they are cut: beyond their face by `overshoot`, in heights."""
+        """Return the recesses as solids to subtract, extended beyond their face by `overshoot`."""
         return tuple(
             replace(one, high=self.width + overshoot * one.height)
             if one.front

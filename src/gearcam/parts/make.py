@@ -1,6 +1,6 @@
-"""Making a part: outlines as made, openings, hub and mark.
+"""Building a part: finished outlines, openings, hub and mark.
 
-Refused: lengths too fine for their part, and what openings and marks refuse.
+Lengths too small for their part are refused, as are openings and marks without space.
 """
 
 from __future__ import annotations
@@ -21,15 +21,15 @@ from gearcam.parts.shapes import Circle
 from gearcam.quantities import LENGTH, params_of
 
 _LEAST: Final = 1e-5
-"""Share of a part's reach from which on a length is one. Single precision, that of meshes, takes
-places to 6e-8 of the reach: vertices of the coarsest circle of this size stay apart by dozens."""
+"""Smallest length, as a share of a part's reach. Meshes have single precision, 6e-8 of the reach:
+vertices of the coarsest circle of this size are still dozens of that apart."""
 
 _SHAPED: Final = tuple(
     name
     for name, one in params_of(WheelBlank).items()
     if one.quantity is LENGTH and name != "clearance"
 )
-"""Lengths that give vertices of their own: a clearance only moves those of the outline."""
+"""Lengths that create vertices: a clearance only moves those of the outline."""
 
 
 def make_part(
@@ -44,28 +44,28 @@ def make_part(
     recesses: tuple[Recess, ...] = (),
     room: Sequence[Contour] = (),
 ) -> Part:
-    """Make the part of a wheel or a ring.
+    """Return the part of a wheel or a ring.
 
     Parameters
     ----------
     name : str
         The stem of its files.
     contours : sequence of Contour
-        True outlines as made: one, or those of the steps; of a ring they may be circles.
+        True finished outlines: one, or those of the steps; for a ring they may be circles.
     width : float, mm
-        Of the toothed plate.
+        Width of the toothed plate.
     blank : WheelBlank
-        What is wanted beyond the teeth.
+        Settings of the blank.
     work : Workpiece
-        Which wheel.
+        The wheel.
     marker : callable, optional
-        Gives the timing mark; called only if marks are wanted.
+        Returns the timing mark; called only if marks are requested.
     inner : sequence of Contour
-        Of a ring: the true inner edges.
+        For a ring: the true inner edges.
     recesses : tuple of Recess
-        What is milled out of its faces.
+        Pockets milled into its faces.
     room : sequence of Contour
-        What openings and hub keep within; the outlines where left out.
+        Contours that openings and hub must lie within; by default the outlines.
 
     Returns
     -------
@@ -74,7 +74,7 @@ def make_part(
     Raises
     ------
     InfeasibleError
-        If a length is too fine for the part, if something has no room, or meets something else.
+        If a length is too small for the part, or an opening, hub or mark has no space.
     """
     height = width + blank.hub_front + blank.hub_back
     _demand_coarse(blank, max(height, *(edge.reach for edge in contours)), work)
@@ -99,16 +99,16 @@ def make_part(
 
 
 def finished(contour: Contour, blank: WheelBlank, work: Workpiece) -> Contour:
-    """Return an outline with its clearance and its rounded edges, in this order.
+    """Return an outline with clearance, then rounded edges.
 
     Parameters
     ----------
     contour : Contour
-        An outline that knows neither.
+        An outline without either.
     blank : WheelBlank
-        With both.
+        With both sizes.
     work : Workpiece
-        What is ordered, for messages.
+        The part, for messages.
 
     Returns
     -------
@@ -117,7 +117,7 @@ def finished(contour: Contour, blank: WheelBlank, work: Workpiece) -> Contour:
     Raises
     ------
     InfeasibleError
-        If they leave no outline, with sizes that do.
+        If they leave no simple outline, with sizes that do.
     """
     if not (blank.clearance or blank.tip_rounding):
         return contour
@@ -133,14 +133,14 @@ def finished(contour: Contour, blank: WheelBlank, work: Workpiece) -> Contour:
 
 
 def _demand_coarse(blank: WheelBlank, reach: float, work: Workpiece) -> None:
-    """Refuse lengths that are no lengths in a part of this `reach`, mm."""
+    """Refuse lengths that are too small for a part of this `reach`, mm."""
     least = float(shown(_LEAST * reach, 3))
     for name in _SHAPED:
         length = getattr(blank, name)
         if length and length < least:
             key = work.key(f"{name}_mm")
             raise work.refusal(
-                "the length is too fine for a part of this size",
+                "the length is too small for a part of this size",
                 f"blank.{name}_mm",
                 value=length,
                 limit=least,
@@ -160,7 +160,7 @@ def _demand_within(hub: Hub, contours: Sequence[Contour | Circle], work: Workpie
             "blank.hub_diameter_mm",
             value=hub.diameter,
             limit=room,
-            nearest="the limit is where it would touch",
+            nearest="at the limit they touch",
             ways=(
                 Way(
                     near={work.key("hub_diameter_mm"): room},
@@ -185,7 +185,7 @@ def _demand_marks(part: Part, blank: WheelBlank, work: Workpiece) -> None:
                 "the timing mark meets an opening, the hub or the outline",
                 value=mark.diameter,
                 limit=max(0.0, 2.0 * room),
-                nearest="the limit is the room around its middle",
+                nearest="the limit is the free space around its centre",
                 ways=(
                     Way(near=_between_bolts(blank, work)),
                     Way(near={"blank.mark_diameter_mm": 1.9 * room} if room > 0.0 else {}),
@@ -195,7 +195,7 @@ def _demand_marks(part: Part, blank: WheelBlank, work: Workpiece) -> None:
 
 
 def _between_bolts(blank: WheelBlank, work: Workpiece) -> dict[str, object]:
-    """Return the change that turns a bolt circle by half a step, if there are bolts."""
+    """Return the remedy that turns a bolt circle by half a step, if there are bolts."""
     if not blank.bolts:
         return {}
     angle = math.degrees(blank.bolt_angle) + 180.0 / blank.bolts

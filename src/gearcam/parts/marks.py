@@ -1,8 +1,7 @@
-"""Timing marks: a pair of dimples that faces each other on the line of centres at phi1 = 0.
+"""Timing marks: two dimples that face each other on the line of centres at phi1 = 0.
 
-The wheels then go together in one phase only.
-
-Refused: a rim between bore and root that leaves no room.
+They show the one phase in which the wheels are to be assembled. A rim between bore and root that
+is too thin for them is refused.
 """
 
 from __future__ import annotations
@@ -17,19 +16,19 @@ from gearcam.numerals import shown
 from gearcam.parts.body import Mark
 
 MARK_DIAMETER: Final = 0.4
-"""Diameter of a timing mark, modules: seen by eye, smaller than any rim that carries teeth."""
+"""Diameter of a timing mark, modules: visible, and smaller than any rim that carries teeth."""
 
 MARK_GAP: Final = 0.2
 """Least distance of a timing mark from the root line, modules."""
 
 MARK_DEPTH: Final = 0.5
-"""Depth of a mark, mm, in wheels that are wide enough: a laser's or a drill point's touch."""
+"""Depth of a mark, mm, in wheels of sufficient width: engraved by laser or drill point."""
 
 MARK_DEPTH_PART: Final = 0.1
-"""Largest part of the width that a mark may take."""
+"""Largest depth of a mark, as a share of the width."""
 
 RIM_PART: Final = 1 / 3
-"""Largest part of the rim between bore and root that a mark may take, and its gap with it."""
+"""Largest size of a mark with its gap, as a share of the rim between bore and root."""
 
 
 def timing_mark(
@@ -44,10 +43,10 @@ def timing_mark(
     tilt: float = 0.0,
     diameter: float | None = None,
 ) -> Mark:
-    """Place a timing mark just inside a wheel's root, or outside a ring's, on a given direction.
+    """Return a timing mark just inside a wheel's root, or outside a ring's, in a given direction.
 
-    Wheel 1 takes the direction 0 and wheel 2 the direction pi, a ring 0: at phi1 = 0 both lie on
-    the line of centres and face each other across the pitch point.
+    The direction is 0 for wheel 1, pi for wheel 2, 0 for a ring: at phi1 = 0 both marks lie on the
+    line of centres and face each other across the pitch point.
 
     Parameters
     ----------
@@ -65,12 +64,12 @@ def timing_mark(
         Radius within which bore, keyway and hub lie: the mark stays clear of it, and shrinks where
         the rim is thin.
     outside : float or None, mm
-        Of a ring: distance of its outside from the axis in that direction.
+        For a ring: distance of its outside from the axis in that direction.
     tilt : float, rad
         Angle between the radius and the centrode's normal, 0 where the centrode crosses the line of
         centres squarely.
     diameter : float or None, mm
-        Diameter that is asked for, instead of 0.4 modules.
+        Given diameter, instead of 0.4 modules.
 
     Returns
     -------
@@ -79,8 +78,8 @@ def timing_mark(
     Raises
     ------
     InfeasibleError
-        If bore, or a ring's outside, and root leave no rim, or none for the diameter that is asked
-        for.
+        If there is no rim between root and bore, or a ring's outside, or none wide enough for the
+        given diameter.
     """
     lean = math.cos(tilt)
     way, end, between = -1.0, bore_reach, "bore and root"
@@ -96,13 +95,13 @@ def timing_mark(
             value=2 * end,
             limit=2 * root,
             unit="mm",
-            nearest=f"this is the {told}, and the root there",
+            nearest=f"the value is the {told}, the limit the root there",
             ways=(Way(near={"blank.timing_marks": False}),),
         )
     largest = RIM_PART * rim
     if diameter is not None and diameter > largest:
         raise InfeasibleError(
-            f"no room for so large a timing mark between {between}",
+            f"the timing mark is too large for the rim between {between}",
             where=f"direction {shown(math.degrees(direction))} deg, blank.mark_diameter_mm",
             value=diameter,
             limit=largest,

@@ -1,8 +1,7 @@
-"""Mass properties of parts: mass, centroid, unbalance and inertia of a wheel as it is made.
+"""Mass properties of parts: mass, centroid, unbalance and inertia of the finished part.
 
-A non-circular wheel is eccentric by nature: its centroid is off its shaft, and the *unbalance* is
-mass times that distance. Everything follows from moments of plane regions (see
-`numeric.moments`), each over its height.
+The centroid of a non-circular wheel is off its shaft; the *unbalance* is mass times that distance.
+All properties follow from moments of plane regions (see `numeric.moments`) times their heights.
 
 Depends on parts' shapes and numeric.
 """
@@ -29,23 +28,23 @@ _TO_GMM: Final = 1e3
 
 
 _ROUNDING: Final = 16.0 * float(np.finfo(float).eps)
-"""Of an area."""
+"""Moments of an area."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class MassProperties:
-    """What a balancing engineer asks for, about the shaft.
+    """Mass properties of a part about its shaft.
 
     Parameters
     ----------
     volume : float, mm^3
-        Of the part.
+        Volume of the part.
     mass : float, kg
-        Of the part.
+        Mass of the part.
     centroid : (float, float, float), mm
         In the part's frame; z = 0 is the back of the toothed plate.
     inertia : float, kg mm^2
-        About the axis.
+        Moment of inertia about the axis.
     """
 
     volume: float
@@ -69,7 +68,7 @@ class MassProperties:
         return cmath.phase(complex(*self.centroid[:2]))
 
     def as_dict(self) -> dict[str, Any]:
-        """Return the properties for JSON, in the units that the keys name."""
+        """Return the properties as JSON data, in the units of their names."""
         return {
             "volume_mm3": self.volume,
             "mass_kg": self.mass,
@@ -82,26 +81,26 @@ class MassProperties:
 
 @singledispatch
 def volume_moments(body: Body) -> tuple[Moments, float]:
-    """Return the moments of a body's volume; each kind of body registers how.
+    """Return the moments of a body's volume; dispatched on the type of the body.
 
     Parameters
     ----------
     body : Body
-        A part, or another kind that is registered.
+        A part, or another registered type.
 
     Returns
     -------
     moments : Moments
-        Those of the plane regions times their heights: volume, first moments, polar moment.
+        Sums over plane regions times their heights: volume, first moments, polar moment.
     height : float, mm^4
         Integral of z.
 
     Raises
     ------
     TypeError
-        If this kind of body is not registered.
+        If this type of body is not registered.
     """
-    raise TypeError(f"the mass of a {type(body).__name__} is not known")
+    raise TypeError(f"the mass of a {type(body).__name__} cannot be computed")
 
 
 @volume_moments.register
@@ -136,7 +135,7 @@ def _missed(edge: Edge) -> Moments:
 
 
 def error_of(difference: Moments) -> Moments:
-    """Return what moments are off by, from a difference: no part of it below zero."""
+    """Return the absolute values of a difference of moments, as their error."""
     return Moments(
         area=abs(difference.area),
         first=complex(abs(difference.first)),
@@ -150,17 +149,17 @@ def mass_errors(part: Part, missed: Moments, density: float) -> dict[str, float]
     Parameters
     ----------
     part : Part
-        As made.
+        The finished part.
     missed : Moments
-        What the moments of its volume are off by, none below zero; in its steps alike.
+        Errors of the moments of its volume, not negative; equal for all steps.
     density : float, kg/m^3
-        Of its material.
+        Density of its material.
 
     Returns
     -------
     dict
-        Of volume, centroid and inertia, named as `MassProperties.as_dict` names them; the mass is
-        off by the share of the volume.
+        Errors of volume, centroid and inertia, with the names of `MassProperties.as_dict`; the
+        relative error of the mass is that of the volume.
     """
     made = mass_properties(part, density)
     middles = [0.5 * (step.low + step.high) for step in part.steps]
@@ -179,14 +178,14 @@ def mass_properties(body: Body, density: float) -> MassProperties:
     Parameters
     ----------
     body : Body
-        As made: with holes, hubs, marks, its clearance and its rounded edges.
+        The finished body: with holes, hubs, marks, clearance and rounded edges.
     density : float, kg/m^3
-        Of its material.
+        Density of its material.
 
     Returns
     -------
     MassProperties
-        As exact as cubics through the outline's dense points (see `quadrature_error`).
+        From cubics through the outline's dense points (see `quadrature_error`).
     """
     total, height = volume_moments(body)
     kilograms = density * _PER_MM3

@@ -1,12 +1,12 @@
 """Openings of a wheel: bore with keyway or flat, bolt holes, lightening holes, stop slot.
 
-All are exact chains of arcs and straight pieces. Round lightening holes stand in equal sectors;
-in each the largest circle is found that leaves the rim below the roots and the web to everything
-else. The slot of an open wheel is an arc about the shaft: a pin in the housing, on the line of
-centres, meets its ends when the way is over.
+All are exact chains of arcs and straight pieces. Round lightening holes lie in equal sectors; each
+is the largest circle that leaves the rim below the roots and the web to everything else. The slot
+of an open wheel is an arc about the shaft: a pin in the housing, on the line of centres, meets its
+ends at the ends of travel.
 
-Refused: openings that meet each other, the hub's edge or the outline, and holes for which rim
-and web leave no room, with the largest size that fits.
+Openings that meet each other, the hub's edge or the outline are refused, and holes for which rim
+and web leave no space, with the largest size that fits.
 
 Depends on parts' shapes and numeric; shapely inside the functions.
 """
@@ -33,17 +33,17 @@ if TYPE_CHECKING:
 
 
 _SEARCH: Final = 1e-3
-"""How exactly the largest circle is found, in rims; the hole is made smaller by it."""
+"""Tolerance of the largest circle, in rims; the hole is made smaller by it."""
 
 _RIMS: Final = 32
-"""Chords of a quarter of a circle around the outline's corners."""
+"""Chords per quarter circle around the outline's corners."""
 
 _RADII: Final = 128
 _RAYS: Final = 91
-"""Radii and directions among which the roomiest place of a stop slot is sought."""
+"""Numbers of radii and directions in the search for the best place of a stop slot."""
 
 _QUARTER: Final = 64
-"""Chords of a quarter of what is kept free around core and openings."""
+"""Chords per quarter circle of the clear zone around core and openings."""
 
 
 def bore(blank: WheelBlank) -> Circle | Loop:
@@ -52,12 +52,12 @@ def bore(blank: WheelBlank) -> Circle | Loop:
     Parameters
     ----------
     blank : WheelBlank
-        Its sizes, with a bore; the keyway's direction is also the flat's.
+        With the sizes of its bore; the direction of keyway and flat is the same.
 
     Returns
     -------
     Circle or Loop
-        About the axis.
+        Around the axis.
     """
     radius = 0.5 * blank.bore
     turn = cmath.exp(1j * blank.keyway_angle)
@@ -75,7 +75,7 @@ def bore(blank: WheelBlank) -> Circle | Loop:
 
 
 def _with_arc(corners: list[complex], angle: float, turn: complex) -> Loop:
-    """Join corners by straight pieces, the first two by an arc about the origin in two halves."""
+    """Return the loop of corners: an arc about the origin to the second, then straight lines."""
     middle = corners[0] * cmath.exp(0.5j * angle)
     points = np.array([corners[0], middle, *corners[1:]]) * turn
     bulges = np.zeros(len(points))
@@ -92,16 +92,16 @@ def _bolts(blank: WheelBlank) -> Iterator[Opening]:
 
 
 def solid_of(edges: Sequence[Edge], inner: Sequence[Edge], work: Workpiece) -> Polygon:
-    """Return what all steps of a wheel or a ring have in common.
+    """Return the region common to all steps of a wheel or a ring.
 
     Parameters
     ----------
     edges : sequence of Contour or Circle
         Their outlines.
     inner : sequence of Contour
-        Of a ring: their inner edges.
+        For a ring: their inner edges.
     work : Workpiece
-        Which wheel.
+        The wheel.
 
     Returns
     -------
@@ -121,29 +121,28 @@ def solid_of(edges: Sequence[Edge], inner: Sequence[Edge], work: Workpiece) -> P
 def openings(
     blank: WheelBlank, contours: Sequence[Edge], work: Workpiece, inner: Sequence[Edge] = ()
 ) -> tuple[Opening, ...]:
-    """Return everything that goes through a wheel.
+    """Return all openings of a wheel.
 
     Parameters
     ----------
     blank : WheelBlank
-        What is wanted.
+        Settings of the blank.
     contours : sequence of Contour or Circle
         The outlines of its steps.
     work : Workpiece
-        Which wheel.
+        The wheel.
     inner : sequence of Contour
-        Of a ring: the inner edges of its steps.
+        For a ring: the inner edges of its steps.
 
     Returns
     -------
     tuple of Opening
-        Bore, bolt holes, stop slot, lightening holes: those that are wanted, with the sizes as
-        made.
+        Bore, bolt holes, stop slot, lightening holes, as far as requested, with finished sizes.
 
     Raises
     ------
     InfeasibleError
-        If they meet each other, the hub's edge or the outline, or have no room.
+        If they meet each other, the hub's edge or the outline, or have no space.
     """
     solid = solid_of(contours, inner, work)
     wide = blank.widened
@@ -159,18 +158,18 @@ def openings(
 
 
 def _slot(blank: WheelBlank, solid: Polygon, work: Workpiece, chord: float) -> Opening:
-    """Return the slot in which the stop pin of an open wheel runs.
+    """Return the slot for the stop pin of an open wheel.
 
     Wheel 1 turns by -phi1 and wheel 2 by phi2: in the wheel's frame the pin, on the line of
-    centres, goes from the polar angle 0 to the travel, or from pi back by the travel. Chords of
-    its inner edge, off by `chord`, mm, come nearer to the shaft than the edge.
+    centres, moves from the polar angle 0 to the travel, or from pi back by the travel. Chords of
+    its inner edge come nearer to the shaft than the edge, by `chord`, mm.
     """
     if work.travel is None:
         raise work.refusal(
-            "a wheel that turns for ever has no stop",
+            "a closed wheel turns all around: it has no stop",
             "blank.stop_pin_mm",
             value=blank.stop_pin,
-            nearest="only wheels of an open law (driven_travel_deg) have one",
+            nearest="only wheels of an open law (driven_travel_deg) have a stop",
             ways=(Way(near={work.key("stop_pin_mm"): 0.0}),),
         )
     start = 0.0 if work.wheel == 1 else math.pi - work.travel
@@ -184,7 +183,7 @@ def _slot(blank: WheelBlank, solid: Polygon, work: Workpiece, chord: float) -> O
             "blank.stop_pin_mm",
             value=blank.stop_pin,
             limit=room,
-            nearest="the limit is the widest slot that has room",
+            nearest="the limit is the widest slot that fits",
             ways=(
                 Way(
                     near={work.key("stop_pin_mm"): room}, far={work.key("stop_pin_mm"): 0.1 * room}
@@ -196,9 +195,9 @@ def _slot(blank: WheelBlank, solid: Polygon, work: Workpiece, chord: float) -> O
 
 
 def _roomiest(solid: Polygon, start: float, travel: float, inner: float) -> tuple[float, float]:
-    """Return the radius of the arc with the most room around it, and how wide a slot it takes.
+    """Return the radius of the arc with the most space around it, and the width of slot it allows.
 
-    Beside the end faces of the sector there must be room as well: the ends are round.
+    The round ends of the slot must clear the end faces of the sector as well.
     """
     from shapely import STRtree, get_coordinates, linestrings, points
 
@@ -210,7 +209,7 @@ def _roomiest(solid: Polygon, start: float, travel: float, inner: float) -> tupl
     made: Any = points(places.real, places.imag)
     _, away = STRtree(segments).query_nearest(made, return_distance=True, all_matches=False)
     free = np.where(np.asarray(solid.contains(made)), away, 0.0)
-    # past half a turn the two ends of the slot come to meet each other
+    # past half a turn the two ends of the slot approach each other
     apart = radii * math.sin(0.5 * travel) if travel > math.pi else np.inf
     room = np.minimum(np.minimum(free.reshape(len(radii), _RAYS).min(axis=1), radii - inner), apart)
     best = int(room.argmax())
@@ -218,7 +217,7 @@ def _roomiest(solid: Polygon, start: float, travel: float, inner: float) -> tupl
 
 
 def _arc_slot(radius: float, start: float, sweep: float, width: float) -> Loop:
-    """Return a slot of constant width along an arc about the origin, its ends half circles."""
+    """Return a slot of constant width along an arc about the origin, with half-round ends."""
     parts = max(1, math.ceil(sweep / (0.9 * math.pi)))
     outwards = start + sweep * np.linspace(0.0, 1.0, parts + 1)
     outer = (radius + 0.5 * width) * np.exp(1j * outwards)
@@ -232,7 +231,7 @@ def _arc_slot(radius: float, start: float, sweep: float, width: float) -> Loop:
 def _lightening(
     blank: WheelBlank, solid: Polygon, others: Sequence[Opening], work: Workpiece
 ) -> Iterator[Opening]:
-    """Yield the largest circle in each sector that keeps rim and web."""
+    """Yield the largest circle in each sector that leaves rim and web."""
     from shapely import Point, Polygon, maximum_inscribed_circle, union_all
 
     rim = blank.rim if blank.rim is not None else work.rim
@@ -241,7 +240,7 @@ def _lightening(
     core = max(blank.bore_reach, 0.5 * blank.hub_diameter)
     far = 2.0 * float(np.abs(solid.bounds).max())
     fine = max(_SEARCH * rim, GRAIN * far)
-    outside = 1.0 / math.cos(math.pi / (4 * _QUARTER))  # chords around the arcs, not inside
+    outside = 1.0 / math.cos(math.pi / (4 * _QUARTER))  # chords outside the arcs, not inside
     taken = [Point(0.0, 0.0).buffer((core + web) * outside, quad_segs=_QUARTER)]
     taken += [
         Polygon(other.shape.points(fine)).buffer(web * outside, quad_segs=_QUARTER)
@@ -284,7 +283,7 @@ def _no_lightening(
     return work.refusal(
         f"lightening hole {number} has no room between hub and rim",
         value=least - core,
-        nearest="this is what lies between hub or bore and the nearest root",
+        nearest="the value is the distance between hub or bore and the nearest root",
         ways=(
             Way(near={"blank.rim_mm": 0.5 * rim}),
             Way(far={work.key("hub_diameter_mm"): 0.0}),

@@ -1,11 +1,10 @@
 """Parallels of outlines: clearance, kerf and tool paths (`moved`), rounded edges (`rounded`).
 
-Both follow a disc that rolls along the outline (see `rolled`). Moving takes the way of its middle;
-rounding takes what it touches, and an arc of the disc wherever it touches two places at once. The
-results are true parallels of the curve, not those of a polygon.
+Both follow a disc that rolls along the outline (see `rolled`). A parallel is the path of its
+centre; rounding takes the points that it touches, and an arc of the disc where it touches two
+points at once. The results are true parallels of the curve, not of a polygon.
 
-Refused: distances that leave no simple outline; `sized` names the largest that it found to leave
-one.
+Distances that leave no simple outline are refused; `sized` names the largest found to leave one.
 
 Depends on numeric; shapely inside the functions.
 """
@@ -28,25 +27,25 @@ from gearcam.numeric.hermite import on_cubics
 from gearcam.parts.rolled import arc_run, roll, too_far
 
 _DEPTH: Final = 2.0
-"""A place is lost where the outline comes nearer than the distance by this many chord errors."""
+"""A point is lost if the outline is nearer than the distance by this many chord errors."""
 
 _GRAZE: Final = 1e-9
 """The same in radii of the disc, for outlines without chord error: rounding."""
 
 _VERTICES: Final = 0.95
-"""Part of the tolerance that the polygon's chords may take; the rest covers the dense points."""
+"""Share of the tolerance for the polygon's chords; the rest is for the dense points."""
 
 _GRAIN: Final = 1e-3
-"""Length in tolerances below which a stretch is a point, and a parallel the outline itself."""
+"""Length in tolerances below which a stretch counts as a point, and a parallel as the outline."""
 
 _TURN: Final = 1e-6
-"""Angle, rad, by which a tangent turns at a corner: far above rounding."""
+"""Change of the tangent, rad, that makes a corner: far above rounding."""
 
 _PLACES: Final = 65
-"""Places on each run at which it is asked whether a parallel follows it."""
+"""Points on each run at which it is tested that a parallel follows it."""
 
 _HALVINGS: Final = 8
-"""How often the range of a size that leaves an outline is halved for a refusal."""
+"""Bisections of the range of sizes for a refusal."""
 
 
 def moved(contour: Contour, by: float) -> Contour:
@@ -57,7 +56,7 @@ def moved(contour: Contour, by: float) -> Contour:
     contour : Contour
         The outline.
     by : float, mm
-        How far, outwards positive. Corners on the opening side become arcs.
+        Distance, outwards positive. Corners that open to this side become arcs.
 
     Returns
     -------
@@ -76,14 +75,14 @@ def moved(contour: Contour, by: float) -> Contour:
 
 
 def followed(contour: Contour, by: float) -> Contour:
-    """Return a parallel that follows every run of a contour, or refuse.
+    """Return a parallel that follows every run of a contour.
 
     Parameters
     ----------
     contour : Contour
         The outline.
     by : float, mm
-        As of `moved`.
+        As for `moved`.
 
     Returns
     -------
@@ -93,7 +92,7 @@ def followed(contour: Contour, by: float) -> Contour:
     Raises
     ------
     InfeasibleError
-        If no simple outline is left, or one that passes a run by, such as a keyway's wall.
+        If no simple outline is left, or one that skips a run, such as a keyway's wall.
     """
     made = moved(contour, by)
     for run in contour.runs:
@@ -114,7 +113,7 @@ def rounded(contour: Contour, radius: float) -> Contour:
     contour : Contour
         The outline.
     radius : float, mm
-        Of the rounding.
+        Radius of the rounding.
 
     Returns
     -------
@@ -140,18 +139,18 @@ def rounded(contour: Contour, radius: float) -> Contour:
 
 
 def sized(make: Callable[[float], Contour], size: float, where: str, what: str) -> Contour:
-    """Return the contour that `make` makes of a size, or say which size would do.
+    """Return the contour that `make` gives for a size.
 
     Parameters
     ----------
     make : callable
-        ``make(size)``: `moved` or `rounded` of some contour.
+        ``make(size)`` returns `moved` or `rounded` of some contour.
     size : float, mm
-        As asked for.
+        Given size.
     where : str
-        The key that gives it, after a comma where a part stands before it.
+        Its key, after the part and a comma if there is a part.
     what : str
-        What the size is, in words.
+        Its name in words.
 
     Returns
     -------
@@ -160,7 +159,7 @@ def sized(make: Callable[[float], Contour], size: float, where: str, what: str) 
     Raises
     ------
     InfeasibleError
-        If the size leaves no simple outline, with one that leaves one.
+        If the size leaves no simple outline, with a size that does.
     """
     try:
         return make(size)
@@ -176,7 +175,7 @@ def sized(make: Callable[[float], Contour], size: float, where: str, what: str) 
                 low = tried
         key = where.rpartition(", ")[2]
         raise InfeasibleError(
-            f"no simple outline is left by this {what}",
+            f"this {what} leaves no simple outline",
             where=where,
             value=size,
             unit="mm",
@@ -186,13 +185,13 @@ def sized(make: Callable[[float], Contour], size: float, where: str, what: str) 
 
 
 def _fewer_digits(size: float) -> float:
-    """Round a size down to three digits, as it is said."""
+    """Return a size rounded down to three digits, as it is printed."""
     step = 10.0 ** (math.floor(math.log10(size)) - 2)
     return float(f"{math.floor(size / step) * step:.3g}")
 
 
 def _contour(runs: Sequence[Run], old: Contour, by: float) -> Contour:
-    """Put runs together, drawn within the tolerance, and prove that they do not cross."""
+    """Return the contour of runs, within the tolerance, verified not to cross itself."""
     from shapely import LinearRing, get_coordinates, linestrings, simplify
 
     real = _joined([piece for run in runs for piece in _cut(run, _GRAIN * old.tolerance)])
@@ -212,9 +211,9 @@ def _contour(runs: Sequence[Run], old: Contour, by: float) -> Contour:
 
 
 def _cut(run: Run, grain: float) -> list[Run]:
-    """Return the pieces of a run between corners: arcs of the disc's own radius that have shrunk.
+    """Return the pieces of a run between corners, to which arcs of the disc's radius have shrunk.
 
-    A stretch shorter than a `grain`, mm, is a point, and a corner where the tangent turns in it.
+    A stretch shorter than a `grain`, mm, is a point, and a corner if the tangent turns in it.
     """
     steps = np.hypot(*np.diff(run.points, axis=0).T)
     groups = np.append(0, np.flatnonzero(np.diff(steps > grain)) + 1)
@@ -235,7 +234,7 @@ def _cut(run: Run, grain: float) -> list[Run]:
 
 
 def _joined(pieces: Sequence[Run]) -> list[Run]:
-    """Return pieces of which each begins where the one before it ends, not a grain beside it."""
+    """Return the pieces with ends joined exactly, instead of to within a grain."""
     ends = [piece.points[-1:] for piece in (*pieces[-1:], *pieces[:-1])]
     return [
         replace(piece, points=np.concatenate([end, piece.points[1:]]))
@@ -244,7 +243,7 @@ def _joined(pieces: Sequence[Run]) -> list[Run]:
 
 
 def touches(contour: Contour, points: Plane, normals: Plane, by: float) -> Mask:
-    """Return whether a disc can touch an outline at some of its points.
+    """Return at which of its points a disc can touch an outline.
 
     Parameters
     ----------
@@ -258,8 +257,8 @@ def touches(contour: Contour, points: Plane, normals: Plane, by: float) -> Mask:
     Returns
     -------
     (n,) bool array
-        False where the outline comes nearer to the disc's middle than its radius, by more than the
-        polygon's chords explain.
+        False where the outline is nearer to the disc's centre than its radius, by more than the
+        polygon's chord error.
     """
     from shapely import STRtree, linestrings
     from shapely import points as made_points

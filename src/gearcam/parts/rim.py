@@ -1,7 +1,7 @@
 """The rim of a ring, between its roots and its outside, and bolt holes in it.
 
-Refused: holes that the rim has no room for, with the largest that keep their walls, and with the
-bolt circle that has the most room.
+Holes that do not fit into the rim are refused, with the largest that do, and with the bolt circle
+that has the most space.
 
 Depends on parts' shapes; shapely inside the functions.
 """
@@ -27,19 +27,19 @@ if TYPE_CHECKING:
     from shapely import Polygon
 
 _CIRCLES: Final = 400
-"""Bolt circles among which the roomiest is sought."""
+"""Number of bolt circles tried in the search for the one with the most space."""
 
 _SHARE: Final = 0.999
-"""Share of a room that a remedy takes: walls are measured between chords."""
+"""Share of the space that a remedy uses: walls are measured between chords."""
 
 
 def is_around(outside: Edge, inner: Contour) -> bool:
-    """Tell whether a ring's outside goes around its inner edge, as both are drawn.
+    """Return whether a ring's outside encloses its inner edge, for their polygons.
 
     Parameters
     ----------
     outside : Contour or Circle
-        Of the ring.
+        Outside of the ring.
     inner : Contour
         The edge of its teeth.
 
@@ -68,16 +68,16 @@ def demand_bolts(
     solid : Polygon
         The ring without them, in its own frame.
     work : Workpiece
-        What it is.
+        The ring, for messages.
     wall : float, mm
         Wall that remedies leave on both sides.
     outside : callable
-        Which value of the design makes the ring as large as a radius, mm.
+        Returns the design value that gives the ring an outside of a radius, mm.
 
     Raises
     ------
     InfeasibleError
-        With the largest diameter that keeps the walls, if one does.
+        With the largest diameter that keeps the walls, if any does.
     """
     if not blank.bolts:
         return
@@ -105,13 +105,13 @@ def demand_bolts(
             moved = {} if clears else {circle: across}
             radius = (0.5 * across + reach) / _SHARE
             ways.append(Way(near={**moved, **outside(radius)}))
-            if far - low > FINE * work.rim:  # not round: as large everywhere only beyond
+            if far - low > FINE * work.rim:  # not round: the least radius is smaller
                 ways[-1] = replace(ways[-1], far={**moved, **outside(radius + far - low)})
     ways.append(Way(near={work.key("bolts"): 0}))
-    roomiest = f"no bolt circle keeps walls of {shown(wall)} mm: a larger rim of [ring] may"
+    roomiest = f"no bolt circle keeps walls of {shown(wall)} mm: a larger rim in [ring] may"
     if most > 0.0:
-        roomiest = f"a bolt circle of {shown(best)} mm takes up to {rounded_down(most, 4)} mm"
-    told = f"the limit keeps walls of {shown(wall)} mm on both sides; " if room > taken else ""
+        roomiest = f"a bolt circle of {shown(best)} mm allows up to {rounded_down(most, 4)} mm"
+    told = f"the limit leaves walls of {shown(wall)} mm on both sides; " if room > taken else ""
     raise work.refusal(
         "the bolt holes do not lie in the rim of the ring",
         "blank.bolt_diameter_mm",
@@ -123,14 +123,14 @@ def demand_bolts(
 
 
 def _hole(solid: Polygon) -> Polygon | None:
-    """Return what a ring that goes all around has within its teeth."""
+    """Return the region inside the teeth of a closed ring."""
     from shapely import Polygon
 
     return Polygon(solid.interiors[0]) if len(solid.interiors) else None
 
 
 def _middles(blank: WheelBlank, circles: Array) -> Any:
-    """Return the middles of the holes on bolt circles, (bolts, n)."""
+    """Return the centres of the holes on bolt circles, (bolts, n)."""
     from shapely import points
 
     turns = blank.bolt_angle + 2.0 * math.pi * np.arange(blank.bolts) / blank.bolts
@@ -139,7 +139,7 @@ def _middles(blank: WheelBlank, circles: Array) -> Any:
 
 
 def _rooms(blank: WheelBlank, solid: Polygon, circles: Array) -> Array:
-    """Return the diameters of the largest holes that fit on bolt circles, mm; 0 where none does."""
+    """Return the diameters of the largest holes that fit on bolt circles, mm; 0 if none does."""
     middles = _middles(blank, circles)
     away = np.where(solid.contains(middles), solid.boundary.distance(middles), 0.0)
     return 2.0 * away.min(axis=0)

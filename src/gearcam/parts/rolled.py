@@ -1,13 +1,11 @@
-"""A disc that rolls along an outline: where it touches, and where it touches two places at once.
+"""A disc that rolls along an outline: where it touches, and where it touches two points at once.
 
-The middle of a disc that touches a smooth run outside (or, with a negative radius, inside) runs on
-the run's parallel. About a corner that opens towards the disc it runs on an arc; at one that closes
-the parallels are joined through the corner itself. All of this is one closed chain, which may cross
-itself; what has a positive winding number is the way that the disc can really go (see
-`gearcam.numeric.crossings`). Everything is done on the cubics through dense points with their exact
-tangents.
-
-Refused: discs that leave no single way around.
+The centre of a disc that touches a smooth run outside (or, with a negative radius, inside) moves
+along the run's parallel. Around a convex corner it moves along an arc; at a concave corner the
+parallels are joined through the corner itself. Together these form one closed chain, which may
+cross itself; the boundary of its region of positive winding number is the actual path of the disc
+(see `gearcam.numeric.crossings`). All computations use cubics through dense points with their exact
+tangents. Discs that have no single path around are refused.
 
 Depends on numeric.
 """
@@ -29,29 +27,29 @@ from gearcam.numeric.crossings import Chain, remaining, rows_between
 from gearcam.numeric.hermite import on_cubics
 
 _SMOOTH: Final = 1e-9
-"""Gap between parallels, in tolerances, below which no corner is between their runs."""
+"""Gap between parallels, in tolerances, below which their runs join without a corner."""
 
 _DENSE: Final = 1 / 40
 """Chord error of dense points over the tolerance."""
 
 _BESIDE: Final = 0.1
-"""Steps of a run that its new ends keep from the points inside."""
+"""Least distance of new ends of a run from its inner points, in steps."""
 
 
 @dataclass(frozen=True, eq=False)
 class Touched:
-    """A part of a run between two places, counted in points of the run with fractions.
+    """A part of a run between two positions, which are fractional indices of its points.
 
     Parameters
     ----------
     run : Run
-        The run; of an arc about a corner the arc itself.
+        The run; for an arc around a corner the arc itself.
     by : float, mm
-        How far the disc's middle is from it: 0 for an arc, which is its way already.
+        Distance of the disc's centre from it: 0 for an arc, which is already its path.
     low, high : float
-        The places.
+        The positions.
     corner : complex or None, mm
-        Of an arc: what the disc touches all the while.
+        For an arc: the corner that the disc touches.
     """
 
     run: Run
@@ -61,7 +59,7 @@ class Touched:
     corner: complex | None = None
 
     def place(self, at: float) -> tuple[complex, complex]:
-        """Return point and unit tangent at a place: of the cubic through its neighbours."""
+        """Return point and unit tangent at a position, on the cubic between its neighbours."""
         p, t = as_complex(self.run.points), as_complex(self.run.tangents)
         k = min(max(int(at), 0), len(p) - 2)
         share = np.array([at - k])
@@ -69,20 +67,20 @@ class Touched:
         return complex(points[0]), complex(tangents[0])
 
     def touched(self, at: float) -> complex:
-        """Return what the disc touches at a place."""
+        """Return the point that the disc touches at a position."""
         return self.place(at)[0] if self.corner is None else self.corner
 
     @property
     def backwards(self) -> bool:
-        """Whether the disc's middle goes against the outline: the disc is larger than its bend."""
+        """Whether the disc's centre moves backwards: its radius exceeds the radius of curvature."""
         run = self.as_run(self.by)
         way, tangents = np.diff(as_complex(run.points)), as_complex(run.tangents)
         return float((way * np.conj(tangents[1:] + tangents[:-1])).real.sum()) < 0.0
 
     def as_run(self, by: float) -> Run:
-        """Return the stretch, moved by `by`, mm, as a run of its own."""
+        """Return the parallel of the stretch at the distance `by`, mm, as a run."""
         inner = np.arange(math.floor(self.low) + 1, math.ceil(self.high))
-        # right beside an end, points would only show how exact tangents between points are
+        # points right next to an end would only amplify errors of interpolated tangents
         inner = inner[(inner - self.low > _BESIDE) & (self.high - inner > _BESIDE)]
         ends = [self.place(self.low), self.place(self.high)]
         p = np.concatenate([[ends[0][0]], as_complex(self.run.points)[inner], [ends[1][0]]])
@@ -94,30 +92,30 @@ class Touched:
 
 
 def roll(contour: Contour, radius: float) -> list[tuple[Touched, Touched, complex | None]]:
-    """Roll a disc along a contour.
+    """Return the stretches of a contour that a rolling disc touches.
 
     Parameters
     ----------
     contour : Contour
         The outline.
     radius : float, mm
-        Of the disc, outside positive, inside negative.
+        Radius of the disc, outside positive, inside negative.
 
     Returns
     -------
     list of (Touched, Touched, complex or None), mm
-        What it touches, counter-clockwise: each stretch, the next one, and where the disc touches
-        both at once; None where one ends as the next begins.
+        Counter-clockwise: each stretch, the next one, and the centre of the disc that touches both
+        at once; None where one ends as the next begins.
 
     Raises
     ------
     InfeasibleError
-        If the disc is too large to go around.
+        If the disc is too large to roll around.
     """
     pieces, closing = _pieces(contour, radius)
     middles = _Middles.of(pieces)
     chain = middles.chain(closing)
-    # slivers that rounding leaves between parallels that all but coincide
+    # slivers that rounding leaves between nearly coincident parallels
     least = _SMOOTH * contour.tolerance * float(np.abs(np.diff(chain.points)).sum())
     rings = [ring for ring in remaining(middles, [chain])[0] if abs(ring.area) > least]
     if len(rings) != 1 or rings[0].area < 0.0:
@@ -139,7 +137,7 @@ def roll(contour: Contour, radius: float) -> list[tuple[Touched, Touched, comple
 
 
 def _pieces(contour: Contour, radius: float) -> tuple[list[Touched], dict[int, complex]]:
-    """Return runs and arcs about opening corners in order, and the closing corners behind some."""
+    """Return runs and arcs around convex corners, in order, and concave corners after some."""
     runs = [_densified(run, radius, contour.tolerance) for run in contour.runs]
     made: list[Touched] = []
     closing: dict[int, complex] = {}
@@ -158,9 +156,9 @@ def _pieces(contour: Contour, radius: float) -> tuple[list[Touched], dict[int, c
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class _Middles:
-    """Where the disc's middle is, as `gearcam.numeric.sampling.Curves` over places on pieces.
+    """Paths of the disc's centre, as `gearcam.numeric.sampling.Curves` over positions on pieces.
 
-    `first` are the numbers of the pieces' first points; `points`, `tangents` and `by` of all.
+    `first` are the indices of the pieces' first points; `points`, `tangents` and `by` are of all.
     """
 
     start: Array
@@ -173,12 +171,12 @@ class _Middles:
 
     @classmethod
     def of(cls, pieces: list[Touched]) -> _Middles:
-        """Return the middle's way along all of some pieces."""
+        """Return the path of the centre along some pieces."""
         size = np.array([len(piece.run.points) for piece in pieces])
         return cls(
             start=np.zeros(len(pieces)),
             end=size - 1.0,
-            corner=np.zeros(len(pieces), dtype=bool),  # smooth as far as anybody asks here
+            corner=np.zeros(len(pieces), dtype=bool),  # smooth as far as needed here
             first=np.cumsum(size) - size,
             points=as_complex(np.concatenate([piece.run.points for piece in pieces])),
             tangents=as_complex(np.concatenate([piece.run.tangents for piece in pieces])),
@@ -187,22 +185,22 @@ class _Middles:
 
     @property
     def breaks(self) -> tuple[Ints, Array]:
-        """None that matter here."""
+        """None: not needed here."""
         return np.zeros(0, dtype=np.int64), np.zeros(0)
 
     def at(self, index: Ints, parameter: Array) -> tuple[Plane, Plane]:
-        """Return points, mm, and unit tangents of pieces at places."""
+        """Return points, mm, and unit tangents of pieces at positions."""
         first = self.first[index]
         step = np.clip(parameter, 0.0, self.end[index] - 1.0).astype(np.int64)
         points, tangents = on_cubics(self.points, self.tangents, first + step, parameter - step)
         return points - 1j * self.by[first] * tangents, tangents
 
     def chain(self, closing: dict[int, complex]) -> Chain:
-        """Return the chain through all dense points and the corners behind some pieces."""
+        """Return the chain through all dense points and the corners after some pieces."""
         curve = np.repeat(np.arange(len(self.end)), self.end.astype(np.int64) + 1)
         low = np.arange(len(curve)) - self.first[curve].astype(np.float64)
         high = np.minimum(low + 1.0, self.end[curve])
-        # through a corner the way leads from the end of one run to the start of the next
+        # through a corner the path leads from the end of one run to the start of the next
         behind = np.array(list(closing), dtype=np.int64)
         at = np.append(self.first, len(curve))[behind + 1]
         return Chain(
@@ -223,16 +221,16 @@ def arc_run(center: complex, radius: float, start: complex, end: complex, tolera
     center : complex, mm
         Its centre.
     radius : float, mm
-        Positive: the arc bulges outwards, negative: inwards.
+        Positive if the arc is convex outwards, negative if inwards.
     start, end : complex
         Outward unit normals of the outline at its ends.
     tolerance : float, mm
-        Of the outline.
+        Tolerance of the outline.
 
     Returns
     -------
     Run
-        Dense.
+        With dense points.
     """
     turn = float(np.angle(end / start))
     count = max(8, math.ceil(abs(turn) / math.sqrt(8.0 * _DENSE * tolerance / abs(radius))))
@@ -266,7 +264,7 @@ def too_far(contour: Contour, radius: float) -> InfeasibleError:
     """Return the refusal of a disc of `radius`, mm, on a `contour`."""
     side = "outside" if radius > 0 else "inside"
     return InfeasibleError(
-        f"no simple outline is left by a disc of this radius that rolls {side}",
+        f"a disc of this radius that rolls {side} leaves no simple outline",
         where=f"an outline of {shown(np.ptp(contour.vertices[:, 0]))} mm",
         value=abs(radius),
         unit="mm",

@@ -1,9 +1,7 @@
-"""Exact closed shapes of straight pieces and arcs: what is drilled, broached or milled.
+"""Exact closed shapes of straight lines and arcs, as drilled, broached or milled.
 
-A *circle* is kept as what it is; a *loop* is a closed bulge polyline. Both know their moments in
-closed form and their chords within a tolerance.
-
-Refused: loops that run clockwise.
+A *circle* is kept as a circle; a *loop* is a closed bulge polyline. Both have moments in closed
+form, and chords within a tolerance.
 """
 
 from __future__ import annotations
@@ -43,7 +41,7 @@ class Circle(Brief):
     Parameters
     ----------
     center : (2,) array, mm
-        Its middle.
+        Its centre.
     diameter : float, mm
         Above 0.
 
@@ -81,14 +79,14 @@ class Circle(Brief):
         return math.pi * self.diameter
 
     def points(self, sagitta: float) -> Array:
-        """Return points, (n, 2), mm, counter-clockwise, no chord farther than `sagitta`, mm."""
+        """Return points, (n, 2), mm, counter-clockwise, with chords of at most `sagitta`, mm."""
         count = circle_segments(self.diameter, sagitta)
         angle = 2 * math.pi * np.arange(count) / count
         spokes = np.column_stack([np.cos(angle), np.sin(angle)])
         return self.center + 0.5 * self.diameter * spokes
 
     def contour(self, tolerance: float) -> Contour:
-        """Return the circle as a contour within a `tolerance`, mm, of four runs."""
+        """Return the circle as a contour of four runs, within a `tolerance`, mm."""
         spokes = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
         vertices = self.center + 0.5 * self.diameter * spokes
         quarter = np.full(4, math.tan(math.pi / 8.0))
@@ -97,12 +95,12 @@ class Circle(Brief):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Loop(Brief):
-    """A closed chain of straight pieces and arcs, counter-clockwise.
+    """A closed chain of straight lines and arcs, counter-clockwise.
 
     Parameters
     ----------
     vertices : (k, 2) array, mm
-        First not repeated.
+        The first is not repeated.
     bulges : (k,) array
         Tangent of a quarter of the angle of each arc, 0 for straight pieces.
 
@@ -128,7 +126,7 @@ class Loop(Brief):
 
     @property
     def reach(self) -> float:
-        """Largest distance from the origin, mm: of a vertex, or of an arc's farthest place."""
+        """Largest distance from the origin, mm: of a vertex, or of an arc's farthest point."""
         start, chord, bends = bulge_pieces(self.vertices, self.bulges, closed=True)
         bent = bends != 0.0
         start, chord, bends = start[bent], chord[bent], bends[bent]
@@ -148,11 +146,11 @@ class Loop(Brief):
         return float((chords / np.sinc(half / np.pi)).sum())
 
     def points(self, sagitta: float) -> Array:
-        """Return points on the loop, (n, 2), mm, no chord farther from it than `sagitta`, mm."""
+        """Return points on the loop, (n, 2), mm, with chords of at most `sagitta`, mm."""
         return flatten_bulges(self.vertices, self.bulges, sagitta)
 
     def contour(self, tolerance: float) -> Contour:
-        """Return the loop as a contour within a `tolerance`, mm: a run for each of its pieces."""
+        """Return the loop as a contour within a `tolerance`, mm, with a run for each piece."""
         return Contour(
             dense=lambda: tuple(self._runs(_DENSE * tolerance)),
             vertices=self.points(tolerance),
@@ -170,14 +168,14 @@ class Loop(Brief):
 
 
 def frozen(values: object) -> Array:
-    """Return values as a float64 array of their own that cannot be written."""
+    """Return values as a new float64 array that is read-only."""
     array = np.array(values, dtype=np.float64)
     array.setflags(write=False)
     return array
 
 
 def circle_segments(diameter: float, sagitta: float) -> int:
-    """Return how many chords a circle needs.
+    """Return the number of chords that a circle needs.
 
     Parameters
     ----------

@@ -1,11 +1,10 @@
 """The largest cutter or wire that can make an edge: an outline from outside, a ring from inside.
 
-A round tool reaches every place of an outline if its radius is below the smallest *inner radius*
-(0 at an inner corner) and it passes the narrowest *slot*: the largest disc that fits between two
-walls that face each other.
+A round tool reaches every point of an outline if its radius is below the smallest *inner radius*
+(0 at an inner corner) and it passes the narrowest *slot*: the smallest disc that touches two
+facing walls.
 
-A chamber whose mouth is two sharp edges has no walls that face each other there: its mouth is not
-seen.
+Not detected: the mouth of a chamber between two sharp edges, since no walls face each other there.
 
 Depends on numeric.
 """
@@ -30,60 +29,60 @@ _FACING: Final = -0.5
 """Cosine of the angle between outward normals below which walls face each other: 120 degrees."""
 
 _CORNER: Final = 1e-6
-"""Turn of the tangent between runs, rad, above which there is a corner."""
+"""Change of the tangent between runs, rad, above which there is a corner."""
 
 _GRAIN: Final = 1e-9
-"""Steps shorter than this part of the outline's size say nothing of curvature."""
+"""Steps shorter than this share of the outline's size are ignored in curvatures."""
 
 _PER_RUN: Final = 30
 _LEAST: Final = 1500
-"""First search: points per run, and points at least."""
+"""First search: points per run, and least number of points."""
 
 _COARSE: Final = 4
 _WINDOW: Final = 40
-"""Before it: one of so many points, and how many neighbours each is compared with. Any slot found
-bounds the distance within which the narrowest one is sought."""
+"""Search before it: stride over points, and number of neighbours compared. Any slot found bounds
+the distance within which the narrowest is searched."""
 
 _ALL: Final = 8000
-"""Most points of which each is compared with every other where no slot was found nearby."""
+"""Largest number of points compared all with all if no slot was found nearby."""
 
 _BLOCK: Final = 1 << 16
-"""Pairs of points that are looked at in one go: what a cache holds."""
+"""Pairs of points processed at once: as many as the cache holds."""
 
 _SHARE: Final = 0.99
-"""Bends of more than this part of the sharpest may be the sharpest between their ends."""
+"""Steps with more than this share of the largest curvature may contain the largest."""
 
 _SCATTER: Final = 1.5
-"""Times what parabolas tell: they are as good as the next order of the curvature is small."""
+"""Safety factor on the error from parabolas, for the next order of the curvature."""
 
 _ROUNDING: Final = 32.0 * float(np.finfo(float).eps)
-"""Of a turn between two tangents, rad, and of a width."""
+"""Rounding of the angle between two tangents, rad, and of a width."""
 
 _HOW: Final = (
-    "inner radii by parabolas through the bends of dense steps; slots, where they are as narrow,"
-    " by what a finer search found"
+    "inner radii by parabolas through curvatures of dense steps; slots, where they are as narrow,"
+    " by a finer search"
 )
 
 _FINER: Final = np.linspace(-1.5, 1.5, 121)
-"""Places, in steps of the first search, at which the narrowest slot is then refined."""
+"""Positions, in steps of the first search, at which the narrowest slot is refined."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class ToolLimits(Brief):
-    """What limits a round tool.
+    """Limits of a round tool.
 
     Parameters
     ----------
     inner_radius : float, mm
-        Smallest radius of a concave place; 0 at an inner corner, inf without concave places.
+        Smallest concave radius; 0 at an inner corner, inf without concave parts.
     inner_place : (float, float) or None, mm
-        Where.
+        Its position.
     slot : float, mm
         Width of the narrowest slot; inf without one.
     slot_place : (float, float) or None, mm
         Its middle.
     inner_error, slot_error : float, mm
-        Estimated error of the radius, and a bound of that of the width.
+        Estimated error of the radius, and an error bound of the width.
     """
 
     inner_radius: float
@@ -95,17 +94,17 @@ class ToolLimits(Brief):
 
     @property
     def diameter(self) -> float:
-        """Diameter of the largest tool that reaches every place, mm."""
+        """Diameter of the largest tool that reaches every point, mm."""
         return min(2.0 * self.inner_radius, self.slot)
 
     @property
     def error(self) -> float:
-        """Estimated error of that diameter, mm: of what limits it, or may as well."""
+        """Estimated error of that diameter, mm."""
         sizes = ((2.0 * self.inner_radius, 2.0 * self.inner_error), (self.slot, self.slot_error))
         return max(error for size, error in sizes if size - error <= self.diameter)
 
     def as_dict(self) -> dict[str, Any]:
-        """Return the limits for JSON: what does not exist is left out."""
+        """Return the limits as JSON data, without those that do not exist."""
         made: dict[str, Any] = {}
         if self.inner_place is not None:
             made |= {"inner_radius_mm": self.inner_radius, "at_mm": list(self.inner_place)}
@@ -117,12 +116,12 @@ class ToolLimits(Brief):
 
 
 def tool_limits(contour: Contour, *, hollow: bool = False) -> ToolLimits:
-    """Return what limits a round tool that cuts an edge from where no metal is.
+    """Return the limits of a round tool that cuts an edge from the side without metal.
 
     Parameters
     ----------
     contour : Contour
-        The edge as it is made.
+        The finished edge.
     hollow : bool
         Whether the metal is outside it.
 
@@ -139,7 +138,7 @@ def tool_limits(contour: Contour, *, hollow: bool = False) -> ToolLimits:
     begins = zip(ends.tolist(), runs, strict=True)
     joints = [end - len(run.points) + one for end, run in begins for one in run.joints]
     radius, off, place = _inner(points, tangents, ends, joints, size)
-    # no place of a convex outline faces another
+    # no parts of a convex outline face each other
     nothing = math.inf, 0.0, None
     slot, missed, middle = nothing if place is None else _slot(points, tangents, ends)
     return ToolLimits(
@@ -153,18 +152,18 @@ def tool_limits(contour: Contour, *, hollow: bool = False) -> ToolLimits:
 
 
 def tool_errors(tools: Iterable[ToolLimits]) -> dict[str, tuple[float, str]]:
-    """Return how exact the diameters of largest tools are told.
+    """Return the error of the diameters of largest tools.
 
     Parameters
     ----------
     tools : iterable of ToolLimits
-        One of each part.
+        Limits of each part.
 
     Returns
     -------
     dict of str to (float, str)
-        The largest of their errors, and how it was made; empty where no round tool is limited, or
-        where inner corners take none.
+        The largest error, and its method; empty if no round tool is limited, or if inner corners
+        allow none.
     """
     errors = [one.error for one in tools if 0.0 < one.diameter < math.inf]
     return {"tool_mm": (max(errors), _HOW)} if errors else {}
@@ -173,15 +172,15 @@ def tool_errors(tools: Iterable[ToolLimits]) -> dict[str, tuple[float, str]]:
 def _inner(
     points: Plane, tangents: Plane, ends: Ints, joints: list[int], size: float
 ) -> tuple[float, float, complex | None]:
-    """Find the smallest concave radius, its error and its place.
+    """Return the smallest concave radius, its error and its position.
 
-    Each run ends before one of `ends`; one curve passes into another at `joints`.
+    `ends` are the indices after the runs, `joints` those at which curves join smoothly.
     """
     turn = -np.angle(np.append(tangents[1:], tangents[0]) * np.conj(tangents))
     corners = np.flatnonzero(turn[ends - 1] > _CORNER)
     if corners.size:
         return 0.0, 0.0, complex(points[ends[corners[0]] - 1])
-    # of an arc, whose chord is shorter by a sinc of half the turn
+    # for an arc the chord is shorter by the sinc of half the angle
     length = np.abs(np.diff(points)) * (1.0 + turn[:-1] ** 2 / 24.0)
     length[ends[:-1] - 1] = 0.0  # a run begins where the one before it ends
     real = length > _GRAIN * size
@@ -198,10 +197,10 @@ def _inner(
 
 
 def _peaks(mean: Array, length: Array, piece: Ints) -> Array:
-    """Return by how much a curve bends more somewhere in a step than it does on the mean of it.
+    """Return by how much the curvature in a step may exceed its mean there.
 
-    By the flattest parabola that has the means of the step and of two neighbours on its piece: the
-    curvature may jump between others. Of fewer it is not known.
+    From the flattest parabola with the means of the step and of two neighbours on the same piece,
+    since the curvature may jump between pieces; unknown for pieces of fewer steps.
     """
     (of,) = np.nonzero(mean > _SHARE * mean.max())
     first, last = (np.searchsorted(piece, piece[of], side=side) for side in ("left", "right"))
@@ -237,7 +236,7 @@ def _slot(points: Plane, tangents: Plane, ends: Ints) -> tuple[float, float, com
     way = np.cumsum(steps)
 
     def at(run: Ints, along: Array) -> tuple[Plane, Plane]:
-        """Points and outward normals at ways along the outline, none beyond its run's ends."""
+        """Points and outward normals at positions along the outline, kept within their runs."""
         along = np.clip(along, way[first[run]], way[last[run]])
         step = np.clip(np.searchsorted(way, along, side="right") - 1, first[run], last[run] - 1)
         share = (along - way[step]) / (way[step + 1] - way[step])
@@ -259,14 +258,14 @@ def _slot(points: Plane, tangents: Plane, ends: Ints) -> tuple[float, float, com
     least = width.min(axis=1)
     a = int(least.argmin())
     beside = least[max(a - 1, 0) : a + 2]
-    # another one may be narrower by as much as this one turned out to be
+    # another slot may be narrower by as much as this one was after refinement
     missed = max(best - float(least[a]), 0.0) + float(beside[np.isfinite(beside)].max() - least[a])
     best = float(least[a])
     return best, missed + _ROUNDING * best, complex(p[a] + 0.5 * best * n[a])
 
 
 def _narrowest(p: Plane, n: Plane) -> tuple[float, tuple[int, int]]:
-    """Find the least width of any pair, and the pair: of those that lie near enough."""
+    """Return the least width of the pairs that are near enough, and that pair."""
     best, (a, b) = _least(p[::_COARSE], n[::_COARSE], _neighbours(n[::_COARSE], _WINDOW))
     if math.isfinite(best):
         pair = _COARSE * a, _COARSE * b
@@ -280,7 +279,7 @@ def _narrowest(p: Plane, n: Plane) -> tuple[float, tuple[int, int]]:
 
 
 def _neighbours(n: Plane, most: int) -> Iterator[tuple[Ints, Ints]]:
-    """Pairs of points up to `most` apart that face each other, the nearest first, in blocks."""
+    """Pairs of facing points up to `most` apart, the nearest first, in blocks."""
     size = len(n)
     apart = np.arange(1, min(most, size // 2) + 1)
     ways = np.stack([apart, -apart], axis=1).ravel()
@@ -292,14 +291,14 @@ def _neighbours(n: Plane, most: int) -> Iterator[tuple[Ints, Ints]]:
 
 
 def _in_discs(p: Plane, centers: Plane, radius: float) -> Iterator[tuple[Ints, Ints]]:
-    """Pairs of discs and points in them, in blocks: by squares of this side, 3 by 3 around each."""
+    """Pairs of discs and points in them, in blocks, by a grid of squares, 3 by 3 around each."""
     radius *= 1.0 + _GRAIN
     corner = complex(p.real.min(), p.imag.min())
     (x, y), (u, v) = (
         np.floor([z.real, z.imag]).astype(int)
         for z in ((p - corner) / radius, (centers - corner) / radius)
     )
-    column = int(y.max()) + 5  # centres lie up to a square outside
+    column = int(y.max()) + 5  # centres lie up to one square outside
     square = x * column + y
     order = np.argsort(square, kind="stable")
     middle = ((u * column + v)[:, None] + column * np.arange(-1, 2)).ravel()
@@ -316,7 +315,7 @@ def _in_discs(p: Plane, centers: Plane, radius: float) -> Iterator[tuple[Ints, I
 
 
 def _least(p: Plane, n: Plane, pairs: Iterable[tuple[Ints, Ints]]) -> tuple[float, tuple[int, int]]:
-    """Find the least width of some pairs, given in blocks, and its pair."""
+    """Return the least width of some pairs, given in blocks, and that pair."""
     best, pair = math.inf, (0, 0)
     for i, j in pairs:
         width = _width(p[i], n[i], p[j], n[j])
@@ -327,10 +326,10 @@ def _least(p: Plane, n: Plane, pairs: Iterable[tuple[Ints, Ints]]) -> tuple[floa
 
 
 def _width(p: Plane, n: Plane, q: Plane, m: Plane) -> Array:
-    """Diameter of the disc that touches p along its normal n and passes q; inf if none faces it."""
+    """Diameter of the disc that touches p along its normal n and passes q; inf if not facing."""
     way = q - p
     ahead = (way * np.conj(n)).real
-    # what touches at p and at q lies on the outer side of both
+    # a disc that touches at p and at q lies on the outer side of both
     facing = ((n * np.conj(m)).real < _FACING) & (ahead > 0.0) & ((way * np.conj(m)).real < 0.0)
     square = way.real**2 + way.imag**2
     return np.divide(square, ahead, out=np.full(np.shape(square), math.inf), where=facing)

@@ -1,4 +1,4 @@
-"""What a blank is made into, for messages and for sizes that a design leaves open."""
+"""The finished piece of a blank: names for messages, and sizes that a design leaves open."""
 
 from __future__ import annotations
 
@@ -10,28 +10,28 @@ from gearcam.numeric.arrays import Array
 from gearcam.parts.body import Edge
 
 FINE: Final = 4e-5
-"""Sagitta of chords that stand for openings when it is asked what they meet, in rims."""
+"""Chord error of openings in tests for overlap, in rims."""
 
 GRAIN: Final = 1e-9
-"""The least of it, over how far an edge reaches, however thin a rim is."""
+"""Its least value, over the reach of an edge, for thin rims."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Workpiece:
-    """What a blank is made into: a wheel of a pair, or a cam.
+    """The finished piece of a blank: a wheel of a pair, or a cam.
 
     Parameters
     ----------
     name : str
-        What a person calls it.
+        Its name in messages.
     rim : float, mm
-        What lightening holes leave below the edge where the design gives none.
+        Default of the rim between lightening holes and the edge.
     travel : float or None, rad
-        How far an open wheel turns; None for a closed one.
+        Travel of an open wheel; None for a closed one.
     wheel : int or None
-        1 or 2; None of what stands alone.
+        1 or 2; None for a single part.
     within : str
-        What its openings keep within, in words.
+        Name of the boundary of its openings.
     """
 
     name: str
@@ -41,13 +41,13 @@ class Workpiece:
     within: str = "the outline"
 
     def points(self, edge: Edge) -> Array:
-        """Return points of an `edge`, (n, 2), mm, that stand for it when it is asked what meets."""
+        """Return points of an `edge`, (n, 2), mm, for tests of overlap."""
         return edge.points(max(FINE * self.rim, GRAIN * edge.reach))
 
     def key(self, name: str) -> str:
-        """Return the dotted key of its value of ``[blank]``, `name` being the table's key."""
+        """Return the dotted key of its value of key `name` in ``[blank]``."""
         return f"blank.{name}" if self.wheel is None else f"blank.{name}[{self.wheel - 1}]"
 
     def refusal(self, what: str, place: str = "[blank]", **told: Any) -> InfeasibleError:
-        """Return a refusal of `what` at a `place` in mm; `told` goes to `InfeasibleError`."""
+        """Return the error `what` at `place`, in mm; `told` are arguments of `InfeasibleError`."""
         return InfeasibleError(what, where=f"{self.name}, {place}", unit="mm", **told)
