@@ -82,7 +82,7 @@ def test_contact_ratio_below_one_is_an_error_and_says_that_edges_drive() -> None
     assert "nothing-drives" not in findings
     finding = findings["contact-ratio"]
     assert finding.severity == "error"
-    assert "ends of flanks drive" in finding.message
+    assert "tooth edges drive" in finding.message
     ratio = mount(short.gears, FEW).pairs[DRIVE].contact_ratios[0]
     assert finding.value == pytest.approx(ratio, rel=1e-9)
     assert ratio < 1.0

@@ -120,9 +120,9 @@ Call = Callable[[GearPairResult, CamResult], object]
     ("call", "key", "words"),
     [
         (lambda pair, _: pair.centrodes(1), "n", "1 is out of range"),
-        (lambda pair, _: pair.centrodes(2.5), "n", "2.5 is no whole number"),
+        (lambda pair, _: pair.centrodes(2.5), "n", "2.5 is not a whole number"),
         (lambda pair, _: pair.centrodes(True), "n", "True is out of range"),
-        (lambda pair, _: pair.motion("now"), "phi1", "'now' is no number"),
+        (lambda pair, _: pair.motion("now"), "phi1", "'now' is not a number"),
         (lambda pair, _: pair.motion([[1.0]]), "phi1", "the shape (1, 1)"),
         (lambda pair, _: pair.contact([0.0, math.nan]), "phi1", "nan is out of range"),
         (lambda pair, _: pair.contact(0.0, side="left"), "side", "'left' is not known here"),
@@ -130,9 +130,9 @@ Call = Callable[[GearPairResult, CamResult], object]
         (lambda pair, _: pair.mesh(steps=0), "meshing.steps", "0 is out of range"),
         (lambda pair, _: pair.mesh(step_s=9), "meshing.step_s", "did you mean steps?"),
         (lambda _, cam: cam.motion(math.inf), "theta", "inf is out of range"),
-        (lambda _, cam: cam.contact("top"), "theta", "'top' is no number"),
+        (lambda _, cam: cam.contact("top"), "theta", "'top' is not a number"),
         (lambda _, cam: cam.follow([[0.0, 1.0]]), "profile", "the shape (1, 2)"),
-        (lambda _, cam: cam.follow([[0, 1], [1, "x"]]), "profile", "is no array of numbers"),
+        (lambda _, cam: cam.follow([[0, 1], [1, "x"]]), "profile", "is not an array of numbers"),
         (lambda _, cam: cam.follow([[0, 1], [1, 0], [math.nan, 0]]), "profile", "no finite"),
     ],
 )

@@ -249,7 +249,7 @@ def test_a_bolt_hole_at_the_mark_is_turned_away() -> None:
 
 
 def test_no_room_for_bolts_names_the_ring() -> None:
-    with pytest.raises(InfeasibleError, match=r"larger rim of \[ring\]"):
+    with pytest.raises(InfeasibleError, match=r"larger rim in \[ring\]"):
         _ = ring_job(Constant(), blank=bolted(4, 104.0, 3.0), ring=RingSpec(rim=1.5)).parts
 
 

@@ -125,7 +125,7 @@ def near(toothing: Toothing) -> float:
 def flank_at(
     toothing: Toothing, sf: Array, sigma: Array, _: Array, frames: Frames
 ) -> tuple[Plane, Plane]:
-    """Return points of flanks (`sf`, `sigma`) at `frames`, and their driver-angle derivatives."""
+    """Return points of flanks (`sf`, `sigma`) of `toothing` at `frames`, and their derivatives."""
     return toothing.flank_points(frames, sf, sigma), toothing.flank_motion(frames, sf, sigma)
 
 

@@ -1,4 +1,4 @@
 """Numbers only: jets, piecewise functions, bracketed roots, arcs and contours.
 
-Depends on numpy alone. Nothing here knows what a gear is.
+Depends on numpy alone. Nothing here is specific to gears or cams.
 """

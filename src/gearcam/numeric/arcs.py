@@ -4,10 +4,8 @@ A *biarc* is a pair of arcs with a common tangent at the joint, through two poin
 tangents. A run becomes a bulge polyline (see `bulges`) of biarcs, each as long as the tolerance
 allows.
 
-Points are complex numbers inside this room: turning and scaling a vector is one product.
-Curvature, not radius, describes an arc, so that a nearly straight piece loses no digits.
-
-Refused: runs that do not join to a closed chain, tolerances that are not positive.
+Points are complex numbers inside this module: turning and scaling a vector is one product. Arcs
+are given by curvature, not radius, so that nearly straight pieces lose no digits.
 """
 
 from __future__ import annotations
@@ -33,31 +31,31 @@ from gearcam.numeric.fitting import (
 )
 
 MAX_TURN = 0.5 * np.pi
-"""Largest angle that one biarc may turn through, rad: keeps its two arcs short of a half circle,
-where distance to the arc and distance to the circle could differ."""
+"""Largest angle of one biarc, rad: its two arcs stay below a half circle, beyond which the distance
+to the arc and the distance to the circle could differ."""
 
 STRAIGHT = 1e-6
-"""A piece counts as straight where its rise is below this part of the tolerance: far above
+"""A piece counts as straight if its sagitta is below this share of the tolerance: far above
 rounding, far below anything that a machine can follow."""
 
 SAME_ARC = 1e-9
 """Difference of the two end angles, rad, below which a biarc is written as one arc."""
 
 NEAR = 0.02
-"""The search stops where the longest fitting piece is known to this part of its length."""
+"""Relative tolerance of the length of the longest piece that fits."""
 
 WIDEST = np.tan(1.0)
-"""Tangent of the largest half of the angle through which one arc may turn."""
+"""Tangent of half the largest angle of one arc."""
 
 _BLOCK = 64
-"""Points of a long run that are looked at as one, for how far the tangent turns."""
+"""Points per block of a long run, in the search by angle of the tangent."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Curves:
-    """Points, the angle that the tangent has `turned` so far, and where distances are taken.
+    """Points, the accumulated angle of the tangent, `turned`, and points for distances.
 
-    `ranges` holds the least and the largest angle of each `_BLOCK` points, (2, n).
+    `ranges` holds the least and the largest angle of each block of `_BLOCK` points, (2, n).
     """
 
     rows: RunPoints
@@ -69,7 +67,7 @@ class _Curves:
 class _Biarcs(NamedTuple):
     """Biarcs: their joints, and the bulges of both arcs, (2, n).
 
-    A `single` arc ends where the joint would be; so does a straight piece, where it `fails`.
+    A `single` arc ends at the joint; so does a straight piece that `fails`.
     """
 
     joint: Plane
@@ -81,11 +79,10 @@ class _Biarcs(NamedTuple):
 def fit_arcs(runs: Sequence[Run], tolerance: float) -> list[tuple[Array, Array]]:
     """Fit tangent-continuous arcs to runs, each pair as long as the tolerance allows.
 
-    From the start on, the longest piece is sought whose biarc stays within the tolerance of the
+    From each point the longest piece is searched whose biarc stays within the tolerance of the
     run's points. The error grows with the third power of the length, so each trial predicts the
-    next one. Distances are taken from the run's points to the arcs; the other way round they can
-    be larger by the run's own chord error only, since arc and run share both ends and both end
-    tangents.
+    next one. Distances are from the run's points to the arcs; the distances from the arcs to the
+    run exceed them by at most the run's own chord error, since both share ends and end tangents.
 
     Parameters
     ----------
@@ -97,8 +94,8 @@ def fit_arcs(runs: Sequence[Run], tolerance: float) -> list[tuple[Array, Array]]
     Returns
     -------
     list of (vertices, bulges)
-        For each run (k, 2) mm, both its ends and the knots between, and (k - 1,), the tangent of a
-        quarter of each arc's angle, positive to the left, 0 for a straight piece.
+        For each run its ends and the knots between, (k, 2), mm, and the tangents of a quarter of
+        each arc's angle, (k - 1,), positive to the left, 0 for a straight piece.
 
     Raises
     ------
@@ -163,8 +160,8 @@ def _curves(rows: RunPoints, tolerance: float) -> _Curves:
 def _furthest(curves: _Curves, start: Ints, last: Ints) -> Ints:
     """Return the last indices to which the tangent turns by no more than `MAX_TURN`.
 
-    The first that is beyond is sought among the next few points, then among blocks of them, and
-    then in its block: the way to it may be as long as the run.
+    The first index beyond is searched among the next few points, then among blocks, and then in
+    its block, since it may be as far away as the end of the run.
     """
     begin = curves.turned[start]
 
@@ -186,7 +183,7 @@ def _furthest(curves: _Curves, start: Ints, last: Ints) -> Ints:
 
 
 def _first(is_it: Callable[[Ints, Ints], Mask], low: Ints, high: Ints) -> Ints:
-    """Return the first numbers in ranges of which it is true, the upper end where of none."""
+    """Return the first index in each range for which it is true; the upper end if for none."""
 
     def short(index: Ints, of: Ints) -> Array:
         return np.where(is_it(index, of), high[of] - index, 0)
@@ -211,7 +208,7 @@ def _biarcs(rows: RunPoints, start: Ints, end: Ints) -> _Biarcs:
     length = np.divide(2 * square, root, out=np.zeros_like(root), where=along > 0)
     joint = 0.5 * (p + q + length * (t - u))
     turned = np.array([(joint - p) * np.conj(t), u * np.conj(q - joint)])
-    # each arc turns by twice the angle of these
+    # each arc turns by twice these angles
     pair = ~single & (along > 0) & (np.abs(turned.imag) <= turned.real).all(axis=0)
     turned[0, single] = (before + after)[single]
     size = np.abs(turned) + turned.real
@@ -221,13 +218,13 @@ def _biarcs(rows: RunPoints, start: Ints, end: Ints) -> _Biarcs:
 
 
 def _errors(curves: _Curves, start: Ints, end: Ints) -> Array:
-    """Return the largest distance from the checks between points to the biarcs there."""
+    """Return the largest distance of check points to the biarcs between their points."""
     made = _biarcs(curves.rows, start, end)
     p, t = curves.rows.points[start], curves.rows.tangents[start]
     begin = np.array([p, made.joint])
     chord = np.array([made.joint - p, curves.rows.points[end] - made.joint])
     square = np.maximum(chord.real**2 + chord.imag**2, np.finfo(float).tiny)
-    # the tangent at the joint is that at the start, mirrored by the chord
+    # the tangent at the joint is the start tangent mirrored at the chord
     back = np.array([np.conj(t), t * np.conj(chord[0]) ** 2 / square[0]])
     bend = 2 * (chord * back).imag / square
 

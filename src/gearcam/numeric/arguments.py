@@ -1,4 +1,4 @@
-"""Arguments of public functions: numbers that are what they have to be, or refused by name."""
+"""Validation of the arguments of public functions; errors name the parameter."""
 
 from __future__ import annotations
 
@@ -14,22 +14,22 @@ from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array
 
 _SHOWN = 60
-"""Letters of a wrong value that are shown."""
+"""Largest number of characters of a wrong value that are shown."""
 
 T = TypeVar("T")
 
 
 def refused(message: str, name: str, value: object, allowed: str) -> DesignError:
-    """Return the refusal of an argument.
+    """Return the error for a wrong argument.
 
     Parameters
     ----------
     message : str
         What is wrong.
     name : str
-        Of the parameter.
+        Name of the parameter.
     value : object
-        What was given.
+        Given value.
     allowed : str
         What is allowed there.
 
@@ -41,16 +41,16 @@ def refused(message: str, name: str, value: object, allowed: str) -> DesignError
 
 
 def instance(name: str, value: object, types: type[T] | tuple[type[T], ...], allowed: str) -> T:
-    """Return an object that a caller gives.
+    """Return the value if it is of an allowed type.
 
     Parameters
     ----------
     name : str
-        Of the parameter.
+        Name of the parameter.
     value : object
-        What was given.
+        Given value.
     types : type or tuple of type
-        Of which it may be.
+        Allowed types.
     allowed : str
         The same in words.
 
@@ -76,38 +76,38 @@ def angles(
     slack: float = 0.0,
     unit: str = "rad",
 ) -> Array:
-    """Return angles, or ways, that a caller gives.
+    """Return angles, or travels, as an array within a range.
 
     Parameters
     ----------
     name : str
-        Of the parameter.
+        Name of the parameter.
     values : float or (n,) array, rad
-        What was given.
+        Given values.
     low, high : float, rad
-        Between which they may lie.
+        Range.
     slack : float, rad
-        By which they may lie beyond: rounding. They are moved back then.
+        Rounding by which values may exceed the range; they are clipped.
     unit : str
-        Of all these, if it is another.
+        Another unit of all these.
 
     Returns
     -------
     (n,) array, rad
-        One for a single number.
+        Of length 1 for a single number.
 
     Raises
     ------
     DesignError
-        If they are no finite numbers in one row, or lie beyond.
+        If the values are not finite, not a number or a one-dimensional array, or out of range.
     """
-    rule = f"a number or a row of numbers, {unit}"
+    rule = f"a number or a one-dimensional array of numbers, {unit}"
     if np.isfinite(high - low):
         rule += f", from {shown(low)} to {shown(high)}"
     try:
         found = np.atleast_1d(np.asarray(values, dtype=np.float64))
     except (TypeError, ValueError):
-        raise refused(f"{_text(values)} is no number", name, values, rule) from None
+        raise refused(f"{_text(values)} is not a number", name, values, rule) from None
     if found.ndim > 1:
         raise refused(f"has the shape {found.shape}", name, values, rule)
     wrong = found[~((found >= low - slack) & (found <= high + slack) & np.isfinite(found))]
@@ -117,14 +117,14 @@ def angles(
 
 
 def points(name: str, values: ArrayLike) -> Array:
-    """Return points of a closed outline that a caller gives.
+    """Return the points of a closed outline as an array.
 
     Parameters
     ----------
     name : str
-        Of the parameter.
+        Name of the parameter.
     values : (n, 2) array, mm
-        What was given.
+        Given points.
 
     Returns
     -------
@@ -133,31 +133,31 @@ def points(name: str, values: ArrayLike) -> Array:
     Raises
     ------
     DesignError
-        If they are no three finite points or more.
+        If they are not three or more finite points.
     """
     rule = "an array (n, 2) of three points or more, mm"
     try:
         found = np.asarray(values, dtype=np.float64)
     except (TypeError, ValueError):
-        raise refused(f"{_text(values)} is no array of numbers", name, values, rule) from None
+        raise refused(f"{_text(values)} is not an array of numbers", name, values, rule) from None
     if found.ndim != 2 or found.shape[1] != 2 or len(found) < 3:
         raise refused(f"has the shape {found.shape}", name, values, rule)
     if not np.isfinite(found).all():
-        raise refused("holds what is no finite number", name, values, rule)
+        raise refused("contains values that are not finite", name, values, rule)
     return found
 
 
 def whole(name: str, value: object, least: int) -> int:
-    """Return a whole number that a caller gives.
+    """Return the value as a whole number.
 
     Parameters
     ----------
     name : str
-        Of the parameter.
+        Name of the parameter.
     value : object
-        What was given.
+        Given value.
     least : int
-        The least that it may be.
+        Least allowed number.
 
     Returns
     -------
@@ -166,29 +166,29 @@ def whole(name: str, value: object, least: int) -> int:
     Raises
     ------
     DesignError
-        If it is no whole number, or less.
+        If it is not a whole number, or less than `least`.
     """
     rule = f"a whole number, {least} or more"
     try:
         found = operator.index(value)  # pyright: ignore[reportArgumentType]
     except TypeError:
-        raise refused(f"{_text(value)} is no whole number", name, value, rule) from None
+        raise refused(f"{_text(value)} is not a whole number", name, value, rule) from None
     if found < least:
         raise refused(f"{_text(value)} is out of range", name, value, rule)
     return found
 
 
 def one_of(name: str, value: object, known: Sequence[str]) -> str:
-    """Return a word that a caller gives.
+    """Return the value if it is one of some words.
 
     Parameters
     ----------
     name : str
-        Of the parameter.
+        Name of the parameter.
     value : object
-        What was given.
+        Given value.
     known : sequence of str
-        The words.
+        Allowed words.
 
     Returns
     -------
@@ -197,7 +197,7 @@ def one_of(name: str, value: object, known: Sequence[str]) -> str:
     Raises
     ------
     DesignError
-        If it is none of them.
+        If it is not one of them.
     """
     if not isinstance(value, str) or value not in known:
         rule = ", ".join(f'"{word}"' for word in known if word) or "leave it out"

@@ -1,4 +1,4 @@
-"""Names of the kinds of arrays."""
+"""Type names of arrays."""
 
 from __future__ import annotations
 

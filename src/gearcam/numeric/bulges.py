@@ -1,10 +1,7 @@
-"""Bulge polylines: chains of arcs and straight pieces, and how far curves are from them.
+"""Bulge polylines: chains of arcs and straight lines, and the distances of curves from them.
 
-A *bulge polyline* is what a DXF polyline holds: vertices, and for each piece its *bulge*, the
-tangent of a quarter of the arc's angle, positive where the piece turns left, 0 where it is
-straight.
-
-Refused: another number of bulges than the vertices ask for.
+A *bulge polyline* has the data of a DXF polyline: vertices, and for each piece its *bulge*, the
+tangent of a quarter of the arc's angle, positive if the piece turns left, 0 if it is straight.
 """
 
 from __future__ import annotations
@@ -16,7 +13,7 @@ import numpy as np
 from gearcam.numeric.arrays import Array, Ints, Plane
 
 BLOCK = 20_000
-"""Distances that are computed together where the nearest of all pieces is sought."""
+"""Distances computed at once in the search for the nearest of all pieces."""
 
 
 def as_complex(values: Array) -> Plane:
@@ -30,7 +27,7 @@ def as_pairs(values: Plane) -> Array:
 
 
 def off_circle(local: Plane, bend: float | Array) -> Array:
-    """Return distances to the circle that passes 0 along +x, or to the line.
+    """Return distances to the circle through 0 in the direction +x, or to the line.
 
     Parameters
     ----------
@@ -42,7 +39,7 @@ def off_circle(local: Plane, bend: float | Array) -> Array:
     Returns
     -------
     array, mm
-        Never negative; no digits are lost where the curvature is small.
+        Not negative; without loss of digits where the curvature is small.
     """
     power = bend * (local.real**2 + local.imag**2) - 2 * local.imag
     return np.abs(power) / (1 + np.sqrt(np.maximum(1 + bend * power, 0.0)))
@@ -51,25 +48,25 @@ def off_circle(local: Plane, bend: float | Array) -> Array:
 def flatten_bulges(
     vertices: Array, bulges: Array, sagitta: float, closed: bool = True, least: int = 1
 ) -> Array:
-    """Replace the arcs of a bulge polyline by chords.
+    """Return the points of chords that replace the arcs of a bulge polyline.
 
     Parameters
     ----------
     vertices : (k, 2) array, mm
         Vertices of the polyline.
     bulges : (k,) or (k - 1,) array
-        Bulges; one more for the piece from the last vertex to the first where `closed`.
+        Bulges; with `closed` one more, for the piece from the last vertex to the first.
     sagitta : float, mm
         Largest distance between an arc and its chords.
     closed : bool
         Whether the polyline is closed; the first point is not repeated.
     least : int
-        Fewest chords of each piece, straight ones too.
+        Least number of chords of each piece, also of straight ones.
 
     Returns
     -------
     (n, 2) array, mm
-        Points on the arcs, the vertices among them.
+        Points on the arcs, including the vertices.
     """
     start, chord, bends = bulge_pieces(vertices, bulges, closed)
     points, _ = divided(start, chord, bends, np.maximum(arc_chords(chord, bends, sagitta), least))
@@ -79,11 +76,11 @@ def flatten_bulges(
 
 
 def arc_chords(chord: Plane, bends: Array, sagitta: float) -> Ints:
-    """Return how many chords keep each piece within the `sagitta`, mm (see `bulge_pieces`)."""
+    """Return the number of chords that keeps each piece within the `sagitta`, mm."""
     half = 2 * np.abs(np.arctan(bends))
     bent = half != 0
     radius = 0.5 * np.abs(chord[bent]) / np.sin(half[bent])
-    # Sagitta of a chord over the angle w: r*(1 - cos(w/2)) = 2*r*sin(w/4)^2.
+    # sagitta of a chord over the angle w: r*(1 - cos(w/2)) = 2*r*sin(w/4)^2
     widest = 4 * np.arcsin(np.minimum(np.sqrt(sagitta / (2 * radius)), 1.0))
     count = np.ones(len(half), dtype=np.int64)
     count[bent] = np.ceil(2 * half[bent] / widest)
@@ -91,21 +88,21 @@ def arc_chords(chord: Plane, bends: Array, sagitta: float) -> Ints:
 
 
 def divided(start: Plane, chord: Plane, bends: Array, count: Ints) -> tuple[Plane, Ints]:
-    """Return places that divide each piece evenly into a `count` of parts, and their pieces.
+    """Return points that divide each piece into `count` equal parts, and their pieces.
 
     Parameters
     ----------
     start, chord, bends : (n,) arrays
         Of the pieces (see `bulge_pieces`).
     count : (n,) int array
-        Of parts.
+        Number of parts.
 
     Returns
     -------
     points : (m,) complex array, mm
         The beginning of each part.
     piece : (m,) int array
-        The number of the piece that it is of.
+        The number of its piece.
     """
     piece = np.repeat(np.arange(len(start)), count)
     share = (np.arange(len(piece)) - np.repeat(np.cumsum(count) - count, count)) / count[piece]
@@ -113,19 +110,19 @@ def divided(start: Plane, chord: Plane, bends: Array, count: Ints) -> tuple[Plan
 
 
 def on_arcs(chord: Plane, bends: Array, share: Array) -> tuple[Plane, Plane]:
-    """Return places on arcs.
+    """Return points on arcs.
 
     Parameters
     ----------
     chord, bends : arrays, mm and 1
         Of the arcs (see `bulge_pieces`).
     share : array
-        Of each arc's length, from 0 to 1.
+        Position as a share of each arc's length, from 0 to 1.
 
     Returns
     -------
     way, slope : complex arrays, mm
-        From the beginning, and by the share.
+        Vector from the beginning, and its derivative by the share.
     """
     half = 2 * np.arctan(bends)
     safe = np.where(half == 0, 1.0, half)
@@ -135,7 +132,7 @@ def on_arcs(chord: Plane, bends: Array, share: Array) -> tuple[Plane, Plane]:
 
 
 def arc_centers(start: Plane, chord: Plane, bends: Array) -> Plane:
-    """Return the centres of arcs, complex, mm (see `bulge_pieces`); none is straight."""
+    """Return the centres of arcs, complex, mm (see `bulge_pieces`); no piece may be straight."""
     return start + 0.5 * chord * (1 + 0.5j * (1 / bends - bends))
 
 
@@ -145,7 +142,7 @@ def bulge_pieces(vertices: Array, bulges: Array, closed: bool) -> tuple[Plane, P
     Raises
     ------
     ValueError
-        If another number of bulges is given than the vertices ask for.
+        If the number of bulges does not match that of the vertices.
     """
     points = as_complex(vertices)
     bends = np.asarray(bulges, dtype=np.float64)
@@ -157,13 +154,13 @@ def bulge_pieces(vertices: Array, bulges: Array, closed: bool) -> tuple[Plane, P
 
 
 def farthest(points: Array, vertices: Array, bulges: Array) -> float:
-    """Return the largest distance of a closed curve's points to a closed bulge polyline.
+    """Return the largest distance of a closed curve's points from a closed bulge polyline.
 
     Parameters
     ----------
     points : (n, 2) array, mm
-        Points on the curve, in order; fast where the polyline begins beside the first and goes the
-        same way.
+        Points on the curve, in order; fast if the polyline begins near the first and has the same
+        sense.
     vertices : (k, 2) array, mm
         The polyline.
     bulges : (k,) array
@@ -172,17 +169,17 @@ def farthest(points: Array, vertices: Array, bulges: Array) -> float:
     Returns
     -------
     float, mm
-        The largest of the distances to the nearest places.
+        The largest of the distances to the nearest points.
 
     Notes
     -----
-    Each point goes from the place of the same length downhill to a place that is the nearest one,
-    but for some points at corners. The points that seem farthest are then held against all pieces
-    until no other one can be farther.
+    From the position of equal length each point descends to a nearest position, which may be only a
+    local one at corners. The points that seem farthest are then compared with all pieces, until no
+    other point can be farther.
     """
     start, chord, bends = bulge_pieces(vertices, bulges, closed=True)
     real = chord != 0
-    if not real.any():  # all is one point
+    if not real.any():  # all points coincide
         return float(np.abs(as_complex(points) - start[0]).max())
     start, chord, half = start[real], chord[real], 2 * np.arctan(bends[real])
     size, end = np.abs(chord), start + chord
@@ -190,7 +187,7 @@ def farthest(points: Array, vertices: Array, bulges: Array) -> float:
     bend = 2 * np.sin(half) / size
 
     def measured(targets: Plane, at: Ints) -> tuple[Array, Ints]:
-        """Return distances to pieces, and on which side of them (-1, 1) a piece may be nearer."""
+        """Return distances to pieces, and the side (-1, 1) on which another piece may be nearer."""
         local, past = (targets - start[at]) * np.conj(into[at]), targets - end[at]
         side = ((past * np.conj(out[at])).real > 0).astype(np.int64) - (local.real < 0)
         ends = np.minimum(np.abs(local), np.abs(past))
@@ -220,7 +217,7 @@ def farthest(points: Array, vertices: Array, bulges: Array) -> float:
 
 
 def deviation(vertices: Array, bulges: Array, dense: Array, samples: int = 8) -> float:
-    """Measure how far a closed bulge polyline and a closed dense polygon are from each other.
+    """Return the largest distance between a closed bulge polyline and a closed dense polygon.
 
     Parameters
     ----------
@@ -231,13 +228,13 @@ def deviation(vertices: Array, bulges: Array, dense: Array, samples: int = 8) ->
     dense : (n, 2) array, mm
         Points on the true curve, in order, first not repeated.
     samples : int
-        Places on each piece of the polyline whose distance to the dense polygon is taken.
+        Points on each piece of the polyline for distances to the dense polygon.
 
     Returns
     -------
     float, mm
-        The larger of both ways: dense points to the polyline (exact), places on the polyline to the
-        dense polygon. The second way holds the dense polygon's own chord error.
+        The larger of two: from dense points to the polyline (exact), and from points of the
+        polyline to the dense polygon, which includes the dense polygon's own chord error.
     """
     there = farthest(dense, vertices, bulges)
     places = flatten_bulges(vertices, bulges, math.inf, least=samples)

@@ -1,8 +1,8 @@
-"""Chebyshev expansions per interval: values and integrals of smooth functions to rounding.
+"""Piecewise Chebyshev expansions: values and integrals of smooth functions to rounding.
 
-The axis is cut into intervals until an expansion of fixed degree carries the function on each.
-Nothing is fitted across a corner: the caller gives the corners as breaks. A function that is not
-smooth inside an interval is found by the cutting itself and refused with its place.
+The axis is divided into intervals until an expansion of fixed degree represents the function on
+each. Nothing is fitted across a corner: the caller gives corners as breaks. If the division does
+not converge inside an interval the function is refused as not smooth, with the place.
 """
 
 from __future__ import annotations
@@ -21,24 +21,24 @@ from gearcam.numeric.arrays import Array
 _DEGREE = 8
 
 FIRST_CUTS = 128
-"""Intervals to begin with, so that a bump of a degree cannot slip between the samples."""
+"""First number of intervals, so that no bump of a degree lies between the samples."""
 
 _NOISE = 1e-11
-"""Rounding that a function may have, relative to its largest value."""
+"""Allowed rounding of a function, relative to its largest value."""
 
 _FINEST = 2**18
-"""Most intervals: 5 arc seconds of a turn are enough to call a function not smooth."""
+"""Largest number of intervals: below 5 arc seconds a function counts as not smooth."""
 
 
 class NotSmoothError(GearcamError, ValueError):
-    """A function has no convergent expansion near a place, or is not finite there.
+    """A function is not smooth at a place, or not finite there.
 
     Parameters
     ----------
     place : float
-        Where, on the function's axis.
+        Place on the function's axis.
     finite : bool
-        Whether the function has a value there.
+        Whether the function is finite there.
     """
 
     def __init__(self, place: float, finite: bool) -> None:
@@ -62,7 +62,7 @@ class Expansion(Brief):
     coefficients: Array
 
     def __call__(self, x: ArrayLike) -> Array:
-        """Return the values at the points `x` (beyond the ends the end intervals are continued)."""
+        """Return the values at `x`; beyond the ends the end intervals are extrapolated."""
         x = np.asarray(x, dtype=float)
         index = self.knots[1:-1].searchsorted(x, side="right")
         center, scale, powers = self._powers
@@ -76,9 +76,9 @@ class Expansion(Brief):
 
     @cached_property
     def _powers(self) -> tuple[Array, Array, Array]:
-        """Middles and inverse half widths of the intervals, and coefficients of powers.
+        """Middles and inverse half widths of the intervals, and power coefficients.
 
-        At this degree, and with coefficients that fall to rounding, powers lose nothing, and they
+        At this degree, and with coefficients that decrease to rounding, powers are as accurate and
         take half the time.
         """
         powers = _powers_of_chebyshev(len(self.coefficients)).T @ self.coefficients
@@ -104,7 +104,7 @@ class Expansion(Brief):
         return Expansion(knots=self.knots, coefficients=integral)
 
     def derivative(self) -> Expansion:
-        """Return the derivative; at the ends of an interval it loses most digits."""
+        """Return the derivative; it is least accurate at the ends of an interval."""
         slopes = np.polynomial.chebyshev.chebder(self.coefficients) * (2.0 / np.diff(self.knots))
         return replace(self, coefficients=slopes)
 
@@ -125,7 +125,7 @@ def _powers_of_chebyshev(count: int) -> Array:
 
 @lru_cache
 def _basis(degree: int) -> tuple[Array, Array]:
-    """Nodes on [-1, 1], and the matrix that makes coefficients of values there."""
+    """Nodes on [-1, 1], and the matrix from values there to coefficients."""
     angles = np.pi * (np.arange(degree + 1) + 0.5) / (degree + 1)
     to_coefficients = np.cos(np.outer(np.arange(degree + 1), angles)) * 2.0 / (degree + 1)
     to_coefficients[0] *= 0.5
@@ -140,31 +140,31 @@ def expand(
     degree: int = _DEGREE,
     cuts: int = FIRST_CUTS,
 ) -> Expansion:
-    """Expand a piecewise smooth function to a tolerance.
+    """Return the expansion of a piecewise smooth function to a tolerance.
 
     Parameters
     ----------
     function : callable
         ``function(x) -> values``, vectorised.
     breaks : (n,) array
-        Rising; the first and last are the ends, the others are places where it may have corners.
+        Rising; the first and last are the ends, the others are possible corners.
     tolerance : float
-        Truncation error allowed, relative to the largest value, on an interval as wide as the
-        whole; narrower ones may have more, since they count for less in the integral.
+        Truncation error, relative to the largest value, allowed on an interval as wide as the
+        whole; narrower ones may have more, since they contribute less to the integral.
     degree : int
-        Of the expansion on each interval.
+        Degree on each interval.
     cuts : int
-        Intervals to begin with, a power of 2.
+        First number of intervals, a power of 2.
 
     Returns
     -------
     Expansion
-        Of one degree on as many intervals as it takes.
+        Of fixed degree on as many intervals as needed.
 
     Raises
     ------
     NotSmoothError
-        Where the function is not finite or not smooth between the breaks.
+        If the function is not finite or not smooth between the breaks.
     """
     grid = np.asarray(breaks, dtype=float)
     span = grid[-1] - grid[0]
@@ -187,7 +187,7 @@ def expand(
         coefficients = to_coefficients @ values
         last = np.abs(coefficients[-2:]).max(axis=0)
         allowed = max(tolerance, 4.0 * np.finfo(float).eps) * scale * np.sqrt(span / (high - low))
-        # Halving does not help against rounding in the function; against a corner it does.
+        # halving reduces the error at a corner, but not the function's own rounding
         noise = (last <= _NOISE * scale) & (last >= 0.75 * before)
         good = (last <= allowed) | noise
         if good.any():

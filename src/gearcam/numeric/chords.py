@@ -1,4 +1,4 @@
-"""Chords of curves: which are near each other, and where they cross. Depends on numpy."""
+"""Chords of curves: which overlap, and where they cross. Depends on numpy."""
 
 from __future__ import annotations
 
@@ -7,16 +7,16 @@ import numpy as np
 from gearcam.numeric.arrays import Array, Ints, Plane
 
 _TOGETHER = 64
-"""Boxes that are compared each with each: faster than halving so few."""
+"""Number of boxes compared all with all: faster than halving so few."""
 
 
 def near_chords(starts: Array, ends: Array) -> tuple[Ints, Ints]:
-    """Return the pairs of chords whose boxes overlap, by boxes of ever fewer neighbours.
+    """Return the pairs of chords whose bounding boxes overlap, by repeated halving.
 
     Parameters
     ----------
     starts, ends : (n, 2) arrays
-        Ends of the chords, neighbours one after the other.
+        Ends of the chords, in order along the curve.
 
     Returns
     -------
@@ -53,7 +53,7 @@ def chord_shares(a: Plane, b: Plane, c: Plane, d: Plane) -> tuple[Array, Array]:
     Returns
     -------
     shares : (2, ...) array
-        Of both chords; of parallels not finite.
+        Position on both chords as shares; not finite for parallels.
     area : array
         Positive where c-d crosses from right to left.
     """

@@ -1,7 +1,7 @@
-"""Columns: tables of results, as data frames take them.
+"""Columns: tables of results that data frames accept.
 
-A table is a dictionary of arrays of one length whose names end in their units. It is the same
-table that a CSV file of it holds, as whole columns of numbers.
+A table is a dictionary of arrays of equal length whose names end in their units, with the same
+columns as the CSV file of the table.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from gearcam.numeric.arrays import Array
 class Columns(dict[str, NDArray[Any]]):
     """Arrays (n,) by name; ``pandas.DataFrame(columns)`` and ``polars.DataFrame(columns)`` work.
 
-    A name ends in its unit, as the keys of design files do (``x_mm``, ``phi1_deg``); without one
-    it is a plain number. What does not exist in a row is not-a-number there.
+    Names end in the unit, as keys of design files do (``x_mm``, ``phi1_deg``); without one the
+    column has plain numbers. Values that do not exist are nan.
 
     Parameters
     ----------
     columns : mapping of str to (n,) array
-        In order; whole numbers stay whole, what masked arrays mask becomes not-a-number.
+        In order; whole numbers stay whole, masked values become nan.
 
     Examples
     --------
@@ -49,12 +49,12 @@ class Columns(dict[str, NDArray[Any]]):
 
     @property
     def points(self) -> Array:
-        """The columns x_mm and y_mm side by side, (n, 2), mm, in the frame of the table."""
+        """The columns x_mm and y_mm as one array, (n, 2), mm, in the frame of the table."""
         return np.column_stack([self["x_mm"], self["y_mm"]])
 
     @property
     def normals(self) -> Array:
-        """The columns nx and ny side by side, (n, 2): unit normals, in the frame of the table."""
+        """The columns nx and ny as one array, (n, 2): unit normals, in the frame of the table."""
         return np.column_stack([self["nx"], self["ny"]])
 
 

@@ -1,8 +1,8 @@
-"""Closed contours made of smooth runs, and the polygon that stands for them.
+"""Closed contours made of smooth runs, with their polygon.
 
 A *run* is a smooth piece of a true curve between two corners, sampled densely with its tangents. A
-*contour* is the closed chain of runs, with the adaptive polygon drawn from it: vertices on the true
-curve, no chord farther from it than the tolerance.
+*contour* is the closed chain of runs, with its adaptive polygon: vertices on the true curve, no
+chord farther from it than the tolerance.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class Run(Brief):
     tangents : (n, 2) array
         Unit tangents, forward along the contour.
     joints : tuple of int
-        Numbers of the inner points at which one curve passes smoothly into another.
+        Indices of inner points at which two curves join smoothly.
     """
 
     points: Array
@@ -54,7 +54,7 @@ class Run(Brief):
 
     @property
     def reversed(self) -> Run:
-        """The same curve the other way."""
+        """The same curve in the opposite sense."""
         last = len(self.points) - 1
         return Run(
             points=self.points[::-1],
@@ -70,18 +70,18 @@ class Contour(Brief):
     Parameters
     ----------
     dense : callable
-        Returns the runs in order, each beginning where the one before ends; called when they are
-        asked for, since polygons do without.
+        Returns the runs in order, each beginning where the one before ends; called only if needed,
+        since the polygon does without.
     vertices : (k, 2) array, mm
         The adaptive polygon, first point not repeated.
     tolerance : float, mm
-        The chord error that was allowed.
+        The allowed chord error.
     chord_error : float, mm
         The chord error measured against the dense runs.
     source : Contour or None
-        The one in its own frame, of which this one is *placed*.
+        The contour in its own frame, if this one is *placed*.
     stand : (complex, complex)
-        How: turned by a number of length 1, then shifted, mm.
+        Its rotation, a number of length 1, and then shift, mm.
     """
 
     dense: Callable[[], tuple[Run, ...]]
@@ -97,7 +97,7 @@ class Contour(Brief):
         return self.source or self
 
     def placed(self, turn: complex, shift: complex) -> Contour:
-        """Return the contour, once more turned by `turn`, then moved by `shift` (see `stand`)."""
+        """Return the contour turned by `turn`, then moved by `shift`, mm (see `stand`)."""
         own, stand = self.own, (turn * self.stand[0], turn * self.stand[1] + shift)
         return replace(
             own,
@@ -113,11 +113,11 @@ class Contour(Brief):
         )
 
     def moved(self, points: Array) -> Array:
-        """Return points (n, 2) of the own frame where they stand."""
+        """Return points (n, 2) of its own frame in their places."""
         return points if self.source is None else _move(points, *self.stand)
 
     def fitted(self, fit: Callable[[Sequence[Run], float], Fitted], tolerance: float) -> Fitted:
-        """Return what `fit` makes of the runs in their own frame to a `tolerance`, made once."""
+        """Return `fit` of the runs in their own frame to a `tolerance`, cached."""
         made, key = self.own._fits, (fit, tolerance)
         if key not in made:
             made[key] = fit(self.own.runs, tolerance)
@@ -139,8 +139,8 @@ class Contour(Brief):
 
     @cached_property
     def moments(self) -> Moments:
-        """Moments inside the true curve, from the dense runs."""
-        # steps from one run to the next have no length
+        """Moments of the region inside the true curve, from the dense runs."""
+        # steps between runs have no length
         return curve_moments(
             np.vstack([run.points for run in self.runs]),
             np.vstack([run.tangents for run in self.runs]),
@@ -157,7 +157,7 @@ class Contour(Brief):
         return float(np.hypot(*self.vertices.T).max())
 
     def points(self, _: float) -> Array:
-        """Return the polygon's vertices, which keep the contour's own tolerance."""
+        """Return the polygon's vertices, within the contour's own tolerance."""
         return self.vertices
 
     @cached_property
@@ -184,7 +184,7 @@ def polygon_area(vertices: Array) -> float:
     Returns
     -------
     float, mm^2
-        By the shoelace formula about the first vertex.
+        From the shoelace formula about the first vertex.
     """
     x, y = (vertices - vertices[0]).T
     return 0.5 * float((x * np.roll(y, -1) - y * np.roll(x, -1)).sum())

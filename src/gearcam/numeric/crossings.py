@@ -1,15 +1,14 @@
-"""Crossings of parametric curves with themselves, and what is left where loops are taken out.
+"""Self-crossings of chains of parametric curves, and the boundaries left without their loops.
 
 A closed chain of curves that crosses itself divides the plane into faces; each has a *winding
-number*, how often the chain goes around it counter-clockwise. What a cutter or a follower leaves is
-the region of positive winding number: loops that were swept away wind -1 or 0. Its boundary is made
-of stretches of the chain with the winding number 0 on their right, and changes over from one to
-another at crossings.
+number*, the number of turns of the chain around it, counter-clockwise. A cutter or a follower
+leaves the region of positive winding number: loops that were swept away have -1 or 0. Its boundary
+consists of stretches of the chain with the winding number 0 on their right, joined at crossings.
 
-The chain is given as chords. Crossings of chords are found first; going along the chain, the
-winding number on the right falls by one wherever another branch crosses from right to left, and
-rises by one where it crosses from left to right, so that one sum tells which stretches stay. The
-crossings at their ends are then narrowed on the true curves.
+The chain is given as chords. Crossings of chords are found first; along the chain the winding
+number on the right falls by one where another branch crosses from right to left, and rises by one
+where it crosses from left to right, so that a cumulative sum gives the stretches that remain. The
+crossings at their ends are then refined on the true curves.
 
 Points are complex numbers. Source: winding numbers of raw parallels after Chen and McMains (Proc.
 ASME IDETC 2005, 85513); derived anew.
@@ -32,34 +31,34 @@ from gearcam.numeric.contour import polygon_area
 from gearcam.numeric.sampling import Curves
 
 _TOUCH = 1e-9
-"""Length of a loop over that of its chain below which it is none: neighbours of a curve without
-length touch."""
+"""Length of a loop, over that of its chain, below which it is ignored: neighbours of a curve
+without length touch."""
 
 _APART = 1e-15
-"""Distance, in sizes of the chain, by which equal points are told apart: rounding."""
+"""Distance, in sizes of the chain, by which equal points are separated: rounding."""
 
 _REAL = 8.0
-"""Length of a chord, in these distances, from which on it is more than a point."""
+"""Length of a chord, in these distances, above which it is more than a point."""
 
 _GOLDEN = 2.399963229728653
-"""The golden angle, rad: directions in which points are told apart never agree."""
+"""The golden angle, rad: directions in which points are separated never coincide."""
 
 _CELLS = 16
 _DEPTH = 6
 _LEVELS = 10
-"""Each level narrows a crossing 8 times and interpolates in it; six reach rounding. Some more are
-there for crossings that were first sought beside the place."""
+"""Levels of refinement. Each narrows a crossing 8 times and interpolates; six reach rounding. The
+rest are for crossings that were first searched next to their place."""
 
 
 class CurvePoint(NamedTuple):
-    """A place on a chain: the number of a curve and its parameter."""
+    """A point of a chain: the number of a curve and its parameter."""
 
     curve: int
     parameter: float
 
 
 class Branch(NamedTuple):
-    """A stretch of a chain from one place to another, over whole curves between them."""
+    """A stretch of a chain between two points, over whole curves between them."""
 
     begin: CurvePoint
     end: CurvePoint
@@ -97,14 +96,14 @@ def rows_between(curves: Curves, branches: Iterable[Branch]) -> tuple[Ints, Arra
 
 
 def _behind(curves: Curves, begin: CurvePoint, end: CurvePoint) -> bool:
-    """Return whether an end on the same curve lies before the beginning: a way all around."""
+    """Return whether an end on the same curve lies before the beginning, after a full circuit."""
     forward = np.sign(curves.end[begin.curve] - curves.start[begin.curve]) or 1.0
     return bool((end.parameter - begin.parameter) * forward < 0.0)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Chain:
-    """Curves drawn as chords, in order.
+    """The chords of curves, in order.
 
     Parameters
     ----------
@@ -113,7 +112,7 @@ class Chain:
     low, high : (n,) arrays
         Parameters at which each chord begins and ends on it.
     points : (n,) or (n + 1,) complex array
-        Where each chord begins; of an open chain also where the last one ends.
+        Start of each chord; for an open chain also the end of the last.
     """
 
     curve: Ints
@@ -123,23 +122,23 @@ class Chain:
 
     @property
     def open(self) -> bool:
-        """Whether it does not end where it begins; the winding number to its right is then 0."""
+        """Whether it is open; the winding number to its right is then 0."""
         return len(self.points) > len(self.curve)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Ring:
-    """A closed part of the boundary, or the one part of an open chain.
+    """A closed part of the boundary, or the only part of an open chain.
 
     Parameters
     ----------
     branches : tuple of Branch
-        In order; each ends at a crossing, where the next one begins. Where there is no crossing
-        the only branch is the whole chain.
+        In order; each ends at a crossing, where the next one begins. Without crossings the only
+        branch is the whole chain.
     crossed : bool
         Whether there are crossings.
     polygon : (n,) complex array
-        Its chords: counter-clockwise around what is left, clockwise around a hole.
+        Its chords: counter-clockwise around the remaining region, clockwise around a hole.
     gap : float
         Largest distance of the curves at its crossings.
     """
@@ -156,21 +155,21 @@ class Ring:
 
 
 def remaining(curves: Curves, chains: Sequence[Chain]) -> list[list[Ring]]:
-    """Return what is left of chains.
+    """Return the boundaries of the remaining regions of chains.
 
     Parameters
     ----------
     curves : Curves
-        What they are drawn along.
+        The true curves.
     chains : sequence of Chain
-        Each by itself.
+        Chains, treated one by one.
 
     Returns
     -------
     list of list of Ring
-        The boundary of each chain's region of positive winding number, in no order; of an open
-        chain only the part from its beginning to its end. Where chords cannot tell, nothing, and
-        all of an open chain.
+        The boundary of each chain's region of positive winding number, in any order; of an open
+        chain only the part from its beginning to its end. Where the chords do not determine it,
+        nothing; for an open chain all of it.
     """
     if not chains:
         return []
@@ -196,8 +195,8 @@ def remaining(curves: Curves, chains: Sequence[Chain]) -> list[list[Ring]]:
 class _Tangle:
     """The crossings of a chain's chords.
 
-    An *event* is a place where a chord crosses another: crossing k of m is event k on the earlier
-    of its branches and event ``k + m`` on the later one. -1 stands for the ends of the chain.
+    An *event* is a point where a chord crosses another: crossing k of m is event k on the earlier
+    of its branches and event ``k + m`` on the later one. -1 denotes the ends of the chain.
 
     Parameters
     ----------
@@ -206,9 +205,9 @@ class _Tangle:
     chord : (2, m) int array
         Numbers of the chords that cross, the earlier one first.
     share : (2, m) array
-        Shares of the chords at which they do.
+        Positions of the crossings as shares of the chords.
     turn : (m,) int array
-        Whether the later branch crosses from right to left, 1, or from left to right, -1.
+        1 if the later branch crosses from right to left, -1 if from left to right.
     """
 
     chain: Chain
@@ -218,7 +217,7 @@ class _Tangle:
 
     @property
     def brackets(self) -> tuple[Ints, Array, Array]:
-        """Curves that cross, and parameters around their crossings, (2, m) each."""
+        """Curves that cross, and parameters that bracket their crossings, (2, m) each."""
         low, high = self.chain.low[self.chord], self.chain.high[self.chord]
         middle = low + self.share * (high - low)
         quarter = 0.25 * (high - low)
@@ -226,13 +225,13 @@ class _Tangle:
 
 
 _Stays = list[tuple[int, int]]
-"""Pairs of events between which a chain is boundary."""
+"""Pairs of events between which the chain is part of the boundary."""
 
 _WHOLE = (-1, -1)
 
 
 def _tangle(chain: Chain) -> _Tangle:
-    """Find where chords of a chain cross that are no neighbours."""
+    """Return the crossings of chords of a chain that are not neighbours."""
     count = len(chain.points)
     nudge = _APART * float(np.abs(chain.points).max())
     p = chain.points + nudge * np.exp(1j * _GOLDEN * np.arange(count))
@@ -260,7 +259,7 @@ def _tangle(chain: Chain) -> _Tangle:
 
 
 def _rings(tangle: _Tangle) -> list[_Stays]:
-    """Return what is left of a chain."""
+    """Return the remaining boundaries of a chain."""
     count = len(tangle.turn)
     if not count:
         return [[_WHOLE]]
@@ -276,7 +275,7 @@ def _rings(tangle: _Tangle) -> list[_Stays]:
         while event in ends:
             stays.append((event, ends.pop(event)))
             event = (stays[-1][1] + count) % (2 * count)
-        if event == start:  # else chords are too near each other
+        if event == start:  # otherwise chords are too near each other
             rings.append(stays[1:] + stays[:1])
     if not tangle.chain.open:
         return rings
@@ -287,7 +286,7 @@ def _rings(tangle: _Tangle) -> list[_Stays]:
 
 
 def _used(tangle: _Tangle, rings: list[_Stays]) -> Mask:
-    """Return which crossings of a chain are ends of what is left."""
+    """Return which crossings of a chain are ends of remaining stretches."""
     events = np.array([end for stays in rings for pair in stays for end in pair], dtype=np.int64)
     used = np.zeros(len(tangle.turn), dtype=bool)
     used[events[events >= 0] % max(len(used), 1)] = True
@@ -295,7 +294,7 @@ def _used(tangle: _Tangle, rings: list[_Stays]) -> Mask:
 
 
 def _events(tangle: _Tangle) -> tuple[Array, Ints]:
-    """Return the places of events, in chords, and the change of the winding number to the right."""
+    """Return positions of events, in chords, and changes of the winding number to the right."""
     return (tangle.chord + tangle.share).ravel(), np.concatenate([-tangle.turn, tangle.turn])
 
 
@@ -313,10 +312,10 @@ def _right_of_start(chain: Chain, at: Array, change: Ints) -> int:
 
 
 def _ring(tangle: _Tangle, stays: _Stays, parameter: Array, gap: Array) -> Ring:
-    """Return the ring of some stays, with the parameters (2, m) and gaps (m,) of crossings."""
+    """Return the ring of remaining stretches, from parameters (2, m) and gaps (m,) of crossings."""
     chain, at, count = tangle.chain, _events(tangle)[0], len(tangle.turn)
     total, curve = len(chain.points), chain.curve[tangle.chord]
-    # the ends of the chain stand last, where -1 finds them
+    # the ends of the chain come last, at index -1
     low, high = (np.append(parameter, end) for end in (chain.low[0], chain.high[-1]))
     one, two = (np.append(curve, chain.curve[end]) for end in (0, -1))
     branches, ways = [], []
@@ -339,15 +338,15 @@ def _ring(tangle: _Tangle, stays: _Stays, parameter: Array, gap: Array) -> Ring:
 
 
 def _within(shares: Array) -> Mask:
-    """Return whether shares (2, ...) are of the chords, not beyond them."""
+    """Return whether shares (2, ...) lie within the chords."""
     return np.all((shares >= 0.0) & (shares <= 1.0), axis=0)
 
 
 def _refined(curves: Curves, index: Ints, low: Array, high: Array) -> tuple[Array, Array]:
-    """Narrow crossings of curves `index` between `low` and `high`, (2, m): parameters and gaps.
+    """Return refined crossings of curves `index` in brackets `low` to `high`, (2, m), and gaps.
 
     The cell in which chords cross is kept with its neighbours, since the curves may cross just
-    beside it; where they do not cross at all inside, the brackets are widened again.
+    outside it; if they do not cross at all inside, the brackets are widened again.
     """
     ends = np.sort([curves.start[index], curves.end[index]], axis=0)[..., None]
 

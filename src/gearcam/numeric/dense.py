@@ -1,4 +1,4 @@
-"""Dense points of curves: the smooth runs through them, and what cubics through them miss.
+"""Dense points of curves: the smooth runs through them, and the error of cubics through them.
 
 Depends on contour and moments; numpy only.
 """
@@ -18,27 +18,27 @@ from gearcam.numeric.contour import Run
 from gearcam.numeric.moments import halving
 
 _SAFE = 3.0
-"""Over the change by one halving. All further ones are a fifteenth more where steps are small, and
-once more as much on a step that bends in a small part of itself."""
+"""Error over the change by one halving. All further halvings add a fifteenth where steps are small,
+and as much again on a step whose curvature is concentrated in a small part."""
 
 _BACK = 0.5
-"""Angle, rad, to the reverse of a chord below which both tangents tell that it is run backwards."""
+"""Angle, rad, between both tangents and the reversed chord below which it is run backwards."""
 
 
 @dataclass(frozen=True, eq=False)
 class Dense(Brief):
-    """Points of curves in order, and which of them end runs.
+    """Points of curves in order, with the ends of runs.
 
     Parameters
     ----------
     places : (n,) array
-        Where they lie, as the sampler counts (its J).
+        Their positions, as the sampler's J.
     points, tangents : (n,) complex arrays, mm and 1
         At a corner those after it.
     rank : (n,) array of int
-        0 of corners and both ends, 1 of joints (see `Run`), more of other points.
+        0 for corners and both ends, 1 for joints (see `Run`), more for other points.
     ends : (points, tangents)
-        Where runs end, (runs,) complex arrays: before the corner.
+        Ends of runs, (runs,) complex arrays: before the corner.
     """
 
     places: Array
@@ -48,14 +48,14 @@ class Dense(Brief):
     ends: tuple[Plane, Plane]
 
     def told_apart(self, grain: float, sag: float) -> Dense:
-        """Return points of which no two are nearer than a grain; roundings within it are corners.
+        """Return points no nearer to each other than a grain; smaller roundings become corners.
 
         Parameters
         ----------
         grain : float, mm
-            Least distance; corners all stay.
+            Least distance; all corners are kept.
         sag : float, mm
-            How far a curve along the chord beside a rounding may go astray by its turn.
+            Allowed deviation of a curve from the chord next to a rounding.
 
         Returns
         -------
@@ -73,7 +73,7 @@ class Dense(Brief):
         before[sharp], tangents[sharp] = self.tangents[first[sharp]], self.tangents[last[sharp]]
         made[sharp] = 0
         ends = np.stack([points, before])
-        # where nothing is left out before a corner it is known from that side
+        # where no point before a corner is left out, its tangent on that side is known
         known = rank == 0
         known[sharp] &= kept[first[sharp]]
         ends[:, np.flatnonzero(known)[1:]] = np.stack(self.ends)[:, known[rank == 0][1:]]
@@ -92,7 +92,7 @@ class Dense(Brief):
             )
 
     def runs(self, reverse: bool = False) -> tuple[Run, ...]:
-        """Return the smooth runs between corners, in `reverse` the other way."""
+        """Return the smooth runs between corners, with `reverse` in the opposite sense."""
         made = []
         for steps, points, tangents in self._stretches():
             joints = np.flatnonzero(self.rank[steps] == 1).tolist()
@@ -102,7 +102,7 @@ class Dense(Brief):
         return tuple(run.reversed for run in made[::-1]) if reverse else tuple(made)
 
     def missed(self, at: Callable[[Array], tuple[Plane, Plane]]) -> float:
-        """Return the area between the curves and the cubics through the points, mm^2, at most.
+        """Return a bound of the area between the curves and the cubics through the points, mm^2.
 
         Parameters
         ----------
@@ -112,8 +112,8 @@ class Dense(Brief):
         Returns
         -------
         float
-            From what halving changes of every step. Steps of a steep curve are of any lengths, so
-            that leaving out every second point would say nothing of the longest.
+            From the change when every step is halved. Steps of a steep curve have very different
+            lengths, so that leaving out every second point would not give the error of the longest.
         """
         points, tangents = at(0.5 * (self.places[:-1] + self.places[1:]))
         return _SAFE * sum(
@@ -123,21 +123,21 @@ class Dense(Brief):
 
 
 def _told_apart(points: Plane, rank: Ints, grain: float) -> Mask:
-    """Choose points in order so that no two are nearer than a grain; the lowest rank stays.
+    """Return a choice of points no nearer to each other than a grain; lowest ranks are kept.
 
     Parameters
     ----------
     points : (n,) complex array, mm
         In order.
     rank : (n,) array of int
-        Points of rank 0, the corners, all stay.
+        Points of rank 0, the corners, are all kept.
     grain : float, mm
         Least distance.
 
     Returns
     -------
     (n,) array of bool
-        Which are kept.
+        Mask of the points kept.
     """
     kept = np.ones(len(points), dtype=bool)
     while True:
@@ -152,9 +152,9 @@ def _told_apart(points: Plane, rank: Ints, grain: float) -> Mask:
 
 
 def _clusters(points: Plane, kept: Mask) -> tuple[Ints, Ints]:
-    """Return the first and the last of the points that each kept one stands for.
+    """Return the first and the last of the points that each kept one represents.
 
-    Itself, and of what is left out beside it that to which it is the nearer one.
+    These are itself, and the omitted points next to it to which it is the nearer one.
     """
     index, gone = np.flatnonzero(kept), np.flatnonzero(~kept)
     high = np.searchsorted(index, gone)
@@ -167,14 +167,14 @@ def _clusters(points: Plane, kept: Mask) -> tuple[Ints, Ints]:
 
 
 def sags(points: Plane, tangents: Plane, rank: Ints) -> Array:
-    """Return how far curves leave the chords between dense points, about.
+    """Return approximate distances of curves from the chords between dense points.
 
     Parameters
     ----------
     points, tangents : (n,) complex arrays, mm and 1
         At a corner those after it.
     rank : (n,) array of int
-        As of `Dense`: before a corner only the tangent where the chord begins counts.
+        As in `Dense`: before a corner only the tangent at the start of the chord counts.
 
     Returns
     -------

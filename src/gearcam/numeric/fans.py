@@ -1,11 +1,11 @@
-"""Fans that cut the dense edges of a region off, so that a few vertices are left to triangulate.
+"""Fans of triangles along the dense edges of a region, which leave few vertices to triangulate.
 
-General triangulations of curved edges grow with the square of their vertices. A short, hardly bent
-stretch of an edge is seen whole from a place a little inside of it, its *apex*: its chords with
-that place are a *fan* of triangles, and of the stretch only its ends and the apex are left.
+The time of a general triangulation grows with the square of the vertices. A short, slightly curved
+stretch of an edge is visible as a whole from a point a little inside, its *apex*: its chords and
+the apex form a *fan* of triangles, and of the stretch only its ends and the apex remain.
 
-Fans of different stretches may overlap where a region is narrow. Whoever uses them looks at the
-signs of all triangles: where none is turned over, they cover the region once.
+Fans of different stretches may overlap where a region is narrow. The caller has to check the signs
+of all triangles: if none is reversed, they cover the region once.
 
 Depends on numpy alone.
 """
@@ -19,33 +19,33 @@ import numpy as np
 from gearcam.numeric.arrays import Array, Ints, Plane
 
 _MOST: Final = 64
-"""Chords of a stretch at most."""
+"""Largest number of chords of a stretch."""
 
 _LEAST: Final = 4
-"""And at least: fans of fewer gain nothing."""
+"""Least number of chords: smaller fans gain nothing."""
 
 _TURN: Final = 0.25
-"""What a stretch turns at most, rad."""
+"""Largest angle of a stretch, rad."""
 
 _DEEP: Final = 0.15
-"""Depth of an apex below the chord of its stretch, in that chord's length: twice as far in as the
-tangents at the ends of a hollow one meet."""
+"""Depth of an apex below the chord of its stretch, in lengths of that chord: twice the depth at
+which the end tangents of a concave stretch meet."""
 
 _SHARP: Final = 1.9
-"""Turn at a corner, rad, beside which there are no fans: those of both sides might overlap."""
+"""Angle of a corner, rad, next to which there are no fans: those of both sides might overlap."""
 
 
 class Fans(NamedTuple):
-    """What fans leave of a loop, and themselves.
+    """A loop reduced by fans, and the fans.
 
     Parameters
     ----------
     loop : (m,) int array
-        Numbers of vertices that are left, in order; those from n on are apexes.
+        Numbers of remaining vertices, in order; those from n on are apexes.
     apexes : (k,) complex array
-        Places, the first of which has the number n.
+        Points, the first of which has the number n.
     triangles : (t, 3) int array
-        The fans, of numbers like those; of a counter-clockwise loop counter-clockwise.
+        The fans, by vertex numbers; counter-clockwise for a counter-clockwise loop.
     """
 
     loop: Ints
@@ -54,12 +54,12 @@ class Fans(NamedTuple):
 
 
 def fans(points: Plane) -> Fans:
-    """Cut fans off a loop.
+    """Return a loop reduced by fans.
 
     Parameters
     ----------
     points : (n,) complex array
-        Its vertices, the region on their left; the first is not repeated.
+        Its vertices, with the region on their left; the first is not repeated.
 
     Returns
     -------
@@ -91,7 +91,7 @@ def fans(points: Plane) -> Fans:
 
 
 def _stretches(turns: Array) -> tuple[Ints, Ints]:
-    """Return the first and last vertices of stretches; the last of all is the first again."""
+    """Return the first and last vertices of stretches; the very last is the first again."""
     turned, count = np.append(np.cumsum(turns), np.inf), len(turns)
     starts = [0]
     while starts[-1] < count:

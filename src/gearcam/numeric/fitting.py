@@ -1,6 +1,6 @@
-"""How runs are cut into the longest pieces that one curve can stand for.
+"""Division of runs into the longest pieces that one curve can represent.
 
-All runs are cut side by side: each round tries one length on every run.
+All runs are divided at once: each round tries one length on every run.
 """
 
 from __future__ import annotations
@@ -16,40 +16,40 @@ from gearcam.numeric.contour import Run
 from gearcam.numeric.hermite import on_cubics
 
 _AIM: Final = 0.985
-"""Part of the predicted length that the search tries: a little short, so that most succeed."""
+"""Share of the predicted length that is tried: a little short, so that most trials succeed."""
 
 _SPREAD: Final = np.array([1.0, 0.8, 0.92, 0.97, 1.03, 1.1, 1.3])
-"""Lengths that are tried together, over the predicted one."""
+"""Lengths tried at once, over the predicted one."""
 
 _FEW: Final = 8
-"""Runs for which that costs hardly more than to try one."""
+"""Number of runs up to which that costs hardly more than one trial."""
 
 _GROWTH: Final = 10.0
-"""Growth of a length from one trial to the next at most: very small errors predict nothing."""
+"""Largest growth of a length per trial: very small errors are useless for prediction."""
 
 
 _CHECK_PART: Final = 0.02
-"""Part of the tolerance by which a curve may leave the points unseen between two checks."""
+"""Share of the tolerance by which a curve may deviate unnoticed between two check points."""
 
 _REACH: Final = 3
-"""Steps beside a bend over which a curve may carry on its curvature."""
+"""Steps next to a bend over which a curve may continue its curvature."""
 
 _SHARPER: Final = 2.0
-"""How many times as sharp as its neighbour a bend is not even."""
+"""Ratio of neighbouring curvatures above which a bend counts as uneven."""
 
 _BLOCK: Final = 1 << 13
-"""Places that are measured at once: their arrays stay in a processor's nearest memory."""
+"""Points measured at once: their arrays stay in the processor's first cache."""
 
 _LONE_CHECKS: Final = 16
-"""Most parts of a step for being longer than one beside it: a curve that is long enough for it and
-fits at its ends may bow between them."""
+"""Largest number of parts of a step that is longer than its neighbour: a curve that fits at the
+step's ends may deviate between them."""
 
 _MOST_CHECKS: Final = 50
-"""Most parts of a step: beyond, a run is too coarse to be judged by any number of checks."""
+"""Largest number of parts of a step: beyond, a run is too coarse for any number of check points."""
 
 
 class RunPoints(NamedTuple):
-    """Runs behind each other: points, mm, and unit tangents (n,), complex.
+    """Runs in sequence: points, mm, and unit tangents (n,), complex.
 
     The points of a run are those from its `first` to its `last`.
     """
@@ -68,7 +68,7 @@ def points_to_fit(runs: Sequence[Run], tolerance: float) -> RunPoints:
     runs : sequence of Run
         Smooth pieces, mm.
     tolerance : float, mm
-        Of the fit.
+        Tolerance of the fit.
 
     Returns
     -------
@@ -96,10 +96,10 @@ def points_to_fit(runs: Sequence[Run], tolerance: float) -> RunPoints:
 
 
 class Checks(NamedTuple):
-    """Where distances are taken: the points of runs, and more between them where they are sparse.
+    """Check points: the points of runs, and more between them where they are sparse.
 
-    `points`, mm, and unit `tangents` there, complex; `place` is where each point of the runs stands
-    among them.
+    `points`, mm, and unit `tangents` there, complex; `place` is the index among them of each point
+    of the runs.
     """
 
     points: Plane
@@ -108,25 +108,25 @@ class Checks(NamedTuple):
 
 
 def turns(tangents: Plane) -> Array:
-    """Return by what angles `tangents` turn from each to the next, rad."""
+    """Return the angles between successive `tangents`, rad."""
     return np.angle(tangents[1:] * np.conj(tangents[:-1]))
 
 
 def checks_of(rows: RunPoints, tolerance: float, *, even: bool) -> Checks:
-    """Return where the distances of a fit are taken.
+    """Return the check points of a fit.
 
-    Next to a sharp bend what is fitted may carry on the bend's curvature over a long, flat step and
-    leave the curve between its ends: such a step is cut as finely as the bend asks for. One
-    that is longer than those beside it is cut, too, or most of a curve would not be looked at.
+    Next to a sharp bend a fit may continue the bend's curvature over a long, flat step and deviate
+    between its ends: such a step is divided as finely as the bend needs. A step longer than its
+    neighbours is divided as well, or most of a curve would not be checked.
 
     Parameters
     ----------
     rows : RunPoints
-        What is fitted to.
+        The runs.
     tolerance : float, mm
-        Of the fit.
+        Tolerance of the fit.
     even : bool
-        Whether steps are cut where the curve bends evenly, too, if its points are sparse there.
+        Whether sparse steps of evenly curved parts are divided too.
     """
     points, tangents = rows.points, rows.tangents
     of = np.repeat(np.arange(len(rows.first)), rows.last - rows.first + 1)
@@ -151,7 +151,7 @@ def checks_of(rows: RunPoints, tolerance: float, *, even: bool) -> Checks:
 
 
 def _between(points: Plane, tangents: Plane, parts: Ints) -> Checks:
-    """Return points with others between them, on cubics, so many in each step."""
+    """Return points with others between them, on cubics, a given number in each step."""
     place = np.append(0, np.cumsum(parts))
     index = np.repeat(np.arange(len(parts)), parts)
     number = np.arange(len(index)) - place[index]
@@ -163,12 +163,12 @@ def _between(points: Plane, tangents: Plane, parts: Ints) -> Checks:
 
 
 def largest(measure: Callable[[Ints, Ints], Array], low: Ints, high: Ints) -> Array:
-    """Return the largest of the measures within ranges.
+    """Return the largest measure in each range.
 
     Parameters
     ----------
     measure : callable
-        ``measure(index, of) -> (m,) array``, none negative: at numbers `index` within the ranges
+        ``measure(index, of) -> (m,) array``, not negative: at indices `index` within the ranges
         `of`.
     low, high : (n,) int arrays
         The ranges: from `low` to below `high`.
@@ -176,7 +176,7 @@ def largest(measure: Callable[[Ints, Ints], Array], low: Ints, high: Ints) -> Ar
     Returns
     -------
     (n,) array
-        0 where a range is empty.
+        0 for an empty range.
     """
     count = np.maximum(high - low, 0)
     begin = np.cumsum(count) - count
@@ -198,14 +198,14 @@ def longest_pieces(
     order: int,
     near: float,
 ) -> tuple[Ints, Ints]:
-    """Cut runs into pieces, each as long as the tolerance allows.
+    """Return runs divided into pieces, each as long as the tolerance allows.
 
     Parameters
     ----------
     errors : callable
-        ``errors(start, end)``: of what would stand for the pieces between points.
+        ``errors(start, end)``: errors of the fit of the pieces between points.
     furthest : callable
-        ``furthest(start, last) -> end``: where a piece must end, whatever its error.
+        ``furthest(start, last) -> end``: the furthest end of a piece, for any error.
     rows : RunPoints
         The runs.
     tolerance : float
@@ -213,12 +213,12 @@ def longest_pieces(
     order : int
         Power of a piece's length with which its error grows: each trial predicts the next one.
     near : float
-        The search stops where the longest piece is known, or predicted, to this part of its length.
+        Relative tolerance of the length of the longest piece.
 
     Returns
     -------
     start, end : int arrays
-        Of the pieces, in order.
+        First and last points of the pieces, in order.
     """
     start, last = rows.first, rows.last
     found: list[tuple[Ints, Ints]] = []
@@ -238,7 +238,7 @@ def longest_pieces(
             low[done] = start[done] + 1
             high[done] = top[done] = furthest(start[done], last[done])
             continue
-        # a prediction that leaves what is known says nothing: then the middle is tried
+        # a prediction outside the bracket is useless: the middle is tried instead
         inside = (trial > low) & ((trial < high) | (high == top))
         trial = np.where(inside, np.minimum(trial, high), (low + high + 1) // 2)
         spread = _SPREAD[:, None] if start.size <= _FEW else np.ones((1, 1))
@@ -248,7 +248,7 @@ def longest_pieces(
         fits = error <= tolerance
         low = np.where(fits, tried, low).max(axis=0)
         high = np.where(fits | (tried < low), high, tried - 1).min(axis=0)
-        # the longest that fits predicts, or else the shortest
+        # predict from the longest that fits, or else from the shortest
         best = np.where(fits, tried, -tried).argmax(axis=0), np.arange(start.size)
         error, trial = error[best], tried[best]
         growth = (tolerance / np.maximum(error, tolerance / _GROWTH**order)) ** (1 / order)

@@ -1,6 +1,6 @@
-"""Hermite's cubics and quintics: what lies between places with known derivatives.
+"""Hermite's cubics and quintics: interpolation between points with known derivatives.
 
-Points and tangents of curves are complex numbers inside this room.
+Points and tangents of curves are complex numbers inside this module.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ Numbers = NDArray[Any]
 
 
 def hermite_arms(points: Plane, tangents: Plane) -> Array:
-    """Return the length of the end derivatives of the cubics through a curve's points.
+    """Return the lengths of the end derivatives of the cubics through a curve's points.
 
     Parameters
     ----------
@@ -27,8 +27,8 @@ def hermite_arms(points: Plane, tangents: Plane) -> Array:
     Returns
     -------
     (n - 1,) array, mm
-        The lengths of arcs that turn as the tangents do: the cubics' error then falls with the
-        fourth power of the step.
+        The lengths of arcs that turn by the angle between the tangents: the cubics' error then
+        falls with the fourth power of the step.
     """
     return _arms(np.diff(points), tangents[:-1], tangents[1:])
 
@@ -41,21 +41,21 @@ def _arms(chord: Plane, first: Plane, second: Plane) -> Array:
 def hermite_cubic(
     chord: Numbers, first: Numbers, second: Numbers, share: Array
 ) -> tuple[Numbers, Numbers]:
-    """Return the way and the slope of cubics.
+    """Return values and slopes of cubics.
 
     Parameters
     ----------
     chord : array
-        From the beginning to the end.
+        Difference from the beginning to the end.
     first, second : arrays
         Derivatives by the share at both ends.
     share : array
-        From 0 to 1.
+        Parameter, from 0 to 1.
 
     Returns
     -------
     way, slope : arrays
-        From the beginning, and by the share.
+        Difference from the beginning, and its derivative by the share.
     """
     back = 1.0 - share
     first, second = first - chord, second - chord
@@ -65,16 +65,16 @@ def hermite_cubic(
 
 
 def on_cubics(p: Plane, t: Plane, step: Ints, share: Array) -> tuple[Plane, Plane]:
-    """Return places on the cubics between a curve's points.
+    """Return points on the cubics between a curve's points.
 
     Parameters
     ----------
     p, t : (n,) complex arrays, mm and 1
         Points, and unit tangents there.
     step : (k,) int array
-        Number of the point before each place.
+        Index of the curve's point before each point.
     share : (k,) array
-        Share of the way to the next point.
+        Parameter towards the next point, from 0 to 1.
 
     Returns
     -------
@@ -87,14 +87,14 @@ def on_cubics(p: Plane, t: Plane, step: Ints, share: Array) -> tuple[Plane, Plan
 
 
 def hermite_quintics(x: Array, y: Array, slopes: Array, bends: Array) -> Array:
-    """Return the quintics between places with known values, slopes and second derivatives.
+    """Return the quintics between points with known values, slopes and second derivatives.
 
     Parameters
     ----------
     x : (n + 1,) array
         Rising.
     y, slopes, bends : (n + 1,) arrays
-        What is known there.
+        Values, slopes and second derivatives.
 
     Returns
     -------
@@ -102,7 +102,7 @@ def hermite_quintics(x: Array, y: Array, slopes: Array, bends: Array) -> Array:
         Coefficients of the powers of ``x - x[k]`` on interval k.
     """
     h, d0, s0 = np.diff(x), slopes[:-1], bends[:-1]
-    # the end conditions on what a parabola from the left end misses
+    # end conditions of the difference from the left end's parabola
     miss = np.diff(y) / h - d0 - 0.5 * s0 * h
     turn, gap = slopes[1:] - d0 - s0 * h, bends[1:] - s0
     return np.stack(

@@ -1,8 +1,8 @@
-"""Jets: truncated Taylor series, so that a formula written once also gives its exact derivatives.
+"""Jets: truncated Taylor series, which give the exact derivatives of a formula.
 
 A *jet* of order n holds the Taylor coefficients ``c[k] = f^(k)/k!`` of a function at every sample
-point. Arithmetic on jets is the arithmetic of power series; no difference quotient, no symbolic
-algebra. Outside a function's domain the values are nan or inf, for the caller to find and name.
+point. Arithmetic on jets is that of power series, without difference quotients or symbolic algebra.
+Outside a function's domain the values are nan or inf, which the caller has to check.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ Value = Array | float
 """A number, or one at each sample point."""
 
 _WHOLE: Final = 128
-"""Largest whole power that is taken by multiplying, which zero has too."""
+"""Largest whole power computed by multiplication, which is also valid at zero."""
 
 _BLOCK: Final = 2048
-"""Points of which harmonics are summed at once."""
+"""Points at which harmonics are summed at once."""
 
 
 class Jet:
@@ -39,7 +39,7 @@ class Jet:
     __slots__ = ("c",)
 
     __array_ufunc__ = None
-    """An array times a jet is a jet: numpy leaves the operation to it."""
+    """Makes numpy leave operations of arrays with jets to the jet."""
 
     def __init__(self, coefficients: Sequence[Value]) -> None:
         self.c = tuple(coefficients)
@@ -150,12 +150,12 @@ def _total(terms: Sequence[Value]) -> Value:
 
 
 def _is_zero(value: Value) -> bool:
-    """Whether a coefficient is zero at all points, without looking at arrays."""
+    """Whether a coefficient is a zero float; arrays are not examined."""
     return isinstance(value, float) and value == 0.0
 
 
 def _weights(x: Jet, k: int) -> list[tuple[Value, int]]:
-    """Return what makes coefficient k of f(x) from those of f'(x): f' = f'(x)*x', and which."""
+    """Return weights and indices for coefficient k of f(x) from f'(x): (f(x))' = f'(x)*x'."""
     return [(j * x.c[j] / k, k - j) for j in range(1, k + 1) if not _is_zero(x.c[j])]
 
 
@@ -196,7 +196,7 @@ def _oscillate(x: Jet, sine: bool) -> Jet:
         return Jet(f)
     g: list[Value] = [np.cos(x.c[0]) if sine else -np.sin(x.c[0])]
     if all(_is_zero(value) for value in x.c[2:]):
-        # A straight inner function: the derivatives are f, g, -f, -g, f, ...
+        # a linear inner function: the derivatives are f, g, -f, -g, f, ...
         factor = x.c[1]
         for k in range(1, x.order + 1):
             factor = factor * x.c[1] / k if k > 1 else factor
@@ -260,11 +260,11 @@ def polynomial(x: Jet, place: Value, *coefficients: Value) -> Jet:
     Parameters
     ----------
     x : Jet
-        Of arrays of one shape.
+        Argument, with arrays of one shape.
     place : float or array
-        Where the distance is zero.
+        Place of zero distance.
     *coefficients : floats, or arrays
-        Of rising powers, at least one.
+        Coefficients of rising powers, at least one.
 
     Returns
     -------
@@ -322,14 +322,14 @@ def harmonics(x: Jet, cosines: Sequence[float] | Array, sines: Sequence[float] |
 
 
 def composed(x: Jet, about: Array | Sequence[Array]) -> Jet:
-    """Return f(x) of a jet from f and its derivatives over their factorials at its points.
+    """Return f(x) of a jet x from the Taylor coefficients of f at its points.
 
     Parameters
     ----------
     x : Jet
         Of arrays.
     about : sequence of arrays
-        Row k is the k-th derivative over k!, up to the order of `x`.
+        Row k is the k-th derivative of f over k!, up to the order of `x`.
 
     Returns
     -------
@@ -345,7 +345,7 @@ def composed(x: Jet, about: Array | Sequence[Array]) -> Jet:
 
 @lru_cache
 def _binomials(count: int, rows: int) -> list[Array]:
-    """Return what coefficients are multiplied by in the k-th derivative over k!, k the row."""
+    """Return factors of coefficients in the k-th derivative over k!, by row k."""
     return [np.array([math.comb(j, k) for j in range(k, count)], float) for k in range(rows)]
 
 

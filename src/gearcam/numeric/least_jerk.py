@@ -1,10 +1,10 @@
 """Curves through points, or near them, with the least integral of the squared third derivative.
 
-Between points runs a quintic; derivatives go on up to the fourth. A curve that repeats after a
-period is a *ring*, one with two ends a *chain*. Slopes and second derivatives at the points, and
-the values of a smoothed ring, are the minimum of a quadratic form: its system is symmetric,
-positive definite, and couples neighbours only. Every second point is eliminated at once, again and
-again, so that n points take log2(n) steps.
+Between points the curve is a quintic; derivatives up to the fourth are continuous. A periodic curve
+is a *ring*, one with two ends a *chain*. Slopes and second derivatives at the points, and the
+values of a smoothed ring, minimise a quadratic form: its system is symmetric, positive definite,
+and couples neighbours only. Every second point is eliminated at once, repeatedly, so that n points
+take log2(n) steps.
 
 Source: C. de Boor, A Practical Guide to Splines (smoothing and interpolating splines); the
 coefficients are integrals over one quintic.
@@ -20,16 +20,16 @@ from gearcam.numeric.arrays import Array
 from gearcam.numeric.hermite import hermite_quintics
 
 _SAME: Final = np.array([[720.0, 360.0, 60.0], [360.0, 192.0, 36.0], [60.0, 36.0, 9.0]])
-"""Integral of the squared third derivative over an interval of length 1: the part of value, slope
-and second derivative at its left end. At the right end entries of odd order change their sign."""
+"""Integral of the squared third derivative over an interval of length 1: quadratic form of value,
+slope and second derivative at its left end. At the right end entries of odd order change sign."""
 
 _OTHER: Final = np.array([[-720.0, 360.0, -60.0], [-360.0, 168.0, -24.0], [-60.0, 24.0, -3.0]])
-"""The part of the left end (rows) with the right end (columns)."""
+"""Cross terms of the left end (rows) with the right end (columns)."""
 
 _ORDER: Final[Array] = np.add.outer(np.arange(3.0), np.arange(3.0))
 
 _FEW: Final = 3
-"""Points from which on a ring is solved at once: of fewer each is its own second neighbour."""
+"""Number of points up to which a ring is solved directly, as points are their own neighbours."""
 
 
 def ring_slopes(x: Array, y: Array, period: float) -> Array:
@@ -42,7 +42,7 @@ def ring_slopes(x: Array, y: Array, period: float) -> Array:
     y : (n,) array
         Values.
     period : float
-        After which it repeats.
+        Period.
 
     Returns
     -------
@@ -83,10 +83,10 @@ def chain_slopes(x: Array, y: Array, start: tuple[float, float], end: tuple[floa
 
 
 def smoothed_ring(x: Array, y: Array, period: float, cutoff: float) -> Array:
-    """Return the values, at its points, of the smoothing ring that passes near them.
+    """Return the values of a smoothing ring at its points.
 
-    It has the least sum of the integral of the squared third derivative and the squared distances
-    from the points times a weight, ``cutoff**6`` over their mean spacing.
+    It minimises the integral of the squared third derivative plus the sum of squared distances from
+    the points times a weight, ``cutoff**6`` times their mean spacing.
 
     Parameters
     ----------
@@ -95,23 +95,23 @@ def smoothed_ring(x: Array, y: Array, period: float, cutoff: float) -> Array:
     y : (n,) array
         Values.
     period : float
-        After which it repeats.
+        Period.
     cutoff : float
-        Of evenly spaced points, waves of this wave number, phase per unit of x, keep half their
-        height; longer ones more, shorter ones less, ``1/(1 + (number/cutoff)**6)``.
+        Wave number (phase per unit of x) at which waves of evenly spaced points keep half their
+        height; in general they keep ``1/(1 + (number/cutoff)**6)``.
 
     Returns
     -------
     (n,) array
-        Its rounding grows with the sixth power of the points in a wave at the cutoff; it is smooth,
-        a change of what smoothing would make, below 1e-17*(n/cutoff)**6 of the largest value.
+        Rounding grows with the sixth power of the points per wave at the cutoff; it is smooth, as
+        if by a slightly different smoothing, and below 1e-17*(n/cutoff)**6 of the largest value.
     """
     left, right, beside = _forms(_widths(x, period))
     diagonal, mean = left + np.roll(right, 1, axis=0), y.mean()
     weight = cutoff**6 * period / len(x)
     diagonal[:, 0, 0] += weight
     wanted = np.zeros((len(x), 3, 1))
-    wanted[:, 0, 0] = weight * (y - mean)  # a constant costs nothing; without it digits are left
+    wanted[:, 0, 0] = weight * (y - mean)  # subtracting a constant preserves digits
     return mean + _solved(diagonal, beside, wanted)[:, 0, 0]
 
 
@@ -121,17 +121,17 @@ def coefficients(x: Array, y: Array, slopes: Array, *, ring: bool) -> tuple[Arra
     Parameters
     ----------
     x, y : (n + 1,) arrays
-        Points; the last of a ring is the first one, a period on.
+        Points; the last of a ring is the first one, a period later.
     slopes : (n + 1, 2) array
         Slopes and second derivatives there.
     ring : bool
-        Whether it is a ring.
+        Whether the curve is a ring.
 
     Returns
     -------
     left, right : (n, 6) arrays
-        Of rising powers of the distance from the point before and from the point behind. At a
-        point the third derivative is one number on both sides, not only to rounding.
+        Coefficients of rising powers of the distance from the point before, and from the point
+        after. At a point the third derivative is the same number on both sides, without rounding.
     """
     h = np.diff(x)
     left = hermite_quintics(x, y, *slopes.T).T
@@ -148,16 +148,16 @@ def _widths(x: Array, period: float) -> Array:
 
 
 def _forms(h: Array) -> tuple[Array, Array, Array]:
-    """Return the forms of intervals: of their left ends, of their right ends, and between both."""
+    """Return the quadratic forms of intervals: left ends, right ends, and cross terms."""
     scale = h[:, None, None] ** (_ORDER - 5.0)
     left = _SAME * scale
     return left, left * (-1.0) ** _ORDER, _OTHER * scale
 
 
 def _solved(diagonal: Array, beside: Array, wanted: Array) -> Array:
-    """Solve a symmetric system of n blocks in a ring, (n, b, 1).
+    """Return the solution of a symmetric cyclic system of n blocks, (n, b, 1).
 
-    Row k has the block ``diagonal[k]``, and ``beside[k]`` in the column of the next one.
+    Row k has the block ``diagonal[k]``, and ``beside[k]`` in the next column.
     """
     count, size = diagonal.shape[:2]
     if count <= _FEW:

@@ -1,19 +1,19 @@
-"""Memory that is given back only to be asked for again."""
+"""A setting of the memory allocator for many arrays of some hundred kB."""
 
 from __future__ import annotations
 
 import numpy as np
 
 _BLOCK = 31 << 20
-"""Size of the block, bytes: just below 32 MiB, the largest that glibc learns from."""
+"""Size of the block, bytes: just below 32 MiB, the largest for which glibc adapts its threshold."""
 
 
 def keep_freed_memory() -> None:
-    """Make the allocator keep freed arrays for the next ones.
+    """Make the allocator keep freed arrays for reuse.
 
-    The C library of most Linux systems returns arrays of some hundred kB to the system and asks
-    for them anew, page by page, until it has seen a larger block come and go; that costs an outline
-    a seventh of its time and an overlap two fifths. The block here is never touched. Elsewhere
-    this does nothing.
+    The C library of most Linux systems returns freed arrays of some hundred kB to the system and
+    requests them anew, page by page, until a larger block has been freed once. That costs a
+    seventh of the time of an outline and two fifths of that of an overlap. The block here is never
+    written to. On other systems this has no effect.
     """
     np.empty(_BLOCK, dtype=np.uint8)

@@ -4,7 +4,7 @@ For a homogeneous function f of degree k, ``integral of f dA = 1/(k + 2) * integ
 dx)`` around the boundary (Green). Curves are integrated piece by piece: arcs by Gauss-Legendre
 points that are exact to rounding, sampled curves by the cubics through their points and tangents.
 
-Points are complex numbers inside this room.
+Points are complex numbers inside this module.
 """
 
 from __future__ import annotations
@@ -21,20 +21,20 @@ from gearcam.numeric.bulges import as_complex, bulge_pieces, on_arcs
 from gearcam.numeric.hermite import hermite_arms, hermite_cubic
 
 _ON_ARC: Final = 16
-"""Gauss points of an arc up to a half circle: rounding."""
+"""Gauss points of an arc up to a half circle: exact to rounding."""
 
 _ON_CUBIC: Final = 3
-"""Gauss points of a sampled curve's step: far below the chord error of its points."""
+"""Gauss points of a sampled curve's step: error far below the chord error."""
 
 _LEAST_FALL, _FALL = 4.0, 16.0
-"""By what the error of a sampled curve falls with twice as many points: the second order, of what
-bends like a corner, and the fourth."""
+"""Least and largest factor by which twice as many points reduce the error of a sampled curve: of
+second order at sharp bends, of fourth order otherwise."""
 
 _BLOCK: Final = 1 << 12
-"""Steps whose cubics are integrated at once: they stay in a processor's nearest memory."""
+"""Steps integrated at once: they stay in the processor's first cache."""
 
 _SAFE: Final = 1.5
-"""Over the change that one more doubling would make: all of them are up to a third more."""
+"""Error over the change by one more doubling: all further ones add up to a third."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,7 +93,7 @@ def arc_moments(vertices: Array, bulges: Array) -> Moments:
 
 
 def curve_moments(points: Array, tangents: Array) -> Moments:
-    """Return what an open curve adds to the moments of the region that it bounds.
+    """Return the contribution of an open curve to the moments of the region that it bounds.
 
     Parameters
     ----------
@@ -105,25 +105,25 @@ def curve_moments(points: Array, tangents: Array) -> Moments:
     Returns
     -------
     Moments
-        Only the sum over a closed chain has a meaning.
+        Only the sum over a closed chain is meaningful.
     """
     return _told(_on_cubics(as_complex(points), as_complex(tangents)).sum(axis=1))
 
 
 def halving(points: Plane, tangents: Plane, middles: Plane, between: Plane) -> float:
-    """Return by what the area beside a sampled curve changes if its steps are halved, mm^2.
+    """Return the change of the area at a sampled curve if its steps are halved, mm^2.
 
     Parameters
     ----------
     points, tangents : (n,) complex arrays, mm and 1
-        Of a smooth curve, the tangents of length 1.
+        Of a smooth curve, with unit tangents.
     middles, between : (n - 1,) complex arrays, mm and 1
         The same inside each step.
 
     Returns
     -------
     float
-        What one step changes does not make up for another.
+        Sum of absolute changes of the steps.
     """
     p, t = (
         np.append(np.column_stack([one[:-1], inside]).ravel(), one[-1])
@@ -134,18 +134,18 @@ def halving(points: Plane, tangents: Plane, middles: Plane, between: Plane) -> f
 
 
 def curve_errors(curves: Sequence[tuple[Array, Array]]) -> Moments:
-    """Return what sampled curves' moments are off by, none of them below zero.
+    """Return the errors of moments of sampled curves, not negative.
 
     Parameters
     ----------
     curves : sequence of (points, tangents)
-        Smooth curves, each as for `curve_moments`. Of one that has one step nothing is told.
+        Smooth curves, each as for `curve_moments`. Curves of a single step are ignored.
 
     Returns
     -------
     Moments
-        Each curve's change from every second point to all, over what it fell by from every fourth
-        point on. What one curve misses does not make up for another.
+        Sum over curves of the absolute change from every second point to all points, extrapolated
+        by the decrease from every fourth to every second.
     """
     all_of, half, quarter = (_by_curve(curves, every) for every in (1, 2, 4))
     change = np.abs(half - all_of)
@@ -177,7 +177,7 @@ def _on_cubics(p: Plane, u: Plane) -> Plane:
 
 
 def _gauss(count: int) -> tuple[Array, Array]:
-    """Places and weights on [0, 1]."""
+    """Gauss points and weights on [0, 1]."""
     place, weight = np.polynomial.legendre.leggauss(count)
     return 0.5 * (place + 1.0), 0.5 * weight
 

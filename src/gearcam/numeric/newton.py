@@ -12,16 +12,16 @@ from gearcam.numeric.arrays import Array, Ints
 State = TypeVar("State")
 
 _STEPS = 40
-"""Newton steps at most: where a root exists five serve."""
+"""Largest number of Newton steps: five suffice where a root exists."""
 
 _LONGEST = 0.5
-"""Longest step, in units of the scale: half of what lies between neighbouring roots."""
+"""Longest step, in units of the scale: half the distance of neighbouring roots."""
 
 _FEW = 0.25
-"""Share of the systems below which those that are done are left alone."""
+"""Share of unfinished systems below which only these are evaluated."""
 
 _LEFT = 0.5
-"""Share of the last step above which one that goes back is no approach."""
+"""Share of the last step above which a reversed step counts as oscillation."""
 
 
 def damped_newton(
@@ -31,31 +31,31 @@ def damped_newton(
     small: float,
     limits: tuple[Array, Array] | None = None,
 ) -> tuple[Array, State]:
-    """Solve n systems of three equations by steps that are limited in two of the unknowns.
+    """Solve n systems of three equations by Newton steps, limited in two of the unknowns.
 
-    Where slopes jump, steps may go to and fro across a root forever. Of those that go back almost
-    as far as they came a half is taken, of the next ones a quarter.
+    Where slopes jump, steps may oscillate across a root. Of a step that goes back almost as far as
+    the last one, half is taken, of the next such step a quarter.
 
     Parameters
     ----------
     evaluate : callable
-        ``evaluate(x, rows)`` returns of systems `rows` (m,) any state, the equations (3, m) and
-        their slopes (3, 3, m): by equation and unknown.
+        ``evaluate(x, rows)`` returns for systems `rows` (m,) any state, the residuals (3, m) and
+        their derivatives (3, 3, m), by equation and unknown.
     x : (3, n) array
         First guess.
     scale : (n,) array
-        What makes steps of the first two unknowns comparable: half a unit is the longest step.
+        Unit of the first two unknowns: half a unit is the longest step.
     small : float
-        Step, in these units, at which all end.
+        Step, in these units, at which the iteration ends.
     limits : (low, high), optional
-        (n,) arrays, between which the first two unknowns stay.
+        (n,) arrays, bounds of the first two unknowns.
 
     Returns
     -------
     x : (3, n) array
-        Not a root where there is none near: the caller looks at what the equations miss.
+        Not a root where there is none near: the caller has to check the residuals.
     state : State
-        What `evaluate` says of it.
+        State that `evaluate` returns there.
     """
 
     def held(x: Array, rows: Ints) -> Array:
@@ -89,7 +89,7 @@ def damped_newton(
 
 
 def solve(matrix: Array, right: Array) -> Array:
-    """Solve linear systems by determinants.
+    """Return the solutions of linear systems, by determinants.
 
     Parameters
     ----------

@@ -1,9 +1,9 @@
 """Piecewise analytic functions: closed-form pieces between knots, with exact derivatives.
 
-A *piece* is a function written for jets, so that its derivatives are exact; it may bring its
-integral in closed form. Pieces of one function that differ in parameters alone are evaluated all
-at once. Between knots a piece is smooth; at a knot any derivative may jump, and `continuity` says
-which is the first to do so.
+A *piece* is a function of jets, so that its derivatives are exact; it may have its integral in
+closed form. Pieces of one function that differ only in parameters are evaluated together. Between
+knots the function is smooth; at a knot any derivative may jump, and `continuity` gives the order of
+the first that does.
 """
 
 from __future__ import annotations
@@ -22,29 +22,29 @@ from gearcam.numeric.jets import Jet
 from gearcam.numeric.roots import bracketed_root
 
 _SAME = 1e-9
-"""Difference of derivatives on both sides of a knot, in the largest of them or 1, that is none."""
+"""Difference of derivatives across a knot, in the largest of them or 1, that counts as rounding."""
 
 _INSET = 1e-12
-"""Share of an interval that its outermost places keep from the knots: still of its own piece."""
+"""Distance of outermost points from the knots, as a share of the interval."""
 
 _ENDS = [0, -1]
 
 _PLACES, _LEAST = 192, 48
-"""Places in all intervals together, and at least in each."""
+"""Total number of points in all intervals, and least number in each."""
 
 _PLACES_OF_CELLS, _LEAST_OF_CELL = 9 * FIRST_CUTS, 9
-"""The same where intervals are as narrow as what happens in them: as many as expansions begin
-with."""
+"""The same for intervals that resolve all features: as many points as in the first step of
+expansions."""
 
 _FLAT = 1e-8
-"""Share of an interval to which extremes are placed: there a value is flat, good to rounding."""
+"""Tolerance of the place of extremes, as a share of the interval: their values are flat."""
 
 _BETWEEN, _ADDED = 24, 2400
-"""Places that a curve between two knots is drawn by at least, and how many are added at most."""
+"""Least number of points of a drawn curve between two knots, and largest number added."""
 
 _BLOCK = 1 << 15
-"""Places at which pieces are evaluated at once: of more, the arrays between, several for each
-parameter, leave the processor's cache, and the allocator gives them back."""
+"""Points at which pieces are evaluated at once: with more, intermediate arrays leave the cache and
+the allocator returns them to the system."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,12 +54,12 @@ class Piece(Brief):
     Parameters
     ----------
     function : callable
-        ``function(jet, *parameters) -> jet``; with parameters each is a float, or an array of one
-        value a place.
+        ``function(jet, *parameters) -> jet``; each parameter is a float, or an array with one value
+        per point.
     integral : callable or None
         ``integral(jet, *parameters) -> jet`` with derivative `function`, any constant.
     parameters : tuple of float
-        What sets it apart from other pieces of the same function.
+        Parameters by which pieces of the same function differ.
     """
 
     function: Callable[..., Jet]
@@ -67,20 +67,20 @@ class Piece(Brief):
     parameters: tuple[float, ...] = ()
 
     def __call__(self, x: Jet) -> Jet:
-        """Return the piece of a jet."""
+        """Return the value of the piece for a jet."""
         return self.function(x, *self.parameters)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Piecewise(Brief):
-    """A function of one variable made of pieces that are written for jets, smooth between knots.
+    """A function of one variable made of pieces, smooth between knots.
 
     Parameters
     ----------
     knots : (n + 1,) array
         Rising.
     pieces : tuple of n Piece
-        Between the knots; their integrals are not used.
+        Pieces between the knots; their integrals are not used.
     offsets : (n,) array
         Added to the pieces: integration constants.
     """
@@ -91,9 +91,9 @@ class Piecewise(Brief):
 
     @cached_property
     def _families(self) -> tuple[Ints, list[tuple[Callable[..., Jet], Array]]]:
-        """Number of each piece's function; and the functions, with a column a piece of parameters.
+        """Number of each piece's function, and the functions with parameters, one column per piece.
 
-        The columns of other functions' pieces are never read.
+        Columns of other functions' pieces are never read.
         """
         owners: dict[tuple[Callable[..., Jet], int], list[int]] = {}
         for k, piece in enumerate(self.pieces):
@@ -107,7 +107,7 @@ class Piecewise(Brief):
         return numbers, functions
 
     def derivatives(self, x: ArrayLike, order: int) -> list[Array]:
-        """Return ``[f, f', ..., f^(order)]`` at `x`; at a knot the piece to its right counts."""
+        """Return ``[f, f', ..., f^(order)]`` at `x`; at a knot from the piece on its right."""
         x = np.asarray(x, dtype=float)
         if len(self.pieces) != 1:
             index = np.searchsorted(self.knots[1:-1], x.ravel(), side="right")
@@ -119,18 +119,18 @@ class Piecewise(Brief):
     def on_pieces(
         self, index: Ints, x: Array, order: int, moved: Callable[[Array], Array] | None = None
     ) -> Array:
-        """Return function and derivatives by given pieces, right at knots too.
+        """Return function and derivatives from given pieces, also exactly at knots.
 
         Parameters
         ----------
         index : (n,) array of int
             Numbers of the pieces.
         x : (n,) array
-            Places in or at the ends of them.
+            Points in or at the ends of them.
         order : int
-            Of the last derivative.
+            Order of the last derivative.
         moved : callable, optional
-            ``moved(parameters) -> parameters``: what is done to those of the pieces at each place.
+            ``moved(parameters) -> parameters``: a change of the parameters at each point.
 
         Returns
         -------
@@ -145,7 +145,7 @@ class Piecewise(Brief):
     def _some(
         self, index: Ints, x: Array, order: int, moved: Callable[[Array], Array] | None
     ) -> Array:
-        """Return what `on_pieces` does, at once."""
+        """Return the result of `on_pieces`, without dividing the points into blocks."""
         numbers, functions = self._families
         result = np.empty((order + 1, x.size))
         family = numbers.take(index)
@@ -184,7 +184,7 @@ class Piecewise(Brief):
         return float(self.side(len(self.knots) - 1, -1, 0)[0])
 
     def side(self, knot: int, side: int, order: int) -> list[float]:
-        """Return derivatives up to `order` at a knot by the piece on one `side` (-1 or +1)."""
+        """Return derivatives up to `order` at a knot from the piece on one `side` (-1 or +1)."""
         number = np.array([knot - 1 if side < 0 else knot])
         return self.on_pieces(number, self.knots[[knot]], order)[:, 0].tolist()
 
@@ -200,14 +200,14 @@ class Piecewise(Brief):
 
 
 def piecewise(knots: ArrayLike, pieces: list[Piece]) -> Piecewise:
-    """Return the function that the pieces make between the knots."""
+    """Return the function made of the pieces between the knots."""
     return Piecewise(
         knots=np.asarray(knots, dtype=float), pieces=tuple(pieces), offsets=np.zeros(len(pieces))
     )
 
 
 def integrate(knots: ArrayLike, pieces: list[Piece], tolerance: float) -> Piecewise | Expansion:
-    """Return the integral from the first knot, in closed form where every piece has one.
+    """Return the integral from the first knot, in closed form if every piece has one.
 
     Parameters
     ----------
@@ -216,7 +216,7 @@ def integrate(knots: ArrayLike, pieces: list[Piece], tolerance: float) -> Piecew
     pieces : list of n Piece
         The integrand.
     tolerance : float
-        Relative truncation error of the expansion that is used otherwise.
+        Relative truncation error of the expansion used otherwise.
 
     Returns
     -------
@@ -226,7 +226,7 @@ def integrate(knots: ArrayLike, pieces: list[Piece], tolerance: float) -> Piecew
     Raises
     ------
     NotSmoothError
-        Where the integrand is not finite or not smooth between the knots.
+        If the integrand is not finite or not smooth between the knots.
     """
     grid = np.asarray(knots, dtype=float)
     closed = [
@@ -243,15 +243,15 @@ def integrate(knots: ArrayLike, pieces: list[Piece], tolerance: float) -> Piecew
 
 
 def places_between(knots: ArrayLike, *, cells: bool = False) -> Array:
-    """Return places in every interval between knots, both ends just inside.
+    """Return points in every interval between knots, both ends just inside.
 
     Parameters
     ----------
     knots : (n + 1,) array
         Rising.
     cells : bool
-        Whether knots that an expansion has found are among them: then the intervals are as narrow
-        as what happens in them, and all together have as many places as expansions begin with.
+        Whether the knots include those found by an expansion: then the intervals resolve all
+        features, and in total have as many points as the first step of expansions.
 
     Returns
     -------
@@ -263,7 +263,7 @@ def places_between(knots: ArrayLike, *, cells: bool = False) -> Array:
     most, least = (_PLACES_OF_CELLS, _LEAST_OF_CELL) if cells else (_PLACES, _LEAST)
     steps = np.linspace(_INSET, 1.0 - _INSET, max(most // len(width), least))
     x = grid[:-1, None] + width[:, None] * steps
-    # of a narrow interval so small a share may round to the knot, which is another piece's
+    # in a narrow interval so small a share may round to the knot, which belongs to another piece
     x[:, 0] = np.maximum(x[:, 0], np.nextafter(grid[:-1], np.inf))
     x[:, -1] = np.minimum(x[:, -1], np.nextafter(grid[1:], -np.inf))
     return x
@@ -272,7 +272,7 @@ def places_between(knots: ArrayLike, *, cells: bool = False) -> Array:
 def extremes(
     function: Callable[[Array], Sequence[Array]], knots: ArrayLike, *, cells: bool = False
 ) -> tuple[Array, Array]:
-    """Find all extremes of a function: roots of its slope, and both sides of its knots.
+    """Return all extremes of a function: roots of its slope, and both sides of its knots.
 
     Parameters
     ----------
@@ -294,7 +294,7 @@ def extremes(
 def extremes_of_each(
     functions: Callable[[Array], Array], knots: ArrayLike, *, cells: bool = False
 ) -> list[tuple[Array, Array]]:
-    """Find the extremes of several functions at once (see `extremes`).
+    """Return the extremes of several functions at once (see `extremes`).
 
     Parameters
     ----------
@@ -311,7 +311,7 @@ def extremes_of_each(
     """
     x = places_between(knots, cells=cells)
     values, slopes = (found.reshape(-1, *x.shape) for found in functions(x.ravel()))
-    # the outermost places keep from the knots, the values are those at them
+    # the outermost points are off the knots, their values are those at the knots
     inset = _INSET / (1.0 - 2.0 * _INSET) * (x[:, -1:] - x[:, :1]) * [-1.0, 1.0]
     values[..., _ENDS] += slopes[..., _ENDS] * inset
     return _extremes_among(functions, x, values, slopes)
@@ -320,16 +320,16 @@ def extremes_of_each(
 def extremes_among(
     function: Callable[[Array], Sequence[Array]], x: Array, values: Array, slopes: Array
 ) -> tuple[Array, Array]:
-    """Find the same from values and slopes that are known already.
+    """Return the same from values and slopes that are already computed.
 
     Parameters
     ----------
     function : callable
-        As of `extremes`.
+        As for `extremes`.
     x : (n, k) array
-        Places in n intervals, as `places_between` gives them.
+        Points in n intervals, from `places_between`.
     values, slopes : (n, k) arrays
-        What the function is there.
+        Values and slopes there.
 
     Returns
     -------
@@ -345,13 +345,13 @@ def _extremes_among(
     functions: Callable[[Array], Array], x: Array, values: Array, slopes: Array
 ) -> list[tuple[Array, Array]]:
     before, after, flat = slopes[..., :-1], slopes[..., 1:], slopes == 0.0
-    # from a slope of 0 at a knot the way may lead up and come down steeply
+    # after a slope of 0 at a knot the function may rise and then fall steeply
     hidden = np.diff(flat) & (np.diff(values) * (before + after) < 0.0)
     which, piece, cell = turns = np.nonzero((before * after < 0.0) | hidden)
     before, after = before[turns], after[turns]
     known = np.where(before == 0.0, -after, before), np.where(after == 0.0, -before, after)
     number = np.arange(which.size)
-    width = x[:, -1] - x[:, 0]  # none is left between knots that are neighbours in rounding
+    width = x[:, -1] - x[:, 0]  # none is left between knots that differ by rounding only
     roots = bracketed_root(
         lambda t: functions(t)[1, which, number],
         x[piece, cell],
@@ -360,7 +360,7 @@ def _extremes_among(
         known,
     )
     tops = functions(roots)[0, which, number] if roots.size else roots
-    # a slope that is rounded to 0 changes no sign: where it begins and ends to be
+    # a slope rounded to 0 has no change of sign: take the ends of such a stretch
     edge = flat.copy()
     edge[..., 1:-1] &= ~(flat[..., :-2] & flat[..., 2:])
     edge[..., _ENDS] = True
@@ -373,20 +373,20 @@ def _extremes_among(
 
 
 def with_both_sides(places: Array, knots: Array) -> Array:
-    """Return places on an axis with both sides of knots among them, and enough between knots.
+    """Return points on an axis that include both sides of knots, with enough between knots.
 
     Parameters
     ----------
     places : (n,) array
         Rising.
     knots : (m,) array
-        Where what is drawn may jump; those outside the places are left out.
+        Possible jumps of the drawn curve; those outside the points are left out.
 
     Returns
     -------
     (k,) array
-        Rising: of a knot the last number before it, and itself. Between knots that are near each
-        other places are added, unless there are very many.
+        Rising: for a knot the last number before it, and the knot itself. Between close knots
+        points are added, unless there are very many.
     """
     inside = np.unique(knots[(knots > places[0]) & (knots < places[-1])])
     edges = np.concatenate([places[:1], inside, places[-1:]])

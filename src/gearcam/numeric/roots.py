@@ -1,7 +1,7 @@
-"""Bracketed root searches, vectorised: every search keeps an interval that holds its root.
+"""Bracketed root searches, vectorised: every search keeps an interval that contains its root.
 
 Newton steps are taken while they stay inside the bracket and are replaced by bisection otherwise,
-so that no start value, however bad, can lead out of it; where they make no way, bisection ends it.
+so that no start value can lead out of it; where they converge slowly, bisection takes over.
 """
 
 from __future__ import annotations
@@ -14,10 +14,10 @@ from numpy.typing import ArrayLike
 from gearcam.numeric.arrays import Array
 
 _STEPS = 80
-"""Bisection alone narrows a bracket to rounding in 60 steps; 80 leaves room for mixed steps."""
+"""Largest number of steps: bisection alone reaches rounding in 60, mixed steps in 80."""
 
 _NEWTON = 30
-"""Newton's steps at most: ten are many, after these slopes lead nowhere in good time."""
+"""Largest number of Newton steps: more than ten are rare."""
 
 
 def newton_in_bracket(
@@ -33,7 +33,7 @@ def newton_in_bracket(
     Parameters
     ----------
     function : callable
-        ``function(x) -> (value, slope)``. Its value must rise through zero between `low` and `high`
+        ``function(x) -> (value, slope)``. Its value must rise through zero from `low` to `high`
         (`low` may be the larger of the two: then it falls along the axis).
     low, high : array
         Ends of the bracket: value below zero at `low`, above at `high`.
@@ -42,12 +42,12 @@ def newton_in_bracket(
     tolerance : float
         The search stops when every step is smaller than this, in units of x.
     noise : float
-        Or when its value is: what rounding may make of 0.
+        The search also stops when the value is smaller than this: rounding of 0.
 
     Returns
     -------
     array
-        The roots. Where the function does not change sign, the end that is nearer to zero.
+        The roots; where the function does not change sign, the end nearer to zero.
     """
     a, b, x = (np.array(v, dtype=float) for v in np.broadcast_arrays(low, high, start))
     if x.size == 0:
@@ -60,10 +60,10 @@ def newton_in_bracket(
         with np.errstate(divide="ignore", invalid="ignore"):
             step = x - value / slope
         inside = (step - a) * (step - b) <= 0.0
-        # where the slope jumps steps may go from end to end of the bracket for ever
+        # where the slope jumps, steps may oscillate between the ends of the bracket
         size = np.abs(step - x)
         inside &= (size <= 0.5 * np.maximum(np.abs(b - a), last)) & (number < _NEWTON)
-        # A first step that leads out tries the end: it may be the answer.
+        # if the first step leads out, try the end: it may be the root
         other = 0.5 * (a + b) if number else np.where((step - a) * (b - a) > 0.0, b, a)
         new = np.where(np.abs(value) <= noise, x, np.where(inside, step, other))
         last = np.abs(new - x)
@@ -80,10 +80,10 @@ def bracketed_root(
     tolerance: float,
     ends: tuple[Array, Array] | None = None,
 ) -> Array:
-    """Find where a function changes sign between `low` and `high`, jumps included.
+    """Find where a function changes sign between `low` and `high`, including jumps.
 
-    Chandrupatla's method: inverse quadratic steps where the last three points allow them, else
-    halving.
+    Chandrupatla's method: inverse quadratic steps where the last three points allow them, otherwise
+    bisection.
 
     Parameters
     ----------
@@ -94,12 +94,12 @@ def bracketed_root(
     tolerance : float
         Width at which a bracket counts as a point, in units of x.
     ends : (array, array), optional
-        The function's values at `low` and `high`, where they are known already.
+        The function's values at `low` and `high`, if already computed.
 
     Returns
     -------
     array
-        The roots: of the two ends of the last bracket the one nearer to zero.
+        The roots: the end of the last bracket with the value nearer to zero.
     """
     a, b = (np.array(v, dtype=float) for v in np.broadcast_arrays(low, high))
     if a.size == 0:
@@ -134,16 +134,16 @@ def largest_fitting(fits: Callable[[float], bool], high: float, halvings: int) -
     Parameters
     ----------
     fits : callable
-        Whether a number fits: those up to a limit do.
+        Returns whether a number fits: true up to a limit.
     high : float
-        A number that does not.
+        A number that does not fit.
     halvings : int
-        Steps of the search.
+        Number of bisections.
 
     Returns
     -------
     float
-        0 where none fits.
+        0 if none fits.
     """
     low = 0.0
     for _ in range(halvings):

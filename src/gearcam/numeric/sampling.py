@@ -1,9 +1,9 @@
-"""From curves to contours: as few points as the tolerance allows, with the error measured.
+"""Contours from curves: as few points as the tolerance allows, with measured chord error.
 
-A chord of a curve of curvature kappa and length l is off by ``kappa*l^2/8``. The points are
+The error of a chord of length l on a curve of curvature kappa is ``kappa*l^2/8``. The points are
 therefore spread evenly over ``J = integral of sqrt(kappa/(8*tolerance)) ds``, which is the least
 number of chords, rounded up for each stretch between corners. Where the curvature jumps inside a
-chord the error is measured, and the chord is halved if it is too large.
+chord the error is measured, and the chord is halved if the error is too large.
 """
 
 from __future__ import annotations
@@ -22,52 +22,52 @@ from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.dense import Dense, sags
 
 _PROBES = 24
-"""Intervals per curve on which the density of points is found."""
+"""Intervals per curve for the density of points."""
 
 _CURVES = 1 << 11
-"""Curves whose density is found at once: the probes of more need not be in memory together."""
+"""Curves whose density is computed at once, to limit memory."""
 
 _MEASURED = 2.0
-"""Times as many chords as were promised that measuring may ask for."""
+"""Largest factor by which measured errors may increase the number of chords."""
 
 MOST = 1e6
-"""Chords of a polygon: of many more, the files made of them do not fit into memory."""
+"""Largest number of chords of a polygon: with many more, files do not fit into memory."""
 
 FEWEST = 8
-"""Chords of a closed polygon: fewer do not tell its curve, however coarse the tolerance is."""
+"""Least number of chords of a closed polygon, for any tolerance."""
 
 _EIGHTHS = np.arange(1, 8) / 8.0
 _QUARTERS = _EIGHTHS[1::2]
 _AROUND = np.array([-3, -2, -1, 1, 2, 3]) / 32.0
-"""Places inside a chord at which its error is measured: where the curve bends like a corner, the
-largest distance is a peak."""
+"""Points inside a chord at which its error is measured: at a sharp bend the largest distance is a
+peak."""
 
 _FILL = 0.955
-"""Share of the tolerance's chord that is used: the density is known to a few percent only."""
+"""Share of the allowed chord length that is used: the density is known to a few percent only."""
 
 _UNEVEN = 0.05
-"""Change of curvature along a chord above which its error is measured."""
+"""Relative change of curvature along a chord above which its error is measured."""
 
 MARGIN = 0.97
-"""Share of the tolerance that a measured error may take: between its places it may be larger."""
+"""Allowed measured error, as a share of the tolerance: between the points it may be larger."""
 
 _FEW = 0.12
-"""Share of chords that may be halved; with more of them the vertices are spread anew."""
+"""Share of chords that may be halved; beyond it all vertices are spread anew."""
 
 _GRAIN = 1e-3
-"""Distance in tolerances below which two points of a dense run are one."""
+"""Distance, in tolerances, below which two points of a dense run are merged."""
 
 _DENSE = 1.0 / 32.0
-"""Chord error of dense points, in tolerances, at most."""
+"""Largest chord error of dense points, in tolerances."""
 
 _STRAIGHT = 16.0 * np.finfo(float).eps
-"""Turning of a tangent that is rounding, rad."""
+"""Rounding of the angle between tangents, rad."""
 
 _RISING = 1e-9
-"""Chords that a straight piece is given, so that their count rises everywhere."""
+"""Number of chords assigned to a straight piece, so that J rises everywhere."""
 
 _ROUNDS = 12
-"""Halvings of a chord whose error is too large; each makes it 4 times smaller, or 2 at a jump."""
+"""Halvings of a chord whose error is too large; each reduces it 4 times, or 2 times at a jump."""
 
 
 class Curves(Protocol):
@@ -75,25 +75,25 @@ class Curves(Protocol):
 
     @property
     def start(self) -> Array:
-        """Parameter at which each curve begins, (n,)."""
+        """Parameter at the beginning of each curve, (n,)."""
         ...
 
     @property
     def end(self) -> Array:
-        """Parameter at which each curve ends, (n,); it may be less than at the beginning."""
+        """Parameter at the end of each curve, (n,); it may be less than at the beginning."""
         ...
 
     @property
     def corner(self) -> Mask:
-        """Whether each curve begins at a corner, (n,); else it goes on smoothly.
+        """Whether each curve begins at a corner, (n,); if not it continues smoothly.
 
-        The first one does: of a smooth closed curve it is where the only run begins and ends.
+        The first one always does: on a smooth closed curve the only run begins and ends there.
         """
         ...
 
     @property
     def breaks(self) -> tuple[Ints, Array]:
-        """Places inside curves at which the curvature jumps: numbers of curves, parameters (k,)."""
+        """Jumps of curvature inside curves: numbers of curves and parameters, (k,) each."""
         ...
 
     def at(self, index: Ints, parameter: Array) -> tuple[Plane, Plane]:
@@ -105,7 +105,7 @@ class _Chords(NamedTuple):
     """Chords of a polygon.
 
     `counts` between corners, `vertices` by their J and their `points` (start and end), `errors`,
-    which chords are `rough`, and the share of those that are off by too much, `bad`.
+    the mask `rough` of uneven chords, and the share `bad` of chords with too large an error.
     """
 
     counts: Ints
@@ -118,7 +118,7 @@ class _Chords(NamedTuple):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Sampler(Brief):
-    """Curves with the density of points that a tolerance asks for.
+    """Curves with the density of points that a tolerance needs.
 
     Parameters
     ----------
@@ -129,7 +129,7 @@ class Sampler(Brief):
     closed : bool
         Whether the last curve ends where the first begins.
     most : float
-        Chords of which more are refused.
+        Largest number of chords; more are refused.
     """
 
     curves: Curves
@@ -139,7 +139,7 @@ class Sampler(Brief):
 
     @cached_property
     def probes(self) -> tuple[Plane, Plane]:
-        """Points and tangents at even places of every curve and at its ends, a curve a line."""
+        """Points and tangents at even positions of every curve and at its ends, a row per curve."""
         return self._probed(0, len(self.curves.start))
 
     def _probed(self, first: int, last: int) -> tuple[Plane, Plane]:
@@ -151,7 +151,7 @@ class Sampler(Brief):
 
     @cached_property
     def density(self) -> Array:
-        """J from the start at ``_PROBES`` places a curve, rising; one more for the end."""
+        """J from the start at ``_PROBES`` points per curve, rising; one more for the end."""
         count = len(self.curves.start)
         cuts = range(0, count, _CURVES)
         blocks = (self._probed(k, min(k + _CURVES, count)) for k in cuts)
@@ -161,15 +161,15 @@ class Sampler(Brief):
         return np.concatenate([[0.0], np.cumsum(steps)])
 
     def _chords_at(self, points: Plane, tangents: Plane) -> Array:
-        """Return the chords that the curvature asks for between probes."""
+        """Return the numbers of chords that the curvature needs between probes."""
         turning = np.abs(np.angle(tangents[:, 1:] * np.conj(tangents[:, :-1])))
-        turning[turning <= _STRAIGHT] = 0.0  # the root of rounding would be no small number
+        turning[turning <= _STRAIGHT] = 0.0  # the square root of rounding would not be small
         chords = np.abs(np.diff(points, axis=1))
         return np.sqrt(turning * chords / (8.0 * self.tolerance)).ravel()
 
     @property
     def least(self) -> float:
-        """The number of chords that the curvature asks for: integral of sqrt(kappa/(8 tol)) ds."""
+        """The number of chords that the curvature needs: integral of sqrt(kappa/(8 tol)) ds."""
         return float(self.density[-1])
 
     def _along(self, index: Ints, share: Array) -> tuple[Plane, Plane]:
@@ -177,22 +177,22 @@ class Sampler(Brief):
         return self.curves.at(index, start + share * (end - start))
 
     def _places(self, j: Array) -> tuple[Ints, Array]:
-        """Return numbers of curves and shares of their ways at places given by their J."""
+        """Return numbers of curves and positions on them, from 0 to 1, at given J."""
         place = np.interp(j, self.density, np.arange(len(self.density)) / _PROBES)
         index = np.minimum(place.astype(np.int64), len(self.curves.start) - 1)
         return index, place - index
 
     def curve_of(self, j: Array) -> Ints:
-        """Return the numbers of the curves at places given by their J (after a joint)."""
+        """Return the numbers of the curves at given J (after a joint)."""
         return self._places(j)[0]
 
     def at(self, j: Array) -> tuple[Plane, Plane]:
-        """Return points and forward unit tangents at places given by their J (after a corner)."""
+        """Return points and forward unit tangents at given J (after a corner)."""
         return self._along(*self._places(j))
 
     @property
     def joints(self) -> Array:
-        """J at which each curve begins, and the end."""
+        """J at the beginning of each curve, and at the end."""
         return self.density[::_PROBES]
 
     @cached_property
@@ -208,7 +208,7 @@ class Sampler(Brief):
         for _ in range(_ROUNDS):
             if made.bad <= _FEW:
                 break
-            # The error that a chord has, not the one that its J promised, says how long it may be.
+            # the measured error of a chord, not the one predicted by J, sets its length
             steps = np.sqrt(made.errors / self.tolerance) + _RISING
             effort = np.concatenate([[0.0], np.cumsum(steps)])
             self._demand_few(float(effort[-1]) / _MEASURED)
@@ -235,12 +235,12 @@ class Sampler(Brief):
         return vertices, points[:-1] if self.closed else points, float(errors.max())
 
     def _demand_few(self, count: float) -> None:
-        """Refuse tolerances for which there are too many chords: so many."""
+        """Refuse tolerances that need too many chords."""
         if count > self.most:
             limit = self.tolerance * (count / self.most) ** 2
             key = "output.chord_tolerance_mm"
             raise InfeasibleError(
-                f"the curve would take {shown(count, 2)} chords",
+                f"the curve would need {shown(count, 2)} chords",
                 where=key,
                 value=self.tolerance,
                 limit=limit,
@@ -252,10 +252,10 @@ class Sampler(Brief):
     def _spread(
         self, ends: Array, effort: Array, places: Array, least: Ints | None = None
     ) -> _Chords:
-        """Spread vertices evenly over `effort` (known at `places`) between `ends`.
+        """Return vertices spread evenly over `effort` (given at `places`) between `ends`.
 
-        With `least` chords between corners: with fewer than before, whose errors only were uneven,
-        it would go to and fro.
+        At `least` so many chords between corners: with fewer than before the iteration might
+        oscillate.
         """
         counts = np.maximum(
             np.ceil(np.diff(ends) / _FILL).astype(int), 1 if least is None else least
@@ -273,7 +273,7 @@ class Sampler(Brief):
         return _Chords(counts, vertices, at[0], errors, rough, bad)
 
     def _ends(self, vertices: Array) -> Plane:
-        """Points and tangents, (2, n), at the vertices; of a closed polygon the first repeated."""
+        """Points and tangents, (2, n), at the vertices; a closed polygon repeats the first."""
         if not self.closed:
             return np.stack(self.at(vertices))
         ends = np.stack(self.at(vertices[:-1]))
@@ -282,16 +282,16 @@ class Sampler(Brief):
     def _errors(self, vertices: Array, ends: Plane) -> tuple[Array, Mask]:
         """Distance of the curve from all chords, and which of them are rough.
 
-        Where the curvature hardly changes it is the middle of the cubic with the end tangents.
+        Where the curvature hardly changes it is the sagitta of the cubic with the end tangents.
         Elsewhere, and across the ends of curves and breaks, it is measured.
         """
         chord = np.diff(ends[0])
         rise, fall = chord * np.conj(ends[1, :-1]), ends[1, 1:] * np.conj(chord)
-        length, some = np.abs(chord), chord != 0.0  # of those of no length nothing is known
+        length, some = np.abs(chord), chord != 0.0  # unknown for chords without length
         rise, fall = (np.divide(x.imag, x.real, where=some, out=0.0 * length) for x in (rise, fall))
         bend = rise + fall
         errors = length * np.abs(bend) / 8.0
-        # Within a chord the ends' angles differ, along the curve the chords' curvatures.
+        # compare the angles at both ends of a chord, and the curvatures of neighbouring chords
         rough = self._rough(vertices) | (np.abs(rise - fall) > _UNEVEN * np.abs(bend)) | ~some
         curvature = np.divide(bend, length, where=some, out=0.0 * length)
         jump = np.abs(np.diff(curvature)) > 2.0 * _UNEVEN * np.abs(curvature[1:])
@@ -302,11 +302,11 @@ class Sampler(Brief):
     def _measure(
         self, vertices: Array, points: Plane, chords: Ints, rough: Mask, new: Ints | None = None
     ) -> Array:
-        """Distance of the curve from some chords: at quarters, of `rough` ones with more care.
+        """Distance of the curve from some chords, measured at quarters, `rough` ones more finely.
 
-        They are measured at eighths and around the best of them. A chord that only has uneven
-        neighbours is smooth: its distance is flat near its largest. What `points` the vertices
-        `new` have is found by the way.
+        Those are measured at eighths and around the largest. A chord that only has uneven
+        neighbours is smooth: its distance is flat near its largest. Also stores the `points` of the
+        vertices `new`.
         """
 
         def places(number: Ints, share: Array) -> Array:
@@ -365,8 +365,8 @@ class Sampler(Brief):
         Returns
         -------
         Dense
-            The vertices of the polygon, the ends of the curves, their joints, and the breaks are
-            among them: between two of them the curvature is smooth.
+            They include the vertices of the polygon, the ends of the curves, their joints, and the
+            breaks: between two points the curvature is smooth.
         """
         vertices = self.chords[0]
         steps = np.arange(oversampling) / oversampling

@@ -1,9 +1,9 @@
-"""Curves through points that keep their shape: smooth, and rising wherever the points rise.
+"""Shape-preserving curves through points: smooth, and rising wherever the points rise.
 
-Between two points runs a quintic with given slopes and curvatures at both, so that the curve is C2.
-Slopes and curvatures come from quartics through five neighbours, and are lessened where the
-quintic's derivative could change its sign between points that rise (or fall): its Bernstein
-coefficients on the interval are kept on one side, which is enough.
+Between two points the curve is a quintic with given slopes and curvatures at both, so that it is
+C2. Slopes and curvatures come from quartics through five neighbours, and are reduced where the
+quintic's derivative could change its sign between points that rise (or fall): it is sufficient that
+its Bernstein coefficients on the interval have one sign.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from gearcam.numeric.hermite import hermite_quintics
 _STENCIL = 5
 
 _BEND = 8.0
-"""Largest curvature beside an extreme, in slopes there over the interval: four times that of a
-parabola, far below what a neighbour much nearer would make of its own slopes."""
+"""Largest curvature next to an extreme, in slopes there over the interval: four times that of a
+parabola, far below the curvature from a much nearer neighbour's slopes."""
 
 
 def quintics(x: Array, y: Array, rise: float | None) -> Array:
@@ -30,8 +30,8 @@ def quintics(x: Array, y: Array, rise: float | None) -> Array:
     y : (n + 1,) array
         Values.
     rise : float or None
-        Of a curve that repeats: by how much it rises over ``x[-1] - x[0]``, as ``y[-1] - y[0]``
-        does; None for one that does not repeat.
+        For a periodic curve: its rise over a period, equal to ``y[-1] - y[0]``; None for a curve
+        that is not periodic.
 
     Returns
     -------
@@ -64,13 +64,13 @@ def _estimates(x: Array, y: Array, rise: float | None) -> tuple[Array, Array]:
 
 
 def _sides(secant: Array, repeats: bool) -> tuple[Array, Array]:
-    """Secants before and after each point; where there is none, the other side's."""
+    """Secants before and after each point; at an end both are that of the other side."""
     ends = (secant[-1], secant[0]) if repeats else (secant[0], secant[-1])
     return np.append(ends[0], secant), np.append(secant, ends[1])
 
 
 def _limited_slopes(slope: Array, secant: Array, repeats: bool) -> Array:
-    """Keep slopes where a monotonic quintic exists: d0 + d1 at most 2.5 secants."""
+    """Return slopes limited so that a monotonic quintic exists: d0 + d1 at most 2.5 secants."""
     before, after = _sides(secant, repeats)
     rising = before * after > 0.0
     slope = np.where(rising & (slope * before < 0.0), 0.0, slope)
@@ -82,19 +82,19 @@ def _limited_slopes(slope: Array, secant: Array, repeats: bool) -> Array:
 
 
 def _limited_bends(slope: Array, bend: Array, secant: Array, h: Array, repeats: bool) -> Array:
-    """Keep curvatures so that no Bernstein coefficient of the derivative changes its sign.
+    """Return curvatures limited so that no Bernstein coefficient of the derivative changes sign.
 
     Those are ``d0, d0 + h*s0/4, 5*secant - 2*d0 - 2*d1 - h*(s0 - s1)/4, d1 - h*s1/4, d1``.
     """
     sign = np.where(secant < 0.0, -1.0, 1.0)
     d0, d1 = sign * slope[:-1], sign * slope[1:]
     spare = np.maximum(5.0 * np.abs(secant) - 2.0 * (d0 + d1), 0.0)
-    # bounds of s0 and s1 from their interval, in the direction in which it rises
+    # bounds of s0 and s1 from their interval, in its rising direction
     low0, high0 = -4.0 * np.maximum(d0, 0.0) / h, 2.0 * spare / h
     low1, high1 = -2.0 * spare / h, 4.0 * np.maximum(d1, 0.0) / h
     low0, high0 = np.where(sign > 0, low0, -high0), np.where(sign > 0, high0, -low0)
     low1, high1 = np.where(sign > 0, low1, -high1), np.where(sign > 0, high1, -low1)
-    # an interval whose ends slope against it has an extreme anyway
+    # an interval with end slopes against its rise has an extreme anyway
     free = (d0 < 0.0) | (d1 < 0.0)
     most = _BEND * (np.abs(d0) + np.abs(d1) + np.abs(secant)) / h
     low0, low1 = (np.where(free, -most, v) for v in (low0, low1))

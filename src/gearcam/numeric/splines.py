@@ -1,11 +1,9 @@
-"""Cubic B-splines through sampled curves: for files that hold curves instead of chords.
+"""Cubic B-splines through sampled curves: for files with curves instead of chords.
 
 A piece of curve becomes a chain of cubics, each as long as the tolerance allows, joined with a
 common tangent: a B-spline of degree 3 with double knots, so that its control points are the inner
-ones of the cubics. Each cubic has the true points and tangents at its ends and arms of a third of
-its length; its error falls with the fourth power of that length.
-
-Refused: tolerances that are not positive.
+ones of the cubics. Each cubic has the true points and tangents at its ends, and handles of a third
+of its length; its error falls with the fourth power of that length.
 """
 
 from __future__ import annotations
@@ -33,19 +31,19 @@ from gearcam.numeric.hermite import hermite_arms, hermite_cubic
 DEGREE: Final = 3
 
 _NEAR: Final = 0.05
-"""The search stops where the longest fitting piece is known to this part of its length."""
+"""Relative tolerance of the length of the longest piece that fits."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Spline:
-    """A cubic B-spline, clamped, its inner knots double.
+    """A clamped cubic B-spline with double inner knots.
 
     Parameters
     ----------
     poles : (2k + 2, 2) array, mm
         Control points of k cubics.
     breaks : (k + 1,) array, mm
-        Its different knots: about the arc length.
+        Its distinct knots: approximately the arc length.
     """
 
     poles: Array
@@ -61,14 +59,14 @@ class Spline:
 
 
 def fit_splines(runs: Sequence[Run], tolerance: float) -> list[Spline]:
-    """Fit a cubic B-spline to each of some smooth pieces of curve.
+    """Return a cubic B-spline for each of some smooth pieces of curve.
 
     Parameters
     ----------
     runs : sequence of Run
         Dense points and tangents.
     tolerance : float, mm
-        Largest distance of the points from it.
+        Largest distance of the points from the spline.
 
     Returns
     -------
@@ -85,7 +83,7 @@ def fit_splines(runs: Sequence[Run], tolerance: float) -> list[Spline]:
     p, t, first, last = rows
     way = np.append(0.0, np.cumsum(hermite_arms(p, t)))
     checks = checks_of(rows, tolerance, even=False)
-    gone = np.interp(np.arange(len(checks.points)), checks.place, way)  # steps are cut evenly
+    gone = np.interp(np.arange(len(checks.points)), checks.place, way)  # steps are divided evenly
     start, end = longest_pieces(
         partial(_errors, rows, way, checks, gone),
         lambda _, last: last,
@@ -108,7 +106,7 @@ def fit_splines(runs: Sequence[Run], tolerance: float) -> list[Spline]:
 def _errors(
     rows: RunPoints, way: Array, checks: Checks, gone: Array, start: Ints, end: Ints
 ) -> Array:
-    """Return the largest distances of checks between points from the cubics that join those."""
+    """Return the largest distances of check points from the cubics between their points."""
     p, t = rows.points, rows.tangents
     length = way[end] - way[start]
     chord, first, second = p[end] - p[start], length * t[start], length * t[end]
@@ -119,7 +117,7 @@ def _errors(
         u = (gone[index] - way[begin]) / length[of]
         cubic = p[begin] + hermite_cubic(chord[of], first[of], second[of], u)[0]
         miss = cubic - checks.points[index]
-        # across the curve; what is along it only shifts the parameter, and counts by its square
+        # across the curve; a distance along it only shifts the parameter, and enters squared
         across = np.abs((miss * np.conj(checks.tangents[index])).imag)
         return across + 0.5 * bend[of] * np.abs(miss) ** 2
 
