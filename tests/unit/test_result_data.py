@@ -133,7 +133,7 @@ Call = Callable[[GearPairResult, CamResult], object]
         (lambda _, cam: cam.contact("top"), "theta", "'top' is not a number"),
         (lambda _, cam: cam.follow([[0.0, 1.0]]), "profile", "the shape (1, 2)"),
         (lambda _, cam: cam.follow([[0, 1], [1, "x"]]), "profile", "is not an array of numbers"),
-        (lambda _, cam: cam.follow([[0, 1], [1, 0], [math.nan, 0]]), "profile", "no finite"),
+        (lambda _, cam: cam.follow([[0, 1], [1, 0], [math.nan, 0]]), "profile", "not finite"),
     ],
 )
 def test_bad_arguments_are_refused_by_name(

@@ -76,7 +76,7 @@ class HalfTeeth:
         return np.where((index >= 0) & (index < self.count), index, -1)
 
     def of_pair(self, pair: Ints, side: int) -> Ints:
-        """Return the half-teeth h, in the first turn, of pairs j of a driver's `side`."""
+        """Return the half-teeth h, in the first turn, of pairs j, `pair`, of a driver's `side`."""
         return self.index(2 * pair - (side < 0)) + self.first
 
     def tooth(self, half: Ints) -> Any:

@@ -76,7 +76,7 @@ def flatten_bulges(
 
 
 def arc_chords(chord: Plane, bends: Array, sagitta: float) -> Ints:
-    """Return the number of chords that keeps each piece within the `sagitta`, mm."""
+    """Return the numbers of chords within a `sagitta`, mm, of pieces (see `bulge_pieces`)."""
     half = 2 * np.abs(np.arctan(bends))
     bent = half != 0
     radius = 0.5 * np.abs(chord[bent]) / np.sin(half[bent])
