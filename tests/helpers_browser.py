@@ -50,6 +50,12 @@ def until(done: Callable[[], Any]) -> Any:
     return found
 
 
+def unfold(browser: Chrome) -> None:
+    """Open all that is folded."""
+    browser.execute_script("document.querySelectorAll('details').forEach((one) => one.open = true)")
+    settle(browser)
+
+
 def settle(browser: Chrome) -> None:
     """Wait until what was asked for is drawn."""
     browser.execute_async_script(

@@ -13,7 +13,7 @@ from selenium.webdriver import ActionChains, Chrome, Keys
 from selenium.webdriver.common.by import By
 
 from gearcam.report.page import page
-from helpers_browser import LAPTOP, PHONE, complaints, go, open_page, settle, until
+from helpers_browser import LAPTOP, PHONE, complaints, go, open_page, settle, unfold, until
 
 NAIL = "nail_machine_two_phase"
 TEXT, SHAPE = 4.5, 3.0
@@ -66,8 +66,7 @@ def test_nothing_is_wider_than_the_window(
     name: str, size: tuple[int, int], browser: Chrome, page_of: Written
 ) -> None:
     open_page(browser, page_of(name), size)
-    for details in browser.find_elements(By.CSS_SELECTOR, "details"):
-        browser.execute_script("arguments[0].open = true", details)
+    unfold(browser)
     wide = "const e = document.scrollingElement; return [e.scrollWidth, e.clientWidth]"
     assert browser.execute_script(wide) == [size[0], size[0]]
 
@@ -76,12 +75,13 @@ def test_on_a_phone_tables_are_whole_and_their_numbers_in_one_piece(
     browser: Chrome, page_of: Written
 ) -> None:
     open_page(browser, page_of("ring_ellipse"), PHONE)  # with the longest name that is solved
+    unfold(browser)
     frames = """
-    return [...document.querySelectorAll("section > .wide")]
+    return [...document.querySelectorAll("section > details > .wide, #accuracy table")]
         .map((one) => [one.scrollWidth, one.clientWidth]);
     """
     widths = browser.execute_script(frames)
-    assert len(widths) >= 2
+    assert len(widths) == 2
     assert all(within <= frame for within, frame in widths)
     pieces = """
     return [...document.querySelectorAll(".number")].map((one) => {
@@ -95,6 +95,52 @@ def test_on_a_phone_tables_are_whole_and_their_numbers_in_one_piece(
     assert {lines for _, lines in numbers} == {1}
 
 
+@pytest.mark.parametrize(
+    ("name", "leading"),
+    [
+        (NAIL, ["ratio", "pressure_angle", "contact_ratio"]),
+        ("groove_cam", ["lift", "pressure_angle", "curvature"]),
+    ],
+)
+def test_the_page_leads_with_what_decides_and_the_rest_is_folded(
+    name: str, leading: list[str], browser: Chrome, page_of: Written
+) -> None:
+    document = open_page(browser, page_of(name), (1600, 1000))
+    titles = {chart["name"]: chart["title"] for chart in document["charts"]}
+    heads = browser.find_elements(By.CSS_SELECTOR, "h1, h2, h3, summary")
+    seen = [one.text for one in heads if one.is_displayed() and one.tag_name != "summary"]
+    decides = [document["title"], "Parts in motion", "Findings", "Charts"]
+    decides += [titles[one] for one in leading]
+    assert seen == [*decides, "Facts", "Accuracy", "Files"]
+    folded = browser.find_elements(By.CSS_SELECTOR, "main details")
+    assert not any(one.get_attribute("open") for one in folded)
+    wide, *pair = (one.rect for one in browser.find_elements(By.CSS_SELECTOR, "#charts > figure"))
+    assert pair[0]["y"] == pair[1]["y"] > wide["y"]
+    assert pair[0]["x"] + pair[0]["width"] < pair[1]["x"]
+    browser.find_element(By.CSS_SELECTOR, "nav [href='#facts']").click()
+    until(lambda: browser.find_element(By.CSS_SELECTOR, "#facts table").is_displayed())
+
+
+def test_paper_shows_all_charts_facts_and_errors(browser: Chrome, page_of: Written) -> None:
+    document = open_page(browser, page_of(NAIL))
+    script = """
+    window.seen = [];
+    const open = () => [...document.querySelectorAll("main details")].map((one) => one.open);
+    const plots = () => document.querySelectorAll(".uplot").length;
+    for (const name of ["beforeprint", "afterprint"]) {
+        addEventListener(name, () => seen.push([open(), plots()]));
+    }
+    """
+    browser.execute_script(script)
+    browser.execute_cdp_cmd("Page.printToPDF", {})
+    until(lambda: browser.execute_script("return seen.length === 2"))
+    (paper, plots), (after, _) = browser.execute_script("return seen")
+    # charts, facts but those by name, accuracy, files
+    assert paper == [True, True, False, True, True]
+    assert plots == len(document["charts"])
+    assert not any(after)
+
+
 def test_on_a_phone_the_bar_stays_in_sight(browser: Chrome, page_of: Written) -> None:
     open_page(browser, page_of(NAIL), PHONE)
     browser.execute_script("document.getElementById('facts').scrollIntoView()")
@@ -104,6 +150,7 @@ def test_on_a_phone_the_bar_stays_in_sight(browser: Chrome, page_of: Written) ->
 
 def test_all_that_is_worked_has_a_name(browser: Chrome, page_of: Written) -> None:
     open_page(browser, page_of(NAIL))
+    unfold(browser)
     nodes: list[dict[str, Any]] = browser.execute_cdp_cmd("Accessibility.getFullAXTree", {})[
         "nodes"
     ]

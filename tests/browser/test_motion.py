@@ -18,7 +18,7 @@ from shapely import affinity
 
 from gearcam.report.file import report_files
 from gearcam.report.page import PAGE
-from helpers_browser import complaints, go, open_page, requests, settle, until
+from helpers_browser import complaints, go, open_page, requests, settle, unfold, until
 
 NAIL = "nail_machine_two_phase"
 ROUNDED = 1e-6
@@ -58,6 +58,7 @@ def test_a_page_opens_without_complaint_or_network(
     name: str, browser: Chrome, page_of: Written
 ) -> None:
     open_page(browser, page_of(name))
+    unfold(browser)
     for figure in browser.find_elements(By.CLASS_NAME, "chart"):
         drawn(browser, figure)
     go(browser, 100.0)
@@ -247,6 +248,7 @@ def test_a_click_on_a_chart_moves_parts_and_all_cursors(
     browser: Chrome, page_of: Written, built: Built
 ) -> None:
     charts = open_page(browser, page_of(NAIL))["charts"]
+    unfold(browser)
     figure = browser.find_elements(By.CLASS_NAME, "chart")[number_of("ratio", charts)]
     over = drawn(browser, figure)
     width = over.size["width"]
@@ -272,6 +274,7 @@ def test_a_click_on_a_chart_moves_parts_and_all_cursors(
 
 def test_a_chart_that_is_not_over_the_driver_stays(browser: Chrome, page_of: Written) -> None:
     charts = open_page(browser, page_of(NAIL))["charts"]
+    unfold(browser)
     figure = browser.find_elements(By.CLASS_NAME, "chart")[number_of("contact_ratio", charts)]
     drawn(browser, figure).click()
     assert browser.execute_script("return gearcam.place") == 0.0
@@ -294,6 +297,7 @@ def test_where_motion_is_to_be_reduced_it_steps(browser: Chrome, page_of: Writte
 
 def test_knots_are_drawn_and_told(browser: Chrome, page_of: Written) -> None:
     charts = open_page(browser, page_of(NAIL))["charts"]
+    unfold(browser)
     figure = browser.find_elements(By.CLASS_NAME, "chart")[0]
     drawn(browser, figure)
     assert "knot" in figure.find_element(By.CLASS_NAME, "legend").text

@@ -15,7 +15,7 @@ import pytest
 from selenium.webdriver import Chrome
 from selenium.webdriver.common.by import By
 
-from helpers_browser import go, open_page, until
+from helpers_browser import go, open_page, unfold, until
 
 NAIL = "nail_machine_two_phase"
 SVG = "{http://www.w3.org/2000/svg}"
@@ -87,8 +87,9 @@ def test_the_data_of_a_chart_are_saved(
 ) -> None:
     """One column of places for lines that share them, else one for each; breaks are empty."""
     charts = open_page(browser, page_of(NAIL))["charts"]
-    number = [chart["name"] for chart in charts].index(name)
-    button = f".chart:nth-of-type({number + 1}) .save"
+    (title,) = (chart["title"] for chart in charts if chart["name"] == name)
+    unfold(browser)
+    button = f'[aria-label="Save CSV: {title}"]'
     path = saved(browser, tmp_path, button, f"{NAIL}_{name}.csv")
     with path.open(newline="", encoding="utf-8") as file:
         head, *rows = csv.reader(file)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,7 @@ from gearcam.charts import Chart, Limit, Line, MarkedPlace
 from gearcam.designs.kind import KINDS
 from gearcam.drawings import CENTRODE, OUTLINE, Feature, Path
 from gearcam.report.data import chart_data, scene_data
+from gearcam.report.page import blocks
 from gearcam.scenes import ContactPoints, MovingBody, Scene
 
 NAMES = ("ellipse", "ring_ellipse", "feeder", "stepped_ellipse", "groove_cam", "conjugate_cams")
@@ -136,3 +138,34 @@ def test_every_chart_of_a_result_is_json(name):
             assert np.isnan(y).tolist() == (~np.isfinite(line.y)).tolist()
             largest = np.nanmax(np.abs(line.y), initial=0.0)
             assert np.nanmax(np.abs(y - line.y), initial=0.0) <= 1e-5 * largest
+
+
+DRIVEN, OUTLINES = "driven angle", ["outlines, between their points"]
+WEIGHED = ["area", "volume (mass in the same proportion)"]
+
+
+@pytest.mark.parametrize(
+    ("name", "labels"),
+    [
+        ("ellipse", [DRIVEN, "points of the flanks", *OUTLINES, "contact ratio"]),
+        ("feeder", ["rack travel", "points of the flanks", *OUTLINES, "contact ratio"]),
+        ("shop_order", [DRIVEN, "points of the flanks", *OUTLINES, "contact ratio", *WEIGHED]),
+        ("groove_cam", ["lift of the follower", "points of the profile", *OUTLINES]),
+        ("lathe_slide", ["lift of the follower", "points of the profile", *OUTLINES, *WEIGHED]),
+    ],
+)
+def test_accuracy_is_one_number_for_each_thing_that_people_act_on(name, labels):
+    result, _ = made(name)
+    html = blocks(result, names=["accuracy"])["accuracy"]
+    rows = dict(re.findall(r'<th scope="row">(.+?)</th><td class="number">(.+?)</td>', html))
+    assert list(rows) == labels
+    chord = result.facts["accuracy.chord_mm"]
+    assert rows[OUTLINES[0]] == f"{chord:.2g} mm"
+
+
+def test_of_several_walls_the_largest_error_is_shown():
+    result, _ = made("groove_cam")
+    result = gearcam.build(result.design.with_({"blank.density_kg_m3": 7850}))
+    areas = [result.facts[f"accuracy.{wall}_area_mm2"] for wall in ("inner", "outer")]
+    html = blocks(result, names=["accuracy"])["accuracy"]
+    assert f'>area</th><td class="number">{max(areas):.2g} mm2<' in html

@@ -7,6 +7,7 @@ const PRINTED = { width: 330, height: 200 };
 const FREE = 0.06; // of a range, left free above and below, and beside dots
 const LETTERS = 12; // height of a line of letters in a chart, pixels
 const AT_ONCE = 3; // charts drawn in a frame: the parts keep moving meanwhile
+const LEADING = 3; // charts in sight; the others fold
 
 const brief = (value) => String(Number(value.toPrecision(5)));
 
@@ -310,7 +311,12 @@ class Charts {
   rebuild(charts) {
     this.sight.disconnect();
     this.home.querySelectorAll("figure").forEach((figure) => figure.remove());
-    this.views = charts.map((chart) => new ChartView(chart, this.home, this.page));
+    const more = this.home.querySelector("details");
+    more.hidden = charts.length <= LEADING;
+    more.querySelector("summary").textContent = `${charts.length - LEADING} more charts`;
+    const place = (k) => (k < LEADING ? this.home : more.querySelector("div"));
+    this.views = charts.map((chart, k) => new ChartView(chart, place(k), this.page));
+    this.home.append(more);
     for (const view of this.views) this.sight.observe(view.figure);
   }
 

@@ -242,6 +242,7 @@ function listen() {
   });
   still.addEventListener("change", name);
   dark.addEventListener("change", repaint);
+  window.addEventListener("hashchange", unfold);
   window.addEventListener("beforeprint", () => print(true));
   window.addEventListener("afterprint", () => print(false));
 }
@@ -256,8 +257,18 @@ function repaint() {
   charts.repaint();
 }
 
-// Paper has a width of its own, light colours, and no use for what moves.
+// What a link leads to is open.
+function unfold() {
+  const folded = location.hash && document.querySelector(`${location.hash} > details`);
+  if (folded) folded.open = true;
+}
+
+// Paper has a width of its own, light colours, no use for what moves, and nothing to open.
 function print(on) {
+  for (const one of document.querySelectorAll(".printed")) {
+    if (on) one.dataset.open = one.open;
+    one.open = on || one.dataset.open === "true";
+  }
   document.documentElement.classList.toggle("paper", on);
   page.colours = { ...palette(), print: on };
   if (parts.fitted) parts.fit();

@@ -8,7 +8,7 @@ page holds one and shows it when it is opened; a page that is served is given ot
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
@@ -22,6 +22,7 @@ from gearcam.report.data import chart_data, scene_data
 if TYPE_CHECKING:
     from jinja2 import Environment
 
+    from gearcam.facts import Facts
     from gearcam.findings import Finding
     from gearcam.result import Result
 
@@ -47,6 +48,19 @@ SCRIPTS: Final = (
     "solids.js",
 )
 """What is the page's script, each part after those that it needs."""
+
+_ERRORS: Final = {
+    "law": ("driven angle", "rad"),
+    "arc length": ("rack travel", ""),
+    "lift": ("lift of the follower", ""),
+    "flank": ("points of the flanks", ""),
+    "profile": ("points of the profile", ""),
+    "chord": ("outlines, between their points", ""),
+    "contact ratio": ("contact ratio", ""),
+    "area": ("area", ""),
+    "volume": ("volume (mass in the same proportion)", ""),
+}
+"""Errors that people act on: label, and unit where its name does not say it."""
 
 _HOME: Final = Path(__file__).parent
 
@@ -176,8 +190,7 @@ def blocks(
         "verdict": verdict(result.findings),
         "remedies": remedies(result) if seek else Remedies(),
         "files": {name: size_of(size) for name, size in result.sizes.items()},
-        "errors": _errors(facts.document.get("accuracy", {})),
-        "timings": result.timings,
+        "errors": _errors(facts),
     }
     return {name: rendered(f"{name}.html", told) for name in names}
 
@@ -194,10 +207,19 @@ def verdict(findings: tuple[Finding, ...]) -> tuple[str, str]:
     return worst, _VERDICTS[worst]
 
 
-def _errors(accuracy: Mapping[str, Any]) -> dict[str, str]:
-    """Return how each error is known, by the name of its fact."""
-    how = accuracy.get("how", {})
-    return {f"accuracy.{name}": how.get(name, "") for name in accuracy if name != "how"}
+def _errors(facts: Facts) -> Iterator[tuple[str, str]]:
+    """Yield the label and the error of what decides: one number each, the largest of all parts."""
+    rows = [one for one in facts.quantities() if one.name.count(".") == 1]
+    rows = [one for one in rows if one.name.startswith("accuracy.")]
+    rack = "pair.travel_per_turn_mm" in facts
+    weighed = "accuracy.volume_mm3" in facts
+    skipped = {"law" if rack else "arc length", *(() if weighed else ("area",))}
+    for what, (label, unit) in _ERRORS.items():
+        # what a cam has of several walls begins with their names
+        found = [one for one in rows if one.meaning in (what, f"{one.meaning.split()[0]} {what}")]
+        if found and what not in skipped:
+            largest = max(found, key=lambda one: one.value)
+            yield label, f"{shown(largest.value, 2)} {unit or largest.unit}".rstrip()
 
 
 @cache

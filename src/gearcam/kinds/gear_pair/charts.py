@@ -192,8 +192,10 @@ def _transmission_error(result: GearPairResult) -> Chart:
 
 
 CHARTS: Final[Charts] = {
-    "position": _position,
     "ratio": _ratio,
+    "pressure_angle": _pressure_angle,
+    "contact_ratio": _contact_ratio,
+    "position": _position,
     "radii": partial(
         _of_centrodes,
         "Radii of the centrodes",
@@ -201,10 +203,8 @@ CHARTS: Final[Charts] = {
         {"r1_mm": "driver", "r2_mm": "driven"},
     ),
     "curvature": _curvature,
-    "pressure_angle": _pressure_angle,
-    "contact_ratio": _contact_ratio,
     "sliding": _sliding,
     "contact_patch": _contact_patch,
     "transmission_error": _transmission_error,
 }
-"""What makes each chart."""
+"""What makes each chart; the first three decide, and the report leads with them."""
