@@ -27,6 +27,12 @@ DESIGNS = (
 )  # fmt: skip
 """Profiles of every form, whose files are looked at."""
 
+STRICT = (
+    "cam_steady_roller", "cam_dome_of_a_nanometre", "cam_small_prime", "teeth_5",
+    "ring_tips_collide", "concave_too_short", "kerf_of_a_picometre", "spiral_full",
+)  # fmt: skip
+"""Extreme designs with findings of every severity."""
+
 SLOW = ("step", "report", "stl", "3mf", "glb", "drawing-svg")
 """Words of ``files`` whose names are as those of others, but for the ending."""
 
@@ -110,6 +116,21 @@ def test_severities_of_checks_are_those_of_their_code() -> None:
         body = inspect.getsource(inspect.unwrap(check.run)).partition('"""')[2].partition('"""')[2]
         used = set(re.findall(r'"(note|warning|error)"', body))
         assert used <= set(check.severities), check.code
+
+
+@pytest.mark.parametrize("name", STRICT)
+def test_severities_of_findings_are_those_told(name: str) -> None:
+    """Those that helpers of checks decide too."""
+    result = gearcam.build(gearcam.load(PROFILES / "extreme" / f"{name}.toml"))
+    groups = KINDS[result.design.kind].checks
+    assert {"note", "warning", "error"} & {one.severity for one in result.findings}
+    for found in result.findings:
+        told = [
+            one.severities
+            for (group, code), one in CHECKS.items()
+            if code == found.code and group in groups
+        ]
+        assert any(found.severity in severities for severities in told), found.code
 
 
 def test_a_default_limit_is_that_of_the_program() -> None:
