@@ -295,6 +295,12 @@ class CamResult(Result):
                 from gearcam.kinds.cam.pressed import explained
 
                 found = explained(self, found)
+            if any(one.code == "coarse-rows" for one in found):
+                from gearcam.kinds.cam.coarse import helped
+
+                found = tuple(
+                    helped(self, one) if one.code == "coarse-rows" else one for one in found
+                )
         if self.ordered:
             subject = self.part_subject
             with self.stage("checks"):

@@ -1,0 +1,58 @@
+"""Values that help if the rows of a motion table are coarser than the profile is cut."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import TYPE_CHECKING, Final
+
+from gearcam.errors import InfeasibleError
+from gearcam.findings import Finding
+from gearcam.kinds.cam.motion import turn_tables
+from gearcam.laws.motion_table import MotionTable
+from gearcam.numerals import shown
+
+if TYPE_CHECKING:
+    from gearcam.kinds.cam.build import CamResult
+
+COARSEST: Final = 1.0
+"""Largest chord tolerance of a cam, mm."""
+
+_SCATTERED: Final = 4.0
+"""Between a quarter and half of the rows the error falls by more than this if the lift is smooth,
+and hardly at all if the rows scatter."""
+
+
+def helped(result: CamResult, finding: Finding) -> Finding:
+    """Return the finding coarse-rows of a `result` with the keys and values that help."""
+    return replace(finding, message=" ".join([finding.message, *_remedies(result, finding)]))
+
+
+def _remedies(result: CamResult, finding: Finding) -> Iterator[str]:
+    table, lead, error = result.design.motion, result.cam.motions[0], finding.value or 0.0
+    if isinstance(table, MotionTable) and lead.program.fall < _SCATTERED:
+        oscillating, lever = lead.mechanism.oscillating, lead.mechanism.lever
+        entries = turn_tables()[0].of_lifts(oscillating=oscillating).entries.values()
+        entry = next(one for one in entries if one.name == "smoothing_tolerance")
+        least = max(error / lever, 2.0 * (table.smoothing_tolerance or 0.0))
+        size = _rounded_up(entry.outward(least))
+        smoother = replace(table, smoothing_tolerance=entry.inward(size))
+        try:  # what is left of the error is computed, not assumed
+            program = smoother.program(result.tolerances, oscillating=oscillating)
+        except InfeasibleError:  # a tolerance as large as the lift
+            program = lead.program
+        if program.errors[0] * lever <= lead.tolerance:
+            yield f"With motion.{entry.key} = {shown(size)} the scatter is averaged out."
+    coarser = _rounded_up(error)
+    if coarser <= COARSEST:
+        yield (
+            f"With output.chord_tolerance_mm = {shown(coarser)} the profile is cut only as finely "
+            "as the lift is known."
+        )
+
+
+def _rounded_up(value: float) -> float:
+    """Return a positive value with two digits, not below it."""
+    step = 10.0 ** (math.floor(math.log10(value)) - 1)
+    return float(f"{step * math.ceil(value / step):.2g}")
