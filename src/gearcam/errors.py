@@ -153,7 +153,7 @@ class InfeasibleError(GearcamError, ValueError):
     ...     gc.build(design).parts
     ... except gc.InfeasibleError as error:
     ...     print(error.what, error.where, error.value, round(error.limit, 3))
-    the bore reaches the root of the teeth wheel 1, blank.bore_diameter_mm[0] 60.0 26.909
+    the bore reaches the root of the teeth wheels 1 and 2, blank.bore_diameter_mm 60.0 26.909
     """
 
     def __init__(

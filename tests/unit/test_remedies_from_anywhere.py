@@ -110,3 +110,57 @@ def test_what_is_listed_as_a_remedy_is_not_listed_as_tried(tmp_path: Path) -> No
     assert found.tried
     assert not any("no remedy" in line for line in lines)
     assert [line for line in lines if "(not enough: " in line]
+
+
+def bored(law: dict[str, Any], teeth: list[int], bore: Any, **more: Any) -> dict[str, Any]:
+    return pair(law, teeth, blank={"bore_diameter_mm": bore, "timing_marks": False} | more)
+
+
+def refusal(document: dict[str, Any], folder: Path) -> InfeasibleError:
+    with pytest.raises(InfeasibleError) as caught:
+        _ = job_of(document, folder).gears
+    return caught.value
+
+
+def test_a_bore_that_no_wheel_can_take_is_refused_once(tmp_path: Path) -> None:
+    """A root circle is ``m*(z - 2*1.25)`` across; the smaller one counts for both."""
+    document = bored(CIRCLE, [20, 24], 60)
+    error = refusal(document, tmp_path)
+    assert error.where == "wheels 1 and 2, blank.bore_diameter_mm"
+    # chords of 0.01 mm move the radius by that
+    assert (error.value, error.limit) == (60.0, pytest.approx(2 * (20 - 2.5), abs=0.02))
+    for words in (
+        "wheel 1 takes less than 35",
+        "wheel 2 takes less than 43",
+        "both take less than 35",
+    ):
+        assert words in error.nearest
+    found = gearcam.remedies(job_of(document, tmp_path)).found
+    assert [set(one.changes) for one in found] == [{"blank.bore_diameter_mm"}]
+    assert 34.8 < float(found[0].changes["blank.bore_diameter_mm"]) < 35.0  # type: ignore[arg-type]
+
+
+def test_only_the_wheel_that_cannot_take_its_bore_is_named(tmp_path: Path) -> None:
+    for bores, wheel in (([60, 8], 1), ([8, 60], 2), ([36, 36], 1)):
+        error = refusal(bored(CIRCLE, [20, 24], bores), tmp_path)
+        assert error.where == f"wheel {wheel}, blank.bore_diameter_mm[{wheel - 1}]"
+        assert "both" not in error.nearest
+    error = refusal(bored(CIRCLE, [20, 24], [60, 50]), tmp_path)
+    assert set(error.ways[0].near) == {"blank.bore_diameter_mm[0]", "blank.bore_diameter_mm[1]"}
+
+
+def test_where_the_law_brings_the_root_to_the_axis_its_place_is_named(tmp_path: Path) -> None:
+    """Radii of an ellipse about its focus: nearest at phi1 = 180 deg or 0, ratios 7/3 and 3/7."""
+    error = refusal(bored({"type": "ellipse", "eccentricity": 0.4}, [40, 40], 60), tmp_path)
+    assert "at phi1 = 0 deg, where the law's ratio is 0.428571" in error.nearest
+    assert "at phi1 = 180 deg, where the law's ratio is 2.33333" in error.nearest
+    assert "phi1" not in refusal(bored(CIRCLE, [20, 20], 60), tmp_path).nearest
+
+
+def test_limits_of_bores_count_their_keyways(tmp_path: Path) -> None:
+    keyway = {"keyway_width_mm": 8, "keyway_depth_mm": 3}
+    document = bored(CIRCLE, [20, 20], 60, **keyway)
+    assert "circle around bore and keyway" in refusal(document, tmp_path).nearest
+    (remedy,) = gearcam.remedies(job_of(document, tmp_path)).found
+    assert not job_of(followed(document, remedy.changes), tmp_path).gears[0].ring
+    assert "keyway" not in refusal(bored(CIRCLE, [20, 20], 60), tmp_path).nearest

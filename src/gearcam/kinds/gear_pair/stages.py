@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
 from types import MappingProxyType
@@ -20,6 +21,7 @@ from gearcam.gears.steps import leads, stepped
 from gearcam.gears.track import Wheel
 from gearcam.kinds.gear_pair.design import GearPairDesign
 from gearcam.laws.ratio.base import RatioLaw
+from gearcam.laws.ratio.span import angle_text
 from gearcam.meshing import drive_checks  # noqa: F401  (its checks register themselves)
 from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array
@@ -129,27 +131,54 @@ class PairStages(Result):
         with self.stage(f"gear{wheel}"):
             tolerance = pair.chord_tolerance(self.design.output.chord_tolerance)
             gear = make_gear(pair, wheel, tolerance, self.tolerances, self.design.ring)
-            bore = self.bores[wheel - 1]
-            if bore is not None and 0.5 * bore >= gear.least_radius:
-                largest, key = 2.0 * gear.least_radius, f"blank.bore_diameter_mm[{wheel - 1}]"
-                raise InfeasibleError(
-                    "the bore reaches the root of the teeth",
-                    where=f"wheel {wheel}, {key}",
-                    value=bore,
-                    limit=largest,
-                    unit="mm",
-                    nearest="the limit holds for the circle around bore and keyway",
-                    ways=(
-                        Way(
-                            near={key: largest - bore + self.design.blank.wheel(wheel).bore},
-                            far={key: 0.1 * largest},
-                        ),
-                    ),
-                )
+            if self._too_wide(gear):
+                raise self._bore_refusal(gear, tolerance)
             if gear.hollow:
                 limit = limit_of(KIND, "thin-rim", self.design.limits) * pair.module
                 demand_rim(self.design.ring, gear.largest_radius, pair.module, limit)
             return gear
+
+    def _too_wide(self, gear: Gear) -> bool:
+        """Whether the bore of a wheel reaches the root of its teeth."""
+        bore = self.bores[gear.wheel - 1]
+        return bore is not None and 0.5 * bore >= gear.least_radius
+
+    def _bore_refusal(self, gear: Gear, tolerance: float) -> InfeasibleError:
+        """Return the refusal of the bore of a wheel, and of its mate's where that is too wide."""
+        wheels, key = [gear], "blank.bore_diameter_mm"
+        if gear.wheel == 1:  # the driven wheel has not been made yet
+            with suppress(InfeasibleError):
+                mate = make_gear(gear.pair, 2, tolerance, self.tolerances, self.design.ring)
+                wheels += [mate] * self._too_wide(mate)
+        names = [f"{key}[{one.wheel - 1}]" for one in wheels]
+        # the limit holds for the circle around bore and keyway
+        limits = [2.0 * one.least_radius for one in wheels]
+        bores = [self.bores[one.wheel - 1] or 0.0 for one in wheels]
+        own = [self.design.blank.wheel(one.wheel).bore for one in wheels]
+        near = [own[k] - bores[k] + limits[k] for k in range(len(wheels))]
+        worst, nearest = limits.index(min(limits)), [*map(_room, wheels)]
+        where = f"wheel {gear.wheel}, {names[0]}"
+        if len(wheels) > 1:
+            where = f"wheels 1 and 2, {key}"
+            nearest.append(f"both take less than {shown(limits[worst])} mm")
+            if own[0] == own[1]:
+                names, near, limits = [key], [min(near)], [limits[worst]]
+        if own != bores:
+            nearest.append("limits hold for the circle around bore and keyway")
+        return InfeasibleError(
+            "the bore reaches the root of the teeth",
+            where=where,
+            value=bores[worst],
+            limit=min(limits),
+            unit="mm",
+            nearest="; ".join(nearest),
+            ways=(
+                Way(
+                    near=dict(zip(names, near, strict=True)),
+                    far={name: 0.1 * limit for name, limit in zip(names, limits, strict=True)},
+                ),
+            ),
+        )
 
     @property
     def gears(self) -> tuple[Gear, Gear]:
@@ -287,6 +316,19 @@ class PairStages(Result):
         period, knots = self.law.period, np.asarray(self.law.knots, dtype=float)
         lobes = math.ceil(self.centrode_angles(2)[-1] / period * (1.0 - _WHOLE))
         return np.concatenate([knots[:1], *(knots[1:] + lobe * period for lobe in range(lobes))])
+
+
+def _room(gear: Gear) -> str:
+    """Return how wide the bore of a wheel may be, and why its root comes so near to the axis."""
+    ends = gear.pair.law.ratio_range
+    (place, ratio), (_, other) = ends if gear.wheel == 1 else reversed(ends)
+    room = f"wheel {gear.wheel} takes less than {shown(2.0 * gear.least_radius)} mm"
+    if math.isclose(ratio, other, rel_tol=_WHOLE):
+        return room
+    return (
+        f"{room}: its teeth come nearest to the axis at {angle_text(place)}, where the law's ratio "
+        f"is {shown(ratio)}"
+    )
 
 
 def _demand_reached(pose: float, law: RatioLaw) -> None:
