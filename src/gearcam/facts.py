@@ -57,6 +57,8 @@ class Fact(Brief):
         Whether it is one of the few facts that are always shown.
     noise : float
         Smaller values are rounding noise and shown as 0.
+    text : str
+        The value as people read it, without its unit; default: numbers in six digits.
     """
 
     value: Any
@@ -67,6 +69,7 @@ class Fact(Brief):
     unit: str | None = None
     shown: bool = False
     noise: float = 0.0
+    text: str = ""
 
 
 @dataclass(frozen=True)
@@ -87,6 +90,8 @@ class NamedFact:
         Wheel, tooth, or angle of the value.
     noise : float
         Smaller values are rounding noise.
+    written : str
+        The value as people read it, if the fact gives it.
     """
 
     name: str
@@ -96,11 +101,12 @@ class NamedFact:
     limit: str
     place: str
     noise: float
+    written: str = ""
 
     @property
     def text(self) -> str:
         """The value with its unit: ``0.4 to 1.6``, ``36 : 36``, ``4.92299 mm``."""
-        return f"{text_of(self.value, self.noise)} {self.unit}".rstrip()
+        return f"{self.written or text_of(self.value, self.noise)} {self.unit}".rstrip()
 
 
 def text_of(value: Any, noise: float = 0.0) -> str:
@@ -256,7 +262,17 @@ def _quantity(name: str, leaf: Any) -> NamedFact:
     meaning = fact.meaning or last.removesuffix(end).replace("_", " ")
     limit = "" if fact.at_least is None else f"at least {shown(fact.at_least)}"
     limit = limit if fact.at_most is None else f"at most {shown(fact.at_most)}"
-    return NamedFact(name, _bare(fact), unit, meaning, limit, fact.place, fact.noise)
+    return NamedFact(name, _bare(fact), unit, meaning, limit, fact.place, fact.noise, fact.text)
+
+
+def _label(name: str) -> str:
+    """Return a name without its unit in words: ``smallest tip thickness``."""
+    words = name.split("_")
+    for short, word in (("min", "smallest"), ("max", "largest")):
+        if len(words) > 1 and short in (words[0], words[-1]):
+            words.remove(short)
+            words.insert(0, word)
+    return " ".join(words)
 
 
 def _unit_of(name: str) -> tuple[str, str]:

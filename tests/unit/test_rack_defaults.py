@@ -97,7 +97,7 @@ def test_what_yielded_is_said(
     rack = used(pressure_angle=math.radians(angle))
     (line,) = (line for line in told.splitlines() if "tip radius" in line)
     assert f"{rack.tip_radius:.6g} modules" in line
-    assert "for the default 0.38" in line
+    assert "changed from the default 0.38" in line
     found = json.loads((tmp_path / "y" / "summary.json").read_text())["pair"]["rack"]
     assert found["tip_radius"] == pytest.approx(rack.tip_radius)
     assert found["yielded"] == {"tip_radius": 0.38} | ({"dedendum": 1.25} if angle == 35 else {})

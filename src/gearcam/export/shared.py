@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from gearcam.facts import Fact
 from gearcam.numerals import shown
 
 if TYPE_CHECKING:
@@ -62,13 +63,35 @@ def accuracy(
     return {**made, "how": how}
 
 
-def part_facts(part: Part, tools: ToolLimits, density: float | None) -> dict[str, Any]:
+def size_fact(extents: Sequence[float], name: str) -> Fact:
+    """Return the overall size of a part as a fact.
+
+    Parameters
+    ----------
+    extents : sequence of 3 floats, mm
+        Along x, y and z of the part's own frame.
+    name : str
+        What people call the part, such as ``wheel 1``; empty where there is only one.
+
+    Returns
+    -------
+    Fact
+        Shown to hundredths of a millimetre.
+    """
+    meaning = f"overall size of {name}" if name else "overall size"
+    text = " x ".join(shown(round(one, 2), 9) for one in extents)
+    return Fact([float(one) for one in extents], meaning, text=text, shown=True)
+
+
+def part_facts(part: Part, name: str, tools: ToolLimits, density: float | None) -> dict[str, Any]:
     """Return what is known of a part.
 
     Parameters
     ----------
     part : Part
         As made.
+    name : str
+        What people call it (see `size_fact`).
     tools : ToolLimits
         The largest tools for it.
     density : float or None, kg/m^3
@@ -82,6 +105,7 @@ def part_facts(part: Part, tools: ToolLimits, density: float | None) -> dict[str
     from gearcam.parts.mass import mass_properties
 
     made: dict[str, Any] = {
+        "size_mm": size_fact(part.size, name),
         "tool": tools.as_dict(),
         "openings": [opening.as_dict() for opening in part.openings],
     }

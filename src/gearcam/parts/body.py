@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol, cast
 import numpy as np
 
 from gearcam.display import Brief, Displayed
-from gearcam.facts import Fact, Facts
+from gearcam.facts import Facts
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.moments import Moments
@@ -220,7 +220,7 @@ class Part(Brief, Displayed):
         """Facts of the part; the facts of its result contain more."""
         tree = {
             "width_mm": self.width,
-            "thickness_mm": Fact(self.thickness, "from face to face"),
+            "size_mm": list(self.size),
             "area_mm2": self.steps[0].moments.area,
             "volume_mm3": self.volume,
             "steps": len(self.contours) if len(self.contours) > 1 else None,
@@ -320,6 +320,13 @@ class Part(Brief, Displayed):
         step = self.steps[0]
         holes = [opening.shape.points(self.tolerance) for opening in step.openings]
         return Polygon(step.edge.points(self.tolerance), holes)
+
+    @property
+    def size(self) -> tuple[float, float, float]:
+        """Extents along x, y and z of its frame, mm, hub included, to the chord tolerance."""
+        points = np.concatenate([layer.edge.points(self.tolerance) for layer in self.layers])
+        across, up = np.ptp(points, axis=0).tolist()
+        return across, up, self.thickness
 
     @property
     def thickness(self) -> float:

@@ -1,4 +1,4 @@
-"""What is known of a cam, as facts."""
+"""Facts of a cam: what the console, the report and ``summary.json`` show."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ _PEAKS = (
 
 
 def facts(result: CamResult, measured: Mapping[str, Any]) -> Facts:
-    """Return what is known of a cam.
+    """Return the facts of a cam.
 
     Parameters
     ----------
     result : CamResult
         A built design.
     measured : mapping
-        What exporters measured: ``dxf``, ``solids``, ``curvature``, ``followed``.
+        What exporters and studies measured, by ``dxf``, ``solids``, ``curvature``, ``followed``.
 
     Returns
     -------
@@ -58,7 +58,7 @@ def facts(result: CamResult, measured: Mapping[str, Any]) -> Facts:
 
 
 def _motion(result: CamResult) -> Tree:
-    """Lift in mm or deg; what jumps has a peak, what is infinite has none."""
+    """Return lift in mm or deg and the peaks of its derivatives that are finite."""
     program, driver = result.program, result.mechanism.driver
     scale, unit = result.mechanism.outward
     low, high = program.range
@@ -83,7 +83,7 @@ def _motion(result: CamResult) -> Tree:
 
 
 def _deviation(program: Program, scale: float, unit: str) -> Fact | None:
-    """Return what smoothing took off the rows of a table."""
+    """Return the largest distance of a smoothed lift from the rows of its table."""
     if program.deviation is None:
         return None
     place = f"at {shown(math.degrees(program.deviation.theta), scale=360.0)} deg"
@@ -113,14 +113,14 @@ def _cam(result: CamResult) -> Tree:
 
 
 def pressure(result: CamResult, motion: PitchMotion) -> Tree:
-    """Return pressure angles on rises and returns.
+    """Return the pressure angles of rises and returns.
 
     Parameters
     ----------
     result : CamResult
         With the limits.
     motion : PitchMotion
-        One of its cam.
+        One of the motions of its cam.
 
     Returns
     -------
@@ -148,7 +148,7 @@ def pressure(result: CamResult, motion: PitchMotion) -> Tree:
 
 
 def _lost_motion(result: CamResult) -> Fact | None:
-    """Return what the follower moves while the cam stands still, if two walls hold it."""
+    """Return how far a follower between two walls can move while the cam stands still."""
     lost, mechanism = result.cam.lost_motion, result.mechanism
     if lost is None:
         return None
@@ -158,15 +158,16 @@ def _lost_motion(result: CamResult) -> Fact | None:
 
 
 def _part(result: CamResult) -> Tree | list[Tree]:
-    """Return what is known of a cam as a part, or as several, if they are ordered."""
+    """Return the facts of the part, or of each part, of a cam; empty if none is ordered."""
     if not result.ordered:
         return {}
-    rows = zip(result.parts, result.part_subject.tools, strict=True)
-    told = [part_facts(part, tools, result.design.blank.density) for part, tools in rows]
-    return told[0] if len(told) == 1 else told
+    rows = list(zip(result.parts, result.part_subject.tools, strict=True))
+    density, several = result.design.blank.density, len(rows) > 1
+    told = [part_facts(part, part.name if several else "", tools, density) for part, tools in rows]
+    return told if several else told[0]
 
 
 def _accuracy(result: CamResult, measured: Mapping[str, Any]) -> Tree:
-    """Error estimates, and how each was made."""
+    """Return the error estimates, and how each was made."""
     chord, kerf = max(one.chord_error for one in result.contours), result.design.output.kerf
     return accuracy(error_rows(result), chord, kerf, measured)

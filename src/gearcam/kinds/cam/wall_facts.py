@@ -1,9 +1,9 @@
-"""What is known of a wall of a cam, as facts."""
+"""Facts of a wall of a cam."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -16,21 +16,34 @@ if TYPE_CHECKING:
 
 Tree = dict[str, Any]
 
+_RADII: Final = {
+    "profile_min_mm": "smallest radius of the profile",
+    "pitch_min_mm": "smallest radius of the pitch curve",
+    "pitch_rise_min_mm": "smallest radius of the pitch curve, rise",
+    "pitch_return_min_mm": "smallest radius of the pitch curve, return",
+    "profile_convex_min_mm": "smallest convex radius",
+    "profile_concave_min_mm": "smallest concave radius",
+}
+"""Labels of radii of curvature."""
+
+_SHOWN: Final = ("profile_convex_min_mm", "profile_concave_min_mm")
+"""Those that are always shown."""
+
 
 def ends_of(found: Range, scale: float = 1.0) -> dict[str, float]:
-    """Return both ends of what was `found`, times a `scale`."""
+    """Return both ends of the range that was `found`, times a `scale`."""
     return extent(found.low.value, found.high.value, scale)
 
 
 def size(wall: Wall, made: Contour, clearance: float = 0.0) -> Tree:
-    """Return the sizes of a wall as made: with clearance those of its parallel.
+    """Return the sizes of a wall as made, that is, of its parallel if there is a clearance.
 
     Parameters
     ----------
     wall : Wall
-        As it is touched.
+        The curve that the follower touches.
     made : Contour
-        As made.
+        The curve that is cut.
     clearance : float, mm
         Between them.
 
@@ -57,7 +70,7 @@ def size(wall: Wall, made: Contour, clearance: float = 0.0) -> Tree:
 
 
 def curvature(wall: Wall) -> Tree:
-    """Return smallest radii: of any sign, and of convex and concave parts of a `wall`."""
+    """Return the smallest radii of profile and pitch curve: all, rises, returns, each sign."""
     convex, concave = wall.profile_radius
     made = {"profile_min_mm": min(convex, concave)}
     whole = wall.pitch_curvature()
@@ -67,19 +80,16 @@ def curvature(wall: Wall) -> Tree:
         if found is not None:
             made[f"pitch_{kind}_min_mm"] = found.least_radius
     made |= {"profile_convex_min_mm": convex, "profile_concave_min_mm": concave}
-    facts: Tree = {name: value for name, value in made.items() if math.isfinite(value)}
     which = f", {wall.called}" if wall.key else ""
-    words = {
-        "profile_convex_min_mm": f"smallest convex radius{which}",
-        "profile_concave_min_mm": f"smallest concave radius{which}",
+    return {
+        name: Fact(value, _RADII[name] + which, shown=name in _SHOWN)
+        for name, value in made.items()
+        if math.isfinite(value)
     }
-    for name in words.keys() & facts.keys():
-        facts[name] = Fact(facts[name], words[name], shown=True)
-    return facts
 
 
 def trimming(wall: Wall) -> Tree:
-    """Return where a `wall` is undercut, where its follower stands, what trimming costs it."""
+    """Return where a `wall` is undercut, its start angle, and the lift lost by trimming."""
     mechanism, corners = wall.mechanism, bool(wall.corners)
     swings, scale = mechanism.oscillating, mechanism.driver.scale
     return {

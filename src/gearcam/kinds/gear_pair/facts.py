@@ -1,4 +1,4 @@
-"""What is known of a gear pair, as facts."""
+"""Facts of a gear pair: what the console, the report and ``summary.json`` show."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from gearcam.export.shared import accuracy, part_facts
+from gearcam.export.shared import accuracy, part_facts, size_fact
 from gearcam.facts import Fact, Facts, extent
 from gearcam.findings import limit_of
 from gearcam.gears.gear_facts import gear_tree
@@ -29,14 +29,14 @@ Tree = dict[str, Any]
 
 
 def facts(result: GearPairResult, measured: Mapping[str, Any]) -> Facts:
-    """Return what is known of a pair.
+    """Return the facts of a pair.
 
     Parameters
     ----------
     result : GearPairResult
         A built design.
     measured : mapping
-        What exporters measured: ``dxf``, ``solids``; the facts of a ``meshing`` study.
+        What exporters measured, by ``dxf`` and ``solids``; numbers of a ``meshing`` study.
 
     Returns
     -------
@@ -45,7 +45,7 @@ def facts(result: GearPairResult, measured: Mapping[str, Any]) -> Facts:
     kerf, leads = result.design.output.kerf, result.leads
     tree: Tree = {
         "pair": _pair(result),
-        # a study tells of the mesh as it is mounted
+        # a study has the numbers of the mesh as mounted
         "mesh": None if "meshing" in measured else _mesh(result),
         "kerf_mm": kerf or None,
         "gears": [_gear(result, gear) for gear in result.gears],
@@ -90,20 +90,28 @@ def _pair(result: GearPairResult) -> Tree:
         else None,
         **own,
         "solved": {
-            name: Fact(value, f"solved {name}", shown=name in pair.law.solved)
+            name: _solved(name, value, shown=name in pair.law.solved)
             for name, value in solved.items()
         },
     }
 
 
+def _solved(name: str, value: float, *, shown: bool) -> Fact:
+    """Return what was left to the program: named in words, or by its place in a list."""
+    kind, _, place = name.partition("[")
+    meaning, unit = _SOLVED[kind]
+    words = f"{meaning} {int(place[:-1]) + 1} (solved)" if place else meaning
+    return Fact(value, words, unit=unit, shown=shown)
+
+
 def _rack(result: GearPairResult) -> Tree:
-    """Return the basic rack as it was used, and the defaults that yielded to given values."""
+    """Return the basic rack as used, and the defaults that were changed to suit given values."""
     rack = result.pair.rack
     yielded = rack.yielded(result.design.rack)
 
     def height(name: str) -> Fact:
         gave = name in yielded
-        place = f"for the default {shown(yielded[name])}, which gave way" if gave else ""
+        place = f"changed from the default {shown(yielded[name])}" if gave else ""
         return Fact(getattr(rack, name), place=place, unit="modules", shown=gave)
 
     return {
@@ -114,13 +122,13 @@ def _rack(result: GearPairResult) -> Tree:
 
 
 def _mesh(result: GearPairResult) -> Tree:
-    """Return what the pair does as it is designed, with the limits that it is held against."""
+    """Return the numbers of the mesh at the designed distance, with their limits."""
     subject, limits, module = result.subject, result.design.limits, result.pair.module
     least = limit_of(KIND, "contact-ratio", limits)
     thin = limit_of(KIND, "thin-tip", limits) * module
     gear = min(result.gears, key=lambda gear: gear.profile.tip_thickness.min())
     tooth = int(gear.profile.tip_thickness.argmin()) + 1
-    # where symmetry makes both ways alike, the first is told, not what rounding makes larger
+    # where both directions are equal by symmetry: the first, not the one that rounding makes larger
     way, (phi1, angle) = max(subject.pressure_angles.items(), key=lambda item: round(item[1][1], 9))
     places, values = subject.accelerations
     worst = int(np.argmax(np.abs(values)))
@@ -157,7 +165,7 @@ def _mesh(result: GearPairResult) -> Tree:
 
 
 def _parted(result: GearPairResult) -> str:
-    """Return in words what the backlash is made of, if clearance adds to what is asked for."""
+    """Return in words which part of the backlash comes from clearance, if any."""
     if not any(result.design.blank.wheel(number).clearance for number in (1, 2)):
         return ""
     given = result.design.pair.backlash
@@ -166,7 +174,7 @@ def _parted(result: GearPairResult) -> str:
 
 
 def _contact_ratios(sides: tuple[FlankPairs, ...], limit: float) -> Iterator[tuple[str, Fact]]:
-    """Yield the contact ratio of each side; people read one line where both are alike."""
+    """Yield the contact ratio of each side; one line is shown if both are equal."""
     found = []
     for pairs in reversed(sides):
         ratios = pairs.contact_ratios
@@ -195,7 +203,7 @@ def _tip_pass(result: GearPairResult) -> Fact | None:
         return None
     return Fact(
         found.margin,
-        "margin by which tips pass outside the mesh",
+        "distance by which tips pass outside the mesh",
         at_least=limit_of(KIND, "tips-collide", result.design.limits),
         place=f"wheel 1, tooth {found.tooth}, {angle_text(found.phi1)}",
         shown=True,
@@ -211,7 +219,7 @@ def _rim(subject: Subject, limit: float) -> Fact | None:
 
 
 _ROUNDING = 1e-9
-"""What is smaller, mm, is rounding of a study."""
+"""Smaller lengths in a study, mm, are rounding."""
 
 _STUDIED: Mapping[str, str] = {
     "center_distance_mm": "centre distance as mounted",
@@ -220,15 +228,35 @@ _STUDIED: Mapping[str, str] = {
     "pairs_in_contact": "pairs in contact",
     "interference_steps": "phases with interference",
     "backlash_mm": "backlash along the pitch curve",
-    "lag_mm": "lag of the driven wheel, taken up",
+    "lag_mm": "lag of the driven wheel, backlash taken up",
     "penetration_mm": "penetration of flanks",
     "chord_error_mm": "chord error of outlines",
 }
-"""Numbers of a study that are always shown, in words."""
+"""Labels of the numbers of a study that are always shown."""
+
+_SOLVED: Mapping[str, tuple[str, str]] = {
+    "ratios": ("ratio", ""),
+    "knots_deg": ("angle of knot", "deg"),
+    "p": ("coefficient p of the parabolas", ""),
+    "center_distance_mm": ("centre distance", "mm"),
+    "module_mm": ("module", "mm"),
+    "center_distance_over_scale": ("centre distance in the unit of r1", ""),
+    "center_distance_over_semi_latus_rectum": ("centre distance over semi-latus rectum", ""),
+    "side_distance_over_center_distance": ("distance of a side over centre distance", ""),
+    "mm_per_unit_of_r1": ("unit of r1", "mm"),
+    "growth_per_rad": ("growth of the spiral", "1/rad"),
+    "driver_travel_deg": ("travel of the driver", "deg"),
+    "ratio_factor": ("factor of the given ratio", ""),
+    "k1_deg_per_x": ("driver angle per unit of x", "deg"),
+    "k2_deg_per_y": ("driven angle per unit of y", "deg"),
+    "crank_radius_over_slide_unit": ("crank radius in the unit of the slide", ""),
+    "crank_angle_at_start_deg": ("crank angle at the start", "deg"),
+}
+"""Labels and units of what was left to the program, by the names without places in lists."""
 
 
 def _meshing(numbers: Mapping[str, Any]) -> Tree:
-    """Return what a study found."""
+    """Return the numbers of a study as facts."""
     first = {name: numbers[name] for name in ("steps_done", *_STUDIED) if name in numbers}
     tree: Tree = {**first, **numbers}
     done, asked = numbers["steps_done"], numbers["steps"]
@@ -242,11 +270,11 @@ def _meshing(numbers: Mapping[str, Any]) -> Tree:
         peak = Fact(error["peak_to_peak"], "transmission error, peak to peak", shown=True)
         tree["transmission_error"] = error | {"peak_to_peak": replace(peak, unit=error["unit"])}
         if "no_harmonics" in error:
-            missing = Fact(error["no_harmonics"], "harmonics, not told", shown=True)
+            missing = Fact(error["no_harmonics"], "no harmonics, because of", shown=True)
             tree["transmission_error"]["no_harmonics"] = missing
         else:
             largest = max(error["harmonics"], key=lambda one: one["amplitude"])
-            words = f"largest harmonic, {largest['order']} a turn"
+            words = f"largest harmonic, {largest['order']} per turn"
             found = Fact(largest["amplitude"], words, unit=error["unit"], shown=True)
             tree["transmission_error"]["largest_harmonic"] = found
     return tree
@@ -266,18 +294,24 @@ def _gear(result: GearPairResult, gear: Gear) -> Tree:
 
 
 def _part(result: GearPairResult, gear: Gear) -> Tree:
-    """Return what is known of a wheel as a part, if parts are ordered."""
+    """Return the overall size of a wheel and, if parts are ordered, the facts of the part."""
+    number, name = (
+        gear.wheel - 1,
+        "the rack" if gear.toothing.track.slides else f"wheel {gear.wheel}",
+    )
     if not result.ordered:
-        return {}
-    number = gear.wheel - 1
+        if gear.hollow or len(result.leads) > 1:
+            return {}  # its outside, or its other steps, are not made
+        extents = (*np.ptp(gear.outline, axis=0), result.design.pair.face_width)
+        return {"size_mm": size_fact(extents, name)}
     part, tools = result.parts[number], result.parts_subject.tools[number]
     density = result.design.blank.wheel(gear.wheel).density
     area = {"part": {"area_mm2": part.steps[0].moments.area}}
-    return area | part_facts(part, tools, density)
+    return area | part_facts(part, name, tools, density)
 
 
 def _accuracy(result: GearPairResult, measured: Mapping[str, Any]) -> Tree:
-    """Error estimates, and how each was made."""
-    # between the places at which it is measured a chord may be off by more
+    """Return the error estimates, and how each was made."""
+    # the largest distance from a chord may lie between the places where it is measured
     chord = max(gear.profile.chord_error for gear in result.gears) / MARGIN
     return accuracy(error_rows(result), chord, result.design.output.kerf, measured)

@@ -1,0 +1,68 @@
+"""The overall size of each part is that of its files, as other readers measure them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import ezdxf
+import ezdxf.bbox
+import numpy as np
+import pytest
+import trimesh
+
+import gearcam as gc
+from gearcam.drawings import OUTER
+
+PROFILES = Path(__file__).resolve().parents[2] / "profiles"
+PARTS = {
+    "shop_order": ("gears.{}", ("gear1", "gear2")),
+    "ring_ellipse": ("gears.{}", ("gear1", "gear2")),
+    "feeder": ("gears.{}", ("gear1", "gear2")),
+    "stepped_ellipse": ("gears.{}", ("gear1", "gear2")),
+    "log_spiral": ("gears.{}", ("gear1", "gear2")),
+    "tappet": ("part", ("cam",)),
+    "groove_cam": ("part", ("cam",)),
+    "translating_cam": ("part", ("cam",)),
+    "conjugate_cams": ("part.{}", ("cam1", "cam2")),
+}
+
+
+def box(path: Path) -> Any:
+    """Extents along x, y and z of a mesh; along x and y of the outer edges of a drawing."""
+    if path.suffix == ".stl":
+        return trimesh.load_mesh(path).extents
+    drawing = ezdxf.readfile(path)  # type: ignore[attr-defined]
+    edges = [one for one in drawing.modelspace() if one.dxf.layer in OUTER]
+    return np.array(ezdxf.bbox.extents(edges).size)[:2]
+
+
+@pytest.mark.parametrize("name", PARTS)
+def test_the_size_of_a_part_is_that_of_its_files(name: str, tmp_path: Path) -> None:
+    group, stems = PARTS[name]
+    design = gc.load(PROFILES / f"{name}.toml").with_({"output.files": ["stl", "dxf"]})
+    result = gc.build(design)
+    folder = Path(result.write(tmp_path).directory)
+    for number, stem in enumerate(stems):
+        size = result.facts[f"{group.format(number)}.size_mm"]
+        solid = box(folder / f"{stem}.stl")
+        assert size == pytest.approx(solid.tolist(), abs=2e-3)
+        assert solid[2] > 1.0
+        drawings = [folder / f"{stem}.dxf"]
+        if not drawings[0].exists():  # a stepped wheel has one for each step
+            drawings = sorted(folder.glob(f"{stem}_step*.dxf"))
+        plane = np.max([box(one) for one in drawings], axis=0)
+        tolerance = 2e-3 if len(drawings) == 1 else 0.5
+        assert size[:2] == pytest.approx(plane.tolist(), abs=tolerance)
+
+
+def test_it_is_shown_and_needs_no_parts() -> None:
+    """A pair that orders no parts has the size of its outlines, without having made parts."""
+    result = gc.build(gc.load(PROFILES / "ellipse.toml"))
+    quantity = result.facts.quantity("gears.1.size_mm")
+    assert quantity.meaning == "overall size of wheel 2"
+    assert "parts" not in vars(result)
+    wide, high = np.ptp(result.gear2.outline, axis=0)
+    assert quantity.value == [wide, high, 10.0]
+    assert quantity.text == f"{wide:.2f} x {high:.2f} x 10 mm"
+    assert any("overall size of wheel 2" in line for line in result.facts.lines())
