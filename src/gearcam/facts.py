@@ -259,7 +259,7 @@ def _quantity(name: str, leaf: Any) -> NamedFact:
     end, unit = _unit_of(last)
     unit = unit if fact.unit is None else fact.unit
     unit = "" if isinstance(fact.value, str) else unit  # words instead of a number
-    meaning = fact.meaning or last.removesuffix(end).replace("_", " ")
+    meaning = fact.meaning or _label(last.removesuffix(end))
     limit = "" if fact.at_least is None else f"at least {shown(fact.at_least)}"
     limit = limit if fact.at_most is None else f"at most {shown(fact.at_most)}"
     return NamedFact(name, _bare(fact), unit, meaning, limit, fact.place, fact.noise, fact.text)
