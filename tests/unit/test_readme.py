@@ -155,6 +155,14 @@ def test_a_dead_link_and_a_dead_anchor_are_seen() -> None:
     assert dead_links(ROOT / "README.md", text) == dead
 
 
+def test_the_index_lists_every_page_once() -> None:
+    """The menu of the site is made from it (docs/conf.py)."""
+    text = (ROOT / "docs" / "index.md").read_text("utf-8")
+    listed = re.findall(r"^- .*?\]\(([\w/-]+\.md)\)", text, re.MULTILINE)
+    pages = {str(page.relative_to(ROOT / "docs")) for page in (ROOT / "docs").rglob("*.md")}
+    assert sorted(listed) == sorted(pages - {"index.md"})
+
+
 def test_files_named_are_there() -> None:
     for page in PAGES:
         named = r"`((?:docs|benchmarks|tests|profiles|laws|gears|kinds|designs)/[\w./]+)`"
