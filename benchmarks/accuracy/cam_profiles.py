@@ -1,4 +1,4 @@
-"""A cam's profile: closed form, boolean sweep of the roller, curvature from three points."""
+"""The profile of a cam by closed form and boolean sweep, and its curvature from three points."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ mp: Any = mpmath.mp
 KIND, LAW, LIFT, DEGREES = "roller, offset", "3-4-5", 8.0, (60.0, 90.0, 60.0, 150.0)
 TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 REFERENCES = 47
-"""Cam angles of the reference: a prime, so that no sweep stands at all of them."""
+"""Number of cam angles of the reference: a prime, so that it does not divide those of the sweep."""
 SHARE = "0.3"
-"""Of a step by which they are shifted: none is a knot, where a difference would reach across."""
+"""Shift of these angles relative to their step, so that none is at a knot."""
 
 
 def _witness() -> tuple[Exact, list[Any]]:
@@ -31,7 +31,7 @@ def _witness() -> tuple[Exact, list[Any]]:
 
 
 def profile() -> Case:
-    """The profile of a cam with an offset roller."""
+    """Return the case of the profile of a cam with an offset roller."""
     made = cam(KIND, LAW, LIFT, DEGREES)
     with mp.workdps(50):
         exact, angles = _witness()
@@ -55,7 +55,7 @@ def profile() -> Case:
         return float(distances(points, edge).max())
 
     def of_points(found: Any) -> float:
-        # a cam that turns clockwise is seen mirrored: whichever way round, it is the same curve
+        # radii only, since a cam with the other direction of rotation is mirrored
         return float(np.abs(np.abs(found) - np.hypot(*points.T)).max())
 
     return Case(
@@ -79,12 +79,12 @@ def profile() -> Case:
         rounding=1e-13,
         note="Offset roller, 3-4-5 rises of 8 mm in 60 degrees; against the envelope by "
         f"differences in 50 digits at {REFERENCES} cam angles. The roller of the sweep is a "
-        "polygon of four corners a cam angle.",
+        "polygon with four vertices per cam angle.",
     )  # fmt: skip
 
 
 def curvature() -> Case:
-    """The curvature of its pitch curve."""
+    """Return the case of the curvature of its pitch curve."""
     made = cam(KIND, LAW, LIFT, DEGREES)
     with mp.workdps(50):
         exact, angles = _witness()
@@ -110,16 +110,16 @@ def curvature() -> Case:
         unit="1/mm",
         methods=[
             Method("closed form", "", (1.0,), closed),
-            Method("three points", "points a turn", counts, three, 2.0),
+            Method("three points", "points per turn", counts, three, 2.0),
         ],
         own="closed form",
         error=lambda found: float(np.abs(found - truth).max()),
         rounding=1e-14,
-        note=f"At the same {REFERENCES} cam angles, against derivatives in 50 digits; three points "
-        "stand as far apart as in a turn of so many.",
+        note=f"At the same {REFERENCES} cam angles, against derivatives in 50 digits; the "
+        "distance of three points is that of so many points in a turn.",
     )
 
 
 def cases() -> list[Case]:
-    """All of them."""
+    """Return all cases."""
     return [profile(), curvature()]

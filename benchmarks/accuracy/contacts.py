@@ -21,19 +21,19 @@ from wheels import ALPHA, CIRCULAR, MODULE, TEETH
 
 mp: Any = mpmath.mp
 AHEAD = "0.002"
-"""How far the driver is ahead, degrees."""
+"""Angle by which the driver is ahead, degrees."""
 PHASES = 24
 MIDDLE = 0.75
-"""Where flanks of pair 1 touch at the pitch point, in pitches."""
+"""Phase at which the flanks of pair 1 touch at the pitch point, in pitches."""
 ADVANCES = (0.04, 0.02, 0.01, 0.005, 0.0025)
 TOLERANCES = (3e-4, 1e-4, 3e-5, 1e-5, 3e-6, 1e-6)
 
 
 def lens(rho: Any, ahead: Any) -> Any:
-    """Area that two involutes of the wheels share, mm2, the driver being `ahead`, rad.
+    """Return the overlap of two involutes, mm2, if the driver is `ahead`, rad.
 
-    Both are unwound from base circles on either side of the line of action, which is the y-axis
-    here; `rho` is the driver's radius of curvature where they touch before, mm.
+    Both involutes start at base circles on either side of the line of action, which is the y-axis
+    here; `rho` is the radius of curvature of the driver at the contact without overlap, mm.
     """
     alpha = mp.radians(mp.mpf(ALPHA))
     radius = mp.mpf(MODULE) * TEETH / 2
@@ -71,7 +71,7 @@ def lens(rho: Any, ahead: Any) -> Any:
 
 
 def _truth(phi: Any) -> Any:
-    """Areas at phases, mm2: of the pair that passes the pitch point at `MIDDLE`."""
+    """Return areas at phases, mm2, of the pair that passes the pitch point at `MIDDLE`."""
     with mp.workdps(30):
         alpha = mp.radians(mp.mpf(ALPHA))
         radius = mp.mpf(MODULE) * TEETH / 2
@@ -82,7 +82,7 @@ def _truth(phi: Any) -> Any:
 
 
 def patch() -> Case:
-    """The area of contact patches where one pair of teeth is in contact."""
+    """Return the case of contact patches with one pair of teeth in contact."""
     result = gearcam.build(gearcam.loads(CIRCULAR))
     gears, pair = result.gears, result.pair
     pairs, ahead = flank_pairs(gears, DRIVE), math.radians(float(AHEAD))
@@ -93,7 +93,7 @@ def patch() -> Case:
 
     def exact(_: float, closed: bool = False) -> Any:
         found = patches(pairs, phi, ahead)
-        assert len(found.step) == PHASES  # one pair a phase, and that the same
+        assert len(found.step) == PHASES  # the same pair at each phase
         return found.closed if closed else found.area
 
     def profiles(tolerance: float) -> Any:
@@ -125,8 +125,8 @@ def patch() -> Case:
         unit="mm2",
         methods=[
             Method(f"{name}, by quadrature", "", (1.0,), exact),
-            Method(f"{name}, a lens in closed form", "", (1.0,), partial(exact, closed=True)),
-            Method("halves of teeth that face each other", level, TOLERANCES, halves, -1.0),
+            Method(f"{name}, in closed form", "", (1.0,), partial(exact, closed=True)),
+            Method("half-teeth that face each other", level, TOLERANCES, halves, -1.0),
             Method("whole outlines", level, TOLERANCES, whole, -1.0),
         ],
         own=name,
@@ -134,13 +134,13 @@ def patch() -> Case:
         rounding=1e-13,
         note=f"{TEETH} teeth, module {MODULE:g} mm, the driver {AHEAD} degrees ahead, at {PHASES} "
         "phases with one pair in contact; against the involutes in 30 digits. The meshing study "
-        "tells the overlap of the halves, which does not know what should touch, beside the "
-        "exact one: it takes chords of a two-hundredth of the penetration.",
+        "also reports the overlap of half-teeth, which does not assume which flanks touch; its "
+        "chord tolerance is 1/200 of the penetration.",
     )
 
 
 def advance() -> Case:
-    """The same by how far the driver is ahead, where its flank touches at the pitch point."""
+    """Return the case of the area against the angle by which the driver is ahead."""
     pairs = flank_pairs(gearcam.build(gearcam.loads(CIRCULAR)).gears, DRIVE)
     phi = np.array([2.0 * math.pi / TEETH * MIDDLE])
     with mp.workdps(30):
@@ -155,25 +155,23 @@ def advance() -> Case:
     name, level = "exact flanks", "driver ahead, degrees"
     return Case(
         name="contact_advance",
-        title="Contact patches: the driver further ahead",
+        title="Contact patches against the advance of the driver",
         what="the area",
-        unit="of it",
+        unit="relative",
         methods=[
             Method(f"{name}, by quadrature", level, ADVANCES, exact),
-            Method(
-                f"{name}, a lens in closed form", level, ADVANCES, partial(exact, closed=True), -1.0
-            ),
+            Method(f"{name}, in closed form", level, ADVANCES, partial(exact, closed=True), -1.0),
         ],
         own=name,
         error=abs,
         rounding=1e-12,
-        note="The same wheels, touching at the pitch point; the lens has the curvature of that "
-        "place all over, which is wrong in proportion to the advance.",
+        note="The same wheels, in contact at the pitch point. The closed form assumes the "
+        "curvature of that point everywhere; its error is proportional to the advance.",
     )
 
 
 def ratio() -> Case:
-    """The mean contact ratio."""
+    """Return the case of the mean contact ratio."""
     result = gearcam.build(gearcam.loads(CIRCULAR))
     pairs = flank_pairs(result.gears, DRIVE)
     with mp.workdps(30):
@@ -187,7 +185,7 @@ def ratio() -> Case:
         return float(np.mean(flank_pairs(result.gears, DRIVE).contact_ratios))
 
     def counted(steps: float) -> float:
-        # a pitch that no number of phases divides, so that none stands at an end
+        # shifted, so that no phase is at an end of contact
         phi = 2.0 * math.pi / TEETH * (np.arange(steps) + 1.0 / 3.0) / steps
         return float(np.mean(pairs.carrying(phi)))
 
@@ -198,7 +196,7 @@ def ratio() -> Case:
         unit="1",
         methods=[
             Method("ends of the arcs of contact", "", (1.0,), arcs),
-            Method("pairs counted at phases", "phases a pitch", (10, 100, 1000, 10000), counted),
+            Method("pairs counted at phases", "phases per pitch", (10, 100, 1000, 10000), counted),
         ],
         own="ends",
         error=lambda found: abs(found - truth),
@@ -208,5 +206,5 @@ def ratio() -> Case:
 
 
 def cases() -> list[Case]:
-    """All of them."""
+    """Return all cases."""
     return [patch(), advance(), ratio()]

@@ -1,4 +1,4 @@
-"""The integral of the ratio, and the arc length with its inverse, by methods that others use."""
+"""The integral of the ratio, and the inverse of the arc length, by several methods."""
 
 from __future__ import annotations
 
@@ -23,19 +23,19 @@ mp.dps = 50
 Array = NDArray[np.float64]
 TURN = 2.0 * np.pi
 PLACES = np.linspace(0.0, TURN, 361)
-"""Where the driven angle is asked for: every degree."""
+"""Driver angles at which the driven angle is computed: every degree."""
 ARCS = 31
-"""Arc lengths at which the driver angle is asked for."""
+"""Number of arc lengths at which the driver angle is computed."""
 INTERVALS = (1, 2, 4, 8, 16, 32, 64, 128)
 SAMPLES = (18, 36, 72, 144, 288, 576, 1152, 4608, 18432)
-"""Multiples of 9: samples of the two-phase law lie on its knots."""
+"""Multiples of 9, so that samples lie on the knots of the two-phase law."""
 TOLERANCES = (1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13)
 OWN = "Chebyshev pieces"
 
 
 @dataclass(frozen=True)
 class Ratio:
-    """A ratio, its slope and its integral, for numpy and mpmath alike, between knots."""
+    """A ratio with its derivative and integral, for numpy and mpmath."""
 
     name: str
     knots: Sequence[float]
@@ -45,17 +45,17 @@ class Ratio:
     driven: Callable[[Any], Any]
 
     def of(self, phi: Any) -> Any:
-        """The ratio in double precision."""
+        """Return the ratio in double precision."""
         return self.ratio(phi, np)
 
     def speed(self, phi: Any, lib: Any = np) -> Any:
-        """ds/dphi for unit centre distance."""
+        """Return ds/dphi for unit centre distance."""
         i = self.ratio(phi, lib)
         return lib.sqrt((i / (1 + i)) ** 2 + (self.slope(phi, lib) / (1 + i) ** 2) ** 2)
 
 
 def ellipse(text: str) -> Ratio:
-    """An ellipse about its focus, of an eccentricity."""
+    """Return the law of an ellipse rotating about its focus."""
 
     def e(lib: Any) -> Any:
         return mp.mpf(text) if lib is mp else float(text)
@@ -77,7 +77,7 @@ def ellipse(text: str) -> Ratio:
 
 
 def two_phases() -> Ratio:
-    """The nail machine: from 1.6 to 0.4 over 160 degrees, and back, by cosines."""
+    """Return the law of the nail machine: cosine arcs from 1.6 to 0.4 over 160 degrees and back."""
     knot = 8 * np.pi / 9
 
     def parts(phi: Any, lib: Any) -> tuple[Any, Any, Any]:
@@ -109,14 +109,14 @@ def two_phases() -> Ratio:
 
 
 def _stepped(rate: Any, places: Array, end: float, tolerance: float) -> Array:
-    """An initial value problem from 0, at places."""
-    relative = max(tolerance, 3e-14)  # finer ones it refuses
+    """Return the solution of an initial value problem from 0, at places."""
+    relative = max(tolerance, 3e-14)  # the smallest that it accepts
     asked = {"rtol": relative, "atol": tolerance, "t_eval": places}
     return solve_ivp(rate, (0.0, float(end)), [0.0], method="DOP853", **asked).y[0]
 
 
 def _arc_lengths(law: Ratio, phi: list[float]) -> Array:
-    """Arc lengths at driver angles, by Gauss quadrature between knots in 50 digits."""
+    """Return arc lengths at driver angles, by Gauss quadrature in 50 digits."""
     edges = [law.exact_knots()[0], *map(mp.mpf, phi)]
     inner = law.exact_knots()[1:-1]
     arcs, total = [], mp.mpf(0)
@@ -128,7 +128,7 @@ def _arc_lengths(law: Ratio, phi: list[float]) -> Array:
 
 
 def integral(law: Ratio) -> Case:
-    """The driven angle at every degree."""
+    """Return the case of the driven angle at every degree."""
     exact = np.array([float(law.driven(mp.mpf(phi))) for phi in PLACES.tolist()])
 
     def chebyshev(cuts: float) -> Array:
@@ -155,7 +155,7 @@ def integral(law: Ratio) -> Case:
             quad(law.of, a, b, epsabs=tolerance, epsrel=0.0)[0]
             for a, b in zip(PLACES[:-1:10], PLACES[10::10], strict=True)
         ]
-        # every tenth degree only: it is slow enough
+        # every tenth degree only, since it is slow
         return np.concatenate([[0.0], np.cumsum(steps)])
 
     def ode(tolerance: float) -> Array:
@@ -168,8 +168,8 @@ def integral(law: Ratio) -> Case:
         what="the driven angle",
         unit="rad",
         methods=[
-            Method(f"{OWN}, as the program does it", "tolerance", (1e-15,), own),
-            Method(f"{OWN}, even", "intervals", INTERVALS, chebyshev, 10.0),
+            Method(f"{OWN}, adaptive", "tolerance", (1e-15,), own),
+            Method(f"{OWN}, uniform", "intervals", INTERVALS, chebyshev, 10.0),
             Method("FFT", "samples", SAMPLES[:-1], fft, None if smooth else 3.0),
             Method("cubic spline", "samples", SAMPLES, spline, 4.0 if smooth else 3.0),
             Method(
@@ -189,7 +189,7 @@ def integral(law: Ratio) -> Case:
 
 
 def inverse(law: Ratio) -> Case:
-    """The driver angles at given arc lengths, rad: where teeth stand."""
+    """Return the case of driver angles at given arc lengths: the positions of teeth."""
     exact = TURN * (np.arange(ARCS) + 0.37) / ARCS
     s, inner = _arc_lengths(law, exact.tolist()), law.knots[1:-1]
 
@@ -222,12 +222,12 @@ def inverse(law: Ratio) -> Case:
         unit="rad",
         methods=[
             Method(
-                f"{OWN}, as the program does it",
+                f"{OWN}, adaptive",
                 "tolerance",
                 (1e-15,),
                 lambda level: length(level, 128),
             ),
-            Method(f"{OWN}, even", "intervals", INTERVALS, lambda n: length(np.inf, n), 10.0),
+            Method(f"{OWN}, uniform", "intervals", INTERVALS, lambda n: length(np.inf, n), 10.0),
             Method("table, linear", "samples", SAMPLES, table, 2.0),
             Method("cubic splines", "samples", SAMPLES, spline, 4.0 if len(inner) == 0 else None),
             Method("quadrature and roots", "tolerance", TOLERANCES[1::4], roots),
@@ -241,6 +241,6 @@ def inverse(law: Ratio) -> Case:
 
 
 def cases() -> list[Case]:
-    """A smooth law and one with knots, both ways."""
+    """Return both cases for a smooth law and for one with knots."""
     laws = (ellipse("0.6"), two_phases())
     return [make(law) for make in (integral, inverse) for law in laws]

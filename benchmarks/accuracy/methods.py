@@ -1,4 +1,4 @@
-"""Methods that do the same thing, each at a ladder of resolutions: error, median time, order."""
+"""Methods for the same task at several resolutions: error, median run time, order."""
 
 from __future__ import annotations
 
@@ -14,29 +14,29 @@ from gearcam.charts import Chart, Line
 
 SECONDS = "run time, s"
 SLOW, FEW = 0.2, 3
-"""What takes longer than so many seconds is timed so often."""
+"""Levels that take longer than `SLOW` s are timed `FEW` times."""
 FITTED = 4
-"""Rungs to which an order is fitted: the finest that are above rounding."""
+"""Number of rungs to which an order is fitted: the finest above rounding."""
 EVEN = 0.8
-"""Part of an error below which another is better, not as good."""
+"""An error counts as smaller below this part of another."""
 ABOVE = 300.0
-"""How far above rounding an error shows its order: sums of many samples round more than one."""
+"""Factor on rounding above which an error shows its order."""
 
 
 @dataclass(frozen=True)
 class Method:
-    """A way to do it: what a level is, the levels, and the work."""
+    """A method with its levels and its computation."""
 
     name: str
     refined: str
     levels: Sequence[float]
     make: Callable[[Any], Any]
     order: float | None = None
-    """In theory, by the level; negative where a level is a tolerance; None where there is none."""
+    """Theoretical order in the level, negative for tolerances; None if there is none."""
     error: Callable[[Any], float] | None = None
-    """Where what is made is of another form than what the others make."""
+    """The error of the result, if it has another form than those of the other methods."""
     size: Callable[[Any], float] | None = None
-    """What is told instead of the run time."""
+    """The size of the result, to report instead of the run time."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class Rung:
 
 @dataclass(frozen=True)
 class Case:
-    """Something that several methods do; `own` is how names of the program's methods begin."""
+    """A task for several methods; the names of those of gearcam begin with `own`."""
 
     name: str
     title: str
@@ -61,20 +61,20 @@ class Case:
     own: str
     error: Callable[[Any], float]
     rounding: float
-    """Error that is rounding."""
+    """The rounding error."""
     note: str
     cost: str = SECONDS
 
 
 @dataclass
 class Found:
-    """What was measured of a case, by method."""
+    """The measurements of a case, by method."""
 
     case: Case
     rungs: Mapping[str, list[Rung]] = field(default_factory=dict)
 
     def order(self, method: Method) -> float | None:
-        """Slope of the error over the level, above rounding."""
+        """Return the order: the slope of the error against the level, above rounding."""
         rungs = self.rungs[method.name]
         best = min(range(len(rungs)), key=lambda k: rungs[k].error)
         kept = [one for one in rungs[: best + 1] if one.error > ABOVE * self.case.rounding]
@@ -86,7 +86,7 @@ class Found:
 
     @property
     def front(self) -> list[tuple[str, Rung]]:
-        """The rungs that no other beats: none is as exact at less cost."""
+        """The rungs that no other surpasses in both error and cost."""
         every = [(name, rung) for name, rungs in self.rungs.items() for rung in rungs]
         every.sort(key=lambda one: (one[1].cost, one[1].error))
         front, best = [], np.inf
@@ -98,12 +98,12 @@ class Found:
 
     @property
     def on_front(self) -> bool:
-        """Whether the program's own method is the most exact one of the front."""
+        """Whether the method of gearcam is the most accurate one of the front."""
         return self.front[-1][0].startswith(self.case.own)
 
     @property
     def chart(self) -> Chart:
-        """Error over cost, both for logarithmic axes."""
+        """Error against cost, for logarithmic axes."""
         lines = []
         for name, rungs in self.rungs.items():
             cost = np.array([one.cost for one in rungs])
@@ -113,7 +113,7 @@ class Found:
         return Chart(title=self.case.title, x=self.case.cost, y=what, lines=tuple(lines))
 
     def rows(self) -> list[str]:
-        """A table: one row a method, its coarsest and finest rung, its order."""
+        """Return a table with a row for each method: order, coarsest and finest rung."""
         bytes_ = self.case.cost != SECONDS
         cost = "size" if bytes_ else "time"
         made = [
@@ -140,11 +140,11 @@ def _cost(value: float, size: bool) -> str:
 
 
 def climb(case: Case, repeats: int) -> Found:
-    """Make every level of every method, in turns, and measure errors once."""
+    """Time every level of every method, alternately, and measure errors once."""
     rungs = [(method, level) for method in case.methods for level in method.levels]
     errors, sizes = [], []
     for method, level in rungs:
-        made = method.make(level)  # does not count
+        made = method.make(level)  # not timed
         errors.append((method.error or case.error)(made))
         sizes.append(None if method.size is None else method.size(made))
     samples: list[list[float]] = [[] for _ in rungs]

@@ -1,7 +1,4 @@
-"""Compare methods and write the tables and figures of benchmarks/results/accuracy.md.
-
-No number is by hand.
-"""
+"""Compare methods and write the tables and figures of benchmarks/results/accuracy.md."""
 
 from __future__ import annotations
 
@@ -9,7 +6,7 @@ import sys
 from itertools import chain
 from pathlib import Path
 
-# how the other measurements measure, and the sweeps, which are the witnesses of the tests
+# for the other benchmarks, and for the boolean sweeps of the tests
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
 
@@ -30,12 +27,12 @@ PAGE = ROOT / "benchmarks" / "results" / "accuracy.md"
 FIGURES = ROOT / "benchmarks" / "results" / "accuracy"
 BEGIN, END = "<!-- written by make accuracy -->", "<!-- end of what make accuracy writes -->"
 COMMANDED = ("ellipse", "plate_cam_offset_roller")
-"""Profiles of which the command's own figures are shown."""
+"""Profiles with figures of the command ``gearcam accuracy``."""
 REPEATS = 15
 
 
 def section(found: Found) -> list[str]:
-    """A case as text: heading, note, figure, table, and what is on the front."""
+    """Return a case as text: heading, note, figure, table, and the most efficient methods."""
     case = found.case
     over = case.cost.partition(",")[0]
     on = ", then ".join(dict.fromkeys(name for name, _ in found.front))
@@ -48,13 +45,13 @@ def section(found: Found) -> list[str]:
         "",
         *found.rows(),
         "",
-        f"On the front, from cheap to exact: {on}.",
+        f"Not surpassed in error and cost, from fast to accurate: {on}.",
         "",
     ]
 
 
 def main() -> int:
-    """Measure, draw, write."""
+    """Measure all cases and write figures and page."""
     keep_freed_memory()  # as the command line does
     quieten()
     FIGURES.mkdir(exist_ok=True)
@@ -78,7 +75,7 @@ def main() -> int:
     after = rest.partition(END)[2]
     PAGE.write_text("\n".join([before + BEGIN, "", *text, END + after]), encoding="utf-8")
     print(f"wrote {PAGE.relative_to(ROOT)}")
-    print(f"the front does not end with the program's method: {', '.join(behind) or 'nowhere'}")
+    print(f"cases in which another method is the most accurate: {', '.join(behind) or 'none'}")
     return 0
 
 

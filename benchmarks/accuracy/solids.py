@@ -1,4 +1,4 @@
-"""The volume of a cam: cubics times the width, chords pulled up, and rollers taken from a blank."""
+"""The volume of a cam: from cubics, from a mesh, and by subtracting rollers from a blank."""
 
 from __future__ import annotations
 
@@ -49,8 +49,7 @@ def _design(tolerance: float) -> Any:
 
 
 def _truth() -> float:
-    """Volume, mm3: the area inside a parallel curve is that of the curve, less its length times
-    the distance, and a circle of that radius."""
+    """Return the volume, mm3, from area and length of the pitch curve by Steiner's formula."""
     with mp.workdps(30):
         exact = Exact(witness_of(KIND), Motion(LAW, LIFT, DEGREES))
         knots = [mp.radians(mp.mpf(one)) for one in np.cumsum([0.0, *DEGREES])]
@@ -66,7 +65,7 @@ def _truth() -> float:
 
 
 def volume() -> Case:
-    """The volume of a plate cam."""
+    """Return the case of the volume of a plate cam."""
     truth = _truth()
     follower, motion = witness_of(KIND), Motion(LAW, LIFT, DEGREES)
     blank = follower.size + LIFT + 5.0
@@ -86,7 +85,7 @@ def volume() -> Case:
         cutters = [roller.translate((z.real, z.imag, -1.0)) for z in centres]
         left = manifold3d.Manifold.cylinder(WIDTH, blank, -1.0, sides)
         parts = manifold3d.Manifold.batch_boolean([left, *cutters], manifold3d.OpType.Subtract)
-        return max(part.volume() for part in parts.decompose())  # else the ring, and scraps
+        return max(part.volume() for part in parts.decompose())  # without the ring and scraps
 
     name, level = "profile", "chord tolerance, mm"
     return Case(
@@ -96,18 +95,18 @@ def volume() -> Case:
         unit="mm3",
         methods=[
             Method(f"{name}, cubics times the width", level, TOLERANCES, cubics),
-            Method(f"{name}, chords pulled up to a mesh", level, TOLERANCES, chords, -1.0),
+            Method(f"{name}, extruded mesh", level, TOLERANCES, chords, -1.0),
             Method("boolean sweep of solids", "cam angles", (32, 48, 64, 96), boolean, 2.0),
         ],
         own=name,
         error=lambda found: abs(found - truth),
         rounding=1e-9,
-        note=f"The cam above, {WIDTH:g} mm wide, everything from the law on, against quadrature in "
-        "30 digits. Cubics tell volume and mass, meshes are what STL holds. The rollers of the "
-        "sweep are prisms of four sides a cam angle.",
+        note=f"The cam above, {WIDTH:g} mm wide, built from the design, against quadrature in 30 "
+        "digits. Volume and mass in summaries come from cubics, STL files contain meshes. The "
+        "rollers of the sweep are prisms with four sides per cam angle.",
     )
 
 
 def cases() -> list[Case]:
-    """All of them."""
+    """Return all cases."""
     return [volume()]

@@ -1,4 +1,4 @@
-"""Flanks against the boolean sweep, and outlines by lines, arcs and splines."""
+"""Flanks by closed form and boolean sweep, and outlines as lines, arcs and splines."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ TOLERANCES = (1e-2, 3e-3, 1e-3, 3e-4, 1e-4)
 
 
 def involute_miss(points: Any) -> Any:
-    """How far points are from the involute of tooth 1, mm: by the base radius times an angle.
+    """Return the distances of points from the involute of tooth 1, mm: base radius times angle.
 
     Involutes of one base circle are parallel curves, so that this is the distance.
     """
@@ -50,7 +50,7 @@ def involute_miss(points: Any) -> Any:
 
 
 def flanks() -> Case:
-    """The flanks of a circular wheel, whose flanks are involutes."""
+    """Return the case of the flanks of a circular wheel, which are involutes."""
     result = gearcam.build(gearcam.loads(CIRCULAR))
     gear = result.gear1
     rolling = Rolling(laws.constant(1.0), float(result.pair.center_distance))
@@ -88,24 +88,24 @@ def flanks() -> Case:
                 f"{name}, chords between", "points", (3, 5, 9, 17, 33, 65, 129), closed, 2.0,
                 error=chords_off,
             ),
-            Method("boolean sweep", "positions a turn", (250, 500, 1000, 2000, 4000), swept, 2.0),
+            Method("boolean sweep", "positions per turn", (250, 500, 1000, 2000, 4000), swept, 2.0),
         ],
         own=name,
         error=lambda cut: sweep.farthest(pairs, cut),
         rounding=1e-13,
         note=f"{TEETH} teeth, module {MODULE:g} mm, against the involute in 50 digits. The closed "
-        f"form makes all {2 * TEETH} flanks of the wheel, the sweep one space of it.",
+        f"form computes all {2 * TEETH} flanks of the wheel, the sweep one tooth space.",
     )  # fmt: skip
 
 
 def built(tolerance: float, curves: str = "lines") -> Any:
-    """The ellipses at a chord tolerance, mm."""
+    """Return the result of the ellipses for a chord tolerance, mm."""
     text = ELLIPSE.format(tolerance=f"{tolerance:.9f}", curves=curves)
     return gearcam.build(gearcam.loads(text))
 
 
 def outlines() -> Case:
-    """The outlines of a pair as files."""
+    """Return the case of outlines as files."""
 
     def dxf(curves: str) -> Any:
         def make(tolerance: float) -> tuple[int, float]:
@@ -125,20 +125,20 @@ def outlines() -> Case:
     return Case(
         name="outline_size",
         title="Outlines as files",
-        what="the curve, both ways",
+        what="the curve, in both directions",
         unit="mm",
         methods=files,
         own="DXF of arcs",
         error=lambda made: made[1],
         rounding=1e-9,
         note="Both wheels of an ellipse of eccentricity 0.3, module 2 mm, 41 teeth: the files "
-        "are read back and held against the curve. The orders are in the tolerance.",
+        "are read back and compared with the curve. Orders are in the tolerance.",
         cost="bytes",
     )
 
 
 def areas() -> Case:
-    """The area inside the driver's outline."""
+    """Return the case of the area inside the outline of the driver."""
 
     def area(tolerance: float) -> float:
         return float(polygon_area(built(tolerance).gear1.outline))
@@ -146,7 +146,7 @@ def areas() -> Case:
     def cubics(tolerance: float) -> float:
         return float(built(tolerance).gear1.profile.contour.moments.area)
 
-    # the finest two, and the limit that order 1 in the tolerance leads to
+    # Richardson extrapolation with order 1 in the tolerance
     coarse, fine = area(4e-6), area(1e-6)
     limit = fine + (fine - coarse) / 3.0
     return Case(
@@ -161,12 +161,12 @@ def areas() -> Case:
         own="cubics",
         error=lambda made: abs(made - limit),
         rounding=3e-6,
-        note="The driver of the same pair, everything from the law on, against the limit of "
-        "polygons by Richardson, from tolerances of 4 and 1 nm, which is good to 3e-6 mm2. "
-        "The cubics have the points and tangents of dense runs.",
+        note="The driver of the same pair, built from the design, against the limit of polygons by "
+        "Richardson extrapolation from tolerances of 4 and 1 nm, which is accurate to 3e-6 mm2. "
+        "The cubics interpolate dense points and tangents of the curve.",
     )
 
 
 def cases() -> list[Case]:
-    """All of them."""
+    """Return all cases."""
     return [flanks(), outlines(), areas()]
