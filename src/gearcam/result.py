@@ -149,7 +149,7 @@ class Result(Displayed):
 
     @cached_property
     def facts(self) -> Facts:
-        """All computed quantities by dotted names (see docs/conventions.md)."""
+        """All computed quantities by dotted names (see docs/summary.md)."""
         return self.facts_with({})
 
     def facts_with(self, measured: Mapping[str, Any]) -> Facts:

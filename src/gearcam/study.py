@@ -66,7 +66,7 @@ class Study(Displayed):
 
     @cached_property
     def facts(self) -> Facts:
-        """The facts of the result and of the study (see docs/conventions.md)."""
+        """The facts of the result and of the study (see docs/summary.md)."""
         return self.result.facts_with(self.measured)
 
     def picture(self) -> str:

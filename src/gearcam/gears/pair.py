@@ -205,7 +205,7 @@ class Gear(Brief, Displayed):
 
     @cached_property
     def facts(self) -> Facts:
-        """Facts of the wheel; docs/conventions.md explains their names."""
+        """Facts of the wheel; docs/summary.md explains their names."""
         return Facts(gear_tree(self), ("teeth",), self.name)
 
     def picture(self) -> str:

@@ -33,7 +33,7 @@ def numbers(meshing: Meshing) -> dict[str, Any]:
     Returns
     -------
     dict
-        Ready for JSON; docs/conventions.md explains the names.
+        Ready for JSON; docs/summary.md explains the names.
     """
     setup = meshing.setup
     pairs = setup.pairs[setup.side]

@@ -220,7 +220,7 @@ class GearPairResult(PairStages):
         Returns
         -------
         Study
-            Its columns are those of ``meshing.csv`` (see docs/conventions.md); not complete where
+            Its columns are those of ``meshing.csv`` (see docs/summary.md); not complete where
             it was interrupted after some steps.
 
         Raises
