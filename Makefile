@@ -79,7 +79,8 @@ matrix:
 
 docs: $(VENV)/.docs
 	$(BIN)/python tools/reference.py
-	$(BIN)/python -m sphinx --builder html --fail-on-warning --keep-going --quiet docs build/docs
+	$(BIN)/python -m sphinx --fail-on-warning --keep-going --quiet --fresh-env --write-all \
+	  docs build/docs
 
 notebooks: $(VENV)/.test
 	$(BIN)/python tools/notebooks.py

@@ -25,6 +25,8 @@ myst_heading_anchors = 4  # anchors as git hosts make them
 
 html_theme = "furo"
 html_title = f"gearcam {version}"
+html_static_path = ["site.css"]
+html_css_files = ["site.css"]
 
 
 def shelves(text: str) -> str:
