@@ -157,7 +157,7 @@ def _parser(
     name: str, command: Callable[..., None], formats: Sequence[str]
 ) -> argparse.ArgumentParser:
     """Return the argument parser of a command; its help text is the function's docstring."""
-    parser = argparse.ArgumentParser(prog=f"gearcam {name}", description=command.__doc__)
+    parser = _new_parser(name, command.__doc__)
     if command in (_build, _check):
         parser.add_argument("files", nargs="+", metavar="FILE", help=_FILES)
     if command in (_build, _check, _compare):
@@ -174,6 +174,15 @@ def _parser(
         words = "preset backlash, clearance and kerf for printing, laser or wire"
         parser.add_argument("--for", dest="process", metavar="PROCESS", help=words)
     return parser
+
+
+class _Help(argparse.HelpFormatter):
+    def _split_lines(self, text: str, width: int) -> list[str]:
+        return textwrap.wrap(text, width, break_on_hyphens=False)
+
+
+def _new_parser(name: str, doc: str | None) -> argparse.ArgumentParser:
+    return argparse.ArgumentParser(prog=f"gearcam {name}", description=doc, formatter_class=_Help)
 
 
 def _add_common(parser: argparse.ArgumentParser) -> None:
@@ -218,7 +227,7 @@ def _compare(files: list[str], debug: bool, **options: Any) -> None:
 
 
 def _kind_parser(command: Command) -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog=f"gearcam {command.name}", description=command.doc)
+    parser = _new_parser(command.name, command.doc)
     if command.many:
         parser.add_argument("files", nargs="+", metavar="FILE", help=_FILES)
     else:

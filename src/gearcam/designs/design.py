@@ -184,7 +184,7 @@ class Design:
                     place = place.setdefault(step, {}) if isinstance(place, dict) else place[step]
                 place[last] = value
             except (IndexError, KeyError, TypeError, ValueError):  # the last: no step at all
-                problem = Problem("there is no such place", self.source, key=key)
+                problem = Problem("there is no such key or index", self.source, key=key)
                 raise DesignError([problem]) from None
         return design(document, self.source)
 

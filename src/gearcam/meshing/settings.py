@@ -32,7 +32,7 @@ class MeshingSpec(Brief):
     True
     """
 
-    steps: int = param(COUNT, default=360, ge=1, le=1000000, doc="number of phases, at even angles")
+    steps: int = param(COUNT, default=360, ge=1, le=1000000, doc="number of phases, evenly spaced")
     start: float = param(
         ANGLE, default=0.0, ge=-36000, le=36000, word="from", doc="driver angle of the first phase"
     )
@@ -56,15 +56,15 @@ class MeshingSpec(Brief):
         default=None,
         ge=1,
         min_length=1,
-        doc="teeth of the driver that count; all if left out",
+        doc="tooth numbers of the driver to study; all by default",
     )
     step: int = param(
-        COUNT, default=1, ge=1, le=100, doc="step studied of stepped wheels, from below"
+        COUNT, default=1, ge=1, le=100, doc="step of stepped gears to study, counted from below"
     )
     center_distance: float | None = param(
         LENGTH,
         default=None,
         gt=0,
         le=1e6,
-        doc="centre distance as mounted, not of a rack; as designed if left out",
+        doc="centre distance as mounted, not for racks; as designed by default",
     )

@@ -121,7 +121,8 @@ class Accuracy(Brief):
 
     def lines(self) -> Iterator[str]:
         """Yield the lines of the printed table: a heading for each stage, its rungs below."""
-        yield f"error against run time, median of {self.repeat} runs; * as used by gearcam"
+        runs = f"median of {self.repeat} run{'s' * (self.repeat > 1)}"
+        yield f"error against run time, {runs}; * as used by gearcam"
         for stage, ladder in self.ladders.items():
             order = self.order(stage)
             told = "rounding" if order is None else f"order {order:.2f}"

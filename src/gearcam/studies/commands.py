@@ -14,7 +14,7 @@ from gearcam.written import Written
 
 
 def _arguments(parser: argparse.ArgumentParser) -> None:
-    words = "stages to measure, of law,centrode,flank,outline,solid,contact,cam (default: all)"
+    words = "stages to measure: law, centrode, flank, outline, solid, contact, cam (default: all)"
     parser.add_argument("--stage", metavar="A,B,...", help=words)
     words = "number of runs; the median time is reported (default: 5)"
     parser.add_argument("--repeat", metavar="K", type=int, default=5, help=words)

@@ -36,7 +36,7 @@ COMMANDS: Final = (
     Command(
         name="follow",
         done="followed",
-        doc="Compute the lift on a given cam profile; write DIR/NAME/followed.csv.",
+        doc="Compute the follower motion on a given profile; write DIR/NAME/followed.csv.",
         arguments=_arguments,
         adapt=_adapt,
         run=_run,
