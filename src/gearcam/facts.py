@@ -33,6 +33,9 @@ _UNITS: Final = {
 _PER: Final = re.compile(r"(?:_(mm|deg))?_per_((?:rad|mm)\d?)$")
 """Ends of names of derivatives by an angle or a length: ``velocity_mm_per_rad``."""
 
+_METHODS: Final = "accuracy.how."
+"""Where the names of texts begin that say how errors are estimated."""
+
 _LEAVES: Final = (("min", "max"), ("least", "mean"))
 """Keys of mappings that are single values."""
 
@@ -223,6 +226,27 @@ class Facts(Mapping[str, Any]):
     def quantity(self, name: str) -> NamedFact:
         """Return the quantity with a dotted `name`."""
         return next(one for one in self.quantities() if one.name == name)
+
+    def record(self) -> dict[str, float | str]:
+        """Return all quantities as plain numbers and texts by dotted names (`Result.record`)."""
+        return {
+            name: value
+            for one in self.quantities()
+            if not one.name.startswith(_METHODS)
+            for name, value in _plain(one.name, one.value)
+        }
+
+
+def _plain(name: str, value: Any) -> Iterator[tuple[str, float | str]]:
+    """Yield a value by name: of a range both ends, of lengths each, of other lists a text."""
+    if isinstance(value, Mapping):
+        yield from ((f"{name}.{end}", float(item)) for end, item in value.items())
+    elif isinstance(value, list) and value and all(isinstance(one, float) for one in value):
+        yield from ((f"{name}.{place}", float(item)) for place, item in enumerate(value))
+    elif isinstance(value, list):
+        yield name, ", ".join(map(text_of, value))
+    else:
+        yield name, float(value) if isinstance(value, float) else value
 
 
 def _leaves(tree: Any, path: str = "") -> Iterator[tuple[str, Any]]:

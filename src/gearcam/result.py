@@ -160,6 +160,30 @@ class Result(Displayed):
         notes = [Fact(rows.note, Path(rows.file).name, shown=True) for rows in tables]
         return made.with_group("tables", [{"note": one} for one in notes if one.value])
 
+    def record(self) -> dict[str, float | str]:
+        """Return the result as one flat row of a table: plain numbers and texts, no lists, no None.
+
+        Keys are ``name``, ``kind``, the dotted names of all facts, and what the checks found:
+        ``findings.errors``, ``.warnings``, ``.notes``, counts, and ``findings.codes``. A range has
+        two keys, ``pair.ratio.min`` and ``pair.ratio.max``; a list of lengths or places one for
+        each, counted from 0, such as ``gears.0.size_mm.2``; a list of whole numbers is a text.
+        Results of other laws or kinds may have other keys. Raises `InfeasibleError` if the design
+        cannot be made.
+
+        Examples
+        --------
+        >>> import gearcam as gc
+        >>> design = gc.load("profiles/ellipse.toml")
+        >>> designs = [design.with_({"law.eccentricity": e}) for e in (0.1, 0.3)]
+        >>> rows = [gc.build(one).record() for one in designs]  # for a DataFrame(rows)
+        >>> [round(row["pair.ratio.max"], 3) for row in rows]
+        [1.222, 1.857]
+        """
+        row = {"name": self.design.name, "kind": self.design.kind, **self.facts.record()}
+        for word in ("error", "warning", "note"):
+            row[f"findings.{word}s"] = sum(one.severity == word for one in self.findings)
+        return row | {"findings.codes": ", ".join(dict.fromkeys(one.code for one in self.findings))}
+
     def to_dict(self) -> dict[str, Any]:
         """Return the content of ``summary.json`` without the list of files.
 
