@@ -20,7 +20,7 @@ from gearcam.designs import KINDS
 from gearcam.designs.kind import DesignKind
 from gearcam.designs.table import Table
 from gearcam.findings import CHECKS, Check
-from gearcam.kinds.cam.forms.base import FORMS, form_keys
+from gearcam.kinds.cam.forms.base import FORMS, Form, form_keys
 from gearcam.kinds.cam.motion import WITH_LAW, phase_table, rise_table, summary, turn_tables
 from gearcam.kinds.gear_pair.design import law_table
 from gearcam.laws.entry import LawEntry
@@ -145,9 +145,23 @@ def followers_of(form: str) -> tuple[str, str]:
     return listed(in_order), listed(sorted(motions, reverse=True))
 
 
+def must(form: Form) -> Iterator[str]:
+    """Yield the keys that a form must be given besides those of every cam."""
+    for title, fields in form.needs.items():
+        entries = KINDS["cam"].table(title).entries.values()
+        yield from (f"{title}.{entry.key}" for entry in entries if entry.name in fields)
+
+
+def own_keys(name: str) -> Iterator[str]:
+    """Yield the keys that a form takes and a disc does not."""
+    for title in KINDS["cam"].tables:
+        known = KINDS["cam"].table(title)
+        disc, own = (form_keys({"cam": {"form": one}}, known) for one in ("disc", name))
+        yield from (f"{title}.{key}" for key in own if key not in disc)
+
+
 def followers() -> Iterator[str]:
     """Yield the parts of the page on followers and forms of cams."""
-    cams = KINDS["cam"]
     yield "# Followers and forms of cams"
     yield "## Followers"
     yield (
@@ -162,22 +176,12 @@ def followers() -> Iterator[str]:
     yield table(("`type`", "what it is", "translating", "oscillating"), rows)
     yield "## Forms"
     yield "`form` in the table `[cam]`:"
-    disc = {title: form_keys({"cam": {"form": "disc"}}, cams.table(title)) for title in cams.tables}
     rows = (
-        (
-            code(name),
-            form.doc,
-            *followers_of(name),
-            listed(
-                f"{title}.{key}"
-                for title in cams.tables
-                for key in form_keys({"cam": {"form": name}}, cams.table(title))
-                if key not in disc[title]
-            ),
-        )
+        (code(name), form.doc, *followers_of(name), listed(must(form)), listed(own_keys(name)))
         for name, form in FORMS.items()
     )
-    yield table(("`form`", "what it is", "followers", "motions", "keys that a disc lacks"), rows)
+    heads = ("`form`", "what it is", "followers", "motions", "must be given", "more than a disc")
+    yield table(heads, rows)
     yield "Every key is explained in [keys.md](keys.md#cams)."
 
 

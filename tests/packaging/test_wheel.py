@@ -14,8 +14,8 @@ import zipfile
 from pathlib import Path
 from typing import NamedTuple
 
-import ezdxf
 import pytest
+from ezdxf import filemanagement
 
 from gearcam import __version__
 
@@ -119,7 +119,7 @@ def test_the_demo_runs_from_the_wheel_far_from_the_checkout(
     page = (made / "report.html").read_text("utf-8")
     assert "uPlot" in page
     assert "</html>" in page
-    assert ezdxf.readfile(made / "gear1.dxf").modelspace().query("*[layer=='OUTLINE']")
+    assert filemanagement.readfile(made / "gear1.dxf").modelspace().query("*[layer=='OUTLINE']")
     assert json.loads((made / "summary.json").read_text("utf-8"))["gears"][0]["teeth"] == 36
 
 

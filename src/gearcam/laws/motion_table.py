@@ -58,7 +58,7 @@ class MotionTable(FromFile):
     """
 
     file: str | None = param(
-        TEXT, default=None, doc="CSV file with the columns theta_deg and lift_mm or lift_deg"
+        TEXT, default=None, doc="CSV file, up to 3600 rows: theta_deg and lift_mm or lift_deg"
     )
     theta: Row | None = param(
         ANGLE, default=None, ge=0, le=360, min_length=_FEWEST, doc="cam angles, without a file"

@@ -105,7 +105,7 @@ class CamOutputSpec(OutputSpec):
         default=None,
         gt=0,
         le=1e6,
-        doc="radius of the cutter of the tool path; the follower's radius if left out",
+        doc="radius of the cutter of the tool path; the follower's, or half a groove, if left out",
     )
 
 

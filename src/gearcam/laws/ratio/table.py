@@ -42,7 +42,7 @@ class TableLaw(FromFile):
     """
 
     file: str | None = param(
-        TEXT, default=None, doc="CSV file of phi1_deg and one of ratio, phi2_deg, r1"
+        TEXT, default=None, doc="CSV file, up to 20000 rows: phi1_deg and ratio, phi2_deg or r1"
     )
     phi1: Row | None = param(
         ANGLE, default=None, ge=0, le=360, min_length=_FEWEST, doc="driver angles, without a file"
