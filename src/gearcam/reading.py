@@ -1,7 +1,7 @@
-"""Reading: files that people give, whole, if they are files and no larger than they may be.
+"""Reading of files that users name: only regular files up to a given size.
 
-A pipe or a device may never end, and a huge file is no design: both are refused before a byte of
-them is read.
+A pipe or a device may never end, and a huge file is not a design: both are refused before anything
+is read.
 
 Depends on numerals only.
 """
@@ -15,16 +15,16 @@ from gearcam.numerals import size_of
 
 
 class UnreadableError(OSError):
-    """A file cannot be read; the message says why, in words that follow its name."""
+    """A file cannot be read; the message gives the reason and follows the file's name."""
 
 
 def read(file: str | os.PathLike[str], most: int) -> bytes:
-    """Return what is in a file.
+    """Return the content of a file.
 
     Parameters
     ----------
     file : path
-        Its name; of a link the file that it leads to is read.
+        Its name; links are followed.
     most : int
         The largest size, bytes.
 
@@ -35,8 +35,8 @@ def read(file: str | os.PathLike[str], most: int) -> bytes:
     Raises
     ------
     UnreadableError
-        If there is none, if it is a folder, a pipe or a device, if it is larger, or if the disk
-        refuses.
+        If there is no such file, if it is a folder, a pipe or a device, if it is larger, or if the
+        system refuses.
     """
     try:
         found = os.stat(file)  # noqa: PTH116 (a path would make an empty name a folder)
@@ -46,7 +46,7 @@ def read(file: str | os.PathLike[str], most: int) -> bytes:
             raise UnreadableError("this is a pipe or a device, not a file")
         if found.st_size <= most:
             with open(file, "rb") as stream:  # noqa: PTH123
-                content = stream.read(most + 1)  # its size may not be told, or it may grow
+                content = stream.read(most + 1)  # the size may be unknown, or the file may grow
             if len(content) <= most:
                 return content
     except UnreadableError:
@@ -56,6 +56,6 @@ def read(file: str | os.PathLike[str], most: int) -> bytes:
     except OSError as error:
         raise UnreadableError(f"cannot be read: {error.strerror or error}") from error
     except ValueError as error:
-        raise UnreadableError("this can be no file's name here") from error
+        raise UnreadableError("this is not a possible file name") from error
     told = f"has {size_of(found.st_size)}" if found.st_size > most else "is larger"
-    raise UnreadableError(f"{told}, and files of up to {size_of(most)} are read")
+    raise UnreadableError(f"{told}, but files of at most {size_of(most)} are read")

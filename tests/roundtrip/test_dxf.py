@@ -175,7 +175,7 @@ def written(document: Document) -> bytes:
 def test_files_that_do_not_hold_the_drawing_are_refused(part: Part, pair: Drawing) -> None:
     drawing = wheel_drawing(part)
     data = dxf_bytes(drawing, style())
-    with pytest.raises(DxfError, match="should hold 1 closed outlines, it holds 2"):
+    with pytest.raises(DxfError, match="should hold 1 closed outlines, but holds 2"):
         measure_dxf(dxf_bytes(pair, style()), drawing.contours)
     document = read_dxf(data)
     document.units = 1
@@ -192,7 +192,7 @@ def test_files_that_do_not_hold_the_drawing_are_refused(part: Part, pair: Drawin
 
 def test_a_file_that_fails_the_audit_is_refused(part: Part) -> None:
     data = dxf_bytes(wheel_drawing(part), style())
-    with pytest.raises(DxfError, match=r"faults \(1\)"):
+    with pytest.raises(DxfError, match=r"errors \(1\)"):
         read_dxf(data.replace(b"OUTLINE\n", b"OUT*LINE\n"))
 
 
@@ -207,7 +207,7 @@ def test_straight_sides_stay_straight() -> None:
     ("curves", "version"), [("circles", "R2010"), ("arcs", "R14"), ("splines", "R12")]
 )
 def test_other_styles_are_refused(curves: str, version: str) -> None:
-    with pytest.raises(ValueError, match=r"no such DXF|no splines"):
+    with pytest.raises(ValueError, match=r"unknown curves|not support splines"):
         style(curves, version)
 
 

@@ -348,7 +348,7 @@ def test_a_missing_library_is_named_and_no_parts_are_refused(
     assert isinstance(caught.value, GearcamError)
     assert isinstance(caught.value, ImportError)
     monkeypatch.undo()
-    with pytest.raises(ValueError, match="needs a part"):
+    with pytest.raises(ValueError, match="needs at least one part"):
         step_bytes([], "nothing", TOLERANCE)
 
 
@@ -378,14 +378,14 @@ def test_a_moved_pole_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_an_outline_that_a_hole_crosses_is_invalid() -> None:
     circle = Circle(center=np.array([20.0, 0.0]), diameter=6.0)
     across = Opening(kind="HOLE", shape=circle, name="hole")
-    with pytest.raises(SolidError, match="gear1: the solid came out invalid"):
+    with pytest.raises(SolidError, match="gear1: the solid is invalid"):
         written(plate(square_contour(40.0), openings=(across,)))
 
 
 @pytest.mark.parametrize(("diameter", "count"), [(50.0, 4), (60.0, 0)])
 def test_a_solid_in_pieces_or_none_is_refused(diameter: float, count: int) -> None:
     mark = Mark(center=np.zeros(2), diameter=diameter, depth=7.0)
-    with pytest.raises(SolidError, match=f"gear1: the solid came out in {count} pieces"):
+    with pytest.raises(SolidError, match=f"gear1: the solid consists of {count} pieces"):
         written(plate(square_contour(40.0), marks=(mark,)))
 
 

@@ -64,7 +64,7 @@ NO_FILES: dict[str, tuple[Callable[[Path], object], str]] = {
     "device": (lambda file: file.symlink_to("/dev/zero"), "this is a pipe or a device, not a file"),
     "link to itself": (lambda file: file.symlink_to(file), "cannot be read: Too many levels"),
     "link to nothing": (lambda file: file.symlink_to("nowhere"), "there is no such file"),
-    "huge": (huge, "has 100 MB, and files of up to 2 MB are read"),
+    "huge": (huge, "has 100 MB, but files of at most 2 MB are read"),
 }
 
 
@@ -100,7 +100,7 @@ def test_a_huge_file_is_refused_before_it_is_read(
         told = (desk / "good.toml").stat()
         with monkeypatch.context() as patch:
             patch.setattr("os.stat", lambda _: told)
-            with pytest.raises(UnreadableError, match="is larger, and files of up to 1 kB are"):
+            with pytest.raises(UnreadableError, match="is larger, but files of at most 1 kB are"):
                 read("huge.csv", 1000)
         assert tracemalloc.get_traced_memory()[1] < 100_000
     finally:
@@ -113,9 +113,9 @@ def test_a_huge_file_is_refused_before_it_is_read(
 
 @pytest.mark.parametrize("name", ["a\0b", "\udcff\ud800"])
 def test_what_can_be_no_name(name: str) -> None:
-    with pytest.raises(UnreadableError, match="this can be no file's name here"):
+    with pytest.raises(UnreadableError, match="this is not a possible file name"):
         read(name, 1)
-    with pytest.raises(DesignError, match="this can be no file's name here"):
+    with pytest.raises(DesignError, match="this is not a possible file name"):
         gearcam.load(name)
 
 

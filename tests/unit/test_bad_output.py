@@ -96,9 +96,9 @@ def test_no_folder_is_left_above_one_that_cannot_be(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["a\0b", "\udcff\ud800"])
 def test_what_can_be_no_folder(tmp_path: Path, name: str) -> None:
-    with pytest.raises(WriteError, match="this can be no name here"):
+    with pytest.raises(WriteError, match="this is not a possible name"):
         write_all(tmp_path / name, files_of("new"))
-    with pytest.raises(WriteError, match="this can be no name here"):
+    with pytest.raises(WriteError, match="this is not a possible name"):
         write_new(tmp_path / name, "")
     assert list(tmp_path.iterdir()) == []
 
@@ -204,12 +204,12 @@ def desk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 OUTPUTS: dict[str, tuple[Callable[[], object], str]] = {
     "file": (lambda: Path("out").write_bytes(b"mine"), "cannot write to out/pair: Not a directory"),
-    "link to nothing": (lambda: Path("out").symlink_to("x"), "it is a link that leads nowhere"),
-    "link to itself": (lambda: Path("out").symlink_to("out"), "it is a link that leads nowhere"),
+    "link to nothing": (lambda: Path("out").symlink_to("x"), "it is a broken link"),
+    "link to itself": (lambda: Path("out").symlink_to("out"), "it is a broken link"),
     "device": (lambda: Path("out").symlink_to("/dev/null"), "Not a directory"),
     "linked folder": (
         lambda: (Path("mine").mkdir(), Path("out").mkdir(), Path("out/pair").symlink_to("../mine")),
-        "cannot write to out/pair: it is a link, and may lead elsewhere",
+        "cannot write to out/pair: it is a link: remove it",
     ),
     "file of its name": (
         lambda: (Path("out").mkdir(), Path("out/pair").write_bytes(b"mine")),
@@ -217,7 +217,7 @@ OUTPUTS: dict[str, tuple[Callable[[], object], str]] = {
     ),
     "folder of a file's name": (
         lambda: Path("out/pair/summary.json").mkdir(parents=True),
-        "cannot write to out/pair/summary.json: a folder is in the way",
+        "cannot write to out/pair/summary.json: there is a folder of this name",
     ),
 }  # fmt: skip
 
@@ -290,7 +290,7 @@ def test_what_python_is_told_of_the_disk(tmp_path: Path) -> None:
     (tmp_path / "file").write_bytes(b"")
     with pytest.raises(WriteError, match="cannot write to"):
         result.write(tmp_path / "file")
-    with pytest.raises(WriteError, match="this can be no name here"):
+    with pytest.raises(WriteError, match="this is not a possible name"):
         result.check("a\0b")
 
 
@@ -341,7 +341,7 @@ def test_a_name_that_the_system_cannot_write(desk: Path) -> None:
     ascii_only = "LC_ALL=C PYTHONUTF8=0 PYTHONCOERCECLOCALE=0"
     done = run(f"{ascii_only} COMMAND check good.toml", desk)
     assert done.returncode == 2
-    assert b"cannot write to 'output/r\\xe4der': this can be no name here" in done.stderr
+    assert b"cannot write to 'output/r\\xe4der': this is not a possible name" in done.stderr
     assert not (desk / "output").exists()
 
 

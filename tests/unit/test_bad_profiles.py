@@ -94,8 +94,8 @@ def test_what_is_no_profile(
     for name, code, words in (
         ("half.dxf", 2, "the DXF file cannot be read"),
         ("head.csv", 3, "the profile has too few points"),
-        ("huge.csv", 2, "has 100 MB, and files of up to 16 MB are read"),
-        ("huge.DXF", 2, "has 100 MB, and files of up to 16 MB are read"),
+        ("huge.csv", 2, "has 100 MB, but files of at most 16 MB are read"),
+        ("huge.DXF", 2, "has 100 MB, but files of at most 16 MB are read"),
         ("/dev/null", 2, "this is a pipe or a device, not a file"),
         ("none.dxf", 2, "there is no such file"),
         (".", 2, "this is a folder, not a file"),

@@ -86,17 +86,17 @@ KEYED = "bore_diameter_mm = 20\nkeyway_width_mm = {}\nkeyway_depth_mm = {}\n"
         (KEYED.format(20, 2), "blank.keyway_width_mm", "as wide as the bore"),
         (KEYED.format(1e-300, 2), "blank.keyway_width_mm", "too fine for a keyway"),
         (KEYED.format(5, 0.00199), "blank.keyway_depth_mm", "too fine for a keyway"),
-        (KEYED.format(5, 2) + "bore_flat_mm = 18", "blank.bore_flat_mm", "keyway already"),
-        ("bore_diameter_mm = 20\nbore_flat_mm = 10", "blank.bore_flat_mm", "no flat"),
-        ("bore_diameter_mm = 20\nbore_flat_mm = 20", "blank.bore_flat_mm", "no flat"),
+        (KEYED.format(5, 2) + "bore_flat_mm = 18", "blank.bore_flat_mm", "has a keyway"),
+        ("bore_diameter_mm = 20\nbore_flat_mm = 10", "blank.bore_flat_mm", "not within the bore"),
+        ("bore_diameter_mm = 20\nbore_flat_mm = 20", "blank.bore_flat_mm", "not within the bore"),
         ("bolts = 4\nbolt_diameter_mm = 5", "blank.bolt_circle_mm", "missing beside bolts"),
         ("bolts = 4\nbolt_circle_mm = 40", "blank.bolt_diameter_mm", "missing beside bolts"),
         ("hub_front_mm = 5", "blank.hub_diameter_mm", "missing beside"),
-        ("hub_diameter_mm = 30", "blank.hub_front_mm", "no length"),
+        ("hub_diameter_mm = 30", "blank.hub_front_mm", "no height"),
         (
             "bore_diameter_mm = 20\nhub_diameter_mm = 20\nhub_back_mm = 5",
             "blank.hub_diameter_mm",
-            "leaves no hub",
+            "as large as the hub",
         ),
     ],
 )
@@ -144,5 +144,5 @@ def test_a_blank_made_in_python_meets_the_same_rules(change: dict[str, Any], goo
         made = replace(design, blank=Blank(**change))
         assert made.blank.wheel(2).bore == 20.0
     else:
-        with pytest.raises(DesignError, match="no flat"):
+        with pytest.raises(DesignError, match="not within the bore"):
             replace(design, blank=Blank(**change))

@@ -207,7 +207,7 @@ def test_a_study_without_a_beginning_begins_at_zero() -> None:
     design = loads(TEXT.replace("36", "0.5"))
     assert isinstance(design, GearPairDesign)
     assert design.meshing.end == pytest.approx(math.radians(0.5))
-    with pytest.raises(DesignError, match="ends at 0 deg before it begins"):
+    with pytest.raises(DesignError, match="would end before it begins, at 0 deg"):
         loads(TEXT.replace("36", "0"))
 
 

@@ -208,7 +208,7 @@ def test_a_file_in_place_of_the_folder(tmp_path: Path) -> None:
 
 def test_a_folder_in_place_of_a_file(tmp_path: Path) -> None:
     (tmp_path / "two.dxf").mkdir()
-    with pytest.raises(WriteError, match=r"two\.dxf: a folder is in the way"):
+    with pytest.raises(WriteError, match=r"two\.dxf: there is a folder of this name"):
         build(tmp_path, {"one.dxf": b"1", "two.dxf": b"2"})
     assert state(tmp_path) == {}
 

@@ -2,7 +2,7 @@
 
 R2010 or R12, millimetres, one layer per feature. Each outline is one closed polyline, of arcs
 (*bulges*) or of straight pieces, or a chain of cubic splines, one from corner to corner; openings
-and marks are circles, or polylines of exact arcs. Old machines read R12: it knows no splines and no
+and marks are circles, or polylines of exact arcs. R12, for old machines, has no splines and no
 units. The same drawing gives the same bytes.
 
 Refused: splines in R12.
@@ -70,7 +70,7 @@ class DxfStyle:
     Raises
     ------
     ValueError
-        If a word is of another kind, or splines are asked for in R12.
+        For unknown words, or splines in R12.
     """
 
     tolerance: float
@@ -79,9 +79,9 @@ class DxfStyle:
 
     def __post_init__(self) -> None:
         if self.curves not in CURVES or self.version not in VERSIONS:
-            raise ValueError(f"no such DXF: {self.curves}, {self.version}")
+            raise ValueError(f"unknown curves or version: {self.curves}, {self.version}")
         if self.curves == "splines" and self.version == "R12":
-            raise ValueError("DXF R12 knows no splines")
+            raise ValueError("DXF R12 does not support splines")
 
 
 def dxf_bytes(drawing: Drawing, style: DxfStyle) -> bytes:
@@ -90,7 +90,7 @@ def dxf_bytes(drawing: Drawing, style: DxfStyle) -> bytes:
     Parameters
     ----------
     drawing : Drawing
-        What to write.
+        The drawing.
     style : DxfStyle
         How.
 
@@ -110,7 +110,7 @@ def document_text(version: str, fill: Callable[[Document], None]) -> str:
     version : {"R2010", "R12"}
         Of the format.
     fill : callable
-        Puts into the new document what it shall hold.
+        Fills the new document.
 
     Returns
     -------
@@ -122,8 +122,7 @@ def document_text(version: str, fill: Callable[[Document], None]) -> str:
     with _fixed_dates():
         document = new(version, units=MILLIMETRES)
         fill(document)
-        # The library would register these classes in the order of a set, which changes from run to
-        # run.
+        # the library would register these classes in the random order of a set
         for kind in sorted(document.entitydb.dxf_types_in_use()):
             document.classes.add_class(kind)
         stream = io.StringIO()
@@ -132,7 +131,7 @@ def document_text(version: str, fill: Callable[[Document], None]) -> str:
 
 
 def _fill(document: Document, drawing: Drawing, style: DxfStyle) -> None:
-    """Make the layers and put each feature on its own."""
+    """Make the layers and add each feature to its layer."""
     document.linetypes.add("DASHED", [3.0, 2.0, -1.0], description="_ _ _ _ _")
     for feature in drawing.features:
         if feature.layer not in document.layers:
@@ -196,7 +195,7 @@ def _polyline(
     *,
     closed: bool = True,
 ) -> None:
-    """Add a polyline of the kind that the version knows."""
+    """Add a polyline of the type that the version supports."""
     bends = np.broadcast_to(bulges, len(vertices))
     if style.version == "R12":
         rows = np.column_stack([vertices, bends]).tolist()
@@ -209,18 +208,20 @@ def _polyline(
 
 
 def _splines(contour: Contour, style: DxfStyle) -> Iterator[tuple[Array, Array]]:
-    """Poles and knots of each run's spline; each begins exactly where the one before ends."""
+    """Yield poles and knots of the spline of each run; each begins where the last one ends."""
     made = contour.fitted(fit_splines, CURVE_PART * style.tolerance)
     for spline, following in zip(made, [*made[1:], made[0]], strict=True):
         gap = float(np.hypot(*(spline.poles[-1] - following.poles[0])))
         if gap > style.tolerance:
-            raise ValueError(f"runs do not join: a gap of {shown(gap, 3)} mm")
+            raise ValueError(
+                f"smooth pieces of an outline do not join: a gap of {shown(gap, 3)} mm"
+            )
         yield contour.moved(np.vstack([spline.poles[:-1], following.poles[:1]])), spline.knots
 
 
 @contextmanager
 def _fixed_dates() -> Iterator[None]:
-    """Keep dates and random identifiers out of the file; the library's option is process-wide."""
+    """Keep dates and random identifiers out of the file: an option for the whole process."""
     import ezdxf
 
     options = cast(Any, ezdxf).options

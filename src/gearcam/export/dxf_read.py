@@ -1,7 +1,7 @@
-"""DXF files read back: what a written file holds, and its error against the true curves.
+"""DXF files read back: their outlines, and the error of these against the true curves.
 
-Refused: files that are damaged, that the audit of ezdxf would mend, that are not in millimetres, or
-that hold other outlines than they should.
+Refused: files that are damaged, that the audit of ezdxf would repair, that are not in millimetres,
+or whose outlines are not those expected.
 
 Depends on drawings and numeric; ezdxf only inside the functions.
 """
@@ -29,26 +29,26 @@ _Outline = tuple[Array, Array, bool]
 """Vertices, bulges, and whether it is closed."""
 
 _SHOWN: Final = 80
-"""Characters of what ezdxf complains of: it may quote a whole file."""
+"""Characters of messages of ezdxf that are printed: they may quote a whole file."""
 
 _R12: Final = "AC1009"
-"""The version that knows no units and no light polylines."""
+"""The version without units and light polylines."""
 
 _ON_CUBIC: Final = 16
-"""Arcs that stand for each cubic of a spline, each through three of its points: they leave it
-by half a percent of what it may be off itself, 8 of them by 3 %."""
+"""Arcs that replace each cubic of a spline, each through three of its points: they deviate by half
+a percent of the spline's own tolerance; 8 arcs would deviate by 3 %."""
 
 
 _ROUNDING: Final = 1e-9
-"""What coordinates, mm, and bulges of an outline may differ by from those of the one that it is,
-placed: rounding, far below what is measured."""
+"""Largest difference of coordinates, mm, and bulges of one outline at two placements: rounding, far
+below the errors that are measured."""
 
 Known = dict[Contour, tuple[Array, Array, float]]
-"""Outlines as read in their own frames, vertices and bulges, and what was measured on them, mm."""
+"""Outlines as read in their own frames: vertices, bulges, and the measured error, mm."""
 
 
 class DxfError(GearcamError, ValueError):
-    """A DXF file does not hold what it should."""
+    """A DXF file does not hold the expected outlines, or cannot be read."""
 
 
 def measure_dxf(data: bytes, contours: Sequence[Contour], known: Known | None = None) -> float:
@@ -61,7 +61,7 @@ def measure_dxf(data: bytes, contours: Sequence[Contour], known: Known | None = 
     contours : sequence of Contour
         The true outlines (and a cam's pitch curve), placed as in the drawing, in its order.
     known : dict, optional
-        What is measured is kept in here: an outline that is one of these, placed, has its error.
+        Measured errors are kept here, so that an outline is measured at one placement only.
 
     Returns
     -------
@@ -81,7 +81,7 @@ def measure_dxf(data: bytes, contours: Sequence[Contour], known: Known | None = 
     outlines = [outline for outline in found if outline[2]]  # a pitch curve may be open
     if len(outlines) != len(contours):
         raise DxfError(
-            f"the DXF file should hold {len(contours)} closed outlines, it holds {len(outlines)}"
+            f"the DXF file should hold {len(contours)} closed outlines, but holds {len(outlines)}"
         )
     known = {} if known is None else known
     return max(
@@ -91,7 +91,7 @@ def measure_dxf(data: bytes, contours: Sequence[Contour], known: Known | None = 
 
 
 def _error(vertices: Array, bulges: Array, contour: Contour, known: Known) -> float:
-    """Return the error of an outline, measured, or that of the one that it is, placed."""
+    """Return the error of an outline, measured now or at another placement."""
     if contour.own in known:
         own, bends, error = known[contour.own]
         if len(own) == len(vertices):
@@ -134,12 +134,12 @@ def _outlines(document: Document, wanted: Callable[[str], bool]) -> Iterator[_Ou
 
 
 def _layer(entity: Any) -> str:
-    """Return the layer of an entity; nothing of one that ezdxf does not know."""
+    """Return the layer of an entity; empty if ezdxf does not know its type."""
     return entity.dxf.layer if entity.dxf.is_supported("layer") else ""
 
 
 def _joined(chain: Sequence[tuple[Array, Array]]) -> _Outline:
-    """Join splines, each of which begins where the one before ends if they are closed."""
+    """Join splines; they are closed if each begins where the one before ends."""
     following = [*chain[1:], chain[0]]
     closed = all((a[-1] == b[0]).all() for (a, _), (b, _) in zip(chain, following, strict=True))
     vertices = np.vstack([points[:-1] for points, _ in chain])
@@ -147,15 +147,15 @@ def _joined(chain: Sequence[tuple[Array, Array]]) -> _Outline:
 
 
 def read_outline(data: bytes, *, outer: bool = False) -> tuple[Array, Array]:
-    """Return the one closed outline of a DXF file.
+    """Return the closed outline of a DXF file.
 
     Parameters
     ----------
     data : bytes
-        The file. Where it holds several outlines, that on the layer PROFILE, OUTLINE
-        or INNER counts.
+        The file. If it holds several outlines, the one on layer PROFILE, OUTLINE or INNER is
+        taken.
     outer : bool
-        Whether of a groove's walls that on the layer OUTER is meant.
+        Whether to take the wall of a groove on layer OUTER.
 
     Returns
     -------
@@ -188,9 +188,9 @@ def read_outline(data: bytes, *, outer: bool = False) -> tuple[Array, Array]:
         ]
         if len(found) == 1:
             if not np.isfinite(np.column_stack(found[0])).all():
-                raise DxfError("its outline has numbers that are not finite")
+                raise DxfError("the outline has coordinates that are not finite")
             return found[0]
-    raise DxfError(f"it should hold one closed outline, and holds {len(found)}")
+    raise DxfError(f"the DXF file should hold one closed outline, but it holds {len(found)}")
 
 
 def _arcs(entity: Any) -> tuple[Array, Array]:
@@ -218,8 +218,8 @@ def read_dxf(data: bytes) -> Document:
     from ezdxf.filemanagement import read
 
     if data.startswith(b"AutoCAD Binary DXF"):
-        raise DxfError("the DXF file is binary: save it as text")
-    # older files are in another encoding than UTF-8, and lines end in two characters on Windows
+        raise DxfError("the DXF file is binary: save it as text (ASCII)")
+    # older files are not in UTF-8, and on Windows lines end in two characters
     text = data.decode("utf-8-sig", errors="surrogateescape")
     try:
         document = read(io.StringIO(text, newline=None))
@@ -229,5 +229,5 @@ def read_dxf(data: bytes) -> Document:
         raise DxfError(f"the DXF file cannot be read: {told}") from error
     faults = [*audit.errors, *audit.fixes]
     if faults:
-        raise DxfError(f"the DXF file has faults ({len(faults)}), the first: {faults[0].message}")
+        raise DxfError(f"the DXF file has errors ({len(faults)}); the first: {faults[0].message}")
     return document

@@ -1,10 +1,10 @@
-"""Folders that are written to: made where they are missing, held by one writer at a time.
+"""Output folders: created if missing, and locked for one writer at a time.
 
-Everything is first written under a *spare* name. A writer that was killed leaves such files;
-who holds the folder next removes them.
+Everything is first written under a *spare* name. Such files of a writer that was killed are removed
+by the next writer that locks the folder.
 
-Refused: names that no disk can hold, a folder that is a file or a link to nothing, and waiting for
-ever for another writer.
+Refused: impossible names, a folder that is a file or a broken link, and waiting too long for
+another writer.
 
 Depends on errors and numerals only.
 """
@@ -33,11 +33,11 @@ _PATIENCE: Final = 30.0
 """Seconds to wait while another build writes to the folder: moving files takes a few."""
 
 _PAUSE: Final = 0.05
-"""Seconds between two looks whether the folder is free."""
+"""Seconds between two tries to lock the folder."""
 
 
 def demand_name(path: str | os.PathLike[str]) -> None:
-    """Refuse a path that can be no name here.
+    """Refuse an impossible path.
 
     Parameters
     ----------
@@ -47,22 +47,22 @@ def demand_name(path: str | os.PathLike[str]) -> None:
     Raises
     ------
     WriteError
-        If it holds a character that no name can hold, or that the system cannot write.
+        If it holds a character that is not allowed in names, or that the system cannot encode.
     """
     with suppress(ValueError):
         if b"\0" not in os.fsencode(path):
             return
-    raise WriteError(f"cannot write to {os.fspath(path)!r}: this can be no name here")
+    raise WriteError(f"cannot write to {os.fspath(path)!r}: this is not a possible name")
 
 
 @contextmanager
 def held(folder: Path) -> Iterator[None]:
-    """Make a folder and hold it for oneself; what was made goes again if anything fails.
+    """Create and lock a folder; new folders are removed again if anything fails.
 
     Parameters
     ----------
     folder : Path
-        With those above it.
+        Created with its parents.
 
     Yields
     ------
@@ -71,11 +71,11 @@ def held(folder: Path) -> Iterator[None]:
     Raises
     ------
     FileNotFoundError, NotADirectoryError, OSError
-        If a link leads nowhere, if it is a file, if another writer does not come to an end.
+        If a link is broken, if it is a file, or if another writer does not finish.
     """
     for place in (folder, *folder.parents):
         if place.is_symlink() and not place.exists():
-            raise FileNotFoundError(errno.ENOENT, "it is a link that leads nowhere", str(place))
+            raise FileNotFoundError(errno.ENOENT, "it is a broken link", str(place))
     if folder.exists() and not folder.is_dir():
         raise NotADirectoryError(errno.ENOTDIR, "it is a file, not a folder", str(folder))
     new = [place for place in (folder, *folder.parents) if not place.exists()]
@@ -94,28 +94,31 @@ def held(folder: Path) -> Iterator[None]:
 
 @contextmanager
 def lock(folder: Path) -> Iterator[bool]:
-    """Lock a folder as soon as nobody else has.
+    """Lock a folder, waiting until nobody else holds it.
 
     Parameters
     ----------
     folder : Path
-        One that is there.
+        An existing one.
 
     Yields
     ------
     bool
-        Whether it is locked: some systems and disks cannot.
+        Whether it is locked: some systems and file systems have no locks.
 
     Raises
     ------
     OSError
-        If another writer does not come to an end.
+        If another writer does not finish.
     """
     try:
         import fcntl
 
         handle = os.open(folder, os.O_RDONLY)
-    except (ImportError, PermissionError):  # on Windows, and where one may write but not look
+    except (
+        ImportError,
+        PermissionError,
+    ):  # on Windows, and in folders that may be written but not read
         yield False
         return
     try:
@@ -129,7 +132,7 @@ def lock(folder: Path) -> Iterator[bool]:
                     words = f"another gearcam has been writing to it for {shown(_PATIENCE)} s"
                     raise OSError(errno.EBUSY, words, str(folder)) from error
                 time.sleep(_PAUSE)
-            except OSError:  # a disk of another computer may know no locks
+            except OSError:  # a network file system may have no locks
                 break
         yield locked
     finally:
@@ -137,7 +140,7 @@ def lock(folder: Path) -> Iterator[bool]:
 
 
 def _sweep(folder: Path) -> None:
-    """Remove temporary files that a writer left which was killed."""
+    """Remove temporary files of writers that were killed."""
     for place in folder.iterdir():
         if _LEFT_OVER.fullmatch(place.name):
             with suppress(OSError):

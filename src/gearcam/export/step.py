@@ -86,7 +86,7 @@ def step_bytes(
     """
     _require()
     if not items:
-        raise ValueError("a STEP file needs a part")
+        raise ValueError("a STEP file needs at least one part")
     parts = dict.fromkeys(part for part, _ in items)
     texts = dict.fromkeys([f"{name}.step", name, *(part.name for part in parts)])
     tokens = {text: f"gearcam-{number}" for number, text in enumerate(texts)}
@@ -143,7 +143,7 @@ def _set_all() -> None:
         text = isinstance(value, str)
         setter = occt.Interface_Static.SetCVal_s if text else occt.Interface_Static.SetIVal_s
         if not setter(key, value):
-            raise RuntimeError(f"the STEP translator refuses {key} = {value}")
+            raise RuntimeError(f"the STEP writer rejects {key} = {value}")
 
 
 def _joined(solids: Sequence[Any]) -> Any:
@@ -202,7 +202,7 @@ def _write(document: Any, file: str) -> bytes:
     for other in (writer.SetColorMode, writer.SetLayerMode, writer.SetPropsMode):
         other(False)
     if not writer.Transfer(document, occt.STEPControl_StepModelType.STEPControl_AsIs):
-        raise SolidError("the STEP translator refuses the shapes")
+        raise SolidError("the STEP writer rejects the shapes")
     header = occt.APIHeaderSection_MakeHeader(writer.ChangeWriter().Model())
     header.SetName(occt.TCollection_HAsciiString(file))
     header.SetTimeStamp(occt.TCollection_HAsciiString(DATE))
@@ -211,7 +211,7 @@ def _write(document: Any, file: str) -> bytes:
     header.SetOriginatingSystem(occt.TCollection_HAsciiString("gearcam"))
     stream = io.BytesIO()
     if writer.WriteStream(stream) != occt.IFSelect_ReturnStatus.IFSelect_RetDone:
-        raise SolidError("the STEP translator writes nothing")
+        raise SolidError("the STEP writer wrote nothing")
     return stream.getvalue()
 
 

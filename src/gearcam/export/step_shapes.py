@@ -100,7 +100,7 @@ def solids_of(part: Part, tolerance: float) -> list[Any]:
             raise
         raise SolidError(f"{part.name}: the solid could not be made: {error}") from error
     if not all(occt.BRepCheck_Analyzer(solid).IsValid() for solid in made):
-        raise SolidError(f"{part.name}: the solid came out invalid")
+        raise SolidError(f"{part.name}: the solid is invalid")
     volume = sum(properties(solid).Mass() for solid in made)
     demand_volume(part, volume, VOLUME_ERROR * part.volume + _explained(part, tolerance))
     return made
@@ -183,7 +183,7 @@ def _combined(operation: Any, body: Any, tools: Sequence[Any]) -> Any:
     operation.Build()
     found = subshapes(operation.Shape(), "SOLID") if operation.IsDone() else []
     if len(found) != 1:
-        raise SolidError(f"the solid came out in {len(found)} pieces")
+        raise SolidError(f"the solid consists of {len(found)} pieces")
     return found[0]
 
 
@@ -199,7 +199,7 @@ def _converted(prism: Any) -> Any:
         occt.ShapeCustom.ConvertToBSpline_s(prism, True, False, False, False), "SOLID"
     )
     if len(found) != 1:
-        raise SolidError("the solid came out empty")
+        raise SolidError("the solid is empty")
     return occt.TopoDS.Solid(found[0])
 
 
@@ -211,7 +211,7 @@ def _swept(layer: Layer, tolerance: float) -> Any:
     for hole in holes:
         face.Add(occt.TopoDS.Wire(hole.Reversed()))
     if not face.IsDone():
-        raise SolidError("an outline encloses no face")
+        raise SolidError("an outline does not enclose a face")
     return occt.BRepPrimAPI_MakePrism(face.Face(), occt.gp_Vec(0.0, 0.0, layer.height)).Shape()
 
 
@@ -224,7 +224,7 @@ def _wire(pieces: Sequence[_Piece], height: float) -> Any:
         curve = piece.curve.Translated(lift)
         edge = occt.BRepBuilderAPI_MakeEdge(curve, start, end, piece.first, piece.last)
         if not edge.IsDone():
-            raise SolidError(f"a piece of an outline makes no edge ({edge.Error().name})")
+            raise SolidError(f"a piece of an outline cannot be made an edge ({edge.Error().name})")
         builder.Add(wire, edge.Edge())
     wire.Closed(True)
     return wire

@@ -44,11 +44,11 @@ def table_bytes(columns: Mapping[str, ArrayLike]) -> bytes:
     """
     bad = [name for name in columns if not name or set(name) & set(',"\r\n')]
     if bad:
-        raise ValueError(f"names that cannot stand in a header: {bad}")
+        raise ValueError(f"not allowed as column names: {bad}")
     arrays = {name: np.asarray(values, dtype=float).ravel() for name, values in columns.items()}
     lengths = {name: len(values) for name, values in arrays.items()}
     if len(set(lengths.values())) > 1:
-        raise ValueError(f"columns differ in length: {lengths}")
+        raise ValueError(f"columns have different lengths: {lengths}")
     tidy = []
     for name, plain in arrays.items():
         # asked for so, since numpy.ma takes as long to load as a table to write

@@ -1,18 +1,16 @@
-"""Writing: all files of a build, each whole or not at all.
+"""Writing the files of a build, all or none.
 
-Every file is first written beside its place under a temporary name. Only when all are on the disk
-are they moved into place; files that the *previous summary* lists and this build no longer writes
-are *stale* and removed, so that nobody cuts one; the new summary comes last. What stood there
-before is kept until then and put back if anything fails; an interruption waits until all is in
-place. The folder is *held* meanwhile: a second build waits for its turn. What the system still
-holds in memory when the power fails may be lost: nothing asks the disk to have stored a file
-(fsync), which takes as long again as all of the writing, 40 ms for eleven files.
+Every file is first written under a temporary name in the same folder. When all are complete they
+are renamed; files that the *previous summary* lists and this build no longer writes are *stale* and
+removed, so that nobody cuts one; the new summary comes last. The old files are kept until then and
+restored if anything fails; an interruption waits until the end. The folder is locked meanwhile: a
+second build waits. Files are not forced to the disk (fsync, which would double the time of writing,
+40 ms for eleven files), so a power failure may lose them.
 
-One file of the user's is *rewritten* in the same way: beside it, then into its place, with its
-permissions; of a link the file that it leads to is rewritten.
+A user's design file is *rewritten* in the same way, and keeps its permissions; links are followed.
 
-Refused: names that are not plain, a folder that is a file, a folder of a design that is a link, and
-whatever the disk refuses.
+Refused: names with a path, a folder that is a file, a design's folder that is a link, and
+whatever the system refuses.
 
 Depends on folder, errors, interrupts and reading only.
 """
@@ -38,7 +36,7 @@ SUMMARY: Final = "summary.json"
 """The file that lists the others; replaced last."""
 
 _LARGEST: Final = 10_000_000
-"""Size of a summary, bytes: a thousand times that of one."""
+"""Largest size of a summary, bytes: a thousand times the usual size."""
 
 Make = Callable[[Mapping[str, str]], Mapping[str, bytes]]
 """Returns contents by name, given the `previous_files` of the folder."""
@@ -47,18 +45,18 @@ Make = Callable[[Mapping[str, str]], Mapping[str, bytes]]
 def write_all(
     directory: str | os.PathLike[str], make: Make, *, name: str = "", keep: bool = False
 ) -> tuple[str, ...]:
-    """Write files into a folder, whole or not at all, and remove stale ones.
+    """Write files into a folder, all or none, and remove stale ones.
 
     Parameters
     ----------
     directory : path
-        The folder; made where it does not exist.
+        The folder; created if it does not exist.
     make : callable
         Returns plain file names and contents. ``summary.json`` among them lists the others.
     name : str
-        Of a folder in it that they are written to instead; it may be no link.
+        Name of a folder in it for the files; it must not be a link.
     keep : bool
-        Keep the stale files: what is written is no build, only a summary.
+        Whether stale files stay, as for a summary without a build.
 
     Returns
     -------
@@ -68,7 +66,7 @@ def write_all(
     Raises
     ------
     WriteError
-        If the folder or a file cannot be written. Nothing is changed then, as far as the disk
+        If the folder or a file cannot be written. Nothing is changed then, as far as the system
         allows.
     ValueError
         If a name is not plain.
@@ -86,7 +84,7 @@ def write_all(
 
 def _demand_no_link(folder: Path) -> None:
     if folder.is_symlink():
-        words = "it is a link, and may lead elsewhere: remove it, or choose another folder"
+        words = "it is a link: remove it, or choose another folder"
         raise OSError(errno.ELOOP, words, str(folder))
 
 
@@ -111,17 +109,17 @@ def _write(folder: Path, make: Make, keep: bool) -> tuple[str, ...]:
 
 
 def is_plain(name: str) -> bool:
-    """Return whether a name means a file right in a folder: no path, not hidden, not empty."""
+    """Return whether a name is one of a file in the folder: no path, not hidden, not empty."""
     return bool(name) and not name.startswith(".") and not set(name) & set("/\\:\0")
 
 
 def previous_files(folder: str | os.PathLike[str]) -> dict[str, str]:
-    """Return the files that the summary in a folder lists, current and stale, if they are there.
+    """Return the existing files that the summary in a folder lists, current and stale.
 
     Parameters
     ----------
     folder : path
-        A folder that an earlier build has written.
+        A folder of an earlier build.
 
     Returns
     -------
@@ -147,7 +145,7 @@ def previous_files(folder: str | os.PathLike[str]) -> dict[str, str]:
 
 
 def _is_there(place: Path) -> bool:
-    """Return whether a listed name is a file or a link; one that no disk can hold is none."""
+    """Return whether a listed name is a file or a link; False for impossible names."""
     try:
         return place.is_symlink() or place.is_file()
     except OSError:
@@ -156,7 +154,7 @@ def _is_there(place: Path) -> bool:
 
 @dataclass
 class _Change:
-    """What has been done to a folder so far, and how to take it back."""
+    """The changes of a folder so far, and how to undo them."""
 
     folder: Path
     staged: dict[str, Path] = field(default_factory=dict)
@@ -173,7 +171,7 @@ class _Change:
         """Write a file under a temporary name."""
         target = self.folder / name
         if target.is_dir() and not target.is_symlink():
-            raise IsADirectoryError(errno.EISDIR, "a folder is in the way", str(target))
+            raise IsADirectoryError(errno.EISDIR, "there is a folder of this name", str(target))
         self.staged[name] = self._spare()
         try:
             self.staged[name].write_bytes(content)
@@ -181,7 +179,7 @@ class _Change:
             raise OSError(error.errno, error.strerror, str(target)) from error
 
     def commit(self, stale: list[str]) -> None:
-        """Move all staged files into place, put stale ones aside; all, or none if that fails."""
+        """Move staged files into place and stale ones away, or undo all if that fails."""
         try:
             for name in [name for name in self.staged if name != SUMMARY]:
                 self._replace(name)
@@ -195,7 +193,7 @@ class _Change:
             self.finish()
 
     def _replace(self, name: str) -> None:
-        """Move a staged file into place and keep what was there."""
+        """Move a staged file into place and keep the old one."""
         target = self.folder / name
         if os.path.lexists(target):
             kept = self._spare()
@@ -206,11 +204,11 @@ class _Change:
         self.staged[name].replace(target)
 
     def _remove(self, names: list[str]) -> None:
-        """Put stale files aside; links are removed, never followed, and folders are left alone."""
+        """Move stale files away; links are removed, not followed, and folders are left alone."""
         written = [self.folder / name for name in self.staged]
         for name in names:
             target = self.folder / name
-            # Where case does not matter, an old name may be a new file.
+            # if case does not matter, an old name may be that of a new file
             if not target.is_symlink() and any(
                 path.exists() and path.samefile(target) for path in written
             ):
@@ -229,14 +227,14 @@ class _Change:
                 kept.replace(self.folder / name)
 
     def finish(self) -> None:
-        """Remove every temporary file that is left."""
+        """Remove all temporary files."""
         for path in self.temporary:
             with suppress(OSError):
                 path.unlink()
 
 
 def _copy(source: Path, target: Path) -> None:
-    """Give a file a second name; copy it where the disk knows no such names."""
+    """Link a file to a second name, or copy it if the file system has no hard links."""
     try:
         os.link(source, target, follow_symlinks=False)
     except (OSError, NotImplementedError):
@@ -244,7 +242,7 @@ def _copy(source: Path, target: Path) -> None:
 
 
 def write_new(path: str | os.PathLike[str], text: str) -> None:
-    """Write a file that is not there yet.
+    """Write a new file.
 
     Parameters
     ----------
@@ -256,7 +254,7 @@ def write_new(path: str | os.PathLike[str], text: str) -> None:
     Raises
     ------
     WriteError
-        If there is one already, or the disk refuses; nothing is left there then.
+        If it exists already, or cannot be written; nothing is left then.
     """
     demand_name(path)
     try:
@@ -269,25 +267,25 @@ def write_new(path: str | os.PathLike[str], text: str) -> None:
                     Path(path).unlink()
                 raise
     except FileExistsError as error:
-        raise WriteError(f"{path}: exists, and is not overwritten") from error
+        raise WriteError(f"{path}: exists already and is not overwritten") from error
     except OSError as error:
         raise WriteError(f"{path}: cannot be written: {error.strerror or error}") from error
 
 
 def rewrite(file: str | os.PathLike[str], content: bytes) -> None:
-    """Give an existing file another content.
+    """Replace the content of an existing file.
 
     Parameters
     ----------
     file : path
         Its name.
     content : bytes
-        What it shall hold.
+        The new content.
 
     Raises
     ------
     WriteError
-        If the disk refuses; the file is as it was then.
+        If it cannot be written; the file is unchanged then.
     """
     target = Path(file).resolve()
     fresh = spare(target.parent)

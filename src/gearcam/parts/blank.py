@@ -1,13 +1,14 @@
-"""Blanks: what a design says of the wheels beyond their teeth.
+"""Blanks: parameters of the wheels beyond their teeth.
 
 Most values are given once for both wheels, or twice, driver first; 0 means that there is none. A
-*keyway* is cut into the bore's circle; its depth counts from that circle, at its middle, as shaft
-standards tabulate it. A *D-bore* has a flat. *Hubs* stand on the faces: front is +z. *Lightening
-holes* lie between hub and rim and are as large as the rim that they keep allows. A *stop slot*
-takes a pin that stands in the housing and ends the way of an open wheel. *Clearance* is what is
-taken off the outline all around; if asked, what a shaft, a bolt or a pin goes through follows it.
+*keyway* is cut into the bore; its depth counts from the bore's circle, at the middle of the keyway,
+as in shaft standards. A *D-shaped bore* has a flat. *Hubs* are raised on the faces: front is +z.
+*Lightening holes* lie between hub and rim and are as large as the rim allows. In a *stop slot* runs
+a pin of the housing, which limits the travel of an open wheel. *Clearance* is taken off the outline
+all around, and if `clearance_bores` is set, off bores, bolt holes and slots too.
 
-Refused by reading: sizes that contradict each other or lack their partner, and too fine keyways.
+Refused when a design is read: sizes that contradict each other, sizes without those that belong to
+them, and too fine keyways.
 
 Depends on quantities only.
 """
@@ -26,11 +27,11 @@ KIND: Final = "parts"
 """The checks of parts."""
 
 _FOLLOWING: Final = ("bore_diameter", "keyway_width", "bore_flat", "bolt_diameter", "stop_pin")
-"""Sizes of what a shaft, a bolt or a pin goes through."""
+"""Sizes of openings for a shaft, a bolt or a pin."""
 
 _KEYED: Final = 1e-4
-"""Part of a bore from which on a keyway is one, a micrometre in 10 mm: its corners stay apart in
-the single precision of meshes too."""
+"""Least size of a keyway over the bore, a micrometre in 10 mm: its corners stay apart in meshes of
+single precision too."""
 
 _COMMON: Final = ("timing_marks", "mark_diameter", "clearance_bores")
 """Given once for both wheels."""
@@ -40,7 +41,7 @@ Problem = tuple[str, int | None, str, str]
 
 
 def _length(*, doc: str, le: float = 1e6) -> Any:
-    """Return a length that is 0 where there is none of what it measures."""
+    """Return a length; 0 means that there is nothing to measure."""
     return param(LENGTH, default=0.0, ge=0, le=le, doc=doc)
 
 
@@ -123,7 +124,7 @@ class WheelBlank(Brief):
 
     @property
     def bore_reach(self) -> float:
-        """Largest distance of the bore from the axis, mm: the corners of its keyway or its wall."""
+        """Largest radius of the bore, mm: at the corners of its keyway, or its own."""
         if not self.keyway_width:
             return 0.5 * self.bore
         floor = 0.5 * self.bore + self.keyway_depth
@@ -131,14 +132,14 @@ class WheelBlank(Brief):
 
     @property
     def widening(self) -> float:
-        """What bores, bolt holes and stop slots are wider by, mm."""
+        """By how much bores, bolt holes and stop slots are widened, mm."""
         return 2.0 * self.clearance if self.clearance_bores else 0.0
 
     @property
     def widened(self) -> WheelBlank:
-        """The blank with the sizes of its bore, bolt holes and stop slot as made.
+        """The blank with the widened sizes of its bore, bolt holes and stop slot.
 
-        A keyway keeps its depth: the circle from which it counts is wider.
+        A keyway keeps its depth, which counts from the widened bore.
         """
         sizes = {name: getattr(self, name) for name in _FOLLOWING}
         wider = {name: size + self.widening for name, size in sizes.items() if size}
@@ -158,19 +159,19 @@ def _bore_problems(one: WheelBlank) -> Iterator[tuple[str, str, str]]:
             return
     if bool(one.keyway_width) != bool(one.keyway_depth):
         missing = "keyway_width" if one.keyway_depth else "keyway_depth"
-        yield missing, "a keyway has width and depth", "keyway_width_mm with keyway_depth_mm"
+        yield missing, "a keyway needs both width and depth", "keyway_width_mm with keyway_depth_mm"
     least = shown(_KEYED * bore)
     for name in ("keyway_width", "keyway_depth"):
         if 0.0 < getattr(one, name) < float(least):
-            rule = f"{least} mm or more in this bore, or 0 of both for no keyway"
+            rule = f"{least} mm or more in this bore; no keyway with 0 for width and depth"
             yield name, "is too fine for a keyway", rule
     if bore and one.keyway_width >= bore:
         yield "keyway_width", "is as wide as the bore", f"below the bore's {shown(bore)} mm"
     if one.keyway_width and one.bore_flat:
-        yield "bore_flat", "the bore has a keyway already", "keyway or flat"
+        yield "bore_flat", "the bore has a keyway", "a keyway or a flat"
     if one.bore_flat and not 0.5 * bore < one.bore_flat < bore:
         rule = f"above {shown(0.5 * bore)} and below the bore's {shown(bore)} mm"
-        yield "bore_flat", "is no flat of this bore", rule
+        yield "bore_flat", "the flat is not within the bore", rule
 
 
 def _other_problems(one: WheelBlank) -> Iterator[tuple[str, str, str]]:
@@ -178,12 +179,12 @@ def _other_problems(one: WheelBlank) -> Iterator[tuple[str, str, str]]:
         if one.bolts and not getattr(one, name):
             yield name, "is missing beside bolts", "bolts with bolt_circle_mm and bolt_diameter_mm"
     if (one.hub_front or one.hub_back) and not one.hub_diameter:
-        yield "hub_diameter", "is missing beside the hub's length", "above the bore"
+        yield "hub_diameter", "is missing beside hub_front_mm or hub_back_mm", "above the bore"
     if one.hub_diameter and not (one.hub_front or one.hub_back):
-        yield "hub_front", "the hub has no length", "hub_front_mm or hub_back_mm above 0"
+        yield "hub_front", "the hub has no height", "hub_front_mm or hub_back_mm above 0"
     if one.hub_diameter and one.hub_diameter <= 2.0 * one.bore_reach:
-        rule = f"above {shown(2.0 * one.bore_reach)} mm, what the bore takes"
-        yield "hub_diameter", "the bore leaves no hub", rule
+        rule = f"above {shown(2.0 * one.bore_reach)} mm, the diameter across the bore"
+        yield "hub_diameter", "the bore is as large as the hub", rule
 
 
 def _both(name: str, hint: Any, default: Any) -> tuple[str, Any, Any]:

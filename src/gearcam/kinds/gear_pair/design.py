@@ -199,8 +199,8 @@ def _shaft_faults(raw: Any, found: Examined) -> Iterator[Fault]:
         value = raw.get(key)
         if isinstance(value, list):
             if len(value) > 1 and _is_number(value[1]) and value[1]:
-                message = f"{show(value[1])}: wheel 2 is a ring, without a shaft in its middle"
-                rule = "0; [ring] tells of the metal outside its teeth"
+                message = f"{show(value[1])}: wheel 2 is a ring and has no shaft"
+                rule = "0 for wheel 2; the outside of the ring is set in [ring]"
                 yield Fault(("blank", key, 1), message, value[1], rule)
         elif value and "blank" in found.parts:
             own = getattr(found.parts["blank"], name)[0]
@@ -220,7 +220,7 @@ def _pair_faults(raw: Any) -> Iterator[Fault]:
     elif distance is None and module is None:
         known = KINDS[NAME].table("pair").entries
         if misspelt(raw, known) & {"center_distance_mm", "module_mm"}:
-            return  # the unknown key is told of
+            return  # the unknown key is reported
         yield Fault(("pair",), "neither center_distance_mm nor module_mm is given", allowed=rule)
 
 
@@ -231,14 +231,14 @@ def _ring_faults(raw: Any, pair: Any) -> Iterator[Fault]:
     kind = pair.get("type", "external") if isinstance(pair, Mapping) else "internal"
     if kind == "external":
         for key, value in given.items():
-            rule = 'pair.type = "internal", or none of the keys of [ring]'
+            rule = 'pair.type = "internal", or no [ring]'
             yield Fault(("ring", key), f"{show(value)}: an external pair has no ring", value, rule)
         return
-    rule = 'one of outer_diameter_mm and rim_mm, the first with outer = "round"'
+    rule = 'outer_diameter_mm or rim_mm; outer_diameter_mm only with outer = "round"'
     diameter = given.get("outer_diameter_mm")
     if diameter is not None and (other := {"rim_mm", "outer"} & set(given)):
         key = max(other)  # rim_mm before outer
-        message = f"{show(diameter)} beside {key} = {show(given[key])}"
+        message = f"{show(diameter)}: is given beside {key} = {show(given[key])}"
         yield Fault(("ring", "outer_diameter_mm"), message, diameter, rule)
 
 
@@ -258,10 +258,10 @@ def _meshing_faults(raw: Any, pair: Any) -> Iterator[Fault]:
         return
     start, end = raw.get("from_deg", 0), raw.get("to_deg")
     if _is_number(start) and _is_number(end) and not end > start:
-        message = f"{show(end)}: the study ends at {show(end)} deg before it begins"
+        message = f"{show(end)}: the study would end before it begins, at {show(start)} deg"
         yield Fault(("meshing", "to_deg"), message, end, "to_deg above from_deg")
     if raw.get("overclosure_deg") == 0:
-        message = "0: without an overclosure no flanks overlap, and nothing can be seen"
+        message = "0: without an overclosure no flanks overlap, and the study finds no contact"
         allowed = "-1 to 1, but not 0; 0.005 is usual"
         yield Fault(("meshing", "overclosure_deg"), message, 0, allowed)
     given = raw.get("teeth")
