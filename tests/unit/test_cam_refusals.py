@@ -144,10 +144,10 @@ def test_a_lift_that_closes_to_rounding_is_closed() -> None:
 @pytest.mark.parametrize(
     ("kind", "changed", "message"),
     [
-        ("roller", {"offset": 30.0}, "axis passes the prime circle"),
-        ("roller", {"offset": -31.0}, "axis passes the prime circle"),
-        ("swinging roller", {"prime_radius": 10.0}, "arm cannot reach .* allow 10 to 190 mm"),
-        ("swinging roller", {"prime_radius": 190.0}, "arm cannot reach .* allow 10 to 190 mm"),
+        ("roller", {"offset": 30.0}, "axis misses the prime circle"),
+        ("roller", {"offset": -31.0}, "axis misses the prime circle"),
+        ("swinging roller", {"prime_radius": 10.0}, "arm cannot reach .* between 10 and 190 mm"),
+        ("swinging roller", {"prime_radius": 190.0}, "arm cannot reach .* between 10 and 190 mm"),
         ("swinging face", {"base_radius": 100.0}, "cannot touch the base circle"),
         ("swinging face, near", {"base_radius": 93.0}, "cannot touch the base circle"),
     ],
@@ -195,7 +195,7 @@ def test_arms_that_swing_too_far_are_refused() -> None:
         cam("swinging roller", lift=room + 1e-6)
     room = 90.0 - math.degrees(math.asin(0.4))
     cam("swinging face", lift=room - 1e-6, degrees=(90.0, 30.0, 210.0, 30.0))
-    with pytest.raises(InfeasibleError, match="stands across the line of centres"):
+    with pytest.raises(InfeasibleError, match="is perpendicular to the line of centres"):
         cam("swinging face", lift=room + 1e-6, degrees=(90.0, 30.0, 210.0, 30.0))
 
 

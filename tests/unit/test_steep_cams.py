@@ -170,7 +170,7 @@ def test_the_volume_of_a_steep_swinging_cam_is_as_exact_as_told(
 
 def test_what_turns_between_two_angles_is_refused() -> None:
     """Far from 0, two angles next to each other are farther apart than the swing is wide."""
-    told = "two cam angles that are next to each other .*100 deg.*a longer phase there"
+    told = "two adjacent cam angles .*100 deg.*a longer phase there"
     with pytest.raises(InfeasibleError, match=told):
         _ = stepped("roller", "constant-acceleration", 1e-7, 100.0).contour
 

@@ -1,12 +1,11 @@
-"""A cam, whatever its form: the walls that touch its follower, and the pitch motions they are of.
+"""A cam of any form: the walls that touch its follower, and their pitch motions.
 
-A *motion* is a lift program that moves a follower; a *wall* is where one side of such a motion cuts
-the metal, trimmed. A disc cam has one motion and one wall, a groove two walls of one motion,
-conjugate cams two motions of one follower with a wall each. Where there are several, each has a
-*key*, with which names of its files and facts end, and a name for people.
+A *motion* is a lift program that moves a follower; a *wall* is the trimmed edge that one side of
+such a motion cuts. A disc cam has one motion and one wall, a groove two walls of one motion,
+conjugate cams two motions of one follower with one wall each. If there are several, each has a
+*key*, the ending of names of files and facts, and a name for messages.
 
-Motions and walls are told each in the frame of its own follower, counter-clockwise (see
-`mechanism`).
+Each motion and wall is given in the frame of its own follower, counter-clockwise (see `mechanism`).
 
 Depends on wall.
 """
@@ -25,26 +24,26 @@ from gearcam.numeric.arrays import Array
 
 
 class Cam(Displayed):
-    """What a form makes of a lift program and a follower; forms add what is theirs."""
+    """A cam made from a lift program and a follower; each form adds its own properties."""
 
     @property
     @abstractmethod
     def walls(self) -> tuple[Wall, ...]:
-        """What can be cut, at least one wall; the first carries the follower as it rises."""
+        """The walls to be cut, at least one; the first lifts the follower."""
 
     @property
     def motions(self) -> tuple[PitchMotion, ...]:
-        """What the walls are of, at least one motion; the first has the lift asked for."""
+        """The motions of the walls, at least one; the first has the given lift."""
         return self.walls
 
     @cached_property
     def lost_motion(self) -> Extreme | None:
-        """Largest lost motion between walls, mm or rad; None where nothing holds the follower."""
+        """Largest lost motion between walls, mm or rad; None with one wall only."""
         return None
 
     @property
     def face_width(self) -> float | None:
-        """Least width of the faces, mm, of a follower that needs two; None of others."""
+        """Least width of the faces, mm, of a follower with two; None for others."""
         return None
 
     @property
@@ -58,7 +57,7 @@ class Cam(Displayed):
         return self.walls[0].outline
 
     def picture(self) -> str:
-        """Return a picture of the walls and their pitch curves, SVG, in the cam's frame."""
+        """Return a drawing of the walls and their pitch curves, SVG, in the cam's frame."""
         from gearcam.markup import outlines
 
         inside = [wall for wall in self.walls if wall.side > 0]

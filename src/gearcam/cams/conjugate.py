@@ -1,19 +1,19 @@
-"""Conjugate cams: two discs on one shaft, each with a roller of its own on one follower.
+"""Conjugate cams: two discs on one shaft; one follower has a roller on each of them.
 
-The first is a disc cam. The second roller stands across the axis: of a translating follower at a
-fixed distance below the first, of an oscillating one on a second arm at a fixed angle from the
-first. Its position is that of the first less the distance, or less the angle between the arms:
-negative, and the formulas of a disc cam hold for it as they stand, in the same frame:
+The first is a disc cam. The second roller is on the opposite side of the shaft: on a translating
+follower at a fixed distance below the first, on an oscillating one on a second arm at a fixed angle
+from the first. Its position is that of the first less the distance, or less the angle between the
+arms: negative, and the formulas of a disc cam are valid for it unchanged, in the same frame:
 
 ==================== =====================================================
 translating          ``s0 + s - Dist``
 oscillating          ``Psi0 + s - gamma``
 ==================== =====================================================
 
-The second cam is smallest at the highest lift, where its prime radius is told.
+The second cam is smallest at the highest lift, where its prime radius is defined.
 
-Refused: what disc cams refuse, of either cam; a second roller on the shaft, arms across the line
-of centres.
+Refused: as for disc cams, for either cam; a second roller on the shaft, arms across the line of
+centres.
 
 Depends on cam, disc, wall and mechanism.
 """
@@ -50,13 +50,13 @@ class SecondRoller:
     arm : float, mm
         Of an oscillating follower.
     prime : float or None, mm
-        From the axis to its centre at the highest lift; None where `apart` is given.
+        From the axis to its centre at the highest lift; None if `apart` is given.
     apart : float or None, mm or rad
-        Of a translating follower the distance of the rollers, of an oscillating one the angle
-        between its arms, before preload.
+        Distance of the rollers of a translating follower, angle between the arms of an oscillating
+        one, before preload.
     preload : float, mm
-        By how much the follower holds the rollers nearer together than the cams do; of an
-        oscillating one along the second roller's arc.
+        Interference: the rollers of the follower are closer by it than the cams hold them; for an
+        oscillating follower along the second roller's arc.
     """
 
     radius: float
@@ -67,7 +67,7 @@ class SecondRoller:
 
     @property
     def squeeze(self) -> float:
-        """The preload as `apart` counts it, mm or rad."""
+        """The preload in the unit of `apart`, mm or rad."""
         return self.preload / self.arm if self.arm else self.preload
 
 
@@ -105,7 +105,7 @@ class ConjugateCam(Brief, Cam):
 
     @cached_property
     def facts(self) -> Facts:
-        """What the cams know of themselves; the facts of their result tell more."""
+        """Facts of the cams; the facts of their result contain more."""
         tree = {
             "total_lift": self.first.total_lift,
             "prime_radius_mm": self.first.mechanism.least,
@@ -126,7 +126,7 @@ def make_conjugate(
     clockwise: bool = False,
     tolerance: float = CHORD_TOLERANCE,
 ) -> ConjugateCam:
-    """Return conjugate cams after proving that their follower can stand wherever the lift puts it.
+    """Return conjugate cams, verified for all positions of their follower.
 
     Parameters
     ----------
@@ -148,7 +148,7 @@ def make_conjugate(
     Raises
     ------
     InfeasibleError
-        If it cannot.
+        If a position is impossible.
     """
     demand_standing(program, mechanism)
     common = {"program": program, "clockwise": clockwise, "tolerance": tolerance}
@@ -164,7 +164,7 @@ def make_conjugate(
 
 
 def _sliding(mechanism: Mechanism, roller: SecondRoller, _: float, highest: float) -> float:
-    """Return how far below the axis the second roller stands at the highest lift, mm."""
+    """Return the distance of the second roller below the axis at the highest lift, mm."""
     aside = abs(mechanism.offset)
     least = max(aside, roller.radius)
     if roller.prime is not None:
@@ -180,12 +180,12 @@ def _sliding(mechanism: Mechanism, roller: SecondRoller, _: float, highest: floa
 
 def _on_shaft(key: str, value: float, limit: float) -> InfeasibleError:
     return InfeasibleError(
-        "the second roller stands on the cam's axis at the highest lift",
+        "the second roller reaches the cam's axis at the highest lift",
         where=key,
         value=value,
         limit=limit,
         unit="mm",
-        nearest="the limit, excluded, is the least",
+        nearest="the value must exceed the limit",
         ways=(Way(near={key: limit}, far={key: limit + 2.0 * max(limit, value)}),),
     )
 
@@ -212,14 +212,14 @@ def _swinging(mechanism: Mechanism, roller: SecondRoller, lowest: float, highest
 
 
 def _out_of_place(key: str, value: float, near: float, far: float, unit: str) -> InfeasibleError:
-    """Return the refusal of a second arm that does not stand across the axis at every lift."""
+    """Return the error for a second arm that is not across the axis at every lift."""
     ways: tuple[Way, ...] = ()
-    nearest = "no such size is: the arm swings too far"
+    nearest = "no value is possible: the arm swings too far"
     if near < far:
         ways = (Way(near={key: near if value <= near else far}, far={key: 0.5 * (near + far)}),)
-        nearest = f"{shown(near)} to {shown(far)} {unit} are allowed, both excluded"
+        nearest = f"it must be between {shown(near)} and {shown(far)} {unit}"
     return InfeasibleError(
-        "the second roller stands on the cam's axis, or its arm passes the line of centres",
+        "the second roller reaches the cam's axis, or its arm passes the line of centres",
         where=key,
         value=value,
         limit=near if value <= near else far,

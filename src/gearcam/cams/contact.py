@@ -1,8 +1,8 @@
 """Where a follower touches its cam: pressure angle, turning and speed of the contact, exactly.
 
-Written for jets, so that every quantity also has its exact slope. Seen from the cam a round
-follower's centre has the velocity ``A + i*B`` in axes that turn with ``-beta``; the tangent of the
-pitch curve stands at ``alpha - beta``, and the curve runs clockwise:
+Computed with jets, so that every quantity also has its exact derivative. Relative to the cam a
+round follower's centre has the velocity ``A + i*B`` in axes that turn with ``-beta``; the tangent
+of the pitch curve is at the angle ``alpha - beta``, and the curve runs clockwise:
 
 ==================== =================== ============================= =============
 follower             A                   B                             beta
@@ -13,15 +13,15 @@ translating, sliding ``k*cos(tilt)``     ``s' - k*sin(tilt)``          ``-tilt``
 oscillating, sliding ``k*cos(Psi)``      ``l*s' - k*sin(Psi)``         ``-Psi``
 ==================== =================== ============================= =============
 
-(k the way per rad of a cam that slides.)
+(k is the travel per rad of a cam that slides.)
 
 ``alpha = arctan(B/A)`` is the pressure angle, ``w = hypot(A, B)`` the speed of the centre and
-``turning = beta' - alpha'`` how fast the normal turns; the pitch curve's curvature is
-``turning/w`` (positive for a convex curve), and the profile, a roller's radius r within it, is
-drawn at the speed ``w - r*turning``. Where that is negative the profile is undercut.
+``turning = beta' - alpha'`` the angular rate of the normal; the pitch curve's curvature is
+``turning/w`` (positive for a convex curve), and the profile, a roller's radius r inside it, is
+traced at the speed ``w - r*turning``. Where that is negative the profile is undercut.
 
-A flat face is a support line: at the angle ``beta`` it stands ``h(theta)`` from the axis, touches
-``g = h'/beta'`` along its tangent, and the profile is drawn at the speed ``h*beta' + g'``.
+A flat face is a support line: at the angle ``beta`` its distance from the axis is ``h(theta)``, it
+touches ``g = h'/beta'`` along its tangent, and the profile is traced at the speed ``h*beta' + g'``.
 
 Sources: 000 eqs. (3.17), (3.21), (3.26), (3.30), (3.33), section 3.4.4; derived anew.
 """
@@ -43,14 +43,14 @@ class Contact:
     across, along : Jet
         Velocities whose ratio is the tangent of the pressure angle.
     turning : Jet
-        How fast the profile's normal turns.
+        Angular rate of the profile's normal.
     pitch_speed : Jet, mm/rad
-        Of the centre along the pitch curve; of a flat face as `speed`.
+        Speed of the centre along the pitch curve; for a flat face equal to `speed`.
     speed : Jet, mm/rad
-        Of the contact along the profile, negative where it is undercut.
+        Speed of the contact along the profile, negative where it is undercut.
     place : Jet, mm
-        Of a flat face: where it is touched, along the face from the follower's axis through the
-        cam's or from the pivot; zero for round ones.
+        For a flat face: position of the contact along the face, from the parallel to the
+        follower's axis through the cam's axis, or from the pivot; zero for round followers.
     """
 
     across: Jet
@@ -125,7 +125,7 @@ def _sliding_face(mechanism: Mechanism, height: Jet, ds: Jet, d2s: Jet) -> Conta
 
 
 def _swinging_face(mechanism: Mechanism, psi: Jet, ds: Jet, d2s: Jet) -> Contact:
-    """Return the contact of a swinging face: it is touched at ``t = d*cos(Psi)/(1 + s')``."""
+    """Return the contact of a swinging face: it touches at ``t = d*cos(Psi)/(1 + s')``."""
     sine, cosine = mechanism.pivot * sin(psi), mechanism.pivot * cos(psi)
     turning = 1.0 + ds
     rise = cosine * ds

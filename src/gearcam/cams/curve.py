@@ -1,13 +1,13 @@
 """Pitch curve and profile of a cam before trimming: curves made of sweeps and jumps.
 
-A *sweep* lets theta run within one smooth piece of the lift. Where the velocity jumps, theta
-stands still and a *jump* lets the velocity run from its value before to that after: a roller
-then rolls about its own centre, a flat face is touched along a straight piece. With the jumps
-between its sweeps the profile is a closed curve with a continuous tangent, whatever the motion; it
-runs backwards where it is undercut. Of a cam that slides it is open: it ends where its way does.
+In a *sweep* theta varies within one smooth piece of the lift. Where the velocity jumps, theta is
+constant in a *jump* and the velocity varies from its value before to that after: the profile is
+then an arc about the roller's centre, or a straight line under a flat face. With jumps between its
+sweeps the profile is a closed curve with a continuous tangent, for any motion; it runs backwards
+where it is undercut. For a cam that slides it is open and ends with the travel.
 
-Curves are points of the complex plane, mm, in the cam's frame; a cam that turns clockwise has all
-of them mirrored at the y axis.
+Curves are complex points, mm, in the cam's frame; for a cam that turns clockwise they are mirrored
+at the y axis.
 
 Depends on contact, mechanism, laws and numeric; numpy only.
 """
@@ -30,10 +30,10 @@ from gearcam.numeric.crossings import CurvePoint
 from gearcam.numeric.jets import Jet
 
 _SHARP = 0.5
-"""Turn from one of the even places of a sweep to the next, rad, between which it is cut."""
+"""Change of the tangent between even points of a sweep, rad, above which the sweep is divided."""
 
 _GRAIN = 2.0
-"""Roundings of an angle within which a sweep is not cut any more."""
+"""Least length of a sweep, in roundings of an angle."""
 
 
 def unit(angle: Array) -> Plane:
@@ -45,7 +45,7 @@ def unit(angle: Array) -> Plane:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class CamCurve(Brief):
-    """A cam's curve as its lift draws it.
+    """The untrimmed curves of a cam.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ class CamCurve(Brief):
         Parameters
         ----------
         theta : (n,) array, rad
-            Anywhere; at a knot the piece after it counts.
+            Any angles; at a knot the piece after it is used.
         order : int
             Of the jets, at most 2.
         """
@@ -137,10 +137,10 @@ class CamCurve(Brief):
         return position, ds - m.offset, theta
 
     def jump_of(self, theta: Array, s: Array, ds: Array) -> Array:
-        """Return what the velocities of a jump are in the parameter that draws it evenly.
+        """Return the even parameter of a jump for given velocities.
 
-        The direction of a round follower's centre, of a swinging face where along it is touched;
-        it rises with the velocity.
+        The direction of a round follower's centre, or the position of the contact along a swinging
+        face; it rises with the velocity.
 
         Parameters
         ----------
@@ -150,7 +150,7 @@ class CamCurve(Brief):
         Returns
         -------
         (n,) array
-            rad, or in the distance of the pivot; of a sliding face the velocity itself.
+            In rad, or in distances of the pivot; for a translating face the velocity itself.
         """
         m = self.mechanism
         if m.flat:
@@ -191,17 +191,17 @@ class ProfileSegments(Brief):
     Parameters
     ----------
     curve : CamCurve
-        What is drawn.
+        The untrimmed curves.
     inset : float, mm
         Depth below a round follower's centre; negative beyond it.
     piece : (n,) array of int
         Smooth piece of the lift that a sweep belongs to, or that begins at a jump.
     start, end : (n,) arrays
-        theta of a sweep, rad; of a jump what is even where it is drawn (see `CamCurve.jump_of`).
+        theta of a sweep, rad; the even parameter of a jump (see `CamCurve.jump_of`).
     jump : (n,) array of bool
-        Which are jumps.
+        Mask of the jumps.
     corner : (n,) array of bool
-        Which begin at a corner.
+        Mask of the segments that begin at a corner.
     """
 
     curve: CamCurve
@@ -213,32 +213,32 @@ class ProfileSegments(Brief):
     corner: Mask
 
     def taken(self, index: Ints) -> ProfileSegments:
-        """Return some of the segments, in the order of `index`."""
+        """Return the segments `index`, in that order."""
         names = ("piece", "start", "end", "jump", "corner")
         return replace(self, **{name: getattr(self, name)[index] for name in names})
 
     def resolved(self, points: Plane, tangents: Plane, tolerance: float) -> ProfileSegments:
-        """Return segments cut where a sweep turns far within a small part of itself.
+        """Return the segments, divided where a sweep turns far in a small part of itself.
 
-        A steep lift turns the profile where its velocity passes that of the cam: at the very
-        beginning of a rise, in a part of it as small as the rise is steep.
+        With a steep lift the profile turns where its velocity passes that of the cam, in a small
+        part at the very beginning of a rise.
 
         Parameters
         ----------
         points, tangents : (n, k + 1) complex arrays, mm and 1
-            At even places of every segment, both ends among them.
+            At even positions of every segment, including both ends.
         tolerance : float, mm
-            What chords may miss.
+            Largest chord error.
 
         Returns
         -------
         ProfileSegments
-            Themselves where no two neighbours of those places differ by much.
+            The same segments if no two neighbouring positions differ by much.
 
         Raises
         ------
         InfeasibleError
-            If a chord between angles that are next to each other misses more.
+            If a chord between two adjacent floating-point angles has a larger error.
         """
         turns = np.abs(np.angle(tangents[:, 1:] * np.conj(tangents[:, :-1])))
         sharp = (turns > _SHARP) & ~self.jump[:, None]
@@ -249,10 +249,10 @@ class ProfileSegments(Brief):
         lost = sharp & rounded & (np.abs(np.diff(points)) * turns > 8.0 * tolerance)
         if lost.any():
             raise InfeasibleError(
-                "the lift changes so abruptly that the profile turns between two cam angles "
-                "that are next to each other in computing",
+                "the lift changes so abruptly that the profile turns between two adjacent cam "
+                "angles of double precision",
                 where=self.curve.mechanism.driver.told(float(places[:, :-1][lost][0])),
-                nearest="a longer phase there",
+                nearest="use a longer phase there",
             )
         sharp &= ~rounded
         if not sharp.any():
@@ -269,38 +269,38 @@ class ProfileSegments(Brief):
 
     @property
     def first(self) -> CurvePoint:
-        """The place where they begin."""
+        """Their beginning, as a point of the curve."""
         return CurvePoint(0, float(self.start[0]))
 
     @property
     def last(self) -> CurvePoint:
-        """The place where they end."""
+        """Their end, as a point of the curve."""
         return CurvePoint(len(self.end) - 1, float(self.end[-1]))
 
     @property
     def backward(self) -> Mask:
-        """Which are jumps that run backwards: about a corner of the pitch curve on their side."""
+        """Mask of jumps that run backwards: at a corner of the pitch curve towards the profile."""
         return self.jump & ((self.end - self.start) * self.curve.mechanism.away < 0.0)
 
     @property
     def breaks(self) -> tuple[Ints, Array]:
-        """Where a law bends sharply inside sweeps."""
+        """Sharp bends of a law inside sweeps: numbers of segments, parameters."""
         cuts = self.curve.program.cuts
         inside = (self.start[:, None] < cuts) & (cuts < self.end[:, None]) & ~self.jump[:, None]
         index, number = np.nonzero(inside)
         return index, cuts[number]
 
     def states(self, index: Ints, parameter: Array, order: int = 1) -> tuple[Array, ...]:
-        """Return cam angle, lift, velocity and more derivatives.
+        """Return cam angle, lift, velocity and higher derivatives.
 
         Parameters
         ----------
         index : (n,) array of int
             Numbers of the segments.
         parameter : (n,) array
-            Within them.
+            Positions within them.
         order : int
-            Of the last derivative.
+            Order of the last derivative.
         """
         jump, program = self.jump[index], self.curve.program
         theta = np.where(jump, program.knots[self.piece[index]], parameter)
@@ -310,7 +310,7 @@ class ProfileSegments(Brief):
         return theta, s, ds, *more
 
     def at(self, index: Ints, parameter: Array) -> tuple[Plane, Plane]:
-        """Return points and unit tangents in the direction of drawing; backwards where undercut.
+        """Return points and unit tangents, which are backwards where undercut.
 
         Parameters
         ----------
@@ -323,7 +323,7 @@ class ProfileSegments(Brief):
         return self.curve.trace(theta, s, ds, self.inset)
 
     def moving(self, index: Ints, parameter: Array) -> tuple[Plane, Plane]:
-        """Return points, and their velocities as the curve is drawn.
+        """Return points, and their derivatives by the parameter.
 
         Parameters
         ----------
@@ -335,7 +335,7 @@ class ProfileSegments(Brief):
         Returns
         -------
         points, velocities : (n,) complex arrays, mm and mm per unit of the parameter
-            Against the tangent where the curve runs backwards.
+            Opposite to the tangent where the curve runs backwards.
         """
         theta, s, ds, d2s = self.states(index, parameter, 2)
         found = contact(self.curve.mechanism, Jet([s]), Jet([ds]), Jet([d2s]))
@@ -346,7 +346,7 @@ class ProfileSegments(Brief):
         ) * tangents
 
     def _rolling(self, theta: Array, s: Array, ds: Array) -> Array:
-        """Return how fast a jump draws: a roller about its centre, or along a flat face."""
+        """Return the speed of a jump's curve: around a roller's centre, or along a flat face."""
         m = self.curve.mechanism
         if m.flat:
             return m.pivot * np.cos(m.start + s) if m.oscillating else np.ones_like(s)
@@ -354,7 +354,7 @@ class ProfileSegments(Brief):
 
 
 def segments(curve: CamCurve, inset: float) -> ProfileSegments:
-    """Return the whole curve over a turn, in the order of drawing.
+    """Return the whole curve over a turn, in order of theta.
 
     Parameters
     ----------
@@ -366,7 +366,7 @@ def segments(curve: CamCurve, inset: float) -> ProfileSegments:
     Returns
     -------
     ProfileSegments
-        From the beginning of the turn; no corner but at a pitch curve's jumps (see `begun`).
+        From the beginning of the turn; corners only at a pitch curve's jumps (see `begun`).
     """
     program = curve.program
     hard = {jump.theta: jump for jump in program.hard}
@@ -383,11 +383,11 @@ def segments(curve: CamCurve, inset: float) -> ProfileSegments:
 
 
 def begun(segments: ProfileSegments) -> ProfileSegments:
-    """Return segments that begin at a corner, or at an open end, as a `Sampler` wants.
+    """Return segments that begin at a corner, or at an open end, as a `Sampler` needs.
 
-    One is made if needed.
+    If there is no corner the first point is marked as one.
     """
     first = 0 if segments.curve.program.open else segments.corner.argmax()
     turned = segments.taken(np.roll(np.arange(len(segments.start)), -first))
-    turned.corner[0] = True  # a smooth closed curve begins somewhere
+    turned.corner[0] = True  # a smooth closed curve may begin anywhere
     return turned

@@ -1,4 +1,4 @@
-"""A disc cam: the case of one wall, inside the pitch curve (see `wall`).
+"""A disc cam: one wall, inside the pitch curve (see `wall`).
 
 Refused: lifts that bring the follower onto the cam's axis or its arm over the line of centres,
 flat followers that swing down faster than the cam turns.
@@ -21,17 +21,17 @@ from gearcam.laws.program import Program
 from gearcam.numerals import rounded_down
 
 _STANDSTILL = 1e-7
-"""A face that swings down within this of the cam's own speed is touched millions of times farther
-off than its pivot stands, or in one point for a while."""
+"""Least relative difference of a face's downward speed from the cam's: below it the contact is a
+million pivot distances away, or stays at one point."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class DiscCam(Wall, Cam):
-    """A disc cam, which is its own only wall (see `gearcam.cams.wall.PitchMotion`)."""
+    """A disc cam, which is also its only wall (see `gearcam.cams.wall.PitchMotion`)."""
 
     @property
     def walls(self) -> tuple[Wall, ...]:
-        """What can be cut: for a disc cam one profile."""
+        """The walls to be cut: the disc cam itself, its only profile."""
         return (self,)
 
     @property
@@ -44,7 +44,7 @@ class DiscCam(Wall, Cam):
 
     @cached_property
     def facts(self) -> Facts:
-        """What the cam knows of itself; the facts of its result tell more."""
+        """Facts of the cam; the facts of its result contain more."""
         convex, concave = self.profile_radius
         tree = {
             "total_lift": self.total_lift,
@@ -67,7 +67,7 @@ def make_cam(
     clockwise: bool = False,
     tolerance: float = CHORD_TOLERANCE,
 ) -> DiscCam:
-    """Return a cam after proving that its follower can stand wherever the lift puts it.
+    """Return a disc cam, verified for all positions of its follower.
 
     Parameters
     ----------
@@ -87,14 +87,14 @@ def make_cam(
     Raises
     ------
     InfeasibleError
-        If it cannot.
+        If a position is impossible.
     """
     demand_standing(program, mechanism)
     return DiscCam(program=program, mechanism=mechanism, clockwise=clockwise, tolerance=tolerance)
 
 
 def demand_standing(program: Program, mechanism: Mechanism) -> None:
-    """Refuse a follower that cannot stand wherever the lift puts it.
+    """Refuse a follower with an impossible position.
 
     Parameters
     ----------
@@ -106,7 +106,7 @@ def demand_standing(program: Program, mechanism: Mechanism) -> None:
     Raises
     ------
     InfeasibleError
-        If it cannot.
+        If a position is impossible.
     """
     low, high = program.range
     if mechanism.oscillating:
@@ -119,12 +119,12 @@ def demand_standing(program: Program, mechanism: Mechanism) -> None:
             value=scale * low,
             limit=scale * (_on_axis(mechanism) - mechanism.start),
             unit=unit,
-            nearest="the limit, excluded, is the lowest lift that there may be",
+            nearest="the lowest lift must be above the limit",
         )
 
 
 def clears_axis(program: Program, mechanism: Mechanism) -> bool:
-    """Return whether a follower keeps off the cam's axis at the lowest lift.
+    """Return whether a follower clears the cam's axis at the lowest lift.
 
     Parameters
     ----------
@@ -152,21 +152,21 @@ def _demand_swing(program: Program, mechanism: Mechanism, low: float, high: floa
     """Refuse an arm that passes the line of centres, and a face that loses its contact."""
     least, most = (-0.5 * math.pi, 0.5 * math.pi) if mechanism.flat else (0.0, math.pi)
     if not (low > least and high < most):
-        what = "stands across" if mechanism.flat else "passes"
+        what = "is perpendicular to" if mechanism.flat else "passes"
         raise InfeasibleError(
             f"the arm swings too far: it {what} the line of centres",
             where="motion",
             value=math.degrees((low if low <= least else high) - mechanism.start),
             limit=math.degrees((least if low <= least else most) - mechanism.start),
             unit="deg",
-            nearest="these are lifts; the limit is excluded",
+            nearest="value and limit are lifts; stay within the limit",
         )
     if mechanism.flat and not (slowest := program.range_of(1)[0]) > -1.0 + _STANDSTILL:
         raise InfeasibleError(
-            "the face swings down faster than the cam turns: no profile can carry it",
+            "the face swings down faster than the cam turns: no profile can support it",
             where="motion",
             value=slowest,
             limit=-1.0,
-            nearest="these are rad of swing per rad of the cam: lifts of less than "
-            f"{rounded_down(-100.0 * (1.0 - 2.0 * _STANDSTILL) / slowest, 4)} % of these suit",
+            nearest="value and limit are rad of swing per rad of the cam; lifts of less than "
+            f"{rounded_down(-100.0 * (1.0 - 2.0 * _STANDSTILL) / slowest, 4)} % of these work",
         )

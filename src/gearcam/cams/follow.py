@@ -1,7 +1,7 @@
-"""What lift a given profile gives: the follower is put on the points, no law is known.
+"""The lift that a given profile produces, from its points alone, without the law.
 
 The follower comes down from outside until it rests: its position is the largest of those at which
-it touches a place of the profile. With the profile turned by theta, a place z = x + i*y touches at
+it touches a point of the profile. With the profile turned by theta, a point z = x + i*y touches at
 
 ==================== ==================================================================
 translating round    height of the centre ``y + sqrt(r^2 - (x - e)^2)``
@@ -10,15 +10,14 @@ oscillating round    ``Psi = Psi_z + arccos((l^2 + D^2 - r^2)/(2*l*D))``
 oscillating flat     ``Psi = Psi_z + arcsin(f/D)``
 ==================== ==================================================================
 
-where ``z = d - D*exp(-i*Psi_z)``. A cam that slides is moved along ``+x`` by its way instead, and
-seen along its follower's way or from the height of its pivot.
+where ``z = d - D*exp(-i*Psi_z)``. A cam that slides is moved along ``+x`` by its travel instead,
+with the follower's direction, or the height of its pivot, as reference.
 
-From within a wall that lies outside the pitch curve, which has a negative radius, and below the
-axis the same is seen in a mirror: what would be lowest is highest there.
+Inside a wall that lies outside the pitch curve, which has a negative radius, and below the axis,
+the mirror image is used: the lowest position becomes the highest.
 
-The same formulas with r, or the face, *grown* by g give the
-position on a disc of radius g around z, and so a bound for all places within: blocks of points
-that cannot be the highest are left out, and none that can.
+The same formulas with r, or the face, *grown* by g give the position on a disc of radius g around
+z, and so a bound for all points within: blocks of points that cannot be the highest are skipped.
 
 Refused: profiles that the follower misses at some angle, or that reach past its pivot.
 
@@ -41,18 +40,18 @@ from gearcam.errors import InfeasibleError
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 
 _ROUNDING: Final = 1e-12
-"""Lengths over the profile's size that rounding may make different."""
+"""Rounding of lengths, over the profile's size."""
 
 _NOISE: Final = 1e-14
-"""Rounding of a lift, in rad or over the size of profile and follower: the least error stated."""
+"""Rounding of a lift, in rad or over the size of profile and follower: the least error given."""
 
 _TOGETHER: Final = 128
-"""Cam angles that are computed together."""
+"""Cam angles computed at once."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Followed:
-    """How a follower moves on given points.
+    """Motion of a follower on given points.
 
     Parameters
     ----------
@@ -61,11 +60,11 @@ class Followed:
     lift : (m,) array, mm or rad
         Lift at them.
     error : (m,) array, mm or rad
-        Estimated error of the lift, with points that are exact: what a curve through the points may
-        differ from the chords, either way (a corner between points, cut off by its chord, is known
-        to it as far as it is told what chords may miss).
+        Estimated error of the lift for exact points: the possible distance of a curve through the
+        points from the chords, to either side. A corner cut off by a chord is included only if
+        `missed` is given.
     contact : (m,) complex array, mm
-        Where the follower touches, in the cam's frame.
+        Point of contact, in the cam's frame.
     """
 
     theta: Array
@@ -77,20 +76,20 @@ class Followed:
 def follow(
     points: Plane | Array, mechanism: Mechanism, theta: ArrayLike, missed: float = 0.0
 ) -> Followed:
-    """Return the lift that a profile gives: the polygon of some points.
+    """Return the lift that a profile, the polygon of some points, produces.
 
     Parameters
     ----------
     points : (n,) complex array or (n, 2) array, mm
-        A closed profile in the cam's frame, in order, either way around. For a polyline with
-        bulges those of `gearcam.numeric.bulges.flatten_bulges`; all of them lie on its arcs.
+        A closed profile in the cam's frame, in order, in either sense. For a polyline with bulges
+        use `gearcam.numeric.bulges.flatten_bulges`, whose points lie on its arcs.
     mechanism : Mechanism
         The follower; the cam turns counter-clockwise by theta, or slides. On a wall outside the
         pitch curve its radius is negative.
     theta : (m,) array, rad
         Cam angles.
     missed : float, mm
-        What any chord may miss; 0 where that is not known.
+        Chord error of the points; 0 if unknown.
 
     Returns
     -------
@@ -99,14 +98,14 @@ def follow(
     Raises
     ------
     InfeasibleError
-        If the points are no closed profile around the axis, or the follower cannot rest on it.
+        If the points are not a closed profile around the axis, or the follower cannot rest on it.
     """
     profile = profile_points(points, around=not mechanism.slide, missed=missed)
     angles = np.atleast_1d(np.asarray(theta, dtype=float))
     if mechanism.away > 0:
         _demand_clear_pivot(profile, mechanism)
         return _rested(profile, mechanism, angles)
-    # seen in a mirror, where a cam turns the other way
+    # mirrored, the cam turns the other way
     m, sense = mechanism, 1.0 if mechanism.slide else -1.0
     other = replace(m, start=-m.start, radius=abs(m.radius), tilt=-m.tilt, height=-m.height)
     points = np.conj(profile.points)
@@ -118,7 +117,7 @@ def follow(
 
 
 def _rested(profile: ProfilePoints, mechanism: Mechanism, angles: Array) -> Followed:
-    """Return how a follower rests on a profile, a round one below the axis within it."""
+    """Return the motion of a follower that rests on a profile, or inside it below the axis."""
     noise = _NOISE * (1.0 if mechanism.oscillating else profile.size + mechanism.radius)
     parts = []
     for first in range(0, max(len(angles), 1), _TOGETHER):
@@ -134,7 +133,7 @@ def _rested(profile: ProfilePoints, mechanism: Mechanism, angles: Array) -> Foll
 
 
 def _demand_clear_pivot(profile: ProfilePoints, mechanism: Mechanism) -> None:
-    """Refuse a profile that a swinging follower cannot get over."""
+    """Refuse a profile that reaches past the pivot of a swinging follower."""
     if not mechanism.oscillating or mechanism.slide:
         return
     swing = -mechanism.face_offset if mechanism.flat else mechanism.arm - mechanism.radius
@@ -146,7 +145,7 @@ def _demand_clear_pivot(profile: ProfilePoints, mechanism: Mechanism) -> None:
             value=profile.size,
             limit=limit,
             unit="mm",
-            nearest="a pivot farther from the cam",
+            nearest="place the pivot farther from the cam",
         )
 
 
@@ -166,7 +165,7 @@ def _highest(
     z, way = turn[number] * start + shift[number], turn[number] * step
     found, part = _on_chord(mechanism, z, way, 0.0, tolerance)
     upper = np.maximum(upper, found)
-    # a chord that is not touched may have a curve that is: on a steep plate the next one up
+    # even if a chord is not touched its curve may be: on a steep plate that of the next chord
     highest = np.full(len(angles), -np.inf)
     np.maximum.at(highest, number, upper)
     touched = np.isfinite(found)
@@ -193,10 +192,10 @@ def _highest(
 
 
 def _passed(rest: Array, number: Ints, upper: Array, below: Array) -> Array:
-    """Return how far a follower may come down from where it rests: out of all bands it is in.
+    """Return the lowest possible rest of a follower: below all bands that it is in.
 
-    Bands around chords, in which the curve is, are entered at `upper` and left at `below`, each by
-    the angle of its `number`.
+    Bands around chords, which contain the curve, are entered at `upper` and left at `below`, each
+    at the angle with its `number`.
     """
     lowest, before = rest.copy(), np.full(rest.shape, np.inf)
     while np.any(lowest < before):
@@ -207,7 +206,7 @@ def _passed(rest: Array, number: Ints, upper: Array, below: Array) -> Array:
 
 
 def _stand(mechanism: Mechanism, angles: Array) -> tuple[Plane, Plane]:
-    """Return how the cam stands at each angle: a turn, then a shift, mm."""
+    """Return the pose of the cam at each angle: a rotation, then a shift, mm."""
     m = mechanism
     if not m.slide:
         turn: Plane = np.exp(1j * angles, dtype=np.complex128)
@@ -220,14 +219,14 @@ def _stand(mechanism: Mechanism, angles: Array) -> tuple[Plane, Plane]:
 
 
 def _rest(mechanism: Mechanism, z: Plane, grow: Array | float = 0.0) -> tuple[Array, Array]:
-    """Return the position at which a follower touches discs, and the room within its reach.
+    """Return the position at which a follower touches discs, and its margin of reach.
 
     Parameters
     ----------
     mechanism : Mechanism
         The follower.
     z : complex array, mm
-        Middles in the fixed frame.
+        Centres in the fixed frame.
     grow : float or array, mm
         Radii.
 
@@ -235,7 +234,7 @@ def _rest(mechanism: Mechanism, z: Plane, grow: Array | float = 0.0) -> tuple[Ar
     -------
     position : array, mm or rad
         Infinite where the follower always overlaps the disc. Out of reach it is that of the
-        nearest place, so that searches may pass there.
+        nearest point in reach, so that searches may pass there.
     room : array
         Negative out of reach; mm^2 for a round follower.
     """
@@ -254,7 +253,7 @@ def _rest(mechanism: Mechanism, z: Plane, grow: Array | float = 0.0) -> tuple[Ar
         return np.where(face > far, np.inf, own + turn), far + face
     arm, reach = mechanism.arm, mechanism.radius + grow
     room = (reach - far + arm) * (reach + far - arm)
-    # half the angle from the three sides: exact for a small roller too
+    # half the angle from the three sides: accurate for a small roller too
     rest = np.maximum((far + arm - reach) * (far + arm + reach), 0.0)
     turn = 2.0 * np.arctan2(np.sqrt(np.maximum(room, 0.0)), np.sqrt(rest))
     room = np.where(_on_other_side(mechanism, z, grow), -np.inf, room)
@@ -262,10 +261,10 @@ def _rest(mechanism: Mechanism, z: Plane, grow: Array | float = 0.0) -> tuple[Ar
 
 
 def _on_other_side(mechanism: Mechanism, z: Plane, grow: Array | float) -> Mask:
-    """Return which discs lie where a round follower does not come.
+    """Return which discs lie where a round follower cannot be.
 
-    Beyond the axis within a profile, and beyond the pivot over a cam that slides, where the arm of
-    a disc cam's follower may stand.
+    Inside a profile that is beyond the axis; over a cam that slides, beyond the pivot, where the
+    arm of a disc cam's follower may be.
     """
     if mechanism.slide and mechanism.oscillating:
         return mechanism.pivot - z.real + mechanism.radius + grow < 0.0
@@ -275,7 +274,7 @@ def _on_other_side(mechanism: Mechanism, z: Plane, grow: Array | float) -> Mask:
 def _reached(
     mechanism: Mechanism, z: Plane, grow: Array | float = 0.0, tolerance: float = 0.0
 ) -> Array:
-    """Return the positions of `_rest`, minus infinity out of reach by more than the tolerance."""
+    """Return the positions of `_rest`; -inf if out of reach by more than the tolerance."""
     position, room = _rest(mechanism, z, grow)
     return np.where(room >= -(tolerance**2), position, -np.inf)
 
@@ -286,10 +285,10 @@ def _reached(
 def _on_chord(
     mechanism: Mechanism, z: Plane, chord: Plane, grow: Array | float, tolerance: float
 ) -> tuple[Array, Array]:
-    """Return the position on chords from `z`, and where it touches: 0 at the start, 1 at the end.
+    """Return the position on chords from `z`, and the contact: 0 at the start, 1 at the end.
 
-    A flat face rests on the ends. A round one may touch between them: its centre is then where the
-    centre's path leaves the chord's parallel.
+    A flat face rests on the ends. A round follower may touch between them: its centre is then where
+    its path leaves the chord's parallel.
     """
     ends = [_reached(mechanism, place, grow, tolerance) for place in (z, z + chord)]
     position, part = np.maximum(*ends), np.where(ends[0] >= ends[1], 0.0, 1.0)
@@ -317,9 +316,9 @@ def _on_chord(
 
 
 def _certain(mechanism: Mechanism, z: Plane, chord: Plane, depth: Array, tolerance: float) -> Array:
-    """Return the positions at which curves stop it that are below chords by a depth at most.
+    """Return the positions at which curves below their chords, by a depth at most, stop it.
 
-    Minus infinity where the follower is smaller than the depth.
+    -inf if the follower is smaller than the depth.
     """
     found = np.full(z.shape, -np.inf)
     wide = mechanism.radius >= depth
@@ -328,9 +327,9 @@ def _certain(mechanism: Mechanism, z: Plane, chord: Plane, depth: Array, toleran
 
 
 def _left(mechanism: Mechanism, z: Plane, chord: Plane, depth: Array, tolerance: float) -> Array:
-    """Return the positions at which it comes out of bands around chords; infinite without one.
+    """Return the positions at which it leaves bands around chords; infinite without a band.
 
-    Seen in a mirror it comes in.
+    In the mirror image it enters them.
     """
     mirrored = replace(mechanism, start=-mechanism.start)
     return -_on_chord(mirrored, np.conj(z), np.conj(chord), depth, tolerance)[0]
@@ -339,12 +338,12 @@ def _left(mechanism: Mechanism, z: Plane, chord: Plane, depth: Array, tolerance:
 def _candidates(
     profile: ProfilePoints, mechanism: Mechanism, stand: tuple[Plane, Plane], tolerance: float
 ) -> tuple[tuple[Ints, Ints, Array], Array]:
-    """Return the chords that may hold the contact: number of angle and chord, and upper bound.
+    """Return the chords that may contain the contact: index of angle and chord, and upper bound.
 
-    Then a lower bound for each angle, minus infinity where no point is reached.
+    Also a lower bound for each angle, -inf where no point is reached.
 
-    `stand` holds how the cam is turned and shifted. Points lie on the curve, so that the highest of
-    some is a lower bound; what cannot reach it is left out, first by blocks, then by chords.
+    `stand` is the pose of the cam. Points lie on the curve, so that the highest of some is a lower
+    bound; blocks, and then chords, that cannot reach it are skipped.
     """
     index, middle, radius = profile.blocks
     turn, shift = stand

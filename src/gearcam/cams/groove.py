@@ -1,13 +1,13 @@
 """A groove cam: a disc with a groove that holds a roller from both sides.
 
-Both walls are parallels of one pitch curve, each trimmed its own way: the groove is the union of
-all discs along it. Without clearance a roller fills the groove; the clearance is the groove's width
-less the roller's diameter. Two rollers on one pin, one above the other, may touch a wall each:
-the first that within the pitch curve, the second that beyond it; then each wall has its own half
-width, and where the larger roller passes, the wall that it must not touch stands back by as much as
-the smaller one is clear of its own.
+Both walls are parallels of one pitch curve, each trimmed separately: the groove is the union of all
+discs along it. Without clearance a roller fills the groove; the clearance is the groove's width
+less the roller's diameter. Two rollers on one pin, one above the other, may each touch one wall:
+the first the inner, the second the outer wall; then each wall has its own half width, and at the
+height of the larger roller the wall that it must not touch is set back by the smaller one's
+clearance.
 
-Refused: what disc cams refuse, of the widest roller, and blanks that the groove would open.
+Refused: as for disc cams, with the widest roller, and blanks whose edge the groove would open.
 
 Depends on cam, disc, lost_motion, wall and mechanism.
 """
@@ -37,13 +37,13 @@ class GrooveCam(Brief, Cam):
     Parameters
     ----------
     motion : PitchMotion
-        Of the roller that touches the inner wall.
+        Motion of the roller that touches the inner wall.
     inner, outer : Wall
-        Within and beyond the pitch curve; their followers are as wide as the groove.
+        Inside and outside the pitch curve; their followers are as wide as the groove.
     radius2 : float, mm
-        Of the roller that touches the outer wall.
+        Radius of the roller that touches the outer wall.
     relief : Wall or None
-        In place of the wall that the larger of two rollers must not touch, where it passes.
+        Wall set back at the height of the larger of two rollers, which must not touch it.
     """
 
     motion: PitchMotion
@@ -59,12 +59,12 @@ class GrooveCam(Brief, Cam):
 
     @property
     def motions(self) -> tuple[PitchMotion, ...]:
-        """The one motion of both."""
+        """The motion of both walls."""
         return (self.motion,)
 
     @property
     def width(self) -> float:
-        """Of the groove, mm: where it is narrowest if it has two."""
+        """Width of the groove, mm: the smaller one if it has two."""
         return self.inner.mechanism.radius + self.outer.mechanism.radius
 
     @property
@@ -76,7 +76,7 @@ class GrooveCam(Brief, Cam):
 
     @cached_property
     def lost_motion(self) -> Extreme:
-        """Largest lost motion, mm or rad: what the follower moves while the cam stands still."""
+        """Largest lost motion, mm or rad: free travel of the follower while the cam is at rest."""
         return largest_lost_motion(
             Rest(wall=self.inner, radius=self.motion.mechanism.radius),
             Rest(wall=self.outer, radius=self.radius2),
@@ -84,7 +84,7 @@ class GrooveCam(Brief, Cam):
 
     @cached_property
     def facts(self) -> Facts:
-        """What the cam knows of itself; the facts of its result tell more."""
+        """Facts of the cam; the facts of its result contain more."""
         lost, (scale, unit) = self.lost_motion, self.motion.mechanism.outward
         tree = {
             "total_lift": self.motion.total_lift,
@@ -115,20 +115,20 @@ def make_groove(
     clockwise: bool = False,
     tolerance: float = CHORD_TOLERANCE,
 ) -> GrooveCam:
-    """Return a groove cam after proving that its follower can stand wherever the lift puts it.
+    """Return a groove cam, verified for all positions of its follower.
 
     Parameters
     ----------
     program : Program
         The lift.
     mechanism : Mechanism
-        The follower, with the radius of the roller, of two that on the inner wall.
+        The follower, with the radius of the roller (of two, that on the inner wall).
     clearance : float, mm
         Width of the groove less the roller's diameter; half of it at each of two rollers.
     radius2 : float, mm, optional
-        Of a second roller, on the outer wall.
+        Radius of a second roller, on the outer wall.
     diameter : float, mm
-        Of the blank.
+        Diameter of the blank.
     clockwise : bool
         Whether the cam turns clockwise.
     tolerance : float, mm
@@ -141,7 +141,7 @@ def make_groove(
     Raises
     ------
     InfeasibleError
-        If it cannot, or the groove would open the blank.
+        If a position is impossible, or the groove would open the edge of the blank.
     """
     common = {"program": program, "clockwise": clockwise, "tolerance": tolerance}
     motion = PitchMotion(mechanism=mechanism, **common)
@@ -176,7 +176,7 @@ def make_groove(
             value=diameter,
             limit=least,
             unit="mm",
-            nearest="the limit is twice the groove's largest distance from the axis, excluded",
+            nearest="it must exceed twice the groove's largest distance from the axis, the limit",
             ways=(
                 Way(
                     near={"cam.outer_diameter_mm": least},
@@ -188,7 +188,7 @@ def make_groove(
 
 
 def _too_wide(program: Program, deepest: Mechanism) -> InfeasibleError:
-    """Return the refusal of a groove that the axis lies in."""
+    """Return the error for a groove that contains the axis."""
     nearest = replace(deepest, start=deepest.start + program.range[0]).least
     return InfeasibleError(
         "the groove is so wide that it reaches the cam's axis",
@@ -196,6 +196,6 @@ def _too_wide(program: Program, deepest: Mechanism) -> InfeasibleError:
         value=deepest.radius,
         limit=nearest,
         unit="mm",
-        nearest="these are from the middle of the groove to its inner wall, and to the axis where "
-        "that is nearest",
+        nearest="the value is the distance from the middle of the groove to its inner wall, the "
+        "limit its least distance from the axis",
     )

@@ -1,9 +1,9 @@
 """Small loops of an undercut profile, closed on the curve itself.
 
-A profile that is only just undercut turns back for a stretch far below the tolerance of its chords.
-Polygons cannot show such a loop, and differences of its points are rounding. Its closure is found
-from the way instead: the integral of the velocity, taken from a place before the stretch to one
-behind it, vanishes; the integral of small numbers is a small number with all its digits.
+A profile that is only just undercut turns back over a stretch far below its chord tolerance.
+Polygons cannot resolve such a loop, and differences of its points are rounding. Instead the loop is
+closed by the condition that the integral of the velocity, from a point before the stretch to one
+after it, vanishes; the integral of small numbers keeps all digits.
 
 Depends on curve, measures, trim and numeric; numpy only.
 """
@@ -23,22 +23,22 @@ from gearcam.numeric.crossings import Branch, CurvePoint, rows_between
 from gearcam.numeric.roots import bracketed_root
 
 SMALL = 1e-4
-"""Length of the way back, in sizes of the cam, up to which a loop is closed here: longer ones show
-well in polygons."""
+"""Largest length of the backward stretch, in sizes of the cam, of loops closed here: polygons
+resolve longer ones."""
 
 _GAUSS = 24
-"""Gauss points on each segment of a way: rounding, since loops are short."""
+"""Gauss points per segment: exact to rounding, since loops are short."""
 
 _STEPS = 30
-"""Newton steps in which a loop closes, or does not at all."""
+"""Largest number of Newton steps."""
 
 _NOTHING = 1e-11
-"""Length of the way back, in sizes of the cam, that is cut out where rounding hides how it closes.
-"""
+"""Length of the backward stretch, in sizes of the cam, below which it is cut out: rounding hides
+how it closes."""
 
 _CLOSED = 1e-10
 _NOISE = 32.0 * np.finfo(float).eps
-"""Parts of the way back, and of the size, by which a closed loop may miss: angles are rounded."""
+"""Allowed residual of a closed loop, as shares of backward stretch and of size: rounding."""
 
 _WIDTH = 1e-15
 """Width of a root's bracket, rad."""
@@ -47,7 +47,7 @@ _WIDTH = 1e-15
 def without_small_loops(
     segments: ProfileSegments, undercut: Sequence[tuple[float, float]], size: float
 ) -> tuple[ProfileSegments, tuple[Corner, ...], list[tuple[float, float]]]:
-    """Close the small loops of a profile.
+    """Return a profile without its small loops.
 
     Parameters
     ----------
@@ -61,11 +61,11 @@ def without_small_loops(
     Returns
     -------
     segments : ProfileSegments
-        Without the loops that were closed.
+        Without the closed loops.
     corners : tuple of Corner
-        Where they were.
+        Their corners.
     left : list of (float, float)
-        The stretches that are undercut still.
+        The remaining undercut stretches.
     """
     closed: list[tuple[CurvePoint, CurvePoint]] = []
     left: list[tuple[float, float]] = []
@@ -90,7 +90,7 @@ def without_small_loops(
 def _closed(
     segments: ProfileSegments, stretch: tuple[float, float], size: float
 ) -> tuple[CurvePoint, CurvePoint] | None:
-    """Return the places where a loop about a stretch closes; None if it is not a small one."""
+    """Return the two points where the loop of a stretch closes; None if it is not small."""
     begin, end = _span(segments, *stretch)
     back = abs(_way(segments, begin, end))
     if back > SMALL * size:
@@ -103,7 +103,7 @@ def _closed(
 
 
 def _span(segments: ProfileSegments, low: float, high: float) -> tuple[CurvePoint, CurvePoint]:
-    """Return the places between which a stretch runs backwards, with jumps at its ends."""
+    """Return the points between which a stretch runs backwards, with jumps at its ends."""
     count, back = len(segments.start), segments.backward
     if low == high:
         theta = segments.curve.program.knots[segments.piece]
@@ -122,7 +122,7 @@ def _span(segments: ProfileSegments, low: float, high: float) -> tuple[CurvePoin
 
 
 def _beside(segments: ProfileSegments, place: CurvePoint, side: int) -> list[CurvePoint]:
-    """Return the ends of the two segments that come before (-1) or behind (+1) a place."""
+    """Return the ends of the two segments before (-1) or after (+1) a point."""
     far, near = (segments.end, segments.start) if side > 0 else (segments.start, segments.end)
     k, count = place[0], len(segments.start)
     found = [place] if not segments.jump[k] and place[1] != far[k] else []
@@ -137,7 +137,7 @@ def _beside(segments: ProfileSegments, place: CurvePoint, side: int) -> list[Cur
 def _searched(
     segments: ProfileSegments, begin: CurvePoint, end: CurvePoint, back: float, size: float
 ) -> tuple[CurvePoint, CurvePoint] | None:
-    """Return where a loop closes on the segments of two places beside it, if it does there."""
+    """Return where a loop closes on the segments of two points next to it, or None."""
     ways = (_ahead(segments, begin, -1, 0.5 * back), _ahead(segments, end, 1, 0.5 * back))
     if ways[0] is None or ways[1] is None:
         return None
@@ -150,7 +150,7 @@ def _searched(
 
 
 def _ahead(segments: ProfileSegments, place: CurvePoint, side: int, length: float) -> float | None:
-    """Return where a sweep is a length of way before (-1) or behind (+1) a place."""
+    """Return the point of a sweep at an arc length before (-1) or after (+1) a point."""
     k = place.curve
     limit = float(segments.end[k] if side > 0 else segments.start[k])
 
@@ -166,7 +166,7 @@ def _ahead(segments: ProfileSegments, place: CurvePoint, side: int, length: floa
 def _close(
     segments: ProfileSegments, one: CurvePoint, two: CurvePoint, room: tuple[float, float]
 ) -> tuple[CurvePoint, CurvePoint] | None:
-    """Move two places, one before and one behind a stretch, until the way between them closes."""
+    """Return two points, one before and one after a stretch, between which the loop closes."""
     (first, a), (last, b) = one, two
     for _ in range(_STEPS):
         way = _way(segments, CurvePoint(first, a), CurvePoint(last, b))
@@ -187,7 +187,7 @@ def _close(
 
 
 def _way(segments: ProfileSegments, begin: CurvePoint, end: CurvePoint) -> complex:
-    """Return the way from one place of the curve to another, along its segments."""
+    """Return the vector between two points of the curve, by integration along its segments."""
     k, low, high, _ = rows_between(segments, [Branch(begin, end)])
     nodes, weights = np.polynomial.legendre.leggauss(_GAUSS)
     middle, half = 0.5 * (low + high), 0.5 * (high - low)

@@ -1,8 +1,7 @@
-"""The lift that an undercut cam loses: what the follower does while it rests on a corner.
+"""The lift lost by an undercut cam: motion of the follower while it rests on a corner.
 
-Between the angles at which the two sides of a corner are drawn the follower touches nothing but
-corners; its lift there has a closed form, and the largest distance from the lift that was asked for
-is a root of a derivative.
+Between the cam angles of the two sides of a corner the follower touches only corners; its lift
+there has a closed form, and its largest deviation from the given lift is a root of a derivative.
 
 Depends on trim, mechanism, laws and numeric; numpy only.
 """
@@ -25,7 +24,7 @@ from gearcam.numeric.piecewise import extremes
 
 _TURN = 2.0 * math.pi
 _NARROWEST = 1e-9
-"""Width, rad, below which both sides of a corner may seem to have changed places."""
+"""Angle, rad, below which rounding may exchange the two sides of a corner."""
 
 
 def resting(mechanism: Mechanism, point: complex, side: int = 1) -> Callable[[Jet], Jet]:
@@ -38,7 +37,7 @@ def resting(mechanism: Mechanism, point: complex, side: int = 1) -> Callable[[Je
     point : complex, mm
         In the cam's frame, turning counter-clockwise.
     side : {1, -1}
-        Whether a round follower stands above the point or is pressed against it from below.
+        Whether a round follower is above the point or pressed against it from below.
 
     Returns
     -------
@@ -48,7 +47,7 @@ def resting(mechanism: Mechanism, point: complex, side: int = 1) -> Callable[[Je
     m, radius, angle = mechanism, abs(point), math.atan2(point.imag, point.real)
 
     def place(theta: Jet) -> tuple[Jet, Jet]:
-        """Return where the point stands: seen along the follower's way, or with its pivot at +d."""
+        """Return the point, relative to the follower's direction, or with its pivot at +d."""
         if not m.slide:
             return radius * cos(theta + angle), radius * sin(theta + angle)
         x, y = point.real - m.slide * theta, point.imag + 0.0 * theta
@@ -66,14 +65,14 @@ def resting(mechanism: Mechanism, point: complex, side: int = 1) -> Callable[[Je
 
     def swinging(theta: Jet) -> Jet:
         x, y = place(theta)
-        # the point seen from the pivot: its angle from the line to the axis, its distance
+        # the point relative to the pivot: its angle from the line to the axis, its distance
         across = m.pivot - x
         square = across * across + y * y
-        # an arctangent of two halves stays finite on the pivot's own height
+        # an arctangent of two halves stays finite at the height of the pivot
         seen = 2.0 * atan(y / (sqrt(square) + across))
         if m.flat:
             return seen + asin(m.face_offset / sqrt(square)) - m.start
-        # by two halves too: beside the arm a round follower may be tiny
+        # by two halves too: a round follower may be tiny compared to the arm
         away, more = sqrt(square) - m.arm, sqrt(square) + m.arm
         within = (m.radius - away) * (m.radius + away)
         beyond = (more - m.radius) * (more + m.radius)
@@ -83,23 +82,23 @@ def resting(mechanism: Mechanism, point: complex, side: int = 1) -> Callable[[Je
 
 
 def lost_lift(program: Program, mechanism: Mechanism, corner: Corner, side: int = 1) -> Extreme:
-    """Return the largest lift that a corner costs, and where.
+    """Return the largest lift lost at a corner, and its cam angle.
 
     Parameters
     ----------
     program : Program
-        The lift asked for.
+        The given lift.
     mechanism : Mechanism
         The follower.
     corner : Corner
-        Of the trimmed profile, turning counter-clockwise.
+        Corner of the trimmed profile, turning counter-clockwise.
     side : {1, -1}
-        Whether the profile is within the pitch curve or beyond it.
+        Whether the profile is inside or outside the pitch curve.
 
     Returns
     -------
     Extreme
-        Cam angle, rad, and lift, mm or rad, never negative.
+        Cam angle, rad, and lift, mm or rad, not negative.
 
     Raises
     ------
@@ -120,9 +119,9 @@ def lost_lift(program: Program, mechanism: Mechanism, corner: Corner, side: int 
     places, values = extremes(missing, program.cuts_between(start, end))
     if np.isnan(values).all():
         raise InfeasibleError(
-            "a corner that trimming leaves is where the follower cannot rest",
+            "the follower cannot rest on a corner that trimming leaves",
             where=mechanism.driver.told(start),
-            nearest="its arm or its pivot leaves it no place there",
+            nearest="its arm or its pivot does not allow that position",
         )
     best = int(np.nanargmax(values))
     return Extreme(theta=float(places[best]) % _TURN, value=max(0.0, float(values[best])))

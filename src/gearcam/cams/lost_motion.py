@@ -1,9 +1,8 @@
-"""Lost motion: how far a follower moves between two walls while the cam stands still, exactly.
+"""Lost motion: free travel of a follower between two walls while the cam is at rest, exactly.
 
-A roller that rests on a wall has its centre on the parallel of the pitch curve that is nearer to
-the wall by half the clearance, or on an arc about a corner that trimming has left. A centre on that
-parallel is at a place of the cam which tells the angle at which the follower stands there and its
-lift in closed form; for a given angle the place is a bracketed root.
+A roller that rests on a wall has its centre on a parallel of the pitch curve, nearer to the wall by
+half the clearance, or on an arc about a corner left by trimming. For a centre on that parallel the
+cam angle and the lift have closed forms; for a given angle the centre is a bracketed root.
 
 Depends on curve, lost, mechanism and numeric; numpy only.
 """
@@ -31,28 +30,29 @@ from gearcam.numeric.roots import bracketed_root, newton_in_bracket
 _TURN = 2.0 * math.pi
 
 _STEP = 1e-8
-"""Last step of a search, rad or in units of a jump's velocity: its error is the square of it."""
+"""Last step of a search, rad or in units of a jump's velocity: the error is of the order of its
+square."""
 
 _ROUNDING = 1e-13
-"""Angle, rad: more than rounding makes of one in a turn."""
+"""Angle, rad, larger than the rounding of angles in a turn."""
 
 _FLAT = 1e-8
-"""Width, rad, of a bracket about a largest value, which changes with its square."""
+"""Width, rad, of a bracket of a largest value, which changes with its square."""
 
 _APART = 1e-9
-"""Angle, rad, below which two ends of stretches are one."""
+"""Angle, rad, below which two ends of stretches are merged."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Rest(Brief):
-    """A roller that is pressed against a wall.
+    """A roller pressed against a wall.
 
     Parameters
     ----------
     wall : Wall
-        As wide as its groove.
+        Wall of a follower as wide as the groove.
     radius : float, mm
-        Of the roller, at most that of the wall.
+        Radius of the roller, at most that of the wall's follower.
     """
 
     wall: Wall
@@ -64,13 +64,13 @@ class Rest(Brief):
 
     @cached_property
     def _centers(self) -> ProfileSegments:
-        """The curve on which centres stand, before corners count."""
+        """The curve of the roller's centre, without corners."""
         curve = replace(self.wall.curve, mirrored=False)
         inset = self.wall.side * (self.wall.mechanism.radius - self.radius)
         return segments(replace(curve, mechanism=replace(curve.mechanism, radius=inset)), inset)
 
     def _standing(self, theta: Array, centers: Plane) -> tuple[Array, Array, Plane]:
-        """Return angles at which centres in the cam's frame are reached, lifts, fixed places."""
+        """Return cam angles, lifts, and fixed-frame positions of centres in the cam's frame."""
         m, square = self.wall.mechanism, np.abs(centers) ** 2
         if m.slide:
             return self._sliding(centers)
@@ -84,7 +84,7 @@ class Rest(Brief):
         return theta + turn, lift, fixed
 
     def _sliding(self, centers: Plane) -> tuple[Array, Array, Plane]:
-        """Return the same where the cam slides: the height of a centre tells the lift."""
+        """Return the same for a cam that slides: the height of a centre gives the lift."""
         m = self.wall.mechanism
         if m.oscillating:
             position = np.arcsin((centers.imag - m.height) / m.arm)
@@ -94,14 +94,14 @@ class Rest(Brief):
         return (centers - fixed).real / m.slide, position - m.start, fixed
 
     def _moving(self, index: Ints, parameter: Array) -> tuple[Array, Array, Array, Array]:
-        """Return angles and lifts at places of the curve of centres, with their slopes."""
+        """Return angles and lifts at points of the curve of centres, with their derivatives."""
         m = self.wall.mechanism
         jumps = self._centers.jump[index]
         knots = self._centers.curve.program.knots[self._centers.piece[index]]
         theta = np.where(jumps, knots, parameter)
         centers, velocities = self._centers.moving(index, parameter)
         stands, lift, fixed = self._standing(theta, centers)
-        # seen along the follower's way and across it
+        # components along the follower's direction and across it
         if m.slide:
             across = unit(m.start + lift) if m.oscillating else unit(m.tilt + 0.0 * lift)
             drawn, turned = np.conj(across) * velocities, np.conj(across) * -m.slide
@@ -115,7 +115,7 @@ class Rest(Brief):
 
     @cached_property
     def _starts(self) -> Array:
-        """Angles at which the pieces of that curve begin."""
+        """Angles at the beginning of the pieces of that curve."""
         begin = self._centers.start
         return self._moving(np.arange(len(begin)), begin)[0]
 
@@ -127,7 +127,7 @@ class Rest(Brief):
 
     @cached_property
     def _corners(self) -> Sequence[tuple[tuple[float, float], complex]]:
-        """Corners with the angles between which the roller rests on them."""
+        """Corners, with the angles between which the roller rests on them."""
         found = []
         for corner in self.wall.corners:
             theta = np.array([corner.before, corner.after])
@@ -141,7 +141,7 @@ class Rest(Brief):
 
     @cached_property
     def span(self) -> tuple[float, float]:
-        """Angles, rad, between which the roller stands on the wall."""
+        """Angles, rad, between which the roller rests on the wall."""
         if self.wall.program.closed:
             return 0.0, _TURN
         last = len(self._centers.end) - 1
@@ -175,7 +175,7 @@ class Rest(Brief):
         places = newton_in_bracket(function, low, high, first, _STEP, _ROUNDING)
         stands, lift, slope, rise = self._moving(index, places)
         rise = rise / slope
-        lift = lift + rise * (aim - stands)  # what the search has left
+        lift = lift + rise * (aim - stands)  # remaining error of the search
         for inside, point in self._on_corners(theta):
             given = resting(self._mechanism, point, self.wall.side)
             lift[inside], rise[inside] = given(Jet.variable(theta[inside], 1)).derivatives()
@@ -192,7 +192,7 @@ def largest_lost_motion(inner: Rest, outer: Rest) -> Extreme:
     Parameters
     ----------
     inner, outer : Rest
-        Its roller, or its rollers, on the walls within and beyond the pitch curve.
+        Its roller, or its rollers, on the walls inside and outside the pitch curve.
 
     Returns
     -------
@@ -215,7 +215,7 @@ def largest_lost_motion(inner: Rest, outer: Rest) -> Extreme:
     values, slopes = (found.reshape(x.shape) for found in missing(x.ravel()))
     best = int(values.argmax())
     place, value = float(x.flat[best]), float(values.flat[best])
-    # a function lies below its tangents about a largest value: few cells can hold it
+    # near a largest value a function lies below its tangents: few cells can contain it
     low, high, width = slopes[:, :-1], slopes[:, 1:], np.diff(x, axis=1)
     top = np.minimum(values[:, :-1] + low * width, values[:, 1:] - high * width)
     cells = np.nonzero((low > 0.0) & (high < 0.0) & (top > value))

@@ -1,4 +1,4 @@
-"""What is measured on a cam: pressure angles, radii of curvature, undercut stretches, size.
+"""Measures of a cam: pressure angles, radii of curvature, undercut stretches, size.
 
 Every extreme is a root of an exact derivative, or one of the two values at a knot; every end of an
 undercut stretch is a root of the contact's speed, bracketed by its extremes.
@@ -23,7 +23,7 @@ from gearcam.numeric.piecewise import extremes_among, places_between
 from gearcam.numeric.roots import bracketed_root
 
 _GAP = 1e-11
-"""Gap, rad, over which two undercut stretches are one."""
+"""Gap, rad, below which two undercut stretches are merged."""
 
 _ROOT = 1e-15
 """Width of a root's bracket, rad."""
@@ -32,18 +32,18 @@ _GAUSS = 16
 _CELLS = 4
 _MOST_CELLS = 1024
 _AGREED = 1e-14
-"""Gauss points in each cell of a segment; the cells are halved until sums agree to this part."""
+"""Gauss points per cell of a segment; cells are halved until sums agree to this share."""
 
 _CANCELLED = 40.0
-"""What a rough curve's integral may miss less than others of its kind: errors cancel in it."""
+"""Factor for the integral of a rough curve, in which errors partly cancel."""
 
 _ROUNDING = 16.0 * np.finfo(float).eps
-"""Of sums, in parts of them."""
+"""Relative rounding of sums."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Extreme:
-    """A `value` and the cam angle `theta`, rad, at which it stands."""
+    """A `value` and its cam angle `theta`, rad."""
 
     theta: float
     value: float
@@ -51,7 +51,7 @@ class Extreme:
 
 @dataclass(frozen=True, kw_only=True)
 class Range(Brief):
-    """The smallest value of something, `low`, and the largest, `high`."""
+    """The smallest value of a quantity, `low`, and the largest, `high`."""
 
     low: Extreme
     high: Extreme
@@ -63,7 +63,7 @@ class Range(Brief):
 
     @property
     def least_radius(self) -> float:
-        """Of a range of curvature: the smallest radius, infinite where all is straight."""
+        """Smallest radius of a range of curvature; infinite if all is straight."""
         return 1.0 / self.largest if self.largest else math.inf
 
 
@@ -79,12 +79,12 @@ def range_of(
     pick : callable
         ``pick(contact) -> Jet``.
     stretches : list of (float, float)
-        Cam angles, rad, between which it counts.
+        Ranges of cam angle, rad.
 
     Returns
     -------
     Range or None
-        None where there are no stretches.
+        None if there are no stretches.
     """
 
     def function(theta: Array) -> list[Array]:
@@ -93,7 +93,7 @@ def range_of(
     if not stretches:
         return None
     cuts = [curve.program.cuts_between(*ends) for ends in stretches]
-    # at the ends of cells each side's own piece tells, and not what lies beside the knot
+    # at the ends of cells each side is evaluated by its own piece, up to the knot itself
     _, states = curve.program.sides(cuts)
     at_ends = pick(curve.contact_of(states, 0)).c[0] + np.zeros(states.shape[1])
     found = []
@@ -122,8 +122,8 @@ def undercut(curve: CamCurve) -> list[tuple[float, float]]:
     Returns
     -------
     list of (float, float)
-        Cam angles, rad, in rising order; both are equal where only a jump runs backwards. One
-        that goes on over the end of the turn is cut there.
+        Cam angles, rad, in rising order; both are equal if only a jump runs backwards. A stretch
+        across the end of the turn is cut there.
     """
     if not curve.mechanism.flat and curve.mechanism.radius == 0.0:
         return []
@@ -155,15 +155,15 @@ def undercut(curve: CamCurve) -> list[tuple[float, float]]:
 def _stays_positive(places: Array, values: Array, slopes: Array) -> bool:
     """Return whether no tangent to a function reaches zero within its cell of a fine grid, (n, k).
 
-    Between two places a function lies above the lower of its tangents where it has a minimum, and
-    above its ends elsewhere.
+    Between two points a function lies above the lower of its tangents if it has a minimum there,
+    otherwise above its ends.
     """
     cell = np.diff(places, axis=1).max(axis=1, keepdims=True)
     return bool(np.all(values - np.abs(slopes) * cell > 0.0))
 
 
 def _joined(stretches: list[tuple[float, float]]) -> list[tuple[float, float]]:
-    """Join stretches that touch."""
+    """Return stretches, with touching ones joined."""
     joined: list[tuple[float, float]] = []
     for low, high in stretches:
         if joined and low - joined[-1][1] <= _GAP:
@@ -176,19 +176,19 @@ def _joined(stretches: list[tuple[float, float]]) -> list[tuple[float, float]]:
 def over_the_end(
     stretches: Sequence[tuple[float, float]], closed: bool = True
 ) -> list[list[tuple[float, float]]]:
-    """Return stretches of a turn by themselves, but for one that goes on over the turn's end.
+    """Return stretches of a turn one by one, with a stretch across the turn's end kept together.
 
     Parameters
     ----------
     stretches : sequence of (float, float)
         Cam angles, rad, in rising order, cut at the end of the turn.
     closed : bool
-        Whether the turn goes on over its end.
+        Whether the turn continues over its end.
 
     Returns
     -------
     list of lists
-        Of one stretch, or of the two parts of one, that after the end first.
+        Each with one stretch, or with the two parts of one, that after the end first.
     """
     parts = [[stretch] for stretch in stretches]
     if closed and len(parts) > 1 and stretches[0][0] == 0.0 and stretches[-1][1] >= 2.0 * math.pi:
@@ -203,7 +203,7 @@ class Size(Brief):
     Parameters
     ----------
     perimeter, area : float, mm and mm^2
-        Of and inside it.
+        Length of the profile, and area inside it.
     perimeter_error, area_error : float, mm and mm^2
         Estimated errors.
     """
@@ -222,15 +222,15 @@ def size_of(segments: ProfileSegments, nodes: int = _GAUSS, most: int = _MOST_CE
     segments : ProfileSegments
         Closed; mirrored or not.
     nodes : int
-        In each cell.
+        Nodes per cell.
     most : int
-        Cells of a segment.
+        Largest number of cells of a segment.
 
     Returns
     -------
     Size
-        The errors are differences to half the cells, fallen once more as they fell before; what
-        the lift is not known to; and rounding.
+        Errors: extrapolated differences from the result with half as many cells, the error of the
+        lift, and rounding.
     """
     cells, changes = _CELLS, np.full(2, np.inf)
     found, _ = _integrals(segments, cells, nodes)
@@ -250,11 +250,10 @@ def size_of(segments: ProfileSegments, nodes: int = _GAUSS, most: int = _MOST_CE
 
 
 def _unknown(segments: ProfileSegments, cells: int, nodes: int, found: Array) -> Array:
-    """Return what perimeter and area may be off where the lift is not known better.
+    """Return the errors of perimeter and area from the error of the lift.
 
-    Errors between rows change their signs, and little of them is left in an integral: how much,
-    rough curves tell. Between corners, which move with the lift, the largest error counts
-    everywhere.
+    Errors between rows alternate in sign and mostly cancel in an integral; rough curves show how
+    much remains. Between corners, which move with the lift, the largest error counts everywhere.
     """
     program = segments.curve.program
     if not program.rough or segments.corner[1:].any():
@@ -269,10 +268,10 @@ def _unknown(segments: ProfileSegments, cells: int, nodes: int, found: Array) ->
 
 
 def _integrals(segments: ProfileSegments, cells: int, nodes: int) -> tuple[Array, Array]:
-    """Return perimeter and area with as many cells for each segment, and nodes in each.
+    """Return perimeter and area with given numbers of cells per segment, and nodes per cell.
 
-    Beside them what they may be off because angles are rounded, those of nodes and of ends: much
-    where a curve goes far within as little.
+    Also their errors from the rounding of angles, of nodes and of ends, which are large where a
+    curve moves far within such a rounding.
     """
     places, weights = np.polynomial.legendre.leggauss(nodes)
     share = ((np.arange(cells)[:, None] + 0.5 * (places + 1.0)) / cells).ravel()

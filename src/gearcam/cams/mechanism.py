@@ -1,9 +1,9 @@
-"""The numbers of a follower on its cam: where it stands at zero lift, and what it can reach.
+"""The geometry of a follower on its cam: its position at zero lift, and its range.
 
 Points of the plane are complex numbers, mm. Fixed frame: the cam's axis is the origin; a
 translating follower moves along ``+y``; the pivot of an oscillating one is at ``(d, 0)``, and
 ``Psi``, the angle between its arm and the line from pivot to cam, grows with the lift (the arm
-turns clockwise). The *position* of a follower is what its lift is added to:
+turns clockwise). The *position* of a follower at zero lift, to which the lift is added, is:
 
 ==================== ==========================================================
 translating round    height of the centre, ``s0 = sqrt(prime^2 - e^2)``
@@ -12,13 +12,13 @@ oscillating round    ``Psi0 = arccos((d^2 + l^2 - prime^2)/(2*d*l))``
 oscillating flat     ``Psi0 = arcsin((base + f)/d)``, the face f nearer the cam
 ==================== ==========================================================
 
-A roller *below* the axis, the second on one follower, has a negative position; all formulas of the
-first hold for it as they stand.
+A roller *below* the axis, the second on one follower, has a negative position; the formulas of the
+first are valid for it unchanged.
 
-A cam that *slides* moves along ``-x`` by its way ``u = slide*theta``, so that a whole way is one
-turn: what is said of cam angles holds, and a `Driver` tells the way to people. (People see the
-mirror image, which moves along ``+x``.) Its follower translates along ``+y`` turned by a *tilt*,
-counter-clockwise, or its arm points from the pivot at ``(-d, p)`` towards ``+x``:
+A cam that *slides* moves along ``-x`` by its travel ``u = slide*theta``, so that the whole travel
+is one turn: statements about cam angles stay valid, and a `Driver` converts to travel for output.
+(Output is the mirror image, which moves along ``+x``.) Its follower translates along ``+y`` turned
+by a *tilt*, counter-clockwise, or its arm points from the pivot at ``(-d, p)`` towards ``+x``:
 
 ==================== ==========================================================
 translating round    the lift itself, ``C = i*exp(i*tilt)*s``
@@ -47,18 +47,19 @@ from gearcam.numeric.arrays import Array, Plane
 
 @dataclass(frozen=True, kw_only=True)
 class Driver(Brief):
-    """How the place of a cam is told to people.
+    """Name and unit of a cam's angle or travel in output.
 
     Parameters
     ----------
     symbol, unit, per : str
-        Of its angle or way, as in the names of columns; what derivatives are taken by.
+        Symbol and unit of angle or travel, as in names of columns; unit of the variable of
+        derivatives.
     called : str
-        What it is.
+        Its name in words.
     scale : float
-        Angle or way, in the unit, of one rad.
+        Angle or travel, in the unit, per rad.
     rate : float
-        What one rad is of what derivatives are taken by.
+        Variable of derivatives per rad.
     """
 
     symbol: str
@@ -70,7 +71,7 @@ class Driver(Brief):
 
     @property
     def turn(self) -> float:
-        """What is gone when a program is over, in the unit."""
+        """Whole turn or travel, in the unit."""
         return 2.0 * math.pi * self.scale
 
     @property
@@ -79,11 +80,11 @@ class Driver(Brief):
         return f"{self.symbol}_{self.unit}"
 
     def told(self, theta: float) -> str:
-        """Return an angle, rad, as people are told, with its unit: rounding shows as nothing."""
+        """Return an angle, rad, as text with its unit, with rounding shown as 0."""
         return f"{shown(self.scale * theta, scale=self.turn)} {self.unit}"
 
     def seen(self, theta: float) -> str:
-        """Return a place for people."""
+        """Return a position as text."""
         return f"at {self.told(theta)}"
 
 
@@ -100,23 +101,23 @@ class Mechanism(Brief):
     Parameters
     ----------
     flat, oscillating : bool
-        Its kind.
+        Type of the follower.
     start : float, mm or rad
         Position at zero lift.
     radius : float, mm
-        Of a round face; 0 of a point or a flat one.
+        Radius of a round face; 0 for a point or a flat face.
     offset : float, mm
-        e, of a translating follower's axis.
+        e, offset of a translating follower's axis.
     arm, pivot : float, mm
         l and d of an oscillating follower.
     face_offset : float, mm
         f of an oscillating flat follower.
     slide : float, mm/rad
-        Way of a cam that slides; 0 of one that turns.
+        Travel per rad of a cam that slides; 0 for one that turns.
     tilt : float, rad
-        Of a translating follower's way over a cam that slides.
+        Tilt of a translating follower's direction over a cam that slides.
     height : float, mm
-        p, of the pivot over a cam that slides.
+        p, height of the pivot over a cam that slides.
     """
 
     flat: bool
@@ -133,7 +134,7 @@ class Mechanism(Brief):
 
     @property
     def driver(self) -> Driver:
-        """How the cam's place is told to people."""
+        """Name and unit of the cam's angle or travel in output."""
         if not self.slide:
             return TURNING
         return Driver(
@@ -149,17 +150,17 @@ class Mechanism(Brief):
 
     @property
     def lever(self) -> float:
-        """What turns a lift into millimetres: 1, or the arm (of a flat face the pivot's way)."""
+        """Factor from lift to millimetres: 1, or the arm (for a flat face the pivot distance)."""
         return (self.arm or self.pivot) if self.oscillating else 1.0
 
     @property
     def outward(self) -> tuple[float, str]:
-        """What turns a lift, mm or rad, into what people are told, and the unit: mm or deg."""
+        """Factor from lift, mm or rad, to its unit in output, and that unit: mm or deg."""
         return (math.degrees(1.0), "deg") if self.oscillating else (1.0, "mm")
 
     @property
     def motion_scales(self) -> dict[str, float]:
-        """Names of what people are told of the motion, and what makes them of inner units.
+        """Names of the motion's columns in output, with factors from internal units.
 
         The lift and its first three derivatives, in this order.
         """
@@ -172,14 +173,14 @@ class Mechanism(Brief):
 
     @property
     def below(self) -> bool:
-        """Whether a round follower stands below the axis, and comes nearer as it rises."""
+        """Whether a round follower is below the axis, and comes nearer to it as it rises."""
         return not (self.flat or self.slide) and self.start < 0.0
 
     @property
     def away(self) -> int:
-        """Whether a rise moves it away from the metal (1) or to it (-1).
+        """Whether a rise moves it away from the metal (1) or towards it (-1).
 
-        To it at a wall outside the pitch curve, whose radius is negative, or below the axis.
+        Towards it at a wall outside the pitch curve, whose radius is negative, or below the axis.
         """
         return -1 if self.below != (self.radius < 0.0) else 1
 
@@ -187,26 +188,26 @@ class Mechanism(Brief):
     def least(self) -> float:
         """Distance from the axis to a round follower's centre or to a flat face, at zero lift.
 
-        The cam turns.
+        For a cam that turns.
         """
         if not self.oscillating:
             return self.start if self.flat else math.hypot(self.offset, self.start)
         if self.flat:
             return self.pivot * math.sin(self.start) - self.face_offset
-        # the law of cosines by half the angle: beside a long arm a short pivot's would be below 0
+        # law of cosines by half the angle: with a long arm, short pivot it cannot round below 0
         half = math.sqrt(self.pivot * self.arm) * math.sin(0.5 * self.start)
         return math.hypot(self.pivot - self.arm, 2.0 * half)
 
 
 def make_mechanism(follower: FollowerSpec, cam: CamSpec) -> Mechanism:
-    """Return the numbers of a follower on its cam.
+    """Return the geometry of a follower on its cam.
 
     Parameters
     ----------
     follower : FollowerSpec
         The follower.
     cam : CamSpec
-        The cam; prime or base radius as the follower asks.
+        The cam, with the prime or base radius that the follower needs.
 
     Returns
     -------
@@ -226,12 +227,12 @@ def make_mechanism(follower: FollowerSpec, cam: CamSpec) -> Mechanism:
             return Mechanism(start=size, offset=follower.offset, **kind)
         if not abs(follower.offset) < size:
             raise InfeasibleError(
-                "the follower's axis passes the prime circle",
+                "the follower's axis misses the prime circle",
                 where="follower.offset_mm",
                 value=abs(follower.offset),
                 limit=size,
                 unit="mm",
-                nearest="the limit, either way, is the prime radius",
+                nearest="the offset, to either side, must be below the prime radius",
                 ways=(
                     Way(
                         near={"follower.offset_mm": math.copysign(size, follower.offset)},
@@ -256,7 +257,7 @@ def make_mechanism(follower: FollowerSpec, cam: CamSpec) -> Mechanism:
 
 
 def position_at(mechanism: Mechanism, size: float) -> float:
-    """Return the position, mm or rad, at which a follower stands at a distance from the axis.
+    """Return the position, mm or rad, of a follower at a given distance from the axis.
 
     Parameters
     ----------
@@ -268,7 +269,7 @@ def position_at(mechanism: Mechanism, size: float) -> float:
     Raises
     ------
     ValueError
-        If it does not reach there.
+        If it cannot reach there.
     """
     m = mechanism
     if not m.oscillating:
@@ -277,15 +278,14 @@ def position_at(mechanism: Mechanism, size: float) -> float:
 
 
 def swing(pivot: float, arm: float, size: float) -> float:
-    """Return Psi, rad, at which an arm's end stands at a distance from the cam's axis.
+    """Return Psi, rad, of an arm with its end at a given distance from the cam's axis.
 
     Parameters
     ----------
     pivot, arm, size : float, mm
-        From the axis to the pivot, from there to the arm's end, from this to the axis: sides of a
-        triangle.
+        Sides of the triangle axis, pivot, arm's end: axis to pivot, arm, arm's end to axis.
     """
-    # half the angle from the sides, with parentheses (after Kahan) that keep all digits where the
+    # half the angle from the sides, with parentheses (after Kahan) that keep all digits if the
     # triangle is nearly flat
     small, large = sorted([pivot, arm])
     apart = large - small
@@ -297,14 +297,14 @@ def swing(pivot: float, arm: float, size: float) -> float:
 
 
 def make_sliding_mechanism(follower: FollowerSpec, way: float) -> Mechanism:
-    """Return the numbers of a follower over a cam that slides.
+    """Return the geometry of a follower over a cam that slides.
 
     Parameters
     ----------
     follower : FollowerSpec
         The follower, round.
     way : float, mm
-        How far the cam slides.
+        Travel of the cam.
 
     Returns
     -------
@@ -328,7 +328,7 @@ def make_sliding_mechanism(follower: FollowerSpec, way: float) -> Mechanism:
             value=height,
             limit=math.copysign(arm, height),
             unit="mm",
-            nearest="the limit is the arm, excluded",
+            nearest="the pivot height must be below the arm length, the limit",
             ways=(
                 Way(
                     near={"follower.pivot_height_mm": math.copysign(arm, height)},
@@ -344,9 +344,9 @@ def make_sliding_mechanism(follower: FollowerSpec, way: float) -> Mechanism:
 def _out_of_reach(
     what: str, key: str, parts: str, size: float, low: float, high: float, *ways: Way
 ) -> InfeasibleError:
-    """Return the error of a size that is not between what the parts allow."""
+    """Return the error for a size outside the range that the parts allow."""
     limit, least = low if size <= low else high, max(low, 0.0)
-    if high > 0.0:  # from the limit that the size passes to the middle of what is allowed
+    if high > 0.0:  # from the limit that the size exceeds to the middle of the allowed range
         near = least if size <= least else high
         ways = (Way(near={key: near}, far={key: 0.5 * (least + high)}), *ways)
     return InfeasibleError(
@@ -355,7 +355,7 @@ def _out_of_reach(
         value=size,
         limit=limit,
         unit="mm",
-        nearest=f"{parts} allow {shown(least)} to {shown(high)} mm, both excluded",
+        nearest=f"{parts} allow sizes between {shown(least)} and {shown(high)} mm",
         ways=ways,
     )
 

@@ -1,10 +1,10 @@
-"""How far off the numbers of a cam may be, found by moving what they come from.
+"""Error estimates of cam results by perturbing their inputs.
 
-A number is as exact as its conditioning allows, which no formula tells of all laws and followers at
-once. So it is tried: cam angles, knots and coefficients of the lift and sizes of the follower are
-moved by a few units of their last digit, lift and derivatives by what is not known of them beyond
-rounding, and what is told is computed again. The largest change of a few tries, at places all over
-the turn, is the estimate.
+The error of a result depends on its conditioning, for which there is no general formula over all
+laws and followers. So cam angles, knots and coefficients of the lift and sizes of the follower are
+perturbed by a few units of the last digit, lift and derivatives by their known errors, and the
+result is computed again. The estimate is the largest change in a few trials, at cam angles all over
+the turn.
 
 Depends on curve, lost, wall, mechanism and laws; numpy only.
 """
@@ -29,27 +29,27 @@ from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.jets import Jet
 
 _LENGTHS, _ANGLES, _COEFFICIENTS = (n * float(np.finfo(float).eps) for n in (4, 4, 2.5))
-"""By what part of themselves numbers are moved, as many roundings as they may be the work of: sizes
-of the follower; cam angles, which knots are sums of; coefficients of the lift."""
+"""Relative perturbations, in roundings: of sizes of the follower; of cam angles, since knots are
+sums; of coefficients of the lift."""
 
 _SIZES: Final = (
     "start", *(one.name for one in fields(Mechanism) if isinstance(one.default, float))
 )  # fmt: skip
-"""Fields of a mechanism that are moved."""
+"""Fields of a mechanism that are perturbed."""
 
 _TRIES: Final = 4
 
 _PLACES: Final = 256
 _FEWEST: Final = 3
-"""Places over a turn's phases, and at least between cuts of the lift, the ends among them."""
+"""Number of cam angles over all phases, and least number between cuts of the lift, with ends."""
 
 Quantity = Callable[[CamCurve, Array, Array], Array | Plane]
-"""What ``quantity(curve, theta, found)`` tells of cam angles, rad, and lift with derivatives."""
+"""``quantity(curve, theta, found)``: a result at cam angles, rad, from lift and derivatives."""
 
 
 @dataclass(frozen=True, eq=False)
 class _State:
-    """Cam angles, rad, lift with three derivatives there, and by what sizes are multiplied."""
+    """Cam angles, rad, lift with three derivatives there, and factors of the sizes."""
 
     theta: Array
     found: Array
@@ -66,7 +66,7 @@ class _State:
 
 @dataclass(frozen=True, eq=False)
 class Moved(Brief):
-    """A lift whose numbers are moved.
+    """A lift with perturbed numbers.
 
     Parameters
     ----------
@@ -81,14 +81,14 @@ class Moved(Brief):
         """Pieces of the lift, and cam angles in them, at knots once for each side."""
         cuts, knots = self.program.cuts, self.program.knots
         index = np.searchsorted(knots, 0.5 * (cuts[:-1] + cuts[1:])) - 1
-        # all phases have as many, so that one cut up leaves enough to the others
+        # the same number for all phases, so that a divided one leaves enough to the others
         share = np.diff(cuts) / np.diff(knots)[index]
         counts = np.maximum(_FEWEST, (_PLACES // (len(knots) - 1) * share).astype(int))
         stretches = zip(cuts[:-1], cuts[1:], counts, strict=True)
         return np.repeat(index, counts), np.concatenate([np.linspace(*one) for one in stretches])
 
     def _states(self, index: Ints, theta: Array) -> list[_State]:
-        """Return the state at places as it is, and then moved."""
+        """Return the state at cam angles, first unperturbed and then perturbed."""
         lift, draw = self.program.lift, np.random.default_rng(0)
 
         def signs(shape: tuple[int, ...]) -> Array:
@@ -120,14 +120,14 @@ class Moved(Brief):
         ).tolist()
 
     def error(self, curve: CamCurve, quantity: Quantity) -> float:
-        """Return the error of a quantity, the largest of the turn.
+        """Return the largest error of a quantity over the turn.
 
         Parameters
         ----------
         curve : CamCurve
-            Of the cam, with the lift.
+            Curve of the cam, with the lift.
         quantity : callable
-            Where it has no value it does not count.
+            Angles without a value are ignored.
 
         Returns
         -------
@@ -143,7 +143,7 @@ class Moved(Brief):
         theta : (n,) array, rad
             Cam angles.
         curve : CamCurve
-            Of the cam, with the lift.
+            Curve of the cam, with the lift.
         quantity : callable
             Such as `profile_point`.
 
@@ -156,7 +156,7 @@ class Moved(Brief):
 
 
 def _changes(states: list[_State], curve: CamCurve, quantity: Quantity) -> Array:
-    """Return the largest change of a quantity at each place, 0 where it has no value."""
+    """Return the largest change of a quantity at each angle, 0 where it has no value."""
     with np.errstate(divide="ignore", invalid="ignore"):
         own, *others = (one.of(curve, quantity) for one in states)
         changes = np.max([np.abs(one - own) for one in others], axis=0)
@@ -175,13 +175,13 @@ def pitch_curvature(curve: CamCurve, theta: Array, found: Array) -> Array:
 
 
 def face_radius(curve: CamCurve, theta: Array, found: Array) -> Array:
-    """Return the radius of curvature of what a face envelops, mm (see `Quantity`)."""
+    """Return the radius of curvature of the envelope of a face, mm (see `Quantity`)."""
     contact = curve.contact_of(found, 0)
     return _array(contact.speed / contact.turning, theta)
 
 
 def contact_place(curve: CamCurve, theta: Array, found: Array) -> Array:
-    """Return where a face is touched, mm (see `Quantity`)."""
+    """Return the position of the contact along a face, mm (see `Quantity`)."""
     return _array(curve.contact_of(found, 0).place, theta)
 
 
@@ -199,7 +199,7 @@ def _array(values: Jet, theta: Array) -> Array:
 
 
 def undercut_error(moved: Moved, wall: Wall) -> float:
-    """Return the error of the cam angles between which a wall is undercut, rad.
+    """Return the error of the ends of a wall's undercut stretches, rad.
 
     Parameters
     ----------
@@ -211,7 +211,7 @@ def undercut_error(moved: Moved, wall: Wall) -> float:
     Returns
     -------
     float
-        That of knots at least, 0 where nothing is undercut.
+        At least that of knots; 0 if nothing is undercut.
     """
     ends = np.unique(wall.undercut)
     slopes = wall.curve.contact(ends).speed.derivatives()[1]
@@ -221,7 +221,7 @@ def undercut_error(moved: Moved, wall: Wall) -> float:
 
 
 def lost_lift_error(moved: Moved, wall: Wall) -> float:
-    """Return the error of the lift that trimming costs, mm or rad.
+    """Return the error of the lift lost by trimming, mm or rad.
 
     Parameters
     ----------
@@ -233,14 +233,14 @@ def lost_lift_error(moved: Moved, wall: Wall) -> float:
     Returns
     -------
     float
-        From how far both sides of a corner miss each other as drawn, and how steeply they cross.
+        From the gap between both sides of a corner, and the angle at which they cross.
     """
     worst, away = 0.0, wall.curve.mechanism.away
     points, misses = _corner_errors(moved, wall)
     for corner, loss in zip(wall.corners, wall.lost, strict=True):
         off = misses[np.abs(points - corner.point).argmin()]
         theta = Jet([np.array([loss.theta])])
-        # moved, a corner may be out of the follower's reach: it has no lift then
+        # a perturbed corner may be out of the follower's reach: then it has no lift
         with np.errstate(invalid="ignore"):
             lifts = [
                 resting(wall.mechanism, complex(point), away)(theta).derivatives()[0]
@@ -252,9 +252,9 @@ def lost_lift_error(moved: Moved, wall: Wall) -> float:
 
 
 def _corner_errors(moved: Moved, wall: Wall) -> tuple[Plane, Plane]:
-    """Return where trimming has left corners, and where to they may be off, (n, 2) both ways, mm.
+    """Return the corners left by trimming, and their errors in two directions, (n, 2), mm.
 
-    Each side may be off along its normal: then the corner moves along the other side.
+    Each side has an error along its normal, by which the corner moves along the other side.
     """
     drawn = replace(wall.drawn, curve=wall.curve)
     number = np.flatnonzero(drawn.corner)
@@ -269,7 +269,7 @@ def _corner_errors(moved: Moved, wall: Wall) -> tuple[Plane, Plane]:
 
 
 def _normal_errors(moved: Moved, wall: Wall, theta: Array) -> Array:
-    """Return the errors of a wall's place at cam angles (n,), rad, along its normal, mm."""
+    """Return position errors of a wall along its normal, mm, at cam angles (n,), rad."""
     s, ds = wall.program.derivatives(theta, 1)
     normals = -1j * wall.curve.trace(theta, s, ds, wall.curve.mechanism.radius)[1]
 
@@ -289,14 +289,14 @@ def play_error(moved: Moved, motion: PitchMotion, walls: tuple[Wall, ...], theta
     motion : PitchMotion
         Their motion.
     walls : tuple of Wall
-        That hold the follower.
+        Walls that hold the follower.
     theta : float, rad
-        Where the lost motion is largest.
+        Cam angle of the largest lost motion.
 
     Returns
     -------
     float
-        What the walls' points may be off there, as the follower feels it.
+        Position errors of the walls there, converted to lift.
     """
     place = np.array([theta])
     off = sum(float(_normal_errors(moved, wall, place)[0]) for wall in walls)

@@ -1,6 +1,6 @@
 """The points of a cam profile: cleaned, and bounded by blocks.
 
-Refused: fewer than eight points, of a plate fewer than three, numbers that are not finite, a
+Refused: fewer than eight points, for a plate fewer than three, numbers that are not finite, a
 profile that does not go around the cam's axis once.
 """
 
@@ -19,13 +19,13 @@ from gearcam.numeric.bulges import as_complex
 from gearcam.numeric.sampling import FEWEST
 
 _CORNER: Final = 0.5
-"""Turn between two chords of a plate, rad, that hardly a curve makes: one of its corners."""
+"""Angle between two chords of a plate, rad, too large for a curve: a corner."""
 
 _LEAST: Final = 3
-"""Points of a plate at least: it may be straight from corner to corner."""
+"""Least number of points of a plate: it may be straight between corners."""
 
 _BLOCK: Final = 8
-"""Chords of a block at least, where there are as many."""
+"""Least number of chords of a block, if there are as many."""
 
 _ALIKE: Final = 1e-12
 """Distance over the profile's size below which neighbours are one point: rounding."""
@@ -38,11 +38,11 @@ class ProfilePoints:
     Parameters
     ----------
     points : (n,) complex array, mm
-        Counter-clockwise around the cam's axis at 0, no neighbours alike, first not repeated.
+        Counter-clockwise around the cam's axis at 0, no equal neighbours, first not repeated.
     corner : float, rad
-        Turn from which on a point is a corner, whose chords are straight.
+        Angle from which on a point is a corner, whose chords are straight.
     missed : float, mm
-        What any chord may miss; 0 where that is not known.
+        Chord error of the points; 0 if unknown.
     """
 
     points: Plane
@@ -56,14 +56,14 @@ class ProfilePoints:
 
     @cached_property
     def chords(self) -> Plane:
-        """From each point to the next, mm."""
+        """Vectors from each point to the next, mm."""
         return np.roll(self.points, -1) - self.points
 
     @cached_property
     def sagitta(self) -> Array:
-        """Estimated height of the curve over each chord, mm: the larger of those from its ends."""
+        """Estimated height of the curve over each chord, mm: the larger of those from both ends."""
         length, turn = np.abs(self.chords), self._turns.copy()
-        # all of a turn may be in the arc over one chord, but no chord misses more than it may
+        # the arc over one chord may contain all of the angle, limited by the given chord error
         bent = _bent(turn)
         arcs = 0.25 * length * np.maximum(bent, np.roll(bent, -1))
         turn[np.abs(turn) >= self.corner] = 0.0
@@ -73,13 +73,13 @@ class ProfilePoints:
 
     @cached_property
     def hollow(self) -> Array:
-        """The same below each chord, mm: of one that turns left at both ends what it may miss."""
+        """The same below each chord, mm; the chord error if the curve turns left at both ends."""
         right = np.minimum(self._turns, np.roll(self._turns, -1)) < 0.0
         return np.where(right, self.sagitta, np.minimum(self.sagitta, self.missed))
 
     @cached_property
     def _turns(self) -> Array:
-        """Turn at each point from the chord before, rad."""
+        """Angle at each point from the chord before, rad."""
         return np.angle(self.chords * np.conj(np.roll(self.chords, 1)))
 
     @cached_property
@@ -89,10 +89,10 @@ class ProfilePoints:
         Returns
         -------
         chords : (b, k) int array
-            Their numbers; the last block begins earlier, so that it is full too.
+            Their numbers; the last block overlaps the one before, so that it is full too.
         middle : (b,) complex array, mm
         radius : (b,) array, mm
-            The estimated heights of the curve are counted twice.
+            With twice the estimated heights of the curve.
         """
         count = len(self.points)
         width = min(count, max(_BLOCK, math.isqrt(count) // 2))
@@ -105,20 +105,21 @@ class ProfilePoints:
 
 
 def _bent(turn: Array) -> Array:
-    """Return the largest turns of curves at points, rad.
+    """Return the largest angles of curves at points, rad.
 
-    Beside one to the other side a turn is what is left of bends to both: as large as that one.
+    Next to an angle of opposite sign both may be differences of larger bends: at least as large as
+    their neighbour.
     """
     besides = [np.roll(turn, step) for step in (-1, 1)]
     return np.max([np.abs(turn), *(-np.sign(turn) * one for one in besides)], axis=0)
 
 
 def _heights(length: Array, turn: Array) -> Array:
-    """Return heights of a curve over chords, mm, from the turns at their starts, rad.
+    """Return heights of a curve over chords, mm, from the angles at their starts, rad.
 
-    Both chords of a turn are taken to stand off the curve alike, as far as the turn before is as
-    large: a long chord between short ones is straight. By what the turn is larger the chord itself
-    is bent, as over a gap in the points, at most as the circle through both chords.
+    Up to the size of the angle before, both chords at an angle have equal heights: a long chord
+    between short ones is straight. Any excess of the angle is a bend of the chord itself, as over a
+    gap in the points, at most that of the circle through both chords.
     """
     before = np.roll(length, 1)
     bend = 0.25 * np.abs(turn) * length / (length + before)
@@ -134,11 +135,11 @@ def profile_points(
     Parameters
     ----------
     points : (n,) complex array or (n, 2) array, mm
-        A closed profile in order, either way around; equal neighbours are dropped.
+        A closed profile in order, in either sense; equal neighbours are dropped.
     around : bool
-        Whether it goes around the cam's axis; one that slides has none.
+        Whether it goes around the cam's axis, as for a cam that turns.
     missed : float, mm
-        What any chord may miss; 0 where that is not known.
+        Chord error of the points; 0 if unknown.
 
     Returns
     -------
@@ -147,12 +148,12 @@ def profile_points(
     Raises
     ------
     InfeasibleError
-        If the points are no closed profile around the cam's axis.
+        If the points are not a closed profile around the cam's axis.
     """
     z = in_plane(points)
     if not np.all(np.isfinite(z)):
         raise InfeasibleError(
-            "the profile holds numbers that are not finite",
+            "the profile contains numbers that are not finite",
             where=f"point {int(np.argmin(np.isfinite(z)))}",
         )
     z = z[np.abs(z - np.roll(z, 1)) > _ALIKE * np.abs(z).max(initial=0.0)]
@@ -172,7 +173,7 @@ def profile_points(
             value=turns,
             limit=1.0,
             unit="turns",
-            nearest="one closed line in order, with the origin inside",
+            nearest="give one closed line in order, with the origin inside",
         )
     return ProfilePoints(points=z if turns > 0.0 else z[::-1].copy(), missed=missed)
 

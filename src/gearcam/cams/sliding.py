@@ -1,13 +1,14 @@
 """A translating cam: a plate that slides past its follower, with one wall or with a groove.
 
-Everything that turns for a disc cam slides here (see `mechanism`). A wall is open; its plate closes
-it: beyond its ends it goes on level, down (or up) to the straight edge of the metal. The groove is
-closed at both ends by the roller's circle, so that the plate stays in one piece.
+The rotation of a disc cam is a translation here (see `mechanism`). A wall is open and is closed by
+its plate: beyond its ends the outline continues level, then down (or up) to the straight edge of
+the metal. The groove is closed at both ends by the roller's circle, so that the plate stays in one
+piece.
 
-Frame: people see the mirror image, as of a cam that turns clockwise: the cam moves by u along
-``+x``, a follower's centre stands at ``(-u, s)`` in the cam's frame.
+Frame: output is the mirror image, as for a cam that turns clockwise: the cam moves by u along
+``+x``, a follower's centre is at ``(-u, s)`` in the cam's frame.
 
-Refused: arms that stand upright, plates that do not hold their walls.
+Refused: arms that get perpendicular to the travel, plates that are too small for their walls.
 
 Depends on cam, lost_motion, sliding_wall, wall and mechanism.
 """
@@ -34,10 +35,10 @@ from gearcam.numeric.bulges import as_complex
 from gearcam.numeric.contour import Contour
 
 _UPRIGHT = 0.5 * math.pi
-"""Angle of an arm over a sliding cam, rad, at which its roller no longer goes along the cam."""
+"""Largest angle of an arm over a sliding cam, rad: its roller must move along the cam."""
 
 _FAR = 3.0
-"""How large a plate is tried, over the least: bolts stand beside what is cut into it."""
+"""Size of a plate in remedies, over the least: bolts need space next to the groove."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -47,11 +48,11 @@ class SlidingCam(Brief, Cam):
     Parameters
     ----------
     motion : PitchMotion
-        Of its follower.
+        Motion of its follower.
     lower : SlidingWall
         The wall below the follower.
     upper : SlidingWall or None
-        That above it, of a groove.
+        For a groove: the wall above it.
     """
 
     motion: PitchMotion
@@ -60,7 +61,7 @@ class SlidingCam(Brief, Cam):
 
     @property
     def walls(self) -> tuple[SlidingWall, ...]:
-        """The wall below the follower, of a groove also that above it."""
+        """The wall below the follower, and for a groove also that above it."""
         return (self.lower,) if self.upper is None else (self.lower, self.upper)
 
     @property
@@ -70,17 +71,17 @@ class SlidingCam(Brief, Cam):
 
     @property
     def way(self) -> float:
-        """How far it slides, mm."""
+        """Travel, mm."""
         return self.motion.mechanism.driver.turn
 
     @property
     def width(self) -> float:
-        """Of the groove, mm."""
+        """Width of the groove, mm."""
         return 2.0 * self.lower.mechanism.radius
 
     @property
     def plate(self) -> Plate:
-        """What it is cut from."""
+        """The plate from which it is cut."""
         return self.lower.plate
 
     @cached_property
@@ -94,7 +95,7 @@ class SlidingCam(Brief, Cam):
 
     @cached_property
     def edge(self) -> Contour:
-        """The plate's edge, of a cam with one wall with that wall."""
+        """The plate's outline, including the wall of a cam with one wall."""
         plate = self.plate
         if self.upper is None:
             return self.lower.contour
@@ -105,7 +106,7 @@ class SlidingCam(Brief, Cam):
 
     @cached_property
     def groove(self) -> Contour | None:
-        """The edge of the groove, its ends half circles; None of a cam with one wall."""
+        """The outline of the groove, with half-round ends; None for a cam with one wall."""
         lower, upper = self.lower, self.upper
         if upper is None:
             return None
@@ -118,7 +119,7 @@ class SlidingCam(Brief, Cam):
         return joined(stretches, lower)
 
     def picture(self) -> str:
-        """Return a picture of plate, groove and pitch curve, SVG, in the cam's frame."""
+        """Return a drawing of plate, groove and pitch curve, SVG, in the cam's frame."""
         from gearcam.markup import outlines
 
         groove = [] if self.groove is None else [self.groove.vertices]
@@ -127,7 +128,7 @@ class SlidingCam(Brief, Cam):
 
     @cached_property
     def facts(self) -> Facts:
-        """What the cam knows of itself; the facts of its result tell more."""
+        """Facts of the cam; the facts of its result contain more."""
         tree = {
             "total_lift": self.motion.total_lift,
             "way_mm": Fact(self.way, "way"),
@@ -146,7 +147,7 @@ def make_sliding(
     clearance: float = 0.0,
     tolerance: float = CHORD_TOLERANCE,
 ) -> SlidingCam:
-    """Return a translating cam after proving that its follower and its plate can be.
+    """Return a translating cam, verified for its follower and its plate.
 
     Parameters
     ----------
@@ -155,10 +156,10 @@ def make_sliding(
     mechanism : Mechanism
         The follower of a cam that slides.
     height : float, mm
-        Of the plate; that of a cam with one wall is highest where the lift is.
+        Height of the plate; for a cam with one wall at the highest lift.
     length : float, mm, optional
-        Of the plate; where left out as long as its wall, or with half the groove's width beyond
-        the groove at both ends.
+        Length of the plate; by default that of its wall, or of the groove and half its width beyond
+        both ends.
     groove : bool
         Whether a second wall holds the roller from above.
     clearance : float, mm
@@ -173,7 +174,7 @@ def make_sliding(
     Raises
     ------
     InfeasibleError
-        If they cannot.
+        If one of them is impossible.
     """
     if mechanism.oscillating:
         _demand_swing(program, mechanism)
@@ -196,24 +197,24 @@ def make_sliding(
 
 
 def _demand_swing(program: Program, mechanism: Mechanism) -> None:
-    """Refuse an arm that stands upright, or nearly so."""
+    """Refuse an arm that gets perpendicular to the travel, or nearly so."""
     low, high = (mechanism.start + lift for lift in program.range)
     if not -_UPRIGHT < low <= high < _UPRIGHT:
         past = low if low <= -_UPRIGHT else high
         raise InfeasibleError(
-            "the arm swings too far: it stands upright on the cam",
+            "the arm swings too far: it gets perpendicular to the cam's travel",
             where="motion",
             value=math.degrees(past - mechanism.start),
             limit=math.degrees(math.copysign(_UPRIGHT, past) - mechanism.start),
             unit="deg",
-            nearest="these are lifts",
+            nearest="value and limit are lifts",
         )
 
 
 def _plate(
     program: Program, mechanism: Mechanism, height: float, length: float | None, groove: bool
 ) -> Plate:
-    """Return the plate of a cam, of a mechanism with half the groove's width."""
+    """Return the plate of a cam; the mechanism's radius is half the groove's width."""
     radius, sides = mechanism.radius, (1.0, -1.0) if groove else (1.0,)
     theta = np.array([0.0, 2.0 * math.pi])
     s, ds = program.derivatives(theta, 1)
@@ -240,11 +241,11 @@ def _plate(
 def _too_small(key: str, word: str, value: float, limit: float) -> InfeasibleError:
     where = f"blank.{key}"
     return InfeasibleError(
-        f"the plate is not {word} enough for what is cut into it",
+        f"the plate is not {word} enough for the cam",
         where=where,
         value=value,
         limit=limit,
         unit="mm",
-        nearest="a plate just above the limit has no metal left there",
+        nearest="at the limit no metal is left there",
         ways=(Way(near={where: limit}, far={where: _FAR * limit}),),
     )

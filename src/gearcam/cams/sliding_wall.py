@@ -1,9 +1,9 @@
-"""Open walls of a plate that slides, and the contours that they make with its edges.
+"""Open walls of a plate that slides, and the contours that they form with its edges.
 
 A *stretch* is a part of a contour: runs, and the vertices of its polygon. Beyond its ends a wall
-follows the roller until it is level, and so to the plate's end.
+follows the roller until it is level, and continues level to the plate's end.
 
-Refused: walls that are narrower than their chords are exact.
+Refused: walls that are narrower than their chord error.
 
 Depends on wall, trim and numeric.
 """
@@ -32,22 +32,22 @@ _FEWEST = 8
 """Fewest chords of an arc."""
 
 _ALIKE = 1e-11
-"""Distance of corners, in sizes of the plate, below which they are one: rounding."""
+"""Distance of corners, in sizes of the plate, below which they are merged: rounding."""
 
 Stretch = tuple[tuple[Run, ...], Array]
-"""Runs of a part of a contour, and its vertices, (n, 2), but for the last, mm."""
+"""Runs of a part of a contour, and its vertices, (n, 2), mm, without the last."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Plate(Brief):
-    """The plate that a translating cam is cut from, mm, in the cam's frame.
+    """The plate from which a translating cam is cut, mm, in the cam's frame.
 
     Parameters
     ----------
     left, right : float
         Its ends.
     low, high : float
-        Its edges; a cam with one wall has no upper one.
+        Its lower and upper edge; a cam with one wall has no upper edge.
     """
 
     left: float
@@ -63,19 +63,19 @@ class SlidingWall(Wall):
     Parameters
     ----------
     plate : Plate
-        What it is cut from.
+        The plate from which it is cut.
     """
 
     plate: Plate
 
     @cached_property
     def line(self) -> Array:
-        """Vertices of the wall, (n, 2), mm, from the beginning of the way to its end."""
+        """Vertices of the wall, (n, 2), mm, from the beginning of the travel to its end."""
         return as_pairs(self.sampler.chords[1])
 
     @cached_property
     def pitch_line(self) -> Array:
-        """Vertices of the pitch curve, (n, 2), mm, from the beginning of the way to its end."""
+        """Vertices of the pitch curve, (n, 2), mm, from the beginning of the travel to its end."""
         return as_pairs(self._pitch_sampler.chords[1])
 
     def stretch(self, *, reverse: bool = False) -> Stretch:
@@ -85,7 +85,7 @@ class SlidingWall(Wall):
 
     @cached_property
     def contour(self) -> Contour:
-        """The metal behind the wall, counter-clockwise, proved to be a simple curve."""
+        """Outline of the metal behind the wall, counter-clockwise, verified to be simple."""
         ways = np.diff(self.line[:, 0])
         seen_whole = bool(np.all(ways > 0.0) or np.all(ways < 0.0))
         if not seen_whole and not self._metal.polygon.is_valid:
@@ -114,7 +114,7 @@ class SlidingWall(Wall):
         return joined(around, self)
 
     def _level(self, which: int, limit: float) -> tuple[list[Stretch], Array]:
-        """Return the way on from an end of the wall, and where it has become level.
+        """Return the continuation from an end of the wall, and the point where it is level.
 
         It follows the roller's circle where that reaches farther than the wall, up to a limit.
         """
@@ -131,7 +131,7 @@ class SlidingWall(Wall):
 
 
 def _turned(stretches: Sequence[Stretch]) -> list[Stretch]:
-    """Return stretches the other way."""
+    """Return stretches in the opposite sense."""
     made = []
     for runs, vertices in stretches:
         back = tuple(run.reversed for run in reversed(runs))
@@ -145,7 +145,7 @@ def straight(corners: Array) -> Stretch:
     Parameters
     ----------
     corners : (n, 2) array, mm
-        From one to the next, all over the plate; between those that are one there is no run.
+        Corners in order; there is no run between merged ones.
 
     Returns
     -------
@@ -170,7 +170,7 @@ def arc(wall: Wall, center: complex, start: complex, turn: float) -> Stretch:
     center, start : complex, mm
         Its centre and its beginning.
     turn : float, rad
-        From there to its end, counter-clockwise positive.
+        Angle from there to its end, counter-clockwise positive.
 
     Returns
     -------
@@ -197,7 +197,7 @@ def joined(stretches: Sequence[Stretch], wall: Wall) -> Contour:
     stretches : sequence of Stretch
         In order, counter-clockwise, each beginning where the one before it ends.
     wall : Wall
-        With the tolerance, and the chord error that they have at most.
+        With the tolerance, and the largest chord error.
 
     Returns
     -------

@@ -1,10 +1,10 @@
 """Curvature from three neighbouring points, and how far it can be trusted.
 
-The circle through three points of a curve has about the curve's curvature at the middle one: the
-error falls with the square of the spacing where curvature and spacing change smoothly, with the
-spacing where neighbours are unevenly far apart, and not at all at the points next to a jump.
+The circle through three points of a curve has approximately the curve's curvature at the middle
+point: the error falls with the square of the spacing where curvature and spacing change smoothly,
+with the spacing itself where it is uneven, and not at all next to a jump of the curvature.
 
-Refused: fewer than three points, neighbours that are one point.
+Refused: fewer than three points, equal neighbours.
 
 Source: 004 section 8, which takes the circle's radius and centre; the curvature of the same circle
 here is a cross product over three sides, with no division by zero on straight parts.
@@ -56,13 +56,13 @@ def three_point_curvature(points: Plane | Array, closed: bool = True) -> Array:
     Returns
     -------
     (n,) array, 1/mm
-        Positive where the curve turns left: convex, if it runs counter-clockwise. Of an open curve
+        Positive where the curve turns left: convex, if it runs counter-clockwise. For an open curve
         (n - 2,), without its ends.
 
     Raises
     ------
     InfeasibleError
-        If there are fewer than three points, or neighbours are one point.
+        If there are fewer than three points, or equal neighbours.
     """
     z = in_plane(points)
     if len(z) < 3:
@@ -77,7 +77,7 @@ def three_point_curvature(points: Plane | Array, closed: bool = True) -> Array:
             "a point and its neighbours are not three different points",
             where=f"point {int(np.argmin(sides > 0.0)) + int(not closed)}",
         )
-    # before x after = before x (after - before): two like steps lose no digits in the product
+    # before x after = before x (after - before): the product of similar steps loses no digits
     return 2.0 * (np.conj(before) * (after - before)).imag / sides
 
 
@@ -88,7 +88,7 @@ def curvature_study(
     period: float = 2.0 * math.pi,
     closed: bool = True,
 ) -> CurvatureStudy:
-    """Compare the curvature from three points with the exact one, for rising numbers of points.
+    """Return errors of the curvature from three points, for rising numbers of points.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def curvature_study(
     period : float
         Range of u.
     closed : bool
-        Whether it ends where it begins; of an open curve the ends have no curvature.
+        Whether it ends where it begins; the ends of an open curve have no curvature.
 
     Returns
     -------

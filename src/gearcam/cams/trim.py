@@ -1,10 +1,10 @@
-"""Trimming: what is left of a profile when the follower's own passing has cut it.
+"""Trimming: removal of the parts of a profile that the follower would cut off.
 
 An undercut profile crosses itself: between two crossings it lies where the follower passes at
-another angle. What is left is the region of positive winding number that holds the axis (see
-`gearcam.numeric.crossings`), and its corners are crossings of the curve with itself.
+another angle. The remaining profile bounds the region of positive winding number that contains the
+axis (see `gearcam.numeric.crossings`), and its corners are self-crossings of the curve.
 
-Refused: crossings that cannot be told apart, and hundreds of undercut stretches.
+Refused: crossings that cannot be separated, and hundreds of undercut stretches.
 
 Depends on curve and numeric.
 """
@@ -26,49 +26,49 @@ from gearcam.numeric.crossings import Branch, Chain, Ring, remaining, rows_betwe
 from gearcam.numeric.sampling import Sampler
 
 _PROBES = 33
-"""Places on each segment at which its chords are counted."""
+"""Points on each segment at which its number of chords is computed."""
 
 _EFFORT = 1e-6
-"""Chords that a straight piece between probes is given, so that the count rises everywhere."""
+"""Chords assigned to a straight piece between probes, so that their number rises everywhere."""
 
 _AROUND = 97
-"""Places in and beside every undercut stretch: its loop is seen at its own size."""
+"""Points in and next to every undercut stretch, so that its loop is resolved."""
 
 _BESIDE = 3.0
-"""How far beside, in widths of the stretch: the loop closes within twice of it."""
+"""Distance of these points to both sides, in widths of the stretch: loops close within twice."""
 
 _RUNS = 8.0
-"""Run before and after a way that is tried where a wall is undercut there, in followers' radii."""
+"""Run-in and run-out tried as remedy where a wall is undercut at its ends, in follower radii."""
 
 _ROUNDS = 8
-"""Times that chords are made four times finer where crossings are not told apart."""
+"""How often chords are made four times finer if crossings are not separated."""
 
 _MOST = 500
-"""Undercut stretches that are trimmed: of more, each crosses hundreds of others."""
+"""Largest number of undercut stretches: with more, each crosses hundreds of others."""
 
 _OVERLAP = 1e-12
-"""Angle, rad, by which an undercut stretch may reach into what is left: rounding."""
+"""Angle, rad, by which an undercut stretch may reach into the remaining profile: rounding."""
 
 _MISS = 1e-12
 """Distance of two curves at their crossing, in sizes of the cam: rounding of points."""
 
 _JOINED = 0.1
-"""Part of the chord tolerance by which sides may miss each other at a corner."""
+"""Largest gap between the sides of a corner, as a share of the chord tolerance."""
 
 _ROUNDING = 4.0 * np.finfo(float).eps
-"""Part of an angle by which it is rounded where two curves cross: a steep curve moves far by it."""
+"""Relative rounding of an angle at a crossing: a steep curve moves far by it."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Corner(Brief):
-    """A corner where trimming has cut.
+    """A corner left by trimming.
 
     Parameters
     ----------
     point : complex, mm
         In the cam's frame.
     before, after : float, rad
-        Cam angles at which its two sides are drawn; between them the follower rests on it.
+        Cam angles of its two sides; between them the follower rests on it.
     """
 
     point: complex
@@ -77,12 +77,12 @@ class Corner(Brief):
 
 
 def star_shaped(points: Plane, tangents: Plane, slides: bool = False) -> bool:
-    """Return whether a curve is seen whole from the axis: it then cannot cross itself.
+    """Return whether a curve is star-shaped about the axis: then it cannot cross itself.
 
     Parameters
     ----------
     points, tangents : complex arrays, mm and 1
-        All along the curve, which is drawn forward everywhere.
+        All along the curve, which runs forward everywhere.
     slides : bool
         Whether the cam slides: its axis is infinitely far below.
     """
@@ -95,7 +95,7 @@ def star_shaped(points: Plane, tangents: Plane, slides: bool = False) -> bool:
 def trimmed(
     segments: ProfileSegments, undercut: Sequence[tuple[float, float]], tolerance: float
 ) -> tuple[ProfileSegments, tuple[Corner, ...]]:
-    """Return what is left of a profile, with its corners.
+    """Return the trimmed profile, with its corners.
 
     Parameters
     ----------
@@ -104,34 +104,34 @@ def trimmed(
     undercut : sequence of (float, float)
         Cam angles between which it runs backwards, rad.
     tolerance : float, mm
-        Chord error of the polygons in which crossings are sought.
+        Chord error of the polygons in the search for crossings.
 
     Returns
     -------
     segments : ProfileSegments
-        Those that are left, beginning at a corner if there is one.
+        The remaining segments, beginning at a corner if there is one.
     corners : tuple of Corner
-        In the order of drawing.
+        In order of the segments.
 
     Raises
     ------
     InfeasibleError
-        If the crossings cannot be told apart, or are too many.
+        If the crossings cannot be separated, or are too many.
     """
     if len(undercut) > _MOST:
         raise InfeasibleError(
-            "the profile is undercut in so many places that what is left of it is not sought",
+            "the profile is undercut in too many places to be trimmed",
             where="[cam]",
             value=len(undercut),
             limit=_MOST,
-            nearest="a lift with fewer waves, or less noise, has fewer of them",
+            nearest="use a lift with fewer waves or less noise",
         )
     for number in range(_ROUNDS):
         chain = _chain(segments, undercut, tolerance * 0.25**number)
         rings = [
             ring for ring in remaining(segments, [chain])[0] if chain.open or _about_axis(ring)
         ]
-        # chords that are too long may have missed a loop
+        # too long chords may have missed a loop
         if len(rings) == 1 and _meets(segments, rings[0], float(np.abs(chain.points).max())):
             made = cut_out(segments, rings[0].branches) if rings[0].crossed else (segments, ())
             if not _backwards(made[0], undercut):
@@ -139,20 +139,20 @@ def trimmed(
     if segments.curve.program.open:
         run, runs = _RUNS * abs(segments.inset), ("cam.run_in_mm", "cam.run_out_mm")
         raise InfeasibleError(
-            "the wall is undercut where its way begins or ends: what is left cannot be told",
+            "the wall is undercut at the beginning or end of its travel and cannot be trimmed",
             where="[cam]",
-            nearest="longer run_in_mm and run_out_mm leave room for what is cut away",
+            nearest="use longer run_in_mm and run_out_mm",
             ways=(Way(near=dict.fromkeys(runs, 0.0), far=dict.fromkeys(runs, run)),),
         )
     raise InfeasibleError(
-        "the profile crosses itself so often that what is left cannot be told",
+        "the profile has too many self-intersections: the trimmed profile cannot be determined",
         where="[cam]",
-        nearest="no piece of it has a place in the order of the others",
+        nearest="its pieces do not join to one closed line",
     )
 
 
 def _backwards(segments: ProfileSegments, undercut: Sequence[tuple[float, float]]) -> bool:
-    """Return whether anything is left that runs backwards."""
+    """Return whether any remaining part runs backwards."""
     if np.any(segments.backward):
         return True
     start, end = segments.start[~segments.jump], segments.end[~segments.jump]
@@ -163,12 +163,12 @@ def _backwards(segments: ProfileSegments, undercut: Sequence[tuple[float, float]
 
 
 def _meets(segments: ProfileSegments, ring: Ring, size: float) -> bool:
-    """Return whether curves meet at the crossings of a ring, as near as rounding allows."""
+    """Return whether curves meet at the crossings of a ring, within rounding."""
     places = [place for branch in ring.branches for place in branch]
     index, parameter = (np.array(values) for values in zip(*places, strict=True))
     rounding = _ROUNDING * np.abs(parameter)
     ends = np.sort([segments.start[index], segments.end[index]], axis=0)
-    # a curve that stands at its beginning may be fast within the rounding of an angle
+    # a curve at rest at its beginning may be fast within the rounding of an angle
     beside = (np.clip(parameter + shift, *ends) for shift in (-rounding, 0.0, rounding))
     ways = [rounding * np.abs(segments.moving(index, place)[1]) for place in beside]
     return ring.gap <= _MISS * size + float(np.max(ways))
@@ -177,19 +177,19 @@ def _meets(segments: ProfileSegments, ring: Ring, size: float) -> bool:
 def demand_joined(segments: ProfileSegments, tolerance: float) -> None:
     """Refuse a profile whose sides do not meet at its corners.
 
-    Where it moves far within the rounding of a cam angle, crossings are no better than that.
+    Crossings are limited by the movement of the profile within the rounding of a cam angle.
 
     Parameters
     ----------
     segments : ProfileSegments
-        All that is left of it.
+        The trimmed profile.
     tolerance : float, mm
         Its chord tolerance.
 
     Raises
     ------
     InfeasibleError
-        If sides stay farther apart than a tenth of it.
+        If sides are farther apart than a tenth of it.
     """
     number = np.arange(len(segments.start))
     after = np.roll(number, -1)
@@ -204,18 +204,18 @@ def demand_joined(segments: ProfileSegments, tolerance: float) -> None:
         return
     fast = max(sides, key=lambda side: float(np.abs(segments.moving(*side)[1][worst])))
     raise InfeasibleError(
-        "the lift changes so abruptly that two sides of a corner miss each other by the rounding "
+        "the lift changes so abruptly that the two sides of a corner differ by rounding "
         "of cam angles",
         where=segments.curve.mechanism.driver.told(float(segments.states(*fast)[0][worst])),
         value=gap,
         limit=limit,
         unit="mm",
-        nearest="the limit is a tenth of the chord tolerance; a longer phase there leaves less",
+        nearest="the limit is a tenth of the chord tolerance; use a longer phase there",
     )
 
 
 def _about_axis(ring: Ring) -> bool:
-    """Return whether a ring holds the axis."""
+    """Return whether a ring contains the axis."""
     p = ring.polygon
     return float(np.angle(np.roll(p, -1) * np.conj(p)).sum()) > math.pi
 
@@ -223,7 +223,7 @@ def _about_axis(ring: Ring) -> bool:
 def _chain(
     segments: ProfileSegments, undercut: Sequence[tuple[float, float]], tolerance: float
 ) -> Chain:
-    """Cut every segment into chords, finely around undercut stretches; counter-clockwise."""
+    """Return all segments as chords, fine around undercut stretches, counter-clockwise."""
     number, low, high = [], [], []
     beside = _beside(undercut)
     for k in range(len(segments.start)):
@@ -249,29 +249,29 @@ def _chain(
     highs = np.concatenate(high)
     if segments.curve.program.open:
         curve, lows = np.append(curve, curve[-1]), np.append(lows, highs[-1])
-    points = np.conj(segments.at(curve, lows)[0])  # a cam is drawn clockwise
+    points = np.conj(segments.at(curve, lows)[0])  # a cam's curve runs clockwise
     curve, lows = curve[: len(highs)], lows[: len(highs)]
     return Chain(curve=curve, low=lows, high=highs, points=points)
 
 
 def _beside(stretches: Sequence[tuple[float, float]]) -> Array:
-    """Return places in and beside undercut stretches, also a turn on and back, in rising order."""
+    """Return angles in and next to undercut stretches, also a turn before and after, rising."""
     low, high = np.reshape(stretches, (-1, 2)).T
     more = _BESIDE * (high - low)
     places = np.linspace(low - more, high + more, _AROUND)
-    turns = 2.0 * math.pi * np.array([-1.0, 0.0, 1.0])  # of an open curve nothing lies there
+    turns = 2.0 * math.pi * np.array([-1.0, 0.0, 1.0])  # an open curve has nothing there
     return np.sort((places + turns[:, None, None]).ravel())
 
 
 def crossing_chords(
     called: str, sampler: Sampler, contour: Callable[[Sampler], Contour]
 ) -> InfeasibleError:
-    """Return the refusal of chords that cross: finer ones may not, where a profile is narrow.
+    """Return the error for chords that cross; where a profile is narrow finer ones may not.
 
     Parameters
     ----------
     called : str
-        What people call the profile.
+        Name of the profile in messages.
     sampler : Sampler
         With the tolerance of the chords.
     contour : callable
@@ -282,38 +282,38 @@ def crossing_chords(
         if contour(finer).polygon.is_valid:
             key = "output.chord_tolerance_mm"
             return InfeasibleError(
-                f"the {called} is so narrow somewhere that its chords cross",
+                f"the {called} has a part so narrow that its chords cross",
                 where=key,
                 value=sampler.tolerance,
                 limit=finer.tolerance,
                 unit="mm",
-                nearest="with the limit they do not",
+                nearest="at the limit they do not",
                 ways=(Way(near={key: finer.tolerance}),),
             )
     return InfeasibleError(
-        f"the {called} crosses itself, and what is left of it cannot be told",
+        f"the {called} crosses itself: the trimmed profile cannot be determined",
         where="[cam]",
-        nearest="no piece of it has a place in the order of the others",
+        nearest="its pieces do not join to one closed line",
     )
 
 
 def cut_out(
     segments: ProfileSegments, branches: Sequence[Branch]
 ) -> tuple[ProfileSegments, tuple[Corner, ...]]:
-    """Return what is left of a curve.
+    """Return the remaining parts of a curve.
 
     Parameters
     ----------
     segments : ProfileSegments
         The whole curve.
     branches : sequence of Branch
-        What is left of it, in the order of drawing; each ends where the next one begins, the last
-        where the first does or at an open curve's end.
+        The remaining branches in order; each ends where the next one begins, the last where the
+        first begins or at an open curve's end.
 
     Returns
     -------
     segments : ProfileSegments
-        What is left, beginning at a corner.
+        The remaining segments, beginning at a corner.
     corners : tuple of Corner
         At the ends of the branches.
     """

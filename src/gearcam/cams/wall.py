@@ -1,12 +1,12 @@
-"""Walls of a cam: where one side of its follower's pitch motion cuts, trimmed.
+"""Walls of a cam: the trimmed edges that one side of its follower's pitch motion cuts.
 
-A cam is a list of walls of one *pitch motion*: a lift program that moves a follower. A disc cam has
-one wall, inside the pitch curve; a groove has one on either side.
+A cam has walls of one *pitch motion*: a lift program that moves a follower. A disc cam has one
+wall, inside the pitch curve; a groove has one on either side.
 
-Nothing is computed before it is asked for. Everything is computed for a cam that turns
-counter-clockwise; only contours and drawn curves are mirrored for the other direction.
+Values are computed when first used, for a cam that turns counter-clockwise; only contours and drawn
+curves are mirrored for the other direction.
 
-Refused: profiles that cross themselves so that what is left cannot be told.
+Refused: profiles that cross themselves and cannot be trimmed.
 
 Depends on curve, measures, loops, trim, lost and numeric.
 """
@@ -37,10 +37,10 @@ from gearcam.numeric.jets import Jet
 from gearcam.numeric.sampling import Sampler
 
 CHORD_TOLERANCE = 1e-3
-"""Chord tolerance where the design gives none, mm."""
+"""Default chord tolerance, mm."""
 
 _TURN = [(0.0, 2.0 * math.pi)]
-"""The whole turn, as stretches of it."""
+"""The whole turn, as a list of stretches."""
 
 OVERSAMPLING = 8
 """Dense points per chord: their own chord error is 1/64 of the polygon's."""
@@ -48,12 +48,12 @@ OVERSAMPLING = 8
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class PitchMotion(Brief):
-    """A follower that a lift moves against a cam.
+    """The motion of a follower with a lift, on a cam.
 
     Parameters
     ----------
     program : Program
-        The lift asked for.
+        The given lift.
     mechanism : Mechanism
         The follower.
     clockwise : bool
@@ -61,9 +61,9 @@ class PitchMotion(Brief):
     tolerance : float, mm
         Chord error of contours.
     key : str
-        What names of its files and facts end in; empty of a cam's only one.
+        Ending of names of its files and facts; empty for a cam's only motion.
     called : str
-        What people call what is cut.
+        Name of the cut edge in messages.
     """
 
     program: Program
@@ -75,23 +75,23 @@ class PitchMotion(Brief):
 
     @cached_property
     def curve(self) -> CamCurve:
-        """The curves of the cam as it turns counter-clockwise."""
+        """The untrimmed curves of the cam, turning counter-clockwise."""
         return CamCurve(program=self.program, mechanism=self.mechanism)
 
     @property
     def total_lift(self) -> Fact:
-        """From the lowest to the highest lift, for people."""
+        """Total lift, from the lowest to the highest, in the unit of output."""
         low, high = self.program.range
         scale, unit = self.mechanism.outward
         return Fact(scale * (high - low), "lift", unit=unit)
 
     @cached_property
     def _ranges(self) -> dict[tuple[str, str], Range | None]:
-        """The ranges that were asked for, by what is told of and the kind of phase."""
+        """Cached ranges, by quantity and kind of phase."""
         return {}
 
     def _range(self, what: str, pick: Callable[[Contact], Jet], kind: str) -> Range | None:
-        """Return the range of what to `pick` over a turn or all phases of a `kind`, found once."""
+        """Return the range of `pick` over a turn or all phases of a `kind`, cached."""
         if (what, kind) not in self._ranges:
             stretches = self.program.phases(kind) if kind else _TURN
             self._ranges[what, kind] = range_of(self.curve, pick, stretches)
@@ -104,8 +104,8 @@ class PitchMotion(Brief):
     def pitch_curvature(self, kind: str = "") -> Range | None:
         """Return the pitch curve's curvature, 1/mm, over a turn or all phases of a `kind`.
 
-        None of a flat follower, whose profile is its pitch curve (see `face_radius`), and where
-        there is no such phase.
+        None for a flat follower, whose profile is its pitch curve (see `face_radius`), and if there
+        is no such phase.
         """
         if self.mechanism.flat:
             return None
@@ -113,7 +113,7 @@ class PitchMotion(Brief):
 
     @cached_property
     def contact_place(self) -> Range | None:
-        """Where a flat face is touched, mm (see `gearcam.cams.contact.Contact`)."""
+        """Range of the contact along a flat face, mm (see `gearcam.cams.contact.Contact`)."""
         if not self.mechanism.flat:
             return None
         return range_of(self.curve, lambda contact: contact.place, _TURN)
@@ -124,7 +124,7 @@ class PitchMotion(Brief):
         Parameters
         ----------
         theta : (n,) array, rad
-            Cam angles; at a knot the values after it count.
+            Cam angles; at a knot the values after it are returned.
 
         Returns
         -------
@@ -153,7 +153,7 @@ def _radii(speed: Jet, turning: Jet) -> Array:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class _Kept:
-    """What trimming leaves: as `drawn`, in a `sampler`, and `corners` of an unmirrored cam."""
+    """The trimmed profile: as `drawn`, in a `sampler`, and `corners` of the unmirrored cam."""
 
     drawn: ProfileSegments
     sampler: Sampler
@@ -162,15 +162,15 @@ class _Kept:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Wall(PitchMotion):
-    """A wall: the parallel of the pitch curve at the follower's radius, or what a face envelops.
+    """A wall: the parallel of the pitch curve at the follower's radius, or the envelope of a face.
 
     Parameters
     ----------
     side : {1, -1}
-        Whether the metal lies inside the pitch curve, as in a disc cam, or outside it; then it is
-        a follower that is pressed outwards that loses lift.
+        Whether the metal lies inside the pitch curve, as in a disc cam, or outside it; then a
+        follower pressed outwards loses lift.
     of : PitchMotion or None
-        The motion whose pitch curve it has, where it is not the only one that has it.
+        The motion of its pitch curve, if shared with another wall.
     """
 
     side: int = 1
@@ -178,12 +178,12 @@ class Wall(PitchMotion):
 
     @cached_property
     def curve(self) -> CamCurve:
-        """The wall's curves as the cam turns counter-clockwise: outside at a negative depth."""
+        """The wall's untrimmed curves, turning counter-clockwise; outside at a negative depth."""
         radius = self.side * self.mechanism.radius
         return CamCurve(program=self.program, mechanism=replace(self.mechanism, radius=radius))
 
     def pitch_curvature(self, kind: str = "") -> Range | None:
-        """Return what is promised (see `PitchMotion`)."""
+        """Return the pitch curve's curvature, 1/mm, of a `kind` (see `PitchMotion`)."""
         return (self.of or super()).pitch_curvature(kind)
 
     def radii(self, theta: Array) -> Array:
@@ -220,7 +220,7 @@ class Wall(PitchMotion):
             for jump in self.program.hard:
                 if (
                     self.curve.mechanism.away * (jump.after - jump.before) > 0.0
-                ):  # it rolls about its own centre
+                ):  # an arc about the roller's centre
                     concave = min(concave, radius)
                 else:
                     convex = 0.0
@@ -240,7 +240,7 @@ class Wall(PitchMotion):
 
     @property
     def undercut_ranges(self) -> list[tuple[float, float]]:
-        """The same for people: one that goes on over the end of the turn ends beyond it."""
+        """The same for output: a stretch across the end of the turn ends beyond it."""
         joined = over_the_end(self.undercut, self.program.closed)
         ends = (parts[0][1] + (2.0 * math.pi if len(parts) > 1 else 0.0) for parts in joined)
         return [(parts[-1][0], end) for parts, end in zip(joined, ends, strict=True)]
@@ -262,7 +262,7 @@ class Wall(PitchMotion):
 
     @property
     def _reach(self) -> float:
-        """The size of the cam, mm, of which small lengths are parts."""
+        """The size of the cam, mm, as a scale of small lengths."""
         m = self.mechanism
         return (2.0 * math.pi * m.slide or m.least) + self.program.range[1] * m.lever
 
@@ -270,7 +270,7 @@ class Wall(PitchMotion):
         return replace(begun(kept), curve=replace(self.curve, mirrored=self.clockwise))
 
     def _sampled(self, drawn: ProfileSegments) -> tuple[ProfileSegments, Sampler]:
-        """Return a curve cut so that its sampler's probes see how it turns, and that sampler."""
+        """Return a curve divided so that the probes of its sampler resolve it, and that sampler."""
         while True:
             sampler = Sampler(curves=drawn, tolerance=self.tolerance, closed=self.program.closed)
             before, drawn = drawn, drawn.resolved(*sampler.probes, self.tolerance)
@@ -279,17 +279,17 @@ class Wall(PitchMotion):
 
     @property
     def drawn(self) -> ProfileSegments:
-        """What trimming leaves, mirrored if the cam turns clockwise; it begins at a corner."""
+        """The trimmed profile, mirrored if the cam turns clockwise; it begins at a corner."""
         return self._kept.drawn
 
     @property
     def corners(self) -> tuple[Corner, ...]:
-        """Where trimming has left corners, as the cam turns counter-clockwise."""
+        """Corners left by trimming, for the cam that turns counter-clockwise."""
         return self._kept.corners
 
     @cached_property
     def lost(self) -> tuple[Extreme, ...]:
-        """Largest lift, mm or rad, that each corner costs, with its cam angle, rad."""
+        """Largest lost lift, mm or rad, of each corner, with its cam angle, rad."""
         side = self.curve.mechanism.away
         return tuple(
             lost_lift(self.program, self.mechanism, corner, side) for corner in self.corners
@@ -297,7 +297,7 @@ class Wall(PitchMotion):
 
     @cached_property
     def shortfall(self) -> float:
-        """Largest lift that trimming costs, mm or rad."""
+        """Largest lift lost by trimming, mm or rad."""
         return max((loss.value for loss in self.lost), default=0.0)
 
     @cached_property
@@ -307,7 +307,7 @@ class Wall(PitchMotion):
 
     @property
     def cubics_missed(self) -> float:
-        """The area between the profile and cubics through its dense points, mm^2, at most."""
+        """Bound of the area between the profile and cubics through its dense points, mm^2."""
         return self.sampler.dense(OVERSAMPLING).missed(self.sampler.at)
 
     @property
@@ -321,12 +321,12 @@ class Wall(PitchMotion):
 
     @property
     def sampler(self) -> Sampler:
-        """The profile with the density of points that the tolerance asks for."""
+        """The profile with the density of points that the tolerance needs."""
         return self._kept.sampler
 
     @cached_property
     def contour(self) -> Contour:
-        """The profile, counter-clockwise, proved to be a simple curve about the axis."""
+        """The profile, counter-clockwise, verified to be a simple curve around the axis."""
         made = self._contour(self.sampler)
         points = as_complex(made.vertices)
         seen_whole = bool(np.all((np.conj(points) * np.roll(points, -1)).imag > 0.0))
@@ -341,7 +341,7 @@ class Wall(PitchMotion):
 
     @cached_property
     def pitch_contour(self) -> Contour:
-        """The pitch curve, counter-clockwise; of a flat or pointed follower the profile."""
+        """The pitch curve, counter-clockwise; for a flat or pointed follower the profile."""
         if self.mechanism.flat or self.mechanism.radius == 0.0:
             return self.contour
         return self._contour(self._pitch_sampler)
@@ -352,7 +352,7 @@ class Wall(PitchMotion):
 
     def _contour(self, sampler: Sampler) -> Contour:
         _, points, error = sampler.chords
-        clockwise = not self.clockwise  # theta draws against the cam's turning
+        clockwise = not self.clockwise  # the curve runs opposite to the cam's rotation
         return Contour(
             dense=lambda: sampler.dense(OVERSAMPLING).runs(clockwise),
             vertices=as_pairs(points[::-1] if clockwise else points),
@@ -365,7 +365,7 @@ class Wall(PitchMotion):
         return self.places_at(2.0 * math.pi * np.arange(count) / (count - self.program.open))
 
     def places_at(self, theta: Array) -> tuple[Array, Plane, Plane]:
-        """Return points of the profile at cam angles, where they are left by trimming.
+        """Return points of the profile at cam angles, as far as trimming leaves them.
 
         Parameters
         ----------
@@ -375,18 +375,18 @@ class Wall(PitchMotion):
         Returns
         -------
         theta : (n,) array, rad
-            Those at which a point is left.
+            Angles at which a point is left.
         points, normals : (n,) complex arrays, mm and 1
-            Touched at those angles, with the outward normals of the metal.
+            Points of contact at those angles, with the outward normals of the metal.
         """
         kept = self.drawn
         turn = 2.0 * math.pi
-        # an open curve ends with its last place
+        # an open curve ends with its last point
         within = np.minimum(theta, np.nextafter(turn, 0)) if self.program.open else theta % turn
         sweeps = np.flatnonzero(~kept.jump)
         inside = (kept.start[sweeps] <= within[:, None]) & (within[:, None] < kept.end[sweeps])
         left = inside.any(axis=1)
         index = sweeps[inside.argmax(axis=1)][left]
         points, tangents = kept.at(index, within[left])
-        # drawn against the cam's turning, the metal lies to the right, mirrored to the left
+        # opposite to the rotation the metal lies to the right, mirrored to the left
         return theta[left], points, tangents * self.side * (-1j if self.clockwise else 1j)

@@ -1,11 +1,9 @@
 """A yoke cam: a disc between two flat faces, or two rollers, of one follower.
 
-Both are touched at every angle where the lifts half a turn apart add up to the same (see
-`gearcam.laws.half_turns`): the cam then has a constant *breadth* between faces, or its pitch curve
-a constant *diameter* through the axis, the distance of the rollers. One profile is its only wall;
-the second face is touched by it half a turn later.
-
-Refused: what disc cams refuse.
+Both touch the cam at every angle if lifts half a turn apart have a constant sum (see
+`gearcam.laws.half_turns`): then the cam has a constant *breadth* between faces, or its pitch curve
+a constant *diameter* through the axis, the distance of the rollers. The profile is its only wall;
+it touches the second face half a turn later. Refused: as for disc cams.
 
 Depends on disc.
 """
@@ -19,7 +17,7 @@ from gearcam.cams.disc import DiscCam
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class YokeCam(DiscCam):
-    """A disc cam whose follower goes around it (see the module)."""
+    """A disc cam whose follower encloses it (see the module)."""
 
     @property
     def breadth(self) -> float:
@@ -28,19 +26,18 @@ class YokeCam(DiscCam):
 
     @property
     def face_width(self) -> float | None:
-        """Least width of a flat face, mm, without a margin: as far as it is touched, either way."""
+        """Least width of a flat face, mm, without margin: twice the contact's largest offset."""
         place = self.contact_place
         return None if place is None else 2.0 * place.largest
 
 
 def make_yoke(cam: DiscCam) -> YokeCam:
-    """Return a disc cam as one that its follower goes around.
+    """Return a yoke cam from a disc cam.
 
     Parameters
     ----------
     cam : DiscCam
-        Its lift of two opposite half turns, its follower, which rises with it, translating and
-        without an offset.
+        With a lift of two opposite half turns, and a translating follower without offset.
 
     Returns
     -------
