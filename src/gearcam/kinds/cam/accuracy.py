@@ -1,4 +1,4 @@
-"""What the accuracy block of a cam says: an estimate for each family of its numbers."""
+"""Error estimates of a cam, one for each family of its numbers."""
 
 from __future__ import annotations
 
@@ -25,18 +25,17 @@ if TYPE_CHECKING:
     from gearcam.kinds.cam.build import CamResult
 
 Rows = dict[str, tuple[float, str]]
-"""Estimates and how each was made, by name."""
+"""Estimate and method by name."""
 
-_MOVED: Final = "largest change of the turn when every number that it comes from is moved by "
-_ROUNDED: Final = f"{_MOVED}its rounding"
-_UNKNOWN: Final = f"{_MOVED}its rounding, and the lift by what is not known of it beyond that"
+_ROUNDED: Final = "largest change over the turn if every input changes by its rounding"
+_UNKNOWN: Final = f"{_ROUNDED} and the lift by its interpolation error"
 _GAUSS: Final = (
-    "Gauss-Legendre quadrature with fewer cells, what is not known of the lift, and rounding"
+    "Gauss-Legendre quadrature with fewer cells, interpolation error of the lift, and rounding"
 )
 
 
 def error_rows(result: CamResult) -> Rows:
-    """Return the estimated errors of a cam.
+    """Return the error estimates of a cam.
 
     Parameters
     ----------
@@ -46,7 +45,7 @@ def error_rows(result: CamResult) -> Rows:
     Returns
     -------
     dict of str to (float, str)
-        Each with how it was made, by name; chords and files are not among them.
+        Estimate and method by name, without those of chords and files.
     """
     cam, program = result.cam, result.program
     moved, how = Moved(program), _UNKNOWN if any(program.errors) else _ROUNDED
@@ -61,7 +60,7 @@ def error_rows(result: CamResult) -> Rows:
 
 
 def _shape(cam: Cam, moved: Moved) -> Iterator[tuple[str, float]]:
-    """Yield the errors of what is told of the contact and of curves, the largest of all walls."""
+    """Yield the errors of contact, curvature and profile, the largest of all walls."""
     curves = [motion.curve for motion in cam.motions]
     walls = [wall.curve for wall in cam.walls]
     slant = max(moved.error(one, pressure_angle) for one in curves)
@@ -75,23 +74,23 @@ def _shape(cam: Cam, moved: Moved) -> Iterator[tuple[str, float]]:
 
 
 def _trimming(result: CamResult, moved: Moved) -> Iterator[tuple[str, tuple[float, str]]]:
-    """Yield the errors of what undercut costs, and of the lost motion between two walls."""
+    """Yield the errors of undercut ranges, lost lift, and lost motion between two walls."""
     cam, driver, (scale, unit) = result.cam, result.mechanism.driver, result.mechanism.outward
     if any(wall.undercut for wall in cam.walls):
         off = driver.scale * max(undercut_error(moved, wall) for wall in cam.walls)
-        how = "change of the speed along the profile when all is moved by its rounding, over its "
-        yield f"undercut_{driver.unit}", (off, f"{how}slope")
+        how = "change of the speed along the profile if every input changes by its rounding, "
+        yield f"undercut_{driver.unit}", (off, f"{how}over the slope of the speed")
     if any(wall.corners for wall in cam.walls):
         off = scale * max(lost_lift_error(moved, wall) for wall in cam.walls)
-        how = "the follower on a corner moved by as much as its two sides miss each other, and by "
-        yield f"lost_lift_{unit}", (off, f"{how}rounding")
+        how = "lift on a corner that is moved by the gap between its two sides, and rounding"
+        yield f"lost_lift_{unit}", (off, how)
     if (lost := cam.lost_motion) is not None:
         off = scale * play_error(moved, cam.motions[0], cam.walls, lost.theta)
-        yield f"lost_motion_{unit}", (off, "errors of both walls there, as the follower feels them")
+        yield f"lost_motion_{unit}", (off, "errors of both walls, along the follower's motion")
 
 
 def _sizes(result: CamResult) -> Iterator[tuple[str, tuple[float, str]]]:
-    """Yield the errors of sizes: of walls as they are touched, and of parts."""
+    """Yield the errors of sizes: of walls before clearance, and of parts."""
     if not result.design.blank.clearance:
         for wall in result.cam.walls:
             prefix, size = f"{wall.key}_" if wall.key else "", wall.size
@@ -101,6 +100,6 @@ def _sizes(result: CamResult) -> Iterator[tuple[str, tuple[float, str]]]:
     if result.ordered and result.design.blank.density is not None:
         walls = sum(wall.cubics_missed for wall in result.cam.walls)
         off = max(quadrature_error(part).area + part.width * walls for part in result.parts)
-        how = "cubics through dense points of walls with halved, of all edges with doubled steps; "
-        how += "rounding"
+        how = "cubics through dense points with halved steps on walls, with doubled steps on all "
+        how += "edges; rounding"
         yield "volume_mm3", (off, how)

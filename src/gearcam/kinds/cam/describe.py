@@ -1,4 +1,4 @@
-"""The motion of a cam in words: for the schema, the template and the list of laws."""
+"""The motion of a cam for the JSON schema, the template and ``gearcam laws``."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ from gearcam.laws.rises.base import RISES
 
 _ROWS: Final = "motion-table"
 _FORMULA: Final = "motion-formula"
-"""Names of the definitions of a motion over the whole turn."""
+"""Names of the definitions of motions of the whole turn."""
 
 _SHOWN: Final = ("file", "smoothing_tolerance_mm")
-"""Its keys with values in the template."""
+"""Keys of tables that have a value in the template."""
 
 
 def schema() -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return the schema of the motion, and the definitions that it needs."""
+    """Return the schema of the motion and its definitions."""
     words = told((name, entry.doc) for name, entry in RISES.items())
     phases = chosen("type", PHASES, "the phase", lambda name: name)
     made: dict[str, Any] = {}
@@ -44,7 +44,7 @@ def schema() -> tuple[dict[str, Any], dict[str, Any]]:
             made[name] = _phase_schema(name)
     made |= {_ROWS: _rows_schema(), _FORMULA: _formula_schema()}
     main = {
-        "description": "the lift over a turn of the cam, phase by phase, by rows or by a formula",
+        "description": "the lift over a turn of the cam, by phases, rows or a formula",
         "minItems": 1,
         "items": {"type": "object", **phases},
         "if": {"type": "array"},
@@ -59,13 +59,13 @@ def schema() -> tuple[dict[str, Any], dict[str, Any]]:
 
 def _rows_schema() -> dict[str, Any]:
     known, _ = turn_tables()
-    made = table_schema(known, "rows of cam angle and lift over a turn")
+    made = table_schema(known, "rows of cam angle and lift over the turn")
     inline = [{"required": ["theta_deg", key]} for key in twins(known)["lift"]]
     return made | {"oneOf": [{"required": ["file"]}, *inline]}
 
 
 def _formula_schema() -> dict[str, Any]:
-    return table_schema(turn_tables()[1], "the lift over a turn as a formula")
+    return table_schema(turn_tables()[1], "the lift over the turn as a formula")
 
 
 def _phase_schema(name: str, law: str = "") -> dict[str, Any]:
@@ -82,7 +82,7 @@ def _phase_schema(name: str, law: str = "") -> dict[str, Any]:
 
 
 def known(raw: Mapping[str, Any]) -> Table:
-    """Return the table of a phase, or of a motion over the whole turn, as a file holds it."""
+    """Return the table of the phase, or of the motion of the whole turn, in a file."""
     if "type" in raw:
         return phase_table(raw["type"], raw.get("law", ""))
     rows, formula = turn_tables()
@@ -129,6 +129,6 @@ def _phase(given: Mapping[str, Any], mark: str = "") -> Iterator[str]:
 
 
 def laws() -> tuple[str, list[Listed]]:
-    """Return the laws below a heading."""
+    """Return a heading and the motion laws of cams."""
     found = [listed(entry, f'law = "{name}"', rise_table(name)) for name, entry in RISES.items()]
     return "Motion laws of cams: rises and returns, in the tables [[motion]]", found

@@ -1,4 +1,4 @@
-"""What the accuracy block of a pair says: an estimate for each family of its numbers."""
+"""Error estimates of a pair, one for each family of its numbers."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ if TYPE_CHECKING:
     from gearcam.parts.body import Part
 
 _FINER: Final = 16.0
-"""Times by which the tolerance is finer with which corners are followed once more."""
+"""Factor by which the tolerance is finer when corners are followed again."""
 
 _SOUGHT: Final = 2.0
-"""Over what that changes: ends of flanks are off in proportion to the tolerance, with scatter."""
+"""Error over the change: ends of flanks are off in proportion to the tolerance, with scatter."""
 
 _HOW: Final = (
-    "cubics through every second dense point of all edges, over their order; bends of tips;"
-    " ends of flanks that were sought to a sixteenth of the tolerance; flank_mm all around"
+    "cubics through every second dense point of all edges; curvature of tips; ends of flanks "
+    "searched again with a tolerance 16 times finer; flank_mm over the whole edge"
 )
 
 
 def error_rows(result: GearPairResult) -> Estimates:
-    """Return the estimated errors of a pair.
+    """Return the error estimates of a pair.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ def error_rows(result: GearPairResult) -> Estimates:
     Returns
     -------
     dict of str to (float, str)
-        Each with how it was made, by name; chords and files are not among them.
+        Estimate and method by name, without those of chords and files.
     """
     rows = estimates(result.subject)
     flank, _ = rows["flank_mm"]
@@ -49,7 +49,7 @@ def error_rows(result: GearPairResult) -> Estimates:
 
 
 def _weights(result: GearPairResult, flank: float) -> Iterator[tuple[str, float]]:
-    """Yield the errors of mass properties, the larger of both wheels, where they are told."""
+    """Yield the errors of mass properties, the larger of both wheels, if there is a density."""
     densities = [result.design.blank.wheel(number).density for number in (1, 2)]
     if not result.ordered or densities == [None, None]:
         return
@@ -70,23 +70,23 @@ def _weights(result: GearPairResult, flank: float) -> Iterator[tuple[str, float]
 def volume_error(
     part: Part, gears: Sequence[Gear], flank: float, finer: Callable[[Gear], Gear]
 ) -> Moments:
-    """Return what the moments of a part's volume are off by.
+    """Return the errors of the moments of a part's volume.
 
     Parameters
     ----------
     part : Part
         A wheel.
     gears : sequence of Gear
-        That of each of its steps.
+        The wheel of each step.
     flank : float, mm
-        By how much places on outlines are off.
+        Error of places on outlines.
     finer : callable
-        Returns a wheel to a sixteenth of its tolerance.
+        Returns a wheel with a sixteenth of its tolerance.
 
     Returns
     -------
     Moments
-        None below zero.
+        All at least zero.
     """
     height, found = part.width / len(gears), quadrature_error(part)
     for gear in gears:
@@ -99,6 +99,6 @@ def volume_error(
 
 
 def _toothed(gear: Gear) -> Moments:
-    """Return what the teeth add to a wheel's moments; what joins those of open ones stays."""
+    """Return the moments of the teeth of a wheel, without the joining edge of an open one."""
     runs = gear.profile.dense_teeth
     return sum((curve_moments(run.points, run.tangents) for run in runs), start=Moments())

@@ -1,4 +1,4 @@
-"""The table ``[law]`` in words: for the schema, the template and the list of laws."""
+"""The table ``[law]`` for the JSON schema, the template and ``gearcam laws``."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from gearcam.laws.ratio.base import LAWS
 
 
 def schema() -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return the schema of the table, and the definitions that it needs."""
+    """Return the schema of the table and its definitions."""
     words = told((name, entry.doc) for name, entry in LAWS.items())
     main = chosen("type", LAWS, "the law", lambda name: f"law-{name}")
     laws = {
@@ -27,12 +27,12 @@ def schema() -> tuple[dict[str, Any], dict[str, Any]]:
 
 
 def known(raw: Mapping[str, Any]) -> Table:
-    """Return the table of a law as a file holds it."""
+    """Return the table of the law that a file names."""
     return law_table(raw["type"])
 
 
 def lines() -> Iterator[str]:
-    """Yield the lines of the template: the table of the example, other laws as comments."""
+    """Yield the lines of the template: the law of the example, other laws as comments."""
     example = KIND.example["law"]
     yield beside("[law]", KIND.notes["law"])
     yield key_line("type", example["type"], LAWS[example["type"]].doc)
@@ -45,7 +45,7 @@ def lines() -> Iterator[str]:
 
 
 def laws() -> tuple[str, list[Listed]]:
-    """Return the laws below a heading."""
+    """Return a heading and the laws of gear pairs."""
     found = [listed(entry, f'law.type = "{name}"', law_table(name)) for name, entry in LAWS.items()]
     head = "Laws of gear pairs: the ratio, in the table [law]; all but rack work with a ring too"
     return head, found
