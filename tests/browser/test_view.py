@@ -147,12 +147,83 @@ def test_a_field_and_the_keyboard_do_the_same(page: Chrome) -> None:
     assert float(field(page, "pair.center_distance_mm").get_attribute("value")) > 180
 
 
-def test_what_is_refused_is_told_while_the_slider_is_dragged(page: Chrome) -> None:
-    one = field(page, "blank.bore_diameter_mm[0]")
-    one.clear()
-    one.send_keys("400", Keys.ENTER)
-    assert "the bore reaches the root of the teeth" in until(lambda: error(page))
-    assert shown(page) == []
+def places(page: Chrome) -> list[float]:
+    """Where sliders stand, pixels from the top of the page."""
+    return page.execute_script(
+        "return [...document.querySelectorAll('#numbers input')]"
+        ".map((one) => one.getBoundingClientRect().top + scrollY)"
+    )
+
+
+def verdict(page: Chrome) -> tuple[str, str]:
+    """The verdict that is seen, and its colour."""
+    (seen,) = (one for one in page.find_elements(By.CLASS_NAME, "verdict") if one.is_displayed())
+    return seen.text.split(maxsplit=1)[1], seen.value_of_css_property("color")
+
+
+RED = "rgba(179, 38, 30, 1)"
+
+
+@pytest.mark.parametrize("size", [(1600, 1000), (1200, 800), (390, 844)])
+def test_a_refused_design_has_a_red_verdict_and_the_sliders_stay(
+    page: Chrome, size: tuple[int, int]
+) -> None:
+    metrics = {"width": size[0], "height": size[1], "deviceScaleFactor": 1, "mobile": False}
+    page.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
+    try:
+        good, before = verdict(page), places(page)
+        assert good[1] != RED
+        bore = field(page, "blank.bore_diameter_mm[0]")
+        page.execute_script("arguments[0].scrollIntoView({block: 'center'})", bore)
+        bore.clear()
+        bore.send_keys("400", Keys.ENTER)
+        assert "the bore reaches the root of the teeth" in until(lambda: error(page))
+        assert shown(page) == []
+        assert verdict(page) == ("Cannot be made", RED)
+        assert page.find_element(By.ID, "moving").text == "Last valid design"
+        assert places(page) == before
+        # the box is within the window, and the field that was used is not below it
+        box = page.find_element(By.ID, "error")
+        ends = page.execute_script(
+            "const r = arguments[0].getBoundingClientRect();"
+            "return [r.left, r.top, r.right, r.bottom]",
+            box,
+        )
+        assert min(ends) >= 0.0
+        assert (ends[2] <= size[0], ends[3] <= size[1]) == (True, True)
+        hit = page.execute_script(
+            "const r = arguments[0].getBoundingClientRect(); return document.elementFromPoint("
+            "r.left + 0.5 * r.width, r.top + 0.5 * r.height) === arguments[0]",
+            bore,
+        )
+        assert hit
+        until(lambda: page.find_elements(By.CSS_SELECTOR, "#error button"))
+        assert "blank.bore_diameter_mm[0] = " in error(page)
+        page.find_element(By.CSS_SELECTOR, "#error button").click()
+        until(lambda: not error(page))
+        assert verdict(page) == good
+        assert page.find_element(By.ID, "moving").text == "Parts in motion"
+        assert 80.0 < float(bore.get_attribute("value")) < 92.0
+        assert shown(page)[-1]["charts"]
+    finally:
+        page.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
+def test_a_file_that_is_saved_refused_is_shown_so_with_its_remedies(
+    page: Chrome, file: Path
+) -> None:
+    good, text = verdict(page), file.read_text()
+    file.write_text(text.replace("bore_diameter_mm = [40, 40]", "bore_diameter_mm = [40, 400]"))
+    assert file.read_text() != text
+    until(lambda: "was built without errors" in error(page))
+    assert verdict(page) == ("Cannot be made", RED)
+    page.refresh()
+    until(lambda: page.execute_script("return !!window.gearcam"))
+    assert verdict(page) == ("Cannot be made", RED)
+    page.execute_script(SPY)
+    file.write_text(text)
+    until(lambda: not error(page))
+    assert verdict(page) == good
 
 
 def test_every_slider_has_a_name_and_is_reached_by_the_keyboard(page: Chrome) -> None:

@@ -63,6 +63,7 @@ def test_tokens_are_long_and_never_the_same(view: tuple[Server, Shown]) -> None:
         "/{token}/document?", "/{token}/#a", "/{token}/%64ocument", "/{token}/Document",
         "/{token}/document/", "/{token}/..%2f..%2fetc%2fpasswd", "/{token}/..\\..\\wheels.toml",
         "http://127.0.0.1/{token}/", "/{token}/document%00", "/{token}/follow", "/{token}/save",
+        "/{token}/remedies",
         "*", "/{half}", "/%ff{token}/",
     ],
 )  # fmt: skip
@@ -70,7 +71,7 @@ def test_there_is_nothing_at_any_other_path(server: Server, path: str) -> None:
     token = server.token
     answer, content = ask(server, "", path=path.format(token=token, half=token[:11]))
     assert answer.status == 404
-    assert json.loads(content) == {"error": "there is nothing here"}
+    assert json.loads(content) == {"error": "there is no such page"}
     assert "Content-Security-Policy" in answer.headers
 
 
@@ -78,7 +79,7 @@ def test_a_token_that_is_not_the_right_one_opens_nothing(server: Server) -> None
     wrong = "A" * len(server.token)
     for route in ("", "document", "events"):
         assert ask(server, "", path=f"/{wrong}/{route}")[0].status == 404
-    for route in ("follow", "save"):
+    for route in ("follow", "remedies", "save"):
         assert ask(server, "", WISH, path=f"/{wrong}/{route}")[0].status == 404
 
 
@@ -107,7 +108,7 @@ def test_both_names_of_this_computer_are_served(server: Server) -> None:
 )
 def test_another_origin_is_not_served(server: Server, origin: str) -> None:
     headers = {"Origin": origin.format(port=server.server_port)}
-    for route, body in (("", None), ("document", None), ("follow", WISH), ("save", WISH)):
+    for route, body in (("", None), ("document", None), ("remedies", WISH), ("save", WISH)):
         assert ask(server, route, body, headers=headers)[0].status == 403
 
 
@@ -117,7 +118,7 @@ def test_its_own_origin_is_served(server: Server) -> None:
         assert ask(server, "follow", WISH, headers=headers)[0].status == 200
 
 
-@pytest.mark.parametrize("route", ["follow", "save"])
+@pytest.mark.parametrize("route", ["follow", "remedies", "save"])
 @pytest.mark.parametrize(
     ("headers", "body", "status"),
     [
@@ -231,7 +232,7 @@ def test_a_port_that_is_taken_is_told_with_one_that_is_free(tmp_path: Path) -> N
 
 @pytest.mark.parametrize("port", [-1, 65536])
 def test_what_is_no_port_is_refused(tmp_path: Path, port: int) -> None:
-    with shown(tmp_path / "x") as view, pytest.raises(DesignError, match="is no port"):
+    with shown(tmp_path / "x") as view, pytest.raises(DesignError, match="is not a port number"):
         Server(view.session, port)
 
 

@@ -13,7 +13,9 @@ from typing import Any
 
 import pytest
 
+from gearcam.advice import Remedies, Remedy
 from gearcam.cli import main
+from gearcam.designs.reader import loads
 from gearcam.errors import DesignError
 from gearcam.view import watch, work
 from gearcam.view.session import RequestError, Session, _Newest
@@ -53,7 +55,7 @@ def test_a_bad_file_keeps_the_last_good_page_and_tells_all_that_is_wrong(
     assert bad.number > good.number
     assert bad.error.count(f"{file}:") == 3
     main(["check", str(file)])
-    assert bad.error.replace("nothing was shown", "nothing was checked") == (
+    assert bad.error.replace("nothing was updated", "nothing was checked") == (
         capsys.readouterr().err.rstrip()
     )
     file.write_text(DESIGN)
@@ -63,12 +65,44 @@ def test_a_bad_file_keeps_the_last_good_page_and_tells_all_that_is_wrong(
 def test_a_design_that_cannot_be_made_is_told_with_its_remedies(view: Shown, file: Path) -> None:
     file.write_text(DESIGN + "[blank]\nbore_diameter_mm = 40\n")
     bad = view.refresh()
-    assert "cannot be made, nothing was shown" in bad.error
+    assert "cannot be made, nothing was updated" in bad.error
     assert "the bore reaches the root of the teeth" in bad.error
     found = view.after(bad.number)
     assert found.error.startswith(bad.error)
     assert "built without errors:" in found.error
     assert found.document is not None
+
+
+def test_a_refused_number_is_answered_with_remedies_that_the_page_can_use(view: Shown) -> None:
+    changes = {"blank.bore_diameter_mm": 40}
+    text = DESIGN + "[blank]\nbore_diameter_mm = 5\n"
+    Path(view.session.file).write_text(text)
+    view.refresh()
+    reply = view.session.remedies({"changes": changes})
+    assert reply is not None
+    assert reply["error"] == ""
+    assert "was built without errors:" in reply["lines"]
+    usable = [one for one in reply["found"] if one["changes"]]
+    assert usable
+    for one in usable:
+        key = next(iter(one["changes"]))
+        shown = json.loads(
+            work.follow(text, "a.toml", {**changes, **one["changes"]}, key, exact=True)
+        )
+        assert shown["error"] == ""
+        assert all(f"{key} = " in one["text"] for key in one["changes"])
+
+
+def test_a_remedy_in_keys_that_the_file_lacks_is_text_only(monkeypatch: pytest.MonkeyPatch) -> None:
+    found = [
+        Remedy(changes=changes, design=loads(DESIGN, file="a.toml"))
+        for changes in ({"pair.x": 0.2}, {"pair.teeth": [20, 24]})
+    ]
+    monkeypatch.setattr(work, "remedies", lambda _: Remedies(found=tuple(found)))
+    assert work.seek(DESIGN, "a.toml")["found"] == [
+        {"text": "pair.x = 0.2", "changes": None},
+        {"text": "pair.teeth = [20, 24]", "changes": {"pair.teeth[0]": 20, "pair.teeth[1]": 24}},
+    ]
 
 
 def test_a_fault_of_the_program_is_told(view: Shown, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -253,6 +287,25 @@ def test_the_watch_sees_a_save_of_the_same_size_and_time(file: Path) -> None:
     file.write_text(DESIGN.replace("2.0", "2.1"))
     os.utime(file, ns=(time, time))
     assert changes(one, 2) == [True, False]
+
+
+def test_what_is_saved_while_the_watch_looks_is_not_missed(
+    file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    one = Watch(str(file))
+    changes(one)
+    read = watch._content
+
+    def slow(name: str, most: int) -> bytes | None:
+        content = read(name, most)
+        monkeypatch.setattr(watch, "_content", read)
+        file.write_text(DESIGN + "# second\n")
+        return content
+
+    file.write_text(DESIGN + "# first\n")
+    monkeypatch.setattr(watch, "_content", slow)
+    seen = [content for changed, content in (one.look() for _ in range(3)) if changed]
+    assert seen[-1] == file.read_bytes()
 
 
 def test_the_watch_looks_at_tables(tmp_path: Path) -> None:

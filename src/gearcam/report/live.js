@@ -1,15 +1,15 @@
-// The script of a page that is served: it follows the design file, and changes its numbers.
+// The script of the live view: the page follows the design file and changes its numbers.
 "use strict";
 
 (() => {
   const live = JSON.parse(document.getElementById("live").textContent);
   let { made, number } = live;
 
-  // Numbers that the page shows and the file does not hold, by key.
+  // Numbers in the page that are not saved in the file, by key.
   let pending = {};
   const rows = new Map();
 
-  // A second request is on its way while the server answers the first; more would only wait there.
+  // While the server answers one request a second one is sent; more would only wait there.
   const MOST = 2;
   let wanted = null;
   let flying = 0;
@@ -22,10 +22,41 @@
     return one;
   }
 
-  function tell(error) {
-    const place = document.getElementById("error");
-    place.hidden = !error;
-    place.replaceChildren(...(error ? [element("pre", { textContent: error })] : []));
+  // Show what is wrong; where the design cannot be made the rest is of the last valid one.
+  function tell(error, refused = document.body.classList.contains("refused")) {
+    const box = document.getElementById("error");
+    const [words, remedies] = box.children;
+    box.hidden = !error;
+    words.textContent = error;
+    remedies.replaceChildren();
+    document.body.classList.toggle("refused", refused);
+    document.querySelector("#refusal h1").textContent = document.title;
+    document.getElementById("moving").textContent = refused ? "Last valid design" : "Parts in motion";
+  }
+
+  // Search for changes with which a refused design can be made, and offer them.
+  async function remedy(changes, turn) {
+    const place = document.querySelector("#error div");
+    place.textContent = "Searching for remedies.";
+    const { found, lines, stale } = await post("remedies", { changes });
+    if (stale || turn !== arrived) return;
+    if (!found?.length) {
+      place.textContent = lines ?? "";
+      return;
+    }
+    const rows = found.map((one) => element("li", {}, element("code", { textContent: one.text }),
+      ...(one.changes ? [use(one)] : [])));
+    place.replaceChildren(lines.split("\n")[0], element("ul", {}, ...rows));
+  }
+
+  function use({ text, changes }) {
+    const button = element("button", { type: "button", textContent: "Use this" });
+    button.setAttribute("aria-label", `Use this: ${text}`);
+    button.addEventListener("click", () => {
+      for (const [key, value] of Object.entries(changes)) set(key, value);
+      ask(Object.keys(changes)[0], true);
+    });
+    return button;
   }
 
   async function post(route, data) {
@@ -54,6 +85,7 @@
       if (!reply.stale && turn > arrived && from === made) {
         arrived = turn;
         take(reply, asked.last);
+        if (reply.refused && asked.exact) remedy(asked.changes, turn).catch(ended);
       }
     } catch {
       ended();
@@ -63,14 +95,14 @@
   }
 
   function take(reply, last) {
-    tell(reply.error);
     if (reply.document) window.gearcam.show(reply.document);
+    tell(reply.error, Boolean(reply.error));
     for (const [key, value] of Object.entries(reply.changes ?? {})) {
       if (key !== last) set(key, value);
     }
   }
 
-  // Show a number at its slider and its field; it is pending until the file holds it.
+  // Show a number at its slider and in its field; it is pending until it is saved.
   function set(key, value) {
     pending[key] = value;
     const row = rows.get(key);
@@ -119,7 +151,7 @@
     return place;
   }
 
-  // Make the sliders, or give those that are there their new numbers, so that the focus stays.
+  // Make the sliders, or update those that exist, so that the focus stays.
   function offer(keys) {
     pending = {};
     if (keys.map((one) => one.key).join() !== [...rows.keys()].join()) build(keys);
@@ -155,8 +187,8 @@
   async function store() {
     try {
       const reply = await post("save", { changes: pending, made });
-      tell(reply.error);
-      if (!reply.error) document.getElementById("saved").textContent = "Saved.";
+      if (reply.error) tell(reply.error);
+      else document.getElementById("saved").textContent = "Saved.";
     } catch {
       ended();
     }
@@ -164,7 +196,7 @@
 
   async function back() {
     for (const row of rows.values()) set(row.key.key, row.key.value);
-    arrived = sent; // what is still on its way is of no use
+    arrived = sent; // replies to earlier requests are ignored
     wanted = null;
     location.reload();
   }
@@ -174,8 +206,8 @@
     const state = await (await fetch("document")).json();
     if (state.number <= number) return;
     number = state.number;
-    tell(state.error);
     if (state.document) window.gearcam.show(state.document);
+    tell(state.error, Boolean(state.error));
     if (state.made !== made) {
       made = state.made;
       offer(state.keys);
@@ -183,12 +215,12 @@
   }
 
   function ended() {
-    tell("The view has ended: nothing follows the file any more. Start gearcam view again.");
+    tell("The live view has ended, and the page no longer follows the file. Start gearcam view again.");
   }
 
   const events = new EventSource("events");
   events.onmessage = (event) => follow(event).catch(ended);
   events.onerror = ended;
   offer(live.keys);
-  tell(live.error);
+  tell(live.error, Boolean(live.error));
 })();

@@ -83,7 +83,7 @@ class Server(ThreadingHTTPServer):
     def __init__(self, session: Session, port: int = 0) -> None:
         if not 0 <= port <= _LAST_PORT:
             rule = f"1 to {_LAST_PORT}"
-            raise DesignError([Problem(f"{port} is no port", key="--port", allowed=rule)])
+            raise DesignError([Problem(f"{port} is not a port number", key="--port", allowed=rule)])
         self.session = session
         self.token = secrets.token_urlsafe(16)
         try:
@@ -107,7 +107,7 @@ class Server(ThreadingHTTPServer):
 def _taken(port: int, error: OSError) -> Problem:
     ways = sorted(range(1024, _LAST_PORT + 1), key=lambda other: abs(other - port))
     free = next((other for other in ways[:100] if _is_free(other)), None)
-    hint = f"the nearest that is free is {free}" if free else ""
+    hint = f"the nearest free port is {free}" if free else ""
     return Problem(f"port {port} cannot be used: {error.strerror}", key="--port", hint=hint)
 
 
@@ -132,7 +132,7 @@ class Handler(BaseHTTPRequestHandler):
 
     def do_POST(self) -> None:
         """Answer a wish."""
-        self._answer({"follow": self._follow, "save": self._save})
+        self._answer({"follow": self._follow, "remedies": self._remedies, "save": self._save})
 
     def end_headers(self) -> None:
         """Add what every answer says."""
@@ -161,11 +161,11 @@ class Handler(BaseHTTPRequestHandler):
         start, name = path[: len(before)], path[len(before) :]
         alike = secrets.compare_digest(start.encode("utf-8", "replace"), before.encode())
         if len(hosts) != 1 or hosts[0] not in self._home.hosts:
-            self._refuse(HTTPStatus.FORBIDDEN, "this host is not served")
+            self._refuse(HTTPStatus.FORBIDDEN, "requests to this host are not answered")
         elif origin is not None and origin not in own:
-            self._refuse(HTTPStatus.FORBIDDEN, "this origin is not served")
+            self._refuse(HTTPStatus.FORBIDDEN, "requests from other pages are not answered")
         elif not alike or name not in routes:
-            self._refuse(HTTPStatus.NOT_FOUND, "there is nothing here")
+            self._refuse(HTTPStatus.NOT_FOUND, "there is no such page")
         else:
             routes[name]()
 
@@ -204,14 +204,22 @@ class Handler(BaseHTTPRequestHandler):
                 return
 
     def _follow(self) -> None:
+        self._reply(self._home.session.follow)
+
+    def _remedies(self) -> None:
+        self._reply(self._home.session.remedies)
+
+    def _reply(self, answer: Callable[[dict[str, Any]], bytes | dict[str, Any] | None]) -> None:
+        """Send the answer to a request; where a newer one came before it, that it is stale."""
         asked = self._asked()
         if asked is not None:
             try:
-                reply = self._home.session.follow(asked)
+                reply = answer(asked)
             except RequestError as error:
                 self._refuse(HTTPStatus.BAD_REQUEST, str(error))
             else:
-                self._send(_as_json({"stale": True}) if reply is None else reply)
+                reply = {"stale": True} if reply is None else reply
+                self._send(reply if isinstance(reply, bytes) else _as_json(reply))
 
     def _save(self) -> None:
         asked = self._asked()
@@ -227,11 +235,13 @@ class Handler(BaseHTTPRequestHandler):
         """Return the object that a request holds; None where it has been refused."""
         kind, length = self.headers.get("Content-Type", ""), self.headers.get("Content-Length", "")
         if kind.partition(";")[0].strip().lower() != _JSON:
-            self._refuse(HTTPStatus.UNSUPPORTED_MEDIA_TYPE, f"not {_JSON}")
+            self._refuse(HTTPStatus.UNSUPPORTED_MEDIA_TYPE, f"the request is not {_JSON}")
         elif "Transfer-Encoding" in self.headers or not (length.isascii() and length.isdigit()):
-            self._refuse(HTTPStatus.LENGTH_REQUIRED, "no length")
+            self._refuse(HTTPStatus.LENGTH_REQUIRED, "the length of the request is missing")
         elif len(length) > len(str(LARGEST)) or int(length) > LARGEST:
-            self._refuse(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, f"more than {LARGEST} bytes")
+            self._refuse(
+                HTTPStatus.REQUEST_ENTITY_TOO_LARGE, f"the request has more than {LARGEST} bytes"
+            )
         else:
             try:
                 asked = json.loads(self.rfile.read(int(length)))
@@ -239,7 +249,7 @@ class Handler(BaseHTTPRequestHandler):
                 asked = None
             if isinstance(asked, dict):
                 return asked
-            self._refuse(HTTPStatus.BAD_REQUEST, "no JSON object")
+            self._refuse(HTTPStatus.BAD_REQUEST, "the request is not a JSON object")
         return None
 
     def _refuse(self, status: HTTPStatus, error: str) -> None:

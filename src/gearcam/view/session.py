@@ -9,7 +9,8 @@ from collections.abc import Callable, Mapping
 from concurrent.futures import Executor, Future
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Any, Final
+from textwrap import indent
+from typing import Any, Final, TypeVar
 
 from gearcam.designs.reader import content_of, decoded, loads
 from gearcam.errors import DesignError, WriteError
@@ -19,6 +20,9 @@ from gearcam.view.numbers import numbers, replaced
 
 _LARGEST: Final = 1e15
 """Beyond it no number of a design lies, and whole numbers are not exact."""
+
+
+_T = TypeVar("_T")
 
 
 class RequestError(ValueError):
@@ -91,7 +95,7 @@ class Session:
         self._workers = workers
         self._notice = notice
         self._news = threading.Condition()
-        self._newest = _Newest(count)
+        self._newest, self._search = _Newest(count), _Newest(1)
         self._turn = self._whole = 0
 
     def refresh(self, content: bytes | None) -> None:
@@ -139,14 +143,15 @@ class Session:
                 return
             self._set(error=reply["error"])
         if reply.get("refused") and content is not None:
-            found = self._workers.submit(work.seek, content, self.file, reply["error"])
+            found = self._workers.submit(work.seek, decoded(content, self.file), self.file)
             found.add_done_callback(partial(self._take_remedies, turn))
 
     def _take_remedies(self, turn: int, done: Future[work.Reply]) -> None:
         reply = _result(done, self.file)
         with self._news:
             if turn == self._turn:
-                self._set(error=reply["error"])
+                lines = indent(reply["error"] or reply["lines"], "  ")
+                self._set(error=f"{self.state.error}\n{lines}")
 
     def _set(self, **changes: Any) -> None:
         if self.ended:  # its workers have gone, which is no news
@@ -188,7 +193,7 @@ class Session:
         state, changes, last = self.state, asked.get("changes"), asked.get("last")
         values = _values(changes, state)
         if not isinstance(last, str) or last not in values:
-            raise RequestError("last: no key of the changes")
+            raise RequestError("last: not a key of the changes")
         exact = asked.get("exact") is True
 
         def reply() -> bytes:
@@ -196,6 +201,29 @@ class Session:
             return one.result()
 
         return self._newest.run(reply)
+
+    def remedies(self, asked: Mapping[str, Any]) -> dict[str, Any] | None:
+        """Return remedies of a design with other numbers that is refused (see `work.seek`).
+
+        Parameters
+        ----------
+        asked : mapping
+            ``changes``.
+
+        Returns
+        -------
+        dict or None
+            None if the page has asked for others since.
+
+        Raises
+        ------
+        RequestError
+            If ``changes`` are not numbers of the file.
+        """
+        text = replaced(self.state.text, _values(asked.get("changes"), self.state))
+        return self._search.run(
+            lambda: _result(self._workers.submit(work.seek, text, self.file), self.file)
+        )
 
     def save(self, asked: Mapping[str, Any]) -> None:
         """Write other numbers into the file; its comments and their order stay.
@@ -237,7 +265,7 @@ class _Newest:
         self._places = places
         self._asked = 0
 
-    def run(self, work: Callable[[], bytes]) -> bytes | None:
+    def run(self, work: Callable[[], _T]) -> _T | None:
         """Return what some `work` gives, or None where a newer one came before it could begin."""
         with self._free:
             self._asked += 1
@@ -258,15 +286,15 @@ class _Newest:
 def _values(changes: Any, state: State) -> dict[str, float]:
     """Return numbers by key as a page has sent them, or refuse them."""
     if not isinstance(changes, Mapping) or not changes:
-        raise RequestError("changes: no numbers by key")
+        raise RequestError("changes: not numbers by key")
     known = numbers(state.text) if state.text else {}
     for key, value in changes.items():
         if key not in known:
-            raise RequestError("changes: a key that has no number in the file")
+            raise RequestError(f"changes: {key} is not a number of the file")
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise RequestError(f"{key}: not a number")
         if not abs(value) <= _LARGEST:
-            raise RequestError(f"{key}: not a number of a design")
+            raise RequestError(f"{key}: too large for a number of a design")
     return dict(changes)
 
 

@@ -51,12 +51,13 @@ class Watch:
         content : bytes or None
             None where it cannot be read.
         """
+        # marks come first: what is saved before the content is read is seen again in the next look
+        marks = {name: self._mark(name) for name in (self.file, *self._tables)}
         content = _content(self.file, reader.LARGEST)
         if not content and self._gone < _GONE:
             self._gone += 1
             return False, content
         self._gone = 0 if content else _GONE
-        marks = {name: self._mark(name) for name in (self.file, *self._tables)}
         if [mark and mark[2] for mark in marks.values()] == [
             mark and mark[2] for mark in self._marks.values()
         ] and marks.keys() == self._marks.keys():
@@ -64,7 +65,8 @@ class Watch:
             return False, content
         if content:
             self._tables = tables(content, self.file, self._tables)
-        self._marks = {name: self._mark(name) for name in (self.file, *self._tables)}
+        names = (self.file, *self._tables)
+        self._marks = {name: marks[name] if name in marks else self._mark(name) for name in names}
         return True, content
 
     def _mark(self, name: str) -> _Mark | None:

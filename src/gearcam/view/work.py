@@ -31,7 +31,7 @@ COARSE: Final = 0.02
 
 _CHORDS: Final = "output.chord_tolerance_mm"
 
-_DONE: Final = "shown"
+_DONE: Final = "updated"
 
 
 def begin() -> None:
@@ -88,29 +88,35 @@ def show_draft(content: bytes | None, file: str) -> Reply:
     return _told(lambda: {"document": _draft(loads(_text(content, file), file=file))}, file)
 
 
-def seek(content: bytes, file: str, error: str) -> Reply:
-    """Return why a design is refused, with remedies.
+def seek(text: str, file: str) -> Reply:
+    """Search for remedies of a design that is refused.
 
     Parameters
     ----------
-    content : bytes
-        What its file holds.
+    text : str
+        Of its file.
     file : str
         Its name.
-    error : str
-        Why, in words.
 
     Returns
     -------
     dict
-        ``error``: the words, and what was found.
+        ``lines``, as the command line prints them; ``found``, for each remedy its ``text`` and its
+        ``changes``, numbers by key, null where it changes more than numbers of the file.
     """
 
-    def told() -> Reply:
-        found = remedies(build(loads(_text(content, file), file=file)))
-        return {"error": "\n".join([error, *(f"  {line}" for line in remedy_lines(found))])}
+    def made() -> Reply:
+        sought, known = remedies(build(loads(text, file=file))), numbers(text)
+        found = [(one.text, _items(one.changes)) for one in sought.found]
+        return {
+            "lines": "\n".join(remedy_lines(sought)),
+            "found": [
+                {"text": words, "changes": changes if changes.keys() <= known.keys() else None}
+                for words, changes in found
+            ],
+        }
 
-    return _told(told, file)
+    return _told(made, file)
 
 
 def follow(text: str, file: str, changes: Values, last: str, exact: bool) -> bytes:
