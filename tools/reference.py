@@ -70,15 +70,15 @@ def laws() -> Iterator[str]:
     """Yield the parts of the page on laws of gear pairs."""
     yield "# Ratio laws of gear pairs"
     yield (
-        "The table `[law]` of a design gives the ratio `i21 = dphi2/dphi1` over the driver's angle"
-        " `phi1`; its key `type` names the law. What the laws are for is explained in"
-        " [gear-pairs.md](../gear-pairs.md). Authors are listed in [sources.md](../sources.md)."
+        "The table `[law]` of a design sets the ratio `i21 = dphi2/dphi1` over the driver angle"
+        " `phi1`; its key `type` selects the law. [gear-pairs.md](../gear-pairs.md) explains the"
+        " laws, [sources.md](../sources.md) lists the authors."
     )
     rows = (
         (f"[{code(name)}](#{name})", entry.doc, entry.continuity, entry.source)
         for name, entry in LAWS.items()
     )
-    yield table(("`type`", "what it is", "continuity of the ratio", "source"), rows)
+    yield table(("`type`", "description", "continuity of the ratio", "source"), rows)
     yield from law_sections(LAWS, law_table, "[law]", type="")
 
 
@@ -102,11 +102,11 @@ def motion_laws() -> Iterator[str]:
     """Yield the parts of the page on laws of rises and returns."""
     yield "# Motion laws of cams"
     yield (
-        "A rise and a return, each a table `[[motion]]`, name their law by the key `law`. Velocity,"
-        " acceleration and jerk are the largest absolute values of a rise by 1 in the angle 1,"
-        " between dwells, with the default values of the law's keys. Multiply them by the lift"
-        " and divide by the angle in rad, its square and its cube. Authors are listed in"
-        " [sources.md](../sources.md)."
+        "The key `law` of a rise or return, which is a table `[[motion]]`, selects its motion law."
+        " Velocity, acceleration and jerk are the largest absolute values for a rise by 1 in the"
+        " angle 1 between dwells, with default values of the keys. Multiply them by the lift, and"
+        " divide by the angle in rad, its square and its cube. [sources.md](../sources.md) lists"
+        " the authors."
     )
     rows = (
         (f"[{code(name)}](#{name})", entry.doc, *peaks(entry), entry.continuity, entry.source)
@@ -165,22 +165,22 @@ def followers() -> Iterator[str]:
     yield "# Followers and forms of cams"
     yield "## Followers"
     yield (
-        "`type` in the table `[follower]` says what touches the cam, `motion` how it moves: along a"
-        " line (`translating`) or about a pivot (`oscillating`). The last two columns list the keys"
-        " that must be given."
+        "`type` in the table `[follower]` is the shape that touches the cam, `motion` its movement:"
+        " along a line (`translating`) or about a pivot (`oscillating`). The last two columns list"
+        " the required keys."
     )
     rows = (
         (code(kind), doc, wanted(kind, "translating"), wanted(kind, "oscillating"))
         for kind, doc in FOLLOWERS.items()
     )
-    yield table(("`type`", "what it is", "translating", "oscillating"), rows)
+    yield table(("`type`", "description", "translating", "oscillating"), rows)
     yield "## Forms"
     yield "`form` in the table `[cam]`:"
     rows = (
         (code(name), form.doc, *followers_of(name), listed(must(form)), listed(own_keys(name)))
         for name, form in FORMS.items()
     )
-    heads = ("`form`", "what it is", "followers", "motions", "must be given", "more than a disc")
+    heads = ("`form`", "description", "followers", "motions", "required keys", "additional keys")
     yield table(heads, rows)
     yield "Every key is explained in [keys.md](keys.md#cams)."
 
@@ -217,7 +217,7 @@ def checks() -> Iterator[str]:
                 for check in CHECKS.values()
                 if check.kind == group
             )
-            yield table(("code", "severity", "limit, default", "what it does"), rows)
+            yield table(("code", "severity", "limit, default", "meaning"), rows)
 
 
 def ordered_kinds() -> Iterator[DesignKind]:
@@ -236,7 +236,7 @@ def table_section(kind: DesignKind, title: str) -> Iterator[str]:
     known = kind.table(title)
     yield f"### {TITLES[kind.name]}: `[{title}]`"
     if title == "limits":
-        yield "Limits of the checks; which check has which is in [checks.md](checks.md)."
+        yield "Limits of the checks, see [checks.md](checks.md)."
     else:
         yield about(known)
     if kind.name != "cam" or title == "limits":
@@ -257,9 +257,9 @@ def motion_section() -> Iterator[str]:
     yield (
         "One table for each phase, in order. Its key `type` is"
         f" {', '.join(map(code, PHASES))}; rises and returns also have a `law` with its own keys,"
-        " see [motion-laws.md](motion-laws.md). Lengths are of translating followers, angles of"
-        " oscillating ones; `way_mm` stands in place of `angle_deg` on a translating cam. The"
-        " phases fill 360 degrees, on a yoke 180 or 360."
+        " see [motion-laws.md](motion-laws.md). Lengths are for translating followers, angles for"
+        " oscillating ones; a translating cam has `way_mm` instead of `angle_deg`. The phases sum"
+        " to 360 degrees, with a yoke to 180 or 360."
     )
     for name, owner in PHASES.items():
         law = " It has a `law`." if name in WITH_LAW else ""
@@ -267,7 +267,7 @@ def motion_section() -> Iterator[str]:
         yield keys_of(phase_table(name))
     rows, formula = turn_tables()
     yield "### Cams: `[motion]`"
-    yield "Instead of all phases, the lift over a whole turn by rows of angle and lift:"
+    yield "Instead of phases: the lift over a whole turn, as rows of angle and lift,"
     yield keys_of(rows)
     yield "or by a formula:"
     yield keys_of(formula)
@@ -278,11 +278,11 @@ def keys() -> Iterator[str]:
     yield "# Keys of design files"
     yield KEYS_INTRO
     rows = [
-        ("`kind`", ", ".join(f'`"{name}"`' for name in TITLES), "required", "the kind of design"),
+        ("`kind`", ", ".join(f'`"{name}"`' for name in TITLES), "required", "kind of design"),
         (
             "`name`",
             "letters, digits, `_ - .`, up to 100",
-            "the file's name",
+            "name of the file",
             "names the output folder",
         ),
     ]
@@ -306,7 +306,7 @@ def files() -> Iterator[str]:
     for kind in ordered_kinds():
         yield f"## {TITLES[kind.name]}"
         rows = ((code(word), *format_words(kind, word)) for word in kind.formats)
-        yield table(("`files`", "names", "what they hold"), rows)
+        yield table(("`files`", "names", "contents"), rows)
 
 
 def format_words(kind: DesignKind, word: str) -> tuple[str, str]:

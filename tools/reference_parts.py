@@ -12,10 +12,10 @@ from gearcam.numerals import shown
 from gearcam.quantities import ANGLE, LENGTH, REQUIRED
 
 NONE: Final = "-"
-"""Where there is nothing."""
+"""Text of an empty cell."""
 
 KEY_HEADS: Final = ("key", "value", "default", "meaning")
-"""Heads of a table of keys."""
+"""Headings of the columns of keys."""
 
 TITLES: Final = {"gear-pair": "Gear pairs", "cam": "Cams"}
 GROUPS: Final = {
@@ -28,34 +28,34 @@ GROUPS: Final = {
 """Headings of groups of checks, by what they examine."""
 
 KEYS_INTRO: Final = f"""\
-A design file is TOML in UTF-8. An unknown key, a value of the wrong type or one out of range is
-refused. Whole numbers may be written as 2 or 2.0 where a number is asked for. A length above 0 is
-at least {shown(LENGTH.least)} mm, an angle above 0 at least {shown(ANGLE.least)} degrees. A dash
-under "default" means that there is no fixed one: the meaning then says what holds where the key
-is left out; otherwise the key is optional, or another one is given in its place.
+A design file is TOML in UTF-8. Unknown keys, values of the wrong type and values out of range are
+refused. A number may be written as 2 or 2.0. Lengths that must be positive are at least
+{shown(LENGTH.least)} mm, angles at least {shown(ANGLE.least)} degrees. A dash under "default" means
+that there is no fixed default: the meaning says what holds without the key, or the key is optional,
+or another key takes its place.
 """
 
 COMMANDS_INTRO: Final = """\
-Files go to `DIR/NAME/`, where `DIR` is `output` or what `--output` says and `NAME` is the name of
-the design. Several design files may be given to most commands. What the exit codes mean is in
-[exit-codes.md](exit-codes.md).
+Files are written to `DIR/NAME/`, where `DIR` is `output` or the folder given with `--output`, and
+`NAME` is the name of the design. Most commands accept several design files. See
+[exit-codes.md](exit-codes.md) for the exit codes.
 """
 
 CODES_OUTRO: Final = """\
 Given several files, a command works on all of them and returns the largest code. However a
-command ends, the files of a design are either all the old ones or all the new ones.
+command ends, the files of a design are either all old or all new.
 """
 
 CHECKS_INTRO: Final = """\
-A check examines a design that has been built. A note is good to know, a warning asks you to look
-before you cut, an error means: do not cut this. Limits are set in the table `[limits]` of a
-design. Designs that cannot be made at all are refused instead.
+A check examines a design that has been built. A note is good to know; a warning means that you
+should look before you cut; an error means that you should not cut. The table `[limits]` of a design
+sets limits. Designs that cannot be made at all are refused instead.
 """
 
 FILES_INTRO: Final = """\
-`files` in the table `[output]` lists what is written beside `summary.json`, which always is.
-`gearcam build --only A,B` writes other files once. What to send to whom, and what the files look
-like inside, is in [files.md](../files.md).
+`files` in the table `[output]` lists the files to write in addition to `summary.json`.
+`gearcam build --only A,B` writes other files once. Which file to send to whom, and what each one
+contains, is explained in [files.md](../files.md).
 """
 
 
@@ -70,7 +70,7 @@ def _cell(text: str) -> str:
 
 
 def plain(text: str) -> str:
-    """Return text in which stars are stars; outside of code Markdown would take them for marks."""
+    """Return text with stars escaped outside code, where Markdown would interpret them."""
     parts = text.split("`")
     return "`".join(
         part.replace("*", "\\*") if k % 2 == 0 else part for k, part in enumerate(parts)
@@ -78,23 +78,23 @@ def plain(text: str) -> str:
 
 
 def sentence(doc: str) -> str:
-    """Return words as a sentence; a symbol at their beginning stays as it is."""
+    """Return words as a sentence; a symbol at the beginning is not capitalised."""
     first = doc[0].upper() if doc.partition(" ")[0].isalpha() else doc[0]
     return f"{first}{plain(doc[1:])}."
 
 
 def code(word: object) -> str:
-    """Return a word as it stands in a file."""
+    """Return a word as code."""
     return f"`{word}`"
 
 
 def listed(words: Iterable[object]) -> str:
-    """Return words in a row, or a dash."""
+    """Return words separated by commas, or a dash."""
     return ", ".join(map(code, words)) or NONE
 
 
 def default(entry: Key) -> str:
-    """Return the default of a key as a file would hold it."""
+    """Return the default of a key as in a file."""
     if entry.default is REQUIRED:
         return "required" if entry.required else "one of the two"
     if entry.default is None:
@@ -112,7 +112,7 @@ def key_rows(entries: Mapping[str, Key]) -> Iterator[tuple[str, ...]]:
 
 
 def keys_of(known: Table) -> str:
-    """Return the table of keys, or that there are none."""
+    """Return the table of keys, or the text that there are none."""
     return table(KEY_HEADS, key_rows(known.entries)) if known.entries else "It has no keys."
 
 

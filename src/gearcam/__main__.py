@@ -1,4 +1,4 @@
-"""``python -m gearcam``, and the command: interrupted well even while it is loaded."""
+"""``python -m gearcam`` and the command ``gearcam``."""
 
 import os
 import sys
@@ -6,13 +6,13 @@ import sys
 
 def main() -> int:
     """Run the command line of this process and return its exit code."""
-    # No array here is worth the threads of linear algebra; those that wait take the others' time.
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # read when numpy is loaded
+    # Arrays are too small for threads of linear algebra, and waiting threads cost processor time.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # read when numpy is imported
     try:
         from gearcam.cli import main as run
 
         return run()
-    except KeyboardInterrupt:  # before the command line answers it, or after
+    except KeyboardInterrupt:  # while the command line is imported, or after it
         sys.stderr.write("interrupted\n")
         return 130
 

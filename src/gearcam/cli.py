@@ -194,7 +194,8 @@ def _add_common(parser: argparse.ArgumentParser) -> None:
 def _help(docs: Mapping[str, str]) -> str:
     commands = [f"  {name:<10}{doc}" for name, doc in docs.items()]
     codes = [f"  {code:<10}{meaning}" for code, meaning in EXIT_CODES.items()]
-    more = "gearcam COMMAND --help explains the options of a command."
+    more = "DIR is the output folder, NAME the name of the design."
+    more += "\ngearcam COMMAND --help explains the options of a command."
     return "\n".join(["commands:", *commands, "", more, "", "exit codes:", *codes])
 
 

@@ -1,4 +1,4 @@
-"""What the inverse problem holds against a cam: its follower, put on its own profile."""
+"""Cross-check of a cam by the inverse problem: the motion of the follower on its profile."""
 
 from __future__ import annotations
 
@@ -13,27 +13,27 @@ from gearcam.kinds.cam.follow import followed
 from gearcam.numeric.arrays import Array
 
 _ANGLES: Final = 120
-"""Cam angles at which the lift is found."""
+"""Number of cam angles at which the lift is computed."""
 
 _ROOM: Final = 3.0
-"""What the lift may miss, in chord tolerances along the normal: a follower on two chords."""
+"""Allowed error along the normal, in chord tolerances, for a follower on two chords."""
 
 _ROUNDING: Final = 1e-9
-"""The same over the size of the profile."""
+"""Allowed error relative to the size of the profile."""
 
 
 def doubts(result: CamResult) -> Iterator[tuple[str, str]]:
-    """Yield where the lift of a wall's own polygon is not the one that was asked for.
+    """Yield places where the lift from the polygon of a wall differs from the specified lift.
 
     Parameters
     ----------
     result : CamResult
-        Any.
+        The result to check.
 
     Yields
     ------
     place, words : str
-        What is contradicted, and how.
+        Place and description of a contradiction.
     """
     theta = 2.0 * np.pi / _ANGLES * (np.arange(float(_ANGLES)) + 0.5)
     for wall, contour in zip(result.cam.walls, result.profiles, strict=True):
@@ -46,12 +46,12 @@ def doubts(result: CamResult) -> Iterator[tuple[str, str]]:
         worst = int((off - room).argmax())
         if off[worst] > room[worst]:
             at = wall.mechanism.driver.told(float(theta[worst]))
-            words = f"{wall.called} {wall.key}: the lift at {at} is {off[worst]} off"
-            yield "lift", f"{words}, {room[worst]} {wall.mechanism.outward[1]} are explained"
+            words = f"{wall.called} {wall.key}: the lift at {at} differs by {off[worst]}"
+            yield "lift", f"{words}, {room[worst]} {wall.mechanism.outward[1]} are allowed"
 
 
 def _room(wall: Wall, theta: Array) -> Array:
-    """Return what the lift may miss at cam angles, in the unit of files."""
+    """Return the allowed error of the lift at cam angles, in the unit of files."""
     mechanism, contact = wall.mechanism, wall.curve.contact(theta, 0)
     lever = mechanism.lever * np.cos(contact.pressure.c[0])
     if mechanism.flat:  # perpendicular to the face

@@ -1,4 +1,4 @@
-"""What a meshing study holds against a pair that its own checks find good."""
+"""Cross-check of a pair without errors by the meshing study."""
 
 from __future__ import annotations
 
@@ -13,24 +13,24 @@ from gearcam.meshing.settings import MeshingSpec
 from gearcam.meshing.study import study
 
 _STEPS: Final = 24
-"""Phases that are studied: outlines are laid over each other at each, which takes time."""
+"""Number of phases to study; each takes time."""
 
 _SAME: Final = 1e-6
-"""What the same contact ratio may differ by."""
+"""Allowed difference of contact ratios."""
 
 
 def doubts(result: GearPairResult) -> Iterator[tuple[str, str]]:
-    """Yield what a study says against a pair, mounted as designed.
+    """Yield contradictions between a pair, mounted as designed, and its meshing study.
 
     Parameters
     ----------
     result : GearPairResult
-        Any; one with errors has been told.
+        The result to check; one with errors is not checked.
 
     Yields
     ------
     place, words : str
-        What is contradicted, and how.
+        Place and description of a contradiction.
     """
     if any(one.severity == "error" for one in result.findings):
         return

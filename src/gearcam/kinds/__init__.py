@@ -1,7 +1,7 @@
-"""The kinds of design: each a folder that holds all that only it needs.
+"""The kinds of design, each in a folder with everything specific to it.
 
-What a folder has, and how it is found, `gearcam.designs.kind` says; nothing outside this package
-names one of them. Type checkers do not look into folders: they are told here of what is public.
+`gearcam.designs.kind` describes the modules of a folder and finds the folders; no code outside this
+package names one. The imports below declare the public names for type checkers.
 """
 
 from __future__ import annotations
