@@ -1,9 +1,8 @@
-"""Remedies: changes of a design with which it was built, and nothing was refused or an error.
+"""Remedies: changes of a design with which it builds without errors.
 
-What a refusal or a finding suggests is not told before it has been followed: each change is made
-in the design's own keys, the design is built through the same steps, wheels, checks and parts, and
-the change is kept if neither it nor a file that it asks for is refused, what was an error is gone,
-and no other error has come.
+A change that a refusal or a finding suggests is reported only after it has been tried: the design
+is changed in its own keys and built with the same law, outlines, checks and parts. The change is
+a remedy if neither the design nor one of its files is refused and no error is left.
 """
 
 from __future__ import annotations
@@ -41,29 +40,29 @@ if TYPE_CHECKING:
     from gearcam.result import Result
 
 PATIENCE: Final = 6.0
-"""Seconds after which a search is given up, on a usual machine."""
+"""Seconds after which a search ends, on a usual machine."""
 
 _PACE: Final = 10.0
-"""Designs that a usual machine builds in a second, about. A search counts what it builds, not the
-time, so that its answers are the same everywhere."""
+"""Designs per second that a usual machine builds, roughly. A search counts designs, not time, so
+that its answers are the same everywhere."""
 
 _SLACK: Final = 10.0
-"""How many times longer than on a usual machine a search may take: some wheels take long."""
+"""How many times longer than on a usual machine a search may take: some designs build slowly."""
 
 _STEP: Final = 1.0 / 40.0
-"""Part of a way that is one step of the search."""
+"""Share of a change that is one step of the search."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Remedy(Brief):
-    """A change with which a design was built, free of errors.
+    """A change with which a design was built without errors.
 
     Parameters
     ----------
     changes : mapping of str to value
         Values by dotted keys of the design file, in its units.
     less : mapping of str to value
-        The next smaller change, with which it was not; empty where none was tried.
+        The largest smaller change that was not enough; empty if none was tried.
     design : Design
         The changed design.
     """
@@ -74,7 +73,7 @@ class Remedy(Brief):
 
     @property
     def text(self) -> str:
-        """The changes as a design file holds them: ``pair.x = 0.2 and pair.teeth = [52, 52]``."""
+        """The changes as in a design file: ``pair.x = 0.2 and pair.teeth = [52, 52]``."""
         return _text(self.changes)
 
     @property
@@ -86,18 +85,18 @@ class Remedy(Brief):
 
 @dataclass(frozen=True, kw_only=True)
 class Remedies(Brief):
-    """What a search for remedies found.
+    """The result of a search for remedies.
 
     Parameters
     ----------
     found : tuple of Remedy
-        Each another way out.
+        The remedies; each is enough by itself.
     tried : tuple of str
         Keys that were changed in the search.
     gave_up : bool
-        Whether it was ended before all ways were tried to their end.
+        Whether the search ended before all changes were tried.
     builds : int
-        How many designs were tried.
+        Number of designs that were built.
     """
 
     found: tuple[Remedy, ...] = ()
@@ -116,14 +115,14 @@ def remedies(
     result : Result
         The result of the design.
     refusal : InfeasibleError, optional
-        How it, or one of its files, was refused; where left out its parts are built, and no file.
+        Why it or one of its files was refused; if left out, its parts are built and no file.
     patience : float, s
-        Time after which no other build is begun on a usual machine: as many are counted.
+        Time after which no other build is begun on a usual machine; counted in designs.
 
     Returns
     -------
     Remedies
-        Empty where the design is not refused and has no error; without a `refusal` searched once.
+        Empty if the design is not refused and has no error. Without a `refusal` searched once.
     """
     if refusal is not None:
         return _sought(result, refusal, patience)
@@ -171,18 +170,18 @@ def _value(value: object) -> str:
 
 
 def kerf_paths(result: Any) -> object:
-    """Return what paths with a kerf are made from, or raise what refuses them.
+    """Return the drawings from which paths with a kerf are made, or refuse them.
 
     Parameters
     ----------
     result : Result
-        Of a design whose parts may be cut.
+        Result of a design whose parts are cut.
     """
     return result.design.output.kerf and result.to_cut
 
 
 def demand_files(result: Result) -> None:
-    """Raise what refuses files that a design asks for, where its parts can be made.
+    """Refuse files of a design that cannot be made although its parts can.
 
     Parameters
     ----------
@@ -210,16 +209,16 @@ def _builds(result: Result) -> bool:
 
 
 class Search:
-    """A search within a number of builds: what was tried, and what was found.
+    """A search with a limited number of builds: what was tried and what was found.
 
     Parameters
     ----------
     result : Result
-        Of the design that is to be changed.
+        Result of the design to change.
     refusal : InfeasibleError or None
-        How it was refused.
+        Why it was refused.
     codes : frozenset of str
-        Findings that are to go.
+        Codes of its errors.
     patience : float, s
         Time after which no other build is begun on a usual machine.
     """
@@ -243,11 +242,11 @@ class Search:
 
     @cached_property
     def document(self) -> dict[str, Any]:
-        """What a file of the design would hold."""
+        """The design as a document."""
         return document_of(self.result.design)
 
     def over(self) -> bool:
-        """Whether enough was built; then a search is given up."""
+        """Return whether the search must end: enough designs were built."""
         over = self.builds >= self.most or time.perf_counter() > self.until
         self.gave_up |= over
         return over
@@ -260,9 +259,9 @@ class Search:
         return type(self.result)(design, self.result.tolerances)
 
     def left(self, changes: Changes) -> frozenset[str] | None:
-        """Return what is left of the errors of the changed design, others too; None if refused.
+        """Return the codes of all errors of the changed design; None if it is refused.
 
-        What it is refused for is kept, if that is another thing than the design was.
+        A refusal for another reason than that of the design is kept as `second`.
         """
         self.second = None
         try:
@@ -284,23 +283,23 @@ class Search:
         )
 
     def cures(self, changes: Changes) -> bool:
-        """Whether the changed design builds, without the errors and without others."""
+        """Return whether the changed design builds without errors."""
         return self.left(changes) == frozenset()
 
     def keep(self, changes: Changes, less: Changes | None = None) -> None:
-        """Write a remedy down: its `changes`, and the next smaller ones, `less`."""
+        """Add a remedy: its `changes`, and the largest smaller ones that are not enough, `less`."""
         design = self.result.design.with_(changes)
         self.found.append(Remedy(changes=changes, less=less or {}, design=design))
 
     def along(self, way: Way) -> bool:
-        """Find the smallest change along a way; whether there is one."""
+        """Find the smallest change along a way; return whether there is one."""
         if self.over():
             return False
         near = {key: way.near.get(key, value_at(self.document, key)) for key in way.far or way.near}
         if any(value is None for value in near.values()):
             return False
         if way.far and between(near, way.far, 1.0) == between(near, {}, 0.0):
-            return False  # it is there already
+            return False  # the design has this value already
         if way.near:
             first = between(near, way.far, INSIDE) if way.far else tidy(near)
             if self.cures(first):
@@ -313,7 +312,7 @@ class Search:
         return bool(way.far) and not known and least(near, way.far)
 
     def _least(self, near: Changes, far: Changes) -> bool:
-        """Find the smallest change between two ends; whether there is one."""
+        """Find the smallest change between two ends; return whether there is one."""
         low, high = 0.0, 1.0
         while self.over() or not self.cures(between(near, far, high)):
             high *= 0.5
@@ -330,7 +329,7 @@ class Search:
             low, high = (low, middle) if does else (middle, high)
 
     def _doubled(self, near: Mapping[str, Any], far: Mapping[str, Any]) -> bool:
-        """Find the smallest change of sizes between two ends through powers of two."""
+        """Find the smallest change through powers of two; return whether there is one."""
         low = start = float(abs(next(iter(near.values()))))
         for high in octaves(near, far):
             if self.over():
@@ -348,7 +347,7 @@ class Search:
         return True
 
     def go_on(self) -> None:
-        """Search on from designs that were built with one change and have other errors then."""
+        """Search on from designs that have other errors after one change."""
         for changes in self.first:
             if self.found or self.over():
                 return

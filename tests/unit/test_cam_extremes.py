@@ -218,7 +218,7 @@ def test_a_head_is_cut_off_at_its_neck() -> None:
     assert made.shortfall > 0.9 * lift
     (one,) = undercut(made, 0.01)
     assert one.severity == "error"
-    assert one.message.startswith("The profile is cut by the follower at another angle.")
+    assert one.message.startswith("The profile is cut away by the follower at another angle.")
 
 
 # --- barely undercut ------------------------------------------------------------------------------

@@ -68,7 +68,7 @@ def test_a_kerf_wider_than_the_sharpest_fillet_is_reported(part: float, speaks: 
     assert bool(heard) == speaks
     if speaks:
         assert heard[0].limit == pytest.approx(widest)
-        assert "metal is left there" in heard[0].message
+        assert "leaves metal there" in heard[0].message
 
 
 def test_the_rim_is_what_clearance_leaves() -> None:

@@ -46,7 +46,7 @@ def test_a_wheel_without_room_in_its_ring_is_told_so() -> None:
     assert found.severity == "error"
     assert found.value is not None
     assert found.value < -0.5 * math.pi
-    assert "no room in its ring" in found.message
+    assert "does not fit into its ring" in found.message
 
 
 def test_a_margin_below_its_limit_is_a_warning() -> None:

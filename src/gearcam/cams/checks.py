@@ -28,7 +28,7 @@ PRESSURE: Final = {False: math.radians(30.0), True: math.radians(45.0)}
 """Largest recommended pressure angle, rad: of translating and of oscillating followers."""
 
 JAMMING: Final = {False: math.radians(65.0), True: math.radians(80.0)}
-"""Pressure angle from which friction holds the follower, rad: of translating and oscillating ones.
+"""Pressure angle from which friction blocks the follower, rad: of translating and oscillating ones.
 
 A stem in a guide of length b that overhangs it by a jams at ``tan(alpha + rho) = 1/(mu*(1 +
 2*a/b))``, an arm on a pin of radius r at ``cos(alpha + rho) = r/l*sin(arctan(mu))``; rho is the
@@ -39,7 +39,7 @@ Source: 000 eqs. (3.82), (3.84), (3.99).
 """
 
 _MISSED: Final = 0.1
-"""Part of the whole lift by which no wear makes a cam's own profile miss it."""
+"""Part of the whole lift by which wear cannot change the lift of a cam's own profile."""
 
 _TURN: Final = 2.0 * math.pi
 
@@ -89,7 +89,7 @@ def _deg(theta: float) -> str:
 def pressure_angle(cam: Cam, limit: float) -> Iterator[Remark]:
     """Warn of large pressure angles on rises and returns.
 
-    Looks at: the pressure angle: the larger it is, the more the follower is pressed aside.
+    Looks at: the pressure angle: the larger it is, the larger is the side force on the follower.
     """
     for motion in cam.motions:
         largest = pressure_limit(motion.mechanism, limit)
@@ -107,23 +107,23 @@ def pressure_angle(cam: Cam, limit: float) -> Iterator[Remark]:
     ),
 )
 def jamming(cam: Cam, limit: float) -> Iterator[Remark]:
-    """Find pressure angles at which friction holds a follower that the cam pushes.
+    """Report pressure angles at which friction blocks the follower.
 
-    Looks at: the pressure angle where the cam pushes: on rises, and on returns where a second wall
-    does. With friction 0.15 a stem that overhangs its guide by the guide's length jams from 65.8
-    degrees, an arm on a pin of a tenth of its length from 80.6.
+    Looks at: the pressure angle where the cam drives the follower: on rises, and on returns under a
+    second wall. With friction of 0.15 a stem with an overhang as long as its guide jams from 65.8
+    degrees, an arm on a pin with a radius of a tenth of its length from 80.6 degrees.
     """
     for motion in cam.motions:
         largest = JAMMING[motion.mechanism.oscillating] if math.isnan(limit) else limit
         for remark in _steep(motion, driven(cam, motion), largest):
             yield remark._replace(
-                message=f"{remark.message[:-1]}: friction can hold the follower, however large "
+                message=f"{remark.message[:-1]}: friction can block the follower, whatever "
                 "the torque on the cam."
             )
 
 
 def _steep(motion: PitchMotion, kinds: tuple[str, ...], largest: float) -> Iterator[Remark]:
-    """Yield the phases of some kinds whose pressure angle is beyond the largest, rad."""
+    """Yield the phases of some kinds whose pressure angle exceeds the largest, rad."""
     for kind in kinds:
         found = motion.pressure(kind)
         if found is None or found.largest <= largest:
@@ -140,7 +140,7 @@ def _steep(motion: PitchMotion, kinds: tuple[str, ...], largest: float) -> Itera
 @check(
     "undercut",
     kind=KIND,
-    limit=("lost_lift", Param(LENGTH, ge=0, doc="lift that trimming may cost"), 0.01),
+    limit=("lost_lift", Param(LENGTH, ge=0, doc="largest lift that trimming may lose"), 0.01),
     severity=("warning", "error"),
 )
 def undercut(cam: Cam, limit: float) -> Iterator[Remark]:
@@ -167,9 +167,9 @@ def _undercut(wall: Wall, limit: float) -> Iterator[Remark]:
         angle = f" ({shown(math.degrees(loss.value), 4)} deg)" if swings else ""
         cut, much = _stretches(inside, told), f"{shown(lost, 4)} mm{angle}"
         yield Remark(
-            f"The {wall.called} is {cut}. Trimmed, it has a corner on which the follower rests "
-            f"from {told(low)} to {told(high)}: "
-            + (f"it loses up to {much} of lift." if wall.side > 0 else f"it goes {much} too far."),
+            f"The {wall.called} is {cut}. After trimming it has a corner, on which the follower "
+            f"rests from {told(low)} to {told(high)}: "
+            + (f"up to {much} of lift is lost." if wall.side > 0 else f"it goes {much} too far."),
             _at(wall, f"at {told(loss.theta)}"),
             lost,
             severity="error" if lost > limit else "warning",
@@ -177,19 +177,19 @@ def _undercut(wall: Wall, limit: float) -> Iterator[Remark]:
     for pair in left:
         cut = _stretches([pair], told)
         yield Remark(
-            f"The {wall.called} is {cut}, so little that trimming costs nothing.",
+            f"The {wall.called} is {cut}, so little that trimming loses no lift.",
             _at(wall, f"at {told(pair[0])}"),
         )
 
 
 def _within(pair: tuple[float, float], low: float, high: float) -> bool:
-    """Whether a stretch begins within a turn's part that may go over its end."""
+    """Whether a range begins within a part of a turn, which may continue over its end."""
     return (pair[0] - low) % _TURN <= (high - low) % _TURN
 
 
 def _stretches(pairs: list[tuple[float, float]], told: Callable[[float], str]) -> str:
     if not pairs:
-        return "cut by the follower at another angle"
+        return "cut away by the follower at another angle"
     words = (
         f"from {told(low)} to {told(high)}" if high > low else f"at {told(low)}"
         for low, high in pairs
@@ -216,8 +216,8 @@ def hard_shock(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """
     for where, by, unit in _shocks(cam, 1):
         yield Remark(
-            f"The velocity jumps by {shown(by)} {unit}: the follower strikes or leaves the "
-            "cam, but at crawling speed.",
+            f"The velocity jumps by {shown(by)} {unit}: except at very low speed the follower "
+            "strikes the cam or leaves it.",
             where,
             by,
             unit=unit,
@@ -232,7 +232,7 @@ def soft_shock(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """
     for where, by, unit in _shocks(cam, 2):
         yield Remark(
-            f"The acceleration jumps by {shown(by)} {unit}: vibration at high speed.",
+            f"The acceleration jumps by {shown(by)} {unit}: the follower vibrates at high speed.",
             where,
             by,
             unit=unit,
@@ -247,8 +247,8 @@ def soft_shock(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
 def sharp_profile(cam: Cam, limit: float) -> Iterator[Remark]:
     """Warn of a sharp profile.
 
-    Looks at: the smallest convex radius of the profile; sharp ones wear and pit. Trimmed profiles
-    are left out.
+    Looks at: the smallest convex radius of the profile, which wears and pits if it is sharp.
+    Trimmed profiles are left out.
     """
     for wall in cam.walls:
         convex, _ = wall.profile_radius
@@ -262,7 +262,7 @@ def sharp_profile(cam: Cam, limit: float) -> Iterator[Remark]:
 
 @check("coarse-rows", kind=KIND, unit="mm")
 def coarse_rows(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
-    """Warn if the lift between rows of a motion table is known less well than the profile is cut.
+    """Warn of a motion table whose rows do not give the lift as accurately as the profile is cut.
 
     The rows are too coarse, or they were measured and are not smoothed.
 
@@ -283,12 +283,12 @@ def coarse_rows(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
 @check(
     "lost-motion",
     kind=KIND,
-    limit=("lost_motion", Param(LENGTH, ge=0, doc="largest lost motion between walls"), 0.1),
+    limit=("lost_motion", Param(LENGTH, ge=0, doc="largest lost motion between two walls"), 0.1),
 )
 def lost_motion(cam: Cam, limit: float) -> Iterator[Remark]:
     """Warn of a follower that can move between the two walls of a groove.
 
-    Looks at: the largest lost motion of a follower that two walls hold: from one to the other.
+    Looks at: how far the follower can move while the cam does not.
     """
     found, mechanism = cam.lost_motion, cam.motions[0].mechanism
     if found is None:
@@ -307,12 +307,12 @@ def lost_motion(cam: Cam, limit: float) -> Iterator[Remark]:
 def face_width(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Note how wide the faces of a yoke must be: twice the farthest contact from their middle.
 
-    Looks at: how far off its middle a face of a yoke is touched, either way.
+    Looks at: the largest distance of the contact from the middle of a face.
     """
     if cam.face_width is not None:
         yield Remark(
-            f"Each face is touched up to {shown(0.5 * cam.face_width, 4)} mm off its middle: it "
-            f"is wider than {shown(cam.face_width, 4)} mm.",
+            f"The contact moves up to {shown(0.5 * cam.face_width, 4)} mm from the middle of each "
+            f"face: faces must be wider than {shown(cam.face_width, 4)} mm.",
             value=cam.face_width,
             unit="mm",
         )
@@ -322,9 +322,9 @@ def face_width(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
 def other_profile(found: tuple[Wall, Followed], limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Warn if a followed profile is probably not that of the design.
 
-    The lift differs from the one asked for by more than a tenth of it.
+    The lift differs by more than a tenth from that of the design.
 
-    Looks at: how far the lift is from the one asked for, in a study of a followed profile.
+    Looks at: the difference between the lift of a followed profile and that of the design.
     """
     wall, seen = found
     low, high = wall.program.range
@@ -333,9 +333,9 @@ def other_profile(found: tuple[Wall, Followed], limit: float) -> Iterator[Remark
     worst, most = int(off.argmax()), _MISSED * (high - low)
     if off[worst] > most:
         yield Remark(
-            f"The follower stands up to {shown(scale * float(off[worst]), 4)} {unit} off the lift "
-            f"of {shown(scale * (high - low))} {unit}: the profile is that of another wall or "
-            "another cam, or lies in another frame.",
+            f"The lift differs by up to {shown(scale * float(off[worst]), 4)} {unit} from that of "
+            f"the design, {shown(scale * (high - low))} {unit}: the profile belongs to another "
+            "wall or another cam, or is in another frame.",
             _at(wall, f"at {wall.mechanism.driver.told(float(seen.theta[worst]))}"),
             scale * float(off[worst]),
             unit=unit,

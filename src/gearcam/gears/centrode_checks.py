@@ -17,21 +17,21 @@ CLOSURE = math.radians(1e-7)
 """Default closure error: 0.006 micrometres at 200 mm."""
 
 _ANY_RADIUS = 1e6
-"""Default of the concave radius: every concave part is reported, mm."""
+"""Default of the concave radius, mm: every concave part is reported."""
 
 _CUTTER_TEETH = (
     "cutter_teeth",
     Param(NUMBER, ge=0, doc="fewest teeth of a pinion cutter"),
     12.0,
 )
-"""Limit of a pinion cutter's teeth, in concave parts and in rings."""
+"""Limit of the number of teeth of a pinion cutter, in concave parts and in rings."""
 
 
 @pair_check(
     "closure", limit=("closure", Param(ANGLE, ge=0, le=1, doc="largest closure error"), CLOSURE)
 )
 def closure(subject: Subject, limit: float) -> Iterator[Remark]:
-    """Warn if the law does not close exactly: its ratios were typed with too few digits.
+    """Warn if the law does not close exactly, as its ratios have too few digits.
 
     Beyond 1e-6 rad the design is refused.
 
@@ -40,7 +40,7 @@ def closure(subject: Subject, limit: float) -> Iterator[Remark]:
     miss = abs(subject.pair.law.closure_error)
     if miss > limit:
         yield Remark(
-            "The law does not close exactly: over a lobe the driven angle is off by this.",
+            "The law does not close exactly: this is the error of the driven angle over one lobe.",
             "law",
             math.degrees(miss),
         )
@@ -50,9 +50,9 @@ def closure(subject: Subject, limit: float) -> Iterator[Remark]:
     "ratio-positive", limit=("ratio_swing", Param(NUMBER, gt=1, doc="largest i21 or 1/i21"), 10.0)
 )
 def ratio_positive(subject: Subject, limit: float) -> Iterator[Remark]:
-    """Warn if the ratio comes near to zero (the driven wheel stands still) or grows very large.
+    """Warn if the ratio comes close to zero or becomes very large.
 
-    Looks at: the largest ratio and the inverse of the smallest, over their mean.
+    Looks at: the largest ratio and the inverse of the smallest, relative to the mean.
     """
     law = subject.pair.law
     (low_place, low), (high_place, high) = law.ratio_range
@@ -61,8 +61,8 @@ def ratio_positive(subject: Subject, limit: float) -> Iterator[Remark]:
     for place, value, swing in ((low_place, low, 1.0 / low), (high_place, high, high)):
         if swing > limit:
             yield Remark(
-                f"The ratio is {shown(value)} here: one wheel hardly moves, and its "
-                "centrode comes close to the other's shaft.",
+                f"The ratio is {shown(value)} here: one wheel hardly turns, and its centrode comes "
+                "close to the shaft of the other.",
                 angle_text(place),
                 swing,
             )
@@ -82,7 +82,7 @@ def ratio_continuity(subject: Subject, limit: float) -> Iterator[Remark]:
         order = jump.order - 2  # of the ratio, which is a derivative itself
         if order < limit:
             yield Remark(
-                f"The ratio is C{order} here; its derivative of order {order + 1} jumps.",
+                f"The ratio is C{order} here: its derivative of order {order + 1} jumps.",
                 angle_text(jump.theta or law.period),
                 float(order),
             )
@@ -100,8 +100,7 @@ def ratio_continuity(subject: Subject, limit: float) -> Iterator[Remark]:
 def concave(subject: Subject, limit: float) -> Iterator[Remark]:
     """Note a concave part of a centrode: no rack or hob can cut that wheel.
 
-    Looks at: the radius of concave parts of the centrodes; not of a ring, which is concave by
-    nature.
+    Looks at: the radius of concave parts of the centrodes, except those of a ring.
     """
     for gear in subject.gears:
         cutter, (place, radius) = gear.toothing.cutter, gear.toothing.track.concave
@@ -109,8 +108,8 @@ def concave(subject: Subject, limit: float) -> Iterator[Remark]:
             continue
         if cutter.kind == "pinion" and radius < limit:
             yield Remark(
-                "The centrode is concave here: no rack or hob can cut this wheel; its "
-                f"fillets are those of a pinion cutter with up to {shown(cutter.teeth, 3)} teeth.",
+                "The centrode is concave here: no rack or hob can cut this wheel. Its fillets are "
+                f"those of a pinion cutter with up to {shown(cutter.teeth, 3)} teeth.",
                 f"wheel {gear.wheel}, {angle_text(place)}",
                 radius,
                 limit=limit if limit < _ANY_RADIUS else math.inf,
@@ -123,7 +122,7 @@ def concave(subject: Subject, limit: float) -> Iterator[Remark]:
     unit="modules",
 )
 def sharp(subject: Subject, limit: float) -> Iterator[Remark]:
-    """Warn where a centrode is curved so sharply that teeth have hardly any root.
+    """Warn of a sharp bend of a centrode, where teeth have hardly any root.
 
     Looks at: the smallest convex radius of the centrodes.
     """
@@ -132,7 +131,7 @@ def sharp(subject: Subject, limit: float) -> Iterator[Remark]:
         modules = radius / subject.pair.module
         if modules < limit * (1.0 - ROUNDING):
             yield Remark(
-                f"The centrode bends with a radius of {shown(radius)} mm here. "
+                f"The centrode has a radius of only {shown(radius)} mm here. "
                 f"{subject.with_teeth(limit / modules)} the limit is kept.",
                 f"wheel {gear.wheel}, {angle_text(place)}",
                 modules,
@@ -141,15 +140,15 @@ def sharp(subject: Subject, limit: float) -> Iterator[Remark]:
 
 @pair_check("concave-teeth", limit=_CUTTER_TEETH, unit="teeth")
 def concave_teeth(subject: Subject, limit: float) -> Iterator[Remark]:
-    """Warn where the teeth are too wide for a concave part: only a tiny pinion cutter fits into it.
+    """Warn of a concave part into which only a pinion cutter with few teeth fits.
 
-    Looks at: the teeth of the largest pinion cutter that fits into the concave parts.
+    Looks at: the number of teeth of the largest pinion cutter that fits into the concave parts.
     """
     for gear in subject.gears:
         count, (place, radius) = gear.toothing.cutter.teeth, gear.toothing.track.concave
         if count < limit and not gear.ring:
             yield Remark(
-                "The teeth are wide for this concave part, whose radius is "
+                "The teeth are large for this concave part, which has a radius of "
                 f"{shown(radius)} mm. {subject.with_teeth(limit / count)} the limit is kept.",
                 f"wheel {gear.wheel}, {angle_text(place)}",
                 count,
@@ -160,14 +159,14 @@ def concave_teeth(subject: Subject, limit: float) -> Iterator[Remark]:
 def cutter_small(subject: Subject, limit: float) -> Iterator[Remark]:
     """Note that the pinion cutter of a ring has few teeth.
 
-    Looks at: teeth of the pinion cutter of a ring.
+    Looks at: the number of teeth of the pinion cutter of a ring.
     """
     for gear in subject.gears:
         count = gear.toothing.cutter.teeth
         if gear.ring and count < limit:
             yield Remark(
-                "The pinion cutter of the ring has few teeth: a shaper may have none so small, "
-                "and the fillets are those of a cutter of this size.",
+                "The pinion cutter of the ring has few teeth: there may be no shaper cutter of "
+                "this size, for which the fillets are drawn.",
                 f"wheel {gear.wheel}",
                 count,
             )
@@ -182,10 +181,10 @@ def cutter_small(subject: Subject, limit: float) -> Iterator[Remark]:
     ),
 )
 def pressure_angle(subject: Subject, limit: float) -> Iterator[Remark]:
-    """Warn where the tooth force pushes the shafts apart rather than turns the wheel.
+    """Warn of a tooth force that loads the bearings more than it turns the wheel.
 
-    Looks at: the angle of the tooth force to the motion of the pitch point, driving forward and
-    backward.
+    Looks at: the angle between the tooth force and the motion of the pitch point, driving forward
+    and backward.
     """
     found = {way: ends for way, ends in subject.pressure_angles.items() if ends[1] > limit}
     if found:
@@ -195,9 +194,8 @@ def pressure_angle(subject: Subject, limit: float) -> Iterator[Remark]:
             "no longer turns the wheel" if largest >= 0.5 * math.pi else "mostly loads the bearings"
         )
         yield Remark(
-            f"The tooth force stands so steep that it {does}: the rack's "
-            f"{shown(math.degrees(subject.pair.rack.pressure_angle))} deg and the slope of "
-            "the centrode add up.",
+            f"The tooth force {does}: the slope of the centrode adds to the rack's pressure angle "
+            f"of {shown(math.degrees(subject.pair.rack.pressure_angle))} deg.",
             "; ".join(where),
             math.degrees(largest),
         )
@@ -212,9 +210,9 @@ def pressure_angle(subject: Subject, limit: float) -> Iterator[Remark]:
     ),
 )
 def self_crossing(subject: Subject, limit: float) -> Iterator[Remark]:
-    """Warn if the ends of an open wheel nearly meet; ends that meet are refused.
+    """Warn of an open wheel whose ends nearly meet; a wheel whose ends meet is refused.
 
-    Looks at: what an open wheel leaves of a full turn.
+    Looks at: the angle between the ends of an open wheel.
     """
     for gear in subject.gears:
         track = gear.toothing.track
@@ -224,7 +222,7 @@ def self_crossing(subject: Subject, limit: float) -> Iterator[Remark]:
         gap = 2.0 * math.pi - float(np.ptp(track.rotation(track.angle(gear.toothing.ends))))
         if gap < limit:
             yield Remark(
-                "Little is left between the first and the last tooth.",
+                "There is little room between the first and the last tooth.",
                 f"wheel {gear.wheel}",
                 math.degrees(gap),
             )
@@ -235,17 +233,17 @@ def self_crossing(subject: Subject, limit: float) -> Iterator[Remark]:
     limit=("acceleration_ratio", Param(NUMBER, gt=0, doc="largest d(i21)/dphi1"), 2.0),
 )
 def acceleration(subject: Subject, limit: float) -> Iterator[Remark]:
-    """Warn of a motion that shakes the machine although the driver turns steadily.
+    """Warn of a large acceleration of the driven wheel at constant speed of the driver.
 
-    Looks at: `d(i21)/dphi1`: the acceleration of the driven wheel over the square of the driver's
-    speed.
+    Looks at: `d(i21)/dphi1`, the acceleration of the driven wheel divided by the square of the
+    driver's speed.
     """
     places, values = subject.accelerations
     worst = int(np.argmax(np.abs(values)))
     if abs(float(values[worst])) > limit:
         yield Remark(
-            "The ratio changes fast here: at n turns a second of the driver the driven "
-            "wheel's angular acceleration is this number times (2*pi*n)^2 rad/s2.",
+            "The ratio changes fast here: with the driver at n revolutions per second the angular "
+            "acceleration of the driven wheel is this number times (2*pi*n)^2 rad/s2.",
             angle_text(float(places[worst])),
             abs(float(values[worst])),
         )
@@ -253,9 +251,9 @@ def acceleration(subject: Subject, limit: float) -> Iterator[Remark]:
 
 @pair_check("remote-cutter", unit="mm")
 def remote_cutter(subject: Subject, limit: float) -> Iterator[Remark]:  # noqa: ARG001
-    """Warn if the pinion cutter, standing in one tooth space, would cut a tooth farther away.
+    """Warn of a pinion cutter that would cut another part of the wheel too.
 
-    Looks at: pinion cutter that reaches a remote part of its wheel.
+    Looks at: the distance of the pinion cutter from parts of the wheel that it does not cut.
     """
     for gear in subject.gears:
         cutter = gear.toothing.cutter
@@ -268,7 +266,7 @@ def remote_cutter(subject: Subject, limit: float) -> Iterator[Remark]:  # noqa: 
         steps = np.arange(count)
         ahead = frames.p[(steps[:, None] + steps) % count]
         clear = np.abs(ahead - center[:, None]) - (1.0 / cutter.kc + cutter.dedendum)
-        # Once the centrode has left the cutter on either way round it must not come back to it.
+        # once the centrode has left the cutter, in either direction, it must not return to it
         half = count // 2
         for way in (1, -1):
             path = clear[:, way * np.arange(half)]
@@ -278,8 +276,8 @@ def remote_cutter(subject: Subject, limit: float) -> Iterator[Remark]:  # noqa: 
                 places = s[[row, (row + way * column) % count]]
                 teeth = np.floor(places / gear.toothing.pitch).astype(int) % gear.toothing.teeth + 1
                 yield Remark(
-                    "A pinion cutter in this space would also cut the other tooth: laser, "
-                    "wire or printer can make the wheel, a shaper cannot.",
+                    "A pinion cutter in this tooth space would also cut into the other tooth: the "
+                    "wheel cannot be shaped, but it can be cut by laser or wire, or printed.",
                     f"wheel {gear.wheel}, space after tooth {teeth[0]} and tooth {teeth[1]}",
                     float(-again.min()),
                     limit=0.0,

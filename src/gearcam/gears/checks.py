@@ -1,7 +1,7 @@
-"""The checks of a gear pair's teeth; importing this room registers those of its centrodes too.
+"""The checks of a gear pair's teeth; importing this module registers those of its centrodes too.
 
-A check sees a `Subject` and yields findings. Values and limits of findings are in the units of
-files.
+A check takes a `Subject` and yields findings. Values and limits of findings are in the units of
+design files.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ __all__ = [
 ]  # fmt: skip
 
 _POINTED = 1e-9
-"""Thickness of a tip, in modules, that is rounding: the tooth is pointed."""
+"""Thickness of a tip, in modules, below which the tooth counts as pointed."""
 
 
 def tooth_ranges(numbers: tuple[int, ...] | list[int]) -> str:
@@ -44,7 +44,7 @@ def largest_module(gear: Gear) -> float:
 
     ``m = rho_min*sin(alpha)^2/h`` on convex parts with the depth h of the straight flank in
     modules, 1 for the common rack (0.99997 exactly, which counts as full), and on concave parts
-    with the depth to which the mate's flanks go. Enough, not always needed: a flank may end sooner.
+    with the depth to which the mate's flanks reach. This is sufficient; a flank may end sooner.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ def largest_module(gear: Gear) -> float:
 
 
 def undercut_curvatures(gear: Gear) -> tuple[float, float]:
-    """Return up to which curvatures of its centrode a wheel has no undercut (see `largest_module`).
+    """Return the largest curvatures of its centrode without undercut (see `largest_module`).
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ def undercut_curvatures(gear: Gear) -> tuple[float, float]:
 
 
 def _straight_depth(cutter: Cutter) -> float:
-    """Depth of the straight flank, modules, of a rack: at a smaller module a pinion nears it."""
+    """Depth of a rack's straight flank, modules; a pinion cutter's at a small module."""
     depth = cutter.depth + cutter.tip_radius * math.sin(cutter.alpha)
     return math.ceil(depth * math.pi / cutter.pitch * 1e4 - 0.5) / 1e4
 
@@ -88,17 +88,17 @@ def _straight_depth(cutter: Cutter) -> float:
 def undercut(subject: Subject, limit: float) -> Iterator[Remark]:
     """Warn of undercut flanks.
 
-    It is an error where flanks no longer touch in every phase, or the contact ratio that is left is
+    An error if there are phases without contact of flanks, or if the remaining contact ratio is
     below the limit.
 
-    Looks at: flanks that turn back on themselves, and the contact ratio that they leave.
+    Looks at: flanks cut away by the cutter, and the remaining contact ratio.
     """
     ratio = subject.contact_ratio
     driven = subject.driven
     severity: Severity = "warning" if driven and ratio >= limit else "error"
-    left = f"the least contact ratio that is left is {shown(ratio, 4)}"
+    left = f"the least remaining contact ratio is {shown(ratio, 4)}"
     if not driven:
-        left += ", and in some phases no flanks touch"
+        left += ", and there are phases in which no flanks touch"
     elif ratio < limit:
         left += f", below the limit {shown(limit, 4)}"
     for gear in subject.gears:
@@ -107,14 +107,15 @@ def undercut(subject: Subject, limit: float) -> Iterator[Remark]:
             continue
         flanks, best = gear.profile.flanks, largest_module(gear)
         below = np.isfinite(flanks.cusps.dedendum)
-        message = f"Flanks end at a cusp above the pitch curve; {left}."
+        message = f"Undercut removes flanks from above the pitch curve; {left}."
         factor = subject.pair.module / best
         fewest = math.ceil(gear.toothing.teeth * factor * (1.0 - ROUNDING))
         if below.any():
             slope = math.sin(gear.toothing.cutter.alpha) * math.cos(gear.toothing.cutter.alpha)
             lost = float((flanks.lowest + gear.toothing.cutter.reach)[below].max()) * slope
-            message = f"Undercut takes up to {shown(lost, 4)} mm from the root end of these "
-            message += f"flanks; {left}."
+            message = (
+                f"Undercut removes up to {shown(lost, 4)} mm of these flanks at the root; {left}."
+            )
         yield Remark(
             f"{message} {subject.with_teeth(factor)} this wheel has no undercut.",
             f"wheel {gear.wheel}, teeth {tooth_ranges(teeth)}",
@@ -130,7 +131,7 @@ def undercut(subject: Subject, limit: float) -> Iterator[Remark]:
     unit="modules",
 )
 def thin_tip(subject: Subject, limit: float) -> Iterator[Remark]:
-    """Warn of teeth that are thin at their tips, or pointed.
+    """Warn of teeth with thin or pointed tips.
 
     Looks at: the thickness of the teeth at their tips.
     """
@@ -140,7 +141,7 @@ def thin_tip(subject: Subject, limit: float) -> Iterator[Remark]:
         if thin.size:
             state = "pointed" if thickness.min() < _POINTED else "thin"
             yield Remark(
-                f"Teeth are {state} at the tip.",
+                f"The tips of these teeth are {state}.",
                 f"wheel {gear.wheel}, teeth {tooth_ranges([int(k) + 1 for k in thin])}",
                 float(thickness.min()),
             )
@@ -153,7 +154,7 @@ def thin_tip(subject: Subject, limit: float) -> Iterator[Remark]:
     unit="addenda",
 )
 def short_flank(subject: Subject, limit: float) -> Iterator[Remark]:
-    """Note flanks that end well below the addendum curve: at a cusp, a point or the mate's reach.
+    """Note flanks that end well below the addendum curve.
 
     Looks at: the height at which flanks end.
     """
@@ -162,8 +163,8 @@ def short_flank(subject: Subject, limit: float) -> Iterator[Remark]:
         short = np.flatnonzero(height < limit)
         if short.size:
             yield Remark(
-                "Flanks end below the addendum curve: at the end of the mate's flank, at a "
-                "cusp, or where the tooth comes to a point.",
+                "These flanks end below the addendum curve: where the mate's flank ends, at an "
+                "undercut, or because the tooth is pointed.",
                 f"wheel {gear.wheel}, teeth {tooth_ranges([int(k) + 1 for k in short])}",
                 float(height.min()),
             )
@@ -175,25 +176,25 @@ def short_flank(subject: Subject, limit: float) -> Iterator[Remark]:
     severity=("error", "warning"),
 )
 def tips_collide(subject: Subject, limit: float) -> Iterator[Remark]:
-    """Report teeth of an internal pair whose tips collide outside the mesh.
+    """Report tip interference of an internal pair: tips that collide outside the mesh.
 
-    It is a warning where they pass each other by less than the limit.
+    A warning if they pass each other by less than the limit.
 
-    Looks at: the tips of wheel 1 on their way into the ring and out of it.
+    Looks at: the tips of wheel 1 as they enter and leave the ring.
     """
     found = subject.tip_pass
     if found is None or found.margin >= limit:
         return
-    message = "Tips pass each other closely outside the mesh."
+    message = "Tips pass each other by little outside the mesh."
     if found.margin < 0.0:
         message = (
-            "Tips collide outside the mesh: where it enters or leaves the ring, a corner of "
-            f"wheel 1 is {shown(-found.margin)} mm within a tooth, along the pitch curve."
+            "Tips collide outside the mesh: as it enters or leaves the ring, a tip corner of wheel "
+            f"1 overlaps a tooth of the ring by {shown(-found.margin)} mm along the pitch curve."
         )
     if found.margin < -0.5 * subject.pair.toothings[1].pitch:  # no tooth is as wide
         message = (
-            "The wheel has no room in its ring: outside the mesh a corner of wheel 1 runs through "
-            "the ring's teeth into its metal."
+            "The wheel does not fit into its ring: outside the mesh a tip corner of wheel 1 passes "
+            "through the ring's teeth into its rim."
         )
     yield Remark(
         message,
@@ -215,14 +216,14 @@ def thin_rim(subject: Subject, limit: float) -> Iterator[Remark]:
     """
     least = limit * subject.pair.module
     for rim, gear in subject.rims:
-        if rim < least * (1.0 - ROUNDING):  # the bore or rim named keeps it
+        if rim < least * (1.0 - ROUNDING):  # the bore or rim that is named passes
             largest = 2.0 * (gear.least_radius - least)
-            what, hint = "between bore and root", "no bore keeps the limit"
+            what, hint = "between bore and root", "no bore is small enough to keep the limit"
             if gear.ring:
                 what = "outside the roots"
                 across = shown(2.0 * (gear.largest_radius + least), 12)
-                hint = f"ring.rim_mm = {shown(least, 12)} keeps the limit or, of a round outside, "
-                hint += f"ring.outer_diameter_mm = {across} in its place"
+                hint = f"ring.rim_mm = {shown(least, 12)} keeps the limit, or for a round outside "
+                hint += f"ring.outer_diameter_mm = {across}"
             elif largest > 0:
                 hint = (
                     f"a bore up to {rounded_down(largest)} mm across, keyway included, keeps the "
@@ -241,14 +242,14 @@ def thin_rim(subject: Subject, limit: float) -> Iterator[Remark]:
     severity="note",
 )
 def no_backlash(subject: Subject, limit: float) -> Iterator[Remark]:
-    """Note that the wheels are made without backlash.
+    """Note that the wheels have no backlash.
 
-    Looks at: the backlash between flanks, that of `blank.clearance_mm` included.
+    Looks at: the backlash between flanks, including that of `blank.clearance_mm`.
     """
     if subject.backlash < limit * (1.0 - ROUNDING):
         yield Remark(
-            "The wheels are made without backlash: printed ones want some, and so do "
-            "shafts whose distance is not exact.",
+            "The wheels have no backlash: printed wheels need some, and so does any error of the "
+            "centre distance.",
             "pair",
             max(subject.backlash, 0.0),
         )

@@ -1,6 +1,6 @@
-"""The checks of a meshing study; importing this room registers them.
+"""The checks of a meshing study; importing this module registers them.
 
-A check sees a `Meshing` and yields findings. Values and limits are in the units of files.
+A check takes a `Meshing` and yields findings. Values and limits are in the units of design files.
 """
 
 from __future__ import annotations
@@ -25,21 +25,21 @@ _CLEARANCE = (
     0.1,
 )
 _UNPREDICTED = 0.5
-"""Share of the penetration from which an overlap that no flank predicts is worth a word."""
+"""Share of the penetration from which an overlap that no flank predicts is reported."""
 
 _PASSED = 1e-9
-"""Share of the travel by which the angle of a tooth at its end may be off by rounding."""
+"""Share of the travel by which rounding may move a tooth beyond its end."""
 
 
 def spans(angles: Array, step: float) -> str:
-    """Return phases as ranges in degrees, with the number of the ranges that are left out.
+    """Return phases as ranges in degrees, with the number of ranges omitted.
 
     Parameters
     ----------
     angles : (n,) array, rad
         Rising.
     step : float, rad
-        Distance of phases that follow each other.
+        Difference between successive phases.
 
     Returns
     -------
@@ -68,7 +68,7 @@ def interference(meshing: Meshing, limit: float) -> Iterator[Remark]:
     worst = int(np.where(np.isfinite(backlash), backlash, np.inf).argmin())
     deepest = -float(backlash[worst])
     limit = meshing.setup.noise
-    where = f"no room between both sides, phi1 = {shown(math.degrees(meshing.phi1[worst]))} deg"
+    where = f"flanks of both sides overlap, phi1 = {shown(math.degrees(meshing.phi1[worst]))} deg"
     for block in meshing.blocks:
         found, turning = block.overlaps, meshing.setup.turning
         most = explained(meshing.setup, found)
@@ -86,7 +86,7 @@ def interference(meshing: Meshing, limit: float) -> Iterator[Remark]:
             angle = math.degrees(block.phi1[found.step[k]])
             where = f"deepest at phi1 = {shown(angle)} deg, {one} in {two}"
     yield Remark(
-        f"The wheels run into each other at {_at(meshing, hit)}.",
+        f"The wheels overlap at {_at(meshing, hit)}.",
         where,
         deepest,
         limit=limit,
@@ -95,15 +95,15 @@ def interference(meshing: Meshing, limit: float) -> Iterator[Remark]:
 
 @check("edge-contact", kind=KIND, unit="phases")
 def edge_contact(meshing: Meshing, limit: float) -> Iterator[Remark]:  # noqa: ARG001
-    """Warn of phases in which the end of a flank touches first and positions the driven wheel.
+    """Warn of phases in which a tooth edge touches first and positions the driven wheel.
 
-    Looks at: phases at which an edge touches before the flanks do.
+    Looks at: phases in which an edge touches before the flanks do.
     """
     edge = meshing.every("edge").astype(bool)
     if edge.any():
         yield Remark(
-            "The end of a flank touches before the flanks do: it scratches, and the "
-            "motion is not the one asked for.",
+            "A tooth edge touches before the flanks do: it scrapes, and the motion differs from "
+            "that of the law.",
             _at(meshing, edge),
             float(np.count_nonzero(edge)),
         )
@@ -113,7 +113,7 @@ def edge_contact(meshing: Meshing, limit: float) -> Iterator[Remark]:  # noqa: A
 def fillet_interference(meshing: Meshing, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Warn of outlines that touch on a fillet or a tip.
 
-    Looks at: contact of the outlines that the active flanks do not explain.
+    Looks at: contact of the outlines outside the active flanks.
     """
     least = max(_UNPREDICTED * meshing.setup.penetration, meshing.setup.noise)
     rows = meshing.columns
@@ -123,7 +123,7 @@ def fillet_interference(meshing: Meshing, limit: float) -> Iterator[Remark]:  # 
     off[rows["step"].data[strange].astype(np.int64)] = True
     if off.any():
         yield Remark(
-            "The outlines touch where neither flank is: on a fillet or on a tip.",
+            "The outlines touch outside the active flanks: on a fillet or a tip.",
             _at(meshing, off),
             float(np.count_nonzero(off)),
         )
@@ -131,23 +131,24 @@ def fillet_interference(meshing: Meshing, limit: float) -> Iterator[Remark]:  # 
 
 @check("tip-clearance", kind=KIND, limit=_CLEARANCE, unit="modules")
 def tip_clearance(meshing: Meshing, limit: float) -> Iterator[Remark]:
-    """Warn of tips that come near to the mate's root.
+    """Warn of tips that come close to the root of the mate.
 
-    Looks at: smallest distance of a tip's middle from the mate's root as it passes the pitch point.
+    Looks at: the smallest distance of the middle of a tip from the root of the mate as the tooth
+    passes the pitch point.
     """
     module = meshing.setup.pairs[DRIVE].pitch / math.pi
     for wheel, distances in enumerate(clearances(meshing), start=1):
         least = float(distances.min()) / module
         if least < limit:
             yield Remark(
-                "The tip comes as near to the mate's root as this, or touches it.",
+                "The tip comes this close to the root of the mate, or touches it.",
                 f"wheel {wheel}, tooth {int(distances.argmin()) + 1}",
                 least,
             )
 
 
 def clearances(meshing: Meshing) -> list[Array]:
-    """Return the distances of the tips' middles from the mates' outlines.
+    """Return the distances of the middles of tips from the outlines of their mates.
 
     Parameters
     ----------
@@ -157,8 +158,8 @@ def clearances(meshing: Meshing) -> list[Array]:
     Returns
     -------
     list of (z1,) and (z2,) array, mm
-        Of each whole tooth of both wheels, at the phase at which its middle passes the pitch
-        point; 0 where it lies inside its mate. A closed wheel on a rack: those that pass it.
+        For each whole tooth of both wheels, at the phase at which its middle passes the pitch
+        point; 0 inside the mate. Of a closed wheel on a rack only the teeth that pass it.
     """
     turning, pairs = meshing.setup.turning, meshing.setup.pairs[DRIVE]
     result = []

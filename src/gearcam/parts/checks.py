@@ -1,6 +1,6 @@
-"""The checks of parts: walls between openings, kerfs and tools too large.
+"""The checks of parts: thin walls, wide kerfs and tools that are too large.
 
-Importing this room registers them. A check sees a `PartsSubject` and yields findings.
+Importing this module registers them. A check takes a `PartsSubject` and yields findings.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from gearcam.parts.tools import ToolLimits, tool_limits
 from gearcam.quantities import LENGTH, Param
 
 _FINE = 0.01
-"""Sagitta of the chords of round outsides, from which walls are measured, in tolerances."""
+"""Sagitta, in tolerances, of the chords of round outsides from which walls are measured."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -33,11 +33,11 @@ class PartsSubject(Brief):
     parts : tuple of Part
         As made.
     names : tuple of str
-        What a person calls them.
+        Names for messages.
     kerf : float, mm
-        What the cutter burns away; 0 where nothing is said of it.
+        Width of the cut; 0 if the design gives none.
     uncut : tuple of bool
-        Whether a cutter that burns so much does not get to some flank of each wheel.
+        Whether a cutter of this kerf leaves metal on flanks, for each part.
     """
 
     parts: tuple[Part, ...]
@@ -47,7 +47,7 @@ class PartsSubject(Brief):
 
     @cached_property
     def tools(self) -> tuple[ToolLimits, ...]:
-        """The largest tools for toothed edges and profiles, the lowest steps', and for recesses."""
+        """The largest tools for outlines (of stepped wheels the lowest step) and recesses."""
         return tuple(_tools(part) for part in self.parts)
 
 
@@ -63,8 +63,8 @@ def _tools(part: Part) -> ToolLimits:
 def thin_wall(subject: PartsSubject, limit: float) -> Iterator[Remark]:
     """Warn of thin walls.
 
-    Looks at: walls between openings, and between openings and the outline or the hub's edge;
-    between a groove and the outline, and below its floor.
+    Looks at: walls between openings, between openings and the outline or the edge of the hub,
+    between a groove and the outline, and below the floor of a groove.
     """
     for name, part in zip(subject.names, subject.parts, strict=True):
         walls = list(_walls(part))
@@ -76,7 +76,7 @@ def thin_wall(subject: PartsSubject, limit: float) -> Iterator[Remark]:
 
 
 def _walls(part: Part) -> Iterator[tuple[float, str]]:
-    """Thickness and place of every wall."""
+    """Yield thickness and place of every wall."""
     from shapely import LinearRing, Point
 
     # a circle is its centre, its radius away
@@ -113,7 +113,7 @@ def _walls(part: Part) -> Iterator[tuple[float, str]]:
 
 
 def _apart(one: Any, other: Any) -> float:
-    """Return the distance of two edges, or of points, mm; that of long ones by an index."""
+    """Return the distance of two edges or points, mm, by a spatial index."""
     from shapely import length, prepare, shortest_line
 
     prepare(one)
@@ -122,20 +122,20 @@ def _apart(one: Any, other: Any) -> float:
 
 @check("wide-kerf", kind=KIND, severity=("warning", "error"), unit="mm")
 def wide_kerf(subject: PartsSubject, _: float) -> Iterator[Remark]:
-    """Warn of a kerf that is wider than an inner corner or a slot, where metal is left.
+    """Warn of a kerf that is too wide for an inner corner or a slot, so that metal is left.
 
-    It is an error where metal is left on flanks of teeth.
+    An error if metal is left on flanks of teeth.
 
-    Looks at: the largest tool that reaches every place of an outline, against `output.kerf_mm`.
+    Looks at: the largest tool that reaches all of an outline, compared with `output.kerf_mm`.
     """
     rows = zip(subject.names, subject.tools, subject.uncut, strict=True)
     for name, tools, uncut in rows:
         if tools.diameter >= subject.kerf:
             continue
-        left = "metal is left there, on flanks too" if uncut else "metal is left there"
+        left = "leaves metal there, also on flanks" if uncut else "leaves metal there"
         yield Remark(
-            f"A cutter that burns {shown(subject.kerf, 4)} mm does not get into "
-            f"{_tightest(tools)}, which takes {shown(tools.diameter, 4)} mm: {left}.",
+            f"A kerf of {shown(subject.kerf, 4)} mm is too wide for {_tightest(tools)}, which has "
+            f"room for {shown(tools.diameter, 4)} mm: the cutter {left}.",
             name,
             subject.kerf,
             severity="error" if uncut else "warning",
@@ -150,21 +150,27 @@ def wide_kerf(subject: PartsSubject, _: float) -> Iterator[Remark]:
     severity="note",
 )
 def large_tool(subject: PartsSubject, limit: float) -> Iterator[Remark]:
-    """Note that the tool or wire at hand is too large to reach every place of an outline.
+    """Note a tool or wire that is too large to reach all of an outline.
 
-    The default limit is a wire of 0.25 mm with its gap.
+    The default limit is a wire of 0.25 mm with its spark gap.
 
-    Looks at: the diameter of the largest tool that reaches every place, and which place limits it.
+    Looks at: the diameter of the largest round tool that reaches all of an outline.
     """
     for name, tools in zip(subject.names, subject.tools, strict=True):
         if tools.diameter >= limit:
             continue
         yield Remark(
-            f"The largest round tool that reaches every place has "
-            f"{shown(tools.diameter, 4)} mm: {_tightest(tools)} limits it.",
+            f"{_largest(tools.diameter)}, because of {_tightest(tools)}.",
             name,
             tools.diameter,
         )
+
+
+def _largest(diameter: float) -> str:
+    """Return how large a round tool may be, mm."""
+    if not diameter:
+        return "No round tool reaches all of the outline"
+    return f"A round tool of up to {shown(diameter, 4)} mm in diameter reaches all of the outline"
 
 
 def _tightest(tools: ToolLimits) -> str:

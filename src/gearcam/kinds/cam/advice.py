@@ -1,4 +1,4 @@
-"""What may help where a cam is refused or has errors: a larger cam, a smaller roller or lift."""
+"""Changes that may help if a cam is refused or has errors: a larger cam, smaller rollers, lifts."""
 
 from __future__ import annotations
 
@@ -33,27 +33,27 @@ _ALSO: Final[Mapping[str, Callable[[Any], object]]] = {
     "cut-svg": kerf_paths,
     "curvature": lambda result: result.files("curvature"),
 }
-"""What refuses some of the files, by their kinds, where the profiles can be drawn."""
+"""Checks of single file formats, which may refuse a file although the profiles can be drawn."""
 
 
 def _demand(kind: str) -> Callable[[Any], object]:
-    """Return what refuses files of a kind for which all profiles are drawn."""
+    """Return the check of a file format for which all profiles are drawn."""
     return lambda result: (result.profiles, kind in _ALSO and _ALSO[kind](result))
 
 
 FILE_DEMANDS: Final[Mapping[str, Callable[[Any], object]]] = {
     kind: _demand(kind) for kind in CAM_FORMATS
 }
-"""What refuses, by their kinds, files of cams that can be made."""
+"""Checks of file formats of cams that can be made."""
 
 
 def seek(search: Search, refusal: InfeasibleError | None) -> None:
-    """Lead a `search` for remedies: what a `refusal` names, then other sizes."""
+    """Guide a `search` for remedies: changes that a `refusal` names, then other sizes."""
     search.follow([*(refusal.ways if refusal else _of_errors(search)), *_sizes(search)])
 
 
 def hopeless(_: Result) -> bool:
-    """Whether a changed design cannot do, which nothing tells without building it."""
+    """Return whether a changed design is known not to help without building it: never."""
     return False
 
 
@@ -68,7 +68,7 @@ def _of_errors(search: Search) -> Iterator[Way]:
 
 
 def _sizes(search: Search) -> Iterator[Way]:
-    """Yield ways to a cam that is larger for its follower and its lifts."""
+    """Yield ways to a larger cam, a smaller roller and smaller lifts."""
     document, far = search.document, _LARGER * _reach(search)
     larger = ("cam.prime_radius_mm", "cam.base_radius_mm", "cam.prime_radius2_mm")
     for key in (*larger, "follower.roller_distance_mm"):

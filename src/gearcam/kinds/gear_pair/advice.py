@@ -1,4 +1,4 @@
-"""What may help where a gear pair is refused or has errors: teeth, a milder law, other edges."""
+"""Changes that may help if a gear pair is refused or has errors: teeth, law, edges."""
 
 from __future__ import annotations
 
@@ -17,36 +17,36 @@ if TYPE_CHECKING:
     from gearcam.advice import Changes, Remedy, Search
 
 _MOST: Final = 400
-"""Most teeth of a wheel that are tried: beyond them nobody is helped."""
+"""Largest number of teeth that is tried."""
 
 _LIKELY: Final = 1.5
-"""How many times more teeth are tried first where an error does not tell."""
+"""How many times more teeth are tried first if the error does not say."""
 
 _OF_TEETH: Final = frozenset({"contact-ratio", "undercut", "tips-collide"})
-"""Findings that more teeth or a smaller swing may lift."""
+"""Findings that more teeth or a smaller swing of the ratio may remove."""
 
 _USUAL: Final = 1.5
-"""How many times more teeth are welcome with the addendum that is wanted."""
+"""How many times more teeth are acceptable with the given addendum."""
 
 _TIMES: Final = (1, 2, 4)
-"""How many times the wheel's teeth are tried with a larger ring, if fewer do not do."""
+"""Multiples of the wheel's teeth that are tried with a larger ring."""
 
 _EVEN: Final = 0.05
 """Power of the ratios of a closed spiral that is the mildest one tried: 1 itself is no spiral."""
 
 _EDGES: Final = (Way(far={"blank.tip_rounding_mm": 0.0}), Way(far={"blank.clearance_mm": 0.0}))
-"""Ways to edges as they are cut."""
+"""Ways to edges without rounding and clearance."""
 
 
 FILE_DEMANDS: Final[Mapping[str, Callable[[Any], object]]] = {
     "dxf": kerf_paths,
     "cut-svg": kerf_paths,
 }
-"""What refuses, by their kinds, files of pairs that can be made."""
+"""Checks of file formats of pairs that can be made."""
 
 
 def seek(search: Search, refusal: InfeasibleError | None) -> None:
-    """Lead a `search` for remedies: tooth counts, what a `refusal` names, a milder law."""
+    """Guide a `search`: tooth numbers, changes that a `refusal` names, a milder law."""
     factor = refusal.more_teeth if refusal else _LIKELY * bool(search.codes & _OF_TEETH)
     collide = "tips-collide" in search.codes
     if collide:
@@ -62,22 +62,22 @@ def seek(search: Search, refusal: InfeasibleError | None) -> None:
 
 
 def _count(remedy: Remedy) -> int:
-    """Return how many teeth the pair of a remedy has."""
+    """Return the sum of the tooth numbers of a remedy."""
     design: Any = remedy.design
     return sum(design.pair.teeth)
 
 
 def hopeless(result: Any) -> bool:
-    """Whether the flanks alone already forbid what is asked, which takes no outline to know."""
+    """Return whether the flanks alone exclude a contact ratio of 1, before outlines are made."""
     from gearcam.gears.bound import contact_bound
 
     return contact_bound(*result.pair.toothings) < 1.0
 
 
 def _more_teeth(search: Search, factor: float) -> float | None:
-    """Find the fewest teeth in the same ratio, `factor` times as many being likely.
+    """Find the fewest teeth in the same ratio, beginning with `factor` times as many.
 
-    Returned is how many times more they are, None where none do.
+    Return how many times more they are, None if no number is enough.
     """
     given: tuple[int, int] = search.result.design.pair.teeth
     common = math.gcd(*given)
@@ -86,13 +86,13 @@ def _more_teeth(search: Search, factor: float) -> float | None:
         return {"pair.teeth": [count // common * k for count in given]}
 
     low, most = common, _MOST * common // max(given)
-    # what an error tells is enough, and may be more than is tried
+    # the number that an error names is enough, and may be beyond the largest that is tried
     high = max(low + 1, min(math.ceil(low * factor * (1.0 - 1e-9)), most))
     while high <= most and not search.over() and not search.cures(teeth(high)):
         low, high = high, min(2 * high, most) if high < most else most + 1
     if high > most or search.over():
         return None
-    middle = high - 1  # the guess is often right
+    middle = high - 1  # the first number is often right
     while high - low > 1 and not search.over():
         low, high = (low, middle) if search.cures(teeth(middle)) else (middle, high)
         middle = (low + high) // 2
@@ -106,7 +106,7 @@ def _more_teeth(search: Search, factor: float) -> float | None:
 
 
 def _others(search: Search, refusal: InfeasibleError | None, factor: float) -> Iterator[Way]:
-    """Yield ways beside more teeth and what a refusal names."""
+    """Yield ways other than more teeth and those that a refusal names."""
     yield from _usual_cutter(search)
     if refusal is None:
         yield from _of_errors(search)
@@ -118,7 +118,7 @@ def _others(search: Search, refusal: InfeasibleError | None, factor: float) -> I
 
 
 def _larger_ring(search: Search) -> Iterator[Way]:
-    """Yield rings of the next multiple of the wheel's teeth: they give all of them more room."""
+    """Yield rings with the next multiple of the wheel's teeth, which have more room."""
     pair = search.result.design.pair
     z1, z2 = pair.teeth
     if pair.type == "internal" and z1 < z2:
@@ -127,7 +127,7 @@ def _larger_ring(search: Search) -> Iterator[Way]:
 
 
 def _usual_cutter(search: Search) -> Iterator[Way]:
-    """Yield the cutter that a ring has where none is given."""
+    """Yield the cutter that a ring has by default."""
     result: Any = search.result
     ring = result.design.ring
     if ring.cutter_teeth is None:
@@ -140,7 +140,7 @@ def _usual_cutter(search: Search) -> Iterator[Way]:
 
 
 def _milder(search: Search) -> Iterator[Way]:
-    """Yield ways to a law that swings less."""
+    """Yield ways to a law whose ratio swings less."""
     law, teeth = search.document["law"], search.result.design.pair.teeth
     mean = teeth[0] / teeth[1]
     far: dict[str, object] = {}
@@ -154,14 +154,14 @@ def _milder(search: Search) -> Iterator[Way]:
         yield Way(near={"law.ratios": [near, "solve"]}, far=even)
         yield Way(far={"law.return_deg": 180.0})
     elif "ratios" in law and "driven_travel_deg" not in law:
-        # arcs that close, mixed with the even turn, which closes, close
+        # a mixture of two laws that close, one of them constant, closes
         far["law.ratios"] = mean
     if far:
         yield Way(far=far)
 
 
 def _other_ratios(search: Search) -> Iterator[Way]:
-    """Yield the nearest teeth with which one wheel turns a whole number of times for the other."""
+    """Yield the nearest tooth numbers with a whole-number ratio."""
     pair = search.result.design.pair
     (z1, z2), internal = pair.teeth, pair.type == "internal"
     yield Way(near={"pair.teeth": [z1, max(1 + internal, round(z2 / z1)) * z1]})
@@ -170,7 +170,7 @@ def _other_ratios(search: Search) -> Iterator[Way]:
 
 
 def _of_errors(search: Search) -> Iterator[Way]:
-    """Yield the ways out of a pair's findings that are errors."""
+    """Yield ways for findings of a pair that are errors."""
     addendum = value_at(search.document, "rack.addendum")
     if search.codes & _OF_TEETH and addendum is not None and addendum < 1.0:
         yield Way(far={"rack.addendum": 1.0})
