@@ -1,9 +1,9 @@
-"""Quantities: the units of parameters, and where they are turned into mm and rad.
+"""Quantities: units of parameters, and their conversion to mm and rad.
 
 Parameters of laws, racks and blanks are frozen dataclasses whose fields are made by `param`.
-Inside the program their values are mm and rad; a design file writes them under ``name + suffix``
-(``knots`` becomes ``knots_deg``) in the unit of the quantity. The file's keys, ranges, schema and
-messages all follow from these fields, so that a new law stays one short entry.
+Inside the program their values are in mm and rad; a design file has them in the unit of the
+quantity under the key ``name + suffix`` (``knots`` becomes ``knots_deg``). The keys of the file,
+their ranges, the schema and messages all follow from these fields.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 Solve = Literal["solve"]
-"""A value that closure decides."""
+"""A value that is found from the condition of closure."""
 
 if TYPE_CHECKING:
     Row = Sequence[float] | NDArray[Any]
@@ -29,18 +29,18 @@ if TYPE_CHECKING:
 else:
     Row = tuple[float, ...]
     RowOfSome = tuple[float | Solve, ...]
-"""Numbers in a row, all known or not: given as a list, a tuple or an array, kept as a tuple."""
+"""Numbers as a list, a tuple or an array, kept as a tuple; in the second some may be solved for."""
 
 REQUIRED: Final = dataclasses.MISSING
-"""Default of a parameter that the file must give."""
+"""Default of required parameters."""
 
 
 @dataclass(frozen=True)
 class Quantity:
-    """A kind of value: its suffix in files, its factor to the inner unit, its unit's name.
+    """A quantity: its suffix in files, its factor to mm or rad, the name of its unit.
 
-    What has to be above 0 is not below `least`, in the file's unit, so that powers of it are
-    numbers too.
+    Values that must be positive are at least `least`, in the unit of the file, so that their powers
+    do not underflow.
     """
 
     suffix: str
@@ -62,12 +62,12 @@ ANGLE_PER_RAD2: Final = Quantity("_deg_per_rad2", math.pi / 180.0, "deg/rad2")
 
 
 NARROWEST: Final = ANGLE.least * ANGLE.factor
-"""Least width of a phase, rad; a narrower one cannot be told from a jump."""
+"""Least width of a phase, rad; narrower ones cannot be distinguished from jumps."""
 
 
 @dataclass(frozen=True)
 class Param:
-    """What a parameter's field promises; bounds are in the unit of the file.
+    """Unit, bounds and meaning of a parameter; bounds are in the unit of the file.
 
     Parameters
     ----------
@@ -82,15 +82,15 @@ class Param:
     doc : str
         One line for schema, template and messages.
     word : str
-        The key's word where the field cannot bear it, such as ``from``.
+        The word of the key if a field cannot have this name, such as ``from``.
     both : bool
-        Whether a single value may stand for both wheels.
+        Whether a single value may be given for both wheels.
     function : bool
-        Whether Python functions may stand for a text.
+        Whether Python functions may be given instead of a text.
     angular : Param or None
-        The same where lifts are angles: a file then has another key for it.
+        The parameter if lifts are angles, which has another key.
     sliding : Param or None
-        The same where the cam slides: a file then has another key for it.
+        The parameter if the cam slides, which has another key.
     """
 
     quantity: Quantity = NUMBER
@@ -109,7 +109,7 @@ class Param:
 
     @property
     def least(self) -> float:
-        """What a value is not below where it is above 0; 0 where it may be 0 too."""
+        """Least positive value, in the unit of the file; 0 if the value may be 0."""
         return self.quantity.least if self.gt == 0.0 else 0.0
 
     def key(self, name: str) -> str:
@@ -138,21 +138,21 @@ _ALIASES: Final = {
     r"float \| Solve": 'float or "solve"',
     r"^Given$": "str, function, or tuple of function and derivatives",
 }
-"""What types are called in docstrings."""
+"""Names of types in docstrings."""
 
 
 def described(owner: type) -> type:
-    """Return a class; if it is a dataclass, its docstring tells of all its parameters from now on.
+    """Add the parameters of a dataclass to its docstring.
 
     Parameters
     ----------
     owner : type
-        A class; what its docstring tells of already stays.
+        A class; parameters that its docstring describes already are not added.
 
     Returns
     -------
     type
-        The same.
+        The same class.
     """
     doc = inspect.cleandoc(owner.__doc__ or "")
     told = ", ".join(re.findall(r"^(\w[\w, ]*) : ", doc, re.MULTILINE)).split(", ")
@@ -169,7 +169,7 @@ def described(owner: type) -> type:
 
 
 def _type_of(field: dataclasses.Field[Any]) -> str:
-    """Return type, inner unit and default of a parameter in words."""
+    """Return type, unit and default of a parameter as text."""
     kind, made = field.type, field.metadata["param"]
     words = [kind.__name__ if isinstance(kind, type) else str(kind)]
     for alias, text in _ALIASES.items():
@@ -183,7 +183,7 @@ def _type_of(field: dataclasses.Field[Any]) -> str:
 
 
 def _sentence(doc: str) -> str:
-    """Return the meaning of a parameter as a sentence; what holds in files alone is left out."""
+    """Return the meaning of a parameter as a sentence, without notes on keys of files."""
     text = re.sub(r" \(translating[^)]*\)", "", doc)
     plain = text.split()[0].rstrip(";").isalpha()  # no symbol
     return f"{text[0].upper() if plain else text[0]}{text[1:]}."

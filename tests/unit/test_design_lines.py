@@ -45,11 +45,11 @@ def only(text: str) -> Problem:
         ("kind = \n", 1, "column 8"),
         ("a = 1\nb 2\n", 2, "="),
         ("a = 1\na = 2\n", 2, "twice"),
-        ("a = [1, 2\nb = 3\n", 2, "not closed"),
+        ("a = [1, 2\nb = 3\n", 2, "the closing ]"),
         ('a = "x\nb = 1\n', 1, "quote"),
-        ("a = 1 2\n", 1, "follows"),
+        ("a = 1 2\n", 1, "more after the value"),
         ("[a\nb = 1\n", 1, "]"),
-        ("a = [1,\n", 1, "file ends"),
+        ("a = [1,\n", 1, "end of the file"),
     ],
 )
 def test_a_slip_of_syntax_is_told_by_line_in_plain_words(text: str, line: int, words: str) -> None:
@@ -94,7 +94,7 @@ def test_files_that_cannot_be_read_are_told_plainly(tmp_path: Path) -> None:
     assert "folder" in message(tmp_path)
     (tmp_path / "latin.toml").write_bytes(b'kind = "gear-pair"\nname = "r\xe4der"\n')
     assert ":2: the byte 0xe4 is not UTF-8" in message(tmp_path / "latin.toml")
-    assert "no file's name" in message(tmp_path / "nul\0.toml")
+    assert "not a possible file name" in message(tmp_path / "nul\0.toml")
 
 
 def test_byte_order_mark_and_windows_line_ends_do_not_matter(tmp_path: Path) -> None:

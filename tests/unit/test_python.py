@@ -248,7 +248,11 @@ def test_lists_and_arrays_become_tuples_of_plain_numbers() -> None:
     [
         ({"motion": [replace(UP, lift=None)]}, "motion[0].lift_mm", "is missing"),
         ({"motion": [replace(UP, angle="rest", lift=-1.0)]}, "motion[0].lift_mm", "out of range"),
-        ({"motion": [replace(UP, angle="all")]}, "motion[0].angle_deg", "is not known here"),
+        (
+            {"motion": [replace(UP, angle="all")]},
+            "motion[0].angle_deg",
+            "is not one of the allowed words",
+        ),
         ({"motion": [replace(UP, law="cycloidal")]}, "motion[0].law", "is a str"),
         ({"motion": [replace(UP, law=ANY.laws.Constant())]}, "motion[0].law", "is a Constant"),
         ({"motion": [PHASES[1], 3]}, "motion[1]", "is a int"),

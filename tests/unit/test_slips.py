@@ -30,7 +30,7 @@ SLIPS: dict[str, tuple[str, str, str, str, str]] = {
                     "and their keys end in _deg) (under [rack])"),
     "of a cam": (PAIR, "[pair]", "[pair]\nroller_radius_mm = 6", "pair.roller_radius_mm",
                  'belongs to kind = "cam"'),
-    "comma": (PAIR, "[0, 160,", "[0 160,", "", "column 16: a comma is missing here"),
+    "comma": (PAIR, "[0, 160,", "[0 160,", "", "column 16: a comma or the closing ]"),
     "unit behind": (PAIR, "180", "180mm", "", "the number alone, without its unit"),
     "unit in quotes": (PAIR, "180", '"180 mm"', "pair.center_distance_mm",
                        "the number alone, without its unit and without quotes"),
@@ -44,8 +44,8 @@ SLIPS: dict[str, tuple[str, str, str, str, str]] = {
                       "blank.bore_radius_mm", "mean bore_diameter_mm? (twice the radius)"),
     "which radius": (CAM, "offset_mm", "radius_mm", "follower.radius_mm",
                      "mean roller_radius_mm or dome_radius_mm?"),
-    "brackets": (CAM, "[follower]", "[[follower]]", "follower", "once: [follower]"),
-    "one phase": (CAM, "[[motion]]", "[motion]", "", "tables is written [[motion]]"),
+    "brackets": (CAM, "[follower]", "[[follower]]", "follower", "in single brackets: [follower]"),
+    "one phase": (CAM, "[[motion]]", "[motion]", "", "of these tables write [[motion]]"),
     "a form to come": (CAM, '"disc"', '"cylinder"', "cam.form",
                        '"disc", "groove", "conjugate", "yoke" or "translating"'),
 }  # fmt: skip
@@ -137,7 +137,7 @@ def test_what_is_misspelt_is_not_missing_too(name: str) -> None:
 def test_all_tables_of_one_name_in_single_brackets() -> None:
     (problem,) = problems(CAM.replace("[[motion]]", "[motion]"))
     assert problem.message.endswith("the table [motion] is given twice")
-    assert problem.hint == "each of several tables is written [[motion]]"
+    assert problem.hint == "for several of these tables write [[motion]]"
 
 
 def test_where_the_kind_is_missing_and_any_is_likely_only_that_is_told() -> None:

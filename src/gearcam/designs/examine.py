@@ -27,7 +27,7 @@ from gearcam.designs.validate import faults_of
 
 _NAME = re.compile(r"\w[\w.-]*")
 _NAME_RULE: Final = (
-    "letters, digits, _ - and . (it names a folder), beginning with a letter or digit"
+    "letters, digits, _, - and ., first a letter or digit (it names the output folder)"
 )
 _RESERVED = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
 _LONGEST_NAME: Final = 100
@@ -90,7 +90,9 @@ def home_of(kind: DesignKind, key: str) -> str:
     for title in kind.tables:  # the first of several tables is the likeliest
         for known in kind.table(title).entries:
             homes.setdefault(known, f"this key belongs under [{title}]")
-    homes |= dict.fromkeys(("kind", "name"), "this key belongs above all tables")
+    homes |= dict.fromkeys(
+        ("kind", "name"), "this key belongs at the top of the file, above all tables"
+    )
     return homes.get(key) or kind.homes().get(key, "")
 
 
@@ -160,7 +162,7 @@ def _examine_name(document: Mapping[str, Any], stem: str, found: Examined) -> No
         found.faults.append(Fault(("name",), f"{show(name)} {fault}", name, _NAME_RULE, hint))
     else:
         message = (
-            "is missing" if not stem else f"is missing, and the file's own {show(stem)} {fault}"
+            "is missing" if not stem else f"is missing, and the file name {show(stem)} {fault}"
         )
         hint = _free_name(stem)
         hint = f"add {hint}" if hint else ""
@@ -178,11 +180,11 @@ def name_fault(name: Any) -> str:
     if not isinstance(name, str):
         return "is not text"
     if len(name) > _LONGEST_NAME:
-        return f"has {len(name)} characters, and {_LONGEST_NAME} are allowed"
+        return f"has {len(name)} characters, more than {_LONGEST_NAME}"
     if len(name.encode("utf-8", "replace")) > _LONGEST_ENCODED:
         return f"has more than {_LONGEST_ENCODED} bytes in UTF-8, too many for a folder"
     if not _NAME.fullmatch(name) or name.endswith("."):
-        return "cannot name a folder"
+        return "cannot be a folder's name"
     return "is reserved on some systems" if _RESERVED.fullmatch(name) else ""
 
 

@@ -210,7 +210,7 @@ def value_fault(path: Path, value: Any, entry: Key, *, item: bool) -> Fault:
     choices = entry.param.choices or ((entry.literal,) if entry.literal else ())
     if isinstance(value, str) and choices:
         hint = did_you_mean(value, choices) or _type_hint(value, entry)
-        return Fault(path, f"{show(value)} is not known here", value, rule, hint)
+        return Fault(path, f"{show(value)} is not one of the allowed words", value, rule, hint)
     if not is_of(value, entry.base):
         hint = _type_hint(value, entry)
         return Fault(path, f"{show(value)} is not {_a_kind(entry)}", value, rule, hint)
@@ -218,7 +218,7 @@ def value_fault(path: Path, value: Any, entry: Key, *, item: bool) -> Fault:
         return Fault(path, f"{show(value)} is not a finite number", value, rule)
     if isinstance(value, float) and 0.0 < value < entry.param.least:
         least = f"{shown(entry.param.least)} {entry.param.quantity.unit}"
-        return Fault(path, f"{show(value)} is too near to 0", value, f"{rule}, at least {least}")
+        return Fault(path, f"{show(value)} is too small", value, f"{rule}, at least {least}")
     return Fault(path, f"{show(value)} is out of range", value, rule)
 
 

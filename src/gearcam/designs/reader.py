@@ -43,17 +43,17 @@ _NAME = re.compile(r"\s*(\[?\[?)\s*([\w.-]+|\"[^\"]*\")")
 """A name at the beginning of a line, with the brackets of a table if any."""
 
 _PLAIN: Final = {
-    "Invalid value": "this value cannot be read (texts stand in quotes, numbers use a point)",
+    "Invalid value": "this value cannot be read (text needs quotes, a number a decimal point)",
     "Invalid statement": "this line is neither a table [name] nor key = value",
     "Expected '=' after a key in a key/value pair": "an = is missing after the key",
     "Expected newline or end of document after a statement": (
-        "something follows the value that does not belong to it (one key = value on each line)"
+        "there is more after the value (write one key = value on each line)"
     ),
-    "Unclosed array": "a comma is missing here, or the list is not closed with ]",
-    "Unclosed inline table": "the table is not closed with }",
-    "Unterminated string": "the text is not closed by its quote",
-    "Expected ']' at the end of a table declaration": "the name of the table is not closed with ]",
-    "Illegal character '\\n'": "the text is not closed by its quote on the same line",
+    "Unclosed array": "a comma or the closing ] of the list is missing here",
+    "Unclosed inline table": "the closing } of the table is missing",
+    "Unterminated string": "the closing quote of the text is missing",
+    "Expected ']' at the end of a table declaration": "the closing ] of the table name is missing",
+    "Illegal character '\\n'": "the closing quote of the text is missing on this line",
 }
 
 
@@ -119,7 +119,7 @@ def decoded(content: bytes, file: str) -> str:
         line = content.count(b"\n", 0, error.start) + 1
         message = f"the byte 0x{content[error.start]:02x} is not UTF-8"
         if content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-            message = "this text is UTF-16"
+            message = "the file is UTF-16"
         problem = Problem(message, file=file, line=line, allowed="a text file saved as UTF-8")
         raise DesignError([problem]) from error
 
@@ -225,15 +225,15 @@ def _syntax_problem(message: str, text: str, file: str) -> Problem:
         return Problem(message, file=file, line=number, hint=hint)
     if place:
         last = text.rstrip().count("\n") + 1
-        return Problem(f"{what} (the file ends)", file=file, line=last)
+        return Problem(f"{what} (at the end of the file)", file=file, line=last)
     most = sys.get_int_max_str_digits()
     long = next((one for one in _LONG.finditer(text) if len(one[0].replace("_", "")) > most), None)
     line = text.count("\n", 0, long.start()) + 1 if long else None
     rule = f"numbers of at most {most} digits"
-    return Problem("a number here is too long to be read", file=file, line=line, allowed=rule)
+    return Problem("a number has too many digits", file=file, line=line, allowed=rule)
 
 
 def _many_hint(name: str) -> str:
     """Return a hint on arrays of tables, if a design can have several tables called `name`."""
     many = any(isinstance(kind.example.get(name), list) for kind in KINDS.values())
-    return f"each of several tables is written [[{name}]]" if many else ""
+    return f"for several of these tables write [[{name}]]" if many else ""

@@ -47,7 +47,7 @@ def faults_of(
     told = {name: table.entries[name] for name in names if name in table.entries}
     if not isinstance(raw, Mapping):
         rule, many = f"a table [{table.title}] with {known}", isinstance(raw, list)
-        hint = f"in single brackets, once: [{table.title}]" if many else ""
+        hint = f"write it once, in single brackets: [{table.title}]" if many else ""
         yield Fault(at, f"{show(raw)} is not a table", raw, rule, hint)
         return
     missing = [name for name, key in table.entries.items() if key.required and name not in raw]
