@@ -27,6 +27,13 @@ _MARGIN: Final = 0.06
 """Margin above and below the lines, and beside dots, relative to the range."""
 
 
+_MOST_KNOTS: Final = 36
+"""Largest number of knots that are marked: one in ten degrees."""
+
+_DOTS: Final = {"ls": "", "marker": ".", "ms": 3.0, "zorder": 1.9}
+"""Style of dots: they lie below the lines."""
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Line:
     """A line of a chart.
@@ -127,7 +134,7 @@ class Chart:
         """
         ax = _new_axes() if ax is None else ax
         for line in self.lines:
-            style: dict[str, Any] = {"ls": "", "marker": ".", "ms": 3.0} if line.dots else {}
+            style: Mapping[str, Any] = _DOTS if line.dots else {}
             ax.plot(line.x, line.y, label=line.label, **style)
         low, high = self.range
         for limit in self.limits:
@@ -166,9 +173,13 @@ class Chart:
 
 
 def knot_marks(knots: Array, low: float, high: float) -> tuple[MarkedPlace, ...]:
-    """Return marks at the `knots` of a law between `low` and `high`, in the unit of the axis."""
+    """Return marks at the `knots` of a law between `low` and `high`, in the unit of the axis.
+
+    Too many to be told apart, as those of a table's spline, are not marked.
+    """
     inside = knots[(knots > low) & (knots < high)]
-    return tuple(MarkedPlace(label="knots", value=value) for value in inside.tolist())
+    seen = inside.tolist() if len(inside) <= _MOST_KNOTS else []
+    return tuple(MarkedPlace(label="knots", value=value) for value in seen)
 
 
 Charts = Mapping[str, Callable[[Any], Chart]]

@@ -14,6 +14,7 @@ import pytest
 import gearcam
 from arch import rules
 from gearcam.charts import Chart, Limit, Line, MarkedPlace
+from gearcam.designs.reader import loads
 from gearcam.errors import DesignError, MissingExtraError
 from gearcam.numeric.piecewise import with_both_sides
 from helpers_few import few
@@ -50,6 +51,29 @@ def test_every_chart_of_every_design_is_drawn(path):
         left, right = ax.get_xlim()
         assert all(left < min(line.x) and max(line.x) < right for line in made.lines if line.dots)
         plt.close("all")
+
+
+def test_a_smoothed_lift_is_drawn_with_the_points_that_were_given():
+    import matplotlib.pyplot as plt
+
+    path = rules.ROOT / "profiles" / "measured_cam.toml"
+    given = np.loadtxt(path.with_suffix(".csv"), delimiter=",", skiprows=2)
+    result = gearcam.build(gearcam.load(path))
+    made = result.chart("lift")
+    curve, points = made.lines
+    assert points.dots
+    assert points.label == "given points, before smoothing"
+    np.testing.assert_allclose(points.x, given[:, 0], atol=1e-12)
+    np.testing.assert_allclose(points.y, given[:, 1], atol=1e-12)
+    off = np.interp(points.x, curve.x, curve.y) - points.y
+    assert 0.004 < np.abs(off).max() < 0.0061  # near the tolerance, 0.006 mm
+    legend = result.plot("lift").get_legend()
+    assert "given points, before smoothing" in [text.get_text() for text in legend.get_texts()]
+    plt.close("all")
+    text = path.read_text().replace("smoothing_tolerance_mm = 0.006", "")
+    exact = loads(text, file=str(path))  # through the points
+    assert len(gearcam.build(exact).chart("lift").lines) == 1
+    assert len(result.chart("velocity").lines) == 1
 
 
 @pytest.mark.parametrize("path", PROFILES, ids=lambda path: path.stem)

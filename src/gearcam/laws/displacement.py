@@ -50,9 +50,9 @@ class Jump:
     after: float
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Deviation:
-    """The largest distance of a lift from the rows that it was made from.
+    """The largest distance of a smoothed lift from the rows that it was made from.
 
     Parameters
     ----------
@@ -60,10 +60,13 @@ class Deviation:
         Where.
     value : float, mm or rad
         How far, positive where the lift is above the row.
+    rows : (n, 2) array
+        The rows as given: angle, rad, and lift, mm or rad.
     """
 
     theta: float
     value: float
+    rows: Array
 
 
 class Displacement(ABC):

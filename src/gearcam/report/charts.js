@@ -188,6 +188,9 @@ class ChartView {
     pen.strokeStyle = pen.fillStyle = this.page.colours[ink];
     pen.lineWidth = 1.6 * ratio;
     pen.setLineDash(dots ? [] : DASHES[k % DASHES.length].map((length) => length * ratio));
+    // many dots are small, and lie below the lines
+    const radius = Math.max(1.2 * ratio, Math.min(2.5 * ratio, (0.5 * width) / xs.length));
+    if (dots) pen.globalCompositeOperation = "destination-over";
     pen.beginPath();
     let up = true;
     for (let i = 0; i < xs.length; i++) {
@@ -197,8 +200,8 @@ class ChartView {
       }
       const [x, y] = [plot.valToPos(xs[i], "x", true), plot.valToPos(ys[i], "y", true)];
       if (dots) {
-        pen.moveTo(x + 2.5 * ratio, y);
-        pen.arc(x, y, 2.5 * ratio, 0, 7);
+        pen.moveTo(x + radius, y);
+        pen.arc(x, y, radius, 0, 7);
       } else if (up) pen.moveTo(x, y);
       else pen.lineTo(x, y);
       up = false;
@@ -270,7 +273,7 @@ class ChartView {
     this.cursor.hidden = !inside;
     if (inside) this.follow();
     for (const [k, line] of this.chart.lines.entries()) {
-      const told = inside ? valuesAt(line, place).slice(0, 3).join(" | ") : "";
+      const told = inside && !line.dots ? valuesAt(line, place).slice(0, 3).join(" | ") : "";
       if (this.values[k].textContent !== told) this.values[k].textContent = told;
     }
   }

@@ -39,10 +39,14 @@ def _of_lift(name: str, result: CamResult) -> Chart:
     column = next(column for column in table if column.startswith(name))
     unit = column.removeprefix(f"{name}_").replace("_per_", "/")
     places, told = _places(result)
-    line = Line(label=name, x=table[places], y=table[column])
-    return Chart(
-        title=f"Follower's {name}", x=told, y=f"{name}, {unit}", lines=(line,), marks=_knots(result)
-    )
+    lines = [Line(label=name, x=table[places], y=table[column])]
+    smoothed = result.program.deviation
+    if smoothed is not None and name == "lift":
+        mechanism, (theta, lift) = result.mechanism, smoothed.rows.T
+        x, y = mechanism.driver.scale * theta, mechanism.outward[0] * lift
+        lines.append(Line(label="given points, before smoothing", x=x, y=y, dots=True))
+    title, unit = f"{name.capitalize()} of the follower", f"{name}, {unit}"
+    return Chart(title=title, x=told, y=unit, lines=(*lines,), marks=_knots(result))
 
 
 def _pressure_angle(result: CamResult) -> Chart:
