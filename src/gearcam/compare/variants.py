@@ -135,7 +135,7 @@ def variants_of(files: Sequence[str], settings: Settings) -> tuple[Variant, ...]
 
 def _demand_one_kind(designs: Sequence[Design]) -> None:
     first = designs[0].kind
-    message = f"designs of different kinds have nothing in common: the first is a {first}"
+    message = f"designs of different kinds cannot be compared: the first is a {first}"
     problems = [
         Problem(message, one.source, key="kind", value=one.kind, allowed=f'"{first}"')
         for one in designs
