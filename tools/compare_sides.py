@@ -67,9 +67,10 @@ class Side:
         return json.loads(line) if line else None
 
     def _send(self, task: dict[str, str]) -> None:
-        if self.process.stdin:
-            self.process.stdin.write(json.dumps(task) + "\n")
-            self.process.stdin.flush()
+        with suppress(BrokenPipeError):  # of a crash, which answer() handles
+            if self.process.stdin:
+                self.process.stdin.write(json.dumps(task) + "\n")
+                self.process.stdin.flush()
 
     def ask(self, file: Path, out: Path) -> None:
         """Send a design `file` to be built into the folder `out`."""

@@ -269,7 +269,7 @@ def _new(kind: str, file: str | None, process: str | None) -> None:
     if kind not in KINDS:
         _refuse([unknown_word(kind, "is not a kind of design", KINDS, "KIND")])
     if process is not None and process not in KINDS[kind].processes:
-        _refuse([unknown_word(process, "is not a supported process", KINDS[kind].processes, "--for")])
+        _refuse([unknown_word(process, "is not supported", KINDS[kind].processes, "--for")])
     text = template(kind, Path(file or "").stem, process or "")
     if file is None:
         say(text.rstrip("\n"))
