@@ -6,8 +6,9 @@ import math
 import re
 import shlex
 import sys
+import tomllib
 import types
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,9 @@ import pytest
 import gearcam
 from arch import rules
 from gearcam.cli import main
+from gearcam.designs import KINDS
+from gearcam.kinds.cam.motion import phase_table, rise_table, turn_tables
+from gearcam.kinds.gear_pair.design import law_table
 from gearcam.laws.ratio.span import Lobes
 from gearcam.tolerances import DEFAULT
 
@@ -180,3 +184,34 @@ def test_the_pair_of_the_contributing_page_has_the_size_shown() -> None:
     pair = gearcam.PairSpec(teeth=(40, 40), module=2.0)
     result = gearcam.build(gearcam.GearPairDesign(name="joint", law=law, pair=pair))
     assert f"`centre distance {result.pair.center_distance:.4f} mm`" in page
+
+
+def misspelt(document: dict[str, Any], kind: str) -> list[str]:
+    """Keys of a document, whole or a part of one, that a kind of design does not know."""
+    known: Collection[str]
+    found = []
+    for title, table in document.items():
+        if not isinstance(table, dict | list):
+            continue  # kind and name
+        for one in table if isinstance(table, list) else [table]:
+            if title == "law":
+                known = law_table(one["type"]).entries
+            elif title == "motion" and "type" in one:
+                rise = rise_table(one["law"]).entries if "law" in one else {}
+                known = {**phase_table(one["type"]).entries, **rise}
+            elif title == "motion":
+                known = {key for turn in turn_tables() for key in turn.entries}
+            else:
+                known = KINDS[kind].table(title).entries
+            found += [f"{title}.{key}" for key in one if key not in {"type", "law", *known}]
+    return found
+
+
+@pytest.mark.parametrize(("name", "kind"), [("gear-pairs", "gear-pair"), ("cams", "cam")])
+def test_examples_of_tables_have_keys_that_exist(name: str, kind: str) -> None:
+    page = (rules.ROOT / "docs" / f"{name}.md").read_text("utf-8")
+    blocks = [block for language, block in FENCE.findall(page) if language == "toml"]
+    assert len(blocks) > 5
+    for block in blocks:
+        assert misspelt(tomllib.loads(block), kind) == [], block
+    assert misspelt({"output": {"kerf": 1}, "name": "x"}, kind) == ["output.kerf"]  # a control
