@@ -74,11 +74,11 @@ class Param:
     quantity : Quantity
         Unit and suffix.
     gt, ge, lt, le : float or None
-        Bounds of each value, in the file's unit.
+        Bounds of each value, in the unit of files.
     choices : tuple of str or None
-        The allowed words, for texts.
+        The allowed words, for text.
     min_length : int or None
-        Fewest entries, for lists.
+        Least length, for lists.
     doc : str
         One line for schema, template and messages.
     word : str
