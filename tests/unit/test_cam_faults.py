@@ -34,7 +34,13 @@ from helpers_cam_files import FLAT, RISE, ROLLER, SWINGING, changed, only, probl
         ("angle_deg = 90", 'angle_deg = "all"', 7, "motion[0].angle_deg", '360 deg, or "rest"'),
         ("lift_mm = 10\n", "", 4, "motion[0].lift_mm", "is missing"),
         ("angle_deg = 90", "angle_deg = 80", 4, "motion", "take 350 deg.*\n.*would take 100 deg"),
-        (RISE, 'type = "dwell"\nangle_deg = 90\n', 10, "motion[2].lift_mm", "no lift to return"),
+        (
+            RISE,
+            'type = "dwell"\nangle_deg = 90\n',
+            10,
+            "motion[2].lift_mm",
+            "nothing to return from",
+        ),
         ("roller_radius_mm = 6\n", "", 20, "follower.roller_radius_mm", "missing for a roller"),
         (
             "_mm = 6",
@@ -102,7 +108,7 @@ def test_the_rest_of_the_turn_in_a_file() -> None:
     assert document_of(read(rest))["motion"][0]["angle_deg"] == "rest"
     twice = only(changed("angle_deg = 90", 'angle_deg = "rest"', rest))
     assert (twice.key, twice.line, twice.value) == ("motion[1].angle_deg", 11, "rest")
-    assert twice.allowed == "an angle: motion[0] takes the rest"
+    assert twice.allowed == "an angle: motion[0] already takes the rest"
     full = only(rest.replace("angle_deg = 90", "angle_deg = 120"))
     assert (full.key, full.line) == ("motion[0].angle_deg", 7)
     assert "take 360 deg, which leaves nothing" in full.message

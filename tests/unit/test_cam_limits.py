@@ -194,7 +194,9 @@ def test_lifts_beyond_all_numbers(lift: str) -> None:
 
 
 def test_what_is_too_steep_to_tell_from_a_jump() -> None:
-    with pytest.raises(InfeasibleError, match=r"is not smooth .*some arc seconds counts as a jump"):
+    with pytest.raises(
+        InfeasibleError, match=r"is not smooth .*a few arc seconds counts as a jump"
+    ):
         waves("5*tanh(1e6*(theta - 3)) - 5*tanh(1e6*(theta - 4))")
     waves("5*tanh(1e3*(theta - 3)) - 5*tanh(1e3*(theta - 4))")
 

@@ -94,7 +94,7 @@ def test_levels_of_phases() -> None:
 REFUSED: dict[str, tuple[list[Phase], str]] = {
     "open": ([rise("2-3", 180.0, 5.0), dwell(180.0)], r"ends at a lift of 5 mm"),
     "half back": ([rise("2-3", 180.0, 5.0), back("2-3", 180.0, 4.0)], r"ends at a lift of 1 mm"),
-    "nothing to return": ([back("2-3", 180.0), dwell(180.0)], "no lift to return from"),
+    "nothing to return": ([back("2-3", 180.0), dwell(180.0)], "nothing to return from"),
     "only dwells": ([dwell(180.0), dwell(180.0)], "never moves"),
     "no lift": (
         [

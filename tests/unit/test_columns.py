@@ -136,7 +136,7 @@ WAVE = tuple(1.0 + 0.2 * math.cos(angle) for angle in ANGLES)
     ("phi1", "message"),
     [
         ({4: 60.0}, "60 deg follows 90 deg"),
-        ({4: 90.0}, "90 deg stands twice"),
+        ({4: 90.0}, "90 deg is given twice"),
         ({4: 90.0003}, "90.0003 deg follows 90 deg"),
         ({4: 90.0004}, ""),
     ],

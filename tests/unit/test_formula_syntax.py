@@ -80,7 +80,7 @@ def test_outside_its_domain_a_formula_gives_nan_or_inf_without_a_warning() -> No
         ("ln(phi1)", 1, "did you mean log"),
         ("sin phi1", 5, "parentheses"),
         ("sin", 4, "too early"),
-        ("sin()", 4, "nothing"),
+        ("sin()", 4, "empty"),
         ("sin(phi1, 2)", 9, "one argument"),
         ("1,5*phi1", 2, "point"),
         ("(phi1", 1, "never closed"),

@@ -173,8 +173,8 @@ REFUSED: dict[str, tuple[Functions, str, float, float]] = {
     "a text": (lambda _: "one", "gives 'one', not a number", 0.0, 1e-9),
     "a complex number": (lambda x: 1j * x, "gives 0j, not a number", 0.0, 1e-9),
     "two numbers": (lambda x: np.array([x, x]), r"an array of shape \(2,\), not", 0.0, 1e-9),
-    "noise": (lambda x: x + 1e-9 * rng.normal(size=np.shape(x)), "is no function", 0.0, 7.0),
-    "of the whole array": (lambda x: x - np.mean(x), "is no function", 0.0, 7.0),
+    "noise": (lambda x: x + 1e-9 * rng.normal(size=np.shape(x)), "is not deterministic", 0.0, 7.0),
+    "of the whole array": (lambda x: x - np.mean(x), "is not deterministic", 0.0, 7.0),
     "single precision": (lambda x: np.sin(np.float32(x)), "not smooth anywhere", 0.0, 7.0),
     "another's derivative": (
         (np.sin, lambda x: -np.cos(x)),

@@ -96,7 +96,7 @@ def test_the_same_from_python(tmp_path: Path) -> None:
     other = made.with_({"motion.smoothing_tolerance_mm": 0.02})
     assert other != made
     assert hash_of(other) != hash_of(made)
-    with pytest.raises(DesignError, match=r"motion\.theta_deg\[3\]: .* stands twice"):
+    with pytest.raises(DesignError, match=r"motion\.theta_deg\[3\]: .* is given twice"):
         CamDesign(motion=MotionTable(theta=(0.0, 1, 2, 2, 3, 4, 5), lift=(0.0, 1, 2, 3, 4, 3, 1)),
                   **parts)  # fmt: skip
     with pytest.raises(DesignError, match=r"motion: is a str\n.*of tuple or MotionTable or M"):
@@ -123,7 +123,7 @@ def test_rows_count_and_not_where_they_lie(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("motion", "key", "line", "words"),
     [
-        ("", "motion.theta_deg", 3, "is missing: a table has both, or a file"),
+        ("", "motion.theta_deg", 3, "is missing: a table has both columns, or a file"),
         ('file = "none.csv"', "motion.file", 4, "cannot be read"),
         (f"{BY_LISTS}\n{BY_FILE}", "motion.file", 6, "the rows are given twice"),
         (
@@ -155,7 +155,7 @@ def test_what_is_wrong_is_told_where_it_stands(
 def test_a_file_is_refused_with_its_line(tmp_path: Path) -> None:
     for old, new, words in (
         ("20.0,", "5.0,", "line 4: 5 deg follows 10 deg"),
-        ("20.0,", "10.0,", "line 4: 10 deg stands twice"),
+        ("20.0,", "10.0,", "line 4: 10 deg is given twice"),
         (
             "lift_mm",
             "lift_deg",

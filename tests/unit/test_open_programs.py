@@ -40,7 +40,10 @@ def test_every_way_that_is_wrong_is_told() -> None:
     law = RISES["constant-velocity"].parameters()
     phases = [RisePhase(angle=angle, law=law, lift=1.0) for angle in angles]
     told = list(program_problems(phases, oscillating=False, closed=False))
-    jump, rest = "the phase cannot be told from a jump", "no turn is there to be filled"
+    jump, rest = (
+        "the phase is too short: it would be a jump",
+        "a cam that slides has no turn with a rest",
+    )
     assert [(number, words) for number, _, words, _ in told] == [(0, rest), (3, rest), (2, jump)]
     assert told[-1][-1] == "at least 5.55556e-08 mm of 20 mm"
 

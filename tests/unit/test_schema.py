@@ -224,7 +224,7 @@ CAM_PLACES = st.sampled_from(
 )
 # relations between values: whether a schema refuses these files too is left open
 BEYOND_CAMS = (
-    *("wrong unit", "the phases take", "no lift to return", "never moves", "ends at a lift"),
+    *("wrong unit", "the phases take", "nothing to return from", "never moves", "ends at a lift"),
     *("follower", "b + c + d", "is missing beside"),
 )
 

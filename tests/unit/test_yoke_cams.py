@@ -79,7 +79,7 @@ def test_rest_fills_what_the_lift_means() -> None:
         (("angle_deg = 120", "angle_deg = 130"), r"take 190 deg; 180 deg in all.*take 20 deg"),
         (
             (LAST, LAST.replace('"dwell"', '"return"\nlaw = "3-4-5"\nlift_mm = 20')),
-            r"ends at the lift at which it begins; another lift.*360 deg",
+            r"ends at the lift with which it begins; another lift.*360 deg",
         ),
     ],
 )

@@ -1,7 +1,7 @@
-"""Transmission-ratio laws, rises and lift programs: what displacement is wanted.
+"""Laws of the transmission ratio, motion laws and lift programs.
 
 The registries `gearcam.laws.ratio.base.LAWS` and `gearcam.laws.rises.base.RISES` load a law when
-it is asked for. Depends on numpy alone.
+it is used. Depends on numpy only.
 
 The parameters of ratio laws are attributes: ``gearcam.laws.Ellipse(eccentricity=0.3)``.
 

@@ -1,4 +1,4 @@
-"""Columns of numbers in CSV files, read once for each parameters that name one."""
+"""Columns of numbers in CSV files, read once for each set of parameters that names a file."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from gearcam.numeric.arrays import Array
 from gearcam.reading import UnreadableError, read
 
 MOST_ROWS: Final = 20000
-"""Rows of a table: more are a file of something else."""
+"""Largest number of rows of a table."""
 
 _COMMA_NUMBER: Final = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?")
 _POINT_NUMBER: Final = re.compile(r"[+-]?\d*\.\d*([eE][+-]?\d+)?")
@@ -26,20 +26,19 @@ _HINT: Final = "; use a decimal point"
 
 
 LARGEST: Final = 16_000_000
-"""Size of a file, bytes: twenty times that of the longest table."""
+"""Largest size of a file, bytes: twenty times that of the longest table."""
 
 NARROWEST_STEP: Final = 2e-6 * math.pi
-"""Least step of the angle in rows, rad: a second of arc; the place of a row in it is known to
-1e-10."""
+"""Smallest step of the angle between rows, rad: a second of arc."""
 
 
 class ColumnsError(ValueError):
-    """A file that does not hold the columns; the message says where and why."""
+    """A CSV file without the needed columns; the message gives line and reason."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class CsvRows(Brief):
-    """What a CSV file holds, without comments and empty lines.
+    """The rows of a CSV file, without comments and empty lines.
 
     Parameters
     ----------
@@ -48,9 +47,9 @@ class CsvRows(Brief):
     lines : tuple of n int
         Number of each row in the file.
     cells : tuple of n lists of str
-        Without the spaces around them; the names of the columns first.
+        Text of each cell without spaces around it; the first row has the names of the columns.
     note : str
-        How it was read where that is not the usual way, for people; else empty.
+        How separators and decimal commas were read, if not as usual; else empty.
     """
 
     file: str
@@ -64,19 +63,19 @@ class CsvRows(Brief):
         Parameters
         ----------
         names : sequence of k str
-            The columns; others are left aside.
+            Names of the columns; others are ignored.
 
         Returns
         -------
         columns : (n, k) array
             In the order of `names`.
         lines : list of n int
-            The number of each row in the file.
+            Line number of each row in the file.
 
         Raises
         ------
         ColumnsError
-            With the line that is wrong.
+            If a row is incomplete or not numeric, with its line.
         """
         head, *rows = self.cells
         if not names or any(head.count(name) != 1 for name in names):
@@ -92,28 +91,28 @@ class CsvRows(Brief):
 
 
 class FromFile(Brief):
-    """Parameters that may name a CSV file: it is read at the first question and never again."""
+    """Parameters that may name a CSV file, which is read once, when its rows are needed."""
 
     file: str | None
 
     @cached_property
     def rows(self) -> CsvRows | None:
-        """What the file holds; None without one. It raises `ColumnsError` (see `read_rows`)."""
+        """Rows of the file; None without a file. Raises `ColumnsError` (see `read_rows`)."""
         return None if self.file is None else read_rows(self.file)
 
 
 def tables_in(part: Any) -> Iterator[CsvRows]:
-    """Yield what the CSV files hold that parameters name.
+    """Yield the rows of the CSV files that parameters name.
 
     Parameters
     ----------
     part : object
-        The parameters, or a dataclass or tuple with these at any depth.
+        Parameters, or a dataclass or tuple that contains them at any depth.
 
     Raises
     ------
     ColumnsError
-        If one has not been read yet and cannot be read.
+        If a file cannot be read.
     """
     if isinstance(part, FromFile) and part.rows is not None:
         yield part.rows
@@ -126,8 +125,8 @@ def tables_in(part: Any) -> Iterator[CsvRows]:
 def read_rows(file: str) -> CsvRows:
     """Read a CSV file.
 
-    Cells stand between commas, or between semicolons where the line of names has these and no
-    comma; numbers may then have decimal commas, unless others in the file have points.
+    Cells are separated by commas, or by semicolons if the line of names has semicolons and no
+    comma. With semicolons numbers may have decimal commas, unless some have decimal points.
 
     Parameters
     ----------
@@ -171,7 +170,7 @@ def read_rows(file: str) -> CsvRows:
 
 
 def close_angles(angles: Array) -> Iterator[tuple[int, str, str]]:
-    """Yield the rows whose angle does not rise above the one before, by a second of arc.
+    """Yield the rows whose angle is not at least a second of arc above the one before.
 
     Parameters
     ----------
@@ -181,23 +180,23 @@ def close_angles(angles: Array) -> Iterator[tuple[int, str, str]]:
     Yields
     ------
     tuple
-        Number of the row, what is wrong, what is allowed.
+        Number of the row, message, allowed values.
     """
     steps = np.diff(angles)
     rule = f"each angle at least {degrees(NARROWEST_STEP)} above the one before"
     for row in np.flatnonzero(~(steps >= NARROWEST_STEP)).tolist():
         before, here = degrees(float(angles[row])), degrees(float(angles[row + 1]))
-        state = f"{here} stands twice" if steps[row] == 0.0 else f"{here} follows {before}"
+        state = f"{here} is given twice" if steps[row] == 0.0 else f"{here} follows {before}"
         yield row + 1, state, rule
 
 
 def degrees(angle: float) -> str:
-    """Return an angle, rad, as people are told."""
+    """Return an angle, rad, as text in degrees."""
     return f"{shown(math.degrees(angle), 10)} deg"
 
 
 def _with_points(rows: CsvRows) -> CsvRows:
-    """Return the rows of a file with semicolons, decimal commas turned where they are that."""
+    """Return the rows of a file with semicolons, decimal commas replaced by points."""
     cells = [cell for row in rows.cells[1:] for cell in row]
     commas = any(_COMMA_NUMBER.fullmatch(cell) for cell in cells)
     if not commas or any(_POINT_NUMBER.fullmatch(cell) for cell in cells):

@@ -1,11 +1,11 @@
-"""Displacement functions: what everything that moves promises, be it a wheel, a rack or a follower.
+"""Displacement functions of driven elements: wheels, racks and followers.
 
-A displacement gives the place of a driven element, rad or a length, over the angle of its driver,
-rad, with exact derivatives: the transfer functions of first and higher order. Between its *knots*
-it is analytic. It is *closed* where it goes on for ever, gaining its *advance* in every *period*
+A displacement gives the position of a driven element, rad or a length, over the angle of its
+driver, rad, with exact derivatives: the transfer functions of first and higher order. It is
+analytic between its *knots*. A *closed* one repeats and gains its *advance* in every *period*
 (2*pi/n2 for a wheel, the travel for a rack, 0 for a follower); an open one is the travel from 0 to
-its period, and may be continued a little beyond. Ratio laws (phi2 over phi1) and lift programs (s
-over theta) keep this, so that whoever takes a displacement takes either.
+its period and may be continued a little beyond. Ratio laws (phi2 over phi1) and lift programs (s
+over theta) have this interface, so that code for displacements works with both.
 
 Source: Litvin (displacement function of a gear drive), Norton (of a cam).
 """
@@ -23,7 +23,7 @@ from numpy.typing import ArrayLike
 from gearcam.numeric.arrays import Array
 
 JUMP: Final = 1e-9
-"""Jump of a derivative that counts, in its largest value: far above rounding."""
+"""Smallest jump of a derivative that counts, over its largest value: far above rounding."""
 
 
 EXACT: Final = (0.0, 0.0, 0.0, 0.0)
@@ -37,11 +37,11 @@ class Jump:
     Parameters
     ----------
     theta : float, rad
-        Where; 0 for the ends of a period, which are one knot.
+        Angle of the knot; 0 for both ends of a period, which are one knot.
     order : int
-        Of the lowest derivative that jumps there: 1 velocity, 2 acceleration, 3 jerk.
+        Order of the lowest derivative that jumps: 1 velocity, 2 acceleration, 3 jerk.
     before, after : float
-        Its values on both sides, per rad^order.
+        Values of the derivative on both sides, per rad^order.
     """
 
     theta: float
@@ -52,14 +52,14 @@ class Jump:
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Deviation:
-    """The largest distance of a smoothed lift from the rows that it was made from.
+    """The largest distance of a smoothed lift from the rows of its table.
 
     Parameters
     ----------
     theta : float, rad
-        Where.
+        Cam angle of that row.
     value : float, mm or rad
-        How far, positive where the lift is above the row.
+        Distance, positive if the lift is above the row.
     rows : (n, 2) array
         The rows as given: angle, rad, and lift, mm or rad.
     """
@@ -70,31 +70,31 @@ class Deviation:
 
 
 class Displacement(ABC):
-    """A displacement function (see the module)."""
+    """A displacement function (see the module docstring)."""
 
     @property
     @abstractmethod
     def knots(self) -> Array:
-        """Knots from 0 to the period, rad, both included; at others nothing jumps."""
+        """Knots from 0 to the period, rad, both included."""
 
     @property
     @abstractmethod
     def period(self) -> float:
-        """Driver's angle, rad, after which it repeats; if it is open, its whole travel."""
+        """Driver angle, rad, after which it repeats; of an open one its travel."""
 
     @property
     def advance(self) -> float:
-        """What is gained over the period; nothing, unless it says so."""
+        """Displacement over the period; 0 by default."""
         return 0.0
 
     @property
     def closed(self) -> bool:
-        """Whether it repeats; it does, unless it says no."""
+        """Whether it repeats; True by default."""
         return True
 
     @cached_property
     def jumps(self) -> tuple[Jump, ...]:
-        """The lowest derivative that jumps at each knot; an open one has no jumps at its ends."""
+        """The lowest derivative that jumps at each knot; no jumps at the ends of an open one."""
         raise NotImplementedError
 
     @abstractmethod
@@ -104,9 +104,9 @@ class Displacement(ABC):
         Parameters
         ----------
         x : array, rad
-            From 0 to the period; of an open one also beyond.
+            Angles from 0 to the period; of an open one also beyond.
         order : int
-            Of the last derivative.
+            Highest order of derivative.
 
         Returns
         -------
@@ -119,21 +119,21 @@ class Displacement(ABC):
         Parameters
         ----------
         x : array, rad
-            At a knot the derivatives to its right count.
+            Driver angles; at a knot the derivatives are those on its right.
         order : int
-            Of the last derivative.
+            Highest order of derivative.
 
         Returns
         -------
         list of arrays
-            Of the shape of `x`; place, then per rad, rad^2 and so on.
+            Shaped like `x`: displacement, then derivatives per rad, rad^2, ...
         """
         periods, x = self.within(np.asarray(x, dtype=float))
         place, *slopes = self.in_period(x, order)
         return [place + periods * self.advance, *slopes]
 
     def within(self, x: Array) -> tuple[Array, Array]:
-        """Return how many periods lie before driver angles, and the angles within theirs, rad."""
+        """Return the whole periods before driver angles, and the angles within them, rad."""
         if not self.closed:
             return np.zeros(np.shape(x)), x
         periods = np.floor(x / self.period)

@@ -1,4 +1,4 @@
-"""What a registry knows of a law: of the ratio of a pair, or of a follower's rise."""
+"""Registry entries of laws: ratio laws of pairs and motion laws of followers."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 TYPED: Final = 1e-9
-"""Miss, in rad or in parts, that digits typed or printed may leave: it is taken out."""
+"""Error, in rad or relative, of a number typed with few digits: it is corrected silently."""
 
-NO_JUMPS: Final = "what changes within some arc seconds counts as a jump"
-"""What is told with a function that is not smooth: it may be one that is only steep."""
+NO_JUMPS: Final = "a change within a few arc seconds counts as a jump"
+"""Note in messages about functions that are not smooth but may only be steep."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -19,12 +19,11 @@ class LawEntry:
     Parameters
     ----------
     name : str
-        As in a design file.
+        Name in design files.
     example : object
-        Parameters of the law that show how a design file gives them: a dataclass with a ``build``
-        method.
+        Example parameters of the law: a dataclass with a ``build`` method.
     doc, continuity, source : str
-        One line each, for people.
+        Description, order of continuity and citation, one line each.
     """
 
     name: str
@@ -35,5 +34,5 @@ class LawEntry:
 
     @property
     def parameters(self) -> type[Any]:
-        """The class of its parameters."""
+        """The class of the parameters."""
         return type(self.example)

@@ -1,4 +1,4 @@
-"""Formulas of laws as functions of jets, which bring their derivatives with them.
+"""Formulas of laws as functions of jets, that is, with their derivatives.
 
 From Python a formula may also be a function (see `gearcam.laws.functions`).
 """
@@ -15,33 +15,33 @@ from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import FUNCTIONS, Jet, Value
 
 Function = Callable[[Any], Any]
-"""Written in Python: takes a float array, or a float, and returns as many values."""
+"""A Python function of a float array or a float; it returns as many values."""
 
 Functions = Function | tuple[Function, ...]
-"""A function, or a function with its first derivatives, each of the one before it."""
+"""A function, or a tuple of a function and its first derivatives in order."""
 
 Given = str | Functions
-"""A formula: as text, or as functions."""
+"""A formula, as text or as functions."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Axis:
-    """Over what a formula is needed.
+    """The variable and the interval of a formula.
 
     Parameters
     ----------
     name : str
-        What its values are, such as ``phi2``.
+        Name of the values, such as ``phi2``.
     low, high : float
         The interval.
     place : callable
-        ``place(x)`` returns a place in words.
+        ``place(x)`` returns a place as text for messages.
     variable : str
-        Its name in texts.
+        Name of the variable in formulas.
     remedy : str
-        What may be given instead of a function that is not smooth.
+        Alternative to a function that is not smooth, for messages.
     series : bool
-        Whether long Taylor series are taken of it: only harmonics have the digits for them.
+        Whether long Taylor series are needed, which only harmonics give accurately.
     """
 
     name: str
@@ -56,7 +56,7 @@ class Axis:
 def formula_problems(
     name: str, given: Given, variable: str = VARIABLE
 ) -> Iterator[tuple[str, int | None, str, str]]:
-    """Yield what is wrong in a law's formula, for its ``problems`` (see `parse`)."""
+    """Yield the faults of the formula of a law, for its ``problems`` (see `parse`)."""
     try:
         if isinstance(given, str):
             parse(given, variable)
@@ -82,17 +82,17 @@ def function_of(given: Given, axis: Axis, tolerance: float) -> Callable[[Jet], J
     axis : Axis
         Where it is needed.
     tolerance : float
-        Truncation error allowed to the expansion of a function, in its largest value.
+        Largest truncation error of the expansion of a function over its largest value.
 
     Returns
     -------
     callable
-        ``function(jet) -> jet``; how exact it is `errors_of` tells.
+        ``function(jet) -> jet``; for its errors see `errors_of`.
 
     Raises
     ------
     InfeasibleError
-        Where a function is not finite or smooth, or fails.
+        If a function is not finite, not smooth, or raises an exception.
     """
     if isinstance(given, str):
         return compiled(given, axis.variable)
@@ -102,20 +102,20 @@ def function_of(given: Given, axis: Axis, tolerance: float) -> Callable[[Jet], J
 
 
 def errors_of(function: Callable[[Jet], Jet]) -> tuple[float, ...]:
-    """Return estimated errors of what `function_of` gives, and of its first three derivatives.
+    """Return error estimates of a result of `function_of` and its first three derivatives.
 
-    A text is exact: zeros.
+    Zeros for a formula given as text.
     """
     return getattr(function, "errors", EXACT)
 
 
 def values_of(function: Callable[[Jet], Jet]) -> Callable[[Array], Array]:
-    """Return a function of jets as one of places."""
+    """Return a function of jets as a function of arrays."""
     return lambda x: function(Jet.variable(x, 0)).derivatives()[0]
 
 
 def derivative(function: Callable[..., Jet]) -> Callable[..., Jet]:
-    """Return the derivative of a function of jets, itself one.
+    """Return the derivative of a function of jets, again a function of jets.
 
     Parameters
     ----------

@@ -1,16 +1,16 @@
-"""Formulas: text becomes an expression that can compute and nothing else.
+"""Formulas as text, read into expressions that can only compute.
 
 A *formula* is made of numbers, ``pi``, the driver angle ``phi1`` (rad), the operators
 ``+ - * / **``, parentheses, and functions of one argument. The text is split into these words
-first, so that anything else is refused by its column in plain language; only then is it handed to
-Python's own grammar, and the syntax tree is checked against a list of allowed nodes and turned into
-a flat *program*, in which what is written twice is computed once. Nothing is ever executed by
-Python: no attributes, subscripts, comparisons, imports or other names can be reached.
+first; anything else is refused with its column. Python's parser then gives a syntax tree, which is
+checked against a list of allowed nodes and turned into a flat *program*, in which equal parts are
+computed once. Python executes nothing: attributes, subscripts, comparisons, imports and other names
+are not accessible.
 
-Numbers are read as floats and parts without ``phi1`` are computed once, so neither ``9**9**9**9``
-nor a number of a thousand digits costs anything: what has no finite real value is refused at its
-place. The variable may be any object with the operators, together with a table of functions that
-take it: an array, or a jet that also carries derivatives.
+Numbers are read as floats and parts without ``phi1`` are computed once, so that ``9**9**9**9`` and
+numbers of a thousand digits take no time: parts without a finite real value are refused with their
+column. The variable may be any object that has the operators, with a table of functions for it:
+an array, or a jet, which also has derivatives.
 """
 
 from __future__ import annotations
@@ -32,13 +32,13 @@ VARIABLE: Final = "phi1"
 """The angle of the driver, rad."""
 
 MAX_LENGTH: Final = 2000
-"""Longest formula, characters; it also bounds the work of everything below."""
+"""Largest number of characters of a formula, which also limits the work of reading it."""
 
 MAX_NESTING: Final = 50
 """Deepest nesting of parentheses and towers of powers."""
 
 MAX_EXPONENT: Final = 100.0
-"""Largest constant exponent; beyond it a value is 0 or beyond all bounds for any gear."""
+"""Largest constant exponent."""
 
 CONSTANTS: Final = {"pi": math.pi}
 
@@ -56,10 +56,10 @@ NUMPY: Final[dict[str, Callable[[Any], Any]]] = {
     "log": np.log,
     "sqrt": np.sqrt,
 }
-"""The functions of a formula, for arrays; tables for other types have the same names."""
+"""Functions of formulas for arrays; tables for other types have the same names."""
 
 ALLOWED: Final = f"{VARIABLE}, pi, numbers, + - * / ** ( ), {', '.join(NUMPY)}"
-"""What a formula may be made of, for messages."""
+"""Allowed elements of a formula, for messages."""
 
 _OPERATORS: Final[dict[type, Callable[..., Any]]] = {
     ast.Add: operator.add,
@@ -112,13 +112,13 @@ class FormulaError(GearcamError, ValueError):
     Parameters
     ----------
     what : str
-        What is wrong, without the place.
+        What is wrong, without the column.
     column : int or None
-        Where, counted from 1 in the formula's text; None where it is the whole formula.
+        Column in the text, from 1; None for the whole formula.
     allowed : str
-        What is allowed there.
+        Allowed elements at that column.
     hint : str
-        What was probably meant.
+        Suggestion.
     """
 
     def __init__(
@@ -137,19 +137,19 @@ Function = Callable[..., Any] | str
 """An operator, or the name of a function."""
 
 Step = tuple[Function, tuple[Operand, ...]]
-"""What is done, and with which operands."""
+"""Operation and operands."""
 
 
 @dataclass(frozen=True, eq=False)
 class Expression:
-    """A formula that has been read.
+    """A formula after reading.
 
     Parameters
     ----------
     text : str
         The formula as written.
     steps : tuple of Step
-        Each makes a value.
+        Operations, each with one value.
     result : int or float
         The formula's value.
     """
@@ -160,7 +160,7 @@ class Expression:
 
     @property
     def is_constant(self) -> bool:
-        """Whether the formula leaves the angle out."""
+        """Whether the formula does not contain the angle."""
         return isinstance(self.result, float)
 
     def evaluate(self, x: Any, functions: Mapping[str, Callable[[Any], Any]] = NUMPY) -> Any:
@@ -176,8 +176,8 @@ class Expression:
         Returns
         -------
         same type as `x`
-            Also for a constant formula. Outside a function's domain the values are nan or inf,
-            without a warning, for the caller to find and to name by their angle.
+            Also for a constant formula. Outside the domain of a function values are nan or inf,
+            without a warning; callers report them with their angle.
         """
         values = [x]
         with np.errstate(all="ignore"):
@@ -193,20 +193,20 @@ def parse(text: str, variable: str = VARIABLE) -> Expression:
     Parameters
     ----------
     text : str
-        Such as ``phi1 - 0.08*sin(2*phi1)``; `ALLOWED` lists the words.
+        Formula, such as ``phi1 - 0.08*sin(2*phi1)``; see `ALLOWED`.
     variable : str
         Name of the variable, an identifier.
 
     Returns
     -------
     Expression
-        Ready to be evaluated.
+        The formula after reading.
 
     Raises
     ------
     FormulaError
-        For anything that is not made of the allowed words, and for parts without ``phi1`` whose
-        value is not a finite real number.
+        If the text contains anything not allowed, or a part without ``phi1`` that has no finite
+        real value.
     """
     if not text.strip():
         raise FormulaError("the formula is empty", allowed=ALLOWED)
@@ -299,10 +299,10 @@ def _check_number(word: str, column: int) -> None:
 
 
 def _check_neighbours(before: str, kind: str, word: str, column: int) -> None:
-    """Refuse two words that cannot stand side by side (the signs + and - may start a value)."""
+    """Refuse two words that cannot follow each other (the signs + and - may start a value)."""
     after_value = before in ("value", "close")
     if before == "function" and kind != "open":
-        raise FormulaError("a function's argument stands in parentheses: sin(phi1)", column=column)
+        raise FormulaError("the argument of a function needs parentheses: sin(phi1)", column=column)
     if kind in ("value", "function", "open") and after_value:
         raise FormulaError(
             f"an operator is missing before {word!r}",
@@ -315,13 +315,13 @@ def _check_neighbours(before: str, kind: str, word: str, column: int) -> None:
     if kind == "close" and before == "operator":
         raise FormulaError(f"a value is missing before {word!r}", column=column)
     if kind == "close" and before == "open":
-        raise FormulaError("nothing stands between these parentheses", column=column - 1)
+        raise FormulaError("these parentheses are empty", column=column - 1)
 
 
 def _steps(root: ast.expr, names: Mapping[str, Operand]) -> tuple[tuple[Step, ...], Operand]:
-    """Return the steps of a syntax tree and its result: what is written twice is one step.
+    """Return the steps of a syntax tree and its result; equal parts are one step.
 
-    It is done without recursion: a tree may be as deep as the text is long.
+    Without recursion, since a tree may be as deep as the text is long.
     """
     steps: dict[tuple[Function, str], tuple[int, Step]] = {}
     values: list[Operand] = []
@@ -357,7 +357,7 @@ def _steps(root: ast.expr, names: Mapping[str, Operand]) -> tuple[tuple[Step, ..
 
 
 def _constant(function: Function, operands: Sequence[Operand], column: int) -> float:
-    """Compute a part without the variable."""
+    """Return the value of a part without the variable."""
     call = getattr(math, function) if isinstance(function, str) else function
     try:
         result = call(*operands)

@@ -1,12 +1,12 @@
-"""Functions written in Python as functions of jets, which bring derivatives with them.
+"""Python functions as functions of jets, that is, with derivatives.
 
-A function gives values, and perhaps a few derivatives; laws ask for more. It is therefore expanded
-over its interval: in harmonics about a straight line if few of these carry it (most closed laws),
-which keeps all digits of derivatives, else in Chebyshev pieces, which lose some. It is called with
-whole arrays, a few times, or value by value if it takes no arrays; never after that.
+A Python function gives values and perhaps a few derivatives; laws need more. It is therefore
+expanded over its interval: in harmonics about a straight line if a few suffice (most closed laws),
+which keeps all digits of derivatives, else in Chebyshev pieces, which lose some. It is called a few
+times with arrays, or value by value if it does not accept arrays, and never afterwards.
 
-Refused with the place: what is no number or not finite, what changes from call to call, scatters,
-or is not smooth, and derivatives that are not those of the function.
+Refused, with the place: values that are not finite numbers, functions that are not deterministic,
+scatter or are not smooth, and given derivatives that do not belong to the function.
 """
 
 from __future__ import annotations
@@ -28,53 +28,53 @@ if TYPE_CHECKING:
     from gearcam.laws.formula import Axis, Function, Functions
 
 _PLACES: Final = 2054
-"""Places, ends included, at which a function is first asked, and its expansion is compared: a prime
-number of steps, so that no wave hides from both these and the samples."""
+"""Places, ends included, at which a function is evaluated first and its expansion is compared: a
+prime number of steps, so that these and the samples cannot both miss a wave."""
 
 _SAMPLES: Final = 256
 _MOST_HARMONICS: Final = 96
-"""Harmonics that are kept of what the samples show; those above must be rounding."""
+"""Largest number of harmonics that are kept; those above must be rounding."""
 
 _DEGREE: Final = 16
 _CUTS: Final = (1, 8, 64, 512)
-"""Of Chebyshev pieces: their degree, and with how many is begun. Few wide ones keep most digits of
-derivatives; where they miss something between their nodes, more are tried."""
+"""Degree and first number of Chebyshev pieces. Few wide ones keep most digits of derivatives; more
+are tried if they miss something between their nodes."""
 
 _SCATTER: Final = 1e-12
-"""Largest scatter of values, in the largest: the fourth derivative still has four digits."""
+"""Largest scatter of values over the largest value: the fourth derivative has four digits then."""
 
 _MISS: Final = 1e-11
-"""Largest miss of an expansion between its nodes, in the largest value."""
+"""Largest error of an expansion between its nodes over the largest value."""
 
 _ROUNDING: Final = 4.0 * np.finfo(float).eps
-"""Of a value, in the largest."""
+"""Rounding of a value over the largest value."""
 
 _ROUGH: Final = 1e-4
-"""Jump of a derivative between pieces, in its largest value, that makes a function not smooth."""
+"""Jump of a derivative between pieces, over its largest value, of a function that is not smooth."""
 
 _SMOOTH_TO: Final = 4
-"""Derivatives that are looked at: one more than the jerk."""
+"""Derivatives that are examined: one more than the jerk."""
 
 _AGREEMENT: Final = 1e-7
-"""Largest difference of a given derivative from that of the expansion, in its largest value."""
+"""Largest difference between given and computed derivative over its largest value."""
 
 _SPOTS: Final = 8
 _BESIDE: Final = 1e-7
-"""Where scatter is looked for: spots, and the distance of places there, in the interval."""
+"""Spots at which scatter is measured, and the distance of places there over the interval."""
 
 
 @dataclass(frozen=True, eq=False)
 class Waves:
-    """A straight line and harmonics of an interval.
+    """A straight line plus harmonics over an interval.
 
     Parameters
     ----------
     low, rate : float
-        Beginning of the interval; ``2*pi`` over its length.
+        Start of the interval, and ``2*pi`` over its length.
     start, slope : float
-        Of the line.
+        Value at the start and slope of the line.
     cosines, sines : (n,) arrays
-        Of the harmonics, from the first.
+        Coefficients of the harmonics, from the first.
     """
 
     low: float
@@ -85,18 +85,18 @@ class Waves:
     sines: Array
 
     def error(self, missed: float, scale: float, order: int) -> float:
-        """Return the error of a derivative: that of the next wave.
+        """Return the error of a derivative, estimated by the next harmonic.
 
-        The line, by far the largest part of a driven angle, is rounded too, but does not bend.
+        The rounding of the line, by far the largest part of a driven angle, has no derivatives.
 
         Parameters
         ----------
         missed : float
-            Of values at most, before rounding.
+            Largest error of values before rounding.
         scale : float
             The largest value.
         order : int
-            Of the derivative.
+            Order of the derivative.
 
         Returns
         -------
@@ -134,8 +134,8 @@ class Pieces:
     def error(self, missed: float, scale: float, order: int) -> float:
         """Return the error of a derivative at the ends of a piece (see `Waves.error`).
 
-        Errors at the nodes are no smooth curve: they are in all coefficients alike, and there the
-        k-th derivative of ``T_n`` is the product of ``(n^2 - j^2)/(2*j + 1)`` for j below k.
+        Errors at the nodes are not smooth: all coefficients have the same, and at the ends the k-th
+        derivative of ``T_n`` is the product of ``(n^2 - j^2)/(2*j + 1)`` for j below k.
         """
         n, j = np.arange(len(self.expansion.coefficients))[:, None], np.arange(order)
         slopes = np.prod((n**2 - j**2) / (2 * j + 1), axis=1)
@@ -150,16 +150,16 @@ class Pieces:
 
 @dataclass(frozen=True, eq=False)
 class Expanded:
-    """A function of jets made from one written in Python.
+    """A function of jets made from a Python function.
 
     Parameters
     ----------
     curves : tuple of Waves or Pieces
-        The function and the derivatives that were given with it.
+        Expansions of the function and of the derivatives given with it.
     misses : tuple of float
-        The largest difference between each and its function, at places between its nodes.
+        Largest difference between each expansion and its function between the nodes.
     scales : tuple of float
-        The largest value of each, which is rounded.
+        Largest value of each.
     """
 
     curves: tuple[Waves | Pieces, ...]
@@ -168,7 +168,7 @@ class Expanded:
 
     @property
     def errors(self) -> tuple[float, ...]:
-        """Estimated errors of the function and its first three derivatives, given or made."""
+        """Estimated errors of the function and its first three derivatives."""
         found = []
         for k in range(4):
             own = min(k, len(self.curves) - 1)
@@ -184,26 +184,26 @@ class Expanded:
 
 
 def expanded(given: Functions, axis: Axis, tolerance: float) -> Expanded:
-    """Expand a function that was written in Python.
+    """Expand a Python function.
 
     Parameters
     ----------
     given : callable or tuple of callables
-        The function, or the function with its first derivatives, each of the one before it.
+        The function, or a tuple of the function and its first derivatives in order.
     axis : Axis
-        Over what.
+        Variable and interval.
     tolerance : float
-        Truncation error allowed, in the largest value.
+        Largest truncation error over the largest value.
 
     Returns
     -------
     Expanded
-        It is called no more.
+        The function of jets; the Python function is not called again.
 
     Raises
     ------
     InfeasibleError
-        With the place (see the module).
+        With the place (see the module docstring).
     """
     functions = given if isinstance(given, tuple) else (given,)
     places = np.linspace(axis.low, axis.high, _PLACES)
@@ -231,14 +231,14 @@ def expanded(given: Functions, axis: Axis, tolerance: float) -> Expanded:
 
 
 class _Asked:
-    """A function (or its `number`-th derivative) that is asked for values and must give them."""
+    """A function (or its `number`-th derivative) whose values are checked."""
 
     def __init__(self, function: Function, axis: Axis, number: int) -> None:
         self.function, self.axis, self.number = function, axis, number
         self.takes_arrays = True
 
     def refusal(self, state: str, x: float, **numbers: Any) -> InfeasibleError:
-        """Return the error that says in which `state` it is at a place."""
+        """Return the error that says what is wrong at a place: its `state`."""
         of = f"{_ordinal(self.number)} derivative given with " if self.number else ""
         name = f"the {of}{self.axis.name}" if of else self.axis.name
         return InfeasibleError(f"{name} {state}", where=self.axis.place(x), **numbers)
@@ -247,7 +247,7 @@ class _Asked:
         return self.refusal("is not smooth", x, nearest=self.axis.remedy)
 
     def __call__(self, x: Array) -> Array:
-        """Return its values, (n,) at (n,) places, all finite."""
+        """Return the values at (n,) places, all finite."""
         values = self._of_array(x) if self.takes_arrays else None
         if values is None:
             self.takes_arrays = False
@@ -258,12 +258,12 @@ class _Asked:
         return values
 
     def _of_array(self, x: Array) -> Array | None:
-        """Return its values; None where it takes no arrays."""
+        """Return the values; None if the function does not accept arrays."""
         try:
             with np.errstate(all="ignore"):
                 found = np.asarray(self.function(x.copy()))
         except Exception:
-            return None  # what it raises is told if it takes no floats either
+            return None  # reported if it fails for floats too
         usable = found.dtype.kind in "iuf" and found.shape in ((), x.shape)
         return np.broadcast_to(found.astype(float), x.shape) if usable else None
 
@@ -277,9 +277,7 @@ class _Asked:
             raise self.refusal(told, x) from error
         if found.size != 1 or found.dtype.kind not in "iuf":
             what = f"an array of shape {found.shape}" if found.shape else repr(result)
-            rule = (
-                "a function takes a float and returns one number, or an array and returns as many"
-            )
+            rule = "a function returns a number for a float, or an array for an array"
             raise self.refusal(f"gives {what}, not a number", x, nearest=rule)
         return float(found.item())
 
@@ -289,16 +287,16 @@ def _ordinal(number: int) -> str:
 
 
 def _scatter(ask: _Asked, places: Array, values: Array, scale: float) -> float:
-    """Return how far values scatter about a smooth curve, in the largest; refuse if too far."""
+    """Return the scatter of values about a smooth curve over the largest; refuse too much."""
     again = slice(_PLACES - 2, _PLACES // 3, -3)
     other = ask(places[again])
     for k in np.flatnonzero(~(np.abs(other - values[again]) <= _MISS * scale))[:1]:
         raise ask.refusal(
-            "is no function: asked again among other places, it gives another value",
+            "is not deterministic: a repeated evaluation returned a different value",
             float(places[again][k]),
             value=float(other[k]),
             limit=float(values[again][k]),
-            nearest="the limit is the value that it gave first",
+            nearest="the limit is the value returned first",
         )
     span = places[-1] - places[0]
     spots = places[0] + span * ((np.arange(_SPOTS) + 0.5) * 0.6180339887498949 % 0.99)
@@ -307,7 +305,7 @@ def _scatter(ask: _Asked, places: Array, values: Array, scale: float) -> float:
     found = float(np.median(np.sqrt((fourth**2).mean(axis=1)))) / (scale or 1.0)
     if found > _SCATTER:
         raise ask.refusal(
-            f"is not smooth anywhere: its values scatter by {shown(found)} of the largest",
+            f"is not smooth anywhere: its values scatter by {shown(found)} times the largest",
             float(spots[0]),
             value=found,
             limit=_SCATTER,
@@ -317,7 +315,7 @@ def _scatter(ask: _Asked, places: Array, values: Array, scale: float) -> float:
 
 
 def _waves(ask: _Asked, values: Array, allowed: float) -> Waves | None:
-    """Return harmonics about the straight line between the ends, if few carry the function."""
+    """Return a straight line plus harmonics, None if the function needs many."""
     low, span = ask.axis.low, ask.axis.high - ask.axis.low
     start, slope = float(values[0]), float(values[-1] - values[0]) / span
     distance = span * np.arange(_SAMPLES) / _SAMPLES
@@ -343,7 +341,7 @@ def _pieces(ask: _Asked, places: Array, values: Array, allowed: float, scale: fl
             found = expand(ask, ends, allowed, degree=_DEGREE, cuts=cuts)
         except NotSmoothError as error:
             raise ask.not_smooth(error.place) from error
-        # digits that are rounding would be all that high derivatives show
+        # rounding would dominate high derivatives
         counts = np.logical_or.accumulate(np.abs(found.coefficients[::-1]) > allowed * scale)
         made = Pieces(replace(found, coefficients=found.coefficients * counts[::-1]))
         missed = np.abs(made.expansion(places) - values)
@@ -355,7 +353,7 @@ def _pieces(ask: _Asked, places: Array, values: Array, allowed: float, scale: fl
 
 
 def _demand_smooth(made: Pieces, ask: _Asked, rounding: float) -> None:
-    """Refuse a function one of whose derivatives jumps between the pieces: they hide corners."""
+    """Refuse a function whose derivatives jump between pieces: it has corners there."""
     knots = made.expansion.knots
     loss = (
         2.0 * _DEGREE**2 / np.diff(knots).max()
@@ -370,15 +368,15 @@ def _demand_smooth(made: Pieces, ask: _Asked, rounding: float) -> None:
 
 
 def _demand_agreement(before: Waves | Pieces, ask: _Asked, places: Array, values: Array) -> None:
-    """Refuse a given derivative that is not that of the function before it."""
+    """Refuse a given derivative that does not belong to the function before it."""
     slopes = before.derivatives(places, 1)[1]
     off = np.abs(slopes - values)
     worst = int(off.argmax())
     if off[worst] > _AGREEMENT * np.abs(slopes).max():
         raise ask.refusal(
-            "is not the derivative of what was given before it",
+            "is not the derivative of the function given before it",
             float(places[worst]),
             value=float(values[worst]),
             limit=float(slopes[worst]),
-            nearest="the limit is that derivative",
+            nearest="the limit is the derivative of that function",
         )

@@ -1,8 +1,8 @@
-"""Lift programs of two opposite half turns: ``s(theta) + s(theta + pi)`` is the same all around.
+"""Lift programs of two opposite half turns: ``s(theta) + s(theta + pi)`` is constant.
 
-What holds a cam between two faces or rollers moves both by the same lift, one up, one down, half a
-turn apart. Half the program decides the other half, which begins where the first one ends and takes
-its velocities and accelerations with changed signs.
+A follower with two faces or rollers on opposite sides of the cam moves both by the same lift, one
+up and one down, half a turn apart. The first half of the program therefore defines the second: it
+begins where the first one ends, with the opposite velocities and accelerations.
 
 Source: 000 section 3.1 (cams of constant breadth and diameter).
 """
@@ -35,12 +35,12 @@ HALF: Final = 0.5 * TURN
 """Half a turn of the cam, rad."""
 
 _TURNED: Final = {"rise": "return", "return": "rise", "dwell": "dwell"}
-"""What the opposite of a phase is."""
+"""Kind of the opposite phase."""
 
 
 @dataclass(frozen=True)
 class _Opposite(Brief):
-    """What follows half a turn after a `function`: a sum less its value then."""
+    """The lift half a turn after that of a `function`: a total less its value."""
 
     function: Callable[..., Jet]
 
@@ -49,7 +49,7 @@ class _Opposite(Brief):
 
 
 def completed(half: Program) -> Program:
-    """Return the program that a half and its opposite make.
+    """Return the program of the whole turn: a half and its opposite.
 
     Parameters
     ----------
@@ -82,7 +82,7 @@ def completed(half: Program) -> Program:
 
 
 def miss(program: Program) -> Deviation:
-    """Return how far two half turns of a program are from being opposite, at worst.
+    """Return the largest deviation of the second half turn from the opposite of the first.
 
     Parameters
     ----------
@@ -92,8 +92,8 @@ def miss(program: Program) -> Deviation:
     Returns
     -------
     Deviation
-        Of ``s(theta) + s(theta + pi)`` from the lowest and the highest lift together, mm or rad,
-        with its angle in the second half: the lift there is too high by that.
+        Deviation of ``s(theta) + s(theta + pi)`` from the sum of lowest and highest lift, mm or
+        rad, and its angle in the second half, where the lift is too high by as much.
     """
     total = sum(program.range)
 
@@ -109,7 +109,7 @@ def miss(program: Program) -> Deviation:
 
 
 def agreeing(phases: Sequence[Phase]) -> tuple[Phase, ...]:
-    """Return phases of half a turn that agree with those of a turn for as long as they can.
+    """Return phases of half a turn that agree with the first half of a turn as far as possible.
 
     Parameters
     ----------
@@ -119,8 +119,8 @@ def agreeing(phases: Sequence[Phase]) -> tuple[Phase, ...]:
     Returns
     -------
     tuple of Phase
-        Those that end within the first half; then the lift stays, or, where there is none yet, the
-        next phase ends with the half turn. Empty where nothing then moves.
+        Phases that end within the first half, then a dwell; if there is no lift yet, the next phase
+        up to the half turn. Empty if the follower would not move.
     """
     angles = angles_of(phases)
     count = int(np.count_nonzero(np.cumsum(angles) <= HALF + TURN_MISS))

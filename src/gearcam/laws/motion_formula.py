@@ -1,7 +1,7 @@
-"""The lift of a follower over a turn of the cam as one formula, or a function written in Python.
+"""The lift of a follower over a turn of the cam as one formula or Python function.
 
-Refused: what is not finite or smooth, does not repeat after the turn, does not move or moves by
-kilometres.
+Refused: a lift that is not finite or smooth, does not repeat after the turn, is constant or larger
+than a kilometre.
 """
 
 from __future__ import annotations
@@ -39,21 +39,21 @@ _AXIS: Final = Axis(
     high=TURN,
     place=lambda x: f"{_WHERE}, theta = {shown(math.degrees(x))} deg",
     variable=_VARIABLE,
-    remedy="a motion table takes such values: its curve has no corners",
+    remedy="for such values use a motion table, whose curve has no corners",
 )
 _NAMES: Final = ("the lift", "its velocity", "its acceleration", "its jerk")
 
 _PLACES: Final = 1440
 _PER_CUT: Final = 2
-"""Places at which it is asked whether the lift moves: a quarter of a degree, and as many for each
-of the cuts, of which the shortest wave has some: else all might be its zeros."""
+"""Places at which the lift is compared, a quarter of a degree apart, and as many for each cut: the
+shortest wave has several, which cannot all be its zeros."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class MotionFormula:
     """The lift over a turn as a formula in theta; derivatives are exact, by Taylor arithmetic.
 
-    From Python it may be a function, or a tuple of a function and its first derivatives.
+    In Python it may be a function, or a tuple of a function and its first derivatives.
 
     Examples
     --------
@@ -72,7 +72,7 @@ class MotionFormula:
         """Yield what is wrong by reading: field, index, message, allowed."""
         yield from formula_problems("lift", self.lift, _VARIABLE)
 
-    def turn_problems(self, *, oscillating: bool) -> Iterator[tuple[str, int | None, str, str]]:  # noqa: ARG002  (as of a table)
+    def turn_problems(self, *, oscillating: bool) -> Iterator[tuple[str, int | None, str, str]]:  # noqa: ARG002  (signature as of a table)
         """Yield nothing: a formula suits followers of either kind."""
         yield from ()
 
@@ -89,12 +89,12 @@ class MotionFormula:
         Returns
         -------
         Program
-            Of one piece; what jumps over the end of the turn is told among its jumps.
+            One piece; jumps at the end of the turn are among its jumps.
 
         Raises
         ------
         InfeasibleError
-            Where the formula is not finite or not smooth, does not repeat or does not move.
+            If the formula is not finite or not smooth, does not repeat or is constant.
         """
         function = function_of(self.lift, _AXIS, tolerances.expansion)
         scale, unit = (math.degrees(1.0), "deg") if oscillating else (1.0, "mm")
@@ -124,7 +124,7 @@ class MotionFormula:
                 value=scale * float(values[-1]),
                 limit=scale * float(values[0]),
                 unit=unit,
-                nearest="the limit is the lift at the beginning",
+                nearest="the limit is the lift at the start",
             )
         lift = piecewise([0.0, TURN], [Piece(lambda x: function(x) - (miss / TURN) * x)])
         rows = theta[:-1], values[:-1], TYPED * extent, 0.5 * count

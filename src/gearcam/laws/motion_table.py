@@ -1,7 +1,7 @@
 """Motion tables: the lift of a follower over a turn of the cam, by rows of angle and lift.
 
-What comes of the rows, through them or smoothed, `gearcam.laws.rows_of_lift` says. Refused by
-reading: rows that do not rise in angle, fill the turn, repeat after it or move.
+`gearcam.laws.rows_of_lift` makes a curve through the rows or a smoothed one. Refused by reading:
+angles that do not rise or do not fill the turn, a lift that does not repeat or is constant.
 """
 
 from __future__ import annotations
@@ -31,22 +31,22 @@ _RULE: Final = "file, or theta_deg with lift_mm or lift_deg"
 
 _FEWEST: Final = 6
 _MOST: Final = 3600
-"""Rows: fewer make no curve of quintics, more are finer than a tenth of a degree, where rounding
-leaves smoothing too few digits (see `gearcam.numeric.least_jerk.smoothed_ring`)."""
+"""Fewest and most rows: quintics need a few; rows closer than a tenth of a degree leave smoothing
+too few digits (see `gearcam.numeric.least_jerk.smoothed_ring`)."""
 
 _OPEN: Final = 1.5
-"""Gap over the end of the turn, in widest steps, above which rows are missing: a last row that is
-left out leaves a step."""
+"""Gap at the end of the turn over the widest step above which rows are missing: a last row that is
+left out leaves one step."""
 
 _DEG: Final = math.radians(1.0)
 
 
 @dataclass(frozen=True, kw_only=True)
 class MotionTable(FromFile):
-    """The lift over a whole turn, by rows in a CSV file or in the design itself.
+    """The lift over a whole turn as rows in a CSV file or in the design itself.
 
-    Lifts and their tolerance are in mm, or in rad where the follower oscillates. The last row may
-    repeat the first one, a turn on, or be left out.
+    Lifts and their tolerance are in mm, or in rad if the follower oscillates. The last row may
+    repeat the first one after a turn, or be left out.
 
     Examples
     --------
@@ -89,13 +89,13 @@ class MotionTable(FromFile):
                 yield "file", None, "the rows are given twice", _RULE
         elif self.theta is None or self.lift is None:
             missing = "theta" if self.theta is None else "lift"
-            yield missing, None, "is missing: a table has both, or a file", _RULE
+            yield missing, None, "is missing: a table has both columns, or a file", _RULE
         elif len(self.lift) != len(self.theta):
             message = f"{len(self.lift)} lifts for {len(self.theta)} angles"
             yield "lift", None, message, "one lift for each angle"
 
     def turn_problems(self, *, oscillating: bool) -> Iterator[Problem]:
-        """Yield what is wrong with the rows for a follower: field, index, message, allowed.
+        """Yield the first fault of the rows for a follower: field, index, message, allowed.
 
         Parameters
         ----------
@@ -105,7 +105,7 @@ class MotionTable(FromFile):
         Yields
         ------
         tuple
-            The first thing only: the others may follow from it.
+            Only the first fault, since others may follow from it.
         """
         try:
             theta, lift, lines = self._rows(oscillating)
@@ -144,9 +144,9 @@ class MotionTable(FromFile):
             yield "lift", row, f"the lift is {told(lift[row])}", f"at most {told(largest)}"
         extent, tolerance = float(np.ptp(lift)), self.smoothing_tolerance or 0.0
         if extent <= TYPED * float(np.abs(lift).max()):
-            yield "lift", None, "the follower never moves", "lifts that differ"
+            yield "lift", None, "the follower never moves", "at least two different lifts"
         if tolerance >= 0.5 * extent:
-            rule = f"below {told(0.5 * extent)}, half of what the lifts differ by"
+            rule = f"below {told(0.5 * extent)}, half of the total lift"
             yield "smoothing_tolerance", None, "leaves no lift", rule
         jump = float(lift[-1] - lift[0])
         if _repeats(theta) and abs(jump) > max(tolerance, TYPED * extent):
@@ -154,12 +154,12 @@ class MotionTable(FromFile):
             yield "lift", len(lift) - 1, state, f"that of the first row, {told(lift[0])}"
 
     def program(self, tolerances: Tolerances, *, oscillating: bool = False) -> Program:  # noqa: ARG002  (a spline is in closed form)
-        """Return the program that the rows make.
+        """Return the program of the rows.
 
         Parameters
         ----------
         tolerances : Tolerances
-            Accuracy of what is expanded; here nothing is.
+            Accuracy of expansions; not used here.
         oscillating : bool
             Whether lifts are angles.
 
@@ -171,7 +171,7 @@ class MotionTable(FromFile):
         Raises
         ------
         InfeasibleError
-            If the file is not such a table any more.
+            If the file was changed and is not a valid table any more.
         """
         for name, index, message, rule in self.turn_problems(oscillating=oscillating):
             where = f"motion.{name}" + ("" if index is None else f"[{index}]")
@@ -189,7 +189,7 @@ def _columns(oscillating: bool) -> tuple[str, str]:
 
 
 def _repeats(theta: Array) -> bool:
-    """Whether the last row is the first one, a turn on."""
+    """Whether the last row repeats the first one after a turn."""
     return TURN - float(theta[-1] - theta[0]) < NARROWEST_STEP
 
 

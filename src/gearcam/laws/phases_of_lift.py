@@ -1,17 +1,16 @@
-"""Phases of a lift program: what a design says of each stretch of a cam's turn.
+"""Phases of a lift program: rises, dwells, returns and segments of a turn of the cam.
 
-The *lift* is a length for translating followers and an angle for oscillating ones; a file says
-which (``lift_mm``, ``lift_deg``). What a phase takes is an angle of a cam that turns and a length,
-its *way*, of one that slides (``angle_deg``, ``way_mm``). A *rise* goes up by its lift after a law
-on the unit square, a *return* comes down after one (by all that was risen, if it gives no lift), a
-*dwell* stands still, and a *segment* goes from the state in which the phase before it ends to a
-lift with a velocity and an acceleration, so that phases join without a dwell. The angle of one
-phase may be ``"rest"``: what the others leave of the turn. Of some cams the phases may fill *half a
-turn*, after which the program goes on with the opposite of what it has done.
+The *lift* is a length for translating followers and an angle for oscillating ones (``lift_mm``,
+``lift_deg``). A phase covers an angle of a cam that turns or a length, its *travel*, of one that
+slides (``angle_deg``, ``way_mm``). A *rise* goes up by its lift with a motion law, a *return* comes
+down with one (to lift zero if no lift is given), in a *dwell* the follower rests, and a *segment*
+goes from the end state of the phase before it to a given lift, velocity and acceleration, so that
+phases join without a dwell. The angle of one phase may be ``"rest"``: the remainder of the turn.
+For some cams the phases may fill *half a turn*; the second half is then the opposite of the first.
 
-Refused by reading: phases that do not fill a turn, a rest that is none, programs that end at
-another lift than they begin with. A cam that slides has no turn: its program is *open*, and its
-phases fill whatever way they take.
+Refused when the design is read: phases that do not fill a turn, a rest without an angle, programs
+that end at another lift than they begin with. The program of a cam that slides is *open*: its
+phases may have any total travel.
 
 Depends on quantities only.
 """
@@ -39,13 +38,13 @@ from gearcam.quantities import (
 )
 
 TURN_MISS: Final = 1e-6
-"""Largest miss of the phases' sum from a turn that is spread over them, rad: typed digits."""
+"""Largest error of the sum of the angles, rad, that is spread over the phases: typed digits."""
 
 _LIFT_MISS: Final = 1e-9
-"""Largest miss of the lift after a turn, in largest lifts: rounding."""
+"""Largest error of the lift after a turn over the largest lift: rounding."""
 
 Problem = tuple[int | None, str, str, str]
-"""Number of the phase, field, what is wrong, what is allowed."""
+"""Number of the phase, field, message, allowed values."""
 
 TURN: Final = 2.0 * math.pi
 """A turn of the cam, rad."""
@@ -56,14 +55,14 @@ LONGEST: Final = 1e6
 _WAY: Final = Param(LENGTH, word="way", gt=0, le=1e6, doc="travel of a translating cam")
 
 _SPAN: Final[dict[str, Any]] = {
-    "gt": 0, "le": 360, "doc": "cam angle of the phase, or what the others leave", "sliding": _WAY,
+    "gt": 0, "le": 360, "doc": "cam angle of the phase, or the rest of the turn", "sliding": _WAY,
 }  # fmt: skip
-"""What a phase takes of a turn, or of a way."""
+"""Parameter for the angle, or the travel, of a phase."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class DwellPhase:
-    """The follower stands still.
+    """The follower rests at its lift.
 
     Examples
     --------
@@ -77,16 +76,16 @@ class DwellPhase:
 
 @dataclass(frozen=True, kw_only=True)
 class RisePhase(Brief):
-    """The follower rises by a law.
+    """The follower rises with a motion law.
 
     Parameters
     ----------
     law : object
-        Parameters of a law, such as `gearcam.rises.Cycloidal`.
+        Parameters of a motion law, such as `gearcam.rises.Cycloidal`.
     angle : float or "rest"
-        What it takes of a turn, in rad; of a cam that slides its way, in mm.
+        Cam angle, rad; of a cam that slides its travel, mm.
     lift : float or None
-        In mm, or in rad where the follower oscillates.
+        In mm, or in rad if the follower oscillates.
 
     Examples
     --------
@@ -109,7 +108,7 @@ class RisePhase(Brief):
 
 @dataclass(frozen=True, kw_only=True)
 class ReturnPhase(RisePhase):
-    """The follower comes down by a law, to lift zero where no lift is given.
+    """The follower comes down with a motion law, to lift zero if no lift is given.
 
     Examples
     --------
@@ -126,10 +125,9 @@ def _rate(length: Quantity, angle: Quantity, word: str, sign: str) -> Any:
 
 @dataclass(frozen=True, kw_only=True)
 class SegmentPhase(Brief):
-    """The follower goes to a lift and has a velocity and an acceleration there.
+    """The follower goes to a lift, with given velocity and acceleration at its end.
 
-    They are in mm, mm/rad and mm/rad^2, or, where the follower oscillates, in rad, rad/rad and
-    rad/rad^2.
+    In mm, mm/rad and mm/rad^2, or, if the follower oscillates, in rad, rad/rad and rad/rad^2.
 
     Examples
     --------
@@ -169,23 +167,23 @@ PHASES: Final[dict[str, type]] = {
 """The phases, by their names in files."""
 
 _ASKED: Final[dict[type, str]] = {RisePhase: "lift", SegmentPhase: "to"}
-"""What a phase must say."""
+"""The required parameter of a phase."""
 
 
 def angles_of(phases: Sequence[Phase], turn: float = TURN) -> list[float]:
-    """Return the cam angle of each phase, rad; ``"rest"`` becomes what the others leave.
+    """Return the cam angle of each phase, rad; ``"rest"`` is replaced by the remainder.
 
     Parameters
     ----------
     phases : sequence of Phase
-        Of a turn, or half of it; at most one takes the rest.
+        Phases of a turn, or half of it; at most one has the angle ``"rest"``.
     turn : float, rad
-        What they fill.
+        Total angle.
 
     Returns
     -------
     list of float
-        The rest is 0 or less where they leave nothing.
+        The remainder is 0 or less if the other phases leave nothing.
     """
     rest = turn - math.fsum(phase.angle for phase in phases if phase.angle != "rest")
     return [rest if phase.angle == "rest" else phase.angle for phase in phases]
@@ -193,7 +191,7 @@ def angles_of(phases: Sequence[Phase], turn: float = TURN) -> list[float]:
 
 @dataclass(frozen=True, kw_only=True)
 class PlacedPhase:
-    """A phase in its place: its `kind` (rise, return or dwell), `start` and `end` in rad."""
+    """A phase with its `kind` (rise, return or dwell), `start` and `end` in rad."""
 
     kind: str
     start: float
@@ -201,7 +199,7 @@ class PlacedPhase:
 
 
 def levels(phases: Sequence[Phase]) -> list[float]:
-    """Return the lift at the beginning of each phase and at the end of the last, mm or rad.
+    """Return the lift at the start of each phase and at the end of the last, mm or rad.
 
     Parameters
     ----------
@@ -211,7 +209,7 @@ def levels(phases: Sequence[Phase]) -> list[float]:
     Returns
     -------
     list of float
-        Beginning with 0.
+        The first is 0.
     """
     found = [0.0]
     for phase in phases:
@@ -228,13 +226,13 @@ def levels(phases: Sequence[Phase]) -> list[float]:
 
 
 def fill_half(phases: Sequence[Phase]) -> bool:
-    """Return whether phases are meant to fill half a turn: by their angles, or by their lift.
+    """Return whether phases are meant to fill half a turn, by their angles or their lift.
 
     Parameters
     ----------
     phases : sequence of Phase
-        Where they fill neither half a turn nor a whole one, or one of them takes the rest, they
-        mean half a turn if they do not come back.
+        If they fill neither half a turn nor a whole one, or one of them takes the rest, they are
+        taken as half a turn if they do not return to the first lift.
     """
     angles = [phase.angle for phase in phases if phase.angle != "rest"]
     if len(angles) == len(phases):
@@ -248,7 +246,7 @@ def fill_half(phases: Sequence[Phase]) -> bool:
 def program_problems(
     phases: Sequence[Phase], *, oscillating: bool, closed: bool = True, half: bool = False
 ) -> Iterator[Problem]:
-    """Yield what is wrong with a program by reading.
+    """Yield the faults of a program.
 
     Parameters
     ----------
@@ -257,7 +255,7 @@ def program_problems(
     oscillating : bool
         Whether lifts are angles.
     closed : bool
-        Whether they fill a turn, at whose end the lift is that at its beginning.
+        Whether they fill a turn and end at the first lift.
     half : bool
         Whether they fill half a turn.
 
@@ -286,7 +284,7 @@ def _turn_problems(phases: Sequence[Phase], turn: float) -> Iterator[Problem]:
     miss = turn - sum(angles)
     rests = [number for number, phase in enumerate(phases) if phase.angle == "rest"]
     for number in rests[1:]:
-        rule = f"an angle: motion[{rests[0]}] takes the rest"
+        rule = f"an angle: motion[{rests[0]}] already takes the rest"
         yield number, "angle", "only one phase can take the rest", rule
     if rests:
         left = angles[rests[0]]
@@ -305,13 +303,18 @@ def _way_problems(phases: Sequence[Phase]) -> Iterator[Problem]:
     ways = {k: phase.angle for k, phase in enumerate(phases) if phase.angle != "rest"}
     for number in range(len(phases)):
         if number not in ways:
-            yield number, "angle", "no turn is there to be filled", "a length above 0"
+            yield (
+                number,
+                "angle",
+                "a cam that slides has no turn with a rest",
+                "a length above 0",
+            )
     whole = sum(ways.values())
     least = whole * NARROWEST / TURN
     for number, way in ways.items():
         if way < least:
             rule = f"at least {shown(least)} mm of {shown(whole)} mm"
-            yield number, "angle", "the phase cannot be told from a jump", rule
+            yield number, "angle", "the phase is too short: it would be a jump", rule
 
 
 def _closure_problems(
@@ -320,15 +323,20 @@ def _closure_problems(
     found = levels(phases)
     for number, phase in enumerate(phases):
         if isinstance(phase, ReturnPhase) and phase.lift is None and not found[number] > 0.0:
-            yield number, "lift", "there is no lift to return from", "a rise before it, or a lift"
+            yield (
+                number,
+                "lift",
+                "the follower is at lift 0 or below: nothing to return from",
+                "a rise before it, or a given lift",
+            )
     largest = max(map(abs, found))
     if largest == 0.0:
         yield None, "", "the follower never moves", "at least one rise"
     elif half:
         if abs(found[-1]) <= _LIFT_MISS * largest:
-            rule = "another lift than at its beginning, or phases of a whole turn, 360 deg"
-            yield None, "", "the half turn ends at the lift at which it begins", rule
+            rule = "another lift at its end, or phases of a whole turn, 360 deg"
+            yield None, "", "the half turn ends at the lift with which it begins", rule
     elif closed and abs(found[-1]) > _LIFT_MISS * largest:
         end = math.degrees(found[-1]) if unit == "deg" else found[-1]
-        rule = "the lift at the end of the turn is that at its beginning, 0"
+        rule = "the lift 0, as at the start of the turn"
         yield None, "", f"the program ends at a lift of {shown(end, 10)} {unit}", rule

@@ -1,9 +1,9 @@
-"""Lift programs: the displacement of a follower over a turn of the cam, or over its way.
+"""Lift programs: the displacement of a follower over a turn, or over the travel, of the cam.
 
-A program is made from phases. Every phase is scaled from the unit square; a segment is the quintic
-that leaves with the state in which the phase before it ends. The program repeats every turn, and
-says at which knots its velocity (*hard shock*), acceleration (*soft shock*) or jerk jumps. That of
-a cam that slides is *open*; its whole way counts as one turn, 2*pi rad.
+A program is made from phases. Motion laws are scaled to phases; a segment is the quintic that
+starts with the end state of the phase before it. The program repeats every turn and knows the
+knots at which its velocity (*hard shock*), acceleration (*soft shock*) or jerk jumps. The program
+of a cam that slides is *open*; its whole travel counts as one turn, 2*pi rad.
 
 Source: 000 section 3.3, eqs. (3.3)-(3.5).
 """
@@ -42,7 +42,7 @@ from gearcam.numeric.piecewise import Piece, Piecewise, extremes_among, piecewis
 from gearcam.tolerances import Tolerances
 
 _INNER = slice(5, -5, 6)
-"""Surveyed places at which the size of derivatives is known well enough to judge jumps."""
+"""Number of places that give the size of derivatives well enough to judge jumps."""
 
 _KNOT = 4.0 * np.finfo(float).eps * TURN
 """Rounding of a knot, rad."""
@@ -50,12 +50,12 @@ _KNOT = 4.0 * np.finfo(float).eps * TURN
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Survey(Brief):
-    """A lift and its derivatives to the fourth, all at once: most questions need no more.
+    """A lift and its derivatives up to the fourth at many places, computed once.
 
     Parameters
     ----------
     places : (n, k) array, rad
-        In every stretch between cuts, both ends among them, seen from inside.
+        Places in every interval between cuts, both ends included.
     found : (5, n, k) array
         Lift and derivatives there.
     before, after : (m, 5) arrays
@@ -70,27 +70,27 @@ class Survey(Brief):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Program(Brief, Displacement):
-    """The lift over a turn, repeated.
+    """The lift of a follower over a turn, repeated.
 
     Parameters
     ----------
     lift : Piecewise
         s over ``[0, 2*pi]``, mm or rad.
     stretches : tuple of PlacedPhase
-        Its phases; a segment counts as a rise or return by its direction.
+        Phases; a segment is a rise or a return, by its direction.
     cuts : (m,) array, rad
-        The knots, and more places where a law bends sharply: between them extremes are sought.
+        Knots and places where a law bends sharply; extremes are searched between them.
     errors : (float, float, float, float)
         Estimated errors of the lift, mm or rad, and of its first three derivatives beyond rounding.
     rough : tuple of Piecewise
-        Curves of the same knots through fewer rows: what is integrated of them differs by more than
-        the lift's own errors make, by as much as `fall` says.
+        Curves with the same knots through fewer rows, whose integrals differ from those of the
+        lift by `fall` times its error.
     fall : float
-        By what errors of the rough curves are larger.
+        Error of the rough curves over that of the lift.
     deviation : Deviation, optional
-        What smoothing took off rows.
+        Largest distance of a smoothed lift from the rows.
     open : bool
-        Whether it ends where its turn does.
+        Whether it ends with the travel.
     """
 
     lift: Piecewise
@@ -104,7 +104,7 @@ class Program(Brief, Displacement):
 
     @property
     def closed(self) -> bool:
-        """Whether it is repeated every turn."""
+        """Whether it repeats every turn."""
         return not self.open
 
     @property
@@ -118,7 +118,7 @@ class Program(Brief, Displacement):
         return TURN
 
     def cuts_between(self, low: float, high: float) -> Array:
-        """Return the cuts between two cam angles, with both of these.
+        """Return the cuts between two cam angles, these included.
 
         Parameters
         ----------
@@ -141,7 +141,7 @@ class Program(Brief, Displacement):
         return ends, self.lift.on_pieces(index, ends - np.tile(periods, 2) * TURN, 2)
 
     def phases(self, kind: str) -> list[tuple[float, float]]:
-        """Return beginning and end, rad, of every phase of a `kind`, such as rise."""
+        """Return start and end, rad, of every phase of a `kind`, such as rise."""
         return [(s.start, s.end) for s in self.stretches if s.kind == kind]
 
     def in_period(self, x: Array, order: int) -> list[Array]:
@@ -189,12 +189,12 @@ class Program(Brief, Displacement):
 
     @cached_property
     def jumps(self) -> tuple[Jump, ...]:
-        """The lowest derivative that jumps at each knot, the turn's ends counting as one."""
+        """The lowest derivative that jumps at each knot; both ends of the turn are one knot."""
         survey = self.survey
         inside = np.abs(survey.found[..., _INNER]).max(axis=(1, 2))
         at_knots = np.abs([survey.before, survey.after]).max(axis=(0, 1))
         scales = np.maximum(inside, at_knots)[:4]
-        # a knot is rounded, and a derivative seen on the wrong side of it by its own slope
+        # a knot is rounded: a derivative on its wrong side is off by its slope times the rounding
         limits = JUMP * scales + _KNOT * np.append(scales[1:], inside[4])
         jumping = (np.abs(survey.after - survey.before)[:, :4] > limits)[:, 1:]
         return tuple(
@@ -215,7 +215,7 @@ class Program(Brief, Displacement):
 
     @property
     def continuity(self) -> int:
-        """Order of continuity over the turn: 0 to 3, where 3 means at least 3."""
+        """Order of continuity over the turn, 0 to 3; 3 means at least 3."""
         return min((jump.order for jump in self.jumps), default=4) - 1
 
 
@@ -234,20 +234,20 @@ def make_program(
     phases : sequence of Phase
         Of a turn, in order.
     tolerances : Tolerances
-        Accuracy of laws that are expanded.
+        Accuracy of expansions of laws.
     oscillating : bool
         Whether lifts are angles.
     closed : bool
-        Whether it is repeated; else its phases take parts of a way, which counts as a turn.
+        Whether it repeats; else the phases cover a travel, which counts as a turn.
     half : bool
-        Whether the phases fill half a turn and are followed by their opposite: the first leaves
-        with the state in which the last one ends, its signs changed.
+        Whether the phases fill half a turn and are followed by their opposite; the first phase
+        then starts with the opposite of the end state of the last.
 
     Returns
     -------
     Program
-        Knots at the ends of phases and inside laws; the first is 0, the last exactly 2*pi, or pi of
-        half a turn, which is no program yet (see `gearcam.laws.half_turns`).
+        Its knots are the ends of phases and the knots of laws; the first is 0, the last exactly
+        2*pi, or pi for half a turn, to be completed by `gearcam.laws.half_turns`.
 
     Raises
     ------
@@ -298,7 +298,7 @@ def make_program(
 
 
 def _ends(phases: Sequence[Phase], *, closed: bool, half: bool) -> tuple[Array, list[float]]:
-    """Return the angles, rad, and the lifts at which phases begin, and the last one ends."""
+    """Return the angles, rad, and lifts at the starts of phases and at the end of the last."""
     turn = 0.5 * TURN if half else TURN
     widths = angles_of(phases, turn) if closed else [float(phase.angle) for phase in phases]
     share = turn / sum(widths)
@@ -311,7 +311,7 @@ def _ends(phases: Sequence[Phase], *, closed: bool, half: bool) -> tuple[Array, 
 
 
 def _end_state(phase: Phase, place: _Place, rises: Mapping[Any, Rise]) -> tuple[float, float]:
-    """Return velocity and acceleration at the end of a phase: its law fixes them by itself."""
+    """Return velocity and acceleration at the end of a phase, which its law defines."""
     match phase:
         case SegmentPhase():
             return phase.end[1:]
@@ -323,7 +323,7 @@ def _end_state(phase: Phase, place: _Place, rises: Mapping[Any, Rise]) -> tuple[
 
 @dataclass(frozen=True)
 class _Placed(Brief):
-    """A law's function in a place, ``base + scale*S((theta - origin)/width)``; phases share it."""
+    """A scaled law, ``base + scale*S((theta - origin)/width)``; phases of one law share it."""
 
     law: Callable[..., Jet]
 
@@ -338,7 +338,7 @@ class _Placed(Brief):
 
 @dataclass(frozen=True)
 class _Place:
-    """Where a phase stands: from `start` to `end`, rad, and from the lift `base` to `top`."""
+    """Position of a phase: from `start` to `end`, rad, and from lift `base` to `top`."""
 
     start: float
     end: float
@@ -351,12 +351,12 @@ class _Place:
 
     def law(self, rise: Rise) -> tuple[float, float, float, float]:
         """Return origin, width, base and scale of a law (see `_Placed`)."""
-        if rise.mirrored and self.rise < 0.0:  # it comes down by running backwards
+        if rise.mirrored and self.rise < 0.0:  # a return is the law run backwards
             return self.end, self.start - self.end, self.top, -self.rise
         return self.start, self.end - self.start, self.base, self.rise
 
     def pieces(self, rise: Rise) -> Iterator[tuple[float, Piece]]:
-        """Yield the pieces of a law, each with the angle at which it ends."""
+        """Yield the pieces of a law, each with its end angle."""
         origin, width, base, scale = self.law(rise)
         inner = np.sort(origin + width * rise.function.knots[1:-1]).tolist()
         parts = rise.function.pieces[:: 1 if width > 0.0 else -1]
@@ -365,7 +365,7 @@ class _Place:
             yield end, Piece(_Placed(part.function), parameters=parameters)
 
     def cuts(self, rise: Rise) -> Array:
-        """Return where a law bends sharply."""
+        """Return the angles at which a law bends sharply."""
         origin, width, *_ = self.law(rise)
         return origin + width * np.array(rise.cuts)
 
@@ -385,7 +385,7 @@ class _Place:
     ) -> Piece:
         """Return the quintic with given velocities and accelerations at both ends.
 
-        `opposite` changes the signs of those at its start. It is computed from the nearer end.
+        `opposite` changes the signs of those at its start. The polynomial is about the nearer end.
         """
         width = self.end - self.start
         first, last = np.array([start, end]) * [width, width**2]

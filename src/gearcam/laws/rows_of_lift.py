@@ -1,17 +1,15 @@
 """From rows of angle and lift to a lift program.
 
-The lift goes through the rows as the closed curve with the least integral of the squared jerk:
-quintics between rows, C4 at all of them and over the end of the turn, whose error falls with the
-sixth power of the step where the motion is smooth. Rows that were measured are noisy, and the jerk
-of a curve through them is that of the noise. With a tolerance the curve passes near them instead:
-it is the smoothing spline, which weighs the same jerk against the distances from the rows. One
-number, its cutoff, makes it smoother; the lowest is taken at which no row is farther off than the
-tolerance. So noise is averaged by one rule all over the turn. (The curve of least jerk among all
-that stay within the tolerance would be smoother still; it runs along the tolerance wherever that
-spares jerk, and takes as much off every peak.)
+Without a tolerance the lift is the closed curve through the rows with the least integral of the
+squared jerk: quintics between rows, C4 everywhere, whose error falls with the sixth power of the
+step for a smooth motion. Measured rows are noisy, and the jerk of a curve through them is that of
+the noise. With a tolerance the lift is the smoothing spline, which balances the same jerk against
+the distances from the rows. Its cutoff is the lowest at which no row is farther away than the
+tolerance, so that noise is averaged by one rule over the whole turn. (The curve of least jerk
+within the tolerance would be smoother, but runs along the tolerance and flattens every peak.)
 
-Where rows stay at a height is a dwell; between dwells the lift rises and returns, and turns where
-its curve does.
+Rows of equal lift are a dwell; between dwells the lift rises and returns and changes direction
+where the curve does.
 
 Source: C. de Boor, A Practical Guide to Splines, chapter XIV (the smoothing spline).
 """
@@ -34,34 +32,33 @@ from gearcam.numeric.least_jerk import coefficients, ring_slopes, smoothed_ring
 from gearcam.numeric.piecewise import Piecewise, extremes, piecewise
 
 _NEAR: Final = 0.01
-"""The search for the cutoff stops where it is known to this part."""
+"""Relative accuracy of the cutoff."""
 
 _PER_WAVE: Final = 6
-"""Rows that are kept of a smoothed lift in a wave at its cutoff: what the curve through them misses
-is below a hundredth of the tolerance, and counted."""
+"""Rows of a smoothed lift that are kept for each wave at the cutoff: the error of the curve through
+them is below a hundredth of the tolerance and included in the estimates."""
 
 _KINDS: Final = {1: "rise", -1: "return", 0: "dwell"}
 
 _DWELL: Final = 2
-"""Steps without a change that are a dwell; one is an extreme between two rows."""
+"""Fewest steps without a change that are a dwell; one step is an extreme between two rows."""
 
 _SAME: Final = 1e-9
-"""Distance of an extreme from a row, rad, at which it is the row: an extreme is flat, and known to
-half the digits."""
+"""Distance, rad, below which an extreme is at a row: extremes are known to half the digits."""
 
 _ORDER: Final = 6
-"""Power of the step with which the error of a smooth lift falls."""
+"""Order of convergence of a smooth lift with the step."""
 
 _SHARES: Final = np.array([0.0, 0.25, 0.5, 0.75])
-"""Places of a step at which derivatives are compared."""
+"""Places in a step at which derivatives are compared."""
 
 _BESIDE: Final = np.array([2.0, 4.0, 4.0, 4.0])
-"""A miss is seen in the middle between rows; beside it, where a derivative jumps near a row, it may
-be twice as large. Derivatives are held against a curve that misses them too."""
+"""Safety factor: errors are measured midway between rows and may be twice as large near a row where
+a derivative jumps; derivatives are compared with a curve that has errors too."""
 
 
 def program_of_rows(theta: Array, lift: Array, tolerance: float, spread: float) -> Program:
-    """Return the program that rows make.
+    """Return the program of rows of angle and lift.
 
     Parameters
     ----------
@@ -72,13 +69,12 @@ def program_of_rows(theta: Array, lift: Array, tolerance: float, spread: float) 
     tolerance : float, mm or rad
         Largest distance from a row; 0 for a curve through the rows.
     spread : float, mm or rad
-        What is known of the first row: its lift is the mean of two that differ by twice as much.
+        Half the difference of first and last row, whose mean is the lift at the start.
 
     Returns
     -------
     Program
-        With knots at the ends of the turn and at the rows; of a smoothed lift at as many of them
-        as its waves need.
+        Knots are the ends of the turn and the rows; of a smoothed lift only as many rows as needed.
     """
     values, cutoff, deviation, step = lift, 0.5 * len(theta), None, 1
     if tolerance:
@@ -107,7 +103,7 @@ def program_of_rows(theta: Array, lift: Array, tolerance: float, spread: float) 
 
 def _smoothed(theta: Array, lift: Array, apart: Array, tolerance: float) -> tuple[Array, float]:
     """Return the smoothest lifts within a tolerance, and their cutoff, 1/rad."""
-    low, high = 1.0, 2.0 * len(theta)  # a wave a turn; a quarter of a step
+    low, high = 1.0, 2.0 * len(theta)  # one wave per turn; a quarter of a step
     found, cutoff = lift, high
     while high > low * (1.0 + _NEAR):
         middle = math.sqrt(low * high)

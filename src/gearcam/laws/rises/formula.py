@@ -34,7 +34,7 @@ _NAMES: Final = ("S", "its velocity S'", "its acceleration S''", "its jerk S'''"
 class FormulaRise(Brief):
     """S as a formula in x, which is phi; derivatives are exact, by Taylor arithmetic.
 
-    From Python it may be a function, or a tuple of a function and its first derivatives.
+    In Python it may be a function, or a tuple of a function and its first derivatives.
     """
 
     formula: Given = param(

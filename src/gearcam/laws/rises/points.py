@@ -164,7 +164,7 @@ class TableRise(FromFile):
         Raises
         ------
         InfeasibleError
-            If the file is not such a table any more.
+            If the file was changed and is not a valid table any more.
         """
         for name, index, message, rule in self.problems():
             where = f"motion.{name}" + ("" if index is None else f"[{index}]")
