@@ -60,7 +60,7 @@ def test_a_cam_s_own_files_move_its_follower_as_asked(
 def test_a_file_that_holds_no_profile_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "nothing.dxf"
     path.write_text("nothing\n", encoding="ascii")
-    with pytest.raises(DesignError, match="is no profile"):
+    with pytest.raises(DesignError, match="not a profile"):
         made("eccentric_cam").follow(path)
-    with pytest.raises(DesignError, match="is no profile"):
+    with pytest.raises(DesignError, match="not a profile"):
         made("eccentric_cam").follow(tmp_path / "missing.csv")

@@ -197,7 +197,10 @@ def test_the_planet_meshes_with_both_at_one_distance(lobes: tuple[int, int, int]
     [
         ([24, 24, 78], "0.459105*A*(1 + 0.449394*cos(4*phi)), A being the centre distance"),
         ([24, 24, 72], "only round wheels mesh with these teeth"),
-        ([20, 10, 80], "*cos(phi)), A being the centre distance, which is no curve about a shaft"),
+        (
+            [20, 10, 80],
+            "*cos(phi)), A being the centre distance, which is not a closed curve around a shaft",
+        ),
         ([24, 24, 60], "a ring needs at least 72 teeth here"),
         ([24, 24, 20], "a ring needs at least 72 teeth here"),
     ],

@@ -91,7 +91,7 @@ def test_scales_are_written_as_the_standard_does() -> None:
 def test_long_tables_take_the_larger_paper() -> None:
     assert choose((10.0, 10.0), (20.0, 20.0), 10)[0] == "A4"
     assert choose((10.0, 10.0), (20.0, 20.0), 40)[0] == "A3"
-    with pytest.raises(InfeasibleError, match="fit on no sheet"):
+    with pytest.raises(InfeasibleError, match="do not fit on a sheet"):
         choose((1e12, 1.0), (20.0, 20.0), 10)
 
 

@@ -5,7 +5,7 @@ const LEAP = 20; // steps of the driver that Page Up and Page Down go
 const STRIDES = 36; // steps in a cycle where motion is to be reduced
 
 const LINES = { CENTRODE: "centrodes", PITCH: "pitch curve", PRIME: "prime circle" };
-const SIDES = { drive: "flanks that drive", coast: "flanks that hold back" };
+const SIDES = { drive: "driving flanks", coast: "coast flanks" };
 
 const element = (id) => document.getElementById(id);
 const read = (id) => JSON.parse(element(id).textContent);

@@ -1,8 +1,8 @@
-"""Sheets: workshop drawings, dimensioned, of each wheel and of the assembled pair.
+"""Sheets: dimensioned workshop drawings of each wheel and of the assembled pair.
 
-`sheet` holds what a sheet is made of, `paper` chooses paper and scale and draws frame, table and
-title block, `extent` measures outlines, `board` finds free places for dimensions, `wheel` and
-`pair` draw the two kinds of sheet. Exporters see sheets only.
+`sheet` defines the elements of a sheet, `paper` selects paper and scale and draws frame, table and
+title block, `extent` measures outlines, `board` places dimensions where there is space, `wheel` and
+`pair` draw the two types of sheet. Exporters use sheets only.
 """
 
 from gearcam.sheets.pair import pair_sheet

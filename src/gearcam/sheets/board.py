@@ -1,8 +1,8 @@
-"""The board: a sheet while it is drawn, and the free places for its dimensions.
+"""The board: a sheet under construction, and the free space for its dimensions.
 
-What is drawn is kept in a grid of half millimetres of paper, texts in another. A text stands where
-neither grid has anything; leaders never cross a text, and as few lines as can be. *Levels* are the
-distances of linear dimensions from the view, so that they stand above one another.
+Drawn lines occupy cells of a grid of half millimetres of paper, texts those of another. A text is
+placed where both grids are free; leaders never cross a text, and as few lines as possible. *Levels*
+are the distances of linear dimensions from the view, so that they do not overlap.
 
 Depends on drawings and sheets.
 """
@@ -36,32 +36,32 @@ from gearcam.sheets.sheet import (
 )
 
 CELL: Final = 0.5
-"""Of the grids, mm of paper."""
+"""Cell size of the grids, mm of paper."""
 
 LEVEL: Final = 9.0
 FIRST_LEVEL: Final = 11.0
-"""From one dimension line to the next, and from the view to the first, mm of paper."""
+"""Distance of dimension lines, and of the first from the view, mm of paper."""
 
 CLEAR: Final = 1.0
-"""Around a text nothing is drawn, mm of paper."""
+"""Clear margin around a text, mm of paper."""
 
 TIGHT: Final = 2.0
-"""What a circle must be wider than a text within, mm of paper."""
+"""Least difference between a circle's diameter and the text within, mm of paper."""
 
 OVERHANG: Final = 3.0
-"""Of centre lines over what they belong to, mm of paper."""
+"""Extension of centre lines beyond their circle, mm of paper."""
 
 CROSSING: Final = 6.0
-"""A crossed line is as bad as a leader longer by this, mm of paper."""
+"""Penalty of a crossed line, as length of a leader, mm of paper."""
 
 MOST: Final = 20
-"""Cells of a leader that may lie on lines: more means that it runs along one."""
+"""Largest number of a leader's cells on lines: more means that it runs along one."""
 
 _REACHES: Final = np.concatenate([np.arange(5.0, 30.0, 2.5), np.arange(30.0, 160.0, 6.0)])
-"""Lengths of leaders that are tried, mm of paper."""
+"""Lengths of leaders to try, mm of paper."""
 
 AROUND: Final = np.radians(np.arange(7.5, 367.5, 7.5))
-"""Directions that are tried where a leader may have any."""
+"""Directions to try for a leader that may have any."""
 
 
 def _resampled(points: Array, step: float, closed: bool) -> Array:
@@ -75,20 +75,20 @@ def _resampled(points: Array, step: float, closed: bool) -> Array:
 
 @dataclass(eq=False, kw_only=True)
 class Board:
-    """A sheet while it is drawn.
+    """A sheet under construction.
 
     Parameters
     ----------
     scale : float
         Millimetres of paper over millimetres of the part.
     area : (2,) array, (2,) array, mm of the part
-        Where texts of the views may stand.
+        Area for the texts of the views, lower left and upper right corner.
     paper : str
-        On which it will stand, such as ``A4``.
+        Its paper, such as ``A4``.
     corner : (2,) array, mm of the part
         Lower left corner of the paper.
     features, dimensions, texts, rows : list
-        As of `Sheet`.
+        As in `Sheet`.
     """
 
     scale: float
@@ -127,11 +127,11 @@ class Board:
         Parameters
         ----------
         place : (2,) array, mm
-            Its middle.
+            Its centre.
         radius : float, mm
             Its radius.
         gap : (float, float), mm of paper, optional
-            Where the upright one is left out, from the middle: a text stands there.
+            Range from the centre where the upright line is left out, for a text.
         """
         (x, y), arm = place.tolist(), radius + OVERHANG * self.unit
         if gap is None:
@@ -144,7 +144,7 @@ class Board:
             self.line(CENTERLINE, (x, high), (x, y + arm))
 
     def write(self, text: Text) -> None:
-        """Write a text where it says."""
+        """Write a text at its place."""
         self.texts.append(text)
         self._take(text)
 
@@ -157,7 +157,7 @@ class Board:
         vertical: bool = False,
         prefix: str = "",
     ) -> None:
-        """Draw a distance along x or y.
+        """Draw a linear dimension along x or y.
 
         Parameters
         ----------
@@ -190,19 +190,19 @@ class Board:
         )  # fmt: skip
 
     def round(self, made: RoundDimension, angles: Array | None = None) -> bool:
-        """Draw a diameter or radius where there is room.
+        """Draw a diameter or radius where there is space.
 
         Parameters
         ----------
         made : RoundDimension
-            What it says; where its arrow and its knee are is found here.
+            The dimension; its arrow and its knee are placed here.
         angles : (n,) array, rad, optional
-            Directions in which the arrow may stand; any if left out.
+            Allowed directions of the arrow; any by default.
 
         Returns
         -------
         bool
-            False if there is no room: nothing is drawn, the table must tell it.
+            False if there is no space: nothing is drawn, and the table must contain it.
         """
         within = 2.0 * made.radius * self.scale - text_width(made.label)
         found: RoundDimension | None = made
@@ -219,14 +219,14 @@ class Board:
         Parameters
         ----------
         point : (2,) array, mm
-            Where the leader points.
+            Point of the leader's arrow.
         text : str
-            What is written.
+            The text.
 
         Returns
         -------
         bool
-            False if there is no room: nothing is drawn.
+            False if there is no space: nothing is drawn.
         """
         made = RoundDimension(center=point, radius=0.1 * self.unit, words=text)
         found = self._search(made, AROUND, _REACHES)
@@ -244,7 +244,7 @@ class Board:
         return bool(self._empty(low[None, :], high[None, :])[0])
 
     def _search(self, made: RoundDimension, angles: Array, reaches: Array) -> RoundDimension | None:
-        """Return the dimension with the best knee, None if its text has no room anywhere."""
+        """Return the dimension with the best knee; None if there is no space for its text."""
         angle, reach = (axis.ravel() for axis in np.meshgrid(angles, reaches, indexing="ij"))
         spokes = np.column_stack([np.cos(angle), np.sin(angle)])
         knees = made.radius + reach * self.unit
@@ -268,7 +268,7 @@ class Board:
         return replace(made, angle=float(angle[best]), knee=float(knees[best]))
 
     def _crossed(self, start: Array, end: Array) -> float:
-        """Return how many lines a leader crosses; infinite along one, or through a text."""
+        """Return the number of lines a leader crosses; infinite along one, or through a text."""
         way = end - start
         length = float(np.hypot(*way))
         skip = min(1.0, 2.0 * CELL * self.unit / length)
@@ -286,7 +286,7 @@ class Board:
         return cells, inside
 
     def _empty(self, low: Array, high: Array) -> Mask:
-        """Return which of some boxes, (n, 2) each, hold nothing and lie in the area."""
+        """Return which of some boxes, (n, 2) each, are empty and lie in the area."""
         edge = CLEAR * self.unit
         first, inside = self._cells(low - edge)
         last, also = self._cells(high + edge)

@@ -1,4 +1,4 @@
-"""How far outlines reach: sizes of the true curve, not of its chords.
+"""Extents of outlines: sizes of the true curve, not of its chords.
 
 Depends on numeric and parts' shapes.
 """
@@ -17,18 +17,18 @@ from gearcam.numeric.hermite import on_cubics
 from gearcam.parts.shapes import Circle
 
 _BETWEEN: Final = 129
-"""Points of a cubic that stands for the curve between two dense points."""
+"""Points on the cubic between two dense points."""
 
 _WAYS: Final = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
 """Right, up, left, down."""
 
 
 def true_points(edges: Iterable[Contour | Circle]) -> Array:
-    """Return points on true edges, (n, 2), mm: dense, and much denser where they reach farthest.
+    """Return points on true edges, (n, 2), mm: dense, and much denser at extreme points.
 
-    The places farthest along x and y, and farthest from and nearest to the origin, are good to
-    1e-8 mm: between dense points the curve is a cubic with the tangents at its ends. Of circles
-    they are the places farthest along x and y.
+    Extremes along x and y and of the distance from the origin are exact to 1e-8 mm: between dense
+    points the curve is a cubic with the tangents at its ends. For circles only the extremes along x
+    and y are returned.
     """
     return np.vstack([_points(edge) for edge in edges])
 
@@ -44,7 +44,7 @@ def _points(edge: Contour | Circle) -> Array:
         int(pick(values)) for values in (*points.T, reach) for pick in (np.argmin, np.argmax)
     }
     starts = np.cumsum([0, *(len(run.points) for run in runs)])
-    # the last point of a run and the first of the next have nothing between them
+    # no curve between the last point of a run and the first of the next
     firsts = [
         first
         for place in sorted(extremes)

@@ -1,9 +1,7 @@
-"""The sheet of a pair: both wheels assembled, their centrodes and the point where these touch.
+"""The sheet of a pair: both wheels assembled, their centrodes and the pitch point.
 
-The pair stands as in the drawing that it is made from, at any angle of the driver. The *pitch
-point* lies on the line of centres, where the driver's centrode crosses it.
-
-Refused: a drawing without outlines.
+The pair is shown at the driver angle of the drawing from which it is made. The *pitch point* is
+where the driver's centrode crosses the line of centres.
 
 Depends on drawings and sheets.
 """
@@ -26,10 +24,10 @@ from gearcam.sheets.sheet import CENTERLINE, Sheet, fine
 LEFT: Final = 24.0
 RIGHT: Final = 20.0
 ABOVE: Final = 14.0
-"""Room for dimensions beside and above the wheels, mm of paper."""
+"""Space for dimensions beside and above the wheels, mm of paper."""
 
 POINT: Final = 2.0
-"""Diameter of the ring about the pitch point, mm of paper."""
+"""Diameter of the ring around the pitch point, mm of paper."""
 
 LEVELS: Final = 3
 """Linear dimensions below the wheels."""
@@ -43,14 +41,14 @@ def pair_sheet(
     *,
     pitch_radius: float,
 ) -> Sheet:
-    """Draw the sheet of the assembled pair.
+    """Return the sheet of the assembled pair.
 
     Parameters
     ----------
     drawing : Drawing
         The pair with its centrodes (see `gearcam.drawings.pair_drawing`).
     center_distance : float, mm
-        Place of the second shaft on x, the first being at 0: negative for a ring; 0 for a rack.
+        Position of the second shaft on x, with the first at 0: negative for a ring; 0 for a rack.
     facts : mapping of str to str
         Rows of the parameter table.
     title : str
@@ -61,7 +59,7 @@ def pair_sheet(
     Returns
     -------
     Sheet
-        Named as the drawing.
+        With the name of the drawing.
 
     Raises
     ------
@@ -90,7 +88,7 @@ def pair_sheet(
     notes = [
         f"Chord tolerance of the outlines: {fine(tolerance)} mm.",
         "Dashed: centrodes; they touch at the pitch point.",
-        "Each wheel is made to its own sheet and file.",
+        "Make each wheel from its own drawing and file.",
     ]
     return finish(board, name=drawing.name, title=title, facts=facts, notes=notes)
 
@@ -116,7 +114,7 @@ def _views(board: Board, drawing: Drawing, shafts: tuple[float, ...]) -> None:
 def _sizes(
     board: Board, points: Array, center_distance: float, pitch_radius: float, beside: float
 ) -> None:
-    """Draw the linear dimensions: pitch radius, centre distance, largest sizes left of `beside`."""
+    """Draw the linear dimensions: pitch radius, centre distance, overall sizes left of `beside`."""
     unit = board.unit
     left, low, right, high = points[[*points.argmin(axis=0), *points.argmax(axis=0)]]
     levels = [float(low[1]) - (FIRST_LEVEL + LEVEL * level) * unit for level in range(LEVELS)]

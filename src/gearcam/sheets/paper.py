@@ -1,9 +1,9 @@
 """Paper: size and scale of a sheet, its frame, parameter table, title block and notes.
 
 A4 or A3 landscape with a binding margin, scales of ISO 5455 (1, 2 and 5 times powers of ten). The
-table stands on the right, the title block below it, notes beside that; the rest is the *area* of
-the views. The smaller paper is taken where it shows the part at its true size or larger, or no
-smaller than the larger paper would.
+table is on the right, the title block below it, notes beside that; the rest is the *area* of the
+views. The smaller paper is used if it shows the part at full size or larger, or at the same scale
+as the larger paper.
 
 Depends on drawings and sheets.
 """
@@ -28,7 +28,7 @@ PAPERS: Final = {"A4": (297.0, 210.0), "A3": (420.0, 297.0)}
 
 BINDING: Final = 20.0
 MARGIN: Final = 10.0
-"""From the paper's left edge, and from the others, to the frame, mm."""
+"""Margins of the frame from the paper's left edge, and from the other edges, mm."""
 
 TABLE: Final = 86.0
 LABELS: Final = 45.0
@@ -39,10 +39,10 @@ BLOCK: Final = (150.0, 24.0)
 """Width and height of the title block, mm."""
 
 PAD: Final = 3.0
-"""Between the views and what stands around them, mm."""
+"""Gap around the views, mm."""
 
 INSET: Final = 1.5
-"""From a cell's edge to its text, mm."""
+"""Distance of a cell's text from its edge, mm."""
 
 SMALL: Final = 1.6
 """Height of the labels in the title block, mm."""
@@ -53,11 +53,11 @@ SCALES: Final = tuple(base * 10.0**power for power in range(2, -7, -1) for base 
 """100:1 and smaller."""
 
 PROJECTION: Final = "first angle"
-"""The view from the left stands on the right."""
+"""The view from the left is placed on the right."""
 
 
 def scale_words(scale: float) -> str:
-    """Return a `scale` as it is written, such as 1:2."""
+    """Return a `scale` as text, such as 1:2."""
     return f"{shown(scale)}:1" if scale >= 1.0 else f"1:{shown(1.0 / scale)}"
 
 
@@ -69,16 +69,16 @@ def area_of(paper: str) -> Box:
 
 
 def choose(size: ArrayLike, room: ArrayLike, rows: int) -> tuple[str, float]:
-    """Choose paper and scale.
+    """Return paper and scale.
 
     Parameters
     ----------
     size : (float, float), mm
         Width and height of all views together.
     room : (float, float), mm of paper
-        What dimensions and gaps take beside them.
+        Space for dimensions and gaps besides the views.
     rows : int
-        Of the table.
+        Number of rows of the table.
 
     Returns
     -------
@@ -99,7 +99,7 @@ def choose(size: ArrayLike, room: ArrayLike, rows: int) -> tuple[str, float]:
             found.append((paper, fits[0]))
     if not found:
         raise InfeasibleError(
-            f"views of {shown(size[0])} x {shown(size[1])} mm fit on no sheet",
+            f"views of {shown(size[0])} x {shown(size[1])} mm do not fit on a sheet",
             where="output.files",
             nearest=f"the smallest scale is 1 : {shown(1.0 / min(SCALES))}",
         )
@@ -107,23 +107,23 @@ def choose(size: ArrayLike, room: ArrayLike, rows: int) -> tuple[str, float]:
 
 
 def begin(size: Array, room: Box, low: Array, rows: int) -> Board:
-    """Begin a sheet: the views in the middle of their area.
+    """Return an empty sheet with the views centred in their area.
 
     Parameters
     ----------
     size : (2,) array, mm
         Width and height of all views together.
     room : (2,) array, (2,) array, mm of paper
-        What dimensions take to the left and below, and to the right and above.
+        Space for dimensions to the left and below, and to the right and above.
     low : (2,) array, mm
         Lower left corner of the views.
     rows : int
-        Of the table.
+        Number of rows of the table.
 
     Returns
     -------
     Board
-        Empty, on the paper that is chosen.
+        Empty, with paper and scale.
 
     Raises
     ------
@@ -141,18 +141,18 @@ def begin(size: Array, room: Box, low: Array, rows: int) -> Board:
 def finish(
     board: Board, *, name: str, title: str, facts: Mapping[str, str], notes: Sequence[str]
 ) -> Sheet:
-    """Draw frame, table, title block and notes around the views.
+    """Return the finished sheet, with frame, table, title block and notes around the views.
 
     Parameters
     ----------
     board : Board
         With its views.
     name, title : str
-        Of the sheet.
+        Name and title of the sheet.
     facts : mapping of str to str
         First rows of the table; those of the board follow.
     notes : sequence of str
-        Beside the title block.
+        Notes beside the title block.
 
     Returns
     -------
@@ -191,7 +191,7 @@ def _chain(board: Board, points: Sequence[tuple[float, float]], *, closed: bool 
 def _write(
     board: Board, text: str, place: tuple[float, float], wide: float, height: float = HEIGHT
 ) -> None:
-    """Write a line, smaller if it is longer than its room; line breaks become blanks."""
+    """Write a line, smaller if it is longer than its space; line breaks become blanks."""
     text = " ".join(text.split())
     if text:
         height = min(height, wide / (GLYPH * len(text)))
@@ -200,7 +200,7 @@ def _write(
 
 
 def _table(board: Board, rows: Sequence[tuple[str, str]], corner: tuple[float, float]) -> None:
-    """Draw the table down from its upper left corner; long ones have lower rows."""
+    """Draw the table downwards from its upper left corner; long tables have lower rows."""
     (left, top), right = corner, corner[0] + TABLE
     if not rows:
         return
@@ -218,7 +218,7 @@ def _table(board: Board, rows: Sequence[tuple[str, str]], corner: tuple[float, f
 
 
 def _block(board: Board, words: tuple[str, str], corner: tuple[float, float]) -> None:
-    """Draw the title block up from its lower left corner."""
+    """Draw the title block upwards from its lower left corner."""
     (left, low), row, (name, title) = corner, BLOCK[1] / 3.0, words
     cells = [
         (0.0, 2, BLOCK[0], "title", title, 4.0),

@@ -1,10 +1,10 @@
-"""What a sheet is made of: features, dimensions and texts, in true millimetres of the part.
+"""Elements of a sheet: features, dimensions and texts, in true millimetres of the part.
 
-A *sheet* has a *paper* and a *scale*, millimetres of paper over millimetres of the part. Everything
-on it is placed in the part's millimetres, y upwards, the front view in the part's own frame;
-heights of texts, gaps and arrow heads are in millimetres of paper. A *dimension* knows what it
-measures; `as_drawn` turns it into lines, arrow heads and a text, for formats that have no
-dimensions of their own. Text heights are those of capital letters.
+A *sheet* has a *paper* and a *scale*, millimetres of paper over millimetres of the part. All
+positions are in the part's millimetres, y upwards, with the front view in the part's own frame;
+heights of texts, gaps and arrow heads are in millimetres of paper. A *dimension* has a measured
+value; `as_drawn` converts it to lines, arrow heads and a text, for formats without dimensions.
+Text heights are those of capital letters.
 
 Depends on drawings.
 """
@@ -31,10 +31,10 @@ CENTERLINE: Final = "CENTERLINE"
 HIDDEN: Final = "HIDDEN"
 FRAME: Final = "FRAME"
 EDGE: Final = "EDGE"
-"""Layers beside those of drawings; EDGE holds visible edges that no cutter follows."""
+"""Layers besides those of drawings; EDGE has visible edges that are not cut."""
 
 HEAVY: Final = (OUTLINE, OUTER_WALL, *THROUGH, EDGE)
-"""Kinds that are drawn thick."""
+"""Layers drawn with thick lines."""
 
 THICK: Final = 0.5
 THIN: Final = 0.25
@@ -44,10 +44,10 @@ HEIGHT: Final = 2.5
 """Height of the numbers, mm of paper."""
 
 GLYPH: Final = 0.9
-"""Width of a letter over the height of a capital, on the safe side."""
+"""Largest width of a letter over the height of a capital."""
 
 GAP: Final = 0.8
-"""From a line to the text above it, mm of paper."""
+"""Distance from a line to the text above it, mm of paper."""
 
 ARROW: Final = 3.0
 """Length of an arrow head, mm of paper."""
@@ -57,21 +57,20 @@ TAIL: Final = 5.0
 
 LEAST_GAP: Final = 1.0
 PAST: Final = 1.5
-"""From the part to an extension line, and how far that goes past the dimension line, mm of paper.
-"""
+"""Gap from the part to an extension line, and its overrun past the dimension line, mm of paper."""
 
 ARROW_ROOM: Final = 2 * ARROW + GAP
-"""Dimension lines shorter than this, mm of paper, have their arrows outside."""
+"""Length of dimension lines, mm of paper, below which arrows are outside."""
 
 
 def fine(value: float) -> str:
-    """Return a small length, such as a tolerance, to two digits and without exponent."""
+    """Return a small length, such as a tolerance, as text with two digits and no exponent."""
     digits = max(3, 1 - math.floor(math.log10(value)))
     return decimal(value, digits)
 
 
 def text_width(text: str, height: float = HEIGHT) -> float:
-    """Return the room that a `text` of a `height`, mm of paper, takes, mm of paper."""
+    """Return the width of a `text` of a `height`, both mm of paper."""
     return GLYPH * height * len(text)
 
 
@@ -82,15 +81,15 @@ class Text(Brief):
     Parameters
     ----------
     text : str
-        What it says.
+        The text.
     place : (2,) array, mm of the part
-        Of its base line.
+        Position of its base line.
     height : float, mm of paper
-        Of its capitals.
+        Height of its capitals.
     anchor : {"start", "middle"}
-        Which point of the base line stands at `place`.
+        Point of the base line at `place`.
     upright : bool
-        Whether it reads from below to above.
+        Whether it reads upwards.
     """
 
     text: str
@@ -102,7 +101,7 @@ class Text(Brief):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class LinearDimension(Brief):
-    """A distance of two points along x or y.
+    """A linear dimension: the distance of two points along x or y.
 
     Parameters
     ----------
@@ -144,20 +143,20 @@ class RoundDimension(Brief):
     Parameters
     ----------
     center : (2,) array, mm
-        Middle of the circle.
+        Centre of the circle.
     radius : float, mm
-        Of the circle.
+        Radius of the circle.
     angle : float, rad
-        Direction from the middle to the arrow.
+        Direction from the centre to the arrow.
     diameter : bool
-        Whether it tells the diameter.
+        Whether it is a diameter.
     knee : float or None, mm
-        Where the leader bends into the line under the text, from the middle; None for a diameter
-        inside its circle, with its text at the middle.
+        Distance from the centre where the leader bends into the line under the text; None for a
+        diameter inside its circle, with its text at the centre.
     prefix, suffix : str
         Before and after the number.
     words : str
-        What is written instead of all that; the leader points to a place then, not to a circle.
+        Text instead of the dimension; then the leader points to a place, not to a circle.
     """
 
     center: Array
@@ -181,12 +180,12 @@ class RoundDimension(Brief):
         return self.words or f"{self.prefix}{sign}{decimal(self.value)}{self.suffix}"
 
     def point(self, distance: float) -> Array:
-        """Return the point on the leader at a distance from the middle, (2,), mm."""
+        """Return the point on the leader at a distance from the centre, (2,), mm."""
         return self.center + distance * np.array([math.cos(self.angle), math.sin(self.angle)])
 
     @property
     def edge(self) -> Array:
-        """Where the arrow points."""
+        """Point of the arrow."""
         return self.point(self.radius)
 
 
@@ -195,7 +194,7 @@ Dimension = LinearDimension | RoundDimension
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class DrawnDimension(Brief):
-    """A dimension as it is drawn: `lines` (2, 2) and arrow `heads` (3, 2), mm, and its `text`."""
+    """A drawn dimension: `lines` (2, 2) and arrow `heads` (3, 2), mm, and its `text`."""
 
     lines: tuple[Array, ...]
     heads: tuple[Array, ...]
@@ -211,7 +210,7 @@ class Sheet(Brief):
     name : str
         Stem of its file, such as ``gear1``.
     title : str
-        What the title block says above all.
+        First line of the title block.
     paper : str
         Such as ``A3``, landscape.
     size : (float, float), mm of paper
@@ -221,11 +220,11 @@ class Sheet(Brief):
     corner : (2,) array, mm of the part
         Lower left corner of the paper.
     features : tuple of Feature
-        All lines but those of dimensions.
+        All lines except those of dimensions.
     dimensions : tuple of LinearDimension or RoundDimension
-        What is measured.
+        Dimensions.
     texts : tuple of Text
-        All texts but those of dimensions.
+        All texts except those of dimensions.
     rows : tuple of (str, str)
         The parameter table: label and value.
     """
@@ -248,28 +247,28 @@ class Sheet(Brief):
 
     @property
     def drawn(self) -> tuple[DrawnDimension, ...]:
-        """The dimensions as they are drawn."""
+        """The dimensions as lines, arrow heads and texts."""
         return tuple(as_drawn(dimension, self.unit) for dimension in self.dimensions)
 
     def on_paper(self, points: Array) -> Array:
-        """Return points, (n, 2), mm of the part, in mm of paper from its lower left corner."""
+        """Return points, (n, 2), mm of the part, as mm of paper from its lower left corner."""
         return (np.asarray(points, dtype=np.float64) - self.corner) * self.scale
 
 
 def text_box(text: Text, unit: float) -> Box:
-    """Return the room of a text.
+    """Return the bounding box of a text.
 
     Parameters
     ----------
     text : Text
-        A line.
+        A line of text.
     unit : float
         Millimetres of the part in a millimetre of paper.
 
     Returns
     -------
     (2,) array, (2,) array, mm of the part
-        Its lower left and upper right corner, letters below the base line included.
+        Its lower left and upper right corner, with descenders.
     """
     wide, tall = text_width(text.text, text.height), text.height
     start = -0.5 * wide if text.anchor == "middle" else 0.0
@@ -285,7 +284,7 @@ def as_drawn(dimension: Dimension, unit: float) -> DrawnDimension:
     Parameters
     ----------
     dimension : LinearDimension or RoundDimension
-        What is measured.
+        The dimension.
     unit : float
         Millimetres of the part in a millimetre of paper.
 
@@ -304,7 +303,7 @@ def arrow_head(tip: Array, way: Array, unit: float) -> Array:
     Parameters
     ----------
     tip : (2,) array, mm
-        Where it points to.
+        Point of the arrow.
     way : (2,) array
         Unit vector of its direction.
     unit : float

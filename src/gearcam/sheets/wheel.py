@@ -1,10 +1,10 @@
-"""The sheet of a wheel: front view, side view, and the bore by itself where it is not round.
+"""The sheet of a wheel: front view, side view, and a separate view of a bore that is not round.
 
-The front view lies in the part's own frame, seen from +z; the side view is that from the left, on
-the right (first angle), with the front face on its right. A bore with a keyway or a flat is shown a
-second time, turned so that this is at the top. Holes of one size on one circle at equal angles are
-a *pattern*, with one diameter, the circle and the direction of the first; other holes have a letter
-and their places in the table.
+The front view is in the part's own frame, seen from +z; the side view is the view from the left,
+on the right (first angle), with the front face on its right. A bore with a keyway or a flat is
+shown a second time, turned so that this is at the top. Holes of one size at equal angles on one
+circle are a *pattern*, with one diameter, the circle and the direction of the first; other holes
+have a letter, and their positions in the table.
 
 Depends on parts, drawings and sheets.
 """
@@ -46,18 +46,18 @@ BETWEEN: Final = 36.0
 RIGHT: Final = 24.0
 ABOVE: Final = 14.0
 BORE_ROOM: Final = 44.0
-"""Room for dimensions left of, between, right of and above the views, and for those of the bore's
+"""Space for dimensions left of, between, right of and above the views, and for those of the bore's
 view, mm of paper."""
 
 SAME: Final = 1e-6
-"""Sizes that differ by less, mm, and angles, rad, are the same."""
+"""Sizes, mm, and angles, rad, that differ by less are equal."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class _Wheel:
-    """A part and what its sheet needs to know of it; points are on the true curves.
+    """A part with the data of its sheet; points are on the true curves.
 
-    `points` are those of the outline, `toothed` those of the teeth: of a ring its inner edge.
+    `points` are those of the outline, `toothed` those of the teeth, for a ring of its inner edge.
     """
 
     part: Part
@@ -74,12 +74,12 @@ class _Wheel:
 
     @property
     def round(self) -> bool:
-        """Whether the outline is a circle about the axis, as of most rings and grooves."""
+        """Whether the outline is a circle around the axis, as for most rings and groove cams."""
         return float(np.ptp(np.hypot(*self.points.T))) < SAME
 
     @property
     def turns(self) -> bool:
-        """Whether the axis lies within the outline: racks have none."""
+        """Whether the axis lies within the outline; racks have no axis."""
         corners = as_complex(self.part.contours[-1].points(self.part.tolerance))
         if not (self.part.turns and corners.all()):
             return False
@@ -88,7 +88,7 @@ class _Wheel:
 
     @property
     def placed(self) -> bool:
-        """Whether holes are told from an origin that no axis shows."""
+        """Whether hole positions refer to an origin that is not an axis."""
         return not self.turns and any(one.kind == HOLE for one in self.part.openings)
 
     @property
@@ -97,19 +97,19 @@ class _Wheel:
 
     @property
     def bore_radius(self) -> float:
-        """Of a bore with a keyway or a flat: that of its arc; 0 without a bore."""
+        """Bore diameter, with a keyway or a flat that of the arc, mm; 0 without a bore."""
         if isinstance(self.bore, Loop):
             return float(np.hypot(*self.bore.vertices[0]))
         return 0.5 * self.bore.diameter if isinstance(self.bore, Circle) else 0.0
 
 
 def wheel_sheet(part: Part, facts: Mapping[str, str], title: str) -> Sheet:
-    """Draw the sheet of a wheel.
+    """Return the sheet of a wheel.
 
     Parameters
     ----------
     part : Part
-        The wheel, as made; of a stepped one the front view shows the step in front.
+        The finished wheel; the front view of a stepped one shows the step in front.
     facts : mapping of str to str
         Rows of the parameter table, such as module and teeth; those of the holes follow.
     title : str
@@ -118,7 +118,7 @@ def wheel_sheet(part: Part, facts: Mapping[str, str], title: str) -> Sheet:
     Returns
     -------
     Sheet
-        Named as the part.
+        With the name of the part.
 
     Raises
     ------
@@ -131,7 +131,7 @@ def wheel_sheet(part: Part, facts: Mapping[str, str], title: str) -> Sheet:
     keyed = wheel.bore if isinstance(wheel.bore, Loop) else None
     shown = 2.0 * wheel.bore_radius if keyed else 0.0
     size = wheel.high - wheel.low + [part.thickness + shown, 0.0]
-    levels = 1 + len(part.bosses) + (part.hub is not None) + len(part.recesses)  # of the side view
+    levels = 1 + len(part.bosses) + (part.hub is not None) + len(part.recesses)  # side view
     levels = max(levels, 1 + wheel.placed)
     below = FIRST_LEVEL + LEVEL * levels
     across = BETWEEN + RIGHT + (BORE_ROOM if keyed else 0.0)
@@ -149,8 +149,8 @@ def wheel_sheet(part: Part, facts: Mapping[str, str], title: str) -> Sheet:
     about = " X, Y from the cross." if wheel.placed else about
     notes = [
         f"Chord tolerance of the outline: {fine(part.tolerance)} mm.",
-        "Outline: the DXF file of this part.",
-        f"Sizes as made.{about}",
+        "For the outline see the DXF file of this part.",
+        f"All sizes are finished sizes.{about}",
     ]
     return finish(board, name=part.name, title=title, facts=facts, notes=notes)
 
@@ -186,7 +186,7 @@ def _front_view(board: Board, wheel: _Wheel) -> None:
 
 
 def _origin(board: Board, wheel: _Wheel) -> None:
-    """Show the origin of a part without an axis, from which its holes are told."""
+    """Draw the origin of a part without an axis, to which hole positions refer."""
     first, (left, bottom), right = FIRST_LEVEL * board.unit, wheel.low.tolist(), wheel.high[0]
     side, way = (left, -2.0) if abs(left) < abs(right) else (float(right), 1.0)
     board.centre(np.zeros(2), 0.0)
@@ -196,7 +196,7 @@ def _origin(board: Board, wheel: _Wheel) -> None:
 
 
 def _side_view(board: Board, wheel: _Wheel, left: float) -> None:
-    """Draw the view from the left, its back at x = `left`."""
+    """Draw the view from the left, with its back at x = `left`."""
     part, unit, hub = wheel.part, board.unit, wheel.part.hub or Hub(diameter=0.0)
     back, end = left + hub.back, left + part.thickness
     for layer in part.layers:
@@ -219,7 +219,7 @@ def _side_view(board: Board, wheel: _Wheel, left: float) -> None:
     lengths += [(left, end)] if part.hub is not None else []
     lengths += [(back + one.low, back + one.high) for one in part.recesses]
     hidden = base if part.recesses else -0.5 * hub.diameter
-    lengths.sort(key=lambda one: one[1] - one[0])  # no line of a longer one is crossed
+    lengths.sort(key=lambda one: one[1] - one[0])  # short ones first: no crossings
     for level, (low, high) in enumerate(lengths):
         y = [base if (x in (back, back + part.width)) else hidden for x in (low, high)]
         at = base - (FIRST_LEVEL + LEVEL * level) * unit
@@ -237,7 +237,7 @@ def _side_view(board: Board, wheel: _Wheel, left: float) -> None:
 
 
 def _recesses(board: Board, part: Part, back: float) -> None:
-    """Draw the hidden edges of what is milled out of faces into the side view."""
+    """Draw the hidden edges of pockets in the side view."""
     for recess in part.recesses:
         low, high = back + recess.low, back + recess.high
         for y in (end for edge in recess.edges for end in _span(edge)):
@@ -247,7 +247,7 @@ def _recesses(board: Board, part: Part, back: float) -> None:
 
 
 def _span(edge: Edge) -> tuple[float, float]:
-    """Return how far an edge reaches along y, mm."""
+    """Return the extent of an edge along y, mm."""
     ys = (reach(edge) if isinstance(edge, Loop) else true_points([edge]))[:, 1]
     return float(ys.min()), float(ys.max())
 
@@ -259,7 +259,7 @@ def _rectangle(board: Board, low: tuple[float, float], high: tuple[float, float]
 
 
 def _bore_view(board: Board, bore: Loop, left: float) -> None:
-    """Draw a bore right of x = `left` about the axis, its keyway or flat at the top."""
+    """Draw a bore to the right of x = `left`, with its keyway or flat at the top."""
     corners = as_complex(bore.vertices)
     kind, floor = ("keyway", corners[-2:]) if len(corners) == 5 else ("flat", corners[[0, -1]])
     radius, middle = float(abs(corners[0])), complex(floor.mean())
@@ -279,7 +279,7 @@ def _bore_view(board: Board, bore: Loop, left: float) -> None:
 
 
 def _callouts(board: Board, wheel: _Wheel) -> None:
-    """Draw what points into the front view: places that are fixed first."""
+    """Draw the leaders into the front view, those with fixed places first."""
     part = wheel.part
     _holes(board, part)
     if wheel.turns and (part.inner or not wheel.round):
@@ -297,19 +297,19 @@ def _callouts(board: Board, wheel: _Wheel) -> None:
 
 
 def _radii(board: Board, wheel: _Wheel) -> None:
-    """Tell the farthest and the nearest point of the teeth from the axis."""
+    """Draw the largest and the smallest radius of the teeth from the axis."""
     reach = np.hypot(*wheel.toothed.T)
     for place, words in ((int(reach.argmax()), "max"), (int(reach.argmin()), "min")):
         x, y = wheel.toothed[place].tolist()
         radius, ways = float(reach[place]), np.array([math.atan2(y, x)])
         made = RoundDimension(center=np.zeros(2), radius=radius, diameter=False, suffix=f" {words}")
-        # a leader need not point to the axis
+        # a leader without direction to the axis
         if not (board.round(made, ways) or board.label(np.array([x, y]), made.label)):
             board.rows.append((f"{words}. radius from axis", decimal(radius)))
 
 
 def _holes(board: Board, part: Part) -> None:
-    """Draw the centre lines of all holes, then tell their sizes, large ones first."""
+    """Draw the centre lines of all holes, then their sizes, large ones first."""
     groups: dict[tuple[int, int], list[Circle]] = {}
     for opening in part.openings:
         if opening.kind == HOLE and isinstance(opening.shape, Circle):
@@ -338,7 +338,7 @@ def _holes(board: Board, part: Part) -> None:
 
 
 def _even(circles: list[Circle]) -> bool:
-    """Whether holes on one circle stand at equal angles."""
+    """Whether holes on one circle are at equal angles."""
     if len(circles) < 2:
         return False
     angles = np.sort([math.atan2(*circle.center[::-1]) for circle in circles])
@@ -347,7 +347,7 @@ def _even(circles: list[Circle]) -> bool:
 
 
 def _ring(board: Board, circles: list[Circle]) -> None:
-    """Draw the centre lines of a pattern: its circle, and a spoke through each hole."""
+    """Draw the centre lines of a pattern: its circle, and a radial line through each hole."""
     away = float(np.hypot(*circles[0].center))
     board.draw(CENTERLINE, Circle(center=np.zeros(2), diameter=2.0 * away))
     arm = 0.5 * circles[0].diameter + 0.5 * OVERHANG * board.unit
@@ -371,7 +371,7 @@ def _pattern(board: Board, circles: list[Circle]) -> None:
 
 
 def _slot(board: Board, shape: Loop) -> None:
-    """Tell the width of a slot along an arc about the axis, and where its middle line ends."""
+    """Dimension a slot along an arc about the axis: width, mean radius and end angles."""
     corners = as_complex(shape.vertices)
     half = len(corners) // 2
     radii = np.abs(corners[[0, half]])

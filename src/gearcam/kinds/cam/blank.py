@@ -1,4 +1,4 @@
-"""The blank of a cam: that of a wheel without teeth, or a plate with its bolts in a row."""
+"""The blank of a cam: like that of a wheel, or a plate with a row of bolts."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class CamBlank(WheelBlank):
     )
 
     def problems(self) -> Iterator[Problem]:
-        """Yield what is wrong by reading: field, None, message, allowed."""
+        """Yield faults of the given values: field, None, message, allowed."""
         plate = not {self.length, self.height, self.bolt_spacing, self.bolt_height} <= {None}
         for name, index, message, rule in super().problems():
             if not (plate and name == "bolt_circle"):

@@ -1,4 +1,4 @@
-"""From the design of a disc cam to its program, cam, profile, checks and part."""
+"""The result of a cam: lift program, cam, profile, checks and parts."""
 
 from __future__ import annotations
 
@@ -38,18 +38,18 @@ if TYPE_CHECKING:
     from gearcam.study import Study
 
 FOLLOWED: Final = "followed.csv"
-"""The motion that a given profile makes."""
+"""The study of a given profile."""
 
 
 class CamResult(Result):
-    """What comes of the design of a disc cam, computed on demand.
+    """Result of the design of a cam, computed on demand.
 
     Parameters
     ----------
     design : CamDesign
-        What is asked for.
+        The design.
     tolerances : Tolerances
-        Inner accuracy.
+        Internal accuracy.
 
     Examples
     --------
@@ -74,19 +74,19 @@ class CamResult(Result):
 
     @property
     def form(self) -> Form:
-        """What the cam's form says of it."""
+        """The form of the cam."""
         return FORMS[self.design.cam.form]
 
     @cached_property
     def cam(self) -> Cam:
-        """The cam; its curves and measures are computed when they are asked for."""
+        """The cam; its curves and measures are computed on demand."""
         program = self.program
         with self.stage("cam"):
             return self.form.make(self.design, program)
 
     @property
     def mechanism(self) -> Mechanism:
-        """The follower's numbers, of conjugate cams those on the first."""
+        """The follower's geometry; for conjugate cams that on the first."""
         return self.cam.motions[0].mechanism
 
     @cached_property
@@ -98,7 +98,7 @@ class CamResult(Result):
 
     @property
     def profile(self) -> Contour:
-        """The first of them: of a disc cam the profile."""
+        """The first wall: for a disc cam the profile."""
         return self.profiles[0]
 
     @property
@@ -107,34 +107,34 @@ class CamResult(Result):
         return even_angles(self.design.output, self.mechanism.driver, self.program.open)
 
     def motion(self, theta: ArrayLike | None = None) -> Columns:
-        """Return the follower's motion and the curvature of what it touches, exactly.
+        """Return the exact motion of the follower, pressure angle and radii of curvature.
 
         Parameters
         ----------
         theta : float or (n,) array, rad, optional
-            Cam angles, any number of turns; a turn in steps of the design's
-            ``output.motion_step_deg``, both ends, where left out: the table of ``motion.csv``. Of a
-            translating cam ways, mm, from 0 to the whole one, and steps of ``output.way_step_mm``.
+            Cam angles, any number of turns. The default is that of ``motion.csv``: a turn in steps
+            of the design's ``output.motion_step_deg``, both ends. For a translating cam travels,
+            mm, from 0 to the whole travel, in steps of ``output.way_step_mm``.
 
         Returns
         -------
         Columns
-            ``theta_deg``, of a translating cam ``u_mm``; ``lift_mm`` and its derivatives by theta
-            ``velocity_mm_per_rad``, ``acceleration_mm_per_rad2`` and ``jerk_mm_per_rad3`` (of an
-            oscillating follower ``lift_deg``, ``velocity_deg_per_rad`` and so on, of a translating
+            ``theta_deg``, for a translating cam ``u_mm``; ``lift_mm`` and its derivatives by theta
+            ``velocity_mm_per_rad``, ``acceleration_mm_per_rad2`` and ``jerk_mm_per_rad3`` (for an
+            oscillating follower ``lift_deg``, ``velocity_deg_per_rad`` and so on, for a translating
             cam ``velocity_mm_per_mm`` and so on); ``pressure_angle_deg``, signed;
             ``rho_pitch_mm`` and ``rho_profile_mm``, radii of curvature of pitch curve and profile
-            before trimming: positive where convex, infinite where straight, that of the profile
-            negative on a convex pitch curve where it is undercut. At a knot the values after it
-            count. Of conjugate cams and grooves names of columns tell which, such as
-            ``pressure_angle_2_deg`` and ``rho_profile_outer_mm``.
+            before trimming: positive where convex, infinite where straight; where the pitch curve
+            is convex and the profile undercut, that of the profile is negative. At a knot the
+            values after it are returned. For conjugate cams and grooves names of columns contain
+            the key, such as ``pressure_angle_2_deg`` and ``rho_profile_outer_mm``.
 
         Raises
         ------
         DesignError
-            If `theta` is no row of finite numbers, or leaves the way of a translating cam.
+            If `theta` is not an array of finite numbers, or beyond the travel of a translating cam.
         InfeasibleError
-            If the cam cannot be made.
+            If the cam is impossible.
         """
         return self.motion_at(self._asked(theta))
 
@@ -146,7 +146,7 @@ class CamResult(Result):
         return self.motion_at(with_both_sides(turn, self.program.knots))
 
     def _asked(self, theta: ArrayLike | None) -> Array:
-        """Return cam angles, rad, of what people give: angles, rad, or ways, mm."""
+        """Return cam angles, rad, from given angles, rad, or travels, mm."""
         if theta is None:
             return self.angles
         driver = self.mechanism.driver
@@ -157,7 +157,7 @@ class CamResult(Result):
         return np.minimum(ways / driver.scale, 2.0 * math.pi)
 
     def motion_at(self, theta: Array) -> Columns:
-        """Return the table of `motion` at cam angles `theta`, rad, of a way 2*pi at its end."""
+        """Return the table of `motion` at cam angles `theta`, rad; a whole travel is 2*pi."""
         driver = self.mechanism.driver
         motions, walls = self.cam.motions, self.cam.walls
         found = motions[0].motion(theta)
@@ -175,26 +175,26 @@ class CamResult(Result):
 
     @property
     def ordered(self) -> bool:
-        """Whether the design orders a part: a blank, or files that are made from parts."""
+        """Whether the design needs a part: a blank, or files of parts."""
         plain = {"csv", "curvature", "inspection"}
         blank = CamBlank()
         return self.design.blank != blank or not set(self.design.output.files) <= plain
 
     @cached_property
     def parts(self) -> tuple[Part, ...]:
-        """The cam as it is made: as one part, or as several."""
-        profiles = self.profiles  # a stage of its own
+        """The cam as one or several parts."""
+        profiles = self.profiles  # a separate stage
         with self.stage("part"):
             return self.form.parts(self) if profiles else ()
 
     @property
     def part(self) -> Part:
-        """The cam as a part, of several parts the first: bore, hub, holes, moved edges."""
+        """The cam as a part, or its first part, with bore, hub, holes and clearance."""
         return self.parts[0]
 
     @cached_property
     def to_cut(self) -> tuple[Drawing, ...]:
-        """What a cutter follows: the parts, or paths with the kerf."""
+        """Cutting paths: the parts, or paths offset by the kerf."""
         from gearcam.drawings import cut_drawing
 
         kerf = self.design.output.kerf
@@ -213,36 +213,36 @@ class CamResult(Result):
         return sheets(self)
 
     def _wall(self, key: str | None) -> Wall:
-        """Return the wall with a key, the first where left out."""
+        """Return the wall with a key; by default the first."""
         walls = {one.key: one for one in self.cam.walls}
         return walls[next(iter(walls)) if key is None else one_of("wall", key, tuple(walls))]
 
     def contact(self, theta: ArrayLike | None = None, wall: str | None = None) -> Columns:
-        """Return where the follower touches the profile, or a wall (before clearance).
+        """Return the points of contact of the follower on the profile, or a wall, before clearance.
 
         Parameters
         ----------
         theta : float or (n,) array, rad, optional
-            Cam angles, or ways, mm, as of `motion`; those of its table where left out.
+            Cam angles, or travels, mm, as for `motion`; by default those of its table.
         wall : str, optional
-            The key of a wall; the first where left out.
+            The key of a wall; by default the first.
 
         Returns
         -------
         Columns
-            A row for each angle at which trimming has left the point; elsewhere the follower rests
+            A row for each angle whose point is left by trimming; at other angles the follower rests
             on a corner. ``theta_deg`` or ``u_mm``; ``x_mm``, ``y_mm`` in the cam's frame; ``nx``,
-            ``ny``, the outward unit normal of the metal there; ``fixed_x_mm``, ``fixed_y_mm``, the
-            same point in the fixed frame, whose rows are the path of contact. Where the velocity
-            jumps, the point after it counts.
+            ``ny``, outward unit normal of the metal; ``fixed_x_mm``, ``fixed_y_mm``, the same point
+            in the fixed frame: its rows are the path of contact. Where the velocity jumps, the
+            point after the jump is returned.
 
         Raises
         ------
         DesignError
-            If `theta` is no row of finite numbers, leaves the way of a translating cam, or there is
-            no such wall.
+            If `theta` is not an array of finite numbers, or beyond the travel of a translating cam,
+            or the wall is unknown.
         InfeasibleError
-            If the cam cannot be made.
+            If the cam is impossible.
         """
         left, points, normals = self._wall(wall).places_at(self._asked(theta))
         driver = self.mechanism.driver
@@ -264,17 +264,17 @@ class CamResult(Result):
 
     @cached_property
     def contours(self) -> tuple[Contour, ...]:
-        """The walls as made, in the order of `Cam.walls`: with clearance."""
+        """The finished walls, with clearance, in the order of `Cam.walls`."""
         return self.form.made(self) if self.ordered else self.profiles
 
     @property
     def contour(self) -> Contour:
-        """The first of them: of a disc cam the profile with its clearance."""
+        """The first finished wall: for a disc cam the profile with its clearance."""
         return self.contours[0]
 
     @cached_property
     def part_subject(self) -> PartsSubject:
-        """What the checks of parts look at."""
+        """Input of the checks of parts."""
         from gearcam.parts.checks import PartsSubject
 
         parts = self.parts
@@ -287,7 +287,7 @@ class CamResult(Result):
 
     @cached_property
     def findings(self) -> tuple[Finding, ...]:
-        """What the checks found: errors first."""
+        """Findings of the checks, errors first."""
         cam = self.cam
         with self.stage("checks"):
             found = run_checks(KIND, cam, self.design.limits)
@@ -314,16 +314,16 @@ class CamResult(Result):
         wall: str | None = None,
         progress: Progress | None = None,
     ) -> Study:
-        """Put the design's follower on a given profile: what motion it makes.
+        """Return the motion of the design's follower on a given profile.
 
         Parameters
         ----------
         profile : path or (n, 2) array, mm
-            A DXF file with one closed outline, a CSV file with the columns x_mm and y_mm, or such
-            points: a closed outline in the cam's frame.
+            A DXF file with one closed outline, a CSV file with the columns x_mm and y_mm, or the
+            points of a closed outline in the cam's frame.
         wall : str, optional
-            Which of conjugate cams, or of a groove's walls, it is, by its key; the first where left
-            out. Walls of a groove are followed by a roller as wide as it is.
+            Key of the wall, for conjugate cams or a groove; by default the first. Walls of a
+            groove are followed by a roller as wide as the groove.
         progress : callable, optional
             Called with a stage's name, the stages done and their number.
 
@@ -337,7 +337,7 @@ class CamResult(Result):
         InfeasibleError
             If the follower cannot rest on the profile.
         DesignError
-            If it is no profile, or the file cannot be read.
+            If it is not a profile, or the file cannot be read.
         """
         from gearcam.kinds.cam.follow import followed, read_profile
         from gearcam.study import Study
@@ -361,7 +361,7 @@ class CamResult(Result):
 
 
 def _ending(one: PitchMotion) -> str:
-    """Return what follows in the names of columns of a motion or wall."""
+    """Return the key of a motion or wall as a part of column names."""
     return f"_{one.key}" if one.key else ""
 
 
@@ -371,10 +371,10 @@ def pressure_column(motion: PitchMotion) -> str:
 
 
 def rho_column(what: str, one: PitchMotion) -> str:
-    """Return the column of radii of a ``pitch`` curve or a ``profile``: `what`, of which `one`."""
+    """Return the column of radii of `what`, ``pitch`` or ``profile``, of motion or wall `one`."""
     return f"rho_{what}{_ending(one)}_mm"
 
 
 def build(design: CamDesign, tolerances: Tolerances = DEFAULT) -> CamResult:
-    """Return the result of a `design` to `tolerances`; it computes what it is asked for."""
+    """Return the result of a `design` to `tolerances`, which is computed on demand."""
     return CamResult(design, tolerances)

@@ -1,4 +1,4 @@
-"""The charts of a disc cam, over the cam angle."""
+"""The charts of a cam, over cam angle or travel."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ if TYPE_CHECKING:
     from gearcam.kinds.cam.build import CamResult
 
 _TIMES: Final = 10.0
-"""Curvature of the roller, or of the pitch curve where that is more, beyond which the profile's is
-not drawn: where it is undercut its curvature grows without limit."""
+"""Largest curvature drawn, in curvatures of the roller or of the pitch curve, whichever is larger:
+that of an undercut profile has no limit."""
 
 
 def _places(result: CamResult) -> tuple[str, str]:
-    """Return the column of cam angles, or of ways, and what a chart calls it."""
+    """Return the column of cam angles or travels, and its axis label."""
     driver = result.mechanism.driver
     return driver.column, f"{driver.called} {driver.symbol}, {driver.unit}"
 
@@ -69,7 +69,7 @@ def _pressure_angle(result: CamResult) -> Chart:
 
 
 def _radii(result: CamResult) -> dict[str, str]:
-    """Return the columns of radii of the motion's table, by what a chart calls them."""
+    """Return the columns of radii of the motion's table, by labels."""
     pitches = {
         f"pitch curve {one.key}".strip(): rho_column("pitch", one) for one in result.cam.motions
     }
@@ -95,7 +95,7 @@ def _curvature(result: CamResult) -> Chart:
         del lines["pitch curve"]
     places, told = _places(result)
     return Chart(
-        title="Curvature, positive where convex",
+        title="Curvature (positive: convex)",
         x=told,
         y="curvature, 1/mm",
         lines=tuple(

@@ -17,21 +17,21 @@ from gearcam.numeric.arrays import Array, Plane
 def curvature_columns(
     motion: PitchMotion, counts: Sequence[int]
 ) -> tuple[dict[str, Array], dict[str, Any]]:
-    """Return the error of three-point curvature against the spacing of the points.
+    """Return the error of three-point curvature over the spacing of the points.
 
     Parameters
     ----------
     motion : PitchMotion
-        Its pitch curve is studied, of a flat follower its profile.
+        Its pitch curve is studied, or for a flat follower its profile.
     counts : sequence of int
-        Numbers of points, at even cam angles or ways.
+        Numbers of points, at even cam angles or travels.
 
     Returns
     -------
     columns : dict of str to (n,) array
         For ``curvature.csv``.
     facts : dict
-        For the summary: the order at which the mean error falls, if there is an error at all.
+        For the summary: the order of convergence of the mean error, if there is an error.
 
     Raises
     ------
@@ -41,9 +41,9 @@ def curvature_columns(
     curve, flat = motion.curve, motion.mechanism.flat
     if flat and undercut(curve):
         raise InfeasibleError(
-            "the undercut profile has cusps: their curvature cannot be studied",
+            "the profile is undercut and has cusps, where there is no curvature to study",
             where="output.files",
-            nearest="profiles without undercut have one; the other files do not need it",
+            nearest="leave out the curvature study, or remove the undercut",
         )
 
     def points(theta: Array) -> Plane:
@@ -62,7 +62,7 @@ def curvature_columns(
         "rms_error_per_mm": study.rms,
     }
     facts: dict[str, Any] = {"points": list(counts)}
-    if np.all(study.rms > 0.0):  # all points may lie on a straight run before a short phase
+    if np.all(study.rms > 0.0):  # all points may lie on a straight part before a short phase
         order = np.polyfit(np.log(study.spacing), np.log(study.rms), 1)[0]
         facts["order_of_rms"] = float(order)
     return columns, facts

@@ -1,4 +1,4 @@
-"""What drawings of cams show: the plate with its pitch curve, and the follower as it stands."""
+"""Drawings of cams: the plate with its pitch curve, and the follower in its position."""
 
 from __future__ import annotations
 
@@ -28,23 +28,23 @@ _ROWS: Final = (
     "cam.pressure_angle_deg.return_max", "cam.profile.clearance_mm", "part.density_kg_m3",
     "part.mass.mass_kg", "part.mass.centroid_mm", "part.mass.unbalance_g_mm",
 )  # fmt: skip
-"""Facts that stand in the table of the drawing."""
+"""Facts in the table of the drawing."""
 
 TOOL_RADIUS: Final = "output.tool_radius_mm"
 """The key of a cutter's radius."""
 
 
 def cutter_way(edge: Contour, radius: float, *, side: int = 1) -> Contour:
-    """Return the way of a cutter's middle along an edge.
+    """Return the path of a cutter's centre along an edge.
 
     Parameters
     ----------
     edge : Contour
-        What it cuts.
+        The edge to cut.
     radius : float, mm
-        Of the cutter; 0 where none is given.
+        Radius of the cutter; 0 if not given.
     side : {1, -1}
-        Whether it goes around the edge, or within.
+        Outside or inside the edge.
 
     Returns
     -------
@@ -53,13 +53,13 @@ def cutter_way(edge: Contour, radius: float, *, side: int = 1) -> Contour:
     Raises
     ------
     InfeasibleError
-        If there is no radius, or it leaves no simple way.
+        If there is no radius, or it leaves no simple path.
     """
     if not radius:
         raise InfeasibleError(
-            "the way of a cutter needs its radius",
+            "the path of a cutter needs the cutter's radius",
             where=TOOL_RADIUS,
-            nearest="a round follower's own radius counts where none is given; this one has none",
+            nearest="the default is the radius of a round follower; this follower has none",
         )
     return sized(lambda by: moved(edge, side * by), radius, TOOL_RADIUS, "radius of the cutter")
 
@@ -79,16 +79,16 @@ def plate(
 
 
 def follower(motion: PitchMotion, theta: float, reach: float) -> list[Shape]:
-    """Return a follower as it stands at a cam angle.
+    """Return a follower in its position at a cam angle.
 
     Parameters
     ----------
     motion : PitchMotion
-        What moves it.
+        Its motion.
     theta : float, rad
         The cam angle.
     reach : float, mm
-        Of the cam, for the size of what is drawn.
+        Largest radius of the cam, for the size of symbols.
 
     Returns
     -------
@@ -132,10 +132,10 @@ def follower(motion: PitchMotion, theta: float, reach: float) -> list[Shape]:
 def grooved(
     part: Part, walls: Sequence[Wall], follower: Sequence[Shape] = (), *, angle: float = 0.0
 ) -> Drawing:
-    """Return a drawing of a disc with a groove, the first wall within it (see `cam_drawing`)."""
+    """Return a drawing of a disc with a groove, whose first wall is inside (see `cam_drawing`)."""
     pitch, least = walls[0].pitch_contour, walls[0].mechanism.least
     drawing = cam_drawing(part, pitch, least, follower, angle=angle, outline=BLANK)
-    # a circle stays one in files
+    # a circle stays a circle in files
     edge = Circle(center=np.zeros(2), diameter=2.0 * part.contour.reach)
     blank, *others = drawing.features
     return replace(drawing, features=(replace(blank, shape=edge), *others))

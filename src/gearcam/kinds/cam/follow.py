@@ -1,4 +1,4 @@
-"""The other way round: from a given profile and the design's follower to the motion."""
+"""The inverse problem: the motion of the design's follower on a given profile."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ from gearcam.numeric.bulges import flatten_bulges
 from gearcam.reading import UnreadableError, read
 
 _SAGITTA = 0.01
-"""Chord error of arcs that are flattened, in the design's chord tolerances."""
+"""Chord error of flattened arcs, in chord tolerances of the design."""
 
 _COLUMNS = ("x_mm", "y_mm")
 
 
 def read_profile(file: str | Path | ArrayLike, wall: Wall) -> tuple[Array, Array]:
-    """Read a closed profile.
+    """Return a closed profile, read from a file or from points.
 
     Parameters
     ----------
@@ -37,19 +37,19 @@ def read_profile(file: str | Path | ArrayLike, wall: Wall) -> tuple[Array, Array
         A DXF file with one closed outline (or one on the layer PROFILE, OUTLINE or INNER), or a CSV
         file with the columns x_mm and y_mm; or the points themselves.
     wall : Wall
-        Which it is: one outside a pitch curve is on the layer OUTER.
+        The wall; if outside the pitch curve it is on the layer OUTER.
 
     Returns
     -------
     vertices : (n, 2) array, mm
         First not repeated.
     bulges : (n,) array
-        Of the pieces between them.
+        Bulges of the pieces between them.
 
     Raises
     ------
     DesignError
-        If the file cannot be read, or holds no such profile.
+        If the file cannot be read, or does not contain such a profile.
     """
     if not isinstance(file, str | os.PathLike):
         vertices = _open(points("profile", file))
@@ -63,42 +63,42 @@ def read_profile(file: str | Path | ArrayLike, wall: Wall) -> tuple[Array, Array
         vertices, _ = read_rows(name).columns(_COLUMNS)
     except (UnreadableError, ValueError) as error:
         rule = "a DXF file with one closed outline, or a CSV file with the columns x_mm, y_mm"
-        raise DesignError([Problem(f"is no profile: {error}", file=name, allowed=rule)]) from error
+        raise DesignError([Problem(f"not a profile: {error}", file=name, allowed=rule)]) from error
     vertices = _open(vertices)
     return vertices, np.zeros(len(vertices))
 
 
 def _open(vertices: Array) -> Array:
-    """Return vertices without a last one that repeats the first."""
+    """Return vertices without the last if it repeats the first."""
     return vertices[:-1] if np.array_equal(vertices[:1], vertices[-1:]) else vertices
 
 
 def followed(
     wall: Wall, vertices: Array, bulges: Array, theta: Array, limits: Mapping[str, float]
 ) -> tuple[dict[str, Array], dict[str, Any], tuple[Finding, ...]]:
-    """Run a cam's follower on a profile.
+    """Return the motion of a cam's follower on a profile.
 
     Parameters
     ----------
     wall : Wall
-        Its follower, as wide as a groove, the size of the cam, and the program to compare with.
+        With the follower, as wide as a groove, the size of the cam, and the lift to compare with.
     vertices : (n, 2) array, mm
-        The profile in the cam's frame, as the design would draw it.
+        The profile in the cam's frame, as for the design.
     bulges : (n,) array
-        Of its pieces.
+        Bulges of its pieces.
     theta : (m,) array, rad
         Cam angles.
     limits : mapping of str to float
-        Of the design.
+        Limits of the design.
 
     Returns
     -------
     columns : dict of str to (m,) array
-        For ``followed.csv``: the lift found, the lift asked for, their difference.
+        For ``followed.csv``: the lift of the profile, the lift of the design, their difference.
     facts : dict
-        What was found.
+        Facts of the study.
     findings : tuple of Finding
-        Of the checks.
+        Findings of the checks.
 
     Raises
     ------
@@ -129,7 +129,7 @@ def followed(
         "unit": unit,
         "largest_difference": Fact(
             float(difference[worst]),
-            "largest difference from the program",
+            "largest difference from the lift of the design",
             place=driver.seen(float(theta[worst])),
             unit=unit,
             shown=True,

@@ -26,17 +26,17 @@ if TYPE_CHECKING:
     from gearcam.kinds.cam.build import CamResult
 
 _COUNTS: Final = (45, 90, 180, 360, 720, 1440, 2880, 5760)
-"""Points of a turn from which curvature is told."""
+"""Points of a turn for three-point curvature."""
 
 _ANGLES: Final = 120
-"""Cam angles at which the lift that a profile gives is compared."""
+"""Cam angles at which the lift of a profile is compared."""
 
 
 def _outline(result: CamResult) -> Ladder:
     def make(tolerance: float) -> list[Wall]:
         made = [replace(wall, tolerance=tolerance) for wall in result.cam.walls]
         for wall in made:
-            _ = wall.contour  # made when it is asked for
+            _ = wall.contour  # computed on demand
         return made
 
     def measure(made: list[Wall]) -> tuple[float, int]:
@@ -64,7 +64,7 @@ def _solid(result: CamResult) -> Ladder:
 
 
 def _contact(result: CamResult) -> Ladder:
-    """Follow the first profile as it is cut, its polygon: the lift that the follower gets."""
+    """Return the lift from the polygon of the first finished profile, over chord tolerance."""
     wall = result.cam.walls[0]
     theta = np.linspace(0.0, 2.0 * math.pi, _ANGLES, endpoint=False)
     own, outlines = _own(result), dict[float, Array]()
@@ -88,9 +88,9 @@ def _contact(result: CamResult) -> Ladder:
 
 
 def _cam(result: CamResult) -> Ladder:
-    """Tell the pitch curve's curvature from three neighbouring points: root of the mean square.
+    """Return the rms error of the pitch curve's curvature from three neighbouring points.
 
-    Next to a knot where a derivative of the lift jumps it converges less well, or not at all.
+    Next to a knot where a derivative of the lift jumps it converges more slowly, or not at all.
     """
     motion = result.cam.motions[0]
     curve, program = motion.curve, motion.program

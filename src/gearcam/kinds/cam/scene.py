@@ -1,4 +1,4 @@
-"""The scene of a cam: its parts over a turn, or a way, and its follower."""
+"""The scene of a cam: its parts over a turn or travel, and its follower."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def scene(result: CamResult, places: int = PLACES) -> Scene:
-    """Return cam and follower: the picture of the cam, taken apart into what moves together.
+    """Return cam and follower: the drawing of the cam, divided into rigid bodies.
 
     Parameters
     ----------
@@ -29,7 +29,7 @@ def scene(result: CamResult, places: int = PLACES) -> Scene:
     Returns
     -------
     Scene
-        As designed, before clearance; where the follower rests on a corner no contact is told.
+        As designed, before clearance; without contact where the follower rests on a corner.
     """
     motion = result.cam.motions[0]
     driver, slide = motion.mechanism.driver, motion.mechanism.slide
@@ -37,7 +37,7 @@ def scene(result: CamResult, places: int = PLACES) -> Scene:
     pose = (output.place or 0.0) / driver.scale if slide else output.pose
     theta = np.linspace(0.0, 2.0 * math.pi, places + 1)
     side = -1.0 if motion.clockwise else 1.0
-    # a cam that slides is seen as the mirror image of what is computed
+    # a cam that slides is computed as its mirror image
     turn = np.zeros_like(theta) if slide else side * theta
     shift = np.asarray(slide * theta, dtype=np.complex128)
     back = (0.0, (-slide * pose, 0.0)) if slide else (-side * pose, (0.0, 0.0))
@@ -80,7 +80,7 @@ def _of_part(features: list[Feature], name: str) -> list[Feature]:
 
 
 def _carried(motion: PitchMotion, theta: Array, pose: float) -> tuple[Array, Plane]:
-    """Return how a follower, drawn where it stands at a cam angle `pose`, moves as a rigid body."""
+    """Return the rigid motion of a follower that is drawn at the cam angle `pose`."""
     m = motion.mechanism
     lift = motion.program.derivatives(theta, 0)[0] - float(motion.program.derivatives(pose, 0)[0])
     if m.oscillating:
@@ -96,7 +96,7 @@ def _carried(motion: PitchMotion, theta: Array, pose: float) -> tuple[Array, Pla
 def _contacts(
     result: CamResult, theta: Array, turn: Array, shift: Plane
 ) -> dict[str, ContactPoints]:
-    """Return where the follower touches each wall, or both sides of a cam that it goes around."""
+    """Return points of contact on each wall, or on both sides of a cam in a yoke."""
 
     def found(wall: Wall, ahead: float = 0.0) -> ContactPoints:
         asked = theta + ahead
@@ -109,7 +109,7 @@ def _contacts(
             force=normals * stand,
         )
 
-    if result.form.half_turns:  # what the lower side touches, the upper one does half a turn later
+    if result.form.half_turns:  # the upper side touches a point half a turn after the lower side
         (profile,) = result.cam.walls
         return {"upper side": found(profile), "lower side": found(profile, math.pi)}
     return {wall.called: found(wall) for wall in result.cam.walls}

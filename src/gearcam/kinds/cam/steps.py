@@ -1,6 +1,6 @@
-"""The cam angles of tables: a turn, or the way of a translating cam, in steps of the design.
+"""The cam angles of tables: a turn, or the travel of a translating cam, in steps of the design.
 
-Refused: steps so small that nobody could read the table.
+Steps that give more than a million rows are refused.
 """
 
 from __future__ import annotations
@@ -18,27 +18,27 @@ if TYPE_CHECKING:
     from gearcam.kinds.cam.design import CamOutputSpec
 
 _WAY_STEP: Final = 1.0
-"""Step of a translating cam's way where the design gives none, mm."""
+"""Default step of a translating cam's travel, mm."""
 
 WHOLE: Final = 1e-9
-"""Part of a step by which a turn may fall short of a whole number of them, and of a way by which
-one may lie beyond it: rounding."""
+"""Share of a step by which a turn may differ from whole steps, and share of a travel by which a
+position may exceed it: rounding."""
 
 _MOST: Final = 1e6
-"""Steps of a table."""
+"""Largest number of steps of a table."""
 
 
 def even_angles(output: CamOutputSpec, driver: Driver, slides: bool) -> Array:
-    """Return the cam angles of tables, both ends among them.
+    """Return the cam angles of tables, including both ends.
 
     Parameters
     ----------
     output : CamOutputSpec
         With the step.
     driver : Driver
-        How the cam's place is told.
+        Unit of the cam's angle or travel.
     slides : bool
-        Whether it slides: its way ends with a shorter step where it is not a whole number of them.
+        Whether it slides: its travel may end with a shorter step.
 
     Returns
     -------
@@ -64,6 +64,6 @@ def even_angles(output: CamOutputSpec, driver: Driver, slides: bool) -> Array:
             ways=(Way(near={key: ABOVE * least}),),
         )
     made = step * np.arange(math.floor(turn / step + WHOLE) + 1.0)
-    if slides:  # whose end no beginning repeats
+    if slides:  # its end does not coincide with its beginning
         made = np.append(made[made < turn * (1.0 - WHOLE)], turn)
     return made

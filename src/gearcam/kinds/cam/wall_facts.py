@@ -27,16 +27,16 @@ _RADII: Final = {
 """Labels of radii of curvature."""
 
 _SHOWN: Final = ("profile_convex_min_mm", "profile_concave_min_mm")
-"""Those that are always shown."""
+"""Keys that are always shown."""
 
 
 def ends_of(found: Range, scale: float = 1.0) -> dict[str, float]:
-    """Return both ends of the range that was `found`, times a `scale`."""
+    """Return both ends of the range `found`, times a `scale`."""
     return extent(found.low.value, found.high.value, scale)
 
 
 def size(wall: Wall, made: Contour, clearance: float = 0.0) -> Tree:
-    """Return the sizes of a wall as made, that is, of its parallel if there is a clearance.
+    """Return the sizes of a finished wall, with clearance.
 
     Parameters
     ----------
@@ -45,12 +45,12 @@ def size(wall: Wall, made: Contour, clearance: float = 0.0) -> Tree:
     made : Contour
         The curve that is cut.
     clearance : float, mm
-        Between them.
+        Distance between them.
 
     Returns
     -------
     dict
-        Of facts.
+        Facts by key.
     """
     reach = np.hypot(*made.vertices.T)
     least = min(float(reach.min()), wall.nearest_flat - clearance)

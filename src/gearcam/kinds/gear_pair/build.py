@@ -1,4 +1,4 @@
-"""The result of a gear pair: its stages, and what is asked of them at driver angles."""
+"""The result of a gear pair: its stages, and tables over driver angles."""
 
 from __future__ import annotations
 
@@ -33,24 +33,24 @@ MESHING = "meshing.csv"
 """The rows of a meshing study."""
 
 Side = Literal["drive", "coast"]
-"""Flanks of the driver: those that drive, and those that hold back."""
+"""Flanks of the driver: the driving side and the coast side."""
 
 ROUNDING = 1e-12
-"""Part of the travel by which an angle may lie beyond it: angles told in degrees are rounded."""
+"""Share of the travel by which an angle may exceed it: degrees are rounded."""
 
 _AS_MOUNTED = ("contact-ratio",)
-"""Checks of a pair as designed that a study repeats for the pair as mounted."""
+"""Checks of the pair as designed that a study repeats for the pair as mounted."""
 
 
 class GearPairResult(PairStages):
-    """What comes of the design of a gear pair, computed on demand.
+    """Result of the design of a gear pair, computed on demand.
 
     Parameters
     ----------
     design : GearPairDesign
-        What is asked for.
+        The design.
     tolerances : Tolerances
-        Inner accuracy.
+        Internal accuracy.
 
     Examples
     --------
@@ -62,28 +62,28 @@ class GearPairResult(PairStages):
     """
 
     def centrodes(self, n: int | None = None) -> Columns:
-        """Return both centrodes, until both wheels close, or over the travel.
+        """Return both centrodes: until both wheels close, or over the travel of an open pair.
 
         Parameters
         ----------
         n : int, optional
-            Points, both ends included, 2 or more; one each half degree of a closed pair, or 721
-            over the travel, where left out: the table of ``centrodes.csv``.
+            Number of points, both ends included, 2 or more. The default is that of
+            ``centrodes.csv``: one per half degree of a closed pair, or 721 over the travel.
 
         Returns
         -------
         Columns
             ``phi1_deg``, ``phi2_deg``; ``ratio`` i21; ``r1_mm`` and ``r2_mm``, distances of the
             pitch point from both shafts; ``s_mm``, arc length of both; ``rho1_mm``, ``rho2_mm``,
-            radii of curvature, negative where concave towards the tips (as a ring is where it is
-            round), infinite where straight; ``x1_mm``, ``y1_mm``, ``x2_mm``, ``y2_mm``, points in
-            each wheel's own frame. Of a rack ``travel_mm`` stands for phi2, ratio and r2. At a knot
-            the values after it count.
+            radii of curvature, negative where concave towards the tips (as on a round ring),
+            infinite where straight; ``x1_mm``, ``y1_mm``, ``x2_mm``, ``y2_mm``, points in each
+            wheel's own frame. A rack has ``travel_mm`` instead of phi2, ratio and r2. At a knot
+            the values after it are returned.
 
         Raises
         ------
         DesignError
-            If `n` is no whole number, or less than 2.
+            If `n` is not a whole number, or less than 2.
         InfeasibleError
             If the centrodes cannot be made.
         """
@@ -93,79 +93,78 @@ class GearPairResult(PairStages):
 
     @cached_property
     def whole_centrodes(self) -> Columns:
-        """The table of `centrodes` where nothing else is asked for."""
+        """The default table of `centrodes`."""
         return centrode_columns(self, self.centrode_angles())
 
     def motion(self, phi1: ArrayLike | None = None) -> Columns:
-        """Return how the driven element moves, exactly.
+        """Return the exact motion of the driven element.
 
         Parameters
         ----------
         phi1 : float or (n,) array, rad, optional
-            Driver angles, of open pairs within the travel; those of `centrodes` where left out.
+            Driver angles, for open pairs within the travel; by default those of `centrodes`.
 
         Returns
         -------
         Columns
             ``phi1_deg``; ``phi2_deg``, counted from phi1 = 0 over all turns; ``ratio`` i21; its
-            derivatives by phi1 ``acceleration_per_rad`` and ``jerk_per_rad2``. Of a rack
+            derivatives by phi1 ``acceleration_per_rad`` and ``jerk_per_rad2``. A rack has
             ``travel_mm``, ``velocity_mm_per_rad``, ``acceleration_mm_per_rad2`` and
-            ``jerk_mm_per_rad3``. At a knot the values after it count.
+            ``jerk_mm_per_rad3``. At a knot the values after it are returned.
 
         Raises
         ------
         DesignError
-            If `phi1` is no row of finite numbers, or beyond the travel.
+            If `phi1` is not an array of finite numbers, or beyond the travel.
         InfeasibleError
-            If the law cannot be made.
+            If the law is impossible.
         """
         return motion_columns(self, self._phases(phi1))
 
     def contact(self, phi1: ArrayLike | None = None, side: Side = "drive") -> Columns:
-        """Return every point at which flanks touch, for the wheels as made, mounted as designed.
+        """Return all points of contact of the finished flanks at the design centre distance.
 
         Parameters
         ----------
         phi1 : float or (n,) array, rad, optional
-            Driver angles, of open pairs within the travel; those of `centrodes` where left out.
+            Driver angles, for open pairs within the travel; by default those of `centrodes`.
         side : {"drive", "coast"}
-            Which flanks of the driver: those that drive, or those that hold back.
+            Flanks of the driver: the driving side or the coast side.
 
         Returns
         -------
         Columns
-            A row for each phase and pair of teeth that touches; none where nothing does. The rows
-            of one pair are its path of contact. ``phi1_deg`` and ``phi2_deg`` (of a rack
-            ``travel_mm``), nominal; ``tooth1``, ``tooth2`` from 1; ``side`` of the driver's tooth,
-            -1 drives; ``pairs``, how many touch in this phase; ``x_mm``, ``y_mm``, the point in the
-            fixed frame (driver's shaft at 0, driven one at the centre distance on x, that of a
-            ring at minus it);
-            ``force_x``, ``force_y``, the unit direction in which the driver presses there;
+            A row for each phase and pair of teeth in contact. The rows of one pair are its path of
+            contact. ``phi1_deg`` and ``phi2_deg`` (for a rack ``travel_mm``), nominal; ``tooth1``,
+            ``tooth2`` from 1; ``side`` of the driver's tooth, -1 drives; ``pairs``, number of pairs
+            in contact in this phase; ``x_mm``, ``y_mm``, the point in the fixed frame (driver's
+            shaft at 0, driven shaft at the centre distance on x, for a ring at its negative);
+            ``force_x``, ``force_y``, unit direction of the driver's force;
             ``contact_radius1_mm``, ``contact_radius2_mm`` from both shafts;
             ``pressure_angle_deg`` of the force to the perpendicular to the line of centres;
-            ``sliding_mm_per_rad``, sliding speed along the driver's flank, tip outward, over the
-            driver's speed; ``specific_sliding1``, ``specific_sliding2``;
-            ``relative_curvature_per_mm``; ``lag_rad`` (of a rack ``lag_mm``), what the driven
-            element is behind its nominal place when this pair touches.
+            ``sliding_mm_per_rad``, sliding speed along the driver's flank, towards its tip, over
+            the driver's speed; ``specific_sliding1``, ``specific_sliding2``;
+            ``relative_curvature_per_mm``; ``lag_rad`` (for a rack ``lag_mm``), lag of the driven
+            element behind its nominal position when this pair touches.
 
         Raises
         ------
         DesignError
-            If `phi1` is no row of finite numbers, or beyond the travel, or there is no such side.
+            If `phi1` is not an array of finite numbers, or beyond the travel, or `side` is unknown.
         InfeasibleError
-            If the wheels cannot be made.
+            If the wheels are impossible.
         """
         pairs, phases = self.flanks_of(side), self._phases(phi1)
         return contact_rows(self, pairs, phases, contacts(pairs, phases))
 
     def flanks_of(self, side: Side) -> FlankPairs:
-        """Return the pairs of flanks of a `side`; DesignError if there is no such side."""
+        """Return the pairs of flanks of a `side`; DesignError if it is unknown."""
         coast, drive = self.subject.sides
         return drive if one_of("side", side, get_args(Side)) == "drive" else coast
 
     @cached_property
     def touching(self) -> dict[Side, Contacts]:
-        """Where flanks of both sides touch over `phases`."""
+        """Contacts of both sides over `phases`."""
         return {side: contacts(self.flanks_of(side), self.phases) for side in get_args(Side)}
 
     @cached_property
@@ -184,21 +183,21 @@ class GearPairResult(PairStages):
 
     @cached_property
     def contact_ratio(self) -> float:
-        """The smallest contact ratio of any pair of flanks, either way, mounted as designed."""
+        """Smallest contact ratio of all pairs of flanks, for both directions, as designed."""
         return self.subject.contact_ratio
 
     @cached_property
     def contact_ratios(self) -> Columns:
-        """The contact ratio of every pair of flanks, for the wheels as made, mounted as designed.
+        """Contact ratio of every pair of finished flanks, at the design centre distance.
 
-        ``tooth1``, ``tooth2`` from 1; ``side`` of the driver's tooth, -1 drives, which come first,
-        +1 holds back; ``contact_ratio``; ``from_deg``, ``to_deg``, the driver angles between which
-        they touch, not-a-number where they do not.
+        ``tooth1``, ``tooth2`` from 1; ``side`` of the driver's tooth, first -1 (driving), then +1
+        (coast); ``contact_ratio``; ``from_deg``, ``to_deg``, driver angles at start and end of
+        contact, nan without contact.
         """
         return contact_ratio_columns(self.subject.sides)
 
     def _phases(self, phi1: ArrayLike | None) -> Array:
-        """Return driver angles that a caller gives, or those of the centrodes."""
+        """Return given driver angles, or by default those of the centrodes."""
         if phi1 is None:
             return self.centrode_angles()
         if self.law.lobes.closed:
@@ -207,28 +206,28 @@ class GearPairResult(PairStages):
         return angles("phi1", phi1, 0.0, end, ROUNDING * end)
 
     def mesh(self, *, progress: Progress | None = None, **settings: object) -> Study:
-        """Turn the pair step by step: contact, interference, backlash, as made and as mounted.
+        """Return the meshing study: contact, interference and backlash, step by step, as mounted.
 
         Parameters
         ----------
         progress : callable, optional
             Called with a stage's name, the stages or steps done and their number.
         **settings : value
-            Keys of the table ``[meshing]``, such as ``steps`` and ``center_distance_mm``, that
-            stand before those of the design, in the units of a file.
+            Keys of the table ``[meshing]``, such as ``steps`` and ``center_distance_mm``, in the
+            units of a file; they override those of the design.
 
         Returns
         -------
         Study
-            Its columns are those of ``meshing.csv`` (see docs/summary.md); not complete where
-            it was interrupted after some steps.
+            Its columns are those of ``meshing.csv`` (see docs/summary.md); incomplete if it was
+            interrupted.
 
         Raises
         ------
         DesignError
-            If there is no such setting, or a value is not what a file may hold.
+            If a setting is unknown, or its value is not allowed.
         InfeasibleError
-            If the design, or its study, cannot be made.
+            If the design, or its study, is impossible.
         KeyboardInterrupt
             If it was interrupted before the first steps were done.
         """
@@ -247,7 +246,7 @@ class GearPairResult(PairStages):
             raise KeyboardInterrupt
         with result.stage("checks"):
             extra = run_checks(MESHING_KIND, meshing, design.limits)
-        # of what drives the study knows, as mounted
+        # the study checks the drive as mounted
         told = [finding for finding in result.findings if finding.code not in _AS_MOUNTED]
         return Study(
             result=result,
@@ -259,11 +258,11 @@ class GearPairResult(PairStages):
         )
 
     def _mounted(self, settings: Mapping[str, object]) -> GearPairResult:
-        """Return the result with other settings of its study: all that is made stays."""
+        """Return the result with other settings of its study; finished stages are kept."""
         if not settings:
             return self
         design = self.design.with_({f"meshing.{key}": value for key, value in settings.items()})
-        _ = self.steps  # made here, once for all studies
+        _ = self.steps  # computed here, once for all studies
         other = type(self)(design, self.tolerances)
         own = {"design": design, "timings": dict(self.timings), "sought": {}}
         vars(other).update(vars(self) | own)
@@ -271,5 +270,5 @@ class GearPairResult(PairStages):
 
 
 def build(design: GearPairDesign, tolerances: Tolerances = DEFAULT) -> GearPairResult:
-    """Return the result of a `design` to `tolerances`; it computes what it is asked for."""
+    """Return the result of a `design` to `tolerances`, which is computed on demand."""
     return GearPairResult(design, tolerances)

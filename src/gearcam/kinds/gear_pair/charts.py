@@ -1,4 +1,4 @@
-"""The charts of a gear pair: over a turn of the driver, or its travel, and over its teeth."""
+"""The charts of a gear pair, over driver angle or over teeth."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ if TYPE_CHECKING:
     from gearcam.kinds.gear_pair.build import GearPairResult
 
 DRIVER: Final = "driver angle phi1, deg"
-"""What charts and scenes call the driver's place."""
+"""Axis label of charts and scenes."""
 
 _APART: Final = 1.5
-"""Steps between points of contact of a pair that is not in contact between them."""
+"""Steps between points of contact above which a pair is not in contact between them."""
 
-_SIDES: Final = {"drive": "flanks that drive", "coast": "flanks that hold back"}
+_SIDES: Final = {"drive": "driving flanks", "coast": "coast flanks"}
 
 
 _NOISE: Final = 1e-12
-"""Lag below which a pair of teeth touches in its place, rad or mm, and part of a turn by which a
-knot may lie before its end: rounding."""
+"""Lag, rad or mm, below which a pair of teeth touches in its nominal position, and share of a turn
+by which a knot may lie before its end: rounding."""
 
 
 def _knots(result: GearPairResult) -> tuple[MarkedPlace, ...]:
@@ -78,7 +78,7 @@ def _ratio(result: GearPairResult) -> Chart:
 def _curvature(result: GearPairResult) -> Chart:
     names = {"rho1_mm": "driver", "rho2_mm": "driven"}
     chart = _of_centrodes(
-        "Curvature of the centrodes, positive where convex towards the tips",
+        "Curvature of the pitch curves (positive: convex towards the tips)",
         "curvature, 1/mm",
         names,
         result,
@@ -98,7 +98,7 @@ def _pressure_angle(result: GearPairResult) -> Chart:
     lean, alpha = np.arctan(slope / r), pair.rack.pressure_angle
     limit = limit_of(KIND, "pressure-angle", result.design.limits)
     return Chart(
-        title="Pressure angle of the tooth force at the pitch point",
+        title="Pressure angle at the pitch point",
         x=DRIVER,
         y="pressure angle, deg",
         lines=tuple(
@@ -119,7 +119,7 @@ def _contact_ratio(result: GearPairResult) -> Chart:
         x, y = (table[name][own].astype(float) for name in ("tooth1", "contact_ratio"))
         lines.append(Line(label=label, x=x, y=y, dots=True))
     return Chart(
-        title="Contact ratio by pair of teeth, as designed",
+        title="Contact ratio of each pair of teeth, as designed",
         x="tooth of the driver",
         y="contact ratio",
         lines=tuple(lines),
@@ -128,12 +128,12 @@ def _contact_ratio(result: GearPairResult) -> Chart:
 
 
 def _by_pair(result: GearPairResult, table: Columns, y: Array, label: str) -> Line:
-    """Return what is told of points of contact as a line for each pair of teeth."""
+    """Return one line for each pair of teeth from values at points of contact."""
     apart = _APART * math.degrees(np.diff(result.phases).max())
     x, tooth = table["phi1_deg"], table["tooth1"]
     order = np.lexsort([x, tooth])
     x, y, tooth = x[order], y[order], tooth[order]
-    # one that is in contact at 0 deg is met at both ends
+    # a pair in contact at 0 deg appears at both ends
     cuts = np.flatnonzero((np.diff(tooth) != 0) | (np.diff(x) > apart)) + 1
     return Line(label=label, x=np.insert(x, cuts, np.nan), y=np.insert(y, cuts, np.nan))
 
@@ -141,9 +141,9 @@ def _by_pair(result: GearPairResult, table: Columns, y: Array, label: str) -> Li
 def _sliding(result: GearPairResult) -> Chart:
     tables = result.paths_of_contact.items()
     return Chart(
-        title="Sliding on the driver's flank, tip outward, as designed",
+        title="Sliding on the driver's flank, as designed (positive: towards the tip)",
         x=DRIVER,
-        y="sliding over the driver's speed, mm/rad",
+        y="sliding per driver angle, mm/rad",
         lines=tuple(
             _by_pair(result, table, table["sliding_mm_per_rad"], _SIDES[side])
             for side, table in tables
@@ -160,7 +160,7 @@ def _contact_patch(result: GearPairResult) -> Chart:
     with np.errstate(divide="ignore", invalid="ignore"):
         area = np.where(bend > 0.0, (4.0 / 3.0) * depth * np.sqrt(2.0 * depth / bend), np.nan)
     x, phase = np.unique(table["phi1_deg"], return_inverse=True)
-    # their sum; of both sides of a knot, which may be one number in degrees, the mean
+    # their sum; the mean of both sides of a knot, which may be one number in degrees
     total = np.bincount(phase, area * table["pairs"]) / np.bincount(phase)
     together = Line(label="all pairs of teeth", x=x, y=total)
     return Chart(
@@ -176,16 +176,16 @@ def _transmission_error(result: GearPairResult) -> Chart:
     unit = result.pair.rolling.guide.unit
     for side, table in result.paths_of_contact.items():
         lag, phase = table[f"lag_{unit}"], np.searchsorted(x, table["phi1_deg"])
-        # the leading tooth pair is the one that the driven element is pushed farthest by
+        # the leading tooth pair is the one that pushes the driven element farthest
         sign = 1.0 if side == "drive" else -1.0
         least = np.full(len(x), np.inf)
         np.minimum.at(least, phase, sign * np.where(np.abs(lag) > _NOISE, lag, 0.0))
         y = sign * np.where(np.isfinite(least), least, np.nan)
         lines.append(Line(label=_SIDES[side], x=x, y=y - np.nanmean(y)))
     return Chart(
-        title="Transmission error as designed: lag less its mean",
+        title="Transmission error, as designed (lag minus its mean)",
         x=DRIVER,
-        y=f"{'rack' if unit == 'mm' else 'driven wheel'} behind, {unit}",
+        y=f"lag of the {'rack' if unit == 'mm' else 'driven wheel'}, {unit}",
         lines=tuple(lines),
         marks=_knots(result),
     )
@@ -198,7 +198,7 @@ CHARTS: Final[Charts] = {
     "position": _position,
     "radii": partial(
         _of_centrodes,
-        "Radii of the centrodes",
+        "Radii of the pitch curves",
         "radius, mm",
         {"r1_mm": "driver", "r2_mm": "driven"},
     ),

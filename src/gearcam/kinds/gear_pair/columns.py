@@ -1,6 +1,6 @@
-"""What is computed of a gear pair at driver angles, as columns: for files and as data.
+"""Tables of a gear pair over driver angles, as columns for files and data.
 
-What the columns are is told where they are given out (`gearcam.kinds.gear_pair.build`).
+`gearcam.kinds.gear_pair.build` documents the columns.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from gearcam.kinds.gear_pair.stages import PairStages
 
 POINTS: Final = ("x1_mm", "y1_mm", "x2_mm", "y2_mm")
-"""Points of the centrodes, which the file of the centrodes leaves out."""
+"""Columns of points, which are not in the file of the centrodes."""
 
 
 def centrode_columns(result: PairStages, phi1: Array) -> Columns:
@@ -46,13 +46,13 @@ def centrode_columns(result: PairStages, phi1: Array) -> Columns:
 
 
 def _radii(curvature: Array) -> Array:
-    """Return radii of curvature, infinite where straight, which has no side."""
+    """Return radii of curvature; +infinity where straight."""
     with np.errstate(divide="ignore"):
         return np.where(curvature == 0.0, np.inf, 1.0 / curvature)
 
 
 def motion_columns(result: PairStages, phi1: Array) -> Columns:
-    """Return how the driven element of a `result` moves at driver angles `phi1`, rad."""
+    """Return the motion of the driven element of a `result` at driver angles `phi1`, rad."""
     place, *slopes = result.law.derivatives(phi1, 3)
     names = ("ratio", "acceleration_per_rad", "jerk_per_rad2")
     first = {"phi2_deg": np.degrees(place)}
@@ -65,7 +65,7 @@ def motion_columns(result: PairStages, phi1: Array) -> Columns:
 
 
 def contact_rows(result: PairStages, pairs: FlankPairs, phi1: Array, found: Contacts) -> Columns:
-    """Return where the flanks `pairs` of a `result` were `found` to touch at `phi1`, rad."""
+    """Return the table of contacts `found` for flanks `pairs` of a `result` at `phi1`, rad."""
     guide = result.pair.rolling.guide
     moved = np.degrees(guide.nominal(phi1)) if guide.turns else guide.nominal(phi1)
     return Columns(
@@ -87,7 +87,7 @@ def contact_rows(result: PairStages, pairs: FlankPairs, phi1: Array, found: Cont
 
 
 def contact_ratio_columns(sides: tuple[FlankPairs, ...]) -> Columns:
-    """Return the contact ratio of every pair of flanks of both `sides`, those that drive first."""
+    """Return the contact ratio of every pair of flanks of both `sides`, driving side first."""
     blocks = []
     for pairs in sorted(sides, key=lambda pairs: pairs.side == COAST):
         start, end = pairs.arcs

@@ -1,4 +1,4 @@
-"""What is drawn of a gear pair: its centrodes, the assembled pair, the workshop drawings."""
+"""Drawings of a gear pair: its centrodes, the assembled pair, the workshop drawings."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _GEAR_ROWS: Final = (
     "profile_shift", "centrode.length_mm", "cutter", "clearance_mm", "tip_rounding_mm",
     "density_kg_m3", "mass.mass_kg", "mass.centroid_mm", "mass.unbalance_g_mm",
 )  # fmt: skip
-"""Facts that stand in the tables of drawings."""
+"""Facts in the tables of drawings."""
 
 
 def centrode_paths(result: PairStages) -> tuple[Path, Path]:
@@ -43,7 +43,7 @@ def centrode_paths(result: PairStages) -> tuple[Path, Path]:
 
 
 def assembled(result: PairStages) -> Drawing:
-    """Return the drawing of a `result` as it is assembled, with its centrodes."""
+    """Return the drawing of the assembled pair of a `result`, with its centrodes."""
     return pair_drawing(
         result.parts, result.pair.shift, result.centrode_paths, placements=placements(result)
     )

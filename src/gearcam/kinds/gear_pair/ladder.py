@@ -27,10 +27,10 @@ if TYPE_CHECKING:
     from gearcam.kinds.gear_pair.build import GearPairResult
 
 _FLANKS: Final = (2, 3, 5, 9, FLANK_POINTS, 33, 65, 129)
-"""Points on a flank: each row holds those before it."""
+"""Points on a flank: each number includes the points of the one before."""
 
 _PHASES: Final = 24
-"""Phases at which outlines are overlapped."""
+"""Number of phases at which outlines are intersected."""
 
 
 def _law(result: GearPairResult) -> Ladder:
@@ -58,7 +58,7 @@ def _centrode(result: GearPairResult) -> Ladder:
 
 
 def _flank(result: GearPairResult) -> Ladder:
-    """Join points on the exact flanks by chords: how well as many points tell of a flank."""
+    """Return the chord errors of polygons through points on the exact flanks, by their number."""
     gears = result.gears
 
     def points(count: float) -> list[Plane]:
@@ -119,7 +119,7 @@ def _solid(result: GearPairResult) -> Ladder:
 
 
 def _contact(result: GearPairResult) -> Ladder:
-    """Overlap the outlines pressed together, as the meshing study does: areas, phase by phase."""
+    """Return areas of overlap of the outlines pressed together, by phase, as in a meshing study."""
     from gearcam.meshing.half_teeth import half_teeth
     from gearcam.meshing.study import SHARE, mount, run
 
@@ -149,7 +149,7 @@ def _contact(result: GearPairResult) -> Ladder:
 
 
 def _cut(result: GearPairResult) -> Callable[[float], tuple[Gear, Gear]]:
-    """Return what makes both outlines to a chord tolerance, mm."""
+    """Return a function from chord tolerance, mm, to both outlines."""
 
     def make(tolerance: float) -> tuple[Gear, Gear]:
         pair, ring, inner = result.pair, result.design.ring, result.tolerances
@@ -158,7 +158,7 @@ def _cut(result: GearPairResult) -> Callable[[float], tuple[Gear, Gear]]:
             make_gear(pair, 2, tolerance, inner, ring),
         )
         for gear in made:
-            _ = gear.outline  # made when it is asked for
+            _ = gear.outline  # computed on demand
         return made
 
     return make

@@ -1,4 +1,4 @@
-"""From wheels to parts: what a design orders beyond the teeth, and what that does to the flanks."""
+"""Parts from wheels: the blank of a design, and checks of the finished flanks."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ from gearcam.parts.shapes import Circle
 Steps = tuple[tuple[Gear, Gear], ...]
 
 _PLACES = 65
-"""Places on each flank at which it is asked whether a cutter gets there."""
+"""Points on each flank at which it is checked that a cutter can reach them."""
 
 _CHORDS = 4
-"""Times its chords' tolerance that a rim is wide, where it is wide enough for them."""
+"""Least width of a rim in chord tolerances."""
 
 
 def make_parts(steps: Steps, design: GearPairDesign) -> tuple[Part, Part]:
@@ -43,7 +43,7 @@ def make_parts(steps: Steps, design: GearPairDesign) -> tuple[Part, Part]:
     steps : tuple of (Gear, Gear)
         Both wheels of each step, from below.
     design : GearPairDesign
-        What is ordered.
+        The design.
 
     Returns
     -------
@@ -53,7 +53,7 @@ def make_parts(steps: Steps, design: GearPairDesign) -> tuple[Part, Part]:
     Raises
     ------
     InfeasibleError
-        If what the design orders has no room.
+        If there is no space for an opening, hub or mark.
     """
     first, second = (_part([pair[k] for pair in steps], design) for k in (0, 1))
     return first, second
@@ -80,7 +80,7 @@ def _part(gears: list[Gear], design: GearPairDesign) -> Part:
 
 
 def _ring(gears: list[Gear], design: GearPairDesign) -> Part:
-    """Return the part of a ring; the outline of an open one goes around its outside too."""
+    """Return the part of a ring; the outline of an open one includes its outside."""
     gear, ring, blank = gears[0], design.ring, design.blank.wheel(2)
     roots = max(one.largest_radius for one in gears)
     rim = ring.least_rim(roots, gear.pair.module)
@@ -115,10 +115,10 @@ def _ring(gears: list[Gear], design: GearPairDesign) -> Part:
 
 
 def _crossing_chords(rim: float, tolerance: float, larger: dict[str, object]) -> InfeasibleError:
-    """Return the refusal of a rim, mm, that is no wider than chords are off."""
+    """Return the error for a rim, mm, that is too thin for the chord tolerance."""
     key = "output.chord_tolerance_mm"
     return InfeasibleError(
-        f"the rim of the ring, {shown(rim)} mm, is so thin that chords of both its edges meet",
+        f"the rim of the ring, {shown(rim)} mm, is too thin for the chord tolerance of its edges",
         where=key,
         value=tolerance,
         limit=rim / _CHORDS,
@@ -131,7 +131,7 @@ def _crossing_chords(rim: float, tolerance: float, larger: dict[str, object]) ->
 def _mark(
     gear: Gear, design: GearPairDesign, rim: float = 0.0, around: float | None = None
 ) -> Mark:
-    """Return the timing mark of a wheel, or of a ring with its `rim` and the radius around it."""
+    """Return the timing mark of a wheel, or of a ring with its `rim` and outer radius."""
     frames = gear.toothing.frames(np.zeros(1))
     radius = complex(frames.p[0])
     normal = complex(frames.t[0]) * gear.toothing.turn
@@ -154,14 +154,14 @@ def _mark(
 
 
 def parts_subject(parts: tuple[Part, Part], gears: tuple[Gear, Gear], kerf: float) -> PartsSubject:
-    """Return what checks of `parts` look at: where a cutter with a `kerf`, mm, gets on `gears`."""
+    """Return the input of checks of `parts`, with the reach on `gears` of a cutter, `kerf` mm."""
     pairs = zip(parts, gears, strict=True)
     uncut = tuple(bool(kerf) and _uncut(part, gear, kerf) for part, gear in pairs)
     return PartsSubject(parts=parts, kerf=kerf, uncut=uncut)
 
 
 def _uncut(part: Part, gear: Gear, kerf: float) -> bool:
-    """Return whether a cutter does not get to some place of a wheel's flanks as made."""
+    """Return whether a cutter cannot reach some point of a wheel's finished flanks."""
     from gearcam.parts.parallel import touches
 
     found = gear.flank_points(_PLACES)
@@ -170,7 +170,7 @@ def _uncut(part: Part, gear: Gear, kerf: float) -> bool:
 
 
 def inspection_rows(steps: Steps, count: int) -> Columns:
-    """Return the points of an inspection, by column.
+    """Return the points for inspection, by column.
 
     Parameters
     ----------
@@ -183,7 +183,7 @@ def inspection_rows(steps: Steps, count: int) -> Columns:
     -------
     Columns
         Both wheels, every step, every whole tooth, both sides, from root to tip: points of the
-        flanks as made and the outward normals of the metal, in the wheel's frame.
+        finished flanks and outward normals of the metal, in the wheel's frame.
     """
     blocks = [
         {"wheel": gear.wheel, "step": step, **gear.flank_points(count)}

@@ -1,4 +1,4 @@
-"""Why a planet between sun and ring on a carrier is not made."""
+"""Why planetary pairs (planet on a carrier between sun and ring) are not available."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any, Final
 from gearcam.designs.faults import Fault
 from gearcam.numerals import shown
 
-_RULE: Final = "two tooth counts, driver first, for each pair of wheels by itself"
+_RULE: Final = "two tooth counts, driver first; design each pair of wheels separately"
 
 
 def planet_curve(sun: int, planet: int, ring: int) -> tuple[float, float]:
@@ -22,14 +22,14 @@ def planet_curve(sun: int, planet: int, ring: int) -> tuple[float, float]:
     Returns
     -------
     x, e : float
-        Mean radius over the centre distance A of both pairs, and swing over the mean radius;
-        0 for round wheels, 1 or more where there is no such curve.
+        Mean radius over the centre distance A of both pairs, and amplitude over the mean radius;
+        0 for round wheels, 1 or more if there is no such curve.
 
     Notes
     -----
     Over a turn of the planet the ratio to the sun, ``r/(A - r)``, has the mean planet/sun, that to
     the ring, ``r/(A + r)``, planet/ring. The first is convex in r and the second concave, so that
-    both can be only where ``ring > sun + 2*planet``, or on circles (Jensen). For this curve the
+    both are possible only if ``ring > sun + 2*planet``, or on circles (Jensen). For this curve the
     means are those of ``1/(a + b*cos)``, whence ``(1 - x)^2 - (x*e)^2 = (sun/(sun + planet))^2``
     and ``(1 + x)^2 - (x*e)^2 = (ring/(ring - planet))^2``.
     """
@@ -40,22 +40,22 @@ def planet_curve(sun: int, planet: int, ring: int) -> tuple[float, float]:
 
 
 def planetary_fault(teeth: Any) -> Fault:
-    """Return what is wrong with a wish for a planet on a carrier.
+    """Return the fault of a design that asks for a planet on a carrier.
 
     Parameters
     ----------
     teeth : object
-        What stands under ``pair.teeth``.
+        Value of ``pair.teeth``.
 
     Returns
     -------
     Fault
-        With the numbers, where the counts of sun, planet and ring are told.
+        With numbers, if the tooth counts of sun, planet and ring are given.
     """
-    what = "a planet between sun and ring on a carrier is not made"
+    what = "planetary pairs are not available"
     counts = teeth if isinstance(teeth, list) and len(teeth) == 3 else []
     if not counts or any(type(count) is not int or count < 1 for count in counts):
-        why = "wheels that are not round need a ring of more than sun + 2*planet teeth"
+        why = "non-circular wheels need a ring of more than sun + 2*planet teeth"
         return Fault(("pair",), f"{what}: {why}", allowed=_RULE)
     sun, planet, ring = counts
     least = sun + 2 * planet
@@ -72,6 +72,6 @@ def planetary_fault(teeth: Any) -> Fault:
             "the centre distance"
         )
         if e >= 1.0:
-            state += ", which is no curve about a shaft"
+            state += ", which is not a closed curve around a shaft"
     hint = f"with {least} teeth the ring and all wheels are round"
     return Fault(("pair", "teeth"), f"{what}: {state}", teeth, _RULE, hint)

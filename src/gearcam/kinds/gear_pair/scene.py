@@ -22,19 +22,19 @@ if TYPE_CHECKING:
 
 
 def scene(result: GearPairResult, places: int = PLACES) -> Scene:
-    """Return both wheels with their centrodes, teeth that touch, and the pitch point.
+    """Return both wheels with their centrodes, points of contact, and the pitch point.
 
     Parameters
     ----------
     result : GearPairResult
-        The pair; of stepped wheels the lowest step lies on top, and its teeth touch.
+        The pair; of stepped wheels the lowest step is on top, with its points of contact.
     places : int
         Steps of the driver.
 
     Returns
     -------
     Scene
-        As designed: teeth touch as made, where the driven element lags by what `contact` tells.
+        As designed: finished teeth in contact, the driven element behind by the lag of `contact`.
     """
     guide, pose = result.pair.rolling.guide, result.design.output.pose
     phi1 = result.turn(places)
@@ -70,7 +70,7 @@ def _stepped(
     gear: Gear, part: Part, called: str, path: Path, stand: tuple[Array, Plane]
 ) -> list[MovingBody]:
     """Return the steps of a wheel as bodies that move together, the lowest with its teeth."""
-    # the toothed edge first: of a ring the inner one
+    # the toothed edge first: for a ring the inner one
     lowest = sorted(part_features(part), key=lambda one: one.shape is not part.contour)
     turn, shift = stand
     first = MovingBody(
@@ -95,7 +95,7 @@ def _stepped(
 
 
 def _contacts(result: GearPairResult, phi1: Array, side: Side) -> ContactPoints:
-    """Return where teeth touch on one side of the driver's; of angles of charts that is known."""
+    """Return points of contact on one side of the driver's teeth, from charts if computed."""
     pairs, at = result.flanks_of(side), np.arange(len(phi1))
     if len(phi1) == CENTRODE_POINTS + 1:
         found, at = result.touching[side], np.searchsorted(result.phases, phi1)

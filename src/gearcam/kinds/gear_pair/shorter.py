@@ -1,7 +1,7 @@
-"""Ways out where tips of a wheel and a ring collide: a shorter addendum, alone or with more teeth.
+"""Remedies for colliding tips of a wheel and a ring: a shorter addendum, alone or with more teeth.
 
-Tips pass each other the better the shorter they are, and flanks touch the longer the higher they
-are: at enough teeth some addendum does both.
+Shorter tips leave more clearance, higher ones a larger contact ratio: with enough teeth some
+addendum satisfies both.
 """
 
 from __future__ import annotations
@@ -18,23 +18,23 @@ if TYPE_CHECKING:
     from gearcam.advice import Changes, Search
 
 _LOW: Final = 0.3
-"""Lowest addendum, in modules, that is tried: lower ones do not mesh."""
+"""Lowest addendum to try, in modules: lower ones do not mesh."""
 
 _FINE: Final = 0.005
-"""Step to which the largest one is found at the teeth that are wanted, in modules."""
+"""Tolerance of the largest addendum at the given tooth counts, in modules."""
 
 _STEP: Final = 0.05
-"""Step of those that are tried with more teeth, in modules."""
+"""Step of those to try with more teeth, in modules."""
 
 _STEEP: Final = 25.0
-"""Pressure angle, deg, that is tried too where it is larger: tips are narrower then."""
+"""Pressure angle, deg, also tried if it is larger than the given one: tips are then narrower."""
 
 _TIMES: Final = 4
-"""How many times more teeth are tried with a shorter addendum, if fewer do not do."""
+"""Largest factor of teeth to try with a shorter addendum."""
 
 
 def lower(search: Search) -> Iterator[Way]:
-    """Yield the largest addendum with which tips pass each other at the teeth that are wanted."""
+    """Yield the largest addendum with which tips clear each other at the given tooth counts."""
     result: Any = search.result
     limit = limit_of(KIND, "tips-collide", result.design.limits)
 
@@ -55,14 +55,14 @@ def lower(search: Search) -> Iterator[Way]:
 
 
 def shorter(search: Search, times: float | None) -> None:
-    """Find the fewest teeth with a shorter addendum, and still fewer with a larger pressure angle.
+    """Yield the fewest teeth with a shorter addendum, and still fewer with a larger pressure angle.
 
     Parameters
     ----------
     search : Search
         The search.
     times : float or None
-        How many times more teeth do with the addendum that is wanted; None if none do.
+        Factor of teeth that suffices with the given addendum; None if none does.
     """
     result: Any = search.result
     teeth: tuple[int, int] = result.design.pair.teeth
@@ -72,7 +72,7 @@ def shorter(search: Search, times: float | None) -> None:
     if math.degrees(result.pair.rack.pressure_angle) < _STEEP:
         angles.append({"rack.pressure_angle_deg": _STEEP})
     for angle in angles:
-        low = common - bool(angle)  # no addendum does at the teeth that are wanted
+        low = common - bool(angle)  # no addendum suffices at the given tooth counts
         middle = (low + high) // 2 if sure else high - 1
         best, less = None, None
         while high - low > 1 and not search.over():
@@ -87,7 +87,7 @@ def shorter(search: Search, times: float | None) -> None:
 
 
 def _meshing(search: Search, others: Changes) -> tuple[dict[str, Any], bool]:
-    """Look for an addendum that does with `others`; return the last tried, and whether it does."""
+    """Return the last addendum tried with `others`, and whether it suffices."""
     result: Any = search.result
     low, high = round(_LOW / _STEP), math.floor(result.pair.rack.addendum / _STEP) + 1
     tried = {**others}
@@ -99,13 +99,13 @@ def _meshing(search: Search, others: Changes) -> tuple[dict[str, Any], bool]:
             return tried, True
         collide = left is not None and "tips-collide" in left
         if collide and left != {"tips-collide"}:
-            break  # lower ones touch for less, higher ones collide
+            break  # lower ones have less contact, higher ones collide
         low, high = (low, middle) if collide else (middle, high)
     return tried, False
 
 
 def _highest(search: Search, best: dict[str, Any]) -> Changes:
-    """Raise the addendum of changes that do, as far as they still do."""
+    """Return changes that suffice with their addendum raised as far as possible."""
     while not search.over():
         higher = {**best, "rack.addendum": round(best["rack.addendum"] + _STEP, 3)}
         if not search.cures(higher):

@@ -1,4 +1,4 @@
-"""From the design of a gear pair to its law, centrodes, wheels, checks and parts."""
+"""Stages from the design of a gear pair to law, centrodes, wheels, checks and parts."""
 
 from __future__ import annotations
 
@@ -37,13 +37,13 @@ if TYPE_CHECKING:
     from gearcam.sheets.sheet import Sheet
 
 _OF_TEETH = ("contact-ratio", "undercut", "thin-tip", "short-flank", "tips-collide")
-"""Checks that can find something else in each step of stepped wheels."""
+"""Checks whose findings can differ between the steps of stepped wheels."""
 
 _PLAIN = frozenset({"csv", "inspection"})
-"""Files that are made from the teeth alone."""
+"""Files that need only the teeth."""
 
 _WHOLE = 1e-9
-"""Part of a lobe or travel by which an end may lie beyond it: rounding."""
+"""Share of a lobe or travel by which an end may exceed it: rounding."""
 
 CENTRODE_POINTS = 720
 """Intervals of phi1 over which centrodes are tabulated: half degrees for a full turn."""
@@ -55,9 +55,9 @@ class PairStages(Result):
     Parameters
     ----------
     design : GearPairDesign
-        What is asked for.
+        The design.
     tolerances : Tolerances
-        Inner accuracy.
+        Internal accuracy.
     """
 
     design: GearPairDesign
@@ -99,7 +99,7 @@ class PairStages(Result):
 
     @property
     def _finish(self) -> tuple[Finish, Finish]:
-        """What is taken off the edges of both wheels' teeth."""
+        """Clearance and rounding of both wheels' teeth."""
         blanks = (self.design.blank.wheel(number) for number in (1, 2))
         first, second = (
             Finish(clearance=blank.clearance, tip_rounding=blank.tip_rounding) for blank in blanks
@@ -124,7 +124,7 @@ class PairStages(Result):
 
     @property
     def leads(self) -> tuple[float, ...]:
-        """How far the teeth of each step are moved, mm along the pitch curves."""
+        """Tooth offsets of the steps, mm along the pitch curves."""
         return leads(self.pair, self.design.steps)
 
     def _gear(self, wheel: Wheel, pair: GearPair) -> Gear:
@@ -187,14 +187,14 @@ class PairStages(Result):
 
     @property
     def bores(self) -> tuple[float | None, float | None]:
-        """Bore diameters, mm, of circles that hold their keyways; racks and rings have none."""
+        """Bore diameters, mm, including keyways; None for racks and rings."""
         blanks = (self.design.blank.wheel(number).widened for number in (1, 2))
         first, second = (2.0 * blank.bore_reach for blank in blanks)
         return first or None, None if self.pair.on_rack else second or None
 
     @cached_property
     def findings(self) -> tuple[Finding, ...]:
-        """What the checks found: errors first."""
+        """Findings of the checks, errors first."""
         found = [*self._gear_findings(self.subject)]
         for number, gears in enumerate(self.steps[1:], start=2):
             found += (
@@ -210,7 +210,7 @@ class PairStages(Result):
 
     @cached_property
     def subject(self) -> Subject:
-        """What the checks of teeth look at; of stepped wheels the lowest step."""
+        """Input of the checks of teeth; for stepped wheels the lowest step."""
         return self._subject(self.gears)
 
     def _subject(self, gears: tuple[Gear, Gear]) -> Subject:
@@ -225,32 +225,33 @@ class PairStages(Result):
 
     @cached_property
     def parts_subject(self) -> PartsSubject:
-        """What the checks of parts look at."""
+        """Input of the checks of parts."""
         from gearcam.kinds.gear_pair.ordered import parts_subject
 
         return parts_subject(self.parts, self.gears, self.design.output.kerf)
 
     @property
     def ordered(self) -> bool:
-        """Whether the design orders parts: a blank, files of parts, an outside that follows roots.
+        """Whether the design needs parts: a blank, files of parts, an outside that follows roots.
 
-        Whether there is such an outside is known when it is made; of a round one its rim tells.
+        Whether such an outside is possible is known only when it is made; for a round one the rim
+        decides.
         """
         asked = self.design.blank != Blank() or self.design.ring.outer == "follow"
         return asked or not set(self.design.output.files) <= _PLAIN
 
     @cached_property
     def parts(self) -> tuple[Part, Part]:
-        """Both wheels as parts: openings, hubs, marks, moved and rounded edges."""
+        """Both wheels as parts, with openings, hubs, marks, clearance and rounded edges."""
         from gearcam.kinds.gear_pair.ordered import make_parts
 
-        _ = self.steps  # timed for themselves
+        _ = self.steps  # timed separately
         with self.stage("parts"):
             return make_parts(self.steps, self.design)
 
     @cached_property
     def to_cut(self) -> tuple[Drawing, ...]:
-        """What a cutter follows: both wheels, step by step, as parts or as paths with the kerf."""
+        """Cutting paths of both wheels, step by step: parts, or paths offset by the kerf."""
         from gearcam.drawings import cut_drawing, wheel_drawing
 
         return tuple(
@@ -268,7 +269,7 @@ class PairStages(Result):
 
     @cached_property
     def drawing(self) -> Drawing:
-        """The pair as it is assembled, with its centrodes."""
+        """The assembled pair, with its centrodes."""
         from gearcam.kinds.gear_pair.drawn import assembled
 
         return assembled(self)
@@ -286,7 +287,7 @@ class PairStages(Result):
         Parameters
         ----------
         count : int, optional
-            How many; one each half degree of a closed pair where left out.
+            Number of angles; by default one per half degree of a closed pair.
         """
         lobes, turns = self.law.lobes, 1
         if self.pair.on_rack:
@@ -312,7 +313,7 @@ class PairStages(Result):
 
     @property
     def knots(self) -> Array:
-        """Knots of the law, rad, as often as they come until both wheels close, or to the end."""
+        """Knots of the law, rad, repeated until both wheels close, or to the end of travel."""
         period, knots = self.law.period, np.asarray(self.law.knots, dtype=float)
         lobes = math.ceil(self.centrode_angles(2)[-1] / period * (1.0 - _WHOLE))
         return np.concatenate([knots[:1], *(knots[1:] + lobe * period for lobe in range(lobes))])
@@ -332,12 +333,12 @@ def _room(gear: Gear) -> str:
 
 
 def _demand_reached(pose: float, law: RatioLaw) -> None:
-    """Refuse to draw an open pair at a driver angle, rad, that it never reaches."""
+    """Refuse to draw an open pair at a driver angle, rad, outside its travel."""
     if law.lobes.closed or 0.0 <= pose <= (1.0 + _WHOLE) * law.period:
         return
     key, limit = "output.phi1_deg", math.degrees(min(max(pose, 0.0), law.period))
     raise InfeasibleError(
-        "the pair never stands as it is to be drawn",
+        "the drawing angle lies outside the driver's travel",
         where=key,
         value=math.degrees(pose),
         limit=limit,
