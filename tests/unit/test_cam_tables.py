@@ -78,5 +78,5 @@ def test_the_tool_of_a_roller_s_size_runs_where_the_roller_does() -> None:
 
 
 def test_a_face_without_a_tool_radius_has_no_tool_path() -> None:
-    with pytest.raises(InfeasibleError, match="needs its radius"):
+    with pytest.raises(InfeasibleError, match="needs the cutter's radius"):
         eccentric(tool_radius=None).files("tool-path")

@@ -52,7 +52,7 @@ def planetary_fault(teeth: Any) -> Fault:
     Fault
         With numbers, if the tooth counts of sun, planet and ring are given.
     """
-    what = "planetary pairs are not available"
+    what = "a planet between sun and ring on a carrier is not available"
     counts = teeth if isinstance(teeth, list) and len(teeth) == 3 else []
     if not counts or any(type(count) is not int or count < 1 for count in counts):
         why = "non-circular wheels need a ring of more than sun + 2*planet teeth"
