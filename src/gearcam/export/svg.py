@@ -1,8 +1,8 @@
-"""SVG: the assembled pair, or a cam with its follower, as a picture for a page.
+"""SVG pictures of the assembled pair, or of a cam with its follower.
 
-Millimetres in the view box, y upwards turned into y downwards, strokes scaled to the picture, white
-ground, and a caption below the wheels. The picture is thinned to 0.005 mm: it is for looking at,
-parts are cut from the DXF.
+The view box is in millimetres with y downwards, strokes are scaled to the picture, the background
+is white, and a caption is below the wheels. Lines are thinned to 0.005 mm: the picture is not for
+cutting.
 
 Depends on drawings; shapely only inside the functions.
 """

@@ -36,10 +36,10 @@ _OF_SHAFT: Final = (
     "bore_diameter", "keyway_width", "keyway_depth", "bore_flat", "hub_diameter", "hub_front",
     "hub_back", "lightening_holes", "stop_pin",
 )  # fmt: skip
-"""What of a blank a ring does not have."""
+"""Keys of a blank that do not apply to a ring."""
 
 _COARSEST: Final = 50
-"""A chord tolerance coarser than module/50 no longer draws a tooth."""
+"""Largest chord tolerance is the module over this: a coarser one does not show the teeth."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,7 +66,7 @@ class PairOutputSpec(OutputSpec):
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class GearPairDesign(Design):
-    """A pair of non-circular gears as it is asked for (see `Design`).
+    """The design of a pair of non-circular gears (see `Design`).
 
     Parameters
     ----------
@@ -113,7 +113,7 @@ class GearPairDesign(Design):
 
     @property
     def law_type(self) -> str:
-        """Name of the law in the registry; empty where it is no law."""
+        """Name of the law in the registry; empty if it is not a law."""
         return name_of(LAWS, self.law)
 
     def _wanted(self) -> list[Wanted]:
@@ -167,7 +167,7 @@ def _homes() -> Mapping[str, str]:
 
 
 def _planetary(document: Mapping[str, Any]) -> Fault | None:
-    """Return the fault of a wish for a planet between sun and ring, else None."""
+    """Return the fault of a design with a planet between sun and ring, or None."""
     pair = document.get("pair")
     given = pair if isinstance(pair, Mapping) and document.get("kind") == NAME else {}
     teeth = given.get("teeth")
@@ -191,7 +191,7 @@ def _rules(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
 
 
 def _shaft_faults(raw: Any, found: Examined) -> Iterator[Fault]:
-    """Yield what a ring has no place for; one value for both wheels is the driver's alone."""
+    """Yield keys that do not apply to a ring; a single value counts for wheel 1 only."""
     if not isinstance(raw, Mapping):
         return
     known = table_of("blank", Blank).entries.values()
