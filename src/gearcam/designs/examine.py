@@ -97,11 +97,12 @@ def home_of(kind: DesignKind, key: str) -> str:
 
 
 def _elsewhere(kind: DesignKind, key: str) -> str:
-    """Return a hint that says where a misplaced key belongs in any kind of design."""
-    return home_of(kind, key) or _near_home(kind, key, SURE) or _other_home(key)
+    """Return a hint that says where a misplaced key belongs in a design of this kind."""
+    return home_of(kind, key) or _near_home(kind, key, SURE)
 
 
 def _other_home(key: str) -> str:
+    """Return a hint that says to which kinds of design a key belongs."""
     owners = [
         other.name
         for other in KINDS.values()
@@ -197,7 +198,8 @@ def _examine_table(
         found.faults.append(Fault((title,), f"the table [{title}] is missing", allowed=rule))
         return
     listed = kind.listed(document, known)
-    faults = list(faults_of(known, raw, home=lambda key: _elsewhere(kind, key), listed=listed))
+    home = partial(_elsewhere, kind)
+    faults = list(faults_of(known, raw, home=home, far=_other_home, listed=listed))
     found.faults += faults
     if not faults and known.owner is not None:
         made = known.owner(**known.inward(raw))
@@ -210,7 +212,7 @@ def _examine_limits(document: Mapping[str, Any], kind: DesignKind, found: Examin
         found.parts["limits"] = {}
         return
     known, raw = kind.table("limits"), document["limits"]
-    faults = list(faults_of(known, raw, home=lambda key: _elsewhere(kind, key)))
+    faults = list(faults_of(known, raw, home=partial(_elsewhere, kind), far=_other_home))
     found.faults += faults
     if not faults:
         found.parts["limits"] = known.inward(raw)

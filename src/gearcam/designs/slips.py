@@ -55,9 +55,15 @@ _UNITS: Final = {
 _ENDING: Final = re.compile(f"(.+?)(?:_({'|'.join(_UNITS)})(?:_per_rad2?)?)?", re.DOTALL)
 
 _SPELLINGS: Final = {
-    "centre": "center", "tooth": "teeth", "dia": "diameter", "diam": "diameter", "radii": "radius",
-    "colour": "color",
+    "centre": "center", "tooth": "teeth", "z": "teeth", "m": "module", "dia": "diameter",
+    "diam": "diameter", "radii": "radius", "shaft": "bore", "shift": "x", "direction": "rotation",
 }  # fmt: skip
+"""Other spellings of words of keys, and other words for the same thing."""
+
+_NAMES: Final = {"thickness": "face_width"}
+"""Other names of keys, where no table has the written one."""
+
+_RELATED: Final = ({"radius", "diameter"}, {"width", "thickness"})
 _FILLERS: Final = frozenset({"number", "num", "no", "n", "of", "the", "size", "value"})
 _SIZES: Final = frozenset({"diameter", "radius", "width", "distance"})
 """Words that are often left out or added."""
@@ -113,7 +119,7 @@ def _likeness(key: str, entry: Key) -> float:
     stem, unit = _split(key)
     quantity = entry.param.quantity
     names = {entry.key.removesuffix(quantity.suffix), entry.name}
-    score = max(_words_likeness(_words(stem), _words(name)) for name in names)
+    score = max(_words_likeness(_words(_NAMES.get(stem, stem)), _words(name)) for name in names)
     other = unit and not quantity.unit.startswith(_UNITS[unit][0])
     return score - _OTHER_UNIT if other else score
 
@@ -160,7 +166,7 @@ def _alike(word: str, other: str) -> float:
     """Return the similarity of two words of keys; 0 for different words."""
     if word == other:
         return 1.0
-    if {word, other} == {"radius", "diameter"} or (len(word) > 2 and other.startswith(word)):
+    if {word, other} in _RELATED or (len(word) > 2 and other.startswith(word)):
         return _ABBREVIATED
     letters = _letters(word, other)
     return letters if letters >= _LEAST_WORD else 0.0

@@ -18,6 +18,7 @@ def faults_of(
     raw: Any,
     *,
     home: Callable[[str], str],
+    far: Callable[[str], str] = lambda _: "",
     at: Path = (),
     listed: Iterable[str] | None = None,
 ) -> Iterator[Fault]:
@@ -31,6 +32,8 @@ def faults_of(
         Its content in the file.
     home : callable
         ``home(key)`` returns a hint that says where a misplaced key belongs.
+    far : callable
+        The same for other kinds of design; asked last.
     at : tuple
         Path of the table; its title by default.
     listed : iterable of str, optional
@@ -60,7 +63,8 @@ def faults_of(
     unknown = (name for name in raw if name not in table.entries)
 
     def hint_of(name: str) -> str:
-        return key_hint(name, told, STRONG) or home(name) or key_hint(name, told)
+        near = key_hint(name, told, STRONG) or home(name)
+        return near or key_hint(name, told) or far(name)
 
     for name, hint in hinted(unknown, hint_of):
         message = f"unknown key (its value is {show(raw[name])})"
