@@ -199,7 +199,7 @@ def test_the_planet_meshes_with_both_at_one_distance(lobes: tuple[int, int, int]
         ([24, 24, 72], "only round wheels mesh with these teeth"),
         (
             [20, 10, 80],
-            "*cos(phi)), A being the centre distance, which is not a closed curve around a shaft",
+            "*cos(phi)), A being the centre distance, which does not close around a shaft",
         ),
         ([24, 24, 60], "a ring needs at least 72 teeth here"),
         ([24, 24, 20], "a ring needs at least 72 teeth here"),

@@ -72,6 +72,6 @@ def planetary_fault(teeth: Any) -> Fault:
             "the centre distance"
         )
         if e >= 1.0:
-            state += ", which is not a closed curve around a shaft"
+            state += ", which does not close around a shaft"
     hint = f"with {least} teeth the ring and all wheels are round"
     return Fault(("pair", "teeth"), f"{what}: {state}", teeth, _RULE, hint)
