@@ -281,7 +281,7 @@ def test_a_remedy_makes_all_files_that_are_asked_for(name: str, folder: Path) ->
 def test_of_a_kerf_that_closes_a_keyway_the_widest_is_told(folder: Path) -> None:
     keyed = {"bore_diameter_mm": 10, "keyway_width_mm": 3, "keyway_depth_mm": 1.4}
     design = pair(CIRCLE, [12, 12], blank=keyed, output={"files": ["dxf"], "kerf_mm": 3.5})
-    with pytest.raises(InfeasibleError, match="left by this kerf") as caught:
+    with pytest.raises(InfeasibleError, match="this kerf leaves no simple outline") as caught:
         job_of(design, folder).files("dxf")
     ((way,),) = [caught.value.ways]
     assert 2.9 < way.near["output.kerf_mm"] < 3.0  # type: ignore[operator]  # of a keyway of 3 mm

@@ -51,10 +51,10 @@ def test_a_face_is_not_undercut_from_its_least_base_radius_on(tmp_path: Path) ->
 
 STARTS: dict[str, tuple[Any, str, tuple[float, ...]]] = {
     "a roller's cam": (
-        lambda size: cam(ROLLER | {"roller_radius_mm": 6}, {"prime_radius_mm": size}, 30,
-                         angles=STEEP),
+        lambda size: cam(ROLLER, {"prime_radius_mm": size}, 30, angles=[8, 60, 60, 232],
+                         limits={"jamming_angle_deg": 90}),
         "cam.prime_radius_mm",
-        (7.0, 12.0, 20.0, 30.0),
+        (7.0, 20.0, 60.0),
     ),
     "a roller": (
         lambda size: cam(ROLLER | {"roller_radius_mm": size}, {"prime_radius_mm": 70}, 20,
