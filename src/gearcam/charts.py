@@ -173,10 +173,7 @@ class Chart:
 
 
 def knot_marks(knots: Array, low: float, high: float) -> tuple[MarkedPlace, ...]:
-    """Return marks at the `knots` of a law between `low` and `high`, in the unit of the axis.
-
-    Too many to be told apart, as those of a table's spline, are not marked.
-    """
+    """Return marks at the `knots` between `low` and `high` on an axis; none if too many."""
     inside = knots[(knots > low) & (knots < high)]
     seen = inside.tolist() if len(inside) <= _MOST_KNOTS else []
     return tuple(MarkedPlace(label="knots", value=value) for value in seen)
