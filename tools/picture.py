@@ -1,16 +1,21 @@
-"""Take the README's picture of the nail machine's page: `python tools/picture.py`.
+"""Make the pictures of README and docs from designs: `python tools/picture.py`.
 
-It needs chromium with its driver (tools/browser installs them).
+It needs chromium with its driver (tools/browser installs them), and pillow, which comes with
+matplotlib.
 """
 
 from __future__ import annotations
 
 import base64
+import io
+import re
 import shutil
+import subprocess
 import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from PIL import Image
 from selenium.webdriver import Chrome
 from selenium.webdriver.chrome.options import Options
 from selenium.webdriver.chrome.service import Service
@@ -18,38 +23,90 @@ from selenium.webdriver.chrome.service import Service
 import gearcam
 
 ROOT = Path(__file__).resolve().parents[1]
-PROFILE = ROOT / "profiles" / "nail_machine_two_phase.toml"
+PROFILES = ROOT / "profiles"
+PICTURES = ROOT / "docs" / "pictures"
+PROFILE = PROFILES / "nail_machine_two_phase.toml"
 PICTURE = ROOT / "docs" / "nail_machine_two_phase.png"
 SIZE = (1280, 900)
 """Width and height, pixels."""
 PLACE = 118.0
 """Driver angle in the picture, deg."""
+DRAWN = {
+    "ellipse_pair": ("ellipse", 640),
+    "nautilus": ("nautilus", 560),
+    "disc_cam": ("plate_cam_offset_roller", 420),
+    "groove_cam": ("groove_cam", 420),
+    "conjugate_cams": ("conjugate_cams", 420),
+    "yoke_cam": ("yoke_cam", 420),
+    "translating_cam": ("translating_cam", 640),
+}
+"""Pictures of assembled parts: profile, and width in pixels."""
 
 
-def taken(page: Path) -> bytes:
-    """Return a screenshot of the parts and first charts of a page, PNG."""
+def taken(url: str, place: float, size: tuple[int, int] = SIZE, part: str = "") -> bytes:
+    """Return a screenshot of a page that shows a place of the driver, deg, PNG."""
     options = Options()
     options.binary_location = shutil.which("chromium") or sys.exit("there is no chromium")
     for flag in ("--headless=new", "--no-sandbox", "--hide-scrollbars"):
         options.add_argument(flag)
     browser = Chrome(options=options, service=Service(shutil.which("chromedriver")))
     try:
-        width, height = SIZE
+        width, height = size
         metrics = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
         browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", metrics)
-        browser.get(page.as_uri())
-        browser.execute_script("gearcam.go(arguments[0]); location.hash = 'charts'", PLACE)
-        browser.execute_async_script(  # charts are drawn a few at a time
-            "const done = arguments[0]; setTimeout(() => requestAnimationFrame(done), 1000)"
+        browser.get(url)
+        wait = "const done = arguments[0]; setTimeout(() => requestAnimationFrame(done), 2000)"
+        browser.execute_async_script(wait)  # a live view builds its charts
+        browser.execute_script(
+            "gearcam.go(arguments[0]); location.hash = arguments[1]", place, part
         )
+        browser.execute_async_script(wait)  # charts are drawn a few at a time
         shot = browser.execute_cdp_cmd("Page.captureScreenshot", {"format": "png"})
-        return base64.b64decode(shot["data"])
+        picture = Image.open(io.BytesIO(base64.b64decode(shot["data"]))).convert("RGB")
+        small = io.BytesIO()
+        picture.quantize(128, dither=Image.Dither.NONE).save(small, "PNG", optimize=True)
+        return small.getvalue()
     finally:
         browser.quit()
 
 
+def report(profile: Path, folder: str) -> str:
+    """Return the address of the report of a profile, written into a folder."""
+    written = gearcam.build(gearcam.load(profile)).write(folder, files=["dxf", "report"])
+    return (written.directory / "report.html").as_uri()
+
+
+def live_view(folder: str) -> bytes:
+    """Return a screenshot of the live view of a pair for a laser."""
+    run = (sys.executable, "-m", "gearcam")
+    design = Path(folder, "my_pair.toml")
+    subprocess.run([*run, "new", "gear-pair", str(design), "--for", "laser"], check=True)
+    shown = [*run, "view", str(design), "--no-browser"]
+    with subprocess.Popen(shown, stdout=subprocess.PIPE, text=True) as view:
+        try:
+            line = view.stdout.readline() if view.stdout else ""
+            (url,) = re.findall(r"http://\S+", line)
+            return taken(url, 60.0)
+        finally:
+            view.terminate()
+
+
+def drawn(profile: Path, width: int, folder: str) -> str:
+    """Return the picture of assembled parts, SVG."""
+    written = gearcam.build(gearcam.load(profile)).write(folder, files=["svg"])
+    (name,) = [name for name in written.files if name.endswith(".svg")]
+    text = (written.directory / name).read_text("utf-8")
+    (size,) = re.findall(r'width="(\d+)" height="(\d+)" role', text)
+    height = round(width * int(size[1]) / int(size[0]))
+    return re.sub(r'width="\d+" height="\d+" role', f'width="{width}" height="{height}" role', text)
+
+
 if __name__ == "__main__":
-    result = gearcam.build(gearcam.load(PROFILE))
     with TemporaryDirectory() as folder:
-        written = result.write(folder)
-        PICTURE.write_bytes(taken(written.directory / "report.html"))
+        PICTURE.write_bytes(taken(report(PROFILE, folder), PLACE, part="charts"))
+        cam = report(PROFILES / "plate_cam_offset_roller.toml", folder)
+        (PICTURES / "report.png").write_bytes(taken(cam, 60.0, (1100, 1000)))
+        (PICTURES / "live_view.png").write_bytes(live_view(folder))
+        for name, (profile, width) in DRAWN.items():
+            picture = drawn(PROFILES / f"{profile}.toml", width, folder)
+            (PICTURES / f"{name}.svg").write_text(picture, "utf-8")
