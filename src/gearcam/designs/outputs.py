@@ -58,8 +58,8 @@ class OutputSpec(Brief):
         default=0.0,
         ge=0,
         le=100,
-        doc="width of the cut; cutting paths in dxf and cut-svg are offset from the part by half of "
-        "it",
+        doc="width of the cut; cutting paths in dxf and cut-svg are offset from the part by half "
+        "of it",
     )
     dxf_curves: str = param(
         TEXT,
