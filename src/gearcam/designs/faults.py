@@ -131,7 +131,7 @@ def allowed(entry: Key, *, item: bool = False) -> str:
     if entry.length:
         count = f"{entry.length} "
     elif made.min_length:
-        count = f"at least {made.min_length} "
+        count = "one or more " if made.min_length == 1 else f"at least {made.min_length} "
     else:
         count = ""
     return f"a list of {count}{_plural(entry)}"
