@@ -127,11 +127,11 @@ def test_curvature_is_held_against_the_limit_of_undercut():
 def test_the_roller_limits_the_pitch_curve():
     limits = {one.label: one.value for one in chart(CAM, "curvature").limits}
     design: Any = gearcam.load(CAM)
-    assert limits["roller, convex pitch curve"] == pytest.approx(
+    assert limits["roller (convex pitch curve)"] == pytest.approx(
         1.0 / design.follower.roller_radius
     )
     # a wire of 0.3 mm does not get into a concave place that bends more
-    assert limits["tool at hand, concave profile"] == pytest.approx(-1.0 / 0.15)
+    assert limits["tool at hand (concave profile)"] == pytest.approx(-1.0 / 0.15)
 
 
 def test_pressure_angles_are_held_against_the_limit_on_both_sides():

@@ -187,7 +187,7 @@ def test_files() -> None:
         "theta_deg,s,ds,d2s,d3s,pressure_angle_1_deg,pressure_angle_2_deg,"
         "rho_pitch_1_mm,rho_pitch_2_mm,rho_profile_1_mm,rho_profile_2_mm"
     )
-    assert result.chart("pressure_angle").lines[1].label == "pressure angle 2"
+    assert result.chart("pressure_angle").lines[1].label == "cam 2"
     assert result.chart("curvature").lines
 
 

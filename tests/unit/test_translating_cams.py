@@ -136,7 +136,7 @@ def test_charts_go_along_the_way() -> None:
     result = built(FILE)
     for name in result.charts:
         chart = result.chart(name)
-        assert chart.x == "way u, mm"
+        assert chart.x == "travel u, mm"
         assert chart.lines[0].x[-1] == pytest.approx(170.0)
 
 

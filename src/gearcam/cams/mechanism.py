@@ -138,7 +138,7 @@ class Mechanism(Brief):
         if not self.slide:
             return TURNING
         return Driver(
-            symbol="u", unit="mm", per="mm", called="way", scale=self.slide, rate=self.slide
+            symbol="u", unit="mm", per="mm", called="travel", scale=self.slide, rate=self.slide
         )
 
     def sliding_centre(self, position: Array) -> Plane:

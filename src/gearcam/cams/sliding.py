@@ -131,7 +131,7 @@ class SlidingCam(Brief, Cam):
         """Facts of the cam; the facts of its result contain more."""
         tree = {
             "total_lift": self.motion.total_lift,
-            "way_mm": Fact(self.way, "way"),
+            "way_mm": Fact(self.way, "travel"),
             "area_mm2": self.edge.moments.area,
         }
         return Facts(tree, ("total_lift", "way_mm"), "translating cam")

@@ -59,7 +59,11 @@ def _pressure_angle(result: CamResult) -> Chart:
         x=told,
         y="pressure angle, deg",
         lines=tuple(
-            Line(label=f"pressure angle {one.key}".strip(), x=table[places], y=table[column])
+            Line(
+                label=f"cam {one.key}" if one.key else "pressure angle",
+                x=table[places],
+                y=table[column],
+            )
             for one in result.cam.motions
             for column in (pressure_column(one),)
         ),
@@ -71,7 +75,8 @@ def _pressure_angle(result: CamResult) -> Chart:
 def _radii(result: CamResult) -> dict[str, str]:
     """Return the columns of radii of the motion's table, by labels."""
     pitches = {
-        f"pitch curve {one.key}".strip(): rho_column("pitch", one) for one in result.cam.motions
+        f"pitch curve{f' of cam {one.key}' if one.key else ''}": rho_column("pitch", one)
+        for one in result.cam.motions
     }
     walls = {
         f"{one.called} before trimming": rho_column("profile", one) for one in result.cam.walls
@@ -86,11 +91,11 @@ def _curvature(result: CamResult) -> Chart:
     pitch = [np.abs(values).max() for label, values in lines.items() if label.startswith("pitch")]
     largest = _TIMES * max(1.0 / radius if radius else 0.0, *map(float, pitch))
     tool = limit_of(PARTS_KIND, "large-tool", result.design.limits)
-    limits = [Limit(label="tool at hand, concave profile", value=-2.0 / tool)] if tool else []
+    limits = [Limit(label="tool at hand (concave profile)", value=-2.0 / tool)] if tool else []
     rollers = {one.side / one.mechanism.radius: one for one in result.cam.walls if radius}
     for value, wall in rollers.items():
         what = "convex" if wall.side > 0 else "concave"
-        limits.append(Limit(label=f"roller, {what} pitch curve", value=value))
+        limits.append(Limit(label=f"roller ({what} pitch curve)", value=value))
     if result.mechanism.flat:
         del lines["pitch curve"]
     places, told = _places(result)
@@ -117,4 +122,4 @@ CHARTS: Final[Charts] = {
     "curvature": _curvature,
     **{name: partial(_of_lift, name) for name in ("velocity", "acceleration", "jerk")},
 }
-"""What makes each chart; the first three decide, and the report leads with them."""
+"""Functions that return the charts by name; the report leads with the first three."""

@@ -87,7 +87,7 @@ def _deviation(program: Program, scale: float, unit: str) -> Fact | None:
     if program.deviation is None:
         return None
     place = f"at {shown(math.degrees(program.deviation.theta), scale=360.0)} deg"
-    value, meaning = scale * program.deviation.value, "largest distance from the rows"
+    value, meaning = scale * program.deviation.value, "largest distance from the given points"
     return Fact(value, meaning, place=place, unit=unit, shown=True)
 
 
@@ -161,9 +161,13 @@ def _part(result: CamResult) -> Tree | list[Tree]:
     """Return the facts of the part, or of each part, of a cam; empty if none is ordered."""
     if not result.ordered:
         return {}
-    rows = list(zip(result.parts, result.part_subject.tools, strict=True))
-    density, several = result.design.blank.density, len(rows) > 1
-    told = [part_facts(part, part.name if several else "", tools, density) for part, tools in rows]
+    density, several = result.design.blank.density, len(result.parts) > 1
+    told = [
+        part_facts(part, f"cam {number}" if several else "", tools, density)
+        for number, (part, tools) in enumerate(
+            zip(result.parts, result.part_subject.tools, strict=True), start=1
+        )
+    ]
     return told if several else told[0]
 
 

@@ -88,7 +88,7 @@ def _curvature(result: GearPairResult) -> Chart:
     for gear in result.gears:
         convex, concave = undercut_curvatures(gear)
         for value, what in ((convex, "convex"), (-concave, "concave")):
-            found.setdefault(value, Limit(label=f"{what}, free of undercut", value=value))
+            found.setdefault(value, Limit(label=f"limit of undercut, {what} centrode", value=value))
     return replace(chart, limits=tuple(found.values()))
 
 
@@ -164,7 +164,7 @@ def _contact_patch(result: GearPairResult) -> Chart:
     total = np.bincount(phase, area * table["pairs"]) / np.bincount(phase)
     together = Line(label="all pairs of teeth", x=x, y=total)
     return Chart(
-        title=f"Contact patches, driver turned ahead by {shown(math.degrees(ahead))} deg",
+        title=f"Contact patches, driver advanced by {shown(math.degrees(ahead))} deg",
         x=DRIVER,
         y="area of overlap, mm2",
         lines=(_by_pair(result, table, area, "each pair of teeth"), together),
@@ -207,4 +207,4 @@ CHARTS: Final[Charts] = {
     "contact_patch": _contact_patch,
     "transmission_error": _transmission_error,
 }
-"""What makes each chart; the first three decide, and the report leads with them."""
+"""Functions that return the charts by name; the report leads with the first three."""

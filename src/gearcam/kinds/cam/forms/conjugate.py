@@ -155,7 +155,7 @@ class Conjugate(Disc):
             "gap_mm": design.cam.gap or 0.0,
             "roller_distance_mm": None
             if swings
-            else Fact(cam.apart, "from roller to roller", shown=True),
+            else Fact(cam.apart, "distance between the centres of the rollers", shown=True),
             "arms_angle_deg": Fact(
                 math.degrees(cam.apart), "angle between the arms", unit="deg", shown=True
             )

@@ -176,7 +176,7 @@ class Translating(Form):
         given, cam = result.design, _cam(result)
         swings, plate = given.follower.oscillating, cam.plate
         return {
-            "way_mm": Fact(cam.way, "way"),
+            "way_mm": Fact(cam.way, "travel"),
             "run_in_mm": given.cam.run_in or None,
             "run_out_mm": given.cam.run_out or None,
             "axis_deg": math.degrees(given.follower.axis or 0.0) or None,

@@ -85,12 +85,14 @@ class Yoke(Disc):
             raise TypeError(f"{cam!r} is not a yoke cam")
         return {
             **super().facts(result),
-            "breadth_mm": Fact(cam.breadth, "from face to face", shown=True) if flat else None,
-            "face_width_mm": cam.face_width and Fact(cam.face_width, "least width of a face"),
+            "breadth_mm": Fact(cam.breadth, "distance between the faces", shown=True)
+            if flat
+            else None,
+            "face_width_mm": cam.face_width and Fact(cam.face_width, "least width of the faces"),
             "least_base_radius_mm": cam.least_base_radius,
             "roller_distance_mm": None
             if flat
-            else Fact(cam.breadth, "from centre to centre of the rollers", shown=True),
+            else Fact(cam.breadth, "distance between the centres of the rollers", shown=True),
         }
 
 
