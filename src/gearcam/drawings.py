@@ -1,17 +1,16 @@
-"""Drawings: what an exporter of flat files sees.
+"""Drawings: the data of exporters of flat files.
 
-A *drawing* is a list of *features*; a feature is a shape on a *layer*. Layers end in the kind of
-what they hold: OUTLINE, BORE, HOLE, SLOT, INNER (inner teeth), MARK, CENTRODE, CENTER; a pair's
+A *drawing* is a list of *features*; a feature is a shape on a *layer*. Layers end in the type of
+their shapes: OUTLINE, BORE, HOLE, SLOT, INNER (inner teeth), MARK, CENTRODE, CENTER; a pair's
 layers begin with the wheel, such as ``GEAR1_OUTLINE``. A cam's outline is its PROFILE; PITCH, PRIME
-and FOLLOWER show what it is for, TOOL is the way of a cutter's centre, and LABEL a part's name. A
-groove has its walls on INNER and OUTER, one with ends on GROOVE, and the edge of what it is cut
-into on BLANK.
-*Placing* turns and shifts shapes without changing them otherwise.
+and FOLLOWER are for reference, TOOL is the path of a cutter's centre, and LABEL a part's name. The
+walls of a groove are on INNER and OUTER, a groove with ends on GROOVE, and the edge of its blank on
+BLANK. *Placing* turns and shifts shapes.
 
 The *kerf*, the width of a cut, is not part of the geometry: it moves the paths of a drawing for
 cutting, whose layers then end in ``_KERF``. Such a drawing holds only what is cut or engraved.
 
-Refused: a pair of other than two parts; a kerf that an edge leaves no room for.
+Refused: a kerf that is too wide for an opening or an outline.
 
 Depends on parts and numeric, numpy only.
 """
@@ -53,16 +52,16 @@ LABEL: Final = "LABEL"
 
 OUTER: Final = (OUTLINE, PROFILE, BLANK)
 THROUGH: Final = (BORE, HOLE, SLOT, INNER, GROOVE)
-"""Kinds that are cut: around the part, and right through it."""
+"""Types that are cut: around the part, and right through it."""
 
 ENGRAVED: Final = (MARK, LABEL)
-"""Kinds that are marked on a part before it is cut."""
+"""Types that are marked on a part before it is cut."""
 
 DASHED: Final = (CENTRODE, PITCH, PRIME)
-"""Kinds that are drawn dashed."""
+"""Types that are drawn dashed."""
 
 KERF: Final = "_KERF"
-"""End of layers that hold paths of a cutter, not edges of the part."""
+"""Ending of layers with cutting paths instead of edges of the part."""
 
 CLOSED: Final = (
     *OUTER,
@@ -76,12 +75,12 @@ CLOSED: Final = (
 """Ends of layers whose closed curves are contours."""
 
 CROSS_SIZE: Final = 0.04
-"""Size of a centre's cross, in centre distances."""
+"""Size of a centre cross, in centre distances."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Path(Brief):
-    """A chain of straight pieces: points (n, 2), mm; if closed, the first is not repeated."""
+    """A polyline: points (n, 2), mm; if closed, the first is not repeated."""
 
     points: Array
     closed: bool = True
@@ -98,14 +97,14 @@ class Cross(Brief):
 Shape = Contour | Circle | Loop | Path | Cross
 
 Placement = tuple[float, tuple[float, float]]
-"""Turn about the own origin, rad, then shift, mm."""
+"""Rotation about the origin of its own frame, rad, then shift, mm."""
 
 UNMOVED: Final[Placement] = (0.0, (0.0, 0.0))
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Feature(Brief):
-    """A `shape` on a `layer`; `metal` where the part lies within it, as within an outline."""
+    """A `shape` on a `layer`; `metal` if the part lies inside it, as inside an outline."""
 
     layer: str
     shape: Shape
@@ -113,7 +112,7 @@ class Feature(Brief):
 
     @property
     def kind(self) -> str:
-        """What the layer holds: its name without the wheel and the kerf."""
+        """Type of the layer: its name without wheel and kerf."""
         return self.layer.removesuffix(KERF).rpartition("_")[2]
 
 
@@ -131,7 +130,7 @@ class Drawing(Brief):
 
 
 def placed(shape: Shape, angle: float, offset: tuple[float, float]) -> Shape:
-    """Turn a shape about the origin, then shift it.
+    """Return a shape turned about the origin, then shifted.
 
     Parameters
     ----------
@@ -145,7 +144,7 @@ def placed(shape: Shape, angle: float, offset: tuple[float, float]) -> Shape:
     Returns
     -------
     Contour or Circle or Loop or Path or Cross
-        The same object where nothing moves.
+        The same object if nothing moves.
     """
     if (angle, offset) == UNMOVED:
         return shape
@@ -167,7 +166,7 @@ def placed(shape: Shape, angle: float, offset: tuple[float, float]) -> Shape:
 
 
 def reach(shape: Shape) -> Array:
-    """Return points (n, 2), mm, whose box is the box of a `shape`."""
+    """Return points (n, 2), mm, with the same bounding box as a `shape`."""
     match shape:
         case Contour(vertices=points) | Path(points=points) | Loop(vertices=points):
             return points
@@ -182,7 +181,7 @@ def box(features: Iterable[Feature]) -> tuple[Array, Array]:
 
 
 def chains(shape: Shape, sagitta: float) -> Iterator[tuple[Array, bool]]:
-    """Yield the chains of points of a `shape`, chords within `sagitta`, mm, and if they close."""
+    """Yield the polylines of a `shape`, chord error at most `sagitta`, mm, and if they close."""
     match shape:
         case Path(points=points, closed=closed):
             yield points, closed
@@ -197,7 +196,7 @@ def chains(shape: Shape, sagitta: float) -> Iterator[tuple[Array, bool]]:
 def place(
     features: Iterable[Feature], angle: float, offset: tuple[float, float], prefix: str = ""
 ) -> tuple[Feature, ...]:
-    """Return features placed (see `placed`), a prefix before their layers."""
+    """Return features placed (see `placed`), with a prefix before their layers."""
     return tuple(
         replace(feature, layer=prefix + feature.layer, shape=placed(feature.shape, angle, offset))
         for feature in features
@@ -207,7 +206,7 @@ def place(
 def part_features(part: Part, step: int = 0, outline: str = OUTLINE) -> tuple[Feature, ...]:
     """Return the `outline` of a `step`, openings and pockets of a `part`, in its own frame."""
     layer = part.steps[step]
-    walls: dict[int, Feature] = {}  # one below the other may share an edge
+    walls: dict[int, Feature] = {}  # two below each other may share an edge
     for recess in part.recesses:
         walls[id(recess.edge)] = Feature(layer=OUTER_WALL, shape=recess.edge)
     for recess in part.recesses:
@@ -222,12 +221,12 @@ def part_features(part: Part, step: int = 0, outline: str = OUTLINE) -> tuple[Fe
 
 
 def cut_drawing(drawing: Drawing, kerf: float) -> Drawing:
-    """Return a drawing with the paths of a cutter instead of the edges that it cuts.
+    """Return a drawing with cutting paths instead of edges.
 
     Parameters
     ----------
     drawing : Drawing
-        Of one part.
+        Drawing of one part.
     kerf : float, mm
         Width of the cut; 0 leaves the drawing as it is.
 
@@ -240,8 +239,8 @@ def cut_drawing(drawing: Drawing, kerf: float) -> Drawing:
     Raises
     ------
     InfeasibleError
-        If an opening, or its keyway, is not wider than the kerf, or if no path around an outline
-        is left. A path that cannot follow an outline into every corner is allowed.
+        If an opening, or its keyway, is not wider than the kerf, or if no path around an outline is
+        possible. A path that cannot follow an outline into every corner is allowed.
     """
     if not kerf:
         return drawing
@@ -260,7 +259,7 @@ def cut_drawing(drawing: Drawing, kerf: float) -> Drawing:
 
 
 def _path(feature: Feature, kerf: float, tolerance: float, where: str) -> Shape:
-    """Return the path of the centre of a cutter that leaves the edge of a `feature`."""
+    """Return the path of the cutter's centre for the edge of a `feature`."""
     from gearcam.parts.parallel import followed, moved, sized
 
     match feature.shape:
@@ -303,9 +302,9 @@ def pair_drawing(
     *,
     placements: tuple[Placement, Placement] | None = None,
 ) -> Drawing:
-    """Draw the assembled pair.
+    """Return the drawing of the assembled pair.
 
-    Without placements it stands at phi1 = 0: wheel 1 as it is, wheel 2 shifted by the centre
+    The default placement is phi1 = 0: wheel 1 in its own frame, wheel 2 shifted by the centre
     distance.
 
     Parameters
@@ -313,11 +312,11 @@ def pair_drawing(
     parts : two Part
         Driver first.
     center_distance : float, mm
-        Place of the second shaft on x, negative for a ring; 0 for a rack, which has none.
+        Position of the second shaft on x, negative for a ring; 0 for a rack, which has none.
     centrodes : sequence of Path
         In the wheels' own frames, driver first; may be empty.
     placements : two Placement, optional
-        Turn, rad, and shift, mm, of each wheel.
+        Rotation, rad, and shift, mm, of each wheel.
 
     Returns
     -------
@@ -334,7 +333,7 @@ def pair_drawing(
     stands = placements or ((0.0, offsets[0]), (0.0, offsets[1]))
     features: list[Feature] = []
     numbered = enumerate(zip(parts, stands, strict=True), start=1)
-    # what is drawn later lies on top: a wheel in its ring
+    # drawn later means on top: a wheel in its ring
     for number, (part, stand) in sorted(numbered, key=lambda one: not one[1][0].inner):
         features += place(part_features(part), *stand, prefix=f"GEAR{number}_")
     for path, stand in zip(centrodes, stands, strict=False):
@@ -354,27 +353,27 @@ def cam_drawing(
     angle: float = 0.0,
     outline: str = PROFILE,
 ) -> Drawing:
-    """Draw a cam with its pitch curve and prime circle, turned, below its follower.
+    """Return the drawing of a turned cam with its pitch curve, prime circle and follower.
 
     Parameters
     ----------
     part : Part
         The cam.
     pitch : Contour or None
-        Its pitch curve, in the part's frame; None where that is the profile.
+        Its pitch curve, in the part's frame; None if that is the profile.
     prime_radius : float, mm
-        Of the prime circle; of a flat follower the base circle.
+        Radius of the prime circle; for a flat follower of the base circle.
     follower : sequence of Shape
-        Where it stands; may be empty.
+        The follower in its position; may be empty.
     angle : float, rad
-        Turn of the cam, counter-clockwise.
+        Rotation of the cam, counter-clockwise.
     outline : str
         Layer of the part's outline.
 
     Returns
     -------
     Drawing
-        Named as the part.
+        With the name of the part.
     """
     turning = list(part_features(part, outline=outline))
     if pitch is not None:

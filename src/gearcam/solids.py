@@ -1,11 +1,10 @@
-"""Solids: a body as a closed mesh of triangles; those of layers are made by manifold3d.
+"""Solids: a body as a closed mesh of triangles; bodies of layers are made with manifold3d.
 
-The one place that knows manifold3d. A *mesh* is plain arrays: the library's own objects cannot be
-pickled and its interface is moving.
+This is the only module that uses manifold3d. A *mesh* is plain arrays: the library's own objects
+cannot be pickled and its interface changes.
 
-Refused: layers too thin for single precision, and parts whose solid comes out empty, open, or
-without a part of its volume. (The library silently makes nothing of clockwise contours; parts
-refuse them.)
+Refused: layers too thin for single precision, and parts whose solid is empty, open, or lacks a part
+of its volume. (The library returns nothing for clockwise contours; parts refuse them.)
 
 Depends on parts; manifold3d only inside the functions.
 """
@@ -34,38 +33,39 @@ if TYPE_CHECKING:
     from manifold3d import Manifold
 
 OVERSHOOT: Final = 1.0
-"""How far a pocket's cutter stands out of the face, in its depths: faces must not coincide."""
+"""Overshoot of a pocket's solid beyond the face, in its depths: faces must not coincide."""
 
 _FILLED: Final = 18
-"""Powers of 2 up to which flat outlines are made larger, or smaller, while the library has them:
-it keeps them on a grid of 1e-8, whatever their size, in whole numbers of 64 bits."""
+"""Largest power of 2 by which flat outlines are scaled for the library: it rounds them to a grid of
+1e-8, independent of their size, in 64-bit integers."""
 
 ROUNDING: Final = 1e-8 * 2.0 ** (1 - _FILLED)
-"""What that grid is of the reach of an outline, at most."""
+"""Largest size of that grid, over the reach of an outline."""
 
 _MANY: Final = 4000
-"""Vertices of an edge from which on fans are cut off it: triangulations grow with their square."""
+"""Vertices of an edge from which on it is reduced by fans: triangulation time grows with their
+square."""
 
 _THINNEST: Final = 1e-6
-"""Least height of a layer in reaches of its part: single precision takes places to 6e-8 of it."""
+"""Least height of a layer in reaches of its part: single precision rounds to 6e-8 of it."""
 
 
 LIBRARIES: Final = '"manifold3d>=3.5,<3.6" "trimesh>=5,<6" networkx lxml'
-"""What solids need beyond the rest of the package, as pip takes it."""
+"""Libraries that only solids need, as arguments of pip."""
 
 
 class SolidError(GearcamError, RuntimeError):
-    """A solid that should exist came out empty or open."""
+    """A solid is empty, open, or has a wrong volume."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Mesh:
-    """A mesh of triangles, seen counter-clockwise from outside.
+    """A mesh of triangles, counter-clockwise seen from outside.
 
     Parameters
     ----------
     vertices : (n, 3) float array, mm
-        Each place once.
+        Each point once.
     triangles : (m, 3) int array
         Indices of vertices.
     """
@@ -75,7 +75,7 @@ class Mesh:
 
     @cached_property
     def volume(self) -> float:
-        """Enclosed volume, mm^3: what is below each triangle, down to the mesh's middle."""
+        """Enclosed volume, mm^3, summed over triangles down to the mesh's middle."""
         x, y, z = (self.vertices - self.vertices.mean(axis=0)).T
         a, b, c = self.triangles.T
         twice = (x[b] - x[a]) * (y[c] - y[a]) - (x[c] - x[a]) * (y[b] - y[a])
@@ -100,7 +100,7 @@ class Mesh:
 
     @cached_property
     def watertight(self) -> bool:
-        """Whether each edge is met by one triangle in each direction, and no triangle is folded."""
+        """Whether each edge has one triangle in each direction, and no triangle is folded."""
         a, b = self.triangles.ravel(), np.roll(self.triangles, -1, axis=1).ravel()
         if not len(a) or (a == b).any():
             return False
@@ -130,13 +130,13 @@ def libraries() -> Iterator[None]:
 
 @singledispatch
 def solid(body: Body) -> Mesh:
-    """Make the mesh of a body; each kind of body registers how.
+    """Return the mesh of a body; dispatched on the type of the body.
 
     Parameters
     ----------
     body : Body
-        A part, whose contours' polygons are used as they are, all else within its tolerance; or
-        another kind that is registered.
+        A part, of which contours keep their polygons and all other curves its tolerance; or another
+        registered type.
 
     Returns
     -------
@@ -147,9 +147,9 @@ def solid(body: Body) -> Mesh:
     MissingExtraError
         If manifold3d is not installed.
     SolidError
-        If the solid comes out empty or open, or lost a part of its volume.
+        If the solid is empty or open, or lacks a part of its volume.
     TypeError
-        If this kind of body is not registered.
+        If this type of body is not registered.
     """
     raise TypeError(f"a {type(body).__name__} makes no solid")
 
@@ -171,13 +171,13 @@ def _(part: Part) -> Mesh:
         made = made - _slab(manifold3d, recess, part.tolerance)
     mesh = _mesh(made)
     if not mesh.watertight:
-        raise SolidError(f"{part.name}: the solid came out empty or open")
+        raise SolidError(f"{part.name}: the solid is empty or open")
     demand_volume(part, mesh.volume, volume_error(part))
     return mesh
 
 
 def _demand_thick(part: Part) -> None:
-    """Refuse layers so thin that their faces are one in files of single precision."""
+    """Refuse layers so thin that their faces coincide in files of single precision."""
     reach = max(edge.reach for edge in part.contours)
     height = min(layer.height for layer in part.layers)
     if height < _THINNEST * reach:
@@ -192,32 +192,32 @@ def _demand_thick(part: Part) -> None:
 
 
 def demand_volume(part: Part, volume: float, allowed: float) -> None:
-    """Hold the volume of a solid against that of its part.
+    """Check the volume of a solid against that of its part.
 
     Parameters
     ----------
     part : Part
-        What was to be made.
+        The part.
     volume : float, mm^3
-        Of the solid.
+        Volume of the solid.
     allowed : float, mm^3
-        What it may miss.
+        Largest difference.
 
     Raises
     ------
     SolidError
-        If it misses more.
+        If the difference is larger.
     """
     missed = abs(volume - part.volume)
     if missed > allowed:
         raise SolidError(
             f"{part.name}: the solid's volume is {shown(missed, 3)} mm3 off,"
-            f" {shown(allowed, 3)} mm3 is explained"
+            f" the tolerance explains {shown(allowed, 3)} mm3"
         )
 
 
 def _slab(manifold3d: Any, layer: Layer, tolerance: float, *, fanned: bool = True) -> Manifold:
-    """Return a layer: its edge pulled up along z, less its openings, which run clockwise."""
+    """Return a layer: its edge extruded along z, less its openings, which run clockwise."""
     holes = [opening.shape.points(tolerance)[::-1] for opening in layer.openings]
     loops = [np.ascontiguousarray(loop) for loop in (layer.edge.points(tolerance), *holes)]
     many = fanned and max(map(len, loops)) > _MANY
@@ -230,9 +230,9 @@ def _slab(manifold3d: Any, layer: Layer, tolerance: float, *, fanned: bool = Tru
 
 
 def _faces(manifold3d: Any, loops: Sequence[Array]) -> tuple[Plane, Ints] | None:
-    """Return the places, those of loops first, and triangles of a face; None if any is turned over.
+    """Return the points, those of loops first, and triangles of a face; None if any is reversed.
 
-    By fans along the edges, and the library's triangulation of what they leave.
+    Made of fans along the edges, and the library's triangulation of the rest.
     """
     points = np.concatenate([as_complex(loop) for loop in loops])
     left: list[Ints] = []
@@ -255,7 +255,7 @@ def _faces(manifold3d: Any, loops: Sequence[Array]) -> tuple[Plane, Ints] | None
 def _prism(
     manifold3d: Any, loops: Sequence[Array], faces: tuple[Plane, Ints], layer: Layer
 ) -> Manifold:
-    """Return a layer whose faces are given, with its walls."""
+    """Return a layer from its faces, with its walls."""
     points, above = faces
     count = len(points)
     triangles, first = [above[:, ::-1], count + above], 0
@@ -274,7 +274,7 @@ def _prism(
 
 
 def _cutter(manifold3d: Any, mark: Mark, part: Part) -> Manifold:
-    """Return the cylinder that engraves a mark."""
+    """Return the cylinder to subtract for a mark."""
     segments = circle_segments(mark.diameter, part.contour.tolerance)
     height = (1 + OVERSHOOT) * mark.depth
     cylinder = manifold3d.Manifold.cylinder(height, 0.5 * mark.diameter, -1.0, segments)
@@ -290,12 +290,12 @@ def _mesh(body: Manifold) -> Mesh:
 
 @singledispatch
 def volume_error(body: Body) -> float:
-    """Bound the difference between a body's mesh and its true shape.
+    """Return a bound of the volume between a body's mesh and its true shape.
 
     Parameters
     ----------
     body : Body
-        A part, or another kind that is registered.
+        A part, or another registered type.
 
     Returns
     -------
@@ -306,7 +306,7 @@ def volume_error(body: Body) -> float:
     Raises
     ------
     TypeError
-        If this kind of body is not registered.
+        If this type of body is not registered.
     """
     raise TypeError(f"a {type(body).__name__} makes no solid")
 

@@ -1,8 +1,6 @@
-"""Letters of single strokes, as engravers draw them: laser programs drop fonts.
+"""Single-stroke letters for engraving: laser programs ignore fonts.
 
-Capitals and digits on a grid of 4 by 6, chains of straight pieces.
-
-Refused: signs that no part's name has.
+Capitals and digits on a grid of 4 by 6, as polylines.
 
 Depends on numpy only.
 """
@@ -17,7 +15,7 @@ from gearcam.numeric.arrays import Array
 
 _TALL: Final = 6
 _ADVANCE: Final = 6
-"""Height of a letter and the way to the next one, in steps of the grid."""
+"""Height and pitch of letters, in steps of the grid."""
 
 _STROKES: Final = {
     " ": "",
@@ -41,7 +39,7 @@ _STROKES: Final = {
     "8": "13 04 05 16 36 45 44 33 13 02 01 10 30 41 42 33",
     "9": "44 33 13 04 05 16 36 45 41 30 10 01",
 }
-"""Places that a stroke passes, x and y of each in steps of the grid."""
+"""Points of each stroke, x and y in steps of the grid."""
 
 
 def text_width(text: str) -> float:
@@ -55,9 +53,9 @@ def strokes(text: str, height: float, left: float, base: float) -> list[Array]:
     Parameters
     ----------
     text : str
-        Capitals and digits of the names of parts.
+        Capitals and digits.
     height : float, mm
-        Of its letters.
+        Height of the letters.
     left, base : float, mm
         Its lower left corner.
 

@@ -1,9 +1,9 @@
-"""Mesh files: STL (binary), 3MF and GLB, the latter two written by trimesh; its view of them too.
+"""Mesh files: STL (binary), 3MF and GLB, the latter two by trimesh, and trimesh's view of them.
 
-All three hold millimetres. STL has no unit; 3MF states it; glTF means metres, but every program
-that takes wheels reads the numbers, so the GLB keeps millimetres and says so in its scene's extras
-(``"units": "mm"``). STL and GLB hold single precision: vertices are rounded first and those that
-fall together are joined, so that the file is closed as written. The same mesh gives the same bytes.
+All three are in millimetres. STL has no unit; 3MF states it; the unit of glTF is the metre, but CAD
+programs read the plain numbers, so the GLB keeps millimetres and notes them in its scene's extras
+(``"units": "mm"``). STL and GLB have single precision: vertices are rounded first and coincident
+ones are joined, so that the file is closed as written. The same mesh gives the same bytes.
 
 Refused: meshes that are not closed, before or after rounding.
 
@@ -30,16 +30,16 @@ HEADER_LENGTH: Final = 80
 """Bytes of an STL header."""
 
 TRIANGLE: Final = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("color", "<u2")])
-"""A triangle of a binary STL; behind the header their number stands, in four bytes."""
+"""A triangle of a binary STL; their number follows the header, in four bytes."""
 
 EPOCH: Final = (1980, 1, 1, 0, 0, 0)
-"""The date in a 3MF's archive: the earliest that the format knows."""
+"""The date in a 3MF's archive: the earliest of the format."""
 
 _UUID: Final = re.compile(rb"[0-9a-f]{8}-[0-9a-f]{4}-4[0-9a-f]{3}-[89ab][0-9a-f]{3}-[0-9a-f]{12}")
 
 
 def stl_bytes(bodies: Mapping[str, Mesh], name: str) -> bytes:
-    """Write a binary STL; the name stands in the header, the bodies follow one another.
+    """Return a binary STL with the name in the header, and the bodies in order.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def stl_bytes(bodies: Mapping[str, Mesh], name: str) -> bytes:
     SolidError
         If the mesh is not closed, or rounding to single precision opens it.
     """
-    # each body for itself: joined, two that touch would share edges and be open
+    # each body separately: joined, two that touch would share edges and be open
     single = [_single(mesh, body) for body, mesh in bodies.items()]
     corners = np.concatenate([mesh.vertices[mesh.triangles] for mesh in single])
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -65,7 +65,7 @@ def stl_bytes(bodies: Mapping[str, Mesh], name: str) -> bytes:
     triangles = np.zeros(len(corners), dtype=TRIANGLE)
     triangles["corners"] = corners
     triangles["normal"] = np.divide(normals, sizes, out=normals, where=sizes > 0.0)
-    # "solid" at the start would announce the text form.
+    # "solid" at the start would mean the text format
     label = f"gearcam {name} (mm)".encode("ascii", "replace")[:HEADER_LENGTH]
     count = len(triangles).to_bytes(4, "little")
     return label.ljust(HEADER_LENGTH, b"\0") + count + triangles.tobytes()
@@ -91,15 +91,15 @@ def glb_bytes(bodies: Mapping[str, Mesh], name: str) -> bytes:
 
 @libraries()
 def view_page(bodies: Mapping[str, Mesh]) -> str:
-    """Return a page in which closed bodies are turned and zoomed: trimesh's own (see `stl_bytes`).
+    """Return trimesh's page to turn and zoom closed bodies (see `stl_bytes`).
 
-    It needs no network, as it holds the bodies and all its scripts, and a browser with WebGL.
+    It contains the bodies and all its scripts: it needs a browser with WebGL, but no network.
     """
     from trimesh.scene import Camera
     from trimesh.viewer.notebook import scene_to_html
 
     scene = _scene(bodies)
-    scene.camera = Camera(name="camera", fov=(60.0, 45.0))  # one made for it has a random name
+    scene.camera = Camera(name="camera", fov=(60.0, 45.0))  # a generated one has a random name
     scene.set_camera()
     return scene_to_html(scene)
 
@@ -120,7 +120,7 @@ def trimeshes(bodies: Mapping[str, Mesh]) -> dict[str, Trimesh]:
 
 
 def _scene(bodies: Mapping[str, Mesh], *, single: bool = True) -> Scene:
-    """Return closed bodies, in single precision or as they are."""
+    """Return closed bodies, in single or in double precision."""
     from trimesh import Scene
 
     if single:
@@ -137,7 +137,7 @@ def _require(mesh: Mesh, name: str, when: str = "") -> None:
 
 
 def _single(mesh: Mesh, name: str) -> Mesh:
-    """Round a mesh to single precision, join what falls together, drop what folds."""
+    """Return a mesh in single precision, coincident points joined, folded triangles dropped."""
     _require(mesh, name)
     rounded = mesh.vertices.astype(np.float32).astype(np.float64)
     order = np.lexsort(rounded.T)
@@ -152,7 +152,7 @@ def _single(mesh: Mesh, name: str) -> Mesh:
 
 
 def _repeatable(data: bytes, name: str) -> bytes:
-    """Replace the random identifiers and the dates of a 3MF archive by fixed ones."""
+    """Return a 3MF archive with fixed identifiers and dates instead of random ones."""
     result = io.BytesIO()
     with (
         zipfile.ZipFile(io.BytesIO(data)) as source,

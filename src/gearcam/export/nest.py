@@ -1,9 +1,9 @@
 """Nesting: parts side by side on a sheet, each with its name.
 
-A name stands where a part has most room, or below it. Parts stand in rows, the tallest first, as
-many to a row as make the sheet with the shortest edge around. Within a row each is pushed to the
-left until its hull is a gap away from the hulls beside it: as hulls keep apart, outlines do. Parts
-are shifted, and neither turned nor turned over.
+A name is placed where a part has most space, or below it. Parts are placed in rows, the tallest
+first, with the row width that gives the sheet the shortest perimeter. Within a row each part is
+moved to the left until its hull is a gap away from its neighbours' hulls: then outlines are apart
+too. Parts are shifted, but not turned or mirrored.
 
 Depends on drawings and lettering; shapely inside the functions.
 """
@@ -29,23 +29,23 @@ if TYPE_CHECKING:
 
 
 GAP: Final = 3.0
-"""Least distance between what is cut of two parts, mm."""
+"""Least distance between the cuts of two parts, mm."""
 
 _HIGHEST: Final = 5.0
 _LOWEST: Final = 1.5
-"""Heights of letters, mm: as high as there is room, or below the part where that is too low."""
+"""Heights of letters, mm: as the space allows, or below the part if that is too low."""
 
 _FREE: Final = 1.0
-"""What a name keeps from every edge, mm."""
+"""Least distance of a name from every edge, mm."""
 
 _COARSE: Final = 0.05
-"""How exactly the room for a name is found, mm."""
+"""Tolerance of the space for a name, mm."""
 
 _NEAR: Final = 1e-3
-"""How near to the gap a part is pushed, mm."""
+"""Tolerance of the gap, mm."""
 
 _SAGITTA: Final = 0.01
-"""Of chords that stand for openings, mm."""
+"""Chord error of openings, mm."""
 
 
 def labelled(drawing: Drawing) -> Drawing:
@@ -65,7 +65,7 @@ def labelled(drawing: Drawing) -> Drawing:
 
 
 def _roomiest(drawing: Drawing) -> tuple[tuple[float, float], float]:
-    """Return the middle and the radius of the largest circle that meets nothing."""
+    """Return the centre and the radius of the largest free circle."""
     from shapely import Polygon, maximum_inscribed_circle
 
     def points(feature: Feature) -> Array:
@@ -81,7 +81,7 @@ def _roomiest(drawing: Drawing) -> tuple[tuple[float, float], float]:
 
 
 def nested(drawings: Sequence[Drawing]) -> tuple[Drawing, ...]:
-    """Return `drawings` of parts shifted so that they stand side by side, first ones first."""
+    """Return `drawings` of parts shifted so that they are side by side, in order."""
     hulls = [_hull(one) for one in drawings]
     sizes = np.array([np.subtract(hull.bounds[2:], hull.bounds[:2]) for hull in hulls])
     order = np.argsort(-np.round(sizes[:, 1]), kind="stable").tolist()
@@ -107,7 +107,7 @@ def _hull(drawing: Drawing) -> Polygon:
 
 
 def _rows(order: Sequence[int], sizes: Array, width: float) -> list[list[int]]:
-    """Fill rows of a width, the parts in order."""
+    """Return rows of a given width, filled with the parts in order."""
     rows: list[list[int]] = []
     left = 0.0
     for k in order:
@@ -121,7 +121,7 @@ def _rows(order: Sequence[int], sizes: Array, width: float) -> list[list[int]]:
 
 
 def _around(rows: Sequence[Sequence[int]], sizes: Array) -> float:
-    """Return half of the length around the box of rows, mm."""
+    """Return half the perimeter of the bounding box of rows, mm."""
     wide = max(float((sizes[row, 0] + GAP).sum()) for row in rows)
     return wide + sum(float(sizes[row, 1].max()) + GAP for row in rows)
 
@@ -129,7 +129,7 @@ def _around(rows: Sequence[Sequence[int]], sizes: Array) -> float:
 def _pushed(
     row: Sequence[int], hulls: Sequence[Any], base: float
 ) -> dict[int, tuple[float, float]]:
-    """Return shifts that stand hulls on a line below y = `base`, each as far left as gaps allow."""
+    """Return shifts of hulls onto a line below y = `base`, each as far left as gaps allow."""
     from shapely import distance
     from shapely.affinity import translate
 
@@ -140,7 +140,7 @@ def _pushed(
         left, low, _, _ = hulls[k].bounds
         x = max((one.bounds[2] + GAP for one in stand), default=0.0)
         while x > 0.0 and stand:
-            # nothing comes nearer by more than it is moved
+            # distances decrease by at most the movement
             there = translate(hulls[k], x - left, foot - low)
             free = float(distance(there, np.array(stand, dtype=object)).min()) - GAP
             if free < _NEAR:

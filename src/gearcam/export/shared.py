@@ -1,4 +1,4 @@
-"""What the files and facts of every kind of design share: DXF, meshes, sheets, parts, accuracy."""
+"""Files and facts common to all types of design: DXF, meshes, sheets, parts, accuracy."""
 
 from __future__ import annotations
 
@@ -28,29 +28,29 @@ CHORD_HOW = (
     "largest distance of the curve from a chord: measured at 13 places, or, "
     "where the curvature hardly changes, from the tangents at its ends"
 )
-"""How a sampler knows its chord error."""
+"""Method of a sampler's chord error."""
 
 
 def accuracy(
     rows: Mapping[str, tuple[float, str]], chord: float, kerf: float, measured: Mapping[str, Any]
 ) -> dict[str, Any]:
-    """Return error estimates, and how each was made.
+    """Return error estimates, each with its method.
 
     Parameters
     ----------
     rows : mapping of str to (float, str)
-        Those of the kind, by name.
+        Errors and methods of the type of design, by name.
     chord : float, mm
         Chord error of the outlines.
     kerf : float, mm
-        By half of which paths of cutting files are moved.
+        Width of the cut, by half of which cutting paths are offset.
     measured : mapping
-        What exporters measured: ``dxf``.
+        Measurements of exporters: ``dxf``.
 
     Returns
     -------
     dict
-        Of facts, with ``how`` for each.
+        Facts, with ``how`` for each.
     """
     rows = {**rows, "chord_mm": (chord, CHORD_HOW)}
     made: dict[str, Any] = {name: float(value) for name, (value, _) in rows.items()}
@@ -71,7 +71,7 @@ def size_fact(extents: Sequence[float], name: str) -> Fact:
     extents : sequence of 3 floats, mm
         Along x, y and z of the part's own frame.
     name : str
-        What people call the part, such as ``wheel 1``; empty where there is only one.
+        Name of the part in messages, such as ``wheel 1``; empty for a single part.
 
     Returns
     -------
@@ -84,23 +84,23 @@ def size_fact(extents: Sequence[float], name: str) -> Fact:
 
 
 def part_facts(part: Part, name: str, tools: ToolLimits, density: float | None) -> dict[str, Any]:
-    """Return what is known of a part.
+    """Return the facts of a part.
 
     Parameters
     ----------
     part : Part
-        As made.
+        The finished part.
     name : str
-        What people call it (see `size_fact`).
+        Its name in messages (see `size_fact`).
     tools : ToolLimits
         The largest tools for it.
     density : float or None, kg/m^3
-        Asks for its mass.
+        With a density the mass properties are included.
 
     Returns
     -------
     dict
-        Of facts; what does not exist is left out.
+        Facts that exist.
     """
     from gearcam.parts.mass import mass_properties
 
@@ -118,11 +118,11 @@ def part_facts(part: Part, name: str, tools: ToolLimits, density: float | None) 
 
 
 _FEW = 4
-"""Digits of each of several numbers in a row of a drawing's table."""
+"""Digits of numbers in rows with several numbers of a drawing's table."""
 
 
 def sheet_rows(facts: Facts, names: Sequence[str]) -> dict[str, str]:
-    """Return the rows of a drawing's table: those quantities of `names` that `facts` have."""
+    """Return the rows of a drawing's table: the quantities `names` that exist in `facts`."""
     known = {one.name: one for one in facts.quantities()}
     found = [known[name] for name in names if name in known]
     return {
@@ -141,9 +141,9 @@ def sheet_files(sheets: Sequence[Sheet], style: DxfStyle, ending: str) -> Files:
     sheets : sequence of Sheet
         The drawings.
     style : DxfStyle
-        How DXF is written.
+        Options of DXF.
     ending : {"svg", "dxf"}
-        The kind of file.
+        File type.
 
     Returns
     -------
@@ -160,14 +160,14 @@ def sheet_files(sheets: Sequence[Sheet], style: DxfStyle, ending: str) -> Files:
 
 
 def dxf_style(output: Any, tolerance: float) -> DxfStyle:
-    """Return how DXF is written.
+    """Return the options of DXF.
 
     Parameters
     ----------
     output : OutputSpec
-        What a design says of its files.
+        Output settings of the design.
     tolerance : float, mm
-        Of the outlines.
+        Tolerance of the outlines.
 
     Returns
     -------
@@ -185,11 +185,11 @@ def drawn(drawings: Sequence[Drawing], style: DxfStyle, measured: dict[str, Any]
     Parameters
     ----------
     drawings : sequence of Drawing
-        Each a file of its name.
+        Each becomes a file of its name.
     style : DxfStyle
-        How.
+        Options of DXF.
     measured : dict
-        The measured errors are written in here.
+        Receives the measured errors.
 
     Returns
     -------
@@ -213,16 +213,16 @@ def drawn(drawings: Sequence[Drawing], style: DxfStyle, measured: dict[str, Any]
 
 
 def cut_files(drawings: Sequence[Drawing], title: str, kerf: float) -> Files:
-    """Return the files of a laser: one for each part, and a sheet with all of them, labelled.
+    """Return files for a laser: one for each part, and a sheet with all of them, labelled.
 
     Parameters
     ----------
     drawings : sequence of Drawing
-        What is cut.
+        Drawings to cut.
     title : str
         The design's name.
     kerf : float, mm
-        By half of which their paths have been moved.
+        Width of the cut, by half of which their paths have been offset.
 
     Returns
     -------
@@ -246,20 +246,20 @@ def mesh_files(
     kind: str,
     measured: dict[str, Any],
 ) -> Files:
-    """Return solids as files, each in one of its own and those that stand together in one.
+    """Return solids as files: one for each part, and one for each assembly.
 
     Parameters
     ----------
     parts : sequence of Part
-        As made.
+        The finished parts.
     solids : mapping of str to Mesh
-        By the parts' names.
+        Meshes by the parts' names.
     together : mapping of str to dict
-        Solids where they stand, by the stems of their files.
+        Placed solids of assemblies, by the stems of their files.
     kind : {"stl", "3mf", "glb"}
         The format.
     measured : dict
-        What was measured on the solids is written in here.
+        Receives the measurements of the solids.
 
     Returns
     -------

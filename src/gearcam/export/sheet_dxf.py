@@ -1,8 +1,8 @@
 """DXF of workshop drawings: the part in true millimetres, its sheet enlarged or reduced around it.
 
-R2010 has real dimensions, which follow the part when it is edited; in R12 they are lines, solid
-arrow heads and texts. The front view lies where the part's own drawing does, and its outline is
-written as there. The same sheet gives the same bytes.
+R2010 has dimension entities, which can be edited; in R12 they are lines, solid arrow heads and
+texts. The front view has the position of the part's own drawing, and its outline is written in the
+same way. The same sheet gives the same bytes.
 
 Refused: splines in R12.
 
@@ -51,22 +51,22 @@ LINETYPES: Final = {
     "DASHED": ([4.5, 3.0, -1.5], "__ __ __"),
     "CENTER": ([12.0, 8.0, -1.5, 1.0, -1.5], "____ _ ____ _"),
 }
-"""Lengths of the pattern, its dashes and gaps, mm of paper."""
+"""Total length of the pattern, its dashes and gaps, mm of paper."""
 
 LINETYPE_OF: Final = {**dict.fromkeys((*DASHED, HIDDEN), "DASHED"), CENTERLINE: "CENTER"}
-"""Line types by kind; all others are continuous."""
+"""Line types by layer type; all others are continuous."""
 
 STYLE: Final = "SHEET"
 """Name of the styles of texts and dimensions."""
 
 
 def sheet_dxf(sheet: Sheet, style: DxfStyle) -> bytes:
-    """Write a sheet as DXF.
+    """Return a sheet as DXF.
 
     Parameters
     ----------
     sheet : Sheet
-        What to write.
+        The sheet.
     style : DxfStyle
         How outlines are written, and the version of the format.
 
@@ -126,7 +126,7 @@ def _prepare(document: Document, sheet: Sheet, style: DxfStyle) -> None:
 
 
 def _measured(space: Modelspace, dimension: Dimension) -> None:
-    """Add a real dimension."""
+    """Add a dimension entity."""
     words = f"{dimension.prefix}<>{dimension.suffix}"
     rest: dict[str, Any] = {"text": words, "dimstyle": STYLE, "dxfattribs": {"layer": DIMENSION}}
     if isinstance(dimension, LinearDimension):

@@ -1,4 +1,4 @@
-"""SVG of workshop drawings: paper in its true size, ready to print.
+"""SVG of workshop drawings: paper at full size, ready to print.
 
 The view box is the paper in millimetres, y downwards. Outlines and edges are thick, all other lines
 thin; hidden lines and centrodes are dashed, centre lines dash-dotted. Points are rounded to a
@@ -29,11 +29,11 @@ CAPITAL: Final = 0.72
 """Height of a capital over the font's size."""
 
 SAGITTA: Final = 0.005
-"""Of chords that stand for arcs, mm of paper."""
+"""Chord error of arcs, mm of paper."""
 
 
 def sheet_svg(sheet: Sheet) -> bytes:
-    """Write a `sheet` as SVG, UTF-8; the same sheet gives the same bytes."""
+    """Return a `sheet` as SVG, UTF-8; the same sheet gives the same bytes."""
     wide, tall = (decimal(value) for value in sheet.size)
     size = f'width="{wide}mm" height="{tall}mm" viewBox="0 0 {wide} {tall}"'
     drawn = sheet.drawn
@@ -83,7 +83,7 @@ def _feature(sheet: Sheet, feature: Feature) -> str:
 
 
 def _data(sheet: Sheet, *chains_of_points: Array) -> str:
-    """Path data of open chains; neighbours that fall together are written once."""
+    """Path data of open chains; coincident neighbours are written once."""
     data = ""
     for points in chains_of_points:
         page = np.round(_on_page(sheet, points), 2)

@@ -1,11 +1,11 @@
 """STEP: exact solids for CAD and CAM programs.
 
 AP214, in millimetres. Each part is one product of its name, with a solid for each of its steps;
-more than one part make an assembly in which each is turned and shifted to its place. Flanks, tips
-and roots are B-spline faces within the tolerance, one for each smooth piece of the outline; bores,
-hubs and marks are cylinders and planes. The same parts give the same bytes: the file bears no date.
+several parts form an assembly in which each is turned and shifted to its place. Flanks, tips and
+roots are B-spline faces within the tolerance, one for each smooth piece of the outline; bores, hubs
+and marks are cylinders and planes. The same parts give the same bytes: the file has a fixed date.
 
-Refused: no parts at all; solids that come out invalid (see `step_shapes`).
+Refused: no parts at all; invalid solids (see `step_shapes`).
 
 Depends on drawings, parts, solids and `step_shapes`; on OCP, the binding of the CAD kernel OCCT,
 only inside the functions: it is large, and an extra of the package.
@@ -34,18 +34,18 @@ SETTINGS: Final = {
     "xstep.cascade.unit": "MM",
     "write.step.product.name": "part",
     "write.surfacecurve.mode": 0,  # edges as curves in space only: smaller, nothing is lost
-    "write.step.assembly": 2,  # where there is more than one part
+    "write.step.assembly": 2,  # for more than one part
 }
-"""Of the kernel's translator; they hold for the whole process, so each use sets them all."""
+"""Settings of the kernel's translator; they are global, so each use sets them all."""
 
 _MM: Final = 0.001
-"""In metres."""
+"""Millimetre, in metres."""
 
 _USE: Final = re.compile(r"NEXT_ASSEMBLY_USAGE_OCCURRENCE\(\s*'\d+'(.*?\);)", re.DOTALL)
-"""A part's place in the assembly, with a number that counts on through the process."""
+"""A part's place in the assembly, with a number that increases through the process."""
 
 _TOKEN: Final = re.compile(r"'(gearcam-\d+)'")
-"""What the kernel is given for a name."""
+"""Token given to the kernel in place of a name."""
 
 
 def step_bytes(
@@ -55,20 +55,20 @@ def step_bytes(
     made: dict[Part, Any] | None = None,
     heights: Sequence[float] = (),
 ) -> bytes:
-    """Write parts as STEP.
+    """Return parts as a STEP file.
 
     Parameters
     ----------
     items : sequence of (Part, Placement)
-        One part, or those of an assembly, each at its place; one that comes twice is one product.
+        One part, or those of an assembly with their places; a repeated part is one product.
     name : str
-        Of the assembly, and of the file without its ending.
+        Name of the assembly, and of the file without its ending.
     tolerance : float, mm
         Largest distance of the faces from the dense points of the outlines.
     made : dict, optional
-        The parts' solids to that tolerance, as far as they have been made; new ones are kept in it.
+        Cache of the parts' solids to that tolerance; new ones are added.
     heights : sequence of float, mm
-        By which the items are lifted; none where left out.
+        Shifts of the items along z; none by default.
 
     Returns
     -------
@@ -80,7 +80,7 @@ def step_bytes(
     MissingExtraError
         If OCP is not installed.
     SolidError
-        If a part makes no valid solid of its volume.
+        If a part does not give a valid solid of its volume.
     ValueError
         If there are no parts.
     """
@@ -111,7 +111,7 @@ def _require() -> None:
 
 @contextmanager
 def _silent() -> Iterator[None]:
-    """Keep the kernel's messages, which go to the terminal, to itself."""
+    """Suppress the kernel's messages on the terminal."""
     messenger = occt.Message.DefaultMessenger_s()
     printers = list(messenger.Printers())
     for printer in printers:
@@ -125,10 +125,10 @@ def _silent() -> Iterator[None]:
 
 @contextmanager
 def _document() -> Iterator[Any]:
-    """Open a document that holds shapes with names."""
+    """Return a new document for shapes with names."""
     application = occt.XCAFApp_Application.GetApplication_s()
     form = occt.TCollection_ExtendedString("MDTV-XCAF")
-    # the document that it opens is the one returned, not the one that it is given
+    # the document it opens is the one returned, not the one passed in
     (document,) = application.NewDocument(form, occt.TDocStd_Document(form))
     try:
         occt.XCAFDoc_DocumentTool.SetLengthUnit_s(document, _MM)
@@ -138,7 +138,7 @@ def _document() -> Iterator[Any]:
 
 
 def _set_all() -> None:
-    occt.STEPControl_Controller.Init_s()  # before this there are no settings
+    occt.STEPControl_Controller.Init_s()  # there are no settings before this
     for key, value in SETTINGS.items():
         text = isinstance(value, str)
         setter = occt.Interface_Static.SetCVal_s if text else occt.Interface_Static.SetIVal_s
@@ -147,7 +147,7 @@ def _set_all() -> None:
 
 
 def _joined(solids: Sequence[Any]) -> Any:
-    """Return one shape: a solid for itself, or a compound of more."""
+    """Return one shape: a single solid, or a compound of several."""
     if len(solids) == 1:
         return solids[0]
     builder, compound = occt.BRep_Builder(), occt.TopoDS_Compound()
@@ -164,7 +164,7 @@ def _fill(
     name: str,
     names: Mapping[str, str],
 ) -> None:
-    """Put the shapes into the document: one where it stands, more as an assembly."""
+    """Add the shapes to the document: one in its place, several as an assembly."""
     tool = occt.XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
     if len(items) == 1:
         ((part, placement),) = items
@@ -195,7 +195,7 @@ def _call(label: Any, name: str) -> None:
 
 
 def _write(document: Any, file: str) -> bytes:
-    """Return the document as STEP, as the kernel writes it."""
+    """Return the document as STEP, written by the kernel."""
     _set_all()
     writer = occt.STEPCAFControl_Writer()
     writer.SetNameMode(True)
@@ -216,14 +216,14 @@ def _write(document: Any, file: str) -> bytes:
 
 
 def _normal(text: str, tokens: Mapping[str, str]) -> str:
-    """Count the places in the assembly from 1 and put the names where their tokens stand.
+    """Return the file with places in the assembly counted from 1, and names instead of tokens.
 
-    The kernel breaks long names amid a letter, and writes letters that the format does not know.
+    The kernel breaks long names inside a letter, and writes letters that the format does not allow.
     """
     count = iter(range(1, 1 + text.count("\n")))
 
     def use(found: re.Match[str]) -> str:
-        # the number's length moves where the lines break
+        # the number's length changes the line breaks
         rest = re.sub(r"\n *", "", found[1])
         return f"NEXT_ASSEMBLY_USAGE_OCCURRENCE('{next(count)}'{rest}"
 

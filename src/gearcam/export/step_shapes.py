@@ -3,13 +3,13 @@
 Each piece of an outline that has a length becomes one face: straight pieces planes, all others
 B-splines within the tolerance. Openings, hubs and marks are exact: their arcs become cylinders.
 Faces are made one by one from their curves, with shared corners; hubs are fused to the plate, marks
-and what goes through a hub are cut out. Nothing is merged or simplified afterwards, so no flank's
+and openings through a hub are cut out. Nothing is merged or simplified afterwards, so no flank's
 face is lost.
 
-Refused: parts whose solid comes out empty, in pieces, invalid or with a wrong volume.
+Refused: parts whose solid is empty, in pieces, invalid or has a wrong volume.
 
 Depends on parts, numeric and solids; on OCP, the kernel's binding, only through `occt`, which loads
-it when it is used. The binding has no types: its objects are `Any` here. Lengths in millimetres.
+it on first use. The binding has no types: its objects are `Any` here. Lengths in millimetres.
 """
 
 from __future__ import annotations
@@ -31,23 +31,23 @@ from gearcam.parts.shapes import Circle, Loop
 from gearcam.solids import OVERSHOOT, SolidError, demand_volume
 
 COLLECTIONS: Final = ("Array1", "IndexedMap", "List", "Sequence")
-"""Beginnings of names that the binding keeps in one room; all others name their room."""
+"""Prefixes of names that are in one module of the binding; all others begin with their module."""
 
 RESOLUTION: Final = 1e-7
-"""The kernel's own: what is nearer than this, mm, is the same to it."""
+"""The kernel's own tolerance, mm: closer points are equal."""
 
 CLEARANCE: Final = 1.0
-"""How far the cutter of a bore stands out at both ends, mm: faces must not coincide."""
+"""Overshoot of a bore's solid at both ends, mm: faces must not coincide."""
 
 VOLUME_PRECISION: Final = 1e-9
-"""Relative, of the kernel's adaptive integration over a face."""
+"""Relative tolerance of the kernel's adaptive integration over a face."""
 
 VOLUME_ERROR: Final = 1e-6
-"""Part of the volume that a solid may miss beside what the tolerance explains."""
+"""Allowed relative error of the volume, besides that explained by the tolerance."""
 
 
 class Kernel:
-    """The kernel: each of its classes by its name, imported when it is first used."""
+    """The kernel: each of its classes by name, imported on first use."""
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_"):
@@ -63,7 +63,7 @@ occt: Final = Kernel()
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class _Piece:
-    """A curve of the kernel at z = 0, its parameters `first` to `last`, and where it begins."""
+    """A curve of the kernel at z = 0, its parameters `first` to `last`, and its start."""
 
     curve: Any
     first: float
@@ -72,7 +72,7 @@ class _Piece:
 
 
 def solids_of(part: Part, tolerance: float) -> list[Any]:
-    """Make the solids of a part, one for each step, from the lowest up.
+    """Return the solids of a part, one for each step, from the lowest up.
 
     Parameters
     ----------
@@ -88,14 +88,14 @@ def solids_of(part: Part, tolerance: float) -> list[Any]:
     Raises
     ------
     SolidError
-        If one comes out empty, in pieces or invalid, or their volume is not that of the part.
+        If one is empty, in pieces or invalid, or their volume is not that of the part.
     """
     try:
         made = [_step(part, number, tolerance) for number in range(len(part.steps))]
     except SolidError as error:
         raise SolidError(f"{part.name}: {error}") from error
     except Exception as error:
-        # the kernel's own errors have no common base but this
+        # the only common base of the kernel's errors
         if not type(error).__module__.startswith("OCP"):
             raise
         raise SolidError(f"{part.name}: the solid could not be made: {error}") from error
@@ -114,14 +114,14 @@ def properties(shape: Any) -> Any:
 
 
 def subshapes(shape: Any, kind: str) -> list[Any]:
-    """Return the parts of a shape that are of a kind.
+    """Return the parts of a shape that are of a given type.
 
     Parameters
     ----------
     shape : TopoDS_Shape
         Any shape of the kernel.
     kind : {"SOLID", "FACE"}
-        What to look for.
+        The type.
 
     Returns
     -------
@@ -144,11 +144,11 @@ def _explained(part: Part, tolerance: float) -> float:
 
 
 def _step(part: Part, number: int, tolerance: float) -> Any:
-    """Return the solid of a step: its plate, with what of the hub stands on it."""
+    """Return the solid of a step: its plate, with the hub on it."""
     step = part.steps[number]
     lowest, topmost = number == 0, number == len(part.steps) - 1
     bosses = [boss for boss in part.bosses if (lowest if boss.low < 0.0 else topmost)]
-    # what goes through a hub is cut at last: its face must not end where the plate does
+    # openings through a hub are cut last: their face must not end where the plate does
     late = bosses[0].openings if bosses else ()
     through = tuple(opening for opening in step.openings if opening not in late)
     # swept surfaces are cut five times as fast as B-splines
@@ -170,7 +170,7 @@ def _step(part: Part, number: int, tolerance: float) -> Any:
 
 
 def _combined(operation: Any, body: Any, tools: Sequence[Any]) -> Any:
-    """Fuse tools to a body or cut them from it."""
+    """Return a body with tools fused to it or cut from it."""
     left, right = occt.List_TopoDS_Shape(), occt.List_TopoDS_Shape()
     left.Append(body)
     for tool in tools:
@@ -188,7 +188,7 @@ def _combined(operation: Any, body: Any, tools: Sequence[Any]) -> Any:
 
 
 def _prism(layer: Layer, tolerance: float) -> Any:
-    """Return a layer as a solid, one side face for each piece; all run left around."""
+    """Return a layer as a solid, one side face for each piece; all counter-clockwise."""
     return _converted(_swept(layer, tolerance))
 
 
@@ -236,7 +236,7 @@ def _point(place: complex, height: float = 0.0) -> Any:
 
 def _outline(contour: Contour, tolerance: float) -> list[_Piece]:
     """Return a curve for each piece of a contour; each ends exactly where the next begins."""
-    # where one curve's end is another's start, a piece between them has no length
+    # a piece between two curves that meet has no length
     pieces = (piece for run in contour.runs for piece in run.pieces)
     runs = [piece for piece in pieces if _length(piece) > RESOLUTION]
     starts = [complex(*run.points[0]) for run in runs]

@@ -28,16 +28,16 @@ THINNING: Final = 0.005
 """Largest distance, mm, by which thinning may move a line of the picture."""
 
 DECIMALS: Final = 4
-"""Of the picture's numbers."""
+"""Decimals of the picture's numbers."""
 
 _number: Final = partial(decimal, decimals=DECIMALS)
 
 _ROUNDING: Final = 1e-12
-"""Of an angle, rad, that is a quarter of a circle."""
+"""Rounding of a quarter circle, rad."""
 
 
 def svg_bytes(drawing: Drawing, *, title: str, notes: Sequence[str] = ()) -> bytes:
-    """Draw a drawing as SVG.
+    """Return a drawing as SVG.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def _element(feature: Feature, pixel: float) -> str:
         line = f'stroke="{TEXT_INK}"'
     if dashed or isinstance(shape, Path | Cross):
         inside = "none"
-    # the first of two cams is seen through the second
+    # the first of two cams is visible through the second
     clear = ' fill-opacity="0.6"' if wheel == 2 and feature.kind in drawings.OUTER else ""
     style = f'class={name} fill="{inside}"{clear} {line}'
     match shape:
@@ -100,7 +100,7 @@ def _element(feature: Feature, pixel: float) -> str:
 
 
 def _data(points: Array, closed: bool) -> str:
-    """Return thinned path data; y turned downwards."""
+    """Return thinned path data, y downwards."""
     from shapely import LineString, get_coordinates, simplify
 
     line = LineString(np.vstack([points, points[:1]]) if closed else points)
@@ -111,28 +111,28 @@ def _data(points: Array, closed: bool) -> str:
 
 
 def arc_data(vertices: Array, bulges: Array, decimals: int = DECIMALS) -> str:
-    """Return the path data of a closed chain of straight pieces and circular arcs.
+    """Return the path data of a closed chain of straight lines and circular arcs.
 
     Parameters
     ----------
     vertices : (n, 2) array, mm
-        First not repeated; y upwards, and turned downwards here.
+        First not repeated; y upwards.
     bulges : (n,) array
-        Of the pieces between them.
+        Bulges of the pieces between them.
     decimals : int
-        Of every number.
+        Decimals of every number.
 
     Returns
     -------
     str
-        No arc is longer than a quarter of a circle: a reader finds the centre of a half circle from
-        a rounded radius with few digits.
+        With y downwards. No arc exceeds a quarter of a circle: the centre of a half circle would be
+        inaccurate from a rounded radius.
     """
     start, chord, bends = bulge_pieces(vertices, bulges, closed=True)
     half = 2.0 * np.arctan(bends)
     parts = np.maximum(1, np.ceil(np.abs(half) / (0.25 * math.pi + _ROUNDING))).astype(np.int64)
     points, piece = divided(start, chord, bends, parts)
-    with np.errstate(divide="ignore"):  # of straight pieces
+    with np.errstate(divide="ignore"):  # of straight lines
         radii = (0.5 * np.abs(chord) / np.abs(np.sin(half))).tolist()
 
     def numbers(*values: float) -> str:
@@ -140,7 +140,7 @@ def arc_data(vertices: Array, bulges: Array, decimals: int = DECIMALS) -> str:
 
     steps = []
     for k, end in zip(piece.tolist(), np.roll(points, -1).tolist(), strict=True):
-        # y is turned downwards: what turns left stays so for the eye, which SVG calls 0
+        # y is downwards: a visual left turn has the sweep flag 0 in SVG
         arc = f"A{numbers(radii[k], radii[k])} 0 0 {int(bends[k] < 0.0)} " if bends[k] else "L"
         steps.append(arc + numbers(end.real, -end.imag))
     return f"M{numbers(start[0].real, -start[0].imag)}{''.join(steps)}Z"
