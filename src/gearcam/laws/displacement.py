@@ -50,7 +50,7 @@ class Jump:
     after: float
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(frozen=True, kw_only=True)
 class Deviation:
     """The largest distance of a smoothed lift from the rows of its table.
 
@@ -60,13 +60,10 @@ class Deviation:
         Cam angle of that row.
     value : float, mm or rad
         Distance, positive if the lift is above the row.
-    rows : (n, 2) array
-        The rows as given: angle, rad, and lift, mm or rad.
     """
 
     theta: float
     value: float
-    rows: Array
 
 
 class Displacement(ABC):

@@ -89,6 +89,8 @@ class Program(Brief, Displacement):
         Error of the rough curves over that of the lift.
     deviation : Deviation, optional
         Largest distance of a smoothed lift from the rows.
+    given : (n, 2) array, optional
+        The rows that were smoothed: angle, rad, and lift, mm or rad.
     open : bool
         Whether it ends with the travel.
     """
@@ -100,6 +102,7 @@ class Program(Brief, Displacement):
     rough: tuple[Piecewise, ...] = ()
     fall: float = 1.0
     deviation: Deviation | None = None
+    given: Array | None = None
     open: bool = False
 
     @property

@@ -84,8 +84,7 @@ def program_of_rows(theta: Array, lift: Array, tolerance: float, spread: float) 
         off = values - lift
         far = int(np.argmax(np.abs(off) + apart))
         value = math.copysign(abs(off[far]) + apart[far], off[far])
-        rows = np.column_stack([theta, lift])
-        deviation = Deviation(theta=float(theta[far]), value=value, rows=rows)
+        deviation = Deviation(theta=float(theta[far]), value=value)
     curve = _curve(theta[::step], values[::step])
     level = max(tolerance, TYPED * float(np.ptp(lift)))
     errors, fall = _errors(theta[::step], values[::step])
@@ -98,6 +97,7 @@ def program_of_rows(theta: Array, lift: Array, tolerance: float, spread: float) 
         rough=tuple(_rough(curve.knots, theta[k::pair], values[k::pair]) for k in (0, step)),
         fall=fall,
         deviation=deviation,
+        given=np.column_stack([theta, lift]) if tolerance else None,
     )
 
 

@@ -40,9 +40,9 @@ def _of_lift(name: str, result: CamResult) -> Chart:
     unit = column.removeprefix(f"{name}_").replace("_per_", "/")
     places, told = _places(result)
     lines = [Line(label=name, x=table[places], y=table[column])]
-    smoothed = result.program.deviation
-    if smoothed is not None and name == "lift":
-        mechanism, (theta, lift) = result.mechanism, smoothed.rows.T
+    given = result.program.given
+    if given is not None and name == "lift":
+        mechanism, (theta, lift) = result.mechanism, given.T
         x, y = mechanism.driver.scale * theta, mechanism.outward[0] * lift
         lines.append(Line(label="given points, before smoothing", x=x, y=y, dots=True))
     title, unit = f"{name.capitalize()} of the follower", f"{name}, {unit}"
