@@ -150,7 +150,7 @@ def test_a_corner_is_refused_with_its_angle_and_a_remedy_that_works() -> None:
     words = r"r1 is not smooth \(phi1 = 57\.29\d* deg\)"
     with pytest.raises(InfeasibleError, match=words) as caught:
         _ = gc.build(pair(Formula(r1=bent))).law
-    assert 'type "table"' in caught.value.nearest
+    assert 'the law "table"' in caught.value.nearest
     phi1 = np.linspace(0.0, TURN, 361)
     law = gc.laws.TableLaw(phi1=tuple(phi1), r1=tuple(bent(phi1)))
     assert gc.build(pair(law)).law.closure_error < 1e-9

@@ -78,8 +78,8 @@ LIMITS = {
         "with all coefficients times",
         lambda share: law_of(Fourier(cosines=(0.9 * share, -0.4 * share), sines=(0.3 * share,))),
     ),
-    "phases": Limit(1.0, "all other ratios times less than", phases),
-    "speeds": Limit(1.0, "all other ratios times less than", speeds),
+    "phases": Limit(1.0, "the other ratios multiplied by less than", phases),
+    "speeds": Limit(1.0, "the other ratios multiplied by less than", speeds),
     "lowest ratio": Limit(
         1.2,
         "",

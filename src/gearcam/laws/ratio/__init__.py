@@ -1,1 +1,1 @@
-"""Ratio laws: i21 and phi2 over phi1 of a pair, each law in the registry `ratio.base.LAWS`."""
+"""Ratio laws: i21 and phi2 of a pair over phi1, in the registry `ratio.base.LAWS`."""

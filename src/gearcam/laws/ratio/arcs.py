@@ -1,8 +1,8 @@
-"""Arcs that carry a ratio from one value to another between two knots.
+"""Arcs of the ratio between two knots.
 
-An arc from `start` to `end` over ``[low, low + width]`` has slope zero at both ends, but for the
-sine, which starts with a slope. Each knows its mean, ``(1 - share)*start + share*end``, so that
-closure is linear in ratios and knots.
+An arc from `start` to `end` over ``[low, low + width]`` has slope zero at both ends, except the
+sine, which starts with a slope. Its mean is ``(1 - share)*start + share*end``, so that closure is
+linear in ratios and knots.
 """
 
 from __future__ import annotations
@@ -18,14 +18,14 @@ from gearcam.numeric.piecewise import Piece
 
 @dataclass(frozen=True, kw_only=True)
 class Arc:
-    """A shape of arc.
+    """A shape of arcs.
 
     Parameters
     ----------
     piece : callable
         ``piece(start, end, low, width)`` returns the arc.
     share : float
-        Weight of the end value in the arc's mean.
+        Weight of the end value in the mean of the arc.
     """
 
     piece: Callable[[float, float, float, float], Piece]
@@ -47,7 +47,7 @@ def _cosine_integral(x: Jet, mean: Value, half: Value, speed: Value, low: Value)
 
 
 def _curve(*powers: float) -> Callable[[float, float, float, float], Piece]:
-    """Return the arcs of a polynomial that rises from 0 to 1 over the unit interval."""
+    """Return arcs shaped as a polynomial that rises from 0 to 1 over the unit interval."""
 
     def ratio(x: Jet, start: Value, rise: Value, low: Value, width: Value) -> Jet:
         return rise * polynomial((x - low) / width, 0.0, *powers) + start
@@ -76,11 +76,11 @@ ARCS: Final[dict[str, Arc]] = {
     "cosine": Arc(piece=_cosine),
     # 003 eq. (2.13) with Table 2.3, written on the unit interval
     "cubic": Arc(piece=_curve(0.0, 0.0, 3.0, -2.0)),
-    # the curvature of the ratio is zero at both ends too
+    # also the second derivative of the ratio is zero at both ends
     "quintic": Arc(piece=_curve(0.0, 0.0, 0.0, 10.0, -15.0, 6.0)),
     "sine": Arc(piece=_sine, share=2.0 / math.pi),
 }
-"""The shapes, by their names in files."""
+"""Shapes by their names in design files."""
 
 SMOOTH: Final = ("cosine", "cubic", "quintic")
-"""Those without a slope at either end."""
+"""Shapes with slope zero at both ends."""

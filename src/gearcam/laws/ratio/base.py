@@ -1,9 +1,9 @@
-"""What a ratio law promises, and the registry of laws.
+"""Ratio laws and their registry.
 
 A law gives ``i21 = dphi2/dphi1 > 0`` and its integral ``phi2`` over one *period* of the driver:
 the driver has `n1` equal lobes, the driven wheel `n2`, so that one period turns the driver by
 ``2*pi/n1`` and the driven wheel by ``2*pi/n2``. A law is made from its *parameters*, a frozen
-dataclass with the method ``build(lobes, tolerances)``; ``LAWS.register`` puts it into the registry.
+dataclass with the method ``build(lobes, tolerances)``; ``LAWS.register`` adds it to the registry.
 """
 
 from __future__ import annotations
@@ -39,35 +39,35 @@ from gearcam.registry import Registry
 from gearcam.tolerances import Tolerances
 
 _SWING: Final = 1e6
-"""How many times its smallest value a ratio may be."""
+"""Largest quotient of largest and smallest ratio."""
 
 _BUNCH: Final = 12
 _BESIDE: Final = 1e-7
 _ORDER: Final = 4
-"""Places at which rounding is looked for beside one, their distances in the piece's width, and the
-order of differences that nothing smooth has there."""
+"""Number of neighbouring places at which rounding is measured, their distance over the width of the
+piece, and the order of differences, which are rounding only."""
 
 _SIGMAS: Final = 3.0
-"""Times a scatter that hardly any value is off by."""
+"""Factor on the scatter that covers nearly all errors."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class RatioLaw(Brief, Displacement):
-    """A ratio over one lobe or over the travel of an open pair, and phi2, its integral.
+    """The ratio over one lobe or the travel of an open pair, and phi2, its integral.
 
     Parameters
     ----------
     lobes : Lobes or Travel
-        Periods of driver and driven wheel, or how far both turn.
+        Periods of driver and driven wheel, or the travels of an open pair.
     ratio : Piecewise
         i21 over ``[0, lobes.period]``; of an open pair also beyond both ends; of a rack r1.
     driven : Piecewise or Expansion
         phi2 over the same interval, rad, zero at zero; of a rack its travel.
     solved : mapping of str to float
-        What was left to the program, by name.
+        Values that the program solved, by name.
     function_errors : (4,) tuple of float
-        Errors of phi2, rad, of the ratio, of its slope, 1/rad, and of its second derivative that
-        come from the expansion of a Python function.
+        Errors from the expansion of a Python function: of phi2, rad, of the ratio, of its slope,
+        1/rad, and of its second derivative.
     """
 
     lobes: Span
@@ -78,7 +78,7 @@ class RatioLaw(Brief, Displacement):
 
     @property
     def mate(self) -> int:
-        """What the driver rolls on; on a rack the ratio is r1, and phi2 the rack's travel."""
+        """Type of the mate; for a rack the ratio is r1, and phi2 the travel of the rack."""
         return self.lobes.mate
 
     @property
@@ -99,12 +99,12 @@ class RatioLaw(Brief, Displacement):
 
     @property
     def closed(self) -> bool:
-        """Whether the pair turns for ever."""
+        """Whether the pair can turn without end."""
         return self.lobes.closed
 
     @cached_property
     def jumps(self) -> tuple[Jump, ...]:
-        """The knots where the ratio or one of its derivatives to the third jumps."""
+        """Knots at which the ratio or one of its derivatives up to the third jumps."""
         last, found = len(self.ratio.knots) - 1, []
         for knot, continuity in enumerate(self.ratio.continuity, start=1):
             inner = knot < last if self.closed else 1 < knot < last - 1
@@ -117,19 +117,19 @@ class RatioLaw(Brief, Displacement):
         return tuple(found)
 
     def knots_between(self, low: Array, high: Array) -> tuple[Ints, Array]:
-        """Return the knots in stretches of driver angle.
+        """Return the knots in intervals of the driver angle.
 
-        The ends of a lobe are one knot; the ends of an open pair, where it is continued, are two.
+        Both ends of a lobe are one knot; the two ends of an open pair are two.
 
         Parameters
         ----------
         low, high : (n,) arrays, rad
-            Ends of the stretches; the low one belongs to its stretch, the high one does not.
+            Ends of the intervals; the lower end is included, the upper one excluded.
 
         Returns
         -------
         number, place : (k,) int array, (k,) array, rad
-            Of the stretch, and of the knot.
+            Index of the interval and angle of the knot, for each knot.
         """
         closed, period = self.lobes.closed, self.lobes.period
         knots = self.knots[:-1] if closed else self.knots
@@ -139,7 +139,7 @@ class RatioLaw(Brief, Displacement):
             inside = np.searchsorted(knots, phi - turns * period)
             return turns.astype(np.int64) * len(knots) + inside
 
-        first = before(low) - 1  # and one more behind: turns are rounded
+        first = before(low) - 1  # and one more at the end: turns are rounded
         count = before(high) + 1 - first
         stretch = np.repeat(np.arange(len(count)), count)
         number = np.arange(len(stretch)) + np.repeat(first - np.cumsum(count) + count, count)
@@ -153,7 +153,7 @@ class RatioLaw(Brief, Displacement):
         return [self.driven(x), *(self.ratio.derivatives(x, order - 1) if order else ())]
 
     def phi2(self, phi1: ArrayLike) -> Array:
-        """Return the driven angle, rad, at any driver angles, rad (turns are counted)."""
+        """Return the driven angle, rad, at any driver angles, rad, over several turns too."""
         return self.derivatives(phi1, 0)[0]
 
     @property
@@ -163,7 +163,7 @@ class RatioLaw(Brief, Displacement):
 
     @property
     def closure_error(self) -> float:
-        """Miss of the driven angle over a lobe, rad."""
+        """Closure error of the driven angle over a lobe, rad."""
         return self.travelled - self.lobes.advance
 
     @cached_property
@@ -179,20 +179,20 @@ class RatioLaw(Brief, Displacement):
         return self.function_errors[0]
 
     def scatter(self, phi: Array, function: Callable[[Array], Array] | None = None) -> Array:
-        """Return how far the ratio and its slope scatter about smooth curves: their rounding.
+        """Return the rounding of the ratio and its slope: their scatter about smooth curves.
 
         Parameters
         ----------
         phi : (n,) array, rad
-            Places in the first lobe, or in an open pair's travel.
+            Driver angles in the first lobe, or in the travel of an open pair.
         function : callable, optional
-            Of places, ``(m, n) -> (..., m, n)``: what is asked instead.
+            Function of driver angles, ``(m, n) -> (..., m, n)``, instead of ratio and slope.
 
         Returns
         -------
         (2, n) array, or (..., n)
-            Three times the root of the mean square of high differences between neighbours that
-            are as good as one, over what those of noise are.
+            Three times the standard deviation of the rounding, from differences of fourth order
+            between close neighbours.
         """
         knots = self.knots
         piece = np.clip(np.searchsorted(knots, phi, side="right") - 1, 0, len(knots) - 2)
@@ -207,23 +207,22 @@ class RatioLaw(Brief, Displacement):
     def error(self) -> float:
         """Estimated error of phi2, rad, or of a rack's travel, over a lobe or an open travel.
 
-        That of the integral, and the rounding of the driver angle where the other turns fastest.
+        Error of the integral, plus the rounding of the driver angle times the largest ratio.
         """
         _, (_, fastest) = self.ratio_range
         return self.integral_error + float(np.finfo(float).eps) * self.period * fastest
 
     @property
     def solved_error(self) -> float:
-        """Miss of a law that was solved so that it closes, as a share of the driven angle."""
+        """Closure error of a solved law over the driven angle; 0 if nothing was solved."""
         return abs(self.closure_error) / self.advance if self.solved else 0.0
 
     @cached_property
     def integral_error(self) -> float:
-        """Estimated error of phi2, rad, at a driver angle that is exact.
+        """Estimated error of phi2, rad, at an exact driver angle.
 
-        Measured against a quadrature of the ratio, twice that since both are rounded; the miss of
-        a law that was solved so that it closes; what the expansion of a Python function misses;
-        and rounding.
+        Twice the difference from a quadrature of the ratio, since both are rounded, plus the
+        closure error of a solved law, the expansion error of a Python function, and rounding.
         """
         known = isinstance(self.driven, Expansion)
         grid = self.driven.knots if known else expand(self.ratio, self.knots, 0.0).knots
@@ -249,7 +248,7 @@ _HOMES: Final = {
 LAWS: Final[Registry[LawEntry]] = Registry(
     "law", {f"gearcam.laws.ratio.{home}": names for home, names in _HOMES.items()}
 )
-"""The laws by name."""
+"""Ratio laws by name."""
 
 
 def make_law(
@@ -259,7 +258,7 @@ def make_law(
     tolerances: Tolerances,
     solved: Mapping[str, float] | None = None,
 ) -> RatioLaw:
-    """Make a law from its pieces and prove that it can drive a pair of wheels.
+    """Return a law made from its pieces, after checking that wheels can realise it.
 
     Parameters
     ----------
@@ -272,18 +271,18 @@ def make_law(
     tolerances : Tolerances
         Accuracy of expansions and closure.
     solved : mapping of str to float, optional
-        What was left to the program.
+        Values that the program solved, by name.
 
     Returns
     -------
     RatioLaw
-        Positive, at least C1, closed; an open one continued beyond its ends.
+        The ratio is positive, at least C1 and closed; an open one is continued beyond its ends.
 
     Raises
     ------
     InfeasibleError
-        Where the ratio is not finite, smooth, positive or periodic, of an internal pair not below
-        1, or where it does not close.
+        If the ratio is not finite, smooth, positive or periodic, does not close, or is not below 1
+        for an internal pair.
     """
     demand_travels(lobes)
     with demand_smooth("the ratio"):
@@ -310,7 +309,7 @@ def make_law(
             limit=math.degrees(lobes.advance),
             unit="deg",
             nearest=f"over {shown(math.degrees(lobes.period), 10)} deg of the driver the driven "
-            f"wheel turns by the first; {asks} for the second",
+            f"wheel turns by the value; {asks} for the limit",
             ways=() if lobes.closed else (Way(near={"law.driven_travel_deg": travelled}),),
         )
     return law

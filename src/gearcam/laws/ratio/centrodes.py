@@ -1,6 +1,6 @@
-"""Centrodes given by one formula of the driver's radius: circles, limacons, lobed ones, spirals.
+"""Laws given by a formula for the radius of the driver: circles, limacons, lobes, spirals.
 
-The radius is given at any scale; the centre distance over it follows from closure.
+The radius is given at any scale; closure gives the centre distance in that scale.
 """
 
 from __future__ import annotations
@@ -37,14 +37,14 @@ _LARGEST: Final = 1e3
 """Largest ratio of a closed spiral, so that 1 - h' keeps 13 digits."""
 
 _ROUNDING: Final = 1e-15
-"""To which places on a return are solved, rad."""
+"""Accuracy of places on a return, rad."""
 
 T = TypeVar("T", Array, Jet)
 
 
 @dataclass(frozen=True, kw_only=True)
 class EccentricCircle:
-    """A circle of radius 1 whose shaft is `eccentricity` off its middle; far side at phi1 = 0.
+    """A circle of radius 1 with its shaft `eccentricity` beside its centre; far side at phi1 = 0.
 
     ``r1 = e*cos(phi1) + sqrt(1 - (e*sin(phi1))^2)``.
     """
@@ -73,7 +73,7 @@ class EccentricCircle:
 
 @dataclass(frozen=True, kw_only=True)
 class Limacon:
-    """Pascal's limacon, ``r1 = 1 + e*cos(phi1)``: a circle rolled around by its equal."""
+    """Pascal's limacon, ``r1 = 1 + e*cos(phi1)``."""
 
     eccentricity: float = param(NUMBER, ge=0, lt=1, doc="amplitude of the radius over its mean")
 
@@ -115,7 +115,7 @@ def _lobed(e: float, count: int, lobes: Lobes, tolerances: Tolerances) -> RatioL
     """
     w = lobes.mate
     k, f = 1.0 + w * lobes.n1 / lobes.n2, w * e
-    # (b + w)^2 = k^2*(b^2 - e^2): the greater root, with the smaller one c is negative
+    # (b + w)^2 = k^2*(b^2 - e^2): the larger root; the smaller one gives a negative c
     square = k * k - 1.0
     b = w * (1.0 + k * math.sqrt(1.0 + square * e * e)) / square
     c, root = b + w, math.sqrt(b * b - e * e)
@@ -135,10 +135,9 @@ def _lobed(e: float, count: int, lobes: Lobes, tolerances: Tolerances) -> RatioL
 
 @dataclass(frozen=True, kw_only=True)
 class LogSpiral(Brief):
-    """``r1 = r1(0)*exp(c*phi1)``; its mate is a spiral of the same c.
+    """``r1 = r1(0)*exp(c*phi1)``; the centrode of the mate is a spiral of the same c.
 
-    The driver and an external wheel, each turning, show the mesh one a growing, the other a
-    shrinking radius; a ring's grows with the driver's.
+    While the radius of the driver grows, that of an external mate shrinks, that of a ring grows.
 
     *Open pair*, with `driven_travel`: with ``u = r1/A = i/(1 + w*i)`` at both ends (w = 1 for a
     wheel as mate, -1 for a ring), the driven wheel turns by ``w*ln((1 - w*u0)/(1 - w*u1))/c`` and
@@ -276,7 +275,7 @@ def _return(k: float, growth: float, half: float) -> Piece:
         return s * (p1 + s * s * (p3 + s * s * p5))
 
     def place(x: Jet) -> Jet:
-        """Return t, which phi1 = middle + t + h(t) gives."""
+        """Return t, the solution of ``phi1 = middle + t + h(t)``."""
         goal = x.c[0] - middle
         found = newton_in_bracket(
             lambda t: (t + h(t) - goal, 1.0 + rate(t)), -half, half, 0.0 * goal, _ROUNDING
@@ -301,7 +300,7 @@ def _demand_one_lobe(lobes: Lobes, name: str) -> None:
             where="pair.teeth",
             value=float(lobes.n1),
             limit=1.0,
-            nearest="the driven wheel's teeth are the driver's or a multiple of them then",
+            nearest="the driven wheel needs the tooth count of the driver or a multiple of it",
         )
 
 

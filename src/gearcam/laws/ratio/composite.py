@@ -1,4 +1,4 @@
-"""Ratios by stretches: constant ratios with transitions, three phases of polynomials, harmonics."""
+"""Constant ratios with transitions, three polynomial phases, and Fourier series."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ from gearcam.tolerances import Tolerances
 class Multispeed(Brief):
     """Constant ratios, each over an angle of the driver, joined by smooth transitions.
 
-    A closed law goes back to its first ratio by a last transition; an open one (with
-    `driven_travel`) ends with its last constant ratio.
+    A closed law ends with a transition to its first ratio; an open one (with `driven_travel`) ends
+    with its last constant ratio.
     """
 
     ratios: RowOfSome = param(
@@ -59,15 +59,15 @@ class Multispeed(Brief):
         Raises
         ------
         InfeasibleError
-            If angles and transitions span neither a turn nor a lobe, or no ratio closes it.
+            If angles and transitions span neither a turn nor a lobe, or the law cannot close.
         """
         steps: list[tuple[float, float | Solve]] = [
             (width, ratio)
             for angle, ratio in zip(self.angles, self.ratios, strict=True)
             for width in (self.transition, angle)
-            if width >= NARROWEST  # a shorter one is none
+            if width >= NARROWEST  # a shorter phase is left out
         ]
-        steps[0] = (0.0, self.ratios[0])  # to which no transition leads
+        steps[0] = (0.0, self.ratios[0])  # no transition leads to it
         if self.driven_travel is None:
             steps.append((self.transition, self.ratios[0]))
         knots = np.cumsum([width for width, _ in steps])
@@ -87,7 +87,7 @@ class ThreePhasePolynomial(Brief):
     """A cubic down to the lowest ratio, then two parabolas up again, 003 Table 2.6.
 
     The ratio starts at b with slope zero, is `lowest` = a at the second knot with slope zero, and
-    rises by two parabolas that meet at the third knot with a common slope p. Closure decides p,
+    rises by two parabolas that meet at the third knot with a common slope p. Closure gives p
     and with it the ratio there, ``i_i = a + p*(k2 - k1)/2``, and ``b = a + p*(k3 - k1)/2``.
     """
 
@@ -126,7 +126,7 @@ class ThreePhasePolynomial(Brief):
         p = (lobes.advance - a * lobes.period) / weight
         if not p > 0.0:
             raise InfeasibleError(
-                "the lowest ratio is not below the mean one",
+                "the lowest ratio is not below the mean ratio",
                 where="law.lowest",
                 value=a,
                 limit=mean,
@@ -148,8 +148,8 @@ class ThreePhasePolynomial(Brief):
 class Fourier(Brief):
     """Harmonics of a lobe: ``f = 1 + sum(a_k*cos(k*n1*phi1) + b_k*sin(k*n1*phi1))``.
 
-    Of the ratio: ``i21 = (n1/n2)*f``. Of phi2: ``dphi2`` over the mean ratio is ``phi1`` plus the
-    sums, in degrees, less their value at phi1 = 0. Both close by themselves.
+    For the ratio ``i21 = (n1/n2)*f``. For phi2 the driven angle over the mean ratio is ``phi1``
+    plus the sums, in degrees, minus their value at phi1 = 0. Both always close.
     """
 
     of: str = param(
@@ -169,10 +169,10 @@ class Fourier(Brief):
         Raises
         ------
         InfeasibleError
-            If the ratio does not stay positive.
+            If the ratio is not positive everywhere.
         """
         n, mean = lobes.n1, lobes.advance / lobes.period
-        if self.of == "ratio":  # their integrals are harmonics of phi2
+        if self.of == "ratio":  # the integrals are harmonics of phi2
             waves = [(-b / (k * n), a / (k * n)) for k, a, b in self._harmonics()]
         else:
             waves = [(math.radians(a), math.radians(b)) for _, a, b in self._harmonics()]

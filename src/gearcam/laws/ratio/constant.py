@@ -1,4 +1,4 @@
-"""Constant ratio: circular wheels, the limit that every formula of the others must meet."""
+"""Constant ratio: circular wheels."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From the driver's centrode to the law: the centre distance that closes the driven wheel."""
+"""The law of a given driver centrode: solves the centre distance that closes the driven wheel."""
 
 from __future__ import annotations
 
@@ -18,24 +18,24 @@ from gearcam.numeric.roots import newton_in_bracket
 from gearcam.tolerances import Tolerances
 
 _APART = 1e-9
-"""Least distance of the driven shaft from the largest radius, in this: nearer, all is lost."""
+"""Smallest distance between driven shaft and largest radius, relative: closer values are lost."""
 
 _LAST_DIGIT = 1e-15
-"""To which a centre distance is solved, in the largest possible: its rounding."""
+"""Accuracy of the centre distance over the largest possible one: its rounding."""
 
 _SMALLEST, _LARGEST = 1e-100, 1e100
-"""Ratios and radii at any scale: their squares are finite."""
+"""Range of ratios and radii, whose squares must be finite."""
 
-LOBES = "lobes of driver and driven wheel; in lowest terms as the tooth counts when left out"
-"""What the key ``lobes`` means."""
+LOBES = "lobes of driver and driven wheel; default: tooth counts in lowest terms"
+"""Meaning of the key ``lobes``."""
 
 
 def law_of_centrode(
     shapes: list[Piece], knots: ArrayLike, lobes: Span, tolerances: Tolerances
 ) -> RatioLaw:
-    """Make a law from the driver's centrode, at any scale.
+    """Return the law of a driver centrode given at any scale.
 
-    With the centre distance c in its scale the ratio is ``i = r/(c - w*r)``, where w = 1 for a
+    With the centre distance c in that scale the ratio is ``i = r/(c - w*r)``, where w = 1 for a
     wheel as mate and -1 for a ring.
 
     Parameters
@@ -45,25 +45,24 @@ def law_of_centrode(
     knots : (n + 1,) array, rad
         From 0 to the period.
     lobes : Lobes or Travel
-        What to close to.
+        Lobes, or travels of an open pair.
     tolerances : Tolerances
         Accuracy.
 
     Returns
     -------
     RatioLaw
-        With ``center_distance_over_scale`` among what was solved.
+        With ``center_distance_over_scale`` in `solved`.
 
     Raises
     ------
     InfeasibleError
-        Where the radius is not finite or smooth, or no law can be made of it.
+        If the radius is not finite or smooth, or the law cannot be realised.
 
     Notes
     -----
-    The driven angle falls as c grows, of a wheel from infinity at the largest r, of a ring from the
-    driver's angle at c = 0, so that there is one root, below the c that would close a wheel of the
-    largest r all around.
+    The driven angle falls as c grows: for a wheel from infinity at the largest r, for a ring from
+    the driver angle at c = 0. So there is one root, below the c of a circle of the largest r.
     """
     radius = piecewise(knots, shapes)
     with demand_smooth("r1"):
@@ -74,21 +73,21 @@ def law_of_centrode(
 
 
 def demand_positive(function: Callable[[Array], Array], name: str, lobes: Span) -> None:
-    """Refuse what is not finite, not positive or out of range somewhere.
+    """Refuse a function that is not finite, not positive or out of range somewhere.
 
     Parameters
     ----------
     function : callable
         ``function(phi1) -> values``.
     name : str
-        What the values are.
+        Name of the values, for messages.
     lobes : Lobes or Travel
-        With the period.
+        Lobes or travel, with the period.
 
     Raises
     ------
     InfeasibleError
-        Naming the first place.
+        With the first such place.
     """
     angles = np.linspace(0.0, lobes.period, PLACES)
     demand_radii(name, angles, function(angles))
@@ -100,18 +99,18 @@ def demand_radii(name: str, angles: Array, values: Array, place: str = "") -> No
     Parameters
     ----------
     name : str
-        What they are.
+        Name of the values, for messages.
     angles : (n,) array, rad
-        Where they are.
+        Driver angles.
     values : (n,) array
         The ratios or radii.
     place : str
-        Words before the angle that is wrong.
+        Text before the angle in messages.
 
     Raises
     ------
     InfeasibleError
-        Naming the first place.
+        With the first such place.
     """
     wrongs = {
         "is not finite": (~np.isfinite(values), None),
@@ -137,16 +136,16 @@ def _ratio(shape: Callable[..., Jet], center: float, mate: int) -> Callable[...,
 def solve_center(
     radius: Callable[[Array], Array], knots: ArrayLike, lobes: Span, tolerances: Tolerances
 ) -> float:
-    """Return the centre distance, in the radius's scale, that closes the driven wheel.
+    """Return the centre distance, in the scale of the radius, that closes the driven wheel.
 
     Parameters
     ----------
     radius : callable
         ``radius(phi1) -> r1``, positive.
     knots : (n + 1,) array, rad
-        From 0 to the period; between them it is smooth.
+        From 0 to the period; the radius is smooth between them.
     lobes : Lobes or Travel
-        What to close to.
+        Lobes, or travels of an open pair.
     tolerances : Tolerances
         Accuracy.
 
@@ -157,7 +156,7 @@ def solve_center(
     Raises
     ------
     NotSmoothError
-        Where the radius is not finite or not smooth between the knots.
+        If the radius is not finite or not smooth between the knots.
     """
     ends, tolerance = np.asarray(knots, dtype=float), tolerances.expansion
     mean = expand(radius, ends, tolerance).antiderivative().last / lobes.period
@@ -170,7 +169,7 @@ def solve_center(
             driven = expand(lambda t: radius(t) / (center - mate * radius(t)), ends, tolerance)
             slope = expand(lambda t: radius(t) / (center - mate * radius(t)) ** 2, ends, tolerance)
         except NotSmoothError:
-            # Too close to the largest radius: the driven angle is lost in its peak, but large.
+            # too close to the largest radius: the driven angle cannot be computed, but is large
             return np.asarray(-np.inf), np.asarray(np.inf)
         miss = lobes.advance - driven.antiderivative().last
         return np.asarray(miss), np.asarray(slope.antiderivative().last)
@@ -182,14 +181,14 @@ def solve_center(
 
 
 def demand_lobes(given: tuple[int, int] | None, lobes: Lobes) -> int:
-    """Return how many lobes the driver has: as given, or as few as the tooth counts allow.
+    """Return the lobes of the driver: as given, or from the tooth counts in lowest terms.
 
     Parameters
     ----------
     given : (int, int) or None
         Lobes of driver and driven wheel.
     lobes : Lobes
-        Of the tooth counts.
+        Lobes of the tooth counts.
 
     Returns
     -------
@@ -211,8 +210,8 @@ def demand_lobes(given: tuple[int, int] | None, lobes: Lobes) -> int:
             where="law.lobes",
             value=given[0] / given[1],
             limit=lobes.n1 / lobes.n2,
-            nearest=f"these are {given[0]}/{given[1]} and {lobes.n1}/{lobes.n2}; the tooth counts "
-            f"ask for [{lobes.n1}, {lobes.n2}] or a multiple",
+            nearest=f"they are {given[0]}/{given[1]} and {lobes.n1}/{lobes.n2}; the tooth counts "
+            f"need [{lobes.n1}, {lobes.n2}] or a multiple",
             ways=[Way(near={"law.lobes": both}) for both in counts],
         )
     return given[0]

@@ -1,4 +1,4 @@
-"""Elliptical wheels turning about a focus, and their kin of higher order with more lobes."""
+"""Elliptical wheels turning about a focus, and such wheels of higher order, with more lobes."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from gearcam.tolerances import Tolerances
 
 @dataclass(frozen=True, kw_only=True)
 class Ellipse:
-    """The driver's near vertex lies at phi1 = 0: ``r1 = p/(1 + e*cos(n1*phi1))``.
+    """``r1 = p/(1 + e*cos(n1*phi1))``: the near vertex of the driver is at phi1 = 0.
 
     With the semi-latus rectum p = 1 and the centre distance A the ratio is ``1/(b +
     A*e*cos(n1*phi1))``, ``b = A - w`` (w = 1 for a wheel as mate, -1 for a ring), and its integral

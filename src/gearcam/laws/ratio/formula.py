@@ -1,4 +1,4 @@
-"""Laws by formula: the driven angle, the ratio, or the shape of the driver centrode, in phi1."""
+"""Laws given by a formula in phi1 of the driven angle, the ratio, or the driver centrode."""
 
 from __future__ import annotations
 
@@ -44,14 +44,14 @@ from gearcam.tolerances import Tolerances
 _NAMES = ("phi2", "ratio", "r1")
 
 _PLACES_OF_LOBE = 257
-"""Places at which a lobe is compared with the first: two formulas that agree there are one."""
+"""Number of places at which each lobe is compared with the first."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Formula(Brief):
     """Exactly one of three formulas; derivatives are exact, by Taylor arithmetic.
 
-    From Python each may be a function of phi1, rad, or a tuple of a function and its first
+    In Python each may be a function of phi1, rad, or a tuple of a function and its first
     derivatives. With `driver_travel` and `driven_travel` the pair is open.
     """
 
@@ -83,7 +83,7 @@ class Formula(Brief):
         Raises
         ------
         InfeasibleError
-            Where the formula is not finite, smooth, monotonic or periodic, or does not close.
+            If the formula is not finite, smooth, monotonic or periodic, or does not close.
         """
         span = span_of(lobes, self.driver_travel, self.driven_travel)
         if self.phi2 is not None:
@@ -113,19 +113,19 @@ class Formula(Brief):
 
 
 def _of_ratio(law: RatioLaw, factor: float, function: Callable[[Jet], Jet]) -> RatioLaw:
-    """Return a law with the errors of a function that its ratio is in proportion to."""
+    """Return a law with the errors of the function to which its ratio is proportional."""
     errors = tuple(factor * each for each in errors_of(function)[:3])
     return replace(law, function_errors=(law.period * errors[0], *errors))
 
 
 def axis_of(name: str, high: float) -> Axis:
-    """Return the axis of a formula in phi1 that is called `name` and needed from 0 to `high`."""
-    remedy = 'a law of type "table" takes such values: its curve has no corners'
+    """Return the axis of a formula `name` in phi1 from 0 to `high`."""
+    remedy = 'for such values use the law "table", whose curve has no corners'
     return Axis(name=name, high=high, place=angle_text, remedy=remedy)
 
 
 def _demand_repeats(function: Callable[[Jet], Jet], name: str, lobes: Span) -> None:
-    """Refuse a formula that is not the same in every lobe of the driver."""
+    """Refuse a formula that does not repeat in every lobe of the driver."""
     x = np.linspace(0.0, lobes.period, _PLACES_OF_LOBE)
     first = values_of(function)(x)
     for lobe in range(1, lobes.n1):
@@ -139,7 +139,7 @@ def _demand_repeats(function: Callable[[Jet], Jet], name: str, lobes: Span) -> N
                 where=angle_text(place + lobe * lobes.period),
                 value=wrong,
                 limit=right,
-                nearest=f"the limit is its value one lobe before; use functions of {lobes.n1}*phi1",
+                nearest=f"the limit is the value one lobe before; use functions of {lobes.n1}*phi1",
             )
 
 
@@ -149,18 +149,18 @@ def from_phi2(
     tolerances: Tolerances,
     solved: dict[str, float] | None = None,
 ) -> RatioLaw:
-    """Make a law from phi2: the ratio is its derivative, and phi2 its integral in closed form.
+    """Return the law of a given phi2; its derivative is the ratio.
 
     Parameters
     ----------
     phi2 : callable
         ``phi2(jet) -> jet``, rad, any constant.
     lobes : Lobes or Travel
-        Over whose period.
+        Lobes, or travels of an open pair.
     tolerances : Tolerances
         Accuracy.
     solved : dict, optional
-        What was solved already.
+        Values that were solved already, by name.
 
     Returns
     -------
@@ -169,7 +169,7 @@ def from_phi2(
     Raises
     ------
     InfeasibleError
-        Where phi2 is not finite, smooth or rising, or does not close.
+        If phi2 is not finite, smooth or rising, or does not close.
     """
     ratio = derivative(phi2)
     x = np.linspace(0.0, lobes.period, PLACES)
@@ -184,7 +184,7 @@ def from_phi2(
             where=angle_text(x[place]),
             value=float(slopes[place]),
             limit=0.0,
-            nearest="this is the ratio there, which must be positive",
+            nearest="this is the ratio, which must be positive",
         )
     with demand_smooth("phi2"):
         expand(values_of(ratio), [0.0, lobes.period], tolerances.expansion)
@@ -193,11 +193,11 @@ def from_phi2(
 
 @dataclass(frozen=True, kw_only=True)
 class RackLaw(Brief):
-    """The driver's centrode, or the rack's travel over a turn; either at any scale.
+    """The centrode of the driver or the travel of the rack over a turn, at any scale.
 
-    From Python either may be a function of phi1, rad, or a tuple with its first derivatives.
-    The rack moves by ``dy = r1*dphi1``, so that ``r1 = y'``; its own centrode is the curve ``(r1,
-    y)``, which is straight for a circular wheel only. The law's ratio is r1, its phi2 is y.
+    In Python either may be a function of phi1, rad, or a tuple with its first derivatives.
+    The rack moves by ``dy = r1*dphi1``, so that ``r1 = y'``; its centrode is the curve ``(r1, y)``,
+    straight only for a circular wheel. The ratio of the law is r1, its phi2 is y.
     """
 
     r1: Given | None = param(
@@ -222,11 +222,13 @@ class RackLaw(Brief):
         Raises
         ------
         InfeasibleError
-            Where the radius is not finite, smooth, positive or periodic, or for a ring.
+            If the radius is not finite, smooth, positive or periodic, or for an internal pair.
         """
         if lobes.mate == RING:
             way = Way(near={"pair.type": "external"})
-            raise InfeasibleError("a rack has no inside", where="pair.type", ways=(way,))
+            raise InfeasibleError(
+                "a rack cannot be an internal pair", where="pair.type", ways=(way,)
+            )
         turn = 2.0 * math.pi
         name = "r1" if self.travel is None else "travel"
         axis = Axis(name=name, high=turn, place=angle_text)

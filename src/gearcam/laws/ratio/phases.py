@@ -1,4 +1,4 @@
-"""Ratio in phases: values at knots, joined by arcs, closed or over the travel of an open pair."""
+"""Ratios at knots, joined by arcs, for closed and open pairs."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ from gearcam.tolerances import Tolerances
 
 @dataclass(frozen=True, kw_only=True)
 class Phases(Brief):
-    """Knots over one turn (or one lobe), a ratio at each; one ratio may be left to closure.
+    """Ratios at knots over one turn (or one lobe); closure may give one ratio.
 
-    With `driven_travel` the pair is open: first and last ratio may differ, and either one ratio or
-    one knot may be left open, so that the driven wheel turns by its travel.
+    With `driven_travel` the pair is open: first and last ratio may differ, and one ratio or one
+    knot may be solved so that the driven wheel turns by its travel.
     """
 
     shape: str = param(
@@ -64,15 +64,27 @@ class Phases(Brief):
     def _closed_problems(self) -> Iterator[tuple[str, int | None, str, str]]:
         for index, value in enumerate(self.knots):
             if value == "solve":
-                rule = "an angle (only an open pair, one with driven_travel_deg, solves a knot)"
-                yield "knots", index, "the knots of a closed pair are given", rule
+                rule = (
+                    "an angle (a knot can be solved only for an open pair, with driven_travel_deg)"
+                )
+                yield "knots", index, "a knot of a closed pair cannot be solved", rule
         first, last = self.ratios[0], self.ratios[-1]
         if first != last:
             given = last if first == "solve" else first
-            yield "ratios", len(self.ratios) - 1, "the last ratio is not the first", f"{given!r}"
+            yield (
+                "ratios",
+                len(self.ratios) - 1,
+                "the last ratio differs from the first",
+                f"{given!r}",
+            )
         if sum(value == "solve" for value in self.ratios[:-1]) > 1:
             second = [k for k, value in enumerate(self.ratios) if value == "solve"][1]
-            yield "ratios", second, 'more than one "solve"', 'one "solve"; one lobe is enough'
+            yield (
+                "ratios",
+                second,
+                'more than one "solve"',
+                'one "solve"; the knots of one lobe are enough',
+            )
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         """Return the law for `lobes`, to `tolerances`.
@@ -80,8 +92,8 @@ class Phases(Brief):
         Raises
         ------
         InfeasibleError
-            If the knots span neither a turn nor a lobe, or the law does not close (naming the
-            closing value of each ratio), or no positive ratio closes it.
+            If the knots span neither a turn nor a lobe, or the law does not close; the error names
+            the closing value of each ratio.
         """
         arc = ARCS[self.shape]
         if self.driven_travel is None:
@@ -94,7 +106,7 @@ class Phases(Brief):
 
 
 def knot_problems(knots: RowOfSome) -> Iterator[tuple[str, int | None, str, str]]:
-    """Yield what is wrong by reading with `knots`, rad: field, index, message, allowed."""
+    """Yield the faults of `knots`, rad: field, index, message, allowed."""
     if knots[0] != 0.0:
         yield "knots", 0, "the first knot is not 0", "0"
     known = [(k, value) for k, value in enumerate(knots) if value != "solve"]
@@ -112,11 +124,11 @@ def one_lobe(
     Parameters
     ----------
     knots : (n,) array, rad
-        Over one lobe, or over a turn in which they repeat.
+        Knots over one lobe, or over a turn of repeated lobes.
     ratios : sequence of n floats or "solve"
         i21 at the knots.
     lobes : Lobes
-        Of the tooth counts.
+        Lobes of the tooth counts.
     where : str
         The key, for messages.
 
@@ -128,7 +140,7 @@ def one_lobe(
     Raises
     ------
     InfeasibleError
-        If they span neither.
+        If they span neither a turn nor a lobe.
     """
     for repeats in (1, lobes.n1):
         count = (len(knots) - 1) // repeats
@@ -162,7 +174,7 @@ def arcs_law(
     solved: dict[str, float] | None = None,
     name: str = "",
 ) -> RatioLaw:
-    """Return a law of arcs of one shape; one ratio may be left to closure.
+    """Return a law of arcs of one shape; closure may give one ratio.
 
     Parameters
     ----------
@@ -171,15 +183,15 @@ def arcs_law(
     knots : (n,) array, rad
         From 0 to the period.
     ratios : sequence of n floats or "solve"
-        i21 at the knots; all that are left open are one and the same.
+        i21 at the knots; all that are solved have the same value.
     lobes : Lobes or Travel
-        What to close to.
+        Lobes, or travels of an open pair.
     tolerances : Tolerances
         Accuracy.
     solved : dict, optional
-        What was solved already.
+        Values that were solved already, by name.
     name : str, optional
-        What the open ratio is called; by its place when left out.
+        Name of the solved ratio; default: by its index.
 
     Returns
     -------
@@ -188,8 +200,7 @@ def arcs_law(
     Raises
     ------
     InfeasibleError
-        If it does not close (naming the closing value of each ratio), or no positive ratio closes
-        it.
+        If it does not close, with the closing value of each ratio, or no positive ratio closes it.
     """
     widths = np.diff(knots)
     weights = np.append((1.0 - arc.share) * widths, 0.0) + np.append(0.0, arc.share * widths)
@@ -208,8 +219,8 @@ def _close(
     tolerances: Tolerances,
     name: str,
 ) -> tuple[list[float], dict[str, float]]:
-    """Solve the ratio left open; every arc's mean is linear in its end values."""
-    if lobes.closed:  # first and last are one
+    """Return the ratios with the solved one; the mean of an arc is linear in its end values."""
+    if lobes.closed:  # first and last ratio are the same
         weights = np.append(weights[0] + weights[-1], weights[1:-1])
         ratios = ratios[:-1]
     given = np.array([0.0 if value == "solve" else value for value in ratios], dtype=float)
@@ -227,8 +238,8 @@ def _close(
                 where=f"law.{name}",
                 value=closing,
                 limit=0.0,
-                nearest="closure asks for this value; it is positive with all other ratios times "
-                f"less than {shown(lobes.advance / (lobes.advance - rest))}",
+                nearest="closure needs this value; it is positive with the other ratios multiplied "
+                f"by less than {shown(lobes.advance / (lobes.advance - rest))}",
             )
     elif abs(rest) > tolerances.refusal:
         nearest, ways = _closing_values(given, rest / weights, lobes.closed)
@@ -246,9 +257,9 @@ def _close(
 
 
 def _closing_values(given: np.ndarray, change: np.ndarray, closed: bool) -> tuple[str, list[Way]]:
-    """Say which value each ratio must have for the law to close if only that one is changed.
+    """Return the value of each ratio with which the law closes if only that one is changed.
 
-    With the words comes a way for each; a closing value that is not positive is left out.
+    As text, and as a change of the design for each; values that are not positive are left out.
     """
     lines, ways = [], []
     for index, (value, step) in enumerate(zip(given.tolist(), change.tolist(), strict=True)):
@@ -265,7 +276,7 @@ def _closing_values(given: np.ndarray, change: np.ndarray, closed: bool) -> tupl
 def _solve_knot(
     arc: Arc, knots: Sequence[float | Solve], ratios: Sequence[float | Solve], travel: float
 ) -> tuple[np.ndarray, dict[str, float]]:
-    """Return knots, and the one left open by an open pair: the driven angle is linear in it."""
+    """Return the knots of an open pair with the solved one; the driven angle is linear in it."""
     if "solve" not in knots:
         return np.array(knots, dtype=float), {}
     index = knots.index("solve")

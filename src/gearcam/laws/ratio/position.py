@@ -1,4 +1,4 @@
-"""Position laws: that of the driven element or of its slide is given, and the ratio follows."""
+"""Laws given by the position of the driven element or of a slide that it moves."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ from gearcam.tolerances import Tolerances
 
 @dataclass(frozen=True, kw_only=True)
 class MotionLaw(Brief):
-    """Either y(x) of the driven element, or the position of a slide that its crank moves.
+    """The position y(x) of the driven element, or of a slide that the driven crank moves.
 
     With y the driver turns in proportion to x and the driven wheel in proportion to y: ``phi1 =
     k1*(x - x_from)``, ``phi2 = k2*(y - y(x_from))``, so that ``i21 = k2*y'/k1``. Both scales follow
-    from `driver_travel` and `driven_travel`, or from closure. With slide(phi1) the driven wheel's
-    angle is the crank's. From Python y and slide may be functions, or tuples of a function and its
+    from `driver_travel` and `driven_travel`, or from closure. With slide(phi1) the driven wheel
+    turns with the crank. In Python y and slide may be functions, or tuples of a function and its
     first derivatives.
     """
 
@@ -59,13 +59,13 @@ class MotionLaw(Brief):
         asked = ("x_from", "x_to") if self.slide is None else ("rod",)
         for name in ("x_from", "x_to", "rod"):
             if (getattr(self, name) is None) == (name in asked):
-                yield name, None, "is missing" if name in asked else "does not belong here", rule
+                yield name, None, "is missing" if name in asked else "does not apply here", rule
         name, variable = ("y", "x") if self.slide is None else ("slide", VARIABLE)
         yield from formula_problems(name, getattr(self, name), variable)
         if self.x_from is not None and self.x_from == self.x_to:
             yield "x_to", None, "is x_from", "another x"
         if self.slide is not None and self.driven_travel is not None:
-            yield "driven_travel", None, "a slide's crank turns all the way", rule
+            yield "driven_travel", None, "the crank of a slide makes full turns", rule
         yield from travel_problems(self.driver_travel, self.driven_travel)
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
@@ -74,7 +74,7 @@ class MotionLaw(Brief):
         Raises
         ------
         InfeasibleError
-            Where y or the slide is not finite, smooth, monotonic or periodic.
+            If y or the slide is not finite, smooth, monotonic or periodic.
         """
         if self.slide is not None:
             return self._from_slide(lobes, tolerances)
@@ -118,8 +118,8 @@ class MotionLaw(Brief):
                 where="pair.teeth",
                 value=float(lobes.n2),
                 limit=1.0,
-                nearest="the driver's teeth are the driven wheel's or a multiple of them then, and "
-                "the pair is external",
+                nearest="the driver needs the tooth count of the driven wheel or a multiple "
+                "of it, and the pair is external",
             )
         axis = replace(axis_of("slide", lobes.period), series=True)
         shape = function_of(self.slide or "", axis, tolerances.expansion)

@@ -23,10 +23,10 @@ _BASIS = np.array([[1, 4, 1, 0], [-3, 0, 3, 0], [3, -6, 3, 0], [-1, 3, -3, 1]]) 
 """Cubic B-spline on a segment: powers of t (rows) of four control values (columns)."""
 
 _EDGE = 1e-6
-"""Part of a polygon's possible heights left out at the top, where its corner meets the shaft."""
+"""Share of the possible heights of a polygon that is excluded where its corner meets the shaft."""
 
 _ROUND = 1e-12
-"""Part of the corners' radius by which the lowest polygon is above a circle: it has sides."""
+"""Share of the corner radius by which the lowest polygon is above a circle: it has sides."""
 
 _HEIGHT = 1e-16
 """Accuracy of a polygon's height, in centre distances: the last digit."""
@@ -34,10 +34,10 @@ _HEIGHT = 1e-16
 
 @dataclass(frozen=True, kw_only=True)
 class BSplineLaw(Brief):
-    """The radius is a closed uniform cubic B-spline over phi1 with these control values.
+    """The radius as a closed uniform cubic B-spline of control values over phi1.
 
-    Control value k belongs to the angle ``k/n`` of a lobe; the curve stays between its neighbours'
-    values, and moving one moves the centrode only near it.
+    Control value k belongs to the angle ``k/n`` of a lobe; the curve stays within neighbouring
+    control values, each of which changes the centrode only near its angle.
     """
 
     radii: Row = param(
@@ -64,7 +64,7 @@ class RoundedPolygon(Brief):
 
     With the corner radius c and the distance h of a side from the shaft, both over the centre
     distance, the sides are ``h/cos(phi1)`` and the corners circles of radius c about a point at
-    ``d = (h - c)/cos(pi/n)``. Closure decides h.
+    ``d = (h - c)/cos(pi/n)``. Closure gives h.
     """
 
     corners: int = param(COUNT, ge=3, le=100, doc="corners of the driver, a multiple of its lobes")
@@ -84,7 +84,7 @@ class RoundedPolygon(Brief):
                 where="law.corners",
                 value=float(self.corners),
                 limit=float(lobes.n1),
-                nearest=f"the tooth counts ask for a multiple of {lobes.n1}",
+                nearest=f"the tooth counts need a multiple of {lobes.n1}",
                 ways=(
                     Way(near={"law.corners": max(1, round(self.corners / lobes.n1)) * lobes.n1}),
                 ),
@@ -92,11 +92,11 @@ class RoundedPolygon(Brief):
         largest = lobes.n1 / (lobes.n2 + lobes.mate * lobes.n1)
         if not self.corner_radius < largest:
             raise InfeasibleError(
-                "the corners are rounder than a circular wheel",
+                "the corner radius is larger than that of a circular wheel",
                 where="law.corner_radius",
                 value=self.corner_radius,
                 limit=largest,
-                nearest="the limit, in centre distances, is a circular wheel's radius",
+                nearest="the limit is the radius of a circular wheel over the centre distance",
                 ways=(
                     Way(
                         near={"law.corner_radius": largest},
@@ -118,9 +118,9 @@ class RoundedPolygon(Brief):
         return make_law(lobes, np.append(grid, lobes.period), moved, tolerances, solved)
 
     def _pieces(self, h: float, mate: int) -> tuple[np.ndarray, list[Piece]]:
-        """Knots and ratios of one sector, from the middle of a side to that of the next.
+        """Return knots and ratios of one sector, from the middle of a side to that of the next.
 
-        The parameter of a piece is the angle about which it is symmetric.
+        The parameter of a piece is its angle of symmetry.
         """
         half = math.pi / self.corners
         c, d = self.corner_radius, (h - self.corner_radius) / math.cos(half)
@@ -139,13 +139,13 @@ class RoundedPolygon(Brief):
         return knots, [Piece(shape, parameters=(middle,)) for shape, middle in shapes]
 
     def _side(self, lobes: Lobes, largest: float) -> float:
-        """Solve h: the driven angle grows with it, from that of a circle of the corner's radius.
+        """Return h that closes the driven wheel; the driven angle grows with h.
 
-        A ring allows any h; but from that of a circular wheel on, `largest`, it turns too far.
+        In a ring any h is possible up to `largest`, that of a circular wheel.
         """
         nodes, weights = np.polynomial.legendre.leggauss(64)
         highest = largest
-        if lobes.mate == WHEEL:  # at most the corner reaches the other shaft: d + c = 1
+        if lobes.mate == WHEEL:  # at the limit the corner reaches the other shaft: d + c = 1
             half = math.pi / self.corners
             highest = self.corner_radius + (1.0 - self.corner_radius) * math.cos(half)
 
@@ -154,7 +154,7 @@ class RoundedPolygon(Brief):
             for h in np.atleast_1d(heights):
                 knots, pieces = self._pieces(float(h), lobes.mate)
                 ratio = piecewise(knots, pieces)
-                # the corner's peak is sharp where it comes near the other shaft: graded parts
+                # a corner close to the other shaft gives a sharp peak: graded intervals
                 grid = np.concatenate([knots[0] + np.linspace(0, 1, 5) * knots[1], _graded(knots)])
                 width = 0.5 * np.diff(grid)
                 x = grid[:-1] + width * (1.0 + nodes[:, None])
@@ -168,7 +168,7 @@ class RoundedPolygon(Brief):
 
 
 def _graded(knots: np.ndarray) -> np.ndarray:
-    """Places from the end of a side to the middle of its corner, denser towards the middle."""
+    """Return angles from the end of a side to the middle of its corner, denser there."""
     middle = 0.5 * (knots[1] + knots[2])
     return middle - (middle - knots[1]) * 0.5 ** np.append(np.arange(1, 24), np.inf)
 

@@ -1,14 +1,13 @@
-"""The crank angle that moves a slide as desired (003 section 1.4.1).
+"""The crank angle for a desired motion of a slide (003 section 1.4.1).
 
-A crank of radius 1 with a rod of length `rod` moves a slide; `s` is the slide's distance from the
-dead centre that is farther from the shaft, 0 to 2, and ``d = 1 + rod - s`` that from the shaft.
+A crank of radius 1 with a rod of length `rod` moves a slide; `s` is the distance of the slide from
+its outer dead centre, 0 to 2, and ``d = 1 + rod - s`` its distance from the shaft.
 The triangle of crank, rod and d gives the crank angle psi without cancellation,
 
     sin(psi/2)^2 = s*(2*rod - s)/(4*d),   cos(psi/2)^2 = (2 - s)*(2 + 2*rod - s)/(4*d).
 
-At a dead centre s has a double zero, and its root changes sign there: ``sqrt(s)`` is
-``t*sqrt(s/t^2)``, with s as a Taylor series in the angle t from the dead centre. From it comes the
-series of psi, which is used nearby.
+At a dead centre s has a double zero, where its root changes sign: ``sqrt(s) = t*sqrt(s/t^2)``, with
+s as a Taylor series in the angle t from the dead centre. This gives the series of psi used nearby.
 """
 
 from __future__ import annotations
@@ -32,27 +31,27 @@ _ORDER = 30
 """Terms of the Taylor series at a dead centre."""
 
 _TAIL = 6
-"""Last terms of the series, by which its reach is judged."""
+"""Number of last terms of the series that decide its range."""
 
 _BELOW = 1e-17
-"""Last terms of the series, in its first: below rounding."""
+"""Size of the last terms of the series over its first: below rounding."""
 
 _BESIDE = 1e-6
-"""Part of a period beside its end at which the slide is asked whether it turns back there."""
+"""Distance from the end of a period, over the period, at which the direction is compared."""
 
 _STILL = 1e-6
-"""Least second Taylor coefficient of the slide at a dead centre, crank radii per rad^2: from there
-on the crank does not stand still."""
+"""Smallest second Taylor coefficient of the slide at a dead centre, crank radii per rad^2: below it
+the crank would stand still."""
 
 _WIDEST = 0.3
 NARROWEST = 0.02
-"""Angles about a dead centre, rad, over which its series is used: as far as it holds to rounding,
-and no less than where the closed form beside it loses digits."""
+"""Angles about a dead centre, rad, within which its series is used: as far as it is accurate, and
+at least as far as the closed form loses digits."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Slide:
-    """A slide's desired motion over one turn, in crank radii.
+    """The desired motion of a slide over one turn, in crank radii.
 
     Parameters
     ----------
@@ -61,9 +60,9 @@ class Slide:
     rod : float
         Length of the rod, in crank radii.
     outer, inner : float, rad
-        Driver angles of the dead centres, far from the shaft and near it.
+        Driver angles of the outer and the inner dead centre.
     period : float, rad
-        After which the motion repeats.
+        Period of the motion.
     """
 
     position: Function
@@ -79,23 +78,23 @@ def make_slide(shape: Function, rod: float, period: float) -> tuple[Slide, float
     Parameters
     ----------
     shape : callable
-        The slide's position at any scale and from any place, rising towards the shaft.
+        Position of the slide with any scale and origin, rising towards the shaft.
     rod : float
         Length of the rod, in crank radii.
     period : float, rad
-        After which it repeats.
+        Period of the motion.
 
     Returns
     -------
     slide : Slide
-        In crank radii.
+        Motion in crank radii.
     radius : float
         Crank radius in the unit of the slide: half the stroke.
 
     Raises
     ------
     InfeasibleError
-        If the slide does not go forth once and back once.
+        If the slide does not go forward once and back once.
     """
 
     def function(x: Array) -> list[Array]:
@@ -105,11 +104,11 @@ def make_slide(shape: Function, rod: float, period: float) -> tuple[Slide, float
     turns = _dead_centres(places, values, period, function)
     if len(turns) != 2:
         raise InfeasibleError(
-            "the slide must go forth and back once: a crank has two dead centres",
+            "the slide must go forward and back once: a crank has two dead centres",
             where="law.slide",
             value=float(len(turns)),
             limit=2.0,
-            nearest="this is how often the slide turns back over one lobe of the driver",
+            nearest="this is the number of reversals over one lobe of the driver",
         )
     (outer, low), (inner, high) = sorted(turns, key=lambda turn: turn[1])
     radius = 0.5 * (high - low)
@@ -123,7 +122,7 @@ def make_slide(shape: Function, rod: float, period: float) -> tuple[Slide, float
 def _dead_centres(
     places: Array, values: Array, period: float, function: Callable[[Array], list[Array]]
 ) -> list[tuple[float, float]]:
-    """Inner extremes, and the lobe's end where the slope changes its sign there too."""
+    """Return the inner extremes, and the end of the lobe if the slope changes sign there."""
     found = [(float(x), float(v)) for x, v in zip(places[1:-1], values[1:-1], strict=True)]
     step = _BESIDE * period
     before, after = function(np.array([period - step, step]))[1]
@@ -134,7 +133,7 @@ def _dead_centres(
 
 
 def crank_angle(slide: Slide) -> tuple[Array, list[Piece], float]:
-    """Return the crank angle as a law's pieces.
+    """Return the crank angle as pieces of a law.
 
     Parameters
     ----------
@@ -146,14 +145,14 @@ def crank_angle(slide: Slide) -> tuple[Array, list[Piece], float]:
     knots : (n + 1,) array, rad
         From 0 to the period.
     pieces : list of n Piece
-        Its derivative over phi1, and itself.
+        Derivative of the crank angle by phi1, with the crank angle as integral.
     start : float, rad
         Crank angle from the outer dead centre at phi1 = 0.
 
     Raises
     ------
     InfeasibleError
-        Where the motion rests at a dead centre or bends too sharply there.
+        If the slide rests at a dead centre or bends too sharply there.
     """
     outer = (slide.outer, *_series(slide, slide.outer, 1.0), 1.0)
     inner = (slide.inner, *_series(slide, slide.inner, -1.0), -1.0)
@@ -201,16 +200,16 @@ def _between(slide: Slide) -> Callable[..., Jet]:
 
 
 def _series(slide: Slide, place: float, sign: float) -> tuple[float, list[float]]:
-    """Return reach and coefficients of the series about a dead centre; sign -1 for the inner."""
+    """Return range and coefficients of the series about a dead centre; sign -1 for the inner."""
     jet = slide.position(Jet.variable(np.array([place]), _ORDER))
     c = np.array([float(np.ravel(value)[0]) for value in jet.c]) * sign
     if not c[2] > _STILL:
         raise InfeasibleError(
-            "the slide rests at its dead centre, so that the crank would stand still there",
+            "the slide rests at its dead centre: the crank would stand still",
             where=f"law.slide, {angle_text(place)}",
             value=2.0 * float(c[2]),
             limit=2.0 * _STILL,
-            nearest="this is the second derivative of the slide's position, in crank radii",
+            nearest="this is the second derivative of the position of the slide, in crank radii",
         )
     over, small = Jet(c[2:].tolist()), Jet([0.0, 0.0, *c[2:-2].tolist()])
     s = small if sign > 0.0 else 2.0 - small
@@ -224,7 +223,7 @@ def _series(slide: Slide, place: float, sign: float) -> tuple[float, list[float]
     reach = min(reach, 0.2 * abs(((slide.inner - slide.outer) % slide.period) or math.inf))
     if reach < NARROWEST:
         raise InfeasibleError(
-            "the slide's motion bends too sharply at its dead centre",
+            "the motion of the slide bends too sharply at its dead centre",
             where=f"law.slide, {angle_text(place)}",
             value=math.degrees(reach),
             limit=math.degrees(NARROWEST),

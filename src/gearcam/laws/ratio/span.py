@@ -1,8 +1,8 @@
-"""How far a law reaches: lobes of a closed pair, or the travel of an open one with its ends.
+"""Lobes of closed pairs, and travel and ends of open ones.
 
-A closed law repeats. An open one is continued beyond both ends, since the teeth there roll beyond
-them: by the logarithmic spiral that goes on with the end's ratio and slope (a circle where the
-slope is zero), so that the centrode has no corner.
+A closed law repeats. An open one is continued beyond both ends, since the end teeth roll beyond
+them: by a logarithmic spiral with the ratio and slope of the end (a circle for slope zero), so that
+the centrode has no corner.
 """
 
 from __future__ import annotations
@@ -25,40 +25,40 @@ from gearcam.numeric.piecewise import Piece, Piecewise
 from gearcam.quantities import ANGLE, param
 
 _FLAT = 1e-9
-"""Growth of the radius in a radian below which the continued centrode is a circle: rounding."""
+"""Growth of the radius per radian below which the continued centrode is a circle: rounding."""
 
 _CLOSED_FORM = 1e-3
-"""Growth from which the closed form of the spiral's driven angle is better than an expansion."""
+"""Growth above which the closed form of the driven angle is better than an expansion."""
 
 SAME: Final = 1e-12
-"""Distance of knots, rad, below which they are one: the rounding of a few sums."""
+"""Distance, rad, below which knots are the same: the rounding of a few sums."""
 
 PLACES: Final = 2049
-"""Places over a period, ends included, at which functions are first asked for values to refuse."""
+"""Number of places over a period, ends included, at which functions are checked first."""
 
 _LARGEST: Final = 1e4
-"""How many times as far as the other wheel one of an open pair may turn."""
+"""Largest quotient of the travels of an open pair."""
 
 _ROOM = 0.9
-"""Largest share of the room to either shaft that a continued centrode may use."""
+"""Largest share of the distance to either shaft that a continued centrode may use."""
 
 
 WHEEL: Final = 1
 RACK: Final = 0
 RING: Final = -1
-"""What the driver rolls on, w in ``r1 = A*i/(1 + w*i)``: an external wheel, a rack, a ring."""
+"""Type of the mate, w in ``r1 = A*i/(1 + w*i)``: an external wheel, a rack, a ring."""
 
 
 @dataclass(frozen=True)
 class Lobes:
-    """How often the ratio repeats in a turn: n1 times of the driver, n2 of the driven wheel.
+    """Lobes: the ratio repeats n1 times per turn of the driver and n2 per turn of the driven wheel.
 
     Parameters
     ----------
     n1, n2 : int
-        The tooth counts' ratio in lowest terms.
+        Ratio of the tooth counts in lowest terms.
     mate : {WHEEL, RING}
-        What the driver rolls on.
+        Type of the mate.
     """
 
     n1: int
@@ -84,9 +84,9 @@ class Travel:
     Parameters
     ----------
     period, advance : float, rad
-        How far the driver and the driven wheel turn.
+        Travel of the driver and of the driven wheel.
     mate : {WHEEL, RING}
-        What the driver rolls on.
+        Type of the mate.
     """
 
     period: float
@@ -99,16 +99,16 @@ class Travel:
 
 @dataclass(frozen=True)
 class RackTravel(Travel):
-    """A wheel that drives a rack, turning for ever; the rack is as long as its teeth.
+    """A wheel that drives a rack; the wheel turns without end, the rack is as long as its teeth.
 
     Parameters
     ----------
     period : float, rad
-        A turn of the wheel.
+        One turn of the wheel.
     advance : float
-        The rack's travel in a turn, in the scale of the wheel's radius.
+        Travel of the rack per turn, in the scale of the radius of the wheel.
     mate : {RACK}
-        Nothing else.
+        Always a rack.
     """
 
     mate: int = RACK
@@ -116,53 +116,53 @@ class RackTravel(Travel):
 
 
 ONE_LOBE: Final = Lobes(1, 1)
-"""Of equal tooth counts."""
+"""Lobes of equal tooth counts."""
 
 Span = Lobes | Travel
-"""Closed, open, or closed on a rack."""
+"""Lobes of a closed pair, or travels of an open pair or a rack."""
 
 
 def demand_equal(lobes: Lobes) -> None:
-    """Refuse an open pair with unequal tooth counts: both centrodes have the same length.
+    """Refuse an open pair with unequal tooth counts, since both centrodes are equally long.
 
     Parameters
     ----------
     lobes : Lobes
-        Of the tooth counts.
+        Lobes of the tooth counts.
 
     Raises
     ------
     InfeasibleError
-        If they are unequal.
+        If the tooth counts are unequal.
     """
     if replace(lobes, mate=WHEEL) != ONE_LOBE:
         raise InfeasibleError(
-            "an open pair has equal tooth counts: its centrodes are equally long",
+            "an open pair needs equal tooth counts: its centrodes are equally long",
             where="pair.teeth",
             value=lobes.n1 / lobes.n2,
             limit=1.0,
-            nearest="this is the ratio of the counts",
+            nearest="this is the ratio of the tooth counts",
         )
 
 
 def demand_travels(span: Span) -> None:
-    """Refuse a ring that turns as far as its wheel, and wheels that would be racks beside others.
+    """Refuse a ring that turns as far as its wheel, and travels that differ too much.
 
     Parameters
     ----------
     span : Lobes or Travel
-        How far both turn.
+        Travels of both wheels.
 
     Raises
     ------
     InfeasibleError
-        Naming the driven wheel's travel.
+        With the travel of the driven wheel.
     """
     key, mean = "law.driven_travel_deg", span.advance / span.period
     if not (span.closed or span.mate == RACK or 1.0 / _LARGEST <= mean <= _LARGEST):
         limit = math.degrees(span.period) * (1.0 / _LARGEST if mean < 1.0 else _LARGEST)
         raise InfeasibleError(
-            "one wheel turns so little beside the other that it would be a rack",
+            "one wheel turns so little compared with the other that it would be a rack",
             where=key,
             value=math.degrees(span.advance),
             limit=limit,
@@ -173,12 +173,12 @@ def demand_travels(span: Span) -> None:
     if span.mate == RING and not span.advance < span.period:
         most = math.degrees(span.period)
         raise InfeasibleError(
-            "a ring turns less than its wheel",
+            "a ring must turn less than its wheel",
             where="pair.teeth" if span.closed else key,
             value=math.degrees(span.advance),
             limit=most,
             unit="deg",
-            nearest="the limit is how far the driver turns",
+            nearest="the limit is the travel of the driver",
             ways=() if span.closed else (Way(near={key: most}, far={key: 0.1 * most}),),
         )
 
@@ -186,31 +186,31 @@ def demand_travels(span: Span) -> None:
 def demand_below_one(
     largest: float, where: str, mean: float = 1.0, ways: Sequence[Way] = ()
 ) -> None:
-    """Refuse a ratio of an internal pair that is not below 1.
+    """Refuse an internal pair whose ratio is not below 1.
 
     Parameters
     ----------
     largest : float
         The largest ratio.
     where : str
-        Its place.
+        Place of the largest ratio.
     mean : float
-        The mean that closure asks for, where it is told.
+        Mean ratio of a closed law, for the message; 1 if unknown.
     ways : sequence of Way
-        Changes that may help.
+        Changes of the design that may help.
 
     Raises
     ------
     InfeasibleError
-        Naming how much less the ratio may swing about its mean.
+        With the largest possible swing of the ratio about its mean.
     """
     if not largest < 1.0:
         nearest = "the wheel would be as large as its ring"
         if mean < 1.0:
             share = shown((1.0 - mean) / (largest - mean))
             nearest += (
-                f"; about the mean of {shown(mean)}, which closure asks for, the ratio may swing "
-                f"less than {share} times as far"
+                f"; about the mean of {shown(mean)}, which closure needs, the ratio may swing "
+                f"by less than {share} times as much"
             )
         raise InfeasibleError(
             "the ratio of an internal pair must stay below 1",
@@ -223,14 +223,14 @@ def demand_below_one(
 
 
 def span_of(lobes: Lobes, driver_travel: float | None, driven_travel: float | None) -> Span:
-    """Return the travel of an open pair where it is given for both wheels, else the lobes.
+    """Return the travel of an open pair if both travels are given, else the lobes.
 
     Parameters
     ----------
     lobes : Lobes
-        Of the tooth counts.
+        Lobes of the tooth counts.
     driver_travel, driven_travel : float or None, rad
-        Both or none.
+        Travels, both or none.
 
     Returns
     -------
@@ -239,7 +239,7 @@ def span_of(lobes: Lobes, driver_travel: float | None, driven_travel: float | No
     Raises
     ------
     InfeasibleError
-        For an open pair of unequal tooth counts.
+        If an open pair has unequal tooth counts.
     """
     if driver_travel is None or driven_travel is None:
         return lobes
@@ -250,32 +250,32 @@ def span_of(lobes: Lobes, driver_travel: float | None, driven_travel: float | No
 def travel_problems(
     driver_travel: float | None, driven_travel: float | None
 ) -> Iterator[tuple[str, int | None, str, str]]:
-    """Yield what is wrong where one of two travels is given alone: field, index, message, allowed.
+    """Yield the fault of a travel that is given without the other: field, index, message, allowed.
 
     Parameters
     ----------
     driver_travel, driven_travel : float or None, rad
-        As the design says.
+        Travels as given.
 
     Yields
     ------
     tuple
-        For a law's ``problems``.
+        As for ``problems`` of a law.
     """
     if (driver_travel is None) != (driven_travel is None):
         missing = "driven_travel" if driven_travel is None else "driver_travel"
         rule = "driver_travel_deg and driven_travel_deg for an open pair, neither for a closed one"
-        yield missing, None, "is missing beside the other travel", rule
+        yield missing, None, "is missing; the other travel is given", rule
 
 
 @contextmanager
 def demand_smooth(name: str) -> Iterator[None]:
-    """Refuse what turns out inside not to be smooth, or not finite, over the driver angle.
+    """Turn a `NotSmoothError` raised inside into a refusal with the driver angle.
 
     Parameters
     ----------
     name : str
-        What it is.
+        Name of the function, for the message.
 
     Yields
     ------
@@ -316,15 +316,14 @@ def continued(ratio: Piecewise, pieces: list[Piece], mate: int) -> tuple[Array, 
     pieces : list of Piece
         Its pieces.
     mate : {WHEEL, RING}
-        What the driver rolls on.
+        Type of the mate.
 
     Returns
     -------
     knots : (n + 3,) array, rad
-        From before 0 to beyond the travel.
+        From below 0 to beyond the travel.
     pieces : list of n + 2 Piece
-        With a spiral before and behind. Each is as long as the centrode itself, or as the room
-        between the shafts allows.
+        With a spiral at both ends, as long as the centrode or as the shafts allow.
     """
     length = _length(ratio, mate)
     last = len(ratio.knots) - 1
@@ -334,7 +333,7 @@ def continued(ratio: Piecewise, pieces: list[Piece], mate: int) -> tuple[Array, 
 
 
 def _length(ratio: Piecewise, mate: int) -> float:
-    """Length of the centrode for unit centre distance, to a few digits."""
+    """Return the length of the centrode for unit centre distance, to a few digits."""
     nodes, weights = np.polynomial.legendre.leggauss(48)
     half = 0.5 * np.diff(ratio.knots)
     x = ratio.knots[:-1] + half * (1.0 + nodes[:, None])
@@ -346,7 +345,7 @@ def _length(ratio: Piecewise, mate: int) -> float:
 def _end(
     place: float, end: list[float], side: float, length: float, mate: int
 ) -> tuple[float, Piece]:
-    """Angle to which a spiral continues an end (ratio and slope given), and the spiral."""
+    """Return the angle to which a spiral continues an end, given as ratio and slope, and it."""
     ratio, slope = end
     radius = ratio / (1.0 + mate * ratio)
     growth = slope / (ratio * (1.0 + mate * ratio))
@@ -355,7 +354,7 @@ def _end(
         return place + side * length / radius, piece
     outward, stretch = side * growth, math.hypot(1.0, growth)
     room = radius
-    if outward > 0.0:  # a ring goes on around any wheel
+    if outward > 0.0:  # a ring leaves room for any wheel
         room = 1.0 - radius if mate == WHEEL else math.inf
     rise = math.copysign(min(length * abs(outward) / stretch, _ROOM * room), outward)
 
@@ -369,18 +368,18 @@ def spiral(radius: float, growth: float, mate: int, place: float = 0.0) -> Piece
     Parameters
     ----------
     radius : float
-        At the place, over the centre distance A.
+        Radius at `place` over the centre distance A.
     growth : float, 1/rad
-        Of the radius in a radian, in the radius.
+        Growth of the radius per radian over the radius.
     mate : {WHEEL, RING}
-        What the driver rolls on.
+        Type of the mate.
     place : float, rad
         Driver angle.
 
     Returns
     -------
     Piece
-        With its integral, unless it grows so little that an expansion is better.
+        With its integral, unless the growth is so small that an expansion is better.
     """
 
     def share(x: Jet) -> Jet:

@@ -26,17 +26,17 @@ from gearcam.tolerances import Tolerances
 
 _ANGLE: Final = "phi1_deg"
 _VALUES: Final = {"ratio": "ratio", "phi2": "phi2_deg", "r1": "r1"}
-"""What the values may be, with their columns in a file."""
+"""Kinds of values, with their columns in a file."""
 
 _FEWEST: Final = 6
-"""Rows of a table: fewer make no curve of quintics."""
+"""Fewest rows of a table."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class TableLaw(FromFile):
-    """Points of a law: in a CSV file, or in the design itself.
+    """Points of a law, in a CSV file or in the design itself.
 
-    The curve through the points is C2 and rises only where they rise. A ratio is scaled so that it
+    The curve through the points is C2 and monotonic wherever they are. A ratio is scaled so that it
     closes, a driven angle must close, and a radius (at any scale) gives the centre distance.
     With `driven_travel` the pair is open.
     """
@@ -90,7 +90,7 @@ class TableLaw(FromFile):
         Raises
         ------
         InfeasibleError
-            If the file is not such a table any more, spans no lobe, or no law can be made of it.
+            If the file was changed and is not valid any more, spans no lobe, or gives no law.
         """
         try:
             kind, angles, values = self.points
@@ -113,9 +113,9 @@ class TableLaw(FromFile):
 
     @cached_property
     def points(self) -> tuple[str, Array, Array]:
-        """What the values are (``ratio``, ``phi2`` or ``r1``), angles and values, rad or 1.
+        """The kind of values (``ratio``, ``phi2`` or ``r1``), driver angles, rad, and values.
 
-        It raises `ColumnsError` with the line of the file that is wrong.
+        Raises `ColumnsError` with the line of the file.
         """
         if self.rows is not None:
             return _points(self.rows)
@@ -135,20 +135,20 @@ class TableLaw(FromFile):
                 -1,
                 angles[-1],
                 lobes.period,
-                "its last row is at the limit; an open pair gives driven_travel_deg",
+                "the limit is where the last row must be; an open pair needs driven_travel_deg",
             )
         return lobes
 
     def _demand_ratio(self, kind: str, angles: Array, values: Array, span: Span) -> None:
-        """Refuse values that do not repeat, or are not positive."""
+        """Refuse values that do not repeat or are not positive."""
         if span.closed and abs(values[-1] - values[0]) > TYPED * abs(values[0]):
             raise self._miss(
-                "the last value of the table is not the first",
+                "the last value of the table differs from the first",
                 kind,
                 -1,
                 values[-1],
                 values[0],
-                "the next lobe begins where this one ends",
+                "the next lobe starts with the last value",
             )
         demand_radii(kind, angles, values, f"{self._place(kind)}, ")
 
@@ -158,7 +158,7 @@ class TableLaw(FromFile):
     def _miss(
         self, what: str, column: str, row: int, value: float, limit: float, nearest: str = ""
     ) -> InfeasibleError:
-        """Return the refusal of a first or last `value` that is not its `limit`, rad or 1."""
+        """Return the refusal of a first or last `value` that must be `limit`, rad or 1."""
         unit, place = "deg" if column == _ANGLE else "", self._place(column)
         value, limit = ((math.degrees if unit else float)(one) for one in (value, limit))
         if self.rows is not None:
@@ -189,7 +189,7 @@ def _pieces(
     function: Callable[..., Jet] = polynomial,
     integral: Callable[..., Jet] = primitive,
 ) -> list[Piece]:
-    """Return functions of polynomials, with rows of `powers` about the knot before."""
+    """Return pieces of polynomials from rows of `powers` of the distance from the knot before."""
     rows = np.column_stack([knots[:-1], powers]).tolist()
     return [Piece(function, integral, tuple(row)) for row in rows]
 

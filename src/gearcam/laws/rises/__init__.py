@@ -1,4 +1,4 @@
-"""Rises: S over phi on the unit square, each in the registry `rises.base.RISES`.
+"""Motion laws: S over phi on the unit square, in the registry `rises.base.RISES`.
 
 Their parameters are attributes: ``gearcam.rises.Cycloidal()``.
 

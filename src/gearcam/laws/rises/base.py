@@ -1,10 +1,10 @@
-"""Rises of cam followers on the unit square, and their registry.
+"""Motion laws of rises on the unit square, and their registry.
 
 A rise gives the lift over the whole lift, S, over the cam angle over the whole angle, phi, both
 from 0 to 1; S', S'' and S''' are its velocity, acceleration and jerk. A lift program scales it to
-a phase of the cam and turns it over for a return. Every rise is a piecewise analytic function with
+a phase of the cam and mirrors it for a return. Every rise is a piecewise analytic function with
 exact derivatives, made from its *parameters*, a frozen dataclass with the method
-``build(tolerances)``; ``RISES.register`` puts it into the registry.
+``build(tolerances)``; ``RISES.register`` adds it to the registry.
 
 Source: 000 section 3.3.2, eqs. (3.3)-(3.5).
 """
@@ -24,10 +24,7 @@ from gearcam.registry import Registry
 from gearcam.tolerances import Tolerances
 
 NARROWEST: Final = 1e-6
-"""Least part of the angle that a sector or a step of a table may take.
-
-It is a second of arc of the cam; the place of a knot in it is still known to 1e-10 of its width.
-"""
+"""Smallest share of the angle for a sector or a step of a table: a second of arc of a full turn."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -41,7 +38,7 @@ class Rise:
     mirrored : bool
         Whether the return is the rise run backwards, ``S(1 - phi)``, instead of ``1 - S(phi)``.
     cuts : sequence of float
-        Where else than at the knots the search for peaks cuts the angle: it bends sharply there.
+        Further places, besides the knots, at which it bends sharply: peaks are searched between.
     errors : (float, float, float, float)
         Estimated errors of S, S', S'' and S''' beyond rounding.
     """
@@ -53,7 +50,7 @@ class Rise:
 
 
 class RiseParameters(Protocol):
-    """What the parameters of a rise can do."""
+    """Parameters of a rise."""
 
     def build(self, tolerances: Tolerances) -> Rise:
         """Return the rise, to `tolerances`, or raise `InfeasibleError`."""
@@ -61,7 +58,7 @@ class RiseParameters(Protocol):
 
 
 class ClosedForm(Brief, ABC):
-    """Parameters of a rise in closed form: they say its function, and need no tolerance."""
+    """Parameters of a rise whose function is a closed form without tolerance."""
 
     mirrored: ClassVar[bool] = False
 
@@ -69,7 +66,7 @@ class ClosedForm(Brief, ABC):
     def function(self) -> Piecewise:
         """S over phi."""
 
-    def build(self, tolerances: Tolerances) -> Rise:  # noqa: ARG002  (kept for all to be alike)
+    def build(self, tolerances: Tolerances) -> Rise:  # noqa: ARG002  (same signature for all)
         """Return the rise."""
         return Rise(function=self.function(), mirrored=self.mirrored)
 
@@ -93,4 +90,4 @@ _HOMES: Final = {
 RISES: Final[Registry[LawEntry]] = Registry(
     "rise", {f"gearcam.laws.rises.{home}": names for home, names in _HOMES.items()}
 )
-"""The rises by name."""
+"""Motion laws by name."""

@@ -1,4 +1,4 @@
-"""Rises by formula."""
+"""Motion laws given by a formula."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _AXIS: Final = Axis(
     high=1.0,
     place=lambda x: f"{_WHERE}, x = {shown(round(x, 5))}",
     variable=_VARIABLE,
-    remedy='the law "table" takes such values: its curve has no corners',
+    remedy='for such values use the law "table", whose curve has no corners',
 )
 _NAMES: Final = ("S", "its velocity S'", "its acceleration S''", "its jerk S'''")
 
@@ -51,7 +51,7 @@ class FormulaRise(Brief):
         Raises
         ------
         InfeasibleError
-            Where the formula is not finite or not smooth, or does not go from 0 to 1.
+            If the formula is not finite or not smooth, or does not go from 0 to 1.
         """
         shape = function_of(self.formula, _AXIS, tolerances.expansion)
         cuts = demand_smooth(shape, self.formula, _AXIS, _NAMES, tolerances)

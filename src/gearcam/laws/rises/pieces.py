@@ -1,8 +1,7 @@
-"""What rises are made of: sectors that mirror each other, and polynomials exact at both ends.
+"""Building blocks of motion laws: symmetric sectors, and polynomials exact at both ends.
 
-Most rises have a second half that is the first one turned about the middle of the square,
-``S(phi) = 1 - S(1 - phi)``. They are written for the first half, where small lifts keep all their
-digits, and turned.
+Most laws are symmetric about the middle of the square, ``S(phi) = 1 - S(1 - phi)``. They are
+written for the first half, where small lifts keep all their digits, and turned for the second.
 """
 
 from __future__ import annotations
@@ -21,18 +20,18 @@ from gearcam.numeric.piecewise import Piece, Piecewise, piecewise
 Shape = Callable[[Jet], Jet]
 
 _NOTHING: Final = 1e-12
-"""Width at which a sector counts as none: the rounding of widths."""
+"""Width below which a sector is left out: the rounding of widths."""
 
 _SERIES: Final = 1.5
-"""Argument below which ``x - sin(x)`` is summed as a series: above, it loses one digit at most."""
+"""Argument below which ``x - sin(x)`` is computed as a series; above it loses at most one digit."""
 
 _POWERS: Final = tuple((-1) ** k / factorial(2 * k + 3) for k in range(10, -1, -1))
-"""Coefficients of that series over ``x^3``, of falling powers of ``x^2``; the next one is below
+"""Coefficients of that series over ``x^3``, of falling powers of ``x^2``; the next term is below
 1e-18 of the sum."""
 
 
 def lag(x: Jet) -> Jet:
-    """``x - sin(x)``, with all its digits where x is small."""
+    """Return ``x - sin(x)`` with all digits for small x."""
     wave, value, half = sin(x), x.c[0], np.sin(0.5 * x.c[0])
     square = value * value
     series = _POWERS[0] * square + _POWERS[1]
@@ -50,7 +49,7 @@ def reflected(shape: Shape) -> Shape:
 
 
 def turned(shape: Shape) -> Shape:
-    """Return a function that is its own reflection, computed from the nearer end of the square.
+    """Return a symmetric function, computed from the nearer end of the square.
 
     Parameters
     ----------
@@ -71,13 +70,13 @@ def turned(shape: Shape) -> Shape:
 
 
 def from_half(sectors: Iterable[tuple[float, Shape]]) -> Piecewise:
-    """Return the rise whose second half is its first one, turned.
+    """Return the symmetric law whose first half is given.
 
     Parameters
     ----------
     sectors : iterable of (width, shape)
-        Of the first half, widths 1/2 in all; those without a width are left out. The last goes on
-        smoothly through the middle.
+        Sectors of the first half, with total width 1/2; sectors of width zero are left out. The
+        last is smooth across the middle.
 
     Returns
     -------
@@ -106,7 +105,7 @@ def about(powers: Sequence[Fraction], by: int) -> list[Fraction]:
     powers : sequence of Fraction
         Coefficients of rising powers.
     by : int
-        How far.
+        Shift of the variable.
 
     Returns
     -------
@@ -126,14 +125,14 @@ def from_both_ends(
     Parameters
     ----------
     left, right : sequences of numbers
-        Its coefficients of the powers of ``phi - low`` and of ``phi - high``, as many.
+        Coefficients of the powers of ``phi - low`` and of ``phi - high``, equally many.
     low, high : float
         The interval.
 
     Returns
     -------
     Piece
-        Its derivatives at either end are the coefficients there, to the last digit.
+        Its derivatives at both ends follow exactly from the coefficients.
     """
     return Piece(_from_nearer, parameters=(low, high, *map(float, left), *map(float, right)))
 

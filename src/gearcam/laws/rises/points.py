@@ -1,4 +1,4 @@
-"""Rises drawn by points: B-splines near control values, and splines through the rows of a table."""
+"""Motion laws given by points: B-splines of control values, and splines through tables."""
 
 from __future__ import annotations
 
@@ -25,29 +25,28 @@ from gearcam.tolerances import Tolerances
 Problem = tuple[str, int | None, str, str]
 
 _MOVES: Final = (1, 2)
-"""How values of a table are moved to see what rounding does: every one, or every two the other
-way."""
+"""Periods of the signs with which the values of a table are changed to estimate rounding."""
 
 _ROUNDING: Final = 24.0 * float(np.finfo(float).eps)
-"""By what part."""
+"""Relative change of the values."""
 
 _SHARES: Final = np.array([[0.0], [0.25], [0.5], [0.75]])
-"""Places between rows at which the change is looked at."""
+"""Places between rows at which the change is measured."""
 
 _FEWEST: Final = 3
 _MOST: Final = 2000
-"""Rows of a table: one every fifth of a degree of a full turn."""
+"""Most rows of a table: one every fifth of a degree of a full turn."""
 
 _MOST_VALUES: Final = 500
-"""Control values of a B-spline: nobody moves more by hand."""
+"""Most control values of a B-spline."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class BSplineRise(ClosedForm):
     """A B-spline of S with clamped, evenly spaced knots.
 
-    Every control value pulls S towards it over a few knots; as many zeros and ones at the ends as
-    are wanted make that many derivatives zero there.
+    Each control value acts on S over a few knots; k equal values (zeros or ones) at an end make the
+    first k - 1 derivatives zero there.
     """
 
     control: Row = param(
@@ -84,12 +83,12 @@ class BSplineRise(ClosedForm):
 
 
 def _span(control: list[Fraction], number: int, spans: int) -> list[Fraction]:
-    """Return a B-spline between two knots: powers of the knots passed since the first of them.
+    """Return a B-spline between two knots as powers of the distance from the first, in knots.
 
-    De Boor's recursion with polynomials for numbers, exact; knots are 0, 1, ... `spans`.
+    Exact, by de Boor's recursion with polynomials in place of numbers; knots are 0, 1, ... `spans`.
     """
     p = len(control) - 1
-    # the p knots before and the p knots after the two, those beyond the ends moved there
+    # the p knots before and after the two; knots beyond the ends are moved to the ends
     knots = [min(max(number - p + 1 + k, 0), spans) for k in range(2 * p)]
     rows = np.full((p + 1, p + 1), Fraction(0))
     rows[:, 0] = control
@@ -103,10 +102,10 @@ def _span(control: list[Fraction], number: int, spans: int) -> list[Fraction]:
 
 @dataclass(frozen=True, kw_only=True)
 class TableRise(FromFile):
-    """A spline through points, of quintics: it goes on up to the fourth derivative.
+    """A quintic spline through points, C4.
 
-    Of all curves through the points with the given ends it is the one with the least integral of
-    the squared jerk. Velocity and acceleration can be given at both ends, so that it meets dwells
+    Of all curves through the points with the given end conditions it has the least integral of the
+    squared jerk. Velocity and acceleration can be given at both ends, so that it meets dwells
     without a jump of acceleration; a cubic spline could not.
     """
 
@@ -185,14 +184,14 @@ def _point_problems(points: Array) -> Iterator[Problem]:
             value = float(points[row, column])
             if abs(value - corner) > TYPED:
                 message = f"the {place} {name} is {shown(value, 10)}, not {shown(corner)}"
-                yield name, row, message, "x and y from 0 to 1: parts of the angle and of the lift"
+                yield name, row, message, "x and y from 0 to 1: shares of the angle and of the lift"
     for row in np.flatnonzero(np.diff(points[:, 0]) < NARROWEST)[:1]:
         rule = f"each x at least {shown(NARROWEST)} above the one before"
         yield "x", int(row) + 1, "x does not rise", rule
 
 
 def _through(points: Array, start: tuple[float, float], end: tuple[float, float]) -> Piecewise:
-    """Return the quintic spline through points, with S' and S'' given at its ends."""
+    """Return the quintic spline through points with given S' and S'' at its ends."""
     x, y = points.T
     return spline(x, *coefficients(x, y, chain_slopes(x, y, start, end), ring=False))
 
@@ -200,9 +199,9 @@ def _through(points: Array, start: tuple[float, float], end: tuple[float, float]
 def _errors(
     points: Array, start: tuple[float, float], end: tuple[float, float]
 ) -> tuple[float, ...]:
-    """Estimate what rounding does to the spline and its derivatives: the change with moved points.
+    """Return the effect of rounding on the spline and its derivatives.
 
-    Its equations are solved again for values that are moved by rounding, each its own way.
+    The equations are solved again with values changed by their rounding, in several patterns.
     """
     x, y = points.T
     places = (x[:-1] + np.diff(x) * _SHARES).ravel(order="F")

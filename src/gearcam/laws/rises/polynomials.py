@@ -1,7 +1,7 @@
-"""Polynomial rises: the textbook's, and those of least degree for any conditions at both ends.
+"""Polynomial motion laws: the common ones, and those of lowest degree for given end conditions.
 
-All are computed from the nearer end, with coefficients in exact rational arithmetic, so that what
-is asked at either end holds to the last digit.
+All are computed from the nearer end, with coefficients in exact rational arithmetic, so that the
+conditions at both ends hold to the last digit.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ from gearcam.numeric.piecewise import Piecewise, piecewise
 from gearcam.quantities import NUMBER, Row, param
 
 _MOST: Final = 8
-"""Most derivatives at an end: degree 17, whose coefficients still add up to 1e-12."""
+"""Most derivatives at an end: degree 17, accurate to 1e-12."""
 
 
 def of_least_degree(
     start: Sequence[float], end: Sequence[float]
 ) -> tuple[list[Fraction], list[Fraction]]:
-    """Return the polynomial of least degree with given derivatives at 0 and 1.
+    """Return the polynomial of lowest degree with given derivatives at 0 and 1.
 
     With m and n of them it is ``A(t) + t^m*Q(t - 1)``: A has those at 0, and Q the first n powers
     of ``(B - A)*t^-m`` about 1, where B has those at 1.
@@ -40,7 +40,7 @@ def of_least_degree(
     Returns
     -------
     about_start, about_end : list of Fraction
-        Its exact coefficients of the powers of phi and of ``phi - 1``.
+        Exact coefficients of the powers of phi and of ``phi - 1``.
     """
     m, n = len(start), len(end)
     first, last = (
@@ -56,7 +56,7 @@ def of_least_degree(
 
 
 class _TwoEnded(ClosedForm):
-    """The polynomial of least degree with S', S'', ... given at both ends."""
+    """The polynomial of lowest degree with given S', S'', ... at both ends."""
 
     start: Row
     end: Row
@@ -69,7 +69,7 @@ class _TwoEnded(ClosedForm):
 
 @dataclass(frozen=True, kw_only=True)
 class Polynomial(_TwoEnded):
-    """The polynomial of least degree with given derivatives at both ends."""
+    """The polynomial of lowest degree with given derivatives at both ends."""
 
     start: Row = param(
         NUMBER,
@@ -126,8 +126,8 @@ class Polynomial56789(_TwoEnded):
 class Polynomial3456(_TwoEnded):
     """``S = phi^3*(2 - phi)^3``: the first half of a rise and return in one formula.
 
-    At the top the acceleration is -6 and the jerk 0. The return of the same law that follows
-    without a dwell goes down the same curve, so that all derivatives go on across the top.
+    At the top the acceleration is -6 and the jerk 0. A return of the same law without a dwell
+    continues the same polynomial, so that all derivatives are continuous at the top.
     """
 
     mirrored = True

@@ -1,8 +1,8 @@
-"""The family of sine, constant and cosine acceleration (SCCA), with its two best known members.
+"""The family of sine-constant-cosine acceleration (SCCA), with its two best known members.
 
 Over the first half of the rise the acceleration grows as a quarter of a sine over b/2, keeps its
-peak Ca over c/2, and falls to zero as a quarter of a cosine over d/2; the second half is the first
-one, turned. Velocities and lifts at the ends of the sectors are sums of positive terms, and Ca
+peak Ca over c/2, and falls to zero as a quarter of a cosine over d/2; the second half is
+symmetric. Velocities and lifts at the ends of the sectors are sums of positive terms, and Ca
 makes the lift at the middle one half.
 
 Source: R. L. Norton, the SCCA family of double-dwell
@@ -58,7 +58,7 @@ def scca(b: float, c: float, d: float) -> Piecewise:
     Parameters
     ----------
     b, c, d : float
-        Widths of the sectors, 1 in all, none below zero; one of width zero makes no piece.
+        Widths of the sectors, at least 0, with sum 1; sectors of width zero are left out.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""The elementary rises, and those with straight parts: trapezoids of velocity and acceleration."""
+"""Elementary motion laws, and trapezoids of velocity and of acceleration."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from gearcam.quantities import NUMBER, param
 
 @dataclass(frozen=True, kw_only=True)
 class ConstantVelocity(ClosedForm):
-    """A straight line; a hard shock at both ends."""
+    """Constant velocity; a hard shock at both ends."""
 
     def function(self) -> Piecewise:
         """``S = phi``."""
