@@ -164,3 +164,36 @@ def test_limits_of_bores_count_their_keyways(tmp_path: Path) -> None:
     (remedy,) = gearcam.remedies(job_of(document, tmp_path)).found
     assert not job_of(followed(document, remedy.changes), tmp_path).gears[0].ring
     assert "keyway" not in refusal(bored(CIRCLE, [20, 20], 60), tmp_path).nearest
+
+
+SPEEDS = {"type": "multispeed", "angles_deg": [100, 200], "transition_deg": 30}
+TWICE = {"type": "phases", "knots_deg": [0, 80, 180, 260, 360]}
+CLOSING = {
+    # transitions have the mean of both ratios: 130 deg at the first, 230 deg at the second
+    "speeds": (SPEEDS | {"ratios": [1.5, 0.6]}, [60, 60], ["ratios[0] = 1.707692308",
+               "ratios[1] = 0.7173913043"]),
+    "two lobes": (TWICE | {"ratios": [2.2, 2, 2.2, 2, 2.2]}, [160, 80],
+                  ["ratios[0] = ratios[2] = ratios[4] = 2", "ratios[1] = ratios[3] = 1.8"]),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", CLOSING)
+def test_ratios_that_close_a_law_are_those_of_the_file(name: str, tmp_path: Path) -> None:
+    law, teeth, named = CLOSING[name]
+    error = refusal(pair(law, teeth), tmp_path)
+    assert error.nearest == f"it closes with {' or '.join(named)}"
+    for way in error.ways:
+        _ = job_of(followed(pair(law, teeth), dict(way.near)), tmp_path).law
+
+
+@pytest.mark.parametrize(
+    "law",
+    [SPEEDS | {"ratios": [5, "solve"]}, {"type": "phases", "knots_deg": [0, 180, 360],
+                                         "ratios": [3, "solve", 3]}],
+)  # fmt: skip
+def test_where_no_positive_ratio_closes_smaller_ones_are_tried(law: Any, tmp_path: Path) -> None:
+    document = pair(law, [60, 60])
+    (remedy,) = gearcam.remedies(job_of(document, tmp_path)).found
+    assert "law.ratios[0]" in remedy.changes
+    made = job_of(followed(document, remedy.changes), tmp_path)
+    assert not [one for one in made.findings if one.severity == "error"]

@@ -61,25 +61,24 @@ class Multispeed(Brief):
         InfeasibleError
             If angles and transitions span neither a turn nor a lobe, or the law cannot close.
         """
-        steps: list[tuple[float, float | Solve]] = [
-            (width, ratio)
-            for angle, ratio in zip(self.angles, self.ratios, strict=True)
+        steps = [
+            (width, place)
+            for place, angle in enumerate(self.angles)
             for width in (self.transition, angle)
             if width >= NARROWEST  # a shorter phase is left out
         ]
-        steps[0] = (0.0, self.ratios[0])  # no transition leads to it
+        steps[0] = (0.0, 0)  # no transition leads to it
         if self.driven_travel is None:
-            steps.append((self.transition, self.ratios[0]))
-        knots = np.cumsum([width for width, _ in steps])
-        values: list[float | Solve] = [ratio for _, ratio in steps]
+            steps.append((self.transition, 0))
+        knots, places = np.cumsum([width for width, _ in steps]), [place for _, place in steps]
+        values: list[float | Solve] = [self.ratios[place] for place in places]
         arc = ARCS[self.shape]
-        name = f"ratios[{self.ratios.index('solve')}]" if "solve" in self.ratios else ""
         if self.driven_travel is not None:
             demand_equal(lobes)
             span = Travel(float(knots[-1]), self.driven_travel, lobes.mate)
-            return arcs_law(arc, knots, values, span, tolerances, name=name)
+            return arcs_law(arc, knots, values, span, tolerances, places=places)
         grid, lobe = one_lobe(knots, values, lobes, "law.angles_deg with transitions")
-        return arcs_law(arc, grid, lobe, lobes, tolerances, name=name)
+        return arcs_law(arc, grid, lobe, lobes, tolerances, places=places)
 
 
 @dataclass(frozen=True, kw_only=True)

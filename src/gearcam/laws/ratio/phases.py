@@ -98,7 +98,7 @@ class Phases(Brief):
         arc = ARCS[self.shape]
         if self.driven_travel is None:
             knots, ratios = one_lobe(np.array(self.knots, dtype=float), self.ratios, lobes)
-            return arcs_law(arc, knots, ratios, lobes, tolerances)
+            return arcs_law(arc, knots, ratios, lobes, tolerances, places=range(len(self.ratios)))
         demand_equal(lobes)
         knots, solved = _solve_knot(arc, self.knots, self.ratios, self.driven_travel)
         span = Travel(float(knots[-1]), self.driven_travel, lobes.mate)
@@ -172,7 +172,7 @@ def arcs_law(
     lobes: Span,
     tolerances: Tolerances,
     solved: dict[str, float] | None = None,
-    name: str = "",
+    places: Sequence[int] = (),
 ) -> RatioLaw:
     """Return a law of arcs of one shape; closure may give one ratio.
 
@@ -190,8 +190,8 @@ def arcs_law(
         Accuracy.
     solved : dict, optional
         Values that were solved already, by name.
-    name : str, optional
-        Name of the solved ratio; default: by its index.
+    places : sequence of int, optional
+        Index in `law.ratios` of each knot's ratio, of repeated lobes too; its own if left out.
 
     Returns
     -------
@@ -204,7 +204,7 @@ def arcs_law(
     """
     widths = np.diff(knots)
     weights = np.append((1.0 - arc.share) * widths, 0.0) + np.append(0.0, arc.share * widths)
-    values, found = _close(weights, ratios, lobes, tolerances, name)
+    values, found = _close(weights, ratios, lobes, tolerances, places or range(len(ratios)))
     pieces = [
         arc.piece(values[k], values[k + 1], float(knots[k]), float(widths[k]))
         for k in range(len(widths))
@@ -217,7 +217,7 @@ def _close(
     ratios: Sequence[float | Solve],
     lobes: Span,
     tolerances: Tolerances,
-    name: str,
+    places: Sequence[int],
 ) -> tuple[list[float], dict[str, float]]:
     """Return the ratios with the solved one; the mean of an arc is linear in its end values."""
     if lobes.closed:  # first and last ratio are the same
@@ -230,19 +230,26 @@ def _close(
         unknown = np.array([value == "solve" for value in ratios])
         closing = rest / float(weights[unknown].sum())
         given[unknown] = closing
-        name = name or f"ratios[{ratios.index('solve')}]"
+        name = f"ratios[{places[ratios.index('solve')]}]"
         solved = {name: closing}
         if not closing > 0.0:
+            share = lobes.advance / (lobes.advance - rest)
+            least = {
+                f"law.ratios[{place}]": share * float(given[k % len(given)])
+                for k, place in enumerate(places)
+                if not unknown[k % len(given)]
+            }
             raise InfeasibleError(
                 "no positive ratio closes the law",
                 where=f"law.{name}",
                 value=closing,
                 limit=0.0,
                 nearest="closure needs this value; it is positive with the other ratios multiplied "
-                f"by less than {shown(lobes.advance / (lobes.advance - rest))}",
+                f"by less than {shown(share)}",
+                ways=(Way(near=least, far=dict.fromkeys(least, lobes.advance / lobes.period)),),
             )
     elif abs(rest) > tolerances.refusal:
-        nearest, ways = _closing_values(given, rest / weights, lobes.closed)
+        nearest, ways = _closing_values(given, weights, rest, places)
         raise InfeasibleError(
             "the phases do not close",
             where="law.ratios",
@@ -256,16 +263,24 @@ def _close(
     return [*values, values[0]] if lobes.closed else values, solved
 
 
-def _closing_values(given: np.ndarray, change: np.ndarray, closed: bool) -> tuple[str, list[Way]]:
-    """Return the value of each ratio with which the law closes if only that one is changed.
+def _closing_values(
+    given: np.ndarray, weights: np.ndarray, rest: float, places: Sequence[int]
+) -> tuple[str, list[Way]]:
+    """Return which value each ratio of a file must have for the law to close, as text and ways.
 
-    As text, and as a change of the design for each; values that are not positive are left out.
+    Only that ratio is changed, wherever it holds; values that are not positive are left out.
     """
-    lines, ways = [], []
-    for index, (value, step) in enumerate(zip(given.tolist(), change.tolist(), strict=True)):
-        closing = value + step
-        names = [f"ratios[{index}]", *([f"ratios[{len(given)}]"] if closed and not index else [])]
+    lines, ways, left = [], [], set(range(len(given)))
+    while left:
+        group, size = {min(left)}, 0
+        while size < len(group):  # knots with one ratio, and ratios of one knot
+            size = len(group)
+            own = {place for k, place in enumerate(places) if k % len(given) in group}
+            group |= {k % len(given) for k, place in enumerate(places) if place in own}
+        left -= group
+        closing = float(given[min(group)] + rest / weights[sorted(group)].sum())
         if closing > 0.0:
+            names = [f"ratios[{place}]" for place in sorted(own)]
             lines.append(f"{' = '.join(names)} = {shown(closing, 10)}")
             ways.append(Way(near={f"law.{name}": closing for name in names}))
     if not lines:
