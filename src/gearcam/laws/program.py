@@ -1,9 +1,8 @@
 """Lift programs: the displacement of a follower over a turn, or over the travel, of the cam.
 
-A program is made from phases. Motion laws are scaled to phases; a segment is the quintic that
-starts with the end state of the phase before it. The program repeats every turn and knows the
-knots at which its velocity (*hard shock*), acceleration (*soft shock*) or jerk jumps. The program
-of a cam that slides is *open*; its whole travel counts as one turn, 2*pi rad.
+A program joins phases: motion laws scaled to their phases, and segments, quintics that continue the
+phase before. It repeats every turn and has knots where its velocity (*hard shock*), acceleration
+(*soft shock*) or jerk jumps. That of a translating cam is *open*; its travel counts as 2*pi rad.
 
 Source: 000 section 3.3, eqs. (3.3)-(3.5).
 """
@@ -83,8 +82,7 @@ class Program(Brief, Displacement):
     errors : (float, float, float, float)
         Estimated errors of the lift, mm or rad, and of its first three derivatives beyond rounding.
     rough : tuple of Piecewise
-        Curves with the same knots through fewer rows, whose integrals differ from those of the
-        lift by `fall` times its error.
+        Curves through fewer rows; their integrals differ from those of the lift by `fall` errors.
     fall : float
         Error of the rough curves over that of the lift.
     deviation : Deviation, optional
