@@ -148,7 +148,7 @@ def test_tips_of_flanks_that_end_at_cusps_are_rounded(made: GearPairResult, radi
 
 
 def test_too_much_rounding_is_refused_with_the_most() -> None:
-    with pytest.raises(InfeasibleError, match="rounded so much") as caught:
+    with pytest.raises(InfeasibleError, match="tip rounding is too large") as caught:
         wheel("ellipse", 1, 0.0, 2.0)
     assert caught.value.limit is not None
     module = profile("ellipse").pair.module

@@ -200,7 +200,7 @@ def test_an_outside_within_the_end_faces_is_refused_with_one_that_does(
 
 
 def test_the_outside_of_an_open_ring_is_round() -> None:
-    with pytest.raises(InfeasibleError, match="goes all around"):
+    with pytest.raises(InfeasibleError, match="roots of a closed ring only"):
         _ = job(
             SECTOR, (24, 24), module=2.0, internal=True, ring=RingSpec(outer="follow")
         ).gear2.outline
