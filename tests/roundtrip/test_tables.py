@@ -40,7 +40,7 @@ def test_what_is_no_table_is_refused() -> None:
         table_bytes({"a": [1.0, 2.0], "b": [1.0, math.nan]})
     with pytest.raises(ValueError, match="length"):
         table_bytes({"a": [1.0, 2.0], "b": [1.0]})
-    with pytest.raises(ValueError, match="header"):
+    with pytest.raises(ValueError, match="column names"):
         table_bytes({"a,b": [1.0]})
 
 

@@ -71,8 +71,8 @@ def without_small_loops(
     left: list[tuple[float, float]] = []
     closes = segments.curve.program.closed
     for parts in over_the_end(undercut, closes):
-        # of two parts, one on each side of the turn's end, the later one begins; a jump at that
-        # end is no stretch behind it
+        # a stretch in two parts, on both sides of the turn's end, begins with the later part; a
+        # jump at that end is no stretch after it
         found = _closed(segments, (parts[-1][0], parts[0][1] or parts[-1][1]), size)
         if found is None:
             left += parts

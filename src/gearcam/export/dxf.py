@@ -61,7 +61,7 @@ class DxfStyle:
     Parameters
     ----------
     tolerance : float, mm
-        Largest distance between an outline's true curve and what stands for it.
+        Largest distance between an outline's true curve and the curve in the file.
     curves : {"arcs", "splines", "lines"}
         Arcs or cubic splines within the tolerance, or the contour's adaptive polygon.
     version : {"R2010", "R12"}

@@ -78,7 +78,7 @@ def _mesh(kind: str, result: CamResult, measured: Measured) -> Files:
 
 
 def assembled(result: CamResult) -> dict[str, Mesh]:
-    """Return the solids where they stand on the shaft."""
+    """Return the solids in their places on the shaft."""
     from gearcam.drawings import UNMOVED
 
     if not result.form.assembly:

@@ -1,4 +1,4 @@
-"""What people who write Python make cams of, and what comes of them."""
+"""Public Python names of cams: designs, their parts, and results."""
 
 from __future__ import annotations
 

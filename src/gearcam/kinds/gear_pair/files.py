@@ -52,7 +52,7 @@ def _tables(result: GearPairResult, _: Measured) -> Files:
 
 
 def placements(result: PairStages) -> tuple[Placement, Placement]:
-    """Return how the wheels of a `result` stand when assembled: wheel 1 turned by -phi1."""
+    """Return the placements of the assembled wheels of a `result`: wheel 1 turned by -phi1."""
     phi1, guide = result.design.output.pose, result.pair.rolling.guide
     moved = float(guide.nominal(np.array(phi1)))
     if result.pair.on_rack:
@@ -147,7 +147,7 @@ def _meshes(kind: str, result: GearPairResult, measured: Measured) -> Files:
 
 
 def assembled(result: GearPairResult) -> dict[str, Mesh]:
-    """Return the solids of both wheels where they stand."""
+    """Return the solids of both wheels in the assembly."""
     placed = zip(result.meshes.items(), placements(result), strict=True)
     return {name: mesh.placed(*pose) for (name, mesh), pose in placed}
 

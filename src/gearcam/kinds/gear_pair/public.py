@@ -1,4 +1,4 @@
-"""What people who write Python make pairs of, and what comes of them."""
+"""Public Python names of gear pairs: designs, their parts, and results."""
 
 from __future__ import annotations
 
