@@ -244,8 +244,8 @@ def demand_ring(spec: PairSpec) -> None:
     else:
         what, counts = "the ring has fewer teeth than its wheel", [z2, z1]
         nearest = (
-            f"the ring must be wheel 2: teeth = {counts} with the inverse law, whose ratio is 1/i "
-            "at driver angle phi2 where this law has i at driven angle phi2"
+            f"the ring must be wheel 2: use teeth = {counts} with the inverse law, the ratio 1/i as "
+            "a function of phi2"
         )
     raise InfeasibleError(
         what,
