@@ -244,7 +244,7 @@ def demand_ring(spec: PairSpec) -> None:
     else:
         what, counts = "the ring has fewer teeth than its wheel", [z2, z1]
         nearest = (
-            f"the ring must be wheel 2: use teeth = {counts} with the inverse law, the ratio 1/i as "
+            f"the ring must be wheel 2: use teeth = {counts} with the inverse law, ratio 1/i as "
             "a function of phi2"
         )
     raise InfeasibleError(
