@@ -142,7 +142,7 @@ class Chart:
             if low <= limit.value <= high:
                 ax.axhline(limit.value, color="0.35", ls="--", lw=1.0, label=text)
             else:
-                ax.plot([], [], color="0.35", ls=" ", label=f"{text}, beyond this chart")
+                ax.plot([], [], color="0.35", ls=" ", label=f"{text}, outside this chart")
         told: set[str] = set()
         for mark in self.marks:  # one legend entry for each sort
             label = None if mark.label in told else mark.label

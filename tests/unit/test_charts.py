@@ -289,7 +289,7 @@ def test_far_limits_are_told_not_drawn():
     legend = ax.get_legend()
     assert legend is not None
     told = [text.get_text() for text in legend.get_texts()]
-    assert told == ["values", "near: 3", "far: 100, beyond this chart"]
+    assert told == ["values", "near: 3", "far: 100, outside this chart"]
 
 
 def test_axes_may_be_given_and_level_lines_have_room():

@@ -180,7 +180,7 @@ def test_the_view_ends_its_workers_at_once(tmp_path: Path, name: str, code: int)
         stdout=subprocess.PIPE, stderr=subprocess.PIPE,
     )  # fmt: skip
     assert process.stdout
-    assert "shown at" in process.stdout.readline()
+    assert "live view at" in process.stdout.readline()
     children = Path(f"/proc/{process.pid}/task/{process.pid}/children")
     end = time.monotonic() + 60.0
     # one of them tracks what processes share
@@ -188,7 +188,7 @@ def test_the_view_ends_its_workers_at_once(tmp_path: Path, name: str, code: int)
         time.sleep(0.02)
     process.send_signal(getattr(signal, name))
     out, err = process.communicate(timeout=15)
-    assert (process.returncode, out, err) == (code, "the view has ended\n", "")
+    assert (process.returncode, out, err) == (code, "the live view has ended\n", "")
     assert len(workers) > 1
     while any(map(_runs, workers)) and time.monotonic() < end:
         time.sleep(0.02)

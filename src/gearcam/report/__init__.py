@@ -1,18 +1,17 @@
-"""The report: one page that shows what was made, how it moves, and why to trust it.
+"""The report: one page that shows what was made, how it moves, and how accurate it is.
 
 A *page* is one HTML file that opens without a network. It holds *blocks*, HTML written from the
 facts and findings of a result; the *scene* (see `gearcam.scenes`) and the *charts* (see
-`gearcam.charts`), data that the page's own script draws; and the *solids*, a view in three
-dimensions. All that it says is facts; all that it draws are the arrays that Python users get. A
-kind of design makes its scene and its charts; nothing here knows what they tell of.
+`gearcam.charts`), data that the page's script draws; and the *solids*, a view in three dimensions.
+It shows the same facts and arrays that Python users get. Verdict, picture, findings and the first
+charts are in sight; the rest is folded. The folder of each kind of design defines its scene and its
+charts.
 
-Inputs are a `gearcam.result.Result`; outputs text. In: mm, deg and rad as the names say; the
-page's data are in mm and rad, and the driver's place in the unit of its axis.
+Input is a `gearcam.result.Result`, output text. The page's data are in mm and rad, positions of the
+driver in the unit of its axis. uPlot, included as published, draws the charts; ``page.js`` and the
+scripts beside it draw the rest.
 
-What draws charts is uPlot, whose folder is its package as it was published; what moves the parts is
-``page.js``.
+Refused: nothing of its own; a design that cannot be made raises the errors of its stages.
 
-Refused: nothing of its own; a design that cannot be made raises as its stages do.
-
-Depends on scenes, charts and facts; jinja2, which loads with a page and not before.
+Depends on scenes, charts and facts; jinja2, imported when a page is made.
 """

@@ -109,7 +109,7 @@ class ChartView {
       return add(row, "output", { "aria-live": "off" });
     });
     for (const limit of limits) {
-      const beyond = limit.seen ? "" : ", beyond this chart";
+      const beyond = limit.seen ? "" : ", outside this chart";
       const row = add(this.legend, "li", { class: "limit" });
       row.textContent = `${limit.label}: ${brief(limit.value)}${beyond}`;
     }

@@ -1,8 +1,8 @@
-"""What a page draws, as data that JSON holds.
+"""The data that a page draws, ready for JSON.
 
-Lengths are in mm, turns in rad, the driver's places in the unit of its axis; points are flat lists
-``x0, y0, x1, y1, ...``. Numbers are rounded far below what a screen or a print shows. What is no
-number is null.
+Lengths are in mm, rotations in rad, positions of the driver in the unit of its axis; points are
+flat lists ``x0, y0, x1, y1, ...``. Numbers are rounded far below the resolution of screens and
+prints; NaN and infinity become null.
 """
 
 from __future__ import annotations
@@ -21,30 +21,30 @@ _MM: Final = 4
 """Decimals of lengths, mm: a tenth of a micrometre."""
 
 _RAD: Final = 7
-"""Decimals of turns, rad: less than a tenth of a micrometre at a radius of 1 m."""
+"""Decimals of rotations, rad: less than a tenth of a micrometre at a radius of 1 m."""
 
 _DIGITS: Final = 6
-"""Digits of a chart's values, of the largest."""
+"""Significant digits of the largest value of a chart; the others have as many decimals."""
 
 
 def scene_data(scene: Scene) -> dict[str, Any]:
-    """Return a scene as JSON holds it.
+    """Return the data of a scene.
 
     Parameters
     ----------
     scene : Scene
-        What moves.
+        The moving parts.
 
     Returns
     -------
     dict
-        ``driver``, the label of its axis; ``places``; ``closed``; ``start``; ``box``, the left,
-        bottom, right and top of all places; ``pitch``, flat points, or null; ``contacts`` by name,
-        each with ``start``, ``x``, ``y``, ``fx``, ``fy`` and ``teeth`` or null; ``bodies``, each
-        with ``name`` and ``called``, ``metal`` and ``floor`` (closed chains, filled by the even-odd
-        rule), ``plates`` (the first chain of ``metal`` of each of those that lie one over the
-        other), ``lines`` (``layer``, ``points``, ``closed``, ``dashed``), ``turn``, ``x`` and ``y``
-        (a number where it never changes), and ``teeth`` (``[first, last]`` vertices of
+        ``title``; ``driver``, the label of its axis; ``places``; ``closed``; ``start``; ``box``,
+        the bounding box of all places as left, bottom, right, top; ``pitch``, flat points or null;
+        ``contacts`` by name, each with ``start``, ``x``, ``y``, ``fx``, ``fy`` and ``teeth`` or
+        null; ``bodies``, each with ``name`` and ``called``, ``metal`` and ``floor`` (closed chains,
+        filled by the even-odd rule), ``plates`` (index in ``metal`` of the first chain of each of
+        several plates), ``lines`` (``layer``, ``points``, ``closed``, ``dashed``), ``turn``, ``x``
+        and ``y`` (one number if constant), and ``teeth`` (``[first, last]`` vertices of
         ``metal[0]``) or null.
     """
     return {
@@ -103,24 +103,24 @@ def _contacts(contacts: ContactPoints) -> dict[str, Any]:
 
 
 def chart_data(name: str, chart: Chart, driver: str) -> dict[str, Any]:
-    """Return a chart as JSON holds it.
+    """Return the data of a chart.
 
     Parameters
     ----------
     name : str
-        Under which a result gives it.
+        Its name among the charts of the result.
     chart : Chart
         The chart.
     driver : str
-        Label of the driver's axis; a chart over it moves with the parts.
+        Label of the driver's axis; a chart over this axis has a cursor that moves with the parts.
 
     Returns
     -------
     dict
-        ``name``, ``title``, ``x``, ``y`` (labels), ``moves``, ``range`` (of the vertical axis, with
-        the limits that are near), ``lines`` (``label``, ``x``, ``y``, ``dots``), ``limits``
-        (``label``, ``value``, ``seen``) and ``marks``, places on the horizontal axis (``label``,
-        ``value``).
+        ``name``, ``title``, ``x`` and ``y`` (axis labels), ``moves`` (whether it has a cursor),
+        ``range`` (of the vertical axis, including the limits near the lines), ``lines`` (``label``,
+        ``x``, ``y``, ``dots``), ``limits`` (``label``, ``value``, ``seen``: whether it is within
+        the range) and ``marks`` on the horizontal axis (``label``, ``value``).
     """
     low, high = chart.range
     return {
@@ -151,7 +151,7 @@ def _flat(points: Plane) -> list[float | None]:
 
 
 def _digits(values: Array) -> list[float | None]:
-    """Return values in so many digits as the largest has."""
+    """Return values, rounded to the decimals that the largest needs."""
     known = np.abs(values[np.isfinite(values)])
     size = float(known.max(initial=0.0))
     return _rounded(values, _DIGITS - math.ceil(math.log10(size)) if size else 0)

@@ -1,4 +1,4 @@
-"""The kind of file ``report``, of every kind of design, and its page in a notebook."""
+"""The file format ``report``, for every kind of design, and the page in a notebook."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from gearcam.result import Result
 
 _FRAME: Final = "border:0;width:100%;height:min(85vh,760px);resize:vertical"
-"""Of a page in a notebook: parts and first charts are seen, the others by scrolling in it."""
+"""Style of a page in a notebook: parts and first charts in sight, the rest by scrolling."""
 
 
 def report_files(result: Result, measured: Mapping[str, Any]) -> Files:
@@ -40,7 +40,7 @@ def report_files(result: Result, measured: Mapping[str, Any]) -> Files:
 
 
 def framed(result: Result) -> str:
-    """Return the page of a `result` as HTML that a notebook shows: a frame, without solids."""
+    """Return the page of a `result`, without solids, as an HTML frame for a notebook."""
     from html import escape
 
     from gearcam.report.page import document, page

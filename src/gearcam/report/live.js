@@ -175,11 +175,11 @@
       groups.get(title).append(rowOf({ ...key }));
     }
     const save = element("button", { id: "save", type: "button", textContent: "Save to the file" });
-    const undo = element("button", { id: "undo", type: "button", textContent: "Back to the file" });
+    const undo = element("button", { id: "undo", type: "button", textContent: "Undo the changes" });
     const saved = element("span", { id: "saved", role: "status" });
     save.addEventListener("click", store);
     undo.addEventListener("click", back);
-    const heading = element("h2", { id: "numbered", textContent: "Numbers of the file" });
+    const heading = element("h2", { id: "numbered", textContent: "Numbers in the design file" });
     const buttons = element("p", {}, save, " ", undo, " ", saved);
     document.getElementById("numbers").replaceChildren(heading, ...groups.values(), buttons);
   }

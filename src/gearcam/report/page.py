@@ -1,8 +1,8 @@
 """The page: blocks from facts and findings, data for the script, all in one file.
 
-A *document* is what a page shows of one result, as JSON holds it: ``title``; ``blocks``, HTML by
-the name of the place where it stands; ``scene`` and ``charts`` (see `gearcam.report.data`). The
-page holds one and shows it when it is opened; a page that is served is given others.
+A *document* is the content of a page, ready for JSON: ``title``, ``kind``; ``blocks``, HTML by the
+id of its section; ``scene`` and ``charts`` (see `gearcam.report.data`). A page contains one
+document; the live view sends others to it.
 """
 
 from __future__ import annotations
@@ -27,16 +27,16 @@ if TYPE_CHECKING:
     from gearcam.result import Result
 
 PAGE: Final = "report.html"
-"""Name of the file."""
+"""File name."""
 
 BLOCKS: Final = ("verdict", "findings", "files", "facts", "accuracy")
-"""Places of the page that are written from facts, each a template."""
+"""Sections of the page that are written from facts, each by a template."""
 
 DRAFTED: Final = ("verdict", "findings", "facts")
-"""Those that follow a slider while it is dragged."""
+"""Blocks that are updated while a slider is dragged."""
 
 DRAFT_PLACES: Final = 120
-"""Steps of the driver in a draft's scene: 3 degrees of a turn, between which lines are straight."""
+"""Steps of the driver in the scene of a draft: 3 degrees of a turn, interpolated linearly."""
 
 SCRIPTS: Final = (
     "uPlot/uPlot.iife.min.js",
@@ -47,7 +47,7 @@ SCRIPTS: Final = (
     "page.js",
     "solids.js",
 )
-"""What is the page's script, each part after those that it needs."""
+"""Parts of the page's script, each after those that it needs."""
 
 _ERRORS: Final = {
     "law": ("driven angle", "rad"),
@@ -60,7 +60,7 @@ _ERRORS: Final = {
     "area": ("area", ""),
     "volume": ("volume (mass in the same proportion)", ""),
 }
-"""Errors that people act on: label, and unit where its name does not say it."""
+"""Errors that users act on: label, and the unit if the name does not contain it."""
 
 _HOME: Final = Path(__file__).parent
 
@@ -69,7 +69,7 @@ _VERDICTS: Final = {
     "warning": "Look before you cut",
     "note": "Ready to cut",
 }
-"""What the worst finding means."""
+"""Verdict by the severity of the worst finding."""
 
 
 def page(
@@ -83,16 +83,16 @@ def page(
     Parameters
     ----------
     document : mapping
-        What it shows (see `document`).
+        Its content (see `document`).
     live : mapping, optional
-        What the script needs of a server that gives it others; a page of its own where left out.
+        Data of the live view for its script; without them the page stands alone.
     solids : mapping, optional
-        A view of them (see `gearcam.report.solids`).
+        A view of the solids (see `gearcam.report.solids`).
 
     Returns
     -------
     bytes
-        HTML, UTF-8: scripts, styles and data are within.
+        HTML, UTF-8, including scripts, styles and data.
     """
     return (
         _templates()
@@ -116,16 +116,16 @@ def page(
 def document(
     result: Result, measured: Mapping[str, Any] = MappingProxyType({}), *, seek: bool = True
 ) -> dict[str, Any]:
-    """Return what a page shows of a result.
+    """Return the content of the page of a result.
 
     Parameters
     ----------
     result : Result
-        Of any kind.
+        Of any kind of design.
     measured : mapping
-        What was measured on its files, by group of facts.
+        Measurements of its files, by group of facts.
     seek : bool
-        Whether remedies are sought where there are errors, which takes some seconds.
+        Whether to search for remedies of errors, which takes some seconds.
 
     Returns
     -------
@@ -148,7 +148,7 @@ def document(
 
 
 def draft(result: Result) -> dict[str, Any]:
-    """Return what of a document can follow a slider: no charts, remedies and files."""
+    """Return the part of a document that follows a slider: without charts, remedies and files."""
     made = KINDS[result.design.kind].room("scene").scene(result, DRAFT_PLACES)
     return {
         "title": result.design.name,
@@ -170,13 +170,13 @@ def blocks(
     Parameters
     ----------
     result : Result
-        What they tell of.
+        Of any kind of design.
     measured : mapping
-        What was measured on its files, by group of facts.
+        Measurements of its files, by group of facts.
     names : sequence of str
-        Which of `BLOCKS`.
+        Names from `BLOCKS`.
     seek : bool
-        Whether remedies are sought, which may take seconds.
+        Whether to search for remedies of errors, which takes some seconds.
 
     Returns
     -------
@@ -196,26 +196,26 @@ def blocks(
 
 
 def rendered(name: str, told: Mapping[str, Any]) -> str:
-    """Return the HTML of a template of this folder, by `name`, with what is `told`."""
+    """Return the HTML of a template in this folder, by `name`, filled with the values in `told`."""
     return _templates().get_template(name).render(told)
 
 
 def verdict(findings: tuple[Finding, ...]) -> tuple[str, str]:
-    """Return the worst severity there is, a note where there is none, and what it means."""
+    """Return the worst severity of `findings`, note if there are none, and the verdict."""
     found = {one.severity for one in findings}
     worst = next((one for one in _VERDICTS if one in found), "note")
     return worst, _VERDICTS[worst]
 
 
 def _errors(facts: Facts) -> Iterator[tuple[str, str]]:
-    """Yield the label and the error of what decides: one number each, the largest of all parts."""
+    """Yield label and error of each quantity that users act on: the largest of all parts."""
     rows = [one for one in facts.quantities() if one.name.count(".") == 1]
     rows = [one for one in rows if one.name.startswith("accuracy.")]
     rack = "pair.travel_per_turn_mm" in facts
     weighed = "accuracy.volume_mm3" in facts
     skipped = {"law" if rack else "arc length", *(() if weighed else ("area",))}
     for what, (label, unit) in _ERRORS.items():
-        # what a cam has of several walls begins with their names
+        # quantities of one of several walls begin with its name
         found = [one for one in rows if one.meaning in (what, f"{one.meaning.split()[0]} {what}")]
         if found and what not in skipped:
             largest = max(found, key=lambda one: one.value)
@@ -239,11 +239,11 @@ def _templates() -> Environment:
 
 @cache
 def _own(*names: str) -> str:
-    """Return files of this folder, one after the other, as they stand."""
+    """Return the contents of files of this folder, joined."""
     return "\n".join((_HOME / name).read_text(encoding="utf-8") for name in names)
 
 
 def _embedded(data: Any) -> str:
-    """Return data as JSON that no end of a script can hide in."""
+    """Return data as JSON without ``<``, which could end the script element."""
     text = json.dumps(data, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
     return text.replace("<", "\\u003c")

@@ -26,7 +26,7 @@
     if (!home.open || frame) return;
     if (!drawn()) {
       home.querySelector(".hint").textContent =
-        "This browser does not draw in three dimensions (it has no WebGL).";
+        "This browser cannot show solids: it has no WebGL.";
       return;
     }
     frame = document.createElement("iframe");

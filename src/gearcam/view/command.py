@@ -1,4 +1,4 @@
-"""The command ``view``: serves, watches, and says what it does until it is interrupted."""
+"""The command ``view``: serves the page and watches the file until it is interrupted."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from gearcam.view.watch import PAUSE, Watch
 from gearcam.view.work import begin
 
 _WORKERS: Final = range(2, 5)
-"""A draft is built while another, or the whole document, still is; more than four help nobody."""
+"""Number of workers: drafts overlap with other builds, but more than four do not help."""
 
 
 def arguments(parser: ArgumentParser) -> None:
@@ -33,21 +33,21 @@ def arguments(parser: ArgumentParser) -> None:
 
 
 def view(file: str, port: int = 0, *, browser: bool = True) -> None:
-    """Show a design's page, and follow its file, until it is interrupted (Ctrl-C).
+    """Serve the page of a design file and update it until interrupted (Ctrl-C).
 
     Parameters
     ----------
     file : str
-        A design file; one with errors is shown when it is mended.
+        A design file; one with errors is shown once it is corrected.
     port : int
-        Where; 0 takes a free one.
+        Port of the page; 0 takes a free one.
     browser : bool
-        Whether a browser is opened.
+        Whether to open a browser.
 
     Raises
     ------
     DesignError
-        If the file is not there, or the port cannot be used.
+        If the file does not exist or the port cannot be used.
     """
     content_of(file)
     count = min(max(os.cpu_count() or 1, _WORKERS.start), _WORKERS.stop - 1)
@@ -58,27 +58,27 @@ def view(file: str, port: int = 0, *, browser: bool = True) -> None:
             try:
                 with unbroken():
                     threading.Thread(target=server.serve_forever, daemon=True).start()
-                say(f"{file}: shown at {server.address} until Ctrl-C")
+                say(f"{file}: live view at {server.address} (Ctrl-C ends it)")
                 if browser:
                     webbrowser.open(server.address)
                 _follow(session)
             except KeyboardInterrupt:
-                say("the view has ended")
+                say("the live view has ended")
             finally:
                 session.end()
                 server.shutdown()
                 workers.shutdown(wait=False, cancel_futures=True)
-                for worker in active_children():  # one that still builds would be waited for
+                for worker in active_children():  # one that is still building would delay the exit
                     worker.kill()
 
 
 def _follow(session: Session) -> None:
-    """Have the file built anew whenever it, or a table that it reads, has been saved."""
+    """Rebuild the design whenever the file, or a table that it reads, was saved."""
     watch = Watch(session.file)
     while True:
         changed, content = watch.look()
         if changed:
-            with unbroken():  # workers begin
+            with unbroken():  # workers start
                 session.refresh(content)
         time.sleep(PAUSE)
 
@@ -87,4 +87,4 @@ def _tell(file: str, state: State) -> None:
     if state.error:
         complain(state.error)
     elif state.news is state.document:
-        say(f"{file}: shown")
+        say(f"{file}: view updated")

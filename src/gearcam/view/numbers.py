@@ -1,4 +1,4 @@
-"""The numbers of a design file: what each means, how far its slider goes, and how to replace it."""
+"""The numbers of a design file: their sliders, and replacing them in its text."""
 
 from __future__ import annotations
 
@@ -17,26 +17,26 @@ Values = Mapping[str, float]
 """Numbers by dotted key, in the units of the file."""
 
 _WIDE: Final = 20.0
-"""A range of more than so many times the value is too wide for a slider."""
+"""Largest range of a slider relative to the value."""
 
 _ROOM: Final[Mapping[str, float]] = {"deg": 10.0, "mm": 1.0}
-"""How far a slider goes to both sides of 0, by unit; of what has none half of 1."""
+"""Range of a slider to both sides of 0, by unit; half of that of a plain number is 0.5."""
 
 _STEPS: Final = 1000.0
-"""Steps of a slider at least, of numbers that are not whole."""
+"""Smallest number of steps of a slider, except for whole numbers."""
 
 _FEWER: Final = (1.0, 0.5, 0.25, 0.1, 0.03)
-"""Parts of a slider's way that are tried until one reads as a design."""
+"""Shares of a slider's range that are tried until its end is a valid design."""
 
 _GRAIN: Final = 1e-6
-"""Part of a step by which the end of a slider may miss one: rounding errors are far smaller."""
+"""Rounding error of the end of a slider, at most, relative to its step."""
 
 _DIGITS: Final = 10
-"""Digits of a number that is computed for a file: more are what arithmetic leaves."""
+"""Significant digits of a number that is computed for a file; more would be rounding noise."""
 
 
 def numbers(text: str) -> dict[str, float]:
-    """Return the numbers in the text of a good design file by dotted key, in its order."""
+    """Return the numbers in the text of a valid design file by dotted key, in its order."""
     document = document_in(text, "")
     return {
         dotted(path): value
@@ -46,20 +46,20 @@ def numbers(text: str) -> dict[str, float]:
 
 
 def sliders(text: str, reads: Callable[[str], bool]) -> list[dict[str, Any]]:
-    """Return what sliders of a design file can change.
+    """Return the sliders of a design file.
 
     Parameters
     ----------
     text : str
-        TOML, a good design.
+        TOML, a valid design.
     reads : callable
-        ``reads(text)`` returns whether another text reads as a design.
+        ``reads(text)`` returns whether another text is a valid design.
 
     Returns
     -------
     list of dict
-        For each number that can change, alone or with its `equals`: ``key``, ``doc``, ``unit``,
-        ``value``, ``low``, ``high``, ``step``, ``integer``.
+        For each number that can be changed alone or together with its `equals`: ``key``, ``doc``,
+        ``unit``, ``value``, ``low``, ``high``, ``step``, ``integer``.
     """
     document, found = document_in(text, ""), numbers(text)
     made = []
@@ -98,14 +98,14 @@ def span(entry: Key, value: float) -> tuple[float, float, float]:
     Parameters
     ----------
     entry : Key
-        What is allowed.
+        The key, with its allowed values.
     value : float
-        In the file.
+        Value in the file.
 
     Returns
     -------
     low, high, step : float
-        All that is allowed, or from half to twice the value where that is too wide.
+        The allowed range, or from half to twice the value if that is too wide.
     """
     made, whole = entry.param, entry.base is int
     low = max((one for one in (made.ge, made.gt) if one is not None), default=-math.inf)
@@ -124,9 +124,10 @@ def span(entry: Key, value: float) -> tuple[float, float, float]:
 
 
 def equals(found: Values, key: str, value: float) -> dict[str, float]:
-    """Return the same value for what is equal to a number and stands in one list with it.
+    """Return the new `value` for the numbers that are equal to `key` in the same list.
 
-    A list that begins and ends alike, or two equal wheels: one may not change without the others.
+    Such as the first and last ratio of a closed law, or the teeth of two equal wheels: one must not
+    change without the other.
 
     Parameters
     ----------
@@ -135,12 +136,12 @@ def equals(found: Values, key: str, value: float) -> dict[str, float]:
     key : str
         One of them.
     value : float
-        What it shall be.
+        New value of `key`.
 
     Returns
     -------
     dict of str to float
-        Empty where there is none.
+        By key; may be empty.
     """
     path = path_of(key)
     if not isinstance(path[-1], int):
@@ -153,14 +154,14 @@ def equals(found: Values, key: str, value: float) -> dict[str, float]:
 
 
 def replaced(text: str, values: Values) -> str:
-    """Return the text of a good design file with other numbers at some keys; all else stays.
+    """Return the text of a valid design file with some numbers replaced.
 
     Parameters
     ----------
     text : str
         TOML.
     values : mapping of str to float
-        By dotted keys of numbers that stand in it.
+        New values by dotted keys of numbers in the text.
 
     Returns
     -------
@@ -169,7 +170,7 @@ def replaced(text: str, values: Values) -> str:
     Raises
     ------
     KeyError
-        If a key does not stand in it.
+        If a key is not in the text.
     """
     spans = spans_of(text)
     places = [(*spans[path_of(key)], value) for key, value in values.items()]
@@ -179,13 +180,13 @@ def replaced(text: str, values: Values) -> str:
 
 
 def _written(value: float, before: str) -> str:
-    """Return a number as a file holds it: whole where the one `before` was and this one is."""
+    """Return a number as text, without decimals if it is whole and the one `before` had none."""
     plain = before.lstrip("+-").replace("_", "").isdigit()
     return str(int(value)) if plain and float(value).is_integer() else repr(float(value))
 
 
 def _entry(document: Mapping[str, Any], path: Path) -> Key | None:
-    """Return the key of a number; None where its table does not know it."""
+    """Return the key of a number; None if its table has no such key."""
     kind, (title, *rest) = KINDS[document["kind"]], path
     if title == kind.main:
         raw = document[kind.main]
@@ -202,7 +203,7 @@ def _entry(document: Mapping[str, Any], path: Path) -> Key | None:
 def _within(
     value: float, end: float, step: float, entry: Key, fits: Callable[[float], bool]
 ) -> float:
-    """Return the end of a slider, or a nearer one that reads as a design; the value without one."""
+    """Return the end of a slider, or the nearest one tried that is valid; else the value."""
     for part in _FEWER:
         way = part * (end - value)
         nearer = value + (round(way) if entry.base is int else step * round(way / step))
@@ -220,5 +221,5 @@ def _leaves(part: Any, path: Path = ()) -> Iterator[tuple[Path, Any]]:
 
 
 def tidy(value: float) -> float:
-    """Return a computed value with so few digits as people write."""
+    """Return a computed value, rounded to `_DIGITS`."""
     return float(f"{value:.{_DIGITS}g}") + 0.0

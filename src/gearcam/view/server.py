@@ -1,8 +1,8 @@
-"""The server: one page and its requests, for this computer alone.
+"""The server: one page and its requests, for this computer only.
 
-Every address begins with a random *token*, which only the page's own address tells. What names
-another host (a foreign page that has its name lead here) or comes from another page is refused
-before anything else is looked at; paths are compared, never walked.
+Every path begins with a random *token*, known only from the address of the page. Requests that name
+another host (DNS rebinding) or come from another page are refused first; paths are only compared
+with known ones, never opened as files.
 """
 
 from __future__ import annotations
@@ -25,16 +25,16 @@ from gearcam.report.page import page
 from gearcam.view.session import RequestError, Session
 
 HOME: Final = "127.0.0.1"
-"""The only address that is served: this computer's own."""
+"""The only address that is served: the loopback address of this computer."""
 
 LARGEST: Final = 64 * 1024
-"""Bytes of a request: a thousand numbers with their keys."""
+"""Largest size of a request, bytes: a thousand numbers with their keys."""
 
 _PATIENCE: Final = 30.0
-"""Seconds after which a connection that sends nothing is closed."""
+"""Time after which an idle connection is closed, s."""
 
 _PULSE: Final = 5.0
-"""Seconds after which a page is told that nothing has changed: who has gone is found so."""
+"""Interval of events without news, s: they reveal closed pages."""
 
 _LAST_PORT: Final = 65535
 
@@ -42,7 +42,7 @@ _JSON: Final = "application/json"
 _HTML: Final = "text/html; charset=utf-8"
 
 _SAFE: Final = {
-    # the page and the view of solids in it are of inline scripts; data: and blob: are the latter's
+    # page and view of solids have inline scripts; the latter uses data: and blob:
     "Content-Security-Policy": (
         "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; "
         "img-src data: blob:; font-src data:; connect-src 'self' data: blob:; "
@@ -56,25 +56,25 @@ _SAFE: Final = {
     "Cross-Origin-Resource-Policy": "same-origin",
     "Cross-Origin-Opener-Policy": "same-origin",
 }
-"""What every answer says to the browser."""
+"""Headers of every response."""
 
 _FIRST: Final = Path(__file__).parent / "first.html"
 
 
 class Server(ThreadingHTTPServer):
-    """Serves a session.
+    """Server of a session.
 
     Parameters
     ----------
     session : Session
-        What it shows.
+        The session that is shown.
     port : int
-        Where; 0 takes one that is free.
+        Port; 0 takes a free one.
 
     Raises
     ------
     DesignError
-        If the port is taken or none, with the nearest free one.
+        If the port is invalid or in use, with the nearest free one.
     """
 
     daemon_threads = True
@@ -98,7 +98,7 @@ class Server(ThreadingHTTPServer):
         return f"http://{self.hosts[0]}/{self.token}/"
 
     def handle_error(self, request: Any, client_address: Any) -> None:  # noqa: ARG002
-        """Say what went wrong, but for a page that has gone meanwhile (see `Server`)."""
+        """Print an error, unless the page was closed meanwhile."""
         error = sys.exception()
         if isinstance(error, Exception) and not isinstance(error, ConnectionError | TimeoutError):
             complain(fault_text(error, self.session.file))
@@ -121,21 +121,21 @@ def _is_free(port: int) -> bool:
 
 
 class Handler(BaseHTTPRequestHandler):
-    """Answers one connection."""
+    """Handler of one connection."""
 
     protocol_version = "HTTP/1.1"
     timeout = _PATIENCE
 
     def do_GET(self) -> None:
-        """Answer a question."""
+        """Answer a GET request."""
         self._answer({"": self._page, "document": self._document, "events": self._events})
 
     def do_POST(self) -> None:
-        """Answer a wish."""
+        """Answer a POST request."""
         self._answer({"follow": self._follow, "remedies": self._remedies, "save": self._save})
 
     def end_headers(self) -> None:
-        """Add what every answer says."""
+        """Add the headers of every response."""
         for name, value in _SAFE.items():
             self.send_header(name, value)
         super().end_headers()
@@ -145,19 +145,19 @@ class Handler(BaseHTTPRequestHandler):
         return "gearcam"
 
     def log_message(self, *_: Any) -> None:  # pyright: ignore[reportIncompatibleMethodOverride]
-        """Keep requests to oneself: the address holds the token."""
+        """Log nothing: addresses contain the token."""
 
     @property
     def _home(self) -> Server:
         return self.server  # pyright: ignore[reportReturnType]
 
     def _answer(self, routes: dict[str, Callable[[], None]]) -> None:
-        """Answer what is asked at a route, if this computer's own page may have asked it."""
+        """Answer a request by its route if it can come from the page itself."""
         origin = self.headers.get("Origin")
         hosts = self.headers.get_all("Host") or []
         own = {f"http://{host}" for host in self._home.hosts}
         before = f"/{self._home.token}/"
-        path = self.requestline.split()[1]  # as it was sent: `path` has slashes taken out
+        path = self.requestline.split()[1]  # as sent: `path` is without double slashes
         start, name = path[: len(before)], path[len(before) :]
         alike = secrets.compare_digest(start.encode("utf-8", "replace"), before.encode())
         if len(hosts) != 1 or hosts[0] not in self._home.hosts:
@@ -172,7 +172,7 @@ class Handler(BaseHTTPRequestHandler):
     def _page(self) -> None:
         session, state = self._home.session, self._home.session.state
         if state.document is None:
-            # text within it is put in by its script
+            # texts are inserted by its script
             live = json.dumps({"file": session.file, **state.told}).replace("<", "\\u003c")
             made = Template(_FIRST.read_text(encoding="utf-8")).substitute(live=live).encode()
         else:
@@ -186,7 +186,7 @@ class Handler(BaseHTTPRequestHandler):
         self._send(_as_json(self._home.session.state.told))
 
     def _events(self) -> None:
-        """Tell the number of each new state, until the page has gone."""
+        """Send the number of each new state until the page is closed."""
         self.send_response(HTTPStatus.OK)
         self.send_header("Content-Type", "text/event-stream")
         self.send_header("Connection", "close")
@@ -210,7 +210,7 @@ class Handler(BaseHTTPRequestHandler):
         self._reply(self._home.session.remedies)
 
     def _reply(self, answer: Callable[[dict[str, Any]], bytes | dict[str, Any] | None]) -> None:
-        """Send the answer to a request; where a newer one came before it, that it is stale."""
+        """Send the answer to a request, or that it was overtaken by a newer one."""
         asked = self._asked()
         if asked is not None:
             try:
@@ -232,7 +232,7 @@ class Handler(BaseHTTPRequestHandler):
                 self._send(_as_json({"error": ""}))
 
     def _asked(self) -> dict[str, Any] | None:
-        """Return the object that a request holds; None where it has been refused."""
+        """Return the object in a request; None if it was refused."""
         kind, length = self.headers.get("Content-Type", ""), self.headers.get("Content-Length", "")
         if kind.partition(";")[0].strip().lower() != _JSON:
             self._refuse(HTTPStatus.UNSUPPORTED_MEDIA_TYPE, f"the request is not {_JSON}")
@@ -253,7 +253,7 @@ class Handler(BaseHTTPRequestHandler):
         return None
 
     def _refuse(self, status: HTTPStatus, error: str) -> None:
-        self.close_connection = True  # what it still sends is not read
+        self.close_connection = True  # the rest of the request is not read
         self._send(_as_json({"error": error}), status=status)
 
     def _send(self, content: bytes, kind: str = _JSON, status: HTTPStatus = HTTPStatus.OK) -> None:

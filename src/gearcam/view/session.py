@@ -1,4 +1,4 @@
-"""The session: what the page shows of a file, and what it is asked to try and to save."""
+"""The session: the state of a file in the live view, trying numbers, and saving them."""
 
 from __future__ import annotations
 
@@ -19,36 +19,36 @@ from gearcam.view import work
 from gearcam.view.numbers import numbers, replaced
 
 _LARGEST: Final = 1e15
-"""Beyond it no number of a design lies, and whole numbers are not exact."""
+"""Largest number of a design; whole numbers beyond it are not exact."""
 
 
 _T = TypeVar("_T")
 
 
 class RequestError(ValueError):
-    """The page asked for what cannot be; the message says why."""
+    """A request of the page that cannot be fulfilled; the message says why."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class State:
-    """What is known of a file.
+    """The state of a file.
 
     Parameters
     ----------
     number : int
-        Of the state; a later one has a larger number.
+        Number of the state, increasing.
     document : dict or None
-        The last that could be made; None before the first.
+        Last valid document; None before the first.
     news : dict or None
-        What has come last: a whole document, or a draft.
+        Latest document or draft.
     sliders : list of dict
-        Numbers that a slider changes (see `gearcam.view.numbers.sliders`).
+        Sliders of the file (see `gearcam.view.numbers.sliders`).
     made : str
-        Hash of the content that document and sliders are made from.
+        Hash of the content from which document and sliders were made.
     text : str
         That content.
     error : str
-        What is wrong with the file since; empty where nothing is.
+        Errors of the file since then, with remedies; empty if it is valid.
     """
 
     number: int = 0
@@ -61,7 +61,7 @@ class State:
 
     @property
     def told(self) -> dict[str, Any]:
-        """What a page is told of it."""
+        """The state as sent to a page."""
         return {
             "number": self.number,
             "document": self.news,
@@ -72,16 +72,16 @@ class State:
 
 
 class Session:
-    """A design file that pages show.
+    """A design file in the live view.
 
     Parameters
     ----------
     file : str
         Its name.
     workers : Executor
-        Where designs are built.
+        Processes that build designs.
     count : int
-        How many they are.
+        Number of workers.
     notice : callable
         Called with each new state.
     """
@@ -99,12 +99,12 @@ class Session:
         self._turn = self._whole = 0
 
     def refresh(self, content: bytes | None) -> None:
-        """Have the file built anew: a draft first, where there is a page that shows one.
+        """Rebuild the design: first a draft if there is a document already.
 
         Parameters
         ----------
         content : bytes or None
-            What it holds; None where it cannot be read.
+            Content of the file; None if it cannot be read.
         """
         with self._news:
             self._turn += 1
@@ -154,26 +154,26 @@ class Session:
                 self._set(error=f"{self.state.error}\n{lines}")
 
     def _set(self, **changes: Any) -> None:
-        if self.ended:  # its workers have gone, which is no news
+        if self.ended:  # errors of stopped workers are no news
             return
         self.state = replace(self.state, number=self.state.number + 1, **changes)
         self._news.notify_all()
         self._notice(self.state)
 
     def wait(self, number: int, seconds: float) -> State:
-        """Return the state as soon as it is later than a `number`, or after some `seconds`."""
+        """Return the state once its number exceeds `number`, or after some `seconds`."""
         with self._news:
             self._news.wait_for(lambda: self.ended or self.state.number > number, seconds)
             return self.state
 
     def end(self) -> None:
-        """Let those go who wait."""
+        """End the session and all waiting for it."""
         with self._news:
             self.ended = True
             self._news.notify_all()
 
     def follow(self, asked: Mapping[str, Any]) -> bytes | None:
-        """Return a reply to other numbers that the page asks to see (see `work.follow`).
+        """Return the reply to changed numbers (see `work.follow`).
 
         Parameters
         ----------
@@ -183,12 +183,12 @@ class Session:
         Returns
         -------
         bytes or None
-            None where the page has asked for others since.
+            None if overtaken by a newer request.
 
         Raises
         ------
         RequestError
-            If it asks for what are no numbers of the file.
+            If ``changes`` are not numbers of the file, or ``last`` is not one of them.
         """
         state, changes, last = self.state, asked.get("changes"), asked.get("last")
         values = _values(changes, state)
@@ -203,7 +203,7 @@ class Session:
         return self._newest.run(reply)
 
     def remedies(self, asked: Mapping[str, Any]) -> dict[str, Any] | None:
-        """Return remedies of a design with other numbers that is refused (see `work.seek`).
+        """Return remedies of a refused design with changed numbers (see `work.seek`).
 
         Parameters
         ----------
@@ -213,7 +213,7 @@ class Session:
         Returns
         -------
         dict or None
-            None if the page has asked for others since.
+            None if overtaken by a newer request.
 
         Raises
         ------
@@ -226,23 +226,25 @@ class Session:
         )
 
     def save(self, asked: Mapping[str, Any]) -> None:
-        """Write other numbers into the file; its comments and their order stay.
+        """Write changed numbers into the file; comments and order are kept.
 
         Parameters
         ----------
         asked : mapping
-            ``changes``, and ``made``: the hash of the content that they were chosen on.
+            ``changes``, and ``made``: the hash of the content that they refer to.
 
         Raises
         ------
         RequestError
-            If the file has changed since, would not read as a design, or cannot be written.
+            If the file has changed since, would not be a valid design, or cannot be written.
         """
         values, made = _values(asked.get("changes"), self.state), asked.get("made")
         try:
             content = content_of(self.file)
             if _hash(content) != made:
-                raise RequestError(f"{self.file} has changed since: nothing was written")
+                raise RequestError(
+                    f"nothing was written: {self.file} has changed since the page was loaded"
+                )
             text = replaced(decoded(content, self.file), values)
             loads(text, file=self.file)
             mark = codecs.BOM_UTF8 if content.startswith(codecs.BOM_UTF8) else b""
@@ -252,12 +254,12 @@ class Session:
 
 
 class _Newest:
-    """Lets the newest of those who ask go next, so many at a time; who waited before is sent off.
+    """Queue that runs only the newest waiting request; older ones are dropped.
 
     Parameters
     ----------
     places : int
-        At a time.
+        Number of requests that run at a time.
     """
 
     def __init__(self, places: int) -> None:
@@ -266,7 +268,7 @@ class _Newest:
         self._asked = 0
 
     def run(self, work: Callable[[], _T]) -> _T | None:
-        """Return what some `work` gives, or None where a newer one came before it could begin."""
+        """Return the result of `work`, or None if a newer request came before it could start."""
         with self._free:
             self._asked += 1
             number = self._asked
@@ -284,7 +286,7 @@ class _Newest:
 
 
 def _values(changes: Any, state: State) -> dict[str, float]:
-    """Return numbers by key as a page has sent them, or refuse them."""
+    """Return the numbers by key that a page has sent, or raise `RequestError`."""
     if not isinstance(changes, Mapping) or not changes:
         raise RequestError("changes: not numbers by key")
     known = numbers(state.text) if state.text else {}
@@ -303,7 +305,7 @@ def _hash(content: bytes) -> str:
 
 
 def _result(done: Future[work.Reply], file: str) -> work.Reply:
-    """Return a reply, or that a worker has died."""
+    """Return the reply of a worker, or an error if it has died."""
     try:
         return done.result()
     except Exception as error:

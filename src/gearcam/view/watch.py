@@ -1,4 +1,4 @@
-"""The watch: which files a design reads, and whether one of them has been saved."""
+"""The watch: detects that a design file, or a table that it reads, was saved."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from gearcam.laws import columns
 from gearcam.reading import UnreadableError, read
 
 PAUSE: Final = 0.1
-"""Between two looks, s: what an eye does not notice."""
+"""Time between two looks, s."""
 
 _FRESH: Final = 2.0
-"""Age, s, below which a file may have changed again within the tick of its disk's clock."""
+"""Age below which a file may have changed again without a new time stamp, s."""
 
 _GONE: Final = 5
-"""Looks for which a file may be empty or away while a program saves it."""
+"""Number of looks for which a file may be empty or missing while a program saves it."""
 
 _Mark = tuple[int, int, str]
 
 
 class Watch:
-    """Looks at a design file and at the tables that it reads.
+    """Watches a design file and the tables that it reads.
 
     Parameters
     ----------
@@ -43,13 +43,13 @@ class Watch:
         self._gone = 0
 
     def look(self) -> tuple[bool, bytes | None]:
-        """Return whether a file has changed since the last look, and what the design file holds.
+        """Return whether a file has changed since the last look, and the content of the design.
 
         Returns
         -------
         changed : bool
         content : bytes or None
-            None where it cannot be read.
+            None if it cannot be read.
         """
         # marks come first: what is saved before the content is read is seen again in the next look
         marks = {name: self._mark(name) for name in (self.file, *self._tables)}
@@ -70,7 +70,7 @@ class Watch:
         return True, content
 
     def _mark(self, name: str) -> _Mark | None:
-        """Return time, size and hash of a file; the hash anew only where it may be another."""
+        """Return time, size and hash of a file; the hash anew only if it may have changed."""
         try:
             found = Path(name).stat()
         except (OSError, ValueError):
@@ -89,11 +89,11 @@ def tables(content: bytes, file: str, before: list[str]) -> list[str]:
     Parameters
     ----------
     content : bytes
-        What the design file holds.
+        Content of the design file.
     file : str
         Its name.
     before : list of str
-        What is returned where it cannot be read.
+        Returned if the content cannot be read.
 
     Returns
     -------

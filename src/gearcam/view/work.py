@@ -1,7 +1,7 @@
-"""What workers do: have a text built, and tell what came of it.
+"""The tasks of workers: building a design from the text of its file.
 
-Workers are processes, so that a build that takes long keeps nobody waiting; what goes to them and
-what comes back pickles. A *reply* holds a ``document``, or an ``error`` in words.
+Workers are processes, so that a long build does not block the page; arguments and replies are
+pickled. A *reply* contains a ``document``, or an ``error`` in words.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from gearcam.view.numbers import Values, equals, numbers, replaced, sliders, tid
 Reply = dict[str, Any]
 
 COARSE: Final = 0.02
-"""Chord error of a draft, mm: a fifth of a pixel where 100 mm fill a thousand of them."""
+"""Chord tolerance of a draft, mm: a fifth of a pixel at 10 pixels per mm."""
 
 _CHORDS: Final = "output.chord_tolerance_mm"
 
@@ -35,7 +35,7 @@ _DONE: Final = "updated"
 
 
 def begin() -> None:
-    """Prepare a worker: who ends the server ends it too, and no interrupt is its to answer."""
+    """Prepare a worker: it ends with the server and ignores interrupts."""
     for number in SIGNALS:
         signal.signal(number, signal.SIG_IGN)
     quieten()
@@ -51,20 +51,20 @@ def _end_with(sentinel: int) -> None:
 
 
 def show(content: bytes | None, file: str) -> Reply:
-    """Return all that a page shows of a design file.
+    """Return the document and the sliders of a design file.
 
     Parameters
     ----------
     content : bytes or None
-        What it holds; None where it cannot be read.
+        Content of the file; None if it cannot be read.
     file : str
         Its name.
 
     Returns
     -------
     dict
-        ``document`` and ``sliders``, or ``error`` and whether the design was ``refused`` by
-        computing.
+        ``document`` and ``sliders``, or ``error`` and ``refused``: whether the file is valid but
+        the design cannot be made.
     """
 
     def made() -> Reply:
@@ -84,7 +84,7 @@ def show(content: bytes | None, file: str) -> Reply:
 
 
 def show_draft(content: bytes | None, file: str) -> Reply:
-    """Return a draft of a design file; parameters as of `show` (see `show`)."""
+    """Return a draft of a design file; see `show`."""
     return _told(lambda: {"document": _draft(loads(_text(content, file), file=file))}, file)
 
 
@@ -101,8 +101,8 @@ def seek(text: str, file: str) -> Reply:
     Returns
     -------
     dict
-        ``lines``, as the command line prints them; ``found``, for each remedy its ``text`` and its
-        ``changes``, numbers by key, null where it changes more than numbers of the file.
+        ``lines``, as the command line prints them; ``found``, for each remedy its ``text`` and
+        ``changes``, numbers by key, or None if it changes other keys than numbers in the file.
     """
 
     def made() -> Reply:
@@ -120,29 +120,29 @@ def seek(text: str, file: str) -> Reply:
 
 
 def follow(text: str, file: str, changes: Values, last: str, exact: bool) -> bytes:
-    """Return what comes of a text with other numbers, and of others that have to follow.
+    """Return the document of a design file with changed numbers, and with others if required.
 
-    A number may not change alone: the first and the last of a list are the same, a law closes. What
-    the refusal asks for is then tried: the numbers of its list that are equal to it, and the first
-    of the ways that the refusal names and that leave it as it is.
+    Some numbers cannot change alone, such as the first ratio of a closed law, which equals the
+    last. If the design is refused, equal numbers of the same list are changed too; then the first
+    remedy that the refusal names and that does not change `last` is tried.
 
     Parameters
     ----------
     text : str
-        Of the design file.
+        Text of the design file.
     file : str
         Its name.
     changes : mapping of str to float
-        By key.
+        New values by key.
     last : str
-        The key that was changed last, and stays.
+        The key that was changed last; its value is kept.
     exact : bool
-        Whether all of the document is wanted, or a draft.
+        Whether to return the whole document instead of a draft.
 
     Returns
     -------
     bytes
-        A reply as JSON, with the ``changes`` that were shown.
+        A reply as JSON, with all ``changes`` that were made.
     """
 
     def shown(values: Values) -> Reply:
@@ -155,7 +155,7 @@ def follow(text: str, file: str, changes: Values, last: str, exact: bool) -> byt
 
 
 def _first(text: str, changes: Values, last: str, shown: Callable[[Values], Reply]) -> Reply:
-    """Return the first that can be shown of the changes alone and with what else may have to be."""
+    """Return the reply for the changes alone or, if refused, together with required ones."""
     found = numbers(text)
     refusals: list[DesignError | InfeasibleError] = []
     for more in ({}, equals(found, last, changes[last])):
@@ -176,7 +176,7 @@ def _first(text: str, changes: Values, last: str, shown: Callable[[Values], Repl
 
 
 def _items(near: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a change with the items of its lists one by one, and no needless digits."""
+    """Return changes with one key for each item of a list, numbers rounded."""
     made: dict[str, Any] = {}
     for key, value in near.items():
         items = enumerate(value) if isinstance(value, list | tuple) else ()
@@ -190,7 +190,7 @@ def _draft(design: Design) -> Reply:
     except (DesignError, InfeasibleError) as error:
         if _CHORDS not in str(error):
             raise
-    return draft(build(design))  # whose teeth are too small for coarse chords
+    return draft(build(design))  # the teeth are too small for coarse chords
 
 
 def _text(content: bytes | None, file: str) -> str:
@@ -198,7 +198,7 @@ def _text(content: bytes | None, file: str) -> str:
 
 
 def _told(work: Callable[[], Reply], file: str) -> Reply:
-    """Return a reply, or the words for what went wrong, as the command line tells it."""
+    """Return the reply of `work`, or the error as the command line prints it."""
     try:
         return {"error": "", **work()}
     except (DesignError, InfeasibleError) as error:
