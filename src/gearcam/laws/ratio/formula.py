@@ -251,14 +251,14 @@ LAWS.register(
         name="formula",
         example=Formula(phi2="phi1 - 0.08*sin(2*phi1)"),
         doc="a formula in phi1 (rad) of exactly one of phi2, the ratio and r1",
-        continuity="analytic where the formula is",
+        continuity="analytic if the formula is",
         source="Niculescu, Table 1.1, the three hypotheses",
     ),
     LawEntry(
         name="rack",
         example=RackLaw(r1="1 + 0.2*cos(phi1)"),
         doc="a wheel that drives a rack, given by its centrode or by the rack's travel",
-        continuity="analytic where the formula is",
+        continuity="analytic if the formula is",
         source="Niculescu, fig. 1.8",
     ),
 )

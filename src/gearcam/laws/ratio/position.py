@@ -141,7 +141,7 @@ LAWS.register(
             y="x + x**2/10", x_from=0.0, x_to=2.0, driver_travel=math.pi, driven_travel=math.pi
         ),
         doc="position y(x) of the driven element, or of a slide that the driven crank moves",
-        continuity="analytic where y or the slide is",
+        continuity="analytic if the formula is",
         source="Niculescu, Table 1.1, second hypothesis; section 1.4.1",
     )
 )

@@ -199,7 +199,7 @@ LAWS.register(
         name="table",
         example=TableLaw(phi1=tuple(math.pi * k / 4 for k in range(9)), ratio=(3.0,) * 9),
         doc="points of the ratio, the driven angle or the driver's radius, as lists or a CSV file",
-        continuity="C2 in what is given; so C1 where it is phi2",
+        continuity="C2 in the given values; the ratio is C1 if phi2 is given",
         source="quintics that keep the shape of the points",
     )
 )
