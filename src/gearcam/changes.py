@@ -105,7 +105,9 @@ def _mixed(near: Any, far: Any, share: float) -> Any:
     if isinstance(near, list):
         ends = far if isinstance(far, list) else [far] * len(near)
         # numbers that close together are not rounded each by itself
-        return [_part_way(a, b, share) for a, b in zip(near, ends, strict=True)]
+        alone = sum(not isinstance(one, str) for one in near) == 1
+        part = _mixed if alone else _part_way
+        return [part(a, b, share) for a, b in zip(near, ends, strict=True)]
     mixed = _part_way(near, far, share)
     if isinstance(far, bool | str) or not isinstance(mixed, float) or near == far or share == 1.0:
         return mixed

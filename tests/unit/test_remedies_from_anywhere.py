@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 import gearcam
+from gearcam.changes import between
 from gearcam.console import remedy_lines
 from gearcam.errors import InfeasibleError
 from helpers_documents import followed, job_of
@@ -197,3 +198,11 @@ def test_where_no_positive_ratio_closes_smaller_ones_are_tried(law: Any, tmp_pat
     assert "law.ratios[0]" in remedy.changes
     made = job_of(followed(document, remedy.changes), tmp_path)
     assert not [one for one in made.findings if one.severity == "error"]
+
+
+def test_a_number_that_stands_alone_in_a_list_is_short() -> None:
+    ends = ({"law.ratios": [0.4, "solve"]}, {"law.ratios": [1.0, "solve"]})
+    assert between(*ends, 0.123456789) == {"law.ratios": [0.4741, "solve"]}
+    pairs = ({"law.ratios": [0.4, 1.6]}, {"law.ratios": [1.0, 1.0]})
+    first, second = between(*pairs, 0.123456789)["law.ratios"]
+    assert first + second == pytest.approx(2.0, abs=1e-9)  # as a law that closes needs them
