@@ -1,6 +1,6 @@
-"""Random cams: every rise, every follower, segments, whole turns, both directions, blanks.
+"""Random cams: all motion laws and followers, segments, whole turns, both directions, blanks.
 
-Lifts and sizes are drawn in radii of the cam, so that the radius may be anything.
+Lifts and sizes are drawn in radii of the cam, so that the radius is arbitrary.
 """
 
 from __future__ import annotations
@@ -16,17 +16,17 @@ from random_designs.output import asked
 Rise = dict[str, Any]
 
 FOLLOWERS: Final = ("knife-edge", "roller", "flat", "domed", "point", "roller", "flat", "domed")
-"""They take turns; a point is another word for a knife edge."""
+"""Followers, which take turns; a point is a knife edge."""
 
 _DEGREES: Final = 40
-"""Drawn for a lift, or a way, of one radius."""
+"""Angle drawn instead of a lift or a travel of one radius, deg."""
 
 _SHARES: Final = {
     "svg": 0.8, "dxf": 0.3, "inspection": 0.3, "cut-svg": 0.2, "drawing-svg": 0.2,
     "drawing-dxf": 0.05, "stl": 0.1, "3mf": 0.05, "glb": 0.05, "step": 0.01,
     "tool-path": 0.2, "curvature": 0.3, "report": 0.06,
 }  # fmt: skip
-"""Share of cams that have each file beside their tables, by what it costs."""
+"""Share of cams with each kind of file, by its cost."""
 
 
 def _derivatives(d: Draw) -> Rise:
@@ -157,7 +157,7 @@ def _segment(d: Draw, to: float, unit: str) -> dict[str, Any]:
 
 
 def _mechanism(d: Draw, kind: str, swings: bool, size: float) -> tuple[dict[str, Any], ...]:
-    """Return follower and cam about a base circle of `size`, mm."""
+    """Return follower and cam with a base circle of `size`, mm."""
     follower: dict[str, Any] = {"type": kind}
     radius = 0.0
     if kind == "roller":
@@ -181,7 +181,7 @@ def _mechanism(d: Draw, kind: str, swings: bool, size: float) -> tuple[dict[str,
 
 
 def _held(d: Draw, design: dict[str, Any], lift: float) -> None:
-    """Make conjugate cams, or a yoke, of a design whose follower can be held from both sides."""
+    """Change a design whose follower can be driven both ways to conjugate cams or a yoke."""
     follower, wheel = design["follower"], design["cam"]
     kind, swings = follower["type"], "motion" in follower
     if kind == "roller" and d.chance(0.7):
@@ -212,7 +212,7 @@ def _held(d: Draw, design: dict[str, Any], lift: float) -> None:
 
 
 def _groove(d: Draw, design: dict[str, Any], size: float, lift: float) -> None:
-    """Mill a groove around the pitch curve into a disc."""
+    """Change a design to a groove cam."""
     given, follower = design["cam"], design["follower"]
     radius = follower["roller_radius_mm"]
     reach = size + 2 * radius + lift * math.radians(follower.get("arm_mm", math.degrees(1.0)))
@@ -230,7 +230,7 @@ def _groove(d: Draw, design: dict[str, Any], size: float, lift: float) -> None:
 
 
 def _bar(d: Draw, size: float) -> dict[str, Any]:
-    """Return the blank of a plate that slides."""
+    """Return the blank of a translating cam."""
     blank: dict[str, Any] = {"height_mm": short(size * d.even(2, 6))}
     if d.chance(0.5):
         blank["length_mm"] = short(size * d.even(9, 20))
@@ -245,7 +245,7 @@ def _bar(d: Draw, size: float) -> dict[str, Any]:
 
 
 def _slide(d: Draw, design: dict[str, Any], size: float) -> None:
-    """Make the cam a plate that slides: ways in place of angles."""
+    """Change a design to a translating cam, with travels instead of angles."""
     follower = design["follower"]
     for phase in design["motion"]:
         phase["way_mm"] = short(phase.pop("angle_deg") / _DEGREES * size)
@@ -271,7 +271,7 @@ def _slide(d: Draw, design: dict[str, Any], size: float) -> None:
 
 
 def _form(d: Draw, design: dict[str, Any], size: float, lift: float) -> None:
-    """Give some cams another form than a disc's, where their follower and motion suit it."""
+    """Change the form of some designs, if their follower and motion allow it."""
     motion, kind = design["motion"], design["follower"]["type"]
     told = isinstance(motion, list) and all(phase["angle_deg"] != "rest" for phase in motion)
     if d.chance(0.3):
@@ -284,14 +284,14 @@ def _form(d: Draw, design: dict[str, Any], size: float, lift: float) -> None:
 
 
 def design(d: Draw, index: int) -> dict[str, Any]:
-    """Return a cam; rises and followers take turns.
+    """Return a random cam; motion laws and followers take turns.
 
     Parameters
     ----------
     d : Draw
-        Draws of this design.
+        Random numbers of this design.
     index : int
-        Its number.
+        Number of the design.
     """
     law = [*RISES][index % len(RISES)]
     kind = FOLLOWERS[index % len(FOLLOWERS)]

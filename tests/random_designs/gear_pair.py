@@ -1,7 +1,7 @@
-"""Random gear pairs: every law, closed and open, racks, rings, stepped wheels, blanks, studies.
+"""Random gear pairs: all laws, closed and open, racks, rings, stepped gears, blanks, studies.
 
-A law's parameters are drawn so that most designs can be built. What depends on a size is drawn in
-modules, so that the module may be anything.
+Parameters of laws are drawn so that most designs can be built. Sizes are drawn in modules, so that
+the module is arbitrary.
 """
 
 from __future__ import annotations
@@ -18,43 +18,43 @@ Law = dict[str, Any]
 Counts = tuple[int, int]
 
 MOST_TEETH: Final = 120
-"""Of a wheel: time goes with them."""
+"""Largest number of teeth: the time is proportional to it."""
 
 
 _SHARES: Final = {
     "svg": 0.7, "dxf": 0.1, "inspection": 0.15, "cut-svg": 0.06, "drawing-svg": 0.08,
     "drawing-dxf": 0.02, "stl": 0.05, "3mf": 0.02, "glb": 0.03, "step": 0.01, "report": 0.04,
 }  # fmt: skip
-"""Share of pairs that have each file beside their tables, by what it costs."""
+"""Share of pairs with each kind of file, by its cost."""
 
 _AFFORDABLE: Final = 1200.0
-"""Vertices of a pair above which the other files are drawn less often."""
+"""Number of vertices above which other files are drawn less often."""
 
 # --- tooth counts -----------------------------------------------------------------------------
 
 
 def _equal(d: Draw, low: int = 8) -> Counts:
-    """Return two wheels of the same count."""
+    """Return equal numbers of teeth."""
     z = d.whole(low, MOST_TEETH)
     return z, z
 
 
 def _lobed(d: Draw, low: int = 8) -> Counts:
-    """Return counts of few lobes."""
+    """Return numbers of teeth for few lobes."""
     n1, n2 = d.pick([(1, 1), (1, 1), (1, 2), (2, 1), (2, 3), (3, 2), (1, 3), (3, 1)])
     each = d.whole(math.ceil(low / min(n1, n2)), MOST_TEETH // max(n1, n2))
     return n1 * each, n2 * each
 
 
 def _one_lobe(d: Draw, low: int = 8) -> Counts:
-    """Return a driver of one lobe and a driven wheel of one to three."""
+    """Return numbers of teeth for one lobe of the driver and one to three of the driven wheel."""
     n = d.whole(1, 3)
     z = d.whole(low, MOST_TEETH // n)
     return z, n * z
 
 
 def _period(z: Counts) -> float:
-    """Return a lobe of the driver, deg."""
+    """Return the angle of a lobe of the driver, deg."""
     return 360.0 * math.gcd(*z) / z[0]
 
 
@@ -280,7 +280,7 @@ def _steps(d: Draw, module: float) -> dict[str, Any]:
 
 
 def _ring(d: Draw, design: dict[str, Any], module: float) -> None:
-    """Make a pair an internal one: a ring has no bore, and stands nearer."""
+    """Change a design to an internal pair: no bore of the ring, a smaller centre distance."""
     pair = design["pair"]
     z1, z2 = pair["teeth"]
     pair["type"] = "internal"
@@ -318,7 +318,7 @@ def _study(d: Draw, design: dict[str, Any]) -> dict[str, Any]:
 
 
 def _vertices(document: dict[str, Any]) -> float:
-    """Return about how many vertices the outlines of a pair have; time goes with them."""
+    """Return the approximate number of vertices of a pair, to which the time is proportional."""
     pair, steps = document["pair"], document.get("steps", {}).get("count", 1)
     module = pair.get("module_mm") or 2.0 * pair["center_distance_mm"] / sum(pair["teeth"])
     tolerance = document["output"].get("chord_tolerance_mm", min(1e-3, 1e-3 * module))
@@ -326,14 +326,14 @@ def _vertices(document: dict[str, Any]) -> float:
 
 
 def design(d: Draw, index: int) -> dict[str, Any]:
-    """Return a gear pair; the laws take turns.
+    """Return a random gear pair; the laws take turns.
 
     Parameters
     ----------
     d : Draw
-        Draws of this design.
+        Random numbers of this design.
     index : int
-        Its number.
+        Number of the design.
     """
     law = [*LAWS][index % len(LAWS)]
     given, z = LAWS[law](d)
