@@ -365,6 +365,6 @@ def test_a_flank_may_cross_itself_and_then_its_fillet() -> None:
 
 def test_where_a_wheel_falls_apart_is_told_in_words() -> None:
     law = Ellipse(eccentricity=0.99)
-    with pytest.raises(InfeasibleError, match="not one piece") as caught:
+    with pytest.raises(InfeasibleError, match="not in one piece") as caught:
         _ = job(law, (41, 41), module=1.0).gear1
     assert re.fullmatch(r"self-intersection at x = -1\.\d+, y = 0 mm", caught.value.where)
