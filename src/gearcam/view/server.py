@@ -31,7 +31,7 @@ LARGEST: Final = 64 * 1024
 """Largest size of a request, bytes: a thousand numbers with their keys."""
 
 _PATIENCE: Final = 30.0
-"""Time after which an idle connection is closed, s."""
+"""Time after which an unused connection is closed, s."""
 
 _PULSE: Final = 5.0
 """Interval of events without news, s: they reveal closed pages."""
@@ -98,7 +98,7 @@ class Server(ThreadingHTTPServer):
         return f"http://{self.hosts[0]}/{self.token}/"
 
     def handle_error(self, request: Any, client_address: Any) -> None:  # noqa: ARG002
-        """Print an error, unless the page was closed meanwhile."""
+        """Print an error of a `request` from a `client_address`, unless the page was closed."""
         error = sys.exception()
         if isinstance(error, Exception) and not isinstance(error, ConnectionError | TimeoutError):
             complain(fault_text(error, self.session.file))

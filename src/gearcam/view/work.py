@@ -84,7 +84,7 @@ def show(content: bytes | None, file: str) -> Reply:
 
 
 def show_draft(content: bytes | None, file: str) -> Reply:
-    """Return a draft of a design file; see `show`."""
+    """Return a draft of the design with this `content` of its `file`."""
     return _told(lambda: {"document": _draft(loads(_text(content, file), file=file))}, file)
 
 
