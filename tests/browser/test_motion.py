@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -293,6 +294,22 @@ def test_where_motion_is_to_be_reduced_it_steps(browser: Chrome, page_of: Writte
     button.click()
     until(lambda: browser.execute_script("return gearcam.place > 11"))
     button.click()
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("feeder", r"driver angle phi1 = 100\.0 deg, velocity = [\d.]+ mm/rad"),
+        ("measured_cam", r"cam angle theta = 100\.0 deg, lift = [\d.]+ mm"),
+        ("translating_cam", r"travel u = 100\.0 mm, lift = [\d.]+ mm"),
+    ],
+)
+def test_the_place_is_said_with_what_is_measured_there(
+    name: str, value: str, browser: Chrome, page_of: Written
+) -> None:
+    open_page(browser, page_of(name))
+    go(browser, 100.0)
+    assert re.fullmatch(value, browser.find_element(By.ID, "told").text)
 
 
 def test_knots_are_drawn_and_told(browser: Chrome, page_of: Written) -> None:

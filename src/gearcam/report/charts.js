@@ -1,21 +1,21 @@
-// The charts: uPlot draws axes and lines; limits, values and the cursor of the parts are added.
+// The charts: uPlot draws the axes; lines, limits, values and the cursor are added here.
 
-// Lines differ by more than their colours.
+// Lines differ in colour and dashes.
 const DASHES = [[], [9, 3], [9, 3, 2, 3], [2, 3], [14, 4], [5, 2]];
 const HEIGHT = 230; // of a chart, pixels
 const PRINTED = { width: 330, height: 200 };
-const FREE = 0.06; // of a range, left free above and below, and beside dots
-const LETTERS = 12; // height of a line of letters in a chart, pixels
-const AT_ONCE = 3; // charts drawn in a frame: the parts keep moving meanwhile
-const LEADING = 3; // charts in sight; the others fold
+const FREE = 0.06; // margin of a range, above and below, and beside dots
+const LETTERS = 12; // height of a line of text in a chart, pixels
+const AT_ONCE = 3; // charts drawn per frame, so that the parts keep moving
+const LEADING = 3; // charts in sight; the others are folded
 
 const brief = (value) => String(Number(value.toPrecision(5)));
 
-// Numbers at an axis, however small their steps are, without the rounding of sums.
+// Numbers at an axis without rounding errors, however small the steps are.
 const ticks = (_, values, axis, space, step) =>
   values.map((value) => String(Number((Math.round(value / step) * step).toPrecision(12))));
 
-// All values of a line at a place: two where it jumps, more where its pieces lie over each other.
+// All values of a line at a place: two at a jump, more where its pieces overlap.
 function valuesAt(line, place) {
   const found = new Set();
   for (let k = 1; k < line.x.length; k++) {
@@ -56,7 +56,7 @@ function add(parent, tag, attributes = {}, text = "") {
   return made;
 }
 
-// Dots are full and hollow in turn.
+// Dots are alternately full and hollow.
 const full = (k, dots) => dots && k % 2 === 0;
 
 // A sample of a line, drawn by the style sheet's colours.
@@ -74,7 +74,7 @@ function sampleOf(k, dots) {
 
 class ChartView {
   constructor(chart, home, page) {
-    this.page = page; // gives `colours` and takes `go(place)`
+    this.page = page; // has `colours` and `go(place)`
     this.figure = add(home, "figure", { class: "chart" });
     const caption = add(this.figure, "figcaption");
     this.title = add(caption, "h3");
@@ -118,7 +118,7 @@ class ChartView {
     }
   }
 
-  // Another chart in the place of this one.
+  // Replace this chart by another one.
   show(chart) {
     const shape = (one) => one.lines.map((line) => line.dots).join();
     const same = shape(chart) === shape(this.chart) && chart.x === this.chart.x;
@@ -147,10 +147,10 @@ class ChartView {
       grid: { stroke: ink("rule"), width: 1 }, ticks: { stroke: ink("rule"), width: 1, size: 4 },
       values: ticks,
     };
-    // wide enough for most, so that charts below each other line up
+    // wide enough for most numbers, so that charts line up
     const wide = (_, texts) => 14 + 7 * Math.max(6, ...(texts ?? []).map((text) => text.length));
     this.plot = new uPlot({
-      mode: 2, // lines with places of their own, which need not rise
+      mode: 2, // each line has its own places, in any order
       width: this.home.clientWidth || PRINTED.width,
       height: HEIGHT,
       legend: { show: false },
@@ -175,7 +175,7 @@ class ChartView {
     return { label: line.label, stroke: "none", facets, paths };
   }
 
-  // Straight from point to point; what is null breaks a line.
+  // Straight from point to point; null interrupts the line.
   line(plot, row, dots, ink, k) {
     const [xs, ys] = plot.data[row];
     const { left, top, width, height } = plot.bbox;
@@ -188,7 +188,7 @@ class ChartView {
     pen.strokeStyle = pen.fillStyle = this.page.colours[ink];
     pen.lineWidth = 1.6 * ratio;
     pen.setLineDash(dots ? [] : DASHES[k % DASHES.length].map((length) => length * ratio));
-    // many dots are small, and lie below the lines
+    // many dots are drawn small, and dots below lines
     const radius = Math.max(1.2 * ratio, Math.min(2.5 * ratio, (0.5 * width) / xs.length));
     if (dots) pen.globalCompositeOperation = "destination-over";
     pen.beginPath();
@@ -212,7 +212,7 @@ class ChartView {
     return null; // drawn already
   }
 
-  // Marked places, dotted from bottom to top.
+  // Marked places as dotted vertical lines.
   marks() {
     const { ctx: pen, bbox } = this.plot;
     const ratio = uPlot.pxRatio;
@@ -239,18 +239,18 @@ class ChartView {
     pen.setLineDash([6 * ratio, 4 * ratio]);
     pen.font = `${11 * ratio}px system-ui, sans-serif`;
     pen.textAlign = "right";
-    pen.textBaseline = "alphabetic"; // the axes leave another one
+    pen.textBaseline = "alphabetic"; // the axes have set another one
     const [low, high] = heightOf(this.chart);
     const off = (limit) => Math.abs(limit.value - 0.5 * (low + high));
     const seen = this.chart.limits.filter((one) => one.seen).sort((a, b) => off(a) - off(b));
-    const labels = []; // of limits close together the inner one has it: the list below tells all
+    const labels = []; // of limits close together the inner one is labelled; the legend lists all
     for (const limit of seen) {
       const y = this.plot.valToPos(limit.value, "y", true);
       pen.beginPath();
       pen.moveTo(bbox.left, y);
       pen.lineTo(bbox.left + bbox.width, y);
       pen.stroke();
-      const above = limit.value < 0.5 * (low + high); // inside the range, where there is room
+      const above = limit.value < 0.5 * (low + high); // on the inner side, where there is room
       const base = y + (above ? -4 : LETTERS) * ratio;
       if (labels.some((other) => Math.abs(other - base) < LETTERS * ratio)) continue;
       pen.fillText(limit.label, bbox.left + bbox.width - 4 * ratio, base);
@@ -265,7 +265,7 @@ class ChartView {
     this.page.go(this.plot.posToVal(left, "x"));
   }
 
-  // Show where the parts are.
+  // Show values and cursor at the place of the parts.
   mark(place) {
     if (!this.plot) return;
     const [low, high] = spanOf(this.chart);
@@ -278,7 +278,7 @@ class ChartView {
     }
   }
 
-  // Drawn anew, a chart has another scale.
+  // Called after each drawing, because the scale may have changed.
   follow() {
     this.cursor.style.transform = `translateX(${this.plot.valToPos(this.page.place, "x")}px)`;
   }
@@ -294,7 +294,7 @@ class ChartView {
   }
 }
 
-// All charts of a document. Those out of sight wait, and few are drawn in one frame.
+// All charts of a document. They are drawn once in sight, a few per frame.
 class Charts {
   constructor(home, page) {
     this.home = home;

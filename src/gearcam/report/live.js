@@ -22,7 +22,7 @@
     return one;
   }
 
-  // Show what is wrong; where the design cannot be made the rest is of the last valid one.
+  // Show an error; if the design is refused, mark the page as that of the last valid design.
   function tell(error, refused = document.body.classList.contains("refused")) {
     const box = document.getElementById("error");
     const [words, remedies] = box.children;
@@ -31,10 +31,11 @@
     remedies.replaceChildren();
     document.body.classList.toggle("refused", refused);
     document.querySelector("#refusal h1").textContent = document.title;
-    document.getElementById("moving").textContent = refused ? "Last valid design" : "Parts in motion";
+    const heading = document.getElementById("moving");
+    heading.textContent = refused ? "Last valid design" : "Parts in motion";
   }
 
-  // Search for changes with which a refused design can be made, and offer them.
+  // Search for changes with which the refused design can be made, and offer them.
   async function remedy(changes, turn) {
     const place = document.querySelector("#error div");
     place.textContent = "Searching for remedies.";
@@ -119,7 +120,7 @@
     document.getElementById("saved").textContent = none ? "" : "Not saved.";
   }
 
-  // The nearest number that a slider's step allows.
+  // The value rounded to the step of the slider.
   function stepped(key, value) {
     return Number((Math.round(value / key.step) * key.step).toPrecision(10));
   }
@@ -215,7 +216,7 @@
   }
 
   function ended() {
-    tell("The live view has ended, and the page no longer follows the file. Start gearcam view again.");
+    tell("The live view has ended: the page no longer follows the file. Start gearcam view again.");
   }
 
   const events = new EventSource("events");

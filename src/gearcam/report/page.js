@@ -1,8 +1,8 @@
-// The page: controls, and the one place of the driver that parts and charts show.
+// The page: its controls, and the place of the driver that parts and charts show.
 
 const CYCLE = 12; // seconds of a cycle at speed 1
-const LEAP = 20; // steps of the driver that Page Up and Page Down go
-const STRIDES = 36; // steps in a cycle where motion is to be reduced
+const LEAP = 20; // steps of the driver for Page Up and Page Down
+const STRIDES = 36; // steps in a cycle with reduced motion
 
 const LINES = { CENTRODE: "centrodes", PITCH: "pitch curve", PRIME: "prime circle" };
 const SIDES = { drive: "driving flanks", coast: "coast flanks" };
@@ -16,14 +16,14 @@ const dark = matchMedia("(prefers-color-scheme: dark)");
 const page = {
   shown: read("document"),
   place: 0,
-  cycles: 0, // that were played: wheels need not have come round
-  // of the scene, by what is asked for
+  cycles: 0, // played so far: wheels need not have returned to their start
+  // what is shown of the scene
   seen: {
     points: true, action: true, carry: true, pitch: false, contacts: [], lines: { PITCH: true },
   },
   colours: palette(),
   playing: false,
-  forth: 1, // -1 on the way back of what does not repeat
+  forth: 1, // -1 on the way back of an open pair
   get scene() { return this.shown.scene; },
   get title() { return this.shown.title; },
   go,
@@ -49,23 +49,24 @@ const step = (count) => {
   go(places[Math.min(places.length - 1, Math.max(0, near + count))]);
 };
 
-// Decimals in which neighbouring places differ.
+// Decimals that distinguish neighbouring places.
 function decimals() {
   const { places } = page.scene;
   const least = (places.at(-1) - places[0]) / (places.length - 1);
   return Math.max(0, Math.ceil(-Math.log10(least)));
 }
 
-// The place in words, with what the chart of the ratio, or else the first, tells there.
+// The place in words, with the value of the ratio, or of the first chart that moves.
 function told() {
   const [name, unit = ""] = page.scene.driver.split(", ");
   const words = [`${name} = ${page.place.toFixed(decimals())} ${unit}`.trim()];
   const moving = page.shown.charts.filter((one) => one.moves);
   const chart = moving.find((one) => one.name === "ratio") ?? moving[0];
-  const line = chart?.lines[0];
-  const values = line ? valuesAt(line, page.place) : [];
-  const [, measure = ""] = chart?.y.split(", ") ?? [];
-  if (values.length) words.push(`${line.label} = ${values.join(" | ")} ${measure}`.trim());
+  const lines = chart?.lines.filter((one) => !one.dots) ?? [];
+  const values = lines.length ? valuesAt(lines[0], page.place) : [];
+  const [what, measure = ""] = chart?.y.split(", ") ?? [];
+  const whose = lines.length > 1 ? `${lines[0].label}: ` : "";
+  if (values.length) words.push(`${whose}${what} = ${values.join(" | ")} ${measure}`.trim());
   return words.join(", ");
 }
 
@@ -116,13 +117,13 @@ function name() {
 function tick(now, before) {
   if (!page.playing) return;
   const { places } = page.scene;
-  const seconds = Math.min(0.1, (now - before) / 1000); // after a pause of the page nothing leaps
+  const seconds = Math.min(0.1, (now - before) / 1000); // no jump after a pause of the page
   advance((seconds * element("speed").value * (places.at(-1) - places[0])) / CYCLE);
   draw();
   requestAnimationFrame((next) => tick(next, now));
 }
 
-// What repeats goes on, what does not turns back at its ends.
+// Closed cycles repeat; open ones reverse at their ends.
 function advance(way) {
   const { places, closed } = page.scene;
   const [first, last] = [places[0], places.at(-1)];
@@ -170,7 +171,7 @@ function check(home, text, on, set) {
   label.append(` ${text}`);
 }
 
-// Those controls that the scene has something for; they stay while it has the same.
+// Controls for what the scene contains; they are kept while this is the same.
 let offered = "";
 
 function offer() {
@@ -200,7 +201,7 @@ function offer() {
   element("mesh").hidden = !sets.length && !scene.pitch;
 }
 
-// Flanks touch on one side at a time; elsewhere all that touches is shown.
+// Flanks touch on one side at a time; of cams all contacts are shown.
 function sides(sets, single) {
   const choice = element("side");
   choice.replaceChildren();
@@ -257,13 +258,13 @@ function repaint() {
   charts.repaint();
 }
 
-// What a link leads to is open.
+// Open the section that a link leads to.
 function unfold() {
   const folded = location.hash && document.querySelector(`${location.hash} > details`);
   if (folded) folded.open = true;
 }
 
-// Paper has a width of its own, light colours, no use for what moves, and nothing to open.
+// On paper: another width, light colours, and folded sections open.
 function print(on) {
   for (const one of document.querySelectorAll(".printed")) {
     if (on) one.dataset.open = one.open;
@@ -278,7 +279,7 @@ function print(on) {
 
 // --- documents -----------------------------------------------------------------------------------
 
-// What a block says anew; what a reader had opened in it stays open.
+// Replace the content of a block; sections that are open stay open.
 function block(name, html) {
   const home = element(name);
   const open = [...home.querySelectorAll("details")].map((one) => one.open);
@@ -286,8 +287,8 @@ function block(name, html) {
   home.querySelectorAll("details").forEach((one, k) => (one.open = open[k] ?? false));
 }
 
-// Show another document, or a draft of one without charts, contacts or some of its blocks: what it
-// does not tell stays as it was, as do place, view and choices.
+// Show another document or a draft, which lacks charts, contacts and some blocks: what is missing
+// stays unchanged, as do place, view and choices.
 function show(next) {
   const blocks = { ...page.shown.blocks, ...next.blocks };
   for (const [name, html] of Object.entries(blocks)) {

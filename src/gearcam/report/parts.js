@@ -1,6 +1,6 @@
-// The parts in motion, on a canvas: what is seen of a scene, and from where.
+// The parts in motion on a canvas: drawing, zoom and pan.
 
-// Colours by name, as the style sheet has them now; on paper always the light ones.
+// Colours by name from the style sheet; on paper the light ones.
 function palette(paper = false) {
   const root = document.documentElement;
   const before = root.classList.contains("paper");
@@ -16,12 +16,12 @@ function palette(paper = false) {
   return colours;
 }
 
-const traced = new WeakMap(); // paths of chains, by the step that they were traced with
-const STEP = 0.35; // of a dot of the screen: what is nearer than that is one point
+const traced = new WeakMap(); // paths of chains with the step that they were traced with
+const STEP = 0.35; // pixels: points that are closer are merged
 
-// Outlines are long and never change; seen as a whole they need few of their points.
+// Outlines have many points and never change; zoomed out, few of the points suffice.
 function pathOf({ chains, closed }, dot) {
-  const step = 2 ** Math.floor(Math.log2(STEP * dot)); // so that it seldom changes with the zoom
+  const step = 2 ** Math.floor(Math.log2(STEP * dot)); // seldom changes with the zoom
   const known = traced.get(chains);
   if (known?.step === step) return known.path;
   const path = new Path2D();
@@ -47,11 +47,11 @@ function trace(path, points, step) {
 class Parts {
   constructor(canvas, moved) {
     this.canvas = canvas;
-    this.moved = moved; // called when the view is moved by hand
+    this.moved = moved; // called when the user moves the view
     this.fitted = true;
     this.following = false;
     this.touches = new Map();
-    this.view = { x: 0, y: 0, scale: 1 }; // middle, mm, and pixels for a millimetre
+    this.view = { x: 0, y: 0, scale: 1 }; // centre, mm, and pixels per mm
     new ResizeObserver(() => this.resize()).observe(canvas);
     canvas.addEventListener("wheel", (event) => this.wheel(event), { passive: false });
     canvas.addEventListener("pointerdown", (event) => this.down(event));
@@ -78,7 +78,7 @@ class Parts {
     this.moved();
   }
 
-  // The whole of all places.
+  // Show the whole scene at all places.
   fit() {
     const [left, bottom, right, top] = this.own.box;
     const { width, height } = this.size;
@@ -88,7 +88,7 @@ class Parts {
     this.following = false;
   }
 
-  // The mesh, wherever it goes.
+  // Follow the mesh.
   follow() {
     this.fit();
     this.view.scale *= closer(this.own);
@@ -96,7 +96,7 @@ class Parts {
     this.following = true;
   }
 
-  // A zoom keeps the point that is pointed at in its place.
+  // Zoom about a point, which stays in place.
   zoom(factor, x = 0.5 * this.size.width, y = 0.5 * this.size.height) {
     const { width, height } = this.size;
     const before = this.view.scale;
@@ -132,7 +132,7 @@ class Parts {
     const now = { x: event.offsetX, y: event.offsetY };
     const other = [...this.touches].find(([id]) => id !== event.pointerId)?.[1];
     this.touches.set(event.pointerId, now);
-    const share = other ? 0.5 : 1; // two fingers move what is between them
+    const share = other ? 0.5 : 1; // two fingers move the point between them
     this.pan(share * (now.x - before.x), share * (now.y - before.y));
     if (!other) return;
     const apart = (one) => Math.hypot(one.x - other.x, one.y - other.y) || 1;

@@ -1,6 +1,6 @@
-// What can be saved: the drawing as SVG and PNG, data as CSV.
+// Saving: the drawing as SVG and PNG, the data of a chart as CSV.
 
-const PIXELS = 960; // width of a saved drawing for which widths of lines are told
+const PIXELS = 960; // nominal width of a saved drawing, for the widths of its lines
 
 const digits = (value) => String(Number(value.toFixed(4)));
 
@@ -11,7 +11,7 @@ function attributes(values) {
   return told.map(([name, value]) => ` ${name}="${shown(value)}"`).join("");
 }
 
-// The whole drawing in mm, y upwards within the group; colours of paper.
+// The whole drawing in mm, y upwards within the group, in the colours of paper.
 function svgOf(scene, place, cycles, seen) {
   const [left, bottom, right, top] = scene.box;
   const margin = 0.03 * (right - left);
@@ -42,7 +42,7 @@ function elementOf({ chains, closed, pose, fill, ink, width = 1.2, dash }, pixel
   const end = closed ? "Z" : "";
   const ways = chains.map((points) => `M${points.map(digits).join(" ")}${end}`);
   return `<path${attributes({
-    // degrees in all digits: few of them would move a rim by more than a micrometre
+    // degrees in full precision: rounded ones would move a rim by more than a micrometre
     transform: pose
       ? `translate(${digits(pose.x)} ${digits(pose.y)}) rotate(${(pose.turn * 180) / Math.PI})`
       : null,
@@ -56,7 +56,7 @@ function elementOf({ chains, closed, pose, fill, ink, width = 1.2, dash }, pixel
 
 const escaped = (text) => text.replace(/[&<>"]/g, (sign) => `&#${sign.charCodeAt(0)};`);
 
-// A column for each line, and one of its x before it where that is another than the last line's.
+// A column for each line, preceded by its x if this differs from that of the line before.
 function csvOf(chart) {
   const columns = [];
   let last = "";

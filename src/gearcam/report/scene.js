@@ -1,6 +1,6 @@
-// A scene at a place of its driver: where bodies are, what touches, and what is to be drawn.
+// A scene at a place of its driver: positions of bodies, contacts, and the marks to draw.
 
-// The places around a place, and its part of the way from one to the other.
+// The index of the place before a place, and the share of the step beyond it.
 function spotOf(places, place) {
   let low = 0;
   let high = places.length - 1;
@@ -20,10 +20,10 @@ function between(values, { index, part }) {
   return values[index] + part * (values[index + 1] - values[index]);
 }
 
-// What a cycle adds: a driven wheel need not have come round when the driver has.
+// Change over a cycle: a driven wheel need not make a full turn.
 const gain = (values) => (steady(values) ? 0 : values.at(-1) - values[0]);
 
-// Turn, rad, and origin, mm, of every body.
+// Rotation, rad, and origin, mm, of every body.
 function posesOf(scene, place, cycles = 0) {
   const spot = spotOf(scene.places, place);
   return scene.bodies.map((body) => ({
@@ -34,7 +34,7 @@ function posesOf(scene, place, cycles = 0) {
   }));
 }
 
-// The rows of contacts at one of the places, by the teeth that touch or else by their order.
+// The rows of contacts at one of the places by their teeth, or else by their order.
 function rowsAt(contacts, index) {
   const rows = new Map();
   for (let row = contacts.start[index]; row < contacts.start[index + 1]; row++) {
@@ -45,7 +45,7 @@ function rowsAt(contacts, index) {
   return rows;
 }
 
-// Points of contact: what touches at both places around moves evenly between them.
+// Points of contact, interpolated where the same teeth touch at both neighbouring places.
 function touching(contacts, spot) {
   const here = rowsAt(contacts, spot.index);
   const next = rowsAt(contacts, spot.index + 1);
@@ -60,10 +60,10 @@ function touching(contacts, spot) {
   });
 }
 
-// All that touches, of the sets of contacts that are asked for.
+// All points of contact of the given sets.
 function touchingIn(scene, names, place) {
   const spot = spotOf(scene.places, place);
-  const known = names.filter((name) => name in scene.contacts); // a draft has none
+  const known = names.filter((name) => name in scene.contacts); // a draft has no contacts
   return known.flatMap((name) => touching(scene.contacts[name], spot));
 }
 
@@ -74,7 +74,7 @@ function pitchAt(scene, place) {
   return { x: at(2 * index), y: at(2 * index + 1) };
 }
 
-// What a view follows: the pitch point, or the middle of what touches.
+// The point that the view follows: the pitch point, or the middle of the contacts.
 function meshAt(scene, place) {
   const pitch = pitchAt(scene, place);
   if (pitch) return pitch;
@@ -84,16 +84,16 @@ function meshAt(scene, place) {
   return { x: mean("x"), y: mean("y") };
 }
 
-// How much larger the mesh is seen than the whole: about five teeth, or a quarter of the parts.
+// Magnification of the mesh: about five teeth, or a quarter of the parts, fill the view.
 function closer(scene) {
   const teeth = Object.values(scene.contacts).flatMap((one) => one.teeth ?? []);
   const most = teeth.reduce((count, pair) => Math.max(count, pair[0]), 0);
   return Math.max(4, most / 6);
 }
 
-// Colours go by name, so that wheel 1 has its own wherever it lies in the picture.
+// Colours by name, so that wheel 1 keeps its colour whatever the order of bodies.
 function tones(scene) {
-  const own = scene.bodies.map((body) => body.name.split("_")[0]); // steps of a wheel are one
+  const own = scene.bodies.map((body) => body.name.split("_")[0]); // steps of one wheel
   const names = [...new Set(own)].filter((name) => name !== "frame").sort();
   return own.map((name) => (names.indexOf(name) % 2) + 1);
 }
@@ -104,14 +104,14 @@ function toothOf(outline, [first, last]) {
   return first <= last ? tooth : tooth.concat(outline.slice(0, 2 * last + 2));
 }
 
-/* What is drawn, as marks; what comes later lies on top. A mark has `chains` of points (flat, mm),
-   `closed` or not, names of the colours that `fill` it and `ink` its edges, a `pose` or none, and
-   its `width` and `dash` in units of `pixel`, mm. `seen` tells what is asked for. */
+/* The marks to draw, later ones on top. A mark has `chains` of points (flat, mm), `closed` or not,
+   the names of the colours of its area (`fill`) and edges (`ink`), an optional `pose`, and its
+   `width` and `dash` in units of `pixel`, mm. `seen` selects what is shown. */
 function* marksOf(scene, place, cycles, seen, pixel) {
   const found = touchingIn(scene, seen.contacts, place);
   const poses = posesOf(scene, place, cycles);
   const tone = tones(scene);
-  // The outline repeats: the teeth that touch are those of the first cycle, where they were then.
+  // Contacts refer to the teeth of the first cycle, at their positions in it.
   const first = cycles ? posesOf(scene, place) : poses;
   const toothed = scene.bodies.filter((body) => body.teeth);
   for (const [k, body] of scene.bodies.entries()) {
@@ -123,7 +123,7 @@ function* marksOf(scene, place, cycles, seen, pixel) {
       .map((one) => toothOf(body.metal[0], body.teeth[one.teeth[column] - 1]));
     yield { chains, closed: true, fill: `carry-${tone[k]}`, ink: `ink-${tone[k]}`, pose: first[k] };
   }
-  // What only guides the eye lies on every body.
+  // Auxiliary lines are drawn on top of the bodies.
   for (const [k, body] of scene.bodies.entries()) yield* dashedMarks(body, poses[k], seen);
   if (seen.action) yield* actionMarks(found, pixel);
   if (seen.points) yield* found.map((one) => dot(one, 4 * pixel, "contact"));
@@ -131,12 +131,12 @@ function* marksOf(scene, place, cycles, seen, pixel) {
   if (pitch) yield dot(pitch, 4 * pixel, "pitch");
 }
 
-// Plates that lie one over the other, each with its openings.
+// Overlapping plates, each with its openings.
 function platesOf(body) {
   return (body.split ??= body.plates.map((from, k) => body.metal.slice(from, body.plates[k + 1])));
 }
 
-// Contacts tell the tooth of the first body, then of the second: by their names, as colours go.
+// Column of a body in the teeth of contacts: toothed bodies in the order of their names.
 function columnOf(toothed, body) {
   return toothed.map((one) => one.name).sort().indexOf(body.name);
 }
@@ -160,7 +160,7 @@ function* dashedMarks(body, pose, seen) {
   }
 }
 
-// Through each contact along the force, with a head where it presses.
+// Lines of action through each contact, with the head of an arrow in the direction of the force.
 function* actionMarks(found, pixel) {
   const reach = 60 * pixel;
   const head = 8 * pixel;

@@ -1,17 +1,17 @@
-// The view of the solids: a page of its own in a frame, made when it is first opened. Its globals
-// (scene, camera, controls, render, THREE) are used to fit it, to colour it and to print it.
+// The view of the solids: a separate page in a frame, loaded when first opened. Its globals (scene,
+// camera, controls, render, THREE) serve to fit, colour and print it.
 "use strict";
 
 (() => {
   const home = document.querySelector("#solids details");
   if (!home) return;
   const dark = matchMedia("(prefers-color-scheme: dark)");
-  const METAL = [0x4d7fb8, 0xb8803f, 0x5c8f5c]; // bodies in their order
-  const TURN = Math.PI / 18; // of an arrow key
-  const ZOOM = 1.15; // of + and -
+  const METAL = [0x4d7fb8, 0xb8803f, 0x5c8f5c]; // colours of the bodies in order
+  const TURN = Math.PI / 18; // per arrow key, rad
+  const ZOOM = 1.15; // factor per + or -
   let frame = null;
 
-  // The view's own globals; null until it is drawn.
+  // The globals of the view; null until it is drawn.
   const view = () => {
     const inside = frame && frame.contentWindow;
     return inside && inside.controls ? inside : null;
@@ -36,7 +36,7 @@
     ready();
   }
 
-  // The view reads its data by itself and does not tell when that is done.
+  // The view loads its data itself and does not report when it is done.
   function ready() {
     const inside = view();
     if (!inside) {
@@ -57,7 +57,7 @@
     inside.tracklight.intensity = 1.1;
     inside.scene.traverse((one) => {
       if (!one.isMesh) return;
-      one.material = one.material.clone(); // they share one
+      one.material = one.material.clone(); // bodies share one material
       one.material.color.set(METAL[count++ % METAL.length]);
       one.material.metalness = 0;
       one.material.roughness = 0.7;
@@ -65,7 +65,7 @@
     inside.render();
   }
 
-  // Set the camera as far off as the bodies need in the narrower direction.
+  // Set the camera at the distance at which the bodies fit in the narrower direction.
   function fit(inside) {
     const { camera, controls, THREE } = inside;
     const bodies = new THREE.Box3().setFromObject(inside.scene);
@@ -101,7 +101,7 @@
     view().render();
   }
 
-  // A frame is cut at the width of the paper and its canvas is empty there: a picture is printed.
+  // In print a frame is cut off and its canvas is empty, so an image is printed instead.
   function picture() {
     const inside = view();
     if (!inside) return;
