@@ -34,6 +34,17 @@ CASES: dict[str, Any] = {
     "arm": cam(ARM, {"prime_radius_mm": 30}, 15, angles=STEEP),
     "groove": cam(ROLLER, {"prime_radius_mm": 40} | GROOVE, 12, angles=STEEP),
     "conjugate": cam(ROLLER, {"prime_radius_mm": 25} | TWO, angles=STEEP),
+    "conjugate by a distance": cam(
+        ROLLER | {"roller_distance_mm": 70},
+        {"prime_radius_mm": 25, "form": "conjugate"},
+        angles=STEEP,
+    ),
+    "conjugate by an angle": cam(
+        ARM | {"arms_angle_deg": 50},
+        {"prime_radius_mm": 35, "form": "conjugate"},
+        15,
+        angles=STEEP,
+    ),
     "yoke": cam(ROLLER, {"form": "yoke", "prime_radius_mm": 20}, angles=[60, 120, 60, 120]),
 }
 
@@ -60,7 +71,7 @@ def test_the_radius_that_is_named_is_the_smallest_that_keeps_the_limit(
     found = steep(document, tmp_path)
     assert found
     for finding in found:
-        motion = finding.where.split(", ")[0] if name == "conjugate" else ""
+        motion = finding.where.split(", ")[0] if name.startswith("conjugate") else ""
         changes = changes_of(finding.message)
         left = steep(followed(document, changes), tmp_path, motion)
         assert [one for one in left if one.code == finding.code] == []

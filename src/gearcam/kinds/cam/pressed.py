@@ -113,7 +113,7 @@ def resized(result: CamResult, number: int, size: float) -> dict[str, float]:
         scale, _ = mechanism.outward
         key = "follower.arms_angle_deg" if mechanism.oscillating else "follower.roller_distance_mm"
         more = scale * (mechanism.start - _started(motion, size))
-        return {key: float(f"{value_at(document, key) + more:.8g}")}
+        return {key: shortened(value_at(document, key) + more, more, 5)}
     base = value_at(document, "cam.base_radius_mm")
     key = "cam.prime_radius_mm" if base is None else "cam.base_radius_mm"
     own = size if base is None else float(f"{size - mechanism.radius:.10g}")
