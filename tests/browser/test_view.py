@@ -157,11 +157,16 @@ def places(page: Chrome) -> list[float]:
 
 def verdict(page: Chrome) -> tuple[str, str]:
     """The verdict that is seen, and its colour."""
-    (seen,) = (one for one in page.find_elements(By.CLASS_NAME, "verdict") if one.is_displayed())
-    return seen.text.split(maxsplit=1)[1], seen.value_of_css_property("color")
+    found = page.execute_script(
+        "return [...document.querySelectorAll('.verdict')].map((one) => [one.textContent,"
+        " getComputedStyle(one)]).filter(([, style]) => style.visibility === 'visible')"
+        ".map(([text, style]) => [text.trim().split(/\\s+/).slice(1).join(' '), style.color])"
+    )
+    ((words, colour),) = found
+    return words, colour
 
 
-RED = "rgba(179, 38, 30, 1)"
+RED = "rgb(179, 38, 30)"
 
 
 @pytest.mark.parametrize("size", [(1600, 1000), (1200, 800), (390, 844)])
@@ -207,6 +212,23 @@ def test_a_refused_design_has_a_red_verdict_and_the_sliders_stay(
         assert shown(page)[-1]["charts"]
     finally:
         page.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+
+
+def test_a_design_with_errors_offers_its_remedies_with_buttons(page: Chrome) -> None:
+    good, before = verdict(page), places(page)
+    teeth = field(page, "pair.teeth[0]")
+    teeth.clear()
+    teeth.send_keys("18", Keys.ENTER)
+    buttons = until(lambda: page.find_elements(By.CSS_SELECTOR, "#findings li button"))
+    assert verdict(page)[1] == RED
+    assert places(page) == before
+    assert buttons[0].accessible_name == "Use this: pair.teeth = [52, 52]"
+    page.execute_script("arguments[0].click()", buttons[0])
+    until(lambda: verdict(page)[1] != RED)
+    assert teeth.get_attribute("value") == "52"
+    assert field(page, "pair.teeth[1]").get_attribute("value") == "52"
+    assert verdict(page) in {good, ("Ready to cut", "rgb(28, 107, 63)")}
+    assert not page.find_elements(By.CSS_SELECTOR, "#findings li button")
 
 
 def test_a_file_that_is_saved_refused_is_shown_so_with_its_remedies(

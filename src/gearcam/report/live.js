@@ -45,19 +45,29 @@
       place.textContent = lines ?? "";
       return;
     }
-    const rows = found.map((one) => element("li", {}, element("code", { textContent: one.text }),
-      ...(one.changes ? [use(one)] : [])));
-    place.replaceChildren(lines.split("\n")[0], element("ul", {}, ...rows));
+    const items = found.map(({ text, changes }) => {
+      const item = element("li", {}, element("code", { textContent: text }));
+      item.dataset.changes = JSON.stringify(changes);
+      return item;
+    });
+    place.replaceChildren(lines.split("\n")[0], element("ul", {}, ...items));
+    addButtons();
   }
 
-  function use({ text, changes }) {
-    const button = element("button", { type: "button", textContent: "Use this" });
-    button.setAttribute("aria-label", `Use this: ${text}`);
-    button.addEventListener("click", () => {
-      for (const [key, value] of Object.entries(changes)) set(key, value);
-      ask(Object.keys(changes)[0], true);
-    });
-    return button;
+  // Give remedies that change nothing but numbers with sliders a button.
+  function addButtons() {
+    for (const item of document.querySelectorAll("li[data-changes]:not(:has(button))")) {
+      const changes = Object.entries(JSON.parse(item.dataset.changes)).flatMap(([key, value]) =>
+        Array.isArray(value) ? value.map((one, k) => [`${key}[${k}]`, one]) : [[key, value]]);
+      if (!changes.every(([key, value]) => rows.has(key) && Number.isFinite(value))) continue;
+      const button = element("button", { type: "button", textContent: "Use this" });
+      button.setAttribute("aria-label", `Use this: ${item.textContent}`);
+      button.addEventListener("click", () => {
+        for (const [key, value] of changes) set(key, value);
+        ask(changes[0][0], true);
+      });
+      item.append(" ", button);
+    }
   }
 
   async function post(route, data) {
@@ -101,6 +111,7 @@
     for (const [key, value] of Object.entries(reply.changes ?? {})) {
       if (key !== last) set(key, value);
     }
+    addButtons();
   }
 
   // Show a number at its slider and in its field; it is pending until it is saved.
@@ -213,6 +224,7 @@
       made = state.made;
       offer(state.keys);
     }
+    addButtons();
   }
 
   function ended() {
@@ -223,5 +235,6 @@
   events.onmessage = (event) => follow(event).catch(ended);
   events.onerror = ended;
   offer(live.keys);
+  addButtons();
   tell(live.error, Boolean(live.error));
 })();

@@ -101,20 +101,14 @@ def seek(text: str, file: str) -> Reply:
     Returns
     -------
     dict
-        ``lines``, as the command line prints them; ``found``, for each remedy its ``text`` and
-        ``changes``, numbers by key, or None if it changes other keys than numbers in the file.
+        ``lines``, as the command line prints them; ``found``, the ``text`` and the ``changes`` of
+        each remedy.
     """
 
     def made() -> Reply:
-        sought, known = remedies(build(loads(text, file=file))), numbers(text)
-        found = [(one.text, _items(one.changes)) for one in sought.found]
-        return {
-            "lines": "\n".join(remedy_lines(sought)),
-            "found": [
-                {"text": words, "changes": changes if changes.keys() <= known.keys() else None}
-                for words, changes in found
-            ],
-        }
+        sought = remedies(build(loads(text, file=file)))
+        found = [{"text": one.text, "changes": dict(one.changes)} for one in sought.found]
+        return {"lines": "\n".join(remedy_lines(sought)), "found": found}
 
     return _told(made, file)
 
