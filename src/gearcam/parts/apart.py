@@ -64,14 +64,16 @@ def demand_apart(
 
     edges = [work.points(opening.shape) for opening in found]
     regions = [Polygon(edge) for edge in edges]
+    # chords of openings that touch each other may be apart by this
+    gap = 2.0 * max((work.sagitta(opening.shape) for opening in found), default=0.0)
     for number, (opening, edge, region) in enumerate(zip(found, edges, regions, strict=True)):
-        if not solid.contains(region):
+        if not solid.contains(region) or solid.boundary.dwithin(region, gap):
             raise _no_room(opening, solid, work.within, work, blank.widening, given)
         away = np.hypot(*edge.T)
         if blank.hub_diameter and away.min() <= 0.5 * blank.hub_diameter <= away.max():
             raise _no_room(opening, solid, "the edge of the hub", work, blank.widening, given)
         for other, second in zip(found[:number], regions[:number], strict=True):
-            if region.intersects(second):
+            if region.dwithin(second, gap):
                 raise _no_room(opening, solid, f"the {other.name}", work, blank.widening, given)
 
 

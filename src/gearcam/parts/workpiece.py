@@ -42,7 +42,11 @@ class Workpiece:
 
     def points(self, edge: Edge) -> Array:
         """Return points of an `edge`, (n, 2), mm, for tests of overlap."""
-        return edge.points(max(FINE * self.rim, GRAIN * edge.reach))
+        return edge.points(self.sagitta(edge))
+
+    def sagitta(self, edge: Edge) -> float:
+        """Return how far the chords between those points may be from the `edge`, mm."""
+        return max(FINE * self.rim, GRAIN * edge.reach)
 
     def key(self, name: str) -> str:
         """Return the dotted key of its value of key `name` in ``[blank]``."""
