@@ -4,6 +4,7 @@
 const DASHES = [[], [9, 3], [9, 3, 2, 3], [2, 3], [14, 4], [5, 2]];
 const HEIGHT = 230; // of a chart, pixels
 const PRINTED = { width: 330, height: 200 };
+const PRINTED_FIRST = { ...PRINTED, width: 676 }; // over both columns
 const FREE = 0.06; // margin of a range, above and below, and beside dots
 const LETTERS = 12; // height of a line of text in a chart, pixels
 const AT_ONCE = 3; // charts drawn per frame, so that the parts keep moving
@@ -353,9 +354,9 @@ class Charts {
   }
 
   print(on) {
-    for (const view of this.views) {
+    for (const [k, view] of this.views.entries()) {
       if (on) this.update(view);
-      view.resize(on ? PRINTED : undefined);
+      view.resize(on ? (k ? PRINTED : PRINTED_FIRST) : undefined);
       view.repaint();
     }
   }

@@ -78,7 +78,7 @@ def _ratio(result: GearPairResult) -> Chart:
 def _curvature(result: GearPairResult) -> Chart:
     names = {"rho1_mm": "driver", "rho2_mm": "driven"}
     chart = _of_centrodes(
-        "Curvature of the pitch curves (positive: convex towards the tips)",
+        "Curvature of the centrodes (positive: convex towards the tips)",
         "curvature, 1/mm",
         names,
         result,
@@ -88,7 +88,7 @@ def _curvature(result: GearPairResult) -> Chart:
     for gear in result.gears:
         convex, concave = undercut_curvatures(gear)
         for value, what in ((convex, "convex"), (-concave, "concave")):
-            found.setdefault(value, Limit(label=f"limit of undercut, {what} centrode", value=value))
+            found.setdefault(value, Limit(label=f"limit of undercut, {what}", value=value))
     return replace(chart, limits=tuple(found.values()))
 
 
@@ -198,7 +198,7 @@ CHARTS: Final[Charts] = {
     "position": _position,
     "radii": partial(
         _of_centrodes,
-        "Radii of the pitch curves",
+        "Radii of the centrodes",
         "radius, mm",
         {"r1_mm": "driver", "r2_mm": "driven"},
     ),
