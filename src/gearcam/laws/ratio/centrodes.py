@@ -172,9 +172,10 @@ class LogSpiral(Brief):
         """Yield what is wrong by reading: field, index, message, allowed."""
         closed = self.return_angle is not None
         if (self.driven_travel is None) != closed:
-            words = "driven_travel_deg and return_deg are both" if closed else "neither is"
+            words = "neither driven_travel_deg nor return_deg is given"
+            words = "driven_travel_deg and return_deg are both given" if closed else words
             rule = "driven_travel_deg for an open pair, or return_deg for a closed one"
-            yield "return_angle", None, f"{words} given", rule
+            yield "return_angle", None, words, rule
         low, high = 1.0 / _LARGEST, _LARGEST
         for index, ratio in enumerate(self.ratios):
             if ratio == "solve":
