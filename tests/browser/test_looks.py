@@ -117,6 +117,9 @@ def test_the_page_leads_with_what_decides_and_the_rest_is_folded(
     wide, *pair = (one.rect for one in browser.find_elements(By.CSS_SELECTOR, "#charts > figure"))
     assert pair[0]["y"] == pair[1]["y"] > wide["y"]
     assert pair[0]["x"] + pair[0]["width"] < pair[1]["x"]
+    browser.find_element(By.CSS_SELECTOR, "nav [href='#charts']").click()
+    settle(browser)
+    assert not any(one.get_attribute("open") for one in folded)
     browser.find_element(By.CSS_SELECTOR, "nav [href='#facts']").click()
     until(lambda: browser.find_element(By.CSS_SELECTOR, "#facts table").is_displayed())
 

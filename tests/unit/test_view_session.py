@@ -8,6 +8,7 @@ import os
 import threading
 import tomllib
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,8 @@ import pytest
 from gearcam.cli import main
 from gearcam.errors import DesignError
 from gearcam.view import watch, work
-from gearcam.view.session import RequestError, Session, _Newest
+from gearcam.view.command import reporter
+from gearcam.view.session import RequestError, Session, State, _Newest
 from gearcam.view.watch import Watch
 from helpers_view import DESIGN, SECONDS, Shown, shown
 
@@ -85,6 +87,19 @@ def test_a_refused_number_is_answered_with_remedies_that_build(view: Shown) -> N
     ((key, value),) = remedy["changes"].items()
     shown = json.loads(work.follow(text, "a.toml", {key: value}, key, exact=True))
     assert shown["error"] == ""
+
+
+def test_the_terminal_repeats_no_error_when_remedies_come(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    report = reporter("a.toml")
+    good = State(document={}, news=None)
+    for error in ("bad\n  why", "bad\n  why\n  a remedy", "worse", "worse"):
+        report(State(error=error))
+    assert capsys.readouterr().err == "bad\n  why\n  a remedy\nworse\nworse\n"
+    report(replace(good, news=good.document))
+    report(State(error="worse"))
+    assert capsys.readouterr() == ("a.toml: view updated\n", "worse\n")
 
 
 def test_a_fault_of_the_program_is_told(view: Shown, monkeypatch: pytest.MonkeyPatch) -> None:

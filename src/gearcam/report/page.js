@@ -258,9 +258,9 @@ function repaint() {
   charts.repaint();
 }
 
-// Open the section that a link leads to.
+// Open a folded section that a link leads to.
 function unfold() {
-  const folded = location.hash && document.querySelector(`${location.hash} > details`);
+  const folded = location.hash && document.querySelector(`${location.hash} > details:first-child`);
   if (folded) folded.open = true;
 }
 

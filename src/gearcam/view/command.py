@@ -7,6 +7,7 @@ import threading
 import time
 import webbrowser
 from argparse import ArgumentParser
+from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import active_children, get_context
 from typing import Final
@@ -53,7 +54,7 @@ def view(file: str, port: int = 0, *, browser: bool = True) -> None:
     count = min(max(os.cpu_count() or 1, _WORKERS.start), _WORKERS.stop - 1)
     context = get_context("spawn")  # threads of a server do not survive a fork
     with ProcessPoolExecutor(count, mp_context=context, initializer=begin) as workers:
-        session = Session(file, workers, count, lambda state: _tell(file, state))
+        session = Session(file, workers, count, reporter(file))
         with Server(session, port) as server:
             try:
                 with unbroken():
@@ -83,8 +84,16 @@ def _follow(session: Session) -> None:
         time.sleep(PAUSE)
 
 
-def _tell(file: str, state: State) -> None:
-    if state.error:
-        complain(state.error)
-    elif state.news is state.document:
-        say(f"{file}: view updated")
+def reporter(file: str) -> Callable[[State], None]:
+    """Return a function that prints the states of a `file`, of an error only what is new."""
+    printed = ""
+
+    def report(state: State) -> None:
+        nonlocal printed
+        if state.error:
+            complain(state.error.removeprefix(f"{printed}\n"))
+        elif state.news is state.document:
+            say(f"{file}: view updated")
+        printed = state.error
+
+    return report
