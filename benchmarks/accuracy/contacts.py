@@ -41,7 +41,7 @@ def lens(rho: Any, ahead: Any) -> Any:
 
     def unwound(start: Any, turned: Any) -> tuple[Any, Any]:
         # of a circle about (-base, 0), and its derivative by the angle turned
-        e = mp.expj(turned)
+        e = mp.exp(1j * turned)
         left = start - base * turned
         return base * (e - 1) + 1j * left * e, -left * e
 

@@ -203,7 +203,7 @@ def steep_face() -> Lost:
         return height(t) + 20 * mp.pi / width**2 * mp.sin(2 * mp.pi * t / width)
 
     def touched(t: Any) -> Any:
-        return mp.mpc(speed(t), height(t)) * mp.expj(-t)
+        return mp.mpc(speed(t), height(t)) * mp.exp(-1j * t)
 
     def miss(low: Any, high: Any) -> list[Any]:
         found = touched(low) - touched(high)
@@ -214,11 +214,11 @@ def steep_face() -> Lost:
     corner = touched(low)
     # where the follower should go as fast as it goes while it rests on the corner
     worst = mp.findroot(
-        lambda t: speed(t) - (corner * mp.expj(t)).real,
+        lambda t: speed(t) - (corner * mp.exp(1j * t)).real,
         (mp.radians(40), mp.radians(50)),
         solver="anderson",
     )
-    loss = height(worst) - (corner * mp.expj(worst)).imag
+    loss = height(worst) - (corner * mp.exp(1j * worst)).imag
     first, second, c, d, at = (float(mp.degrees(x)) for x in (*ends, low, high, worst))
     return Lost((first, second), (c, d), at, float(loss))
 

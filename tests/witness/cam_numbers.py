@@ -46,11 +46,11 @@ class Touch:
         place = self.start + s
         if not self.swings:
             if self.slide:
-                way = mp.mpc(0, 1) * mp.expj(self.tilt)
+                way = mp.mpc(0, 1) * mp.exp(1j * self.tilt)
                 return [way * place, way * ds, way * d2s]
             return [mp.mpc(self.offset, place), mp.mpc(0, ds), mp.mpc(0, d2s)]
         sense = 1 if self.slide else -1
-        arm = sense * self.arm * mp.expj(sense * place)
+        arm = sense * self.arm * mp.exp(1j * sense * place)
         first, second = sense * 1j * ds, sense * 1j * d2s - ds * ds
         foot = mp.mpc(-self.pivot, self.height) if self.slide else self.pivot
         return [foot + arm, arm * first, arm * second]
@@ -60,7 +60,7 @@ class Touch:
         z, dz, d2z = self.centre(found)
         if self.slide:
             return [z + self.slide * theta, dz + self.slide, d2z]
-        turn = mp.expj(-theta)
+        turn = mp.exp(-1j * theta)
         return [z * turn, (dz - 1j * z) * turn, (d2z - 2j * dz - z) * turn]
 
     def curvature(self, theta: Number, found: Sequence[Number]) -> Number:
@@ -102,7 +102,7 @@ class Touch:
         if self.flat:
             h, g, *_ = self.support(found)
             angle = theta + (self.start + found[0] if self.swings else 0)
-            return mp.mpc(g, h) * mp.expj(-angle)
+            return mp.mpc(g, h) * mp.exp(-1j * angle)
         place, first, _ = self.pitch(theta, found)
         return place - 1j * self.radius * first / abs(first)
 
@@ -116,9 +116,9 @@ class Touch:
         normal = 1j * (dz + (self.slide or -1j * z))
         place = self.start + found[0]
         if self.swings:
-            moves = 1j * mp.expj(place) if self.slide else 1j * mp.expj(-place)
+            moves = 1j * mp.exp(1j * place) if self.slide else 1j * mp.exp(-1j * place)
         else:
-            moves = 1j * mp.expj(self.tilt)
+            moves = 1j * mp.exp(1j * self.tilt)
         ratio = normal / moves
         return mp.atan(ratio.imag / ratio.real)
 
@@ -137,7 +137,7 @@ class Touch:
 
     def rested(self, theta: Number, point: Number) -> Number:
         """The lift at which the follower rests on a point of the cam's frame."""
-        z = point - self.slide * theta if self.slide else point * mp.expj(theta)
+        z = point - self.slide * theta if self.slide else point * mp.exp(1j * theta)
         r, side = abs(self.radius), self.away
         if self.swings and self.flat:
             reach = self.pivot - z
@@ -146,18 +146,18 @@ class Touch:
             arm = z - mp.mpc(-self.pivot, self.height) if self.slide else mp.conj(self.pivot - z)
             cosine = (abs(arm) ** 2 + self.arm**2 - r**2) / (2 * abs(arm) * self.arm)
             return mp.arg(arm) + side * mp.acos(cosine) - self.start
-        z *= mp.expj(-self.tilt)
+        z *= mp.exp(-1j * self.tilt)
         if self.flat:
             return z.imag - self.start
         return z.imag + side * mp.sqrt(r**2 - (z.real - self.offset) ** 2) - self.start
 
     def standing(self, theta: Number, centre: Number) -> tuple[Number, Number]:
         """How far a centre of the cam's frame is off the follower's way, and the lift there."""
-        z = centre - self.slide * theta if self.slide else centre * mp.expj(theta)
+        z = centre - self.slide * theta if self.slide else centre * mp.exp(1j * theta)
         if self.swings:
             arm = z - mp.mpc(-self.pivot, self.height) if self.slide else mp.conj(self.pivot - z)
             return abs(arm) - self.arm, mp.arg(arm) - self.start
-        z *= mp.expj(-self.tilt)
+        z *= mp.exp(-1j * self.tilt)
         return z.real - self.offset, z.imag - self.start
 
 

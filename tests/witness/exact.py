@@ -230,13 +230,13 @@ class Exact:
         phi2, arc = phi2 + turns * advance, arc + turns * length
         speed, moved = mp.sqrt(r.v * r.v + r.d * r.d), mp.mpc(r.d, r.v)
         if wheel == 1:
-            pole = mp.expj(phi)
+            pole = mp.exp(1j * phi)
             point, turn = r.v * pole, mp.mpc(0, -1)
         elif self.mate == 0:
             pole = mp.mpc(1)
             point, turn = mp.mpc(r.v, phi2), mp.mpc(0, 1)
         else:
-            pole = mp.expj(-self.mate * phi2)
+            pole = mp.exp(-1j * self.mate * phi2)
             point, turn = (r.v - self.mate) * pole, mp.mpc(0, 1)
         tangent = moved / speed * pole
         return point, tangent, turn * tangent, arc
