@@ -102,6 +102,25 @@ def test_the_radius_does_not_depend_on_the_one_that_is_given(tmp_path: Path) -> 
     assert len(told) == 1
 
 
+TOO_HIGH: dict[str, Any] = {
+    "few radii keep it": ({"arm_mm": 32, "pivot_distance_mm": 66}, 92, 27, 21.314, 50.82),
+    "the least is the roller": (
+        {"arm_mm": 60, "pivot_distance_mm": 60, "roller_radius_mm": 15}, 108, 10, 60, 15.0),
+}  # fmt: skip
+"""Arm, prime radius, lift in degrees and limit; the least radius, by a scan of the formula."""
+
+
+@pytest.mark.parametrize("name", TOO_HIGH)
+def test_the_radii_of_an_arm_lie_between_two(name: str, tmp_path: Path) -> None:
+    arm, size, lift, limit, least = TOO_HIGH[name]
+    document = cam(ARM | arm, {"prime_radius_mm": size}, lift, angles=[90, 60, 90, 120])
+    document |= {"limits": {"pressure_angle_deg": limit}}
+    (finding, *_) = steep(document, tmp_path)
+    changes = changes_of(finding.message)
+    assert changes["cam.prime_radius_mm"] == pytest.approx(least, rel=2e-3)
+    assert steep(followed(document, changes), tmp_path) == []
+
+
 def test_a_groove_keeps_its_rim(tmp_path: Path) -> None:
     (finding, *_) = steep(CASES["groove"], tmp_path)
     changes = changes_of(finding.message)

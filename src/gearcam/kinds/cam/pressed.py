@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from gearcam.cams.checks import KIND, driven
-from gearcam.cams.curve import CamCurve
 from gearcam.cams.mechanism import position_at
 from gearcam.designs.design import document_of, value_at
 from gearcam.errors import DesignError, InfeasibleError
@@ -29,10 +28,10 @@ _MOST: Final = 100.0
 """Largest radius that is tried, over what the follower needs: its lift, roller and offset."""
 
 _STEPS: Final = 8
-"""Radii that are tried from one to its double."""
+"""Radii that are tried, each larger than the one before."""
 
-_CLOSE: Final = 1e-4
-"""Share of a radius to which it is found."""
+_CLOSER: Final = 1.0 + 1e-4
+"""Factor of the least radius that a follower needs."""
 
 
 def explained(result: CamResult, findings: tuple[Finding, ...]) -> tuple[Finding, ...]:
@@ -89,7 +88,7 @@ def gentler(result: CamResult, code: str, number: int = 0) -> dict[str, float] |
                 return changes
         except (DesignError, InfeasibleError):
             return None
-        found *= 1.0 + 10.0 * _CLOSE
+        found *= 1.001
     return None
 
 
@@ -188,34 +187,31 @@ def _need(motion: PitchMotion) -> float:
 
 
 def _least(result: CamResult, motion: PitchMotion, code: str, limit: float) -> float | None:
-    """Return the least radius, mm, that keeps a limit, rad, at many cam angles."""
-    mechanism, survey = motion.mechanism, motion.program.survey
+    """Return the least radius, mm, that keeps a limit, rad, at many cam angles.
+
+    A position q at zero lift keeps ``|alpha| <= limit`` at a lift s from a least one on, and that
+    of an arm up to a largest one: with ``turn = arccos(l*(1 + s')*cos(limit)/d)`` it is
+    ``abs(turn - limit) <= q + s <= turn + limit``, and ``q + s <= 2*pi - turn - limit``.
+    """
+    m, (bottom, top) = motion.mechanism, motion.program.range
+    survey = motion.program.survey
     kinds = driven(result.cam, motion) if code == "jamming" else ("rise", "return")
     middles = survey.places.mean(axis=1)
     ends = [pair for kind in kinds for pair in motion.program.phases(kind)]
     inside = np.any([(low < middles) & (middles < high) for low, high in ends], axis=0)
-    found = survey.found[:3, inside].reshape(3, -1)
-
-    def keeps(size: float) -> bool:
-        try:
-            other = replace(mechanism, start=_started(motion, size))
-        except ValueError:
-            return False  # out of reach
-        touch = CamCurve(program=motion.program, mechanism=other).contact_of(found, 0)
-        along = touch.along.c[0]
-        stands = bool(np.all(along > 0.0) or (mechanism.below and np.all(along < 0.0)))
-        return stands and bool(np.abs(touch.pressure.c[0]).max() <= limit)
-
-    need = _need(motion)
-    low = need / _MOST
-    for step in range(1, round(2.0 * _STEPS * math.log2(_MOST)) + 1):
-        high = need / _MOST * 2.0 ** (step / _STEPS)
-        if keeps(high):
-            break
-        low = high
+    lift, speed = survey.found[:2, inside].reshape(2, -1)
+    if m.below:  # below the axis it stands nearest at the highest lift
+        lift, bottom = top - lift, 0.0
+    size = min(m.least, _CLOSER * max(m.radius, abs(m.pivot - m.arm), abs(m.offset)))
+    least, most = position_at(m, size) - bottom, math.inf
+    if m.oscillating:
+        share = m.arm * (1.0 + speed) * math.cos(limit) / m.pivot
+        if np.abs(share).max() > 1.0:
+            return None
+        turn = np.arccos(share)
+        least = max(least, float((np.abs(turn - limit) - lift).max()))
+        most = float((np.minimum(turn + limit, 2.0 * math.pi - turn - limit) - lift).min())
     else:
-        return None
-    while high > low * (1.0 + _CLOSE):
-        middle = math.sqrt(low * high)
-        low, high = (low, middle) if keeps(middle) else (middle, high)
-    return high
+        least = max(least, float((np.abs(speed - m.offset) / math.tan(limit) - lift).max()))
+    found = replace(m, start=least).least
+    return found if least <= most and found <= _MOST * _need(motion) else None
