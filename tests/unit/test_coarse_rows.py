@@ -60,6 +60,21 @@ def test_the_values_that_are_named_lift_the_warning(
     assert warning(gearcam.build(asked.with_({"output.chord_tolerance_mm": finer}))) is not None
 
 
+@pytest.mark.parametrize("rows", [90, 180, 360])
+@pytest.mark.parametrize("noise", [4e-4, 1e-3, 5e-3])
+def test_the_smoothing_that_is_named_brings_the_lift_nearer(rows: int, noise: float) -> None:
+    """It is about as large as the scatter: a larger one would cut off more than the scatter."""
+    asked, exact = (gearcam.build(design(rows, part, swings=False)) for part in (noise, 0.0))
+    value = float(dict(NAMED.findall(warning(asked).message))["motion.smoothing_tolerance_mm"])
+    smooth = gearcam.build(asked.design.with_({"motion.smoothing_tolerance_mm": value}))
+    theta = np.linspace(0.0, 2.0 * math.pi, 2001)
+    true, rough, found = (one.program.derivatives(theta, 0)[0] for one in (exact, asked, smooth))
+    at = np.radians(np.linspace(0.0, 360.0, rows, endpoint=False))
+    scatter = np.abs([one.program.derivatives(at, 0)[0] for one in (asked, exact)])
+    assert value < 1.5 * np.abs(scatter[0] - scatter[1]).max()
+    assert np.abs(found - true).max() < np.abs(rough - true).max()
+
+
 def test_a_value_that_would_not_help_is_not_named() -> None:
     """Twelve rows are too few whatever their smoothing; the error is larger than any tolerance."""
     found = warning(gearcam.build(design(12, 0.0, swings=False)))

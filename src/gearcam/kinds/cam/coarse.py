@@ -23,6 +23,10 @@ _SCATTERED: Final = 4.0
 """Between a quarter and half of the rows the error falls by more than this if the lift is smooth,
 and hardly at all if the rows scatter."""
 
+_SHARES: Final = (0.4, 0.5, 0.65, 0.8, 1.0)
+"""Smoothing tolerances that are tried, over the error: the farthest of scattered rows is about 0.4
+of it beside the lift, and a much larger tolerance takes more from the lift than scatter did."""
+
 
 def helped(result: CamResult, finding: Finding) -> Finding:
     """Return the finding coarse-rows of a `result` with the keys and values that help."""
@@ -35,15 +39,17 @@ def _remedies(result: CamResult, finding: Finding) -> Iterator[str]:
         oscillating, lever = lead.mechanism.oscillating, lead.mechanism.lever
         entries = turn_tables()[0].of_lifts(oscillating=oscillating).entries.values()
         entry = next(one for one in entries if one.name == "smoothing_tolerance")
-        least = max(error / lever, 2.0 * (table.smoothing_tolerance or 0.0))
-        size = _rounded_up(entry.outward(least))
-        smoother = replace(table, smoothing_tolerance=entry.inward(size))
-        try:  # what is left of the error is computed, not assumed
-            program = smoother.program(result.tolerances, oscillating=oscillating)
-        except InfeasibleError:  # a tolerance as large as the lift
-            program = lead.program
-        if program.errors[0] * lever <= lead.tolerance:
-            yield f"With motion.{entry.key} = {shown(size)} the scatter is averaged out."
+        given = 2.0 * (table.smoothing_tolerance or 0.0)
+        sizes = {_rounded_up(entry.outward(max(share * error / lever, given))) for share in _SHARES}
+        for size in sorted(sizes):
+            smoother = replace(table, smoothing_tolerance=entry.inward(size))
+            try:  # what is left of the error is computed, not assumed
+                program = smoother.program(result.tolerances, oscillating=oscillating)
+            except InfeasibleError:  # a tolerance as large as the lift
+                break
+            if program.errors[0] * lever <= lead.tolerance:
+                yield f"With motion.{entry.key} = {shown(size)} the scatter is averaged out."
+                break
     coarser = _rounded_up(error)
     if coarser <= COARSEST:
         yield (
