@@ -52,6 +52,8 @@ def pressure_limit(mechanism: Mechanism, given: float) -> float:
 def driven(cam: Cam, motion: PitchMotion) -> tuple[str, ...]:
     """Return the kinds of phases in which the walls of a motion push the follower.
 
+    A cam that slides comes back: then its returns push too.
+
     Parameters
     ----------
     cam : Cam
@@ -64,6 +66,8 @@ def driven(cam: Cam, motion: PitchMotion) -> tuple[str, ...]:
     tuple of str
         ``rise``, ``return`` or both.
     """
+    if motion.mechanism.slide:
+        return "rise", "return"
     own = (wall for wall in cam.walls if motion in (wall, wall.of))
     return tuple("rise" if wall.curve.mechanism.away > 0 else "return" for wall in own)
 
@@ -110,8 +114,9 @@ def jamming(cam: Cam, limit: float) -> Iterator[Remark]:
     """Report pressure angles at which friction blocks the follower.
 
     Looks at: the pressure angle where the cam drives the follower: on rises, and on returns under a
-    second wall. With friction of 0.15 a stem with an overhang as long as its guide jams from 65.8
-    degrees, an arm on a pin with a radius of a tenth of its length from 80.6 degrees.
+    second wall or of a plate, which slides back. With friction of 0.15 a stem with an overhang as
+    long as its guide jams from 65.8 degrees, an arm on a pin with a radius of a tenth of its length
+    from 80.6 degrees.
     """
     for motion in cam.motions:
         largest = JAMMING[motion.mechanism.oscillating] if math.isnan(limit) else limit
