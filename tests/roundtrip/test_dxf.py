@@ -102,7 +102,7 @@ def test_the_pair_file_has_a_layer_per_feature_and_its_extents(pair: Drawing) ->
         "CENTER": ["LINE"] * 4,
     }
     colours = [document.layers.get(layer).color for layer in layers(pair)]
-    assert colours == [7, 5, 1, 7, 5, 1, 3, 8]
+    assert colours == [1, 1, 5, 1, 1, 5, 8, 8]  # red is cut, blue engraved, grey for reference
     assert document.layers.get("CENTRODE").dxf.linetype == "DASHED"
     widest = max(contour.vertices[:, 0].max() for contour in pair.contours)
     assert document.header["$EXTMAX"][0] == pytest.approx(widest, abs=1e-9)

@@ -43,12 +43,16 @@ CURVE_PART: Final = 0.96
 """Part of the tolerance that arcs and splines may take; the rest covers the chord error of the
 dense points that they are fitted to and measured against (at most 1/32 of the tolerance)."""
 
+RED: Final = 1
+BLUE: Final = 5
+GREY: Final = 8
+"""Colour numbers: as in the SVG for cutting, what is cut is red and what is engraved is blue."""
+
 COLORS: Final = {
-    drawings.BORE: 5, drawings.HOLE: 4, drawings.SLOT: 6, drawings.GROOVE: 6, drawings.MARK: 1,
-    drawings.TOOL: 1, drawings.CENTRODE: 3, drawings.PITCH: 3, drawings.CENTER: 8,
-    drawings.PRIME: 8, drawings.FOLLOWER: 8,
-}  # fmt: skip
-"""Colour numbers: blue, cyan, magenta, red, green, 8 grey; all others are 7, black or white."""
+    **dict.fromkeys((*drawings.OUTER, *drawings.THROUGH, drawings.OUTER_WALL, drawings.TOOL), RED),
+    **dict.fromkeys(drawings.ENGRAVED, BLUE),
+}
+"""Colours by layer type; all others, for reference, are grey."""
 
 MILLIMETRES: Final = 4
 """$INSUNITS."""
@@ -136,7 +140,8 @@ def _fill(document: Document, drawing: Drawing, style: DxfStyle) -> None:
     for feature in drawing.features:
         if feature.layer not in document.layers:
             dashed = "DASHED" if feature.kind in drawings.DASHED else "Continuous"
-            document.layers.add(feature.layer, color=COLORS.get(feature.kind, 7), linetype=dashed)
+            color = COLORS.get(feature.kind, GREY)
+            document.layers.add(feature.layer, color=color, linetype=dashed)
     space = document.modelspace()
     low, high = (corner.tolist() for corner in box(drawing.features))
     space.reset_extents((*low, 0.0), (*high, 0.0))

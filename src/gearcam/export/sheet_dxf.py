@@ -14,9 +14,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, Final
 
-from gearcam.drawings import DASHED
+from gearcam.drawings import CENTER, DASHED
 from gearcam.export import dxf
-from gearcam.export.dxf import COLORS, DxfStyle
+from gearcam.export.dxf import GREY, DxfStyle
 from gearcam.sheets.sheet import (
     ARROW,
     CENTERLINE,
@@ -44,8 +44,11 @@ if TYPE_CHECKING:
     from ezdxf.document import Drawing as Document
     from ezdxf.layouts.layout import Modelspace
 
-SHEET_COLORS: Final = {DIMENSION: 2, CENTERLINE: 8, HIDDEN: 8}
-"""Colour numbers: dimensions yellow, hidden and centre lines grey, the rest black or white."""
+SHEET_COLORS: Final = {
+    **dict.fromkeys((CENTER, CENTERLINE, HIDDEN, *DASHED), GREY),
+    DIMENSION: 2,
+}
+"""Colours: dimensions yellow, lines for reference grey; all others are 7, black or white."""
 
 LINETYPES: Final = {
     "DASHED": ([4.5, 3.0, -1.5], "__ __ __"),
@@ -103,7 +106,7 @@ def _prepare(document: Document, sheet: Sheet, style: DxfStyle) -> None:
         document.linetypes.add(name, [unit * length for length in pattern], description=words)
     kinds = {feature.layer: feature.kind for feature in sheet.features}
     for layer, kind in {**kinds, DIMENSION: DIMENSION, TEXT: TEXT}.items():
-        color, linetype = (COLORS | SHEET_COLORS).get(kind, 7), LINETYPE_OF.get(kind, "Continuous")
+        color, linetype = SHEET_COLORS.get(kind, 7), LINETYPE_OF.get(kind, "Continuous")
         made = document.layers.add(layer, color=color, linetype=linetype)
         if style.version != "R12":
             made.dxf.lineweight = round(100 * (THICK if kind in HEAVY else THIN))
