@@ -7,7 +7,6 @@ a remedy if neither the design nor one of its files is refused and no error is l
 
 from __future__ import annotations
 
-import json
 import math
 import time
 from collections.abc import Iterable, Mapping
@@ -26,6 +25,7 @@ from gearcam.changes import (
     joined,
     octaves,
     sized,
+    text_of,
     tidy,
     together,
 )
@@ -33,7 +33,6 @@ from gearcam.designs.design import Design, document_of, value_at
 from gearcam.designs.kind import KINDS
 from gearcam.display import Brief
 from gearcam.errors import DesignError, InfeasibleError, Way
-from gearcam.numerals import shown
 
 if TYPE_CHECKING:
     from gearcam.findings import Finding
@@ -63,24 +62,42 @@ class Remedy(Brief):
         Values by dotted keys of the design file, in its units.
     less : mapping of str to value
         The largest smaller change that was not enough; empty if none was tried.
+    remaining : tuple of str
+        Codes of the warnings of the changed design.
+    moves : bool
+        Whether the changed design moves otherwise: by another law, lift or mean ratio.
     design : Design
         The changed design.
     """
 
     changes: Changes
     less: Changes = field(default_factory=dict)
+    remaining: tuple[str, ...] = ()
+    moves: bool = False
     design: Design
 
     @property
     def text(self) -> str:
         """The changes as in a design file: ``pair.x = 0.2 and pair.teeth = [52, 52]``."""
-        return _text(self.changes)
+        return text_of(self.changes)
 
     @property
     def next_less(self) -> str:
         """The largest smaller change that is not enough; empty where none was tried."""
         differing = {key: value for key, value in self.less.items() if value != self.changes[key]}
-        return _text(differing)
+        return text_of(differing)
+
+    @property
+    def notes(self) -> str:
+        """What else to know, in brackets: what is not enough, what it changes, what remains."""
+        count = len(self.remaining)
+        notes = [
+            f"not enough: {self.next_less}" if self.next_less else "",
+            "changes the motion" if self.moves else "",
+            f"{count} warnings remain" if count > 1 else "1 warning remains" if count else "",
+        ]
+        told = "; ".join(note for note in notes if note)
+        return f"({told})" if told else ""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,7 +107,8 @@ class Remedies(Brief):
     Parameters
     ----------
     found : tuple of Remedy
-        The remedies; each is enough by itself.
+        The remedies; each is enough by itself. Those that keep the motion come first, and of these
+        and the others those with fewer warnings.
     tried : tuple of str
         Keys that were changed in the search.
     gave_up : bool
@@ -150,23 +168,11 @@ def _sought(
     if not last:
         search.go_on()
     return Remedies(
-        found=tuple(search.found),
+        found=tuple(sorted(search.found, key=lambda one: (one.moves, len(one.remaining)))),
         tried=tuple(search.tried),
         gave_up=search.gave_up,
         builds=search.builds,
     )
-
-
-def _text(changes: Changes) -> str:
-    return " and ".join(f"{key} = {_value(value)}" for key, value in changes.items())
-
-
-def _value(value: object) -> str:
-    if isinstance(value, list):
-        return f"[{', '.join(map(_value, value))}]"
-    if isinstance(value, float):
-        return shown(value, 10)
-    return json.dumps(value)
 
 
 def kerf_paths(result: Any) -> object:
@@ -239,6 +245,7 @@ class Search:
         self.tried: dict[str, None] = {}
         self.gave_up = False
         self.second: InfeasibleError | None = None
+        self.warned: dict[str, tuple[str, ...]] = {}
 
     @cached_property
     def document(self) -> dict[str, Any]:
@@ -261,7 +268,8 @@ class Search:
     def left(self, changes: Changes) -> frozenset[str] | None:
         """Return the codes of all errors of the changed design; None if it is refused.
 
-        A refusal for another reason than that of the design is kept as `second`.
+        A refusal for another reason than that of the design is kept as `second`, the codes of its
+        warnings in `warned`.
         """
         self.second = None
         try:
@@ -276,6 +284,8 @@ class Search:
             return None
         except DesignError:
             return None
+        warnings = (finding.code for finding in findings if finding.severity == "warning")
+        self.warned[text_of(changes)] = tuple(warnings)
         return frozenset(
             finding.code
             for finding in findings
@@ -289,7 +299,15 @@ class Search:
     def keep(self, changes: Changes, less: Changes | None = None) -> None:
         """Add a remedy: its `changes`, and the largest smaller ones that are not enough, `less`."""
         design = self.result.design.with_(changes)
-        self.found.append(Remedy(changes=changes, less=less or {}, design=design))
+        self.found.append(
+            Remedy(
+                changes=changes,
+                less=less or {},
+                remaining=self.warned[text_of(changes)],
+                moves=self.advice.moves(self.result.design, design),
+                design=design,
+            )
+        )
 
     def along(self, way: Way) -> bool:
         """Find the smallest change along a way; return whether there is one."""
@@ -357,7 +375,9 @@ class Search:
             self.tried |= dict.fromkeys(other.tried)
             for remedy in other.found:
                 less = together(changes, remedy.less) if remedy.less else None
-                self.keep(together(changes, remedy.changes), less)
+                both = together(changes, remedy.changes)
+                self.warned[text_of(both)] = remedy.remaining
+                self.keep(both, less)
 
     def follow(self, ways: Iterable[Way]) -> None:
         """Follow `ways`, each for one wheel and, where that does not help, for both.

@@ -6,13 +6,14 @@ equal steps (`between`) or, for sizes, through powers of two (`octaves`, `sized`
 
 from __future__ import annotations
 
+import json
 import math
 import re
 from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
 from gearcam.errors import Way
-from gearcam.numerals import shortened
+from gearcam.numerals import shortened, shown
 
 Changes = Mapping[str, Any]
 
@@ -24,6 +25,11 @@ INSIDE: Final = 1e-3
 
 _GRAIN: Final = 1e-9
 """Part of an octave within which a size is a power of two."""
+
+
+def text_of(changes: Changes) -> str:
+    """Return changes as in a design file: ``pair.x = 0.2 and pair.teeth = [52, 52]``."""
+    return " and ".join(f"{key} = {_value(value)}" for key, value in changes.items())
 
 
 def joined(changes: Changes, way: Way) -> Way:
@@ -93,6 +99,14 @@ def tidy(value: Any) -> Any:
     if isinstance(value, list):
         return [tidy(item) for item in value]
     return float(f"{value:.10g}") if isinstance(value, float) else value
+
+
+def _value(value: object) -> str:
+    if isinstance(value, list):
+        return f"[{', '.join(map(_value, value))}]"
+    if isinstance(value, float):
+        return shown(value, 10)
+    return json.dumps(value)
 
 
 def _items(changes: Mapping[str, Any]) -> list[Any]:

@@ -137,8 +137,7 @@ def remedy_lines(found: Remedies) -> Iterator[str]:
         many = len(found.found) > 1
         yield f"{'each of these changes' if many else 'this change'} was built without errors:"
     for remedy in found.found:
-        less = f"  (not enough: {remedy.next_less})" if remedy.less else ""
-        yield wrapped(f"{remedy.text}{less}", first="  ", rest="      ")
+        yield wrapped(f"{remedy.text}  {remedy.notes}".rstrip(), first="  ", rest="      ")
     keys = ", ".join(found.tried)
     if found.gave_up:
         sought = "more remedies" if found.found else "a remedy"

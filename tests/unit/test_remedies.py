@@ -50,6 +50,13 @@ def errors(document: Mapping[str, Any], folder: Path) -> set[str]:
     return {finding.code for finding in findings if finding.severity == "error"}
 
 
+def moved(document: Mapping[str, Any], changes: Mapping[str, Any]) -> bool:
+    """Whether changes of a design change its law, its lift or its mean ratio."""
+    z1, z2 = document.get("pair", {}).get("teeth", (1, 1))
+    a, b = changes.get("pair.teeth", (z1, z2))
+    return a * z2 != b * z1 or any(key.startswith(("law.", "motion")) for key in changes)
+
+
 OTHER_RATIO = {
     *("one lobe", "a crank's teeth", "teeth of an open pair", "the ring first", "an equal ring"),
     *("one lobe in a ring", "teeth of a closed spiral"),
@@ -88,7 +95,12 @@ def test_what_a_search_names_is_true_when_followed(name: str, folder: Path) -> N
         made = job_of(followed(document, remedy.changes), folder)
         assert not {finding.code for finding in made.findings if finding.severity == "error"}
         assert not {finding.code for finding in made.findings} & before
+        warnings = tuple(one.code for one in made.findings if one.severity == "warning")
+        assert remedy.remaining == warnings
+        assert remedy.moves == moved(document, remedy.changes)
         assert remedy.design.name == document["name"]
+    order = [(remedy.moves, len(remedy.remaining)) for remedy in found.found]
+    assert order == sorted(order)
 
 
 @pytest.mark.parametrize("name", ["concave part too tight", "bore", "short teeth", "harmonics"])
@@ -217,6 +229,20 @@ def test_what_was_tried_is_told_only_where_nothing_was_found() -> None:
     ]
     (line,) = remedy_lines(Remedies(tried=("pair.teeth", "law.eccentricity")))
     assert line == "no remedy was found by changing pair.teeth, law.eccentricity"
+
+
+@pytest.mark.parametrize(
+    ("remaining", "moves", "notes"),
+    [
+        ((), False, ""),
+        (("thin-rim",), False, "  (1 warning remains)"),
+        (("thin-rim", "thin-rim"), True, "  (changes the motion; 2 warnings remain)"),
+    ],
+)
+def test_a_remedy_says_what_remains(remaining: tuple[str, ...], moves: bool, notes: str) -> None:
+    made: Any = None
+    remedy = Remedy(changes={"law.e": 0.1}, remaining=remaining, moves=moves, design=made)
+    assert [*remedy_lines(Remedies(found=(remedy,)))][1] == f"  law.e = 0.1{notes}"
 
 
 def test_a_path_longer_than_a_line_is_not_broken() -> None:

@@ -11,7 +11,8 @@ and only the kind of the design at hand is imported. The modules of a kind:
   ``assembled(result)``, the solids in their places, and ``framed(result)``, the HTML for notebooks;
 - `charts`: ``CHARTS``, functions that return charts; `scene`: ``scene(result)`` returns the scene;
 - `advice`: ``seek(search, refusal)`` searches for remedies of a refused design or one with errors,
-  ``hopeless(result)`` tells which designs need not be built completely, ``FILE_DEMANDS`` has
+  ``hopeless(result)`` tells which designs need not be built completely, ``moves(design, other)``
+  which ones change the motion, ``FILE_DEMANDS`` has
   functions by kind of file that refuse a file although all parts can be made;
 - `public`: ``__all__`` lists the classes for designs written in Python (the package
   `gearcam.kinds` declares them for type checkers);

@@ -45,8 +45,8 @@
       place.textContent = lines ?? "";
       return;
     }
-    const items = found.map(({ text, changes }) => {
-      const item = element("li", {}, element("code", { textContent: text }));
+    const items = found.map(({ text, notes, changes }) => {
+      const item = element("li", {}, element("code", { textContent: text }), ` ${notes}`);
       item.dataset.changes = JSON.stringify(changes);
       return item;
     });
@@ -61,7 +61,7 @@
         Array.isArray(value) ? value.map((one, k) => [`${key}[${k}]`, one]) : [[key, value]]);
       if (!changes.every(([key, value]) => rows.has(key) && Number.isFinite(value))) continue;
       const button = element("button", { type: "button", textContent: "Use this" });
-      button.setAttribute("aria-label", `Use this: ${item.textContent}`);
+      button.setAttribute("aria-label", `Use this: ${item.firstChild.textContent}`);
       button.addEventListener("click", () => {
         for (const [key, value] of changes) set(key, value);
         ask(changes[0][0], true);

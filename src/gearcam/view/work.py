@@ -101,13 +101,16 @@ def seek(text: str, file: str) -> Reply:
     Returns
     -------
     dict
-        ``lines``, as the command line prints them; ``found``, the ``text`` and the ``changes`` of
-        each remedy.
+        ``lines``, as the command line prints them; ``found``, the ``text``, the ``notes`` and the
+        ``changes`` of each remedy.
     """
 
     def made() -> Reply:
         sought = remedies(build(loads(text, file=file)))
-        found = [{"text": one.text, "changes": dict(one.changes)} for one in sought.found]
+        found = [
+            {"text": one.text, "notes": one.notes, "changes": dict(one.changes)}
+            for one in sought.found
+        ]
         return {"lines": "\n".join(remedy_lines(sought)), "found": found}
 
     return _told(made, file)

@@ -57,6 +57,17 @@ def hopeless(_: Result) -> bool:
     return False
 
 
+def moves(design: Any, other: Any) -> bool:
+    """Return whether a changed design moves otherwise: by another lift.
+
+    Parameters
+    ----------
+    design, other : Design
+        Before and after the change.
+    """
+    return bool(design.motion != other.motion)
+
+
 def _of_errors(search: Search) -> Iterator[Way]:
     """Yield the smallest radii without jamming, and without undercut below a flat face."""
     result: Any = search.result

@@ -74,6 +74,18 @@ def hopeless(result: Any) -> bool:
     return contact_bound(*result.pair.toothings) < 1.0
 
 
+def moves(design: Any, other: Any) -> bool:
+    """Return whether a changed design moves otherwise: by another law or mean ratio.
+
+    Parameters
+    ----------
+    design, other : Design
+        Before and after the change.
+    """
+    (a, b), (z1, z2) = design.pair.teeth, other.pair.teeth
+    return bool(design.law != other.law or a * z2 != b * z1)
+
+
 def _more_teeth(search: Search, factor: float) -> float | None:
     """Find the fewest teeth in the same ratio, beginning with `factor` times as many.
 
