@@ -179,8 +179,8 @@ def knot_marks(knots: Array, low: float, high: float) -> tuple[MarkedPlace, ...]
     return tuple(MarkedPlace(label="knots", value=value) for value in seen)
 
 
-Charts = Mapping[str, Callable[[Any], Chart]]
-"""Functions that return the charts of a result, by name."""
+Charts = Mapping[str, Callable[[Any], Chart | None]]
+"""Functions that return the charts of a result, by name: None where a chart would say nothing."""
 
 
 def _new_axes() -> Axes:

@@ -23,7 +23,7 @@ from gearcam.errors import GearcamError
 from gearcam.facts import Fact, Facts
 from gearcam.findings import Finding
 from gearcam.numerals import tree
-from gearcam.numeric.arguments import one_of
+from gearcam.numeric.arguments import one_of, refused
 from gearcam.tolerances import DEFAULT, Tolerances
 from gearcam.written import Written, demand_formats, put, versions
 
@@ -104,8 +104,7 @@ class Result(Displayed):
     def solids(self) -> dict[str, Trimesh]:
         """The parts as closed `trimesh.Trimesh` objects by name, mm, each in its own frame.
 
-        They extend from z = 0 to the width, hubs beyond it. Raises `InfeasibleError` if they cannot
-        be made.
+        They extend from z = 0 to the width, hubs beyond it; `InfeasibleError` if impossible.
         """
         from gearcam.export.mesh import trimeshes
 
@@ -252,8 +251,9 @@ class Result(Displayed):
 
     @property
     def charts(self) -> tuple[str, ...]:
-        """The names of the charts that `chart` and `plot` accept."""
-        return tuple(KINDS[self.design.kind].room("charts").CHARTS)
+        """Names that `chart` and `plot` accept; `InfeasibleError` if it cannot be made."""
+        makers = KINDS[self.design.kind].room("charts").CHARTS
+        return tuple(name for name, make in makers.items() if make(self) is not None)
 
     def chart(self, name: str) -> Chart:
         """Return a chart as data: lines and limits, with the labels of the axes.
@@ -274,8 +274,11 @@ class Result(Displayed):
         InfeasibleError
             If the design cannot be made.
         """
-        make = KINDS[self.design.kind].room("charts").CHARTS[one_of("name", name, self.charts)]
-        return make(self)
+        makers = KINDS[self.design.kind].room("charts").CHARTS
+        made = makers[one_of("name", name, (*makers,))](self)
+        if made is None:
+            raise refused("there is no such chart here", "name", name, ", ".join(self.charts))
+        return made
 
     def plot(self, name: str, ax: Axes | None = None) -> Axes:
         """Draw a chart with matplotlib and return its axes.

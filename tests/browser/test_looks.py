@@ -144,6 +144,20 @@ def test_paper_shows_all_charts_facts_and_errors(browser: Chrome, page_of: Writt
     assert not any(after)
 
 
+def test_a_box_of_another_shape_is_drawn_before_it_is_shown(
+    browser: Chrome, page_of: Written
+) -> None:
+    open_page(browser, page_of("groove_cam"))
+    script = """
+    const [done, canvas] = [arguments[0], document.getElementById("parts")];
+    Object.assign(canvas.style, { width: "220px", height: "310px" });
+    const tell = () => done([canvas.width, canvas.height, getComputedStyle(canvas).objectFit]);
+    requestAnimationFrame(() => requestAnimationFrame(tell)); // the frame between is shown
+    """
+    # what is shown without being drawn, as on paper, keeps its proportions
+    assert browser.execute_async_script(script) == [218, 308, "contain"]  # within the border
+
+
 def test_on_a_phone_the_bar_stays_in_sight(browser: Chrome, page_of: Written) -> None:
     open_page(browser, page_of(NAIL), PHONE)
     browser.execute_script("document.getElementById('facts').scrollIntoView()")

@@ -14,6 +14,8 @@ import pytest
 import gearcam
 from arch import rules
 from gearcam.charts import Chart, Limit, Line, MarkedPlace
+from gearcam.compare.page import joined
+from gearcam.compare.variants import Variant
 from gearcam.designs.reader import loads
 from gearcam.errors import DesignError, MissingExtraError
 from gearcam.numeric.piecewise import with_both_sides
@@ -83,8 +85,9 @@ def test_extremes_are_those_of_the_facts(path):
     if result.design.kind == "cam":
         lift = result.chart("lift").lines[0].y
         assert np.ptp(lift) == pytest.approx(facts["motion.total_lift"], rel=steps)
-        steepest = np.abs(result.chart("pressure_angle").lines[0].y).max()
         told = facts["cam.pressure_angle_deg"]
+        drawn = "pressure_angle" in result.charts
+        steepest = np.abs(result.chart("pressure_angle").lines[0].y).max() if drawn else 0.0
         ends = [max(map(abs, told[kind].values())) for kind in ("rise", "return") if kind in told]
         assert steepest == pytest.approx(max(ends), rel=steps, abs=1e-9)
         return
@@ -130,8 +133,32 @@ def test_the_roller_limits_the_pitch_curve():
     assert limits["roller (convex pitch curve)"] == pytest.approx(
         1.0 / design.follower.roller_radius
     )
-    # a wire of 0.3 mm does not get into a concave place that bends more
-    assert limits["tool at hand (concave profile)"] == pytest.approx(-1.0 / 0.15)
+    # a wire of 0.3 mm does not get into a concave place that bends more; this profile has none
+    label = "smallest inner radius for a tool of 0.3 mm"
+    assert label not in limits
+    groove = chart(PAIR.with_name("groove_cam.toml"), "curvature").limits
+    assert [one.value for one in groove if one.label == label] == pytest.approx([-1.0 / 0.15])
+
+
+def test_charts_that_say_nothing_are_left_out():
+    flat, roller = (
+        gearcam.build(gearcam.load(PAIR.with_name(f"{name}.toml")))
+        for name in ("flat_follower", CAM.stem)
+    )
+    assert flat.charts == tuple(name for name in roller.charts if name != "pressure_angle")
+    with pytest.raises(DesignError, match="lift, curvature, velocity") as refused:
+        flat.plot("pressure_angle")
+    assert "there is no such chart here" in str(refused.value)
+    assert not any("tool" in one.label for one in flat.chart("curvature").limits)  # convex
+    variants = [Variant(label=one.design.name, result=one) for one in (roller, flat)]
+    assert len(joined("pressure_angle", variants).lines) == 1
+
+
+def test_a_nearly_sharp_place_leaves_room_for_the_rest_of_the_curvature():
+    (line,) = chart(PAIR.parent / "extreme" / "cam_face_at_limit.toml", "curvature").lines
+    assert line.label == "profile before trimming, peaks outside this chart"
+    assert np.isfinite(line.y).mean() > 0.9
+    assert np.nanmax(line.y) < 12.0 * np.nanmedian(line.y)  # 2000 times at the sharpest place
 
 
 def test_pressure_angles_are_held_against_the_limit_on_both_sides():

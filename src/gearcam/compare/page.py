@@ -67,14 +67,14 @@ def joined(name: str, variants: Sequence[Variant]) -> Chart:
     name : str
         Name of a chart of the first variant.
     variants : sequence of Variant
-        Variants that can be made; those whose chart has different axes are left out.
+        Variants that can be made; those without it or with different axes are left out.
 
     Returns
     -------
     Chart
     """
     first = variants[0].result.chart(name)
-    charts = [(one.label, one.result.chart(name)) for one in variants]
+    charts = [(one.label, one.result.chart(name)) for one in variants if name in one.result.charts]
     charts = [(label, one) for label, one in charts if (one.x, one.y) == (first.x, first.y)]
     lines, limits = [], []
     for label, chart in charts:

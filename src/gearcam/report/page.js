@@ -29,7 +29,7 @@ const page = {
   go,
 };
 
-const parts = new Parts(element("parts"), () => redraw());
+const parts = new Parts(element("parts"), redraw, draw);
 const charts = new Charts(element("charts"), page);
 
 // --- places --------------------------------------------------------------------------------------

@@ -45,9 +45,10 @@ function trace(path, points, step) {
 }
 
 class Parts {
-  constructor(canvas, moved) {
+  constructor(canvas, moved, resized) {
     this.canvas = canvas;
     this.moved = moved; // called when the user moves the view
+    this.resized = resized; // called when the box changes, before it is shown
     this.fitted = true;
     this.following = false;
     this.touches = new Map();
@@ -75,7 +76,7 @@ class Parts {
 
   resize() {
     if (this.own && this.fitted) this.fit();
-    this.moved();
+    this.resized();
   }
 
   // Show the whole scene at all places.

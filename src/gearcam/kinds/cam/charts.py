@@ -12,15 +12,16 @@ from gearcam.cams.checks import KIND, pressure_limit
 from gearcam.charts import Chart, Charts, Limit, Line, MarkedPlace, knot_marks
 from gearcam.findings import limit_of
 from gearcam.kinds.cam.build import pressure_column, rho_column
+from gearcam.numerals import shown
 from gearcam.parts import checks  # noqa: F401  (its checks register themselves)
 from gearcam.parts.blank import KIND as PARTS_KIND
 
 if TYPE_CHECKING:
     from gearcam.kinds.cam.build import CamResult
 
-_TIMES: Final = 10.0
-"""Largest curvature drawn, in curvatures of the roller or of the pitch curve, whichever is larger:
-that of an undercut profile has no limit."""
+_TIMES: Final = 6.0
+"""Largest curvature drawn, in curvatures below which nine tenths of all lie, or that of the roller:
+an undercut or nearly sharp profile has no largest one, and would leave no room for the rest."""
 
 
 def _places(result: CamResult) -> tuple[str, str]:
@@ -49,8 +50,10 @@ def _of_lift(name: str, result: CamResult) -> Chart:
     return Chart(title=title, x=told, y=unit, lines=(*lines,), marks=_knots(result))
 
 
-def _pressure_angle(result: CamResult) -> Chart:
+def _pressure_angle(result: CamResult) -> Chart | None:
     table = result.motion_of_turn
+    if result.mechanism.flat and not result.mechanism.oscillating:
+        return None  # it is zero everywhere
     given = limit_of(KIND, "pressure-angle", result.design.limits)
     limit = math.degrees(pressure_limit(result.mechanism, given))
     places, told = _places(result)
@@ -88,16 +91,21 @@ def _curvature(result: CamResult) -> Chart:
     table, radius = result.motion_of_turn, result.mechanism.radius
     with np.errstate(divide="ignore"):
         lines = {label: 1.0 / table[name] for label, name in _radii(result).items()}
-    pitch = [np.abs(values).max() for label, values in lines.items() if label.startswith("pitch")]
-    largest = _TIMES * max(1.0 / radius if radius else 0.0, *map(float, pitch))
+    if result.mechanism.flat:
+        del lines["pitch curve"]
+    bent = np.abs(np.concatenate([*lines.values()]))
+    bent = bent[np.isfinite(bent) & (bent > 0.0)]
+    usual = _TIMES * float(np.percentile(bent, 90)) if bent.size else 0.0
+    largest = max(usual, 1.0 / radius if radius else 0.0)
     tool = limit_of(PARTS_KIND, "large-tool", result.design.limits)
-    limits = [Limit(label="tool at hand (concave profile)", value=-2.0 / tool)] if tool else []
+    limits = []
+    if tool and any(math.isfinite(wall.profile_radius[1]) for wall in result.cam.walls):
+        label = f"smallest inner radius for a tool of {shown(tool)} mm"
+        limits.append(Limit(label=label, value=-2.0 / tool))
     rollers = {one.side / one.mechanism.radius: one for one in result.cam.walls if radius}
     for value, wall in rollers.items():
         what = "convex" if wall.side > 0 else "concave"
         limits.append(Limit(label=f"roller ({what} pitch curve)", value=value))
-    if result.mechanism.flat:
-        del lines["pitch curve"]
     places, told = _places(result)
     return Chart(
         title="Curvature (positive: convex)",
@@ -105,11 +113,12 @@ def _curvature(result: CamResult) -> Chart:
         y="curvature, 1/mm",
         lines=tuple(
             Line(
-                label=label,
+                label=label if seen.all() else f"{label}, peaks outside this chart",
                 x=table[places],
-                y=np.where(np.abs(values) <= largest, values, np.nan),
+                y=np.where(seen, values, np.nan),
             )
             for label, values in lines.items()
+            for seen in (np.abs(values) <= largest,)
         ),
         limits=tuple(limits),
         marks=_knots(result),
