@@ -116,7 +116,8 @@ class FollowerSpec(Brief):
         default=None,
         ge=0,
         le=10,
-        doc="how far conjugate cams press their rollers apart; 0 if left out",
+        doc="how much closer than nominal the rollers of conjugate cams are mounted, so that "
+        "they are pressed apart when fitted; 0 if left out",
     )
     face_offset: float = _aside(
         doc="offset of the face of an oscillating flat follower from its pivot, towards the cam"
