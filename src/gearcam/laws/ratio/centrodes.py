@@ -143,11 +143,11 @@ class LogSpiral(Brief):
     wheel as mate, -1 for a ring), the driven wheel turns by ``w*ln((1 - w*u0)/(1 - w*u1))/c`` and
     the driver by ``ln(u1/u0)/c``, so that its travel gives c.
 
-    *Closed pair*, with `return_angle`: two external wheels with equal centrodes. From phi1 = 0 the ratio
-    rises from 1/k to k on the spiral; over the last `return_angle` it returns, C2 at both joints. With t
-    from the middle of the return both angles are ``t + h(t)`` and ``t - h(t)``. An even h makes
-    both centrodes equal: ``i = (1 - h')/(1 + h')`` at -t is 1/i at t. On the spiral, which is as
-    long on both wheels, ``h' = -tanh(c*(t - pi))``, ``c = ln(k)/(2*pi - return_angle)``; on the
+    *Closed pair*, with `return_angle`: two external wheels with equal centrodes. From phi1 = 0 the
+    ratio rises from 1/k to k on the spiral; over the last `return_angle` it returns, C2 at both
+    joints. With t from the middle of the return both angles are ``t + h(t)`` and ``t - h(t)``. An
+    even h makes both centrodes equal: ``i = (1 - h')/(1 + h')`` at -t is 1/i at t. On the spiral,
+    as long on both wheels, ``h' = -tanh(c*(t - pi))``, ``c = ln(k)/(2*pi - return_angle)``; on the
     return h' is the odd polynomial of degree 5 that continues it up to its second derivative.
     """
 
@@ -165,8 +165,8 @@ class LogSpiral(Brief):
         ge=1,
         le=180,
         word="return",
-        doc="closed pair: driver angle of the smooth return to the first ratio; during it the ratio "
-        "goes a little beyond both",
+        doc="closed pair: driver angle of the smooth return to the first ratio; during it the "
+        "ratio goes a little beyond both",
     )
 
     def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
