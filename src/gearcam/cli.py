@@ -25,6 +25,7 @@ from gearcam.console import (
     catalogue_lines,
     complain,
     fault_text,
+    problem_text,
     progress_bar,
     quieten,
     refusal_text,
@@ -309,7 +310,7 @@ def _kinds(only: list[str] | None) -> tuple[str, ...] | None:
 
 def _refuse(problems: Sequence[Problem]) -> None:
     for problem in problems:
-        complain(str(problem))
+        complain(problem_text(problem))
     raise SystemExit(WRONG)
 
 

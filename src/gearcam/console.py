@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final, TextIO
 
 from gearcam.designs.slips import MOST_LISTED
-from gearcam.errors import DesignError, InfeasibleError, WriteError
+from gearcam.errors import DesignError, InfeasibleError, Problem, WriteError
 from gearcam.facts import lined_up
 from gearcam.numerals import size_of, with_unit
 
@@ -113,10 +113,16 @@ def refusal_text(error: DesignError | InfeasibleError, file: str, done: str) -> 
     if isinstance(error, InfeasibleError):
         return f"{file}: cannot be made, nothing was {done}\n{infeasible_text(error)}"
     count = len(error.problems)
-    lines = [str(problem) for problem in error.problems[:MOST_LISTED]]
-    lines += [f"and {count - MOST_LISTED} more"] if count > MOST_LISTED else []
-    told = textwrap.indent("\n".join(lines), "  ")
-    return f"{file}: {count} problem{'s' * (count > 1)}, nothing was {done}\n{told}"
+    lines = [f"{file}: {count} problem{'s' * (count > 1)}, nothing was {done}"]
+    lines += [textwrap.indent(problem_text(one), "  ") for one in error.problems[:MOST_LISTED]]
+    lines += [f"  and {count - MOST_LISTED} more"] if count > MOST_LISTED else []
+    return "\n".join(lines)
+
+
+def problem_text(problem: Problem) -> str:
+    """Return a problem as text, the lines below its first one wrapped."""
+    head, *tail = str(problem).split("\n")
+    return "\n".join([head, *(wrapped(line.strip(), rest=" " * 8) for line in tail)])
 
 
 def infeasible_text(error: InfeasibleError) -> str:

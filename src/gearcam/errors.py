@@ -68,9 +68,8 @@ class Problem:
         line = f"{self.file}:{self.line}" if self.file else f"line {self.line}"
         place = self.file if self.line is None else line
         head = ": ".join(part for part in (place, self.key, self.message) if part)
-        tail = [f"allowed: {self.allowed}"] if self.allowed else []
-        tail += [self.hint] if self.hint else []
-        return "\n    ".join([head, *tail])
+        tail = (self.hint, self.allowed and f"allowed: {self.allowed}")
+        return "\n    ".join(filter(None, (head, *tail)))
 
 
 class DesignError(GearcamError, ValueError):

@@ -106,7 +106,10 @@ def test_what_cannot_close_is_refused(name: str) -> None:
 
 
 WRONG = {
-    "neither": ({"ratios": [0.5, 2]}, "neither driven_travel_deg nor return_deg is given"),
+    "neither": (
+        {"ratios": [0.5, 2]},
+        r"log-spiral needs return_deg \(a closed pair .*\) or driven_travel_deg \(an open pair",
+    ),
     "both": ({"ratios": [0.5, 2], "return_deg": 80, "driven_travel_deg": 90}, "are both given"),
     "an open one": ({"ratios": [0.5, "solve"], "driven_travel_deg": 90}, "is not possible here"),
     "twice": ({"ratios": ["solve", "solve"], "return_deg": 90}, "is not possible here"),

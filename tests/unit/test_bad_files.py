@@ -86,6 +86,15 @@ def test_what_is_no_file_that_could_be_read(
     assert time.process_time() - start < 5.0
 
 
+@pytest.mark.parametrize("name", ["good", "./good", "sub/good", "good/"])
+def test_a_design_without_its_extension(desk: Path, name: str) -> None:
+    (desk / "sub").mkdir()
+    with pytest.raises(DesignError) as caught:
+        gearcam.load(name)
+    near = "did you mean good.toml?" if "sub" not in name else ""
+    assert caught.value.problems[0].hint == near
+
+
 def test_a_huge_file_is_refused_before_it_is_read(
     desk: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -13,10 +13,10 @@ from helpers_cam_files import FLAT, RISE, ROLLER, SWINGING, changed, only, probl
 @pytest.mark.parametrize(
     ("old", "new", "line", "key", "words"),
     [
-        ('"rise"', '"raise"', 5, "motion[0].type", "raise.* is not a phase.*\n.*\n.*mean rise"),
-        ('type = "rise"\n', "", 4, "motion[0].type", "is missing.*\n.*rise"),
-        ('"cycloidal"', '"cycloid"', 6, "motion[0].law", "not a law.*\n.*\n.*mean cycloidal"),
-        ('law = "cycloidal"\n', "", 4, "motion[0].law", "is missing.*\n.*cycloidal"),
+        ('"rise"', '"raise"', 5, "motion[0].type", "raise.* is not a phase.*\n.*mean rise"),
+        ('type = "rise"\n', "", 4, "motion[0].type", "is missing.*\n.*\n.*rise"),
+        ('"cycloidal"', '"cycloid"', 6, "motion[0].law", "not a law.*\n.*mean cycloidal"),
+        ('law = "cycloidal"\n', "", 4, "motion[0].law", "is missing.*\n.*\n.*cycloidal"),
         ('law = "cycloidal"', "law = 3", 6, "motion[0].law", "3 is not a law"),
         ("lift_mm = 10", "lift_mm = 10\nq = 0.5", 9, "motion[0].q", "with law = .constant-acc"),
         (
@@ -88,7 +88,7 @@ from helpers_cam_files import FLAT, RISE, ROLLER, SWINGING, changed, only, probl
         ("[output]", "[output]\nchord_tolerance_mm = 2", 32, "output.chord_tolerance_mm", "range"),
         ("[output]", "[output]\nphi1_deg = 2", 32, "output.phi1_deg", "unknown key"),
         ("[output]", "[limits]\nend_gap_deg = 2\n[output]", 32, "limits.end_gap_deg", "unknown"),
-        ("[output]", "[rack]\n[output]", 31, "rack", "unknown table.*\n.*\n.*kind = .gear-pair"),
+        ("[output]", "[rack]\n[output]", 31, "rack", "unknown table.*\n.*kind = .gear-pair"),
         ("[cam]", "[cam]\nlift_mm = 2", 27, "cam.lift_mm", r"under \[\[motion\]\] of type .rise"),
         ('"cam"', '"cams"', 1, "kind", "mean cam"),
         ("[follower]", "[folower]", 20, "folower", "mean follower"),

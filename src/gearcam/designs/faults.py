@@ -11,7 +11,7 @@ from typing import Any, Final
 
 from gearcam.designs.functions import functions_of
 from gearcam.designs.lines import Path
-from gearcam.designs.slips import did_you_mean
+from gearcam.designs.slips import did_you_mean, nearest
 from gearcam.designs.table import Key
 from gearcam.errors import Problem
 from gearcam.numerals import shown
@@ -206,7 +206,8 @@ def value_fault(path: Path, value: Any, entry: Key, *, item: bool) -> Fault:
     if as_list:
         if isinstance(value, list):
             return Fault(path, _count(value), value, rule)
-        return Fault(path, f"{show(value)} is not a list", value, rule)
+        hint = _list_hint(value, entry)
+        return Fault(path, f"{show(value)} is not a list", value, rule, hint)
     choices = entry.param.choices or ((entry.literal,) if entry.literal else ())
     if isinstance(value, str) and choices:
         hint = did_you_mean(value, choices) or _type_hint(value, entry)
@@ -241,6 +242,18 @@ def is_of(value: Any, base: type) -> bool:
     if isinstance(value, bool) or base is bool:
         return base is bool and isinstance(value, bool)
     return isinstance(value, (int, float) if base is float else base)
+
+
+def _list_hint(value: Any, entry: Key) -> str:
+    """Return how to write a list with one `value`, if its entry takes texts or a fixed number."""
+    if not is_of(value, entry.base) or not (entry.length or entry.base is str):
+        return ""
+    if entry.base is str:
+        words = [word.strip() for word in value.split(",")]
+        items = [nearest(word, entry.param.choices) or word for word in words]
+    else:
+        items = [value] * (entry.length or 1)
+    return f"write {entry.key} = {show(items)}"
 
 
 def _type_hint(value: Any, entry: Key) -> str:

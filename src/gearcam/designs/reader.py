@@ -39,6 +39,9 @@ _COMMA = re.compile(r"(?<![\w.])([+-]?\d+),(\d+)\s*(#.*)?$")
 _UNIT = re.compile(r"=\s*[+-]?\d[\d.]*\s*[^\W\d_]+\s*(#.*)?$")
 """A number with a unit at the end of a line."""
 
+_BARE = re.compile(r"\s*([\w.-]+)\s*=\s*([^\W\d][\w.-]*)\s*(#.*)?$")
+"""A key and a word without quotes."""
+
 _NAME = re.compile(r"\s*(\[?\[?)\s*([\w.-]+|\"[^\"]*\")")
 """A name at the beginning of a line, with the brackets of a table if any."""
 
@@ -90,7 +93,9 @@ def content_of(file: str) -> bytes:
     try:
         return read(file, LARGEST)
     except UnreadableError as error:
-        raise DesignError([Problem(str(error), file=file)]) from error
+        near = f"{Path(file)}.toml"
+        hint = f"did you mean {near}?" if Path(near).is_file() else ""
+        raise DesignError([Problem(str(error), file=file, hint=hint)]) from error
 
 
 def decoded(content: bytes, file: str) -> str:
@@ -221,6 +226,10 @@ def _syntax_problem(message: str, text: str, file: str) -> Problem:
             hint = f"use a decimal point: {comma[1]}.{comma[2]}"
         elif _UNIT.search(line):
             hint = "write the number alone, without its unit"
+        elif bare := _BARE.match(line):
+            word = bare[2].lower()
+            value = word if word in ("true", "false") else f'"{bare[2]}"'
+            hint = f"write {bare[1]} = {value}"
         message = f"column {place.group(2)}: {what}"
         return Problem(message, file=file, line=number, hint=hint)
     if place:

@@ -64,6 +64,13 @@ _NAMES: Final = {"thickness": "face_width"}
 """Other names of keys, where no table has the written one."""
 
 _RELATED: Final = ({"radius", "diameter"}, {"width", "thickness"})
+_SYNONYMS: Final = {
+    **dict.fromkeys(("up", "raise", "lift"), "rise"),
+    **dict.fromkeys(("fall", "down", "lower"), "return"),
+    **dict.fromkeys(("pause", "hold", "stay", "rest", "wait"), "dwell"),
+}
+"""Other words for the phases of a motion."""
+
 _FILLERS: Final = frozenset({"number", "num", "no", "n", "of", "the", "size", "value"})
 _SIZES: Final = frozenset({"diameter", "radius", "width", "distance"})
 """Words that are often left out or added."""
@@ -78,7 +85,7 @@ def _letters(word: str, other: str) -> float:
 def nearest(word: str, known: Iterable[str]) -> str:
     """Return the most similar known word, or an empty text."""
     by_lower = {name.lower(): name for name in known}
-    meant = word.lower()
+    meant = _SYNONYMS.get(word.lower(), word.lower())
     close = difflib.get_close_matches(meant, by_lower, n=1, cutoff=STRONG)
     close += [near for near in difflib.get_close_matches(meant, by_lower) if near[0] == meant[0]]
     return by_lower[close[0]] if close else ""
@@ -191,22 +198,28 @@ def key_hint(key: str, known: Mapping[str, Key] | Iterable[str], least: float = 
         return ""
     *most, last = [entry.key for entry in meant]
     offered = f"{', '.join(most)} or {last}" if most else last
-    return f"did you mean {offered}?" + (_unit_words(key, meant[0]) if len(meant) == 1 else "")
+    notes = {_unit_words(key, entry) + _size_words(key, entry) for entry in meant}
+    return f"did you mean {offered}?" + (notes.pop() if len(notes) == 1 else "")
 
 
 def _unit_words(key: str, entry: Key) -> str:
     quantity, unit = entry.param.quantity, _split(key)[1]
     if unit and not quantity.suffix:
         return " (it has no unit)"
-    if quantity in (ANGLE, LENGTH) and not key.endswith(quantity.suffix):
-        what = "angles" if quantity is ANGLE else "lengths"
-        basis, factor = _UNITS.get(unit, ("", 1.0))
-        if basis == quantity.unit and factor != 1.0:
-            return f" ({what} are in {basis}: 1 {unit} = {shown(factor, 8)} {basis})"
-        return f" ({what} are in {quantity.unit}, and their keys end in {quantity.suffix})"
-    if "diameter" in key and "radius" in entry.key:
+    if quantity not in (ANGLE, LENGTH) or key.endswith(quantity.suffix):
+        return ""
+    what = "angles" if quantity is ANGLE else "lengths"
+    basis, factor = _UNITS.get(unit, ("", 1.0))
+    if basis == quantity.unit and factor != 1.0:
+        return f" ({what} are in {basis}: 1 {unit} = {shown(factor, 8)} {basis})"
+    return f" ({what} are in {quantity.unit}, and their keys end in {quantity.suffix})"
+
+
+def _size_words(key: str, entry: Key) -> str:
+    words, known = _words(_split(key)[0]), entry.key + entry.param.doc
+    if "diameter" in words and "radius" in entry.key:
         return " (half the diameter)"
-    return " (twice the radius)" if "radius" in key and "diameter" in entry.key else ""
+    return " (twice the radius)" if "radius" in words and "diameter" in known else ""
 
 
 def misspelt(raw: Mapping[str, Any], known: Mapping[str, Key]) -> frozenset[str]:

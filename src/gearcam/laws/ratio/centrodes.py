@@ -173,9 +173,12 @@ class LogSpiral(Brief):
         """Yield what is wrong by reading: field, index, message, allowed."""
         closed = self.return_angle is not None
         if (self.driven_travel is None) != closed:
-            words = "neither driven_travel_deg nor return_deg is given"
-            words = "driven_travel_deg and return_deg are both given" if closed else words
-            rule = "driven_travel_deg for an open pair, or return_deg for a closed one"
+            rule = (
+                "return_deg (a closed pair that turns without end) or driven_travel_deg "
+                "(an open pair, to and fro)"
+            )
+            words = "return_deg and driven_travel_deg are both given"
+            words, rule = (words, rule) if closed else (f"log-spiral needs {rule}", "")
             yield "return_angle", None, words, rule
         low, high = 1.0 / _LARGEST, _LARGEST
         for index, ratio in enumerate(self.ratios):

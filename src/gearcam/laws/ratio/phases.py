@@ -251,7 +251,7 @@ def _close(
     elif abs(rest) > tolerances.refusal:
         nearest, ways = _closing_values(given, weights, rest, places)
         raise InfeasibleError(
-            "the phases do not close",
+            "the phases do not close: they turn the driven wheel by the value, not by the limit",
             where="law.ratios",
             value=math.degrees(lobes.advance - rest),
             limit=math.degrees(lobes.advance),
