@@ -12,6 +12,7 @@ import pytest
 from selenium.webdriver import ActionChains, Chrome, Keys
 from selenium.webdriver.common.by import By
 
+from gearcam.advice import remedies
 from gearcam.report.page import page
 from helpers_browser import LAPTOP, PHONE, complaints, go, open_page, settle, unfold, until
 
@@ -156,6 +157,20 @@ def test_a_box_of_another_shape_is_drawn_before_it_is_shown(
     """
     # what is shown without being drawn, as on paper, keeps its proportions
     assert browser.execute_async_script(script) == [218, 308, "contain"]  # within the border
+
+
+@pytest.mark.parametrize("size", [LAPTOP, PHONE])
+def test_remedies_stand_under_the_verdict_with_what_is_known_of_them(
+    size: tuple[int, int], browser: Chrome, page_of: Written, built: Callable[[str], Any]
+) -> None:
+    open_page(browser, page_of("undercut_cam"), size)
+    found = remedies(built("undercut_cam")).found
+    told = [one.text for one in browser.find_elements(By.CSS_SELECTOR, "header #remedies li")]
+    assert told == [f"{one.text} {one.notes}".strip() for one in found]
+    assert any("not enough" in one for one in told)
+    tops = [browser.find_element(By.ID, one).rect["y"] for one in ("verdict", "remedies", "moving")]
+    assert tops == sorted(tops)
+    assert tops[2] < size[1]
 
 
 def test_on_a_phone_the_bar_stays_in_sight(browser: Chrome, page_of: Written) -> None:

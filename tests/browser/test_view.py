@@ -219,7 +219,7 @@ def test_a_design_with_errors_offers_its_remedies_with_buttons(page: Chrome) -> 
     teeth = field(page, "pair.teeth[0]")
     teeth.clear()
     teeth.send_keys("18", Keys.ENTER)
-    buttons = until(lambda: page.find_elements(By.CSS_SELECTOR, "#findings li button"))
+    buttons = until(lambda: page.find_elements(By.CSS_SELECTOR, "#remedies li button"))
     assert verdict(page)[1] == RED
     assert places(page) == before
     assert buttons[0].accessible_name == "Use this: pair.teeth = [52, 52]"
@@ -228,7 +228,7 @@ def test_a_design_with_errors_offers_its_remedies_with_buttons(page: Chrome) -> 
     assert teeth.get_attribute("value") == "52"
     assert field(page, "pair.teeth[1]").get_attribute("value") == "52"
     assert verdict(page) in {good, ("Ready to cut", "rgb(28, 107, 63)")}
-    assert not page.find_elements(By.CSS_SELECTOR, "#findings li button")
+    assert not page.find_elements(By.CSS_SELECTOR, "#remedies li button")
 
 
 def test_a_file_that_is_saved_refused_is_shown_so_with_its_remedies(

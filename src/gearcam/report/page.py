@@ -29,10 +29,10 @@ if TYPE_CHECKING:
 PAGE: Final = "report.html"
 """File name."""
 
-BLOCKS: Final = ("verdict", "findings", "files", "facts", "accuracy")
+BLOCKS: Final = ("verdict", "remedies", "findings", "files", "facts", "accuracy")
 """Sections of the page that are written from facts, each by a template."""
 
-DRAFTED: Final = ("verdict", "findings", "facts")
+DRAFTED: Final = ("verdict", "remedies", "findings", "facts")
 """Blocks that are updated while a slider is dragged."""
 
 DRAFT_PLACES: Final = 120

@@ -18,6 +18,7 @@ function palette(paper = false) {
 
 const traced = new WeakMap(); // paths of chains with the step that they were traced with
 const STEP = 0.35; // pixels: points that are closer are merged
+const NARROW = 500; // pixels: on a narrower picture contacts are marked smaller
 
 // Outlines have many points and never change; zoomed out, few of the points suffice.
 function pathOf({ chains, closed }, dot) {
@@ -156,7 +157,8 @@ class Parts {
     const { x, y, scale } = this.view;
     const size = scale * ratio;
     const base = [size, 0, 0, -size, 0.5 * wide - size * x, 0.5 * tall + size * y];
-    for (const mark of marksOf(this.own, place, cycles, seen, 1 / scale)) {
+    const unit = (width < NARROW ? 0.6 : 1) / scale;
+    for (const mark of marksOf(this.own, place, cycles, seen, unit)) {
       pen.setTransform(...base);
       this.mark(pen, mark, 1 / scale, 1 / size, colours);
     }
