@@ -192,6 +192,20 @@ def test_what_was_built_is_told_with_sizes_time_and_findings(
 
 
 @pytest.mark.usefixtures("desk")
+def test_an_unknown_key_is_answered_first_with_the_likely_one(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    Path("slip.toml").write_text(f"{GOOD.format(name='slip')}[blank]\nbore_mm = 1\n", "utf-8")
+    assert main(["build", "slip.toml"]) == 2
+    meant, allowed, *rest = capsys.readouterr().err.splitlines()[2:]
+    assert meant == "      did you mean bore_diameter_mm?"
+    assert allowed.startswith("      allowed: bore_diameter_mm, keyway_width_mm, ")
+    assert rest
+    assert max(map(len, (allowed, *rest))) < 100
+    assert all(line.startswith(" " * 10) for line in rest)
+
+
+@pytest.mark.usefixtures("desk")
 def test_an_impossible_design_tells_numbers_and_the_way_out(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
