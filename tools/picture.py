@@ -43,8 +43,8 @@ DRAWN = {
 """Pictures of assembled parts: profile, and width in pixels."""
 
 
-def taken(url: str, place: float, size: tuple[int, int] = SIZE, part: str = "") -> bytes:
-    """Return a screenshot of a page that shows a place of the driver, deg, PNG."""
+def taken(url: str, place: float, size: tuple[int, int] = SIZE) -> bytes:
+    """Return a screenshot of the top of a page that shows a place of the driver, deg, PNG."""
     options = Options()
     options.binary_location = shutil.which("chromium") or sys.exit("there is no chromium")
     for flag in ("--headless=new", "--no-sandbox", "--hide-scrollbars"):
@@ -57,9 +57,7 @@ def taken(url: str, place: float, size: tuple[int, int] = SIZE, part: str = "") 
         browser.get(url)
         wait = "const done = arguments[0]; setTimeout(() => requestAnimationFrame(done), 2000)"
         browser.execute_async_script(wait)  # a live view builds its charts
-        browser.execute_script(
-            "gearcam.go(arguments[0]); location.hash = arguments[1]", place, part
-        )
+        browser.execute_script("gearcam.go(arguments[0])", place)
         browser.execute_async_script(wait)  # charts are drawn a few at a time
         shot = browser.execute_cdp_cmd("Page.captureScreenshot", {"format": "png"})
         picture = Image.open(io.BytesIO(base64.b64decode(shot["data"]))).convert("RGB")
@@ -103,7 +101,7 @@ def drawn(profile: Path, width: int, folder: str) -> str:
 
 if __name__ == "__main__":
     with TemporaryDirectory() as folder:
-        PICTURE.write_bytes(taken(report(PROFILE, folder), PLACE, part="charts"))
+        PICTURE.write_bytes(taken(report(PROFILE, folder), PLACE))
         cam = report(PROFILES / "plate_cam_offset_roller.toml", folder)
         (PICTURES / "report.png").write_bytes(taken(cam, 60.0, (1100, 1000)))
         (PICTURES / "live_view.png").write_bytes(live_view(folder))
