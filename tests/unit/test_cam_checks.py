@@ -235,7 +235,7 @@ def test_undercut_names_its_angles_and_its_loss() -> None:
         found, ((exact.undercut, exact.rests, exact.worst), returning), strict=True
     ):
         assert f"undercut from {a:.6g} deg to {b:.6g} deg." in one.message
-        assert f"rests from {c:.6g} deg to {d:.6g} deg" in one.message
+        assert f"rides from {c:.6g} deg to {d:.6g} deg" in one.message
         assert f"up to {exact.loss:.4g} mm of lift is lost" in one.message
         assert one.where == f"at {worst:.6g} deg"
         assert one.value == pytest.approx(exact.loss, rel=1e-9)

@@ -34,11 +34,11 @@ def face(base: float, limit: float = 0.01) -> dict[str, Any]:
     return made | {"limits": {"lost_lift_mm": limit}}
 
 
-def test_a_face_is_not_undercut_from_its_least_base_radius_on(tmp_path: Path) -> None:
-    """``base + s + s'' >= 0``: of a cycloidal rise in closed form, wherever the search begins."""
+def test_a_face_keeps_its_least_profile_radius_from_a_base_radius_on(tmp_path: Path) -> None:
+    """``base + s + s'' >= 1``: of a cycloidal rise in closed form, wherever the search begins."""
     b = math.radians(STEEP[0])
     turns = [k / 10000 for k in range(10001)]
-    least = max(
+    least = 1.0 + max(
         -LIFT * (u - math.sin(2 * math.pi * u) / (2 * math.pi))
         - LIFT * 2 * math.pi / b**2 * math.sin(2 * math.pi * u)
         for u in turns
@@ -47,7 +47,12 @@ def test_a_face_is_not_undercut_from_its_least_base_radius_on(tmp_path: Path) ->
     (value,) = told
     assert least <= value <= least * (1 + 1e-3)
     made = job_of(followed(face(8), {"cam.base_radius_mm": value}), tmp_path)
-    assert [one for one in made.findings if one.code == "undercut"] == []
+    assert not {one.code for one in made.findings} & {"undercut", "sharp-profile"}
+    (sharp,) = (
+        one for one in job_of(face(least - 0.5), tmp_path).findings if one.code == "sharp-profile"
+    )
+    assert sharp.value == pytest.approx(0.5, abs=1e-5)
+    assert f"With cam.base_radius_mm = {value:g} it keeps the limit." in sharp.message
 
 
 STARTS: dict[str, tuple[Any, str, tuple[float, ...]]] = {
@@ -123,9 +128,15 @@ def refusal(document: dict[str, Any], folder: Path) -> InfeasibleError:
     return caught.value
 
 
-def test_a_bore_that_no_wheel_can_take_is_refused_once(tmp_path: Path) -> None:
-    """A root circle is ``m*(z - 2*1.25)`` across; the smaller one counts for both."""
-    document = bored(CIRCLE, [20, 24], 60)
+@pytest.mark.parametrize(("rim", "largest"), [(2.7, 35 - 2 * 2.7 * 2), (0.0, 35.0), (10.0, 35.0)])
+def test_a_bore_that_no_wheel_can_take_is_refused_once(
+    rim: float, largest: float, tmp_path: Path
+) -> None:
+    """A root circle is ``m*(z - 2*1.25)`` across; the smaller one counts for both.
+
+    The bore that is named keeps the limit of the rim, in modules, if one does.
+    """
+    document = bored(CIRCLE, [20, 24], 60) | {"limits": {"rim_thickness": rim}}
     error = refusal(document, tmp_path)
     assert error.where == "wheels 1 and 2, blank.bore_diameter_mm"
     # chords of 0.01 mm move the radius by that
@@ -138,7 +149,9 @@ def test_a_bore_that_no_wheel_can_take_is_refused_once(tmp_path: Path) -> None:
         assert words in error.nearest
     found = gearcam.remedies(job_of(document, tmp_path)).found
     assert [set(one.changes) for one in found] == [{"blank.bore_diameter_mm"}]
-    assert 34.8 < float(found[0].changes["blank.bore_diameter_mm"]) < 35.0  # type: ignore[arg-type]
+    bore = float(found[0].changes["blank.bore_diameter_mm"])  # type: ignore[arg-type]
+    assert largest - 0.2 < bore < largest
+    assert ("thin-rim" in found[0].remaining) == (rim > 9.0)
 
 
 def test_only_the_wheel_that_cannot_take_its_bore_is_named(tmp_path: Path) -> None:

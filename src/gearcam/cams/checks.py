@@ -18,7 +18,7 @@ from gearcam.cams.mechanism import Mechanism
 from gearcam.cams.spec import FOLLOWED, KIND
 from gearcam.cams.wall import PitchMotion, Wall
 from gearcam.findings import Remark, check
-from gearcam.numerals import shown
+from gearcam.numerals import shortened, shown
 from gearcam.quantities import ANGLE, LENGTH, Param
 
 if TYPE_CHECKING:
@@ -173,7 +173,7 @@ def _undercut(wall: Wall, limit: float) -> Iterator[Remark]:
         cut, much = _stretches(inside, told), f"{shown(lost, 4)} mm{angle}"
         yield Remark(
             f"The {wall.called} is {cut}. After trimming it has a corner, on which the follower "
-            f"rests from {told(low)} to {told(high)}: "
+            f"rides from {told(low)} to {told(high)}: "
             + (f"up to {much} of lift is lost." if wall.side > 0 else f"it goes {much} too far."),
             _at(wall, f"at {told(loss.theta)}"),
             lost,
@@ -258,8 +258,12 @@ def sharp_profile(cam: Cam, limit: float) -> Iterator[Remark]:
     for wall in cam.walls:
         convex, _ = wall.profile_radius
         if not wall.corners and convex < limit:
+            base, hint = cam.least_base_radius, ""
+            if base is not None:
+                base = shortened(base + limit, 1.0)
+                hint = f" With cam.base_radius_mm = {shown(base)} it keeps the limit."
             yield Remark(
-                f"The smallest convex radius of the {wall.called} is {shown(convex, 4)} mm.",
+                f"The smallest convex radius of the {wall.called} is {shown(convex, 4)} mm.{hint}",
                 wall.called if wall.key else "",
                 value=convex,
             )

@@ -287,7 +287,7 @@ def crossing_chords(
                 value=sampler.tolerance,
                 limit=finer.tolerance,
                 unit="mm",
-                nearest="at the limit they do not",
+                nearest="at the limit they do not cross",
                 ways=(Way(near={key: finer.tolerance}),),
             )
     return InfeasibleError(

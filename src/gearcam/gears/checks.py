@@ -215,16 +215,17 @@ def thin_rim(subject: Subject, limit: float) -> Iterator[Remark]:
     Looks at: the metal between bore and root, or outside the roots of a ring.
     """
     least = limit * subject.pair.module
+    more = "more teeth (a smaller module) or a larger centre distance leave more metal"
     for rim, gear in subject.rims:
         if rim < least * (1.0 - ROUNDING):  # the bore or rim that is named passes
-            largest = 2.0 * (gear.least_radius - least)
-            what, hint = "between bore and root", "no bore is small enough to keep the limit"
+            largest, given = 2.0 * (gear.least_radius - least), 2.0 * (gear.least_radius - rim)
+            what, hint = "between bore and root", more
             if gear.ring:
                 what = "outside the roots"
                 across = shown(2.0 * (gear.largest_radius + least), 12)
                 hint = f"ring.rim_mm = {shown(least, 12)} keeps the limit, or for a round outside "
                 hint += f"ring.outer_diameter_mm = {across}"
-            elif largest > 0:
+            elif largest >= 0.5 * given:
                 hint = (
                     f"a bore up to {rounded_down(largest)} mm across, keyway included, keeps the "
                     "limit"

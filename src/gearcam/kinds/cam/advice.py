@@ -4,16 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from gearcam.advice import kerf_paths
+from gearcam.cams.checks import KIND
 from gearcam.designs.design import value_at
 from gearcam.errors import InfeasibleError, Way
+from gearcam.findings import limit_of
 from gearcam.kinds.cam.design import CAM_FORMATS
 from gearcam.kinds.cam.pressed import gentler, grown
 from gearcam.numerals import shortened
+from gearcam.parts.checks import KIND as PARTS_KIND
 
 if TYPE_CHECKING:
     from gearcam.advice import Search
@@ -49,7 +53,8 @@ FILE_DEMANDS: Final[Mapping[str, Callable[[Any], object]]] = {
 
 def seek(search: Search, refusal: InfeasibleError | None) -> None:
     """Guide a `search` for remedies: changes that a `refusal` names, then other sizes."""
-    search.follow([*(refusal.ways if refusal else _of_errors(search)), *_sizes(search)])
+    first = _walled(search, refusal) if refusal else _of_errors(search)
+    search.follow([*first, *_sizes(search)])
 
 
 def hopeless(_: Result) -> bool:
@@ -68,13 +73,28 @@ def moves(design: Any, other: Any) -> bool:
     return bool(design.motion != other.motion)
 
 
+def _walled(search: Search, refusal: InfeasibleError) -> Iterator[Way]:
+    """Yield the ways of a refusal; a bore begins where it leaves a wall that is thick enough."""
+    wall = 2.0 * limit_of(PARTS_KIND, "thin-wall", search.result.design.limits)
+    for way in refusal.ways:
+        bore = [*way.far] == ["blank.bore_diameter_mm"] and not way.near
+        if bore and refusal.limit is not None and wall < 0.9 * refusal.limit:
+            yield replace(way, near={"blank.bore_diameter_mm": refusal.limit - wall})
+        else:
+            yield way
+
+
 def _of_errors(search: Search) -> Iterator[Way]:
-    """Yield the smallest radii without jamming, and without undercut below a flat face."""
+    """Yield the smallest radii without jamming, and for a flat face with the least profile radius.
+
+    The radius of a profile below a flat face is ``base + s + s''``, 0 at the border of undercut.
+    """
     result: Any = search.result
     if "jamming" in search.codes:
         least = [gentler(result, "jamming", number) for number in range(len(result.cam.motions))]
         yield Way(near={key: size for changes in least for key, size in (changes or {}).items()})
     if "undercut" in search.codes and (base := result.cam.least_base_radius) is not None:
+        base += limit_of(KIND, "sharp-profile", result.design.limits)
         yield Way(near=grown(search.document, "cam.base_radius_mm", shortened(base, 1.0)))
 
 

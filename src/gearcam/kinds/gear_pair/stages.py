@@ -155,7 +155,12 @@ class PairStages(Result):
         limits = [2.0 * one.least_radius for one in wheels]
         bores = [self.bores[one.wheel - 1] or 0.0 for one in wheels]
         own = [self.design.blank.wheel(one.wheel).bore for one in wheels]
-        near = [own[k] - bores[k] + limits[k] for k in range(len(wheels))]
+        rim = 2.0 * limit_of(KIND, "thin-rim", self.design.limits) * gear.pair.module
+        # the largest bore that keeps the limit of the rim, or without any that meets the roots
+        near = [
+            own[k] - bores[k] + limit - (rim if rim < 0.9 * limit else 0.0)
+            for k, limit in enumerate(limits)
+        ]
         worst, nearest = limits.index(min(limits)), [*map(_room, wheels)]
         where = f"wheel {gear.wheel}, {names[0]}"
         if len(wheels) > 1:
