@@ -87,15 +87,16 @@ def timing_mark(
         way, end, between = 1.0, outside, "root and outside"
     rim = way * (end - pitch_radius) * lean - dedendum_mm
     if rim <= 0:
-        root = max(0.0, pitch_radius + way * dedendum_mm / lean)
+        root = pitch_radius + way * dedendum_mm / lean
         told = "outside" if way > 0.0 else "circle around bore, keyway and hub"
+        nearest = f"the value is the {told}, the limit the root there"
         raise InfeasibleError(
             f"no room for a timing mark between {between}",
             where=f"direction {shown(math.degrees(direction))} deg",
-            value=2 * end,
-            limit=2 * root,
+            value=2 * end if root > 0.0 else None,
+            limit=2 * root if root > 0.0 else None,
             unit="mm",
-            nearest=f"the value is the {told}, the limit the root there",
+            nearest=nearest if root > 0.0 else "the roots of the teeth reach the axis there",
             ways=(Way(near={"blank.timing_marks": False}),),
         )
     largest = RIM_PART * rim
