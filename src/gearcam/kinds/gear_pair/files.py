@@ -141,7 +141,7 @@ def _meshes(kind: str, result: GearPairResult, measured: Measured) -> Files:
 
     Files: gear1.{format}, gear2.{format}, pair.{format}.
 
-    Closed solids in mm: each wheel, and the assembled pair as two named bodies.
+    Closed solids in mm: each wheel, and the assembled pair as two bodies, named except in STL.
     """
     return mesh_files(result.parts, result.meshes, {PAIR: assembled(result)}, kind, measured)
 
