@@ -90,8 +90,8 @@ def test_the_wheels_of_the_profile_are_one_part() -> None:
 
 
 REFUSED = {
-    "unequal wheels": ((0.5, 2.0), Lobes(2, 3), "two equal external wheels"),
-    "a ring": ((0.5, 2.0), Lobes(1, 2, RING), "two equal external wheels"),
+    "unequal wheels": ((0.5, 2.0), Lobes(2, 3), "an external pair with equal tooth counts"),
+    "a ring": ((0.5, 2.0), Lobes(1, 2, RING), "an external pair with equal tooth counts"),
     "other ratios": ((0.5, 2.2), Lobes(1, 1), "its ratios are k and 1/k"),
     "no spiral": ((1.0, 1.0), Lobes(1, 1), "changes from start to end"),
 }

@@ -232,10 +232,10 @@ class LogSpiral(Brief):
 def _closed(
     start: float, end: float, turn: float, lobes: Lobes, tolerances: Tolerances
 ) -> RatioLaw:
-    """Return the law of two equal wheels; `turn` is the driver angle of the return, rad."""
+    """Return the law of two equal centrodes; `turn` is the driver angle of the return, rad."""
     if lobes != ONE_LOBE:
         raise InfeasibleError(
-            "a closed spiral makes two equal external wheels",
+            "a closed spiral needs an external pair with equal tooth counts",
             where="pair.teeth",
             value=lobes.n1 / lobes.n2,
             limit=1.0,
@@ -243,7 +243,7 @@ def _closed(
         )
     if abs(start * end - 1.0) > TYPED:
         raise InfeasibleError(
-            "a closed spiral makes two equal wheels: its ratios are k and 1/k",
+            "a closed spiral has equal centrodes: its ratios are k and 1/k",
             where="law.ratios",
             value=start * end,
             limit=1.0,
@@ -334,7 +334,7 @@ LAWS.register(
     LawEntry(
         name="log-spiral",
         example=LogSpiral(ratios=(0.5, 2.0), driven_travel=2.0),
-        doc="logarithmic spirals: an open pair, or two equal closed wheels (nautilus)",
+        doc="logarithmic spirals: an open pair, or a closed one with equal centrodes (nautilus)",
         continuity="analytic; closed: C2 at both ends of the return",
         source="Niculescu, fig. 1.9",
     ),
