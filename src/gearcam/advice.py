@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final
@@ -111,6 +112,8 @@ class Remedies(Brief):
         and the others those with fewer warnings.
     tried : tuple of str
         Keys that were changed in the search.
+    nearly : mapping of str to tuple of str
+        Codes of the errors that remain with a change that lifts the refusal only, by its text.
     gave_up : bool
         Whether the search ended before all changes were tried.
     builds : int
@@ -119,6 +122,7 @@ class Remedies(Brief):
 
     found: tuple[Remedy, ...] = ()
     tried: tuple[str, ...] = ()
+    nearly: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     gave_up: bool = False
     builds: int = 0
 
@@ -159,8 +163,10 @@ def _sought(
             errors = [finding for finding in result.findings if finding.severity == "error"]
         except InfeasibleError as error:
             refusal = error
-    elif not refusal.ways and not refusal.more_teeth and _builds(result):
-        return Remedies()  # a study was refused, not the design
+    elif not refusal.ways and not refusal.more_teeth:
+        with suppress(InfeasibleError):
+            _ = result.findings
+            return Remedies()  # a study was refused, not the design
     if refusal is None and not errors:
         return Remedies()
     search = Search(result, refusal, frozenset(error.code for error in errors), patience)
@@ -170,6 +176,11 @@ def _sought(
     return Remedies(
         found=tuple(sorted(search.found, key=lambda one: (one.moves, len(one.remaining)))),
         tried=tuple(search.tried),
+        nearly={
+            text: tuple(dict.fromkeys(search.seen[text]["error"]))
+            for text in map(text_of, search.first)
+            if refusal is not None and text in search.seen
+        },
         gave_up=search.gave_up,
         builds=search.builds,
     )
@@ -205,15 +216,6 @@ def demand_files(result: Result) -> None:
             demands[kind](result)
 
 
-def _builds(result: Result) -> bool:
-    """Whether the design is not refused when it is built."""
-    try:
-        _ = result.findings
-    except InfeasibleError:
-        return False
-    return True
-
-
 class Search:
     """A search with a limited number of builds: what was tried and what was found.
 
@@ -245,7 +247,7 @@ class Search:
         self.tried: dict[str, None] = {}
         self.gave_up = False
         self.second: InfeasibleError | None = None
-        self.warned: dict[str, tuple[str, ...]] = {}
+        self.seen: dict[str, dict[str, tuple[str, ...]]] = {}
 
     @cached_property
     def document(self) -> dict[str, Any]:
@@ -268,8 +270,8 @@ class Search:
     def left(self, changes: Changes) -> frozenset[str] | None:
         """Return the codes of all errors of the changed design; None if it is refused.
 
-        A refusal for another reason than that of the design is kept as `second`, the codes of its
-        warnings in `warned`.
+        A refusal for another reason than that of the design is kept as `second`, the codes of
+        errors and warnings in `seen`.
         """
         self.second = None
         try:
@@ -284,8 +286,10 @@ class Search:
             return None
         except DesignError:
             return None
-        warnings = (finding.code for finding in findings if finding.severity == "warning")
-        self.warned[text_of(changes)] = tuple(warnings)
+        self.seen[text_of(changes)] = {
+            word: tuple(finding.code for finding in findings if finding.severity == word)
+            for word in ("error", "warning")
+        }
         return frozenset(
             finding.code
             for finding in findings
@@ -303,7 +307,7 @@ class Search:
             Remedy(
                 changes=changes,
                 less=less or {},
-                remaining=self.warned[text_of(changes)],
+                remaining=self.seen[text_of(changes)]["warning"],
                 moves=self.advice.moves(self.result.design, design),
                 design=design,
             )
@@ -376,7 +380,7 @@ class Search:
             for remedy in other.found:
                 less = together(changes, remedy.less) if remedy.less else None
                 both = together(changes, remedy.changes)
-                self.warned[text_of(both)] = remedy.remaining
+                self.seen[text_of(both)] = {"warning": remedy.remaining}
                 self.keep(both, less)
 
     def follow(self, ways: Iterable[Way]) -> None:

@@ -144,7 +144,11 @@ def remedy_lines(found: Remedies) -> Iterator[str]:
         yield f"{'each of these changes' if many else 'this change'} was built without errors:"
     for remedy in found.found:
         yield wrapped(f"{remedy.text}  {remedy.notes}".rstrip(), first="  ", rest="      ")
-    keys = ", ".join(found.tried)
+    for text, codes in ({} if found.found else found.nearly).items():
+        words = f"with {text} it can be made, but has errors: {', '.join(codes)}"
+        yield wrapped(words, first="", rest="  ")
+    nearly = " ".join(found.nearly)
+    keys = ", ".join(key for key in found.tried if f"{key} = " not in nearly)
     if found.gave_up:
         sought = "more remedies" if found.found else "a remedy"
         yield f"the search for {sought} was ended after {found.builds} designs"

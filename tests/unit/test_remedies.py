@@ -201,18 +201,6 @@ def test_a_bore_that_a_thin_rim_names_keeps_the_limit_with_its_keyway(folder: Pa
         assert any(f.code == "thin-rim" for f in left) == there
 
 
-@pytest.mark.parametrize(("rim", "named"), [(4.9, True), (5.1, False)])
-def test_a_rim_that_allows_no_bore_of_use_asks_for_more_teeth(
-    rim: float, named: bool, folder: Path
-) -> None:
-    """A root circle of 35 mm leaves half of a bore of 30 mm with a rim of 5 modules of 2 mm."""
-    document = pair(CIRCLE, [20, 20], blank={"bore_diameter_mm": 30})
-    made = job_of(document | {"limits": {"rim_thickness": rim}}, folder)
-    for finding in (one for one in made.findings if one.code == "thin-rim"):
-        assert ("a bore up to" in finding.message) == named
-        assert ("more teeth (a smaller module)" in finding.message) != named
-
-
 def test_a_search_that_takes_too_long_is_given_up_and_says_so(folder: Path) -> None:
     made = job_of(DESIGNS["concave part too tight"][0], folder)
     found = gearcam.remedies(made, patience=0.0)

@@ -219,3 +219,30 @@ def test_a_number_that_stands_alone_in_a_list_is_short() -> None:
     pairs = ({"law.ratios": [0.4, 1.6]}, {"law.ratios": [1.0, 1.0]})
     first, second = between(*pairs, 0.123456789)["law.ratios"]
     assert first + second == pytest.approx(2.0, abs=1e-9)  # as a law that closes needs them
+
+
+@pytest.mark.parametrize(("rim", "named"), [(4.9, True), (5.1, False)])
+def test_a_rim_that_allows_no_bore_of_use_asks_for_more_teeth(
+    rim: float, named: bool, tmp_path: Path
+) -> None:
+    """A root circle of 35 mm leaves half of a bore of 30 mm with a rim of 5 modules of 2 mm."""
+    document = pair(CIRCLE, [20, 20], blank={"bore_diameter_mm": 30})
+    made = job_of(document | {"limits": {"rim_thickness": rim}}, tmp_path)
+    for finding in (one for one in made.findings if one.code == "thin-rim"):
+        assert ("a bore up to" in finding.message) == named
+        assert ("more teeth (a smaller module)" in finding.message) != named
+
+
+def test_a_change_that_leaves_errors_is_not_listed_as_tried_in_vain(tmp_path: Path) -> None:
+    """Finer chords draw a spike of 7 nm, on which no follower can ride."""
+    design = gearcam.load("profiles/extreme/cam_narrow_spike.toml")
+    with pytest.raises(InfeasibleError, match="do not cross") as refused:
+        gearcam.build(design).write(tmp_path)
+    found = gearcam.remedies(gearcam.build(design), refused.value)
+    ((text, codes),) = found.nearly.items()
+    key, value = text.split(" = ")
+    made = gearcam.build(design.with_({key: float(value)})).findings
+    assert {one.code for one in made if one.severity == "error"} == {*codes} == {"jamming"}
+    lines = [*remedy_lines(found)]
+    assert lines[0] == f"with {text} it can be made, but has errors: jamming"
+    assert "chord_tolerance" not in lines[1]
