@@ -43,7 +43,13 @@ def warning(result: CamResult) -> Any:
 @pytest.mark.parametrize("swings", [False, True], ids=["translating", "oscillating"])
 @pytest.mark.parametrize(
     ("rows", "noise", "scattered"),
-    [(30, 0.0, False), (90, 1e-3, True), (180, 4e-4, True), (360, 5e-3, True), (720, 1e-3, True)],
+    [
+        (30, 0.0, False),
+        (90, 1e-3, True),
+        (180, 4e-4, True),
+        pytest.param(360, 5e-3, True, marks=pytest.mark.slow),
+        pytest.param(720, 1e-3, True, marks=pytest.mark.slow),
+    ],
 )
 def test_the_values_that_are_named_lift_the_warning(
     rows: int, noise: float, scattered: bool, swings: bool

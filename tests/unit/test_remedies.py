@@ -64,6 +64,8 @@ OTHER_RATIO = {
 """Designs whose tooth counts are refused for their ratio."""
 
 LONG = {
+    "a concave return",
+    "a steep return",
     "the same at a centre distance",
     "teeth cut off",
     "bolts meet the outline",
