@@ -246,3 +246,13 @@ def test_a_change_that_leaves_errors_is_not_listed_as_tried_in_vain(tmp_path: Pa
     lines = [*remedy_lines(found)]
     assert lines[0] == f"with {text} it can be made, but has errors: jamming"
     assert "chord_tolerance" not in lines[1]
+
+
+def test_a_bore_that_a_cam_cannot_take_leaves_its_wall(tmp_path: Path) -> None:
+    """A concentric circle of 2*(40 - 6) mm is nearest; 3 mm of wall on both sides."""
+    made = cam(ROLLER, {"prime_radius_mm": 40}, blank={"bore_diameter_mm": 90})
+    made["limits"] = {"wall_mm": 3}
+    (bore,) = values(made, "blank.bore_diameter_mm", tmp_path)
+    assert 61.9 < bore <= 62.0
+    left = job_of(followed(made, {"blank.bore_diameter_mm": bore}), tmp_path).findings
+    assert "thin-wall" not in {one.code for one in left}

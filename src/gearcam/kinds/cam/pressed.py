@@ -79,7 +79,9 @@ def gentler(result: CamResult, code: str, number: int = 0) -> dict[str, float] |
         return None
     limit = math.radians(next(_steep(result, code, number)).limit or 0.0)
     found = _least(result, motion, code, limit)
-    for _ in range(_STEPS if found else 0):
+    if found is None:
+        return None
+    for _ in range(_STEPS):
         changes = resized(result, number, shortened(found, 1.0))
         try:
             # another size has the same lift
