@@ -134,7 +134,7 @@ def test_the_roller_limits_the_pitch_curve():
         1.0 / design.follower.roller_radius
     )
     # a wire of 0.3 mm does not get into a concave place that bends more; this profile has none
-    label = "smallest inner radius for a tool of 0.3 mm"
+    label = "concave limit for a tool of 0.3 mm"
     assert label not in limits
     groove = chart(PAIR.with_name("groove_cam.toml"), "curvature").limits
     assert [one.value for one in groove if one.label == label] == pytest.approx([-1.0 / 0.15])

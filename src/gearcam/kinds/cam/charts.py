@@ -100,7 +100,7 @@ def _curvature(result: CamResult) -> Chart:
     tool = limit_of(PARTS_KIND, "large-tool", result.design.limits)
     limits = []
     if tool and any(math.isfinite(wall.profile_radius[1]) for wall in result.cam.walls):
-        label = f"smallest inner radius for a tool of {shown(tool)} mm"
+        label = f"concave limit for a tool of {shown(tool)} mm"
         limits.append(Limit(label=label, value=-2.0 / tool))
     rollers = {one.side / one.mechanism.radius: one for one in result.cam.walls if radius}
     for value, wall in rollers.items():
