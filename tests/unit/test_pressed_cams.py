@@ -104,7 +104,7 @@ def test_the_radius_does_not_depend_on_the_one_that_is_given(tmp_path: Path) -> 
 
 def test_a_plate_jams_on_its_way_back_too(tmp_path: Path) -> None:
     """What is a return as it slides forth lifts the follower as it slides back."""
-    document = plate() | {"blank": {"height_mm": 60}}
+    document: Any = plate() | {"blank": {"height_mm": 60}}
     document["cam"]["walls"] = "lower"
     document["motion"][2]["way_mm"] = 12
     found = [one for one in steep(document, tmp_path) if one.code == "jamming"]

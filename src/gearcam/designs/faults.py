@@ -250,7 +250,7 @@ def _list_hint(value: Any, entry: Key) -> str:
         return ""
     if entry.base is str:
         words = [word.strip() for word in value.split(",")]
-        items = [nearest(word, entry.param.choices) or word for word in words]
+        items = [nearest(word, entry.param.choices or ()) or word for word in words]
     else:
         items = [value] * (entry.length or 1)
     return f"write {entry.key} = {show(items)}"

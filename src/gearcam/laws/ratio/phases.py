@@ -272,7 +272,7 @@ def _closing_values(
     """
     lines, ways, left = [], [], set(range(len(given)))
     while left:
-        group, size = {min(left)}, 0
+        group, own, size = {min(left)}, set[int](), 0
         while size < len(group):  # knots with one ratio, and ratios of one knot
             size = len(group)
             own = {place for k, place in enumerate(places) if k % len(given) in group}
