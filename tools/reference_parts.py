@@ -8,6 +8,7 @@ from typing import Any, Final
 
 from gearcam.designs.faults import allowed, show
 from gearcam.designs.table import Key, Table
+from gearcam.designs.template import short
 from gearcam.numerals import shown
 from gearcam.quantities import ANGLE, LENGTH, REQUIRED
 
@@ -99,7 +100,7 @@ def default(entry: Key) -> str:
         return "required" if entry.required else "one of the two"
     if entry.default is None:
         return NONE
-    value = _short(entry.outward(entry.default))
+    value = short(entry.outward(entry.default))
     if entry.param.both and len(set(value)) == 1:
         value = value[0]
     return code(show(value))
@@ -118,13 +119,5 @@ def keys_of(known: Table) -> str:
 
 def toml(title: str, values: Mapping[str, Any]) -> str:
     """Return an example of a table of a design file."""
-    lines = [f"{key} = {json.dumps(_short(value))}" for key, value in values.items()]
+    lines = [f"{key} = {json.dumps(short(value))}" for key, value in values.items()]
     return "\n".join(["```toml", title, *lines, "```"])
-
-
-def _short(value: Any) -> Any:
-    if isinstance(value, list):
-        return [_short(item) for item in value]
-    if isinstance(value, float):
-        return int(value) if value.is_integer() else float(f"{value:.6g}")
-    return value

@@ -160,13 +160,13 @@ def law_comment(key: str, name: str, entry: Any, known: Table) -> Iterator[str]:
 
 def key_line(key: str, value: Any, words: str, mark: str = "") -> str:
     """Return ``key = value`` with `words` beside it, as a comment if its `mark` is ``# ``."""
-    return mark + beside(f"{key} = {show(_short(value))}", words, _COLUMN - len(mark))
+    return mark + beside(f"{key} = {show(short(value))}", words, _COLUMN - len(mark))
 
 
-def _short(value: Any) -> Any:
-    """Write 20.0 as 20, and six digits where there are more."""
+def short(value: Any) -> Any:
+    """Return a `value` with 20.0 as 20, and with six digits of numbers that have more."""
     if isinstance(value, list):
-        return [_short(item) for item in value]
+        return [short(item) for item in value]
     if isinstance(value, float):
         return int(value) if value.is_integer() else float(f"{value:.6g}")
     return value
