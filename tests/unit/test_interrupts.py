@@ -10,6 +10,8 @@ import subprocess
 import sys
 import threading
 import time
+from concurrent.futures import ProcessPoolExecutor
+from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +19,7 @@ import pytest
 
 import helpers_interrupts
 from gearcam.interrupts import SIGNALS, interruptible, unbroken
+from gearcam.view.command import end_at_once
 from helpers_interrupts import AFTER, BEFORE, CASES, EVERY, PAIR
 
 CODES = {"SIGINT": 130, "SIGTERM": 143, "SIGHUP": 129}
@@ -193,6 +196,21 @@ def test_the_view_ends_its_workers_at_once(tmp_path: Path, name: str, code: int)
     while any(map(_runs, workers)) and time.monotonic() < end:
         time.sleep(0.02)
     assert not any(map(_runs, workers))
+
+
+@pytest.mark.slow
+def test_workers_that_are_writing_replies_end_at_once() -> None:
+    """The thread that reads the replies does not wait for the rest of one."""
+    for number in range(24):
+        workers = ProcessPoolExecutor(2, mp_context=get_context("spawn"))
+        assert workers.submit(bytes, 1).result() == b"\0"
+        for _ in range(3):
+            workers.submit(bytes, 80_000_000)
+        reader = vars(workers)["_executor_manager_thread"]
+        time.sleep(0.03 + 0.002 * number)  # some are in the middle of a reply
+        end_at_once(workers)
+        reader.join(10.0)
+        assert not reader.is_alive()
 
 
 def _runs(process: str) -> bool:

@@ -10,7 +10,7 @@ from argparse import ArgumentParser
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import active_children, get_context
-from typing import Final
+from typing import Any, Final
 
 from gearcam.console import complain, say
 from gearcam.designs.reader import content_of
@@ -68,9 +68,17 @@ def view(file: str, port: int = 0, *, browser: bool = True) -> None:
             finally:
                 session.end()
                 server.shutdown()
-                workers.shutdown(wait=False, cancel_futures=True)
-                for worker in active_children():  # one that is still building would delay the exit
-                    worker.kill()
+                end_at_once(workers)
+
+
+def end_at_once(workers: ProcessPoolExecutor) -> None:
+    """End `workers` whatever they are doing: one that is still building would delay the exit."""
+    replies: Any = vars(workers)["_result_queue"]
+    workers.shutdown(wait=False, cancel_futures=True)
+    for worker in active_children():
+        worker.kill()
+    # the rest of a reply that one was writing is waited for as long as the pipe has a writer: here
+    replies._writer.close()
 
 
 def _follow(session: Session) -> None:
