@@ -363,6 +363,11 @@ def test_what_cannot_be_asked_is_refused(
     assert told in capsys.readouterr().err
 
 
-def test_a_quick_campaign_finds_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["--quick", "--jobs", "2", "-o", str(tmp_path)]) == 0
+@pytest.mark.parametrize(
+    "words", [["--count", "8"], pytest.param(["--quick"], marks=pytest.mark.slow)]
+)
+def test_a_campaign_finds_nothing(
+    words: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main([*words, "--jobs", "2", "-o", str(tmp_path)]) == 0
     assert "failures: 0" in capsys.readouterr().out
