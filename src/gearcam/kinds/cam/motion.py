@@ -287,7 +287,7 @@ def _examine_program(
             known = phase_table(raw[number]["type"]).of_cams(sliding=sliding)
             known = known.of_lifts(oscillating=oscillating)
             faults = told_faults([(name, None, message, rule)], known, raw[number], (TITLE, number))
-            meant = misspelt(raw[number], known.entries)  # of these the unknown key is told
+            meant = misspelt(raw[number], known.entries)  # the unknown key is reported instead
             found.faults += [one for one in faults if one.path[2] not in meant]
 
 

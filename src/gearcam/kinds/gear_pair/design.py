@@ -141,7 +141,7 @@ def _examine_law(document: Mapping[str, Any], found: Examined) -> None:
     known = law_table(law_type)
     rest = {key: value for key, value in raw.items() if key != "type"}
     faults = list(faults_of(known, rest, home=partial(home_of, KINDS[NAME])))
-    if not right:  # what is missing is told once the law is known
+    if not right:  # what is missing is reported once the law is known
         found.faults += [one for one in faults if one.path[1] in rest]
         return
     law, problems = made_of(known, LAWS[law_type].parameters, rest, faults, ("law",))
