@@ -51,9 +51,9 @@ def _of_lift(name: str, result: CamResult) -> Chart:
 
 
 def _pressure_angle(result: CamResult) -> Chart | None:
-    table = result.motion_of_turn
     if result.mechanism.flat and not result.mechanism.oscillating:
         return None  # it is zero everywhere
+    table = result.motion_of_turn
     given = limit_of(KIND, "pressure-angle", result.design.limits)
     limit = math.degrees(pressure_limit(result.mechanism, given))
     places, told = _places(result)

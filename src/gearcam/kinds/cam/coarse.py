@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
@@ -11,7 +10,7 @@ from gearcam.errors import InfeasibleError
 from gearcam.findings import Finding
 from gearcam.kinds.cam.motion import turn_tables
 from gearcam.laws.motion_table import MotionTable
-from gearcam.numerals import shown
+from gearcam.numerals import shortened, shown
 
 if TYPE_CHECKING:
     from gearcam.kinds.cam.build import CamResult
@@ -40,7 +39,8 @@ def _remedies(result: CamResult, finding: Finding) -> Iterator[str]:
         entries = turn_tables()[0].of_lifts(oscillating=oscillating).entries.values()
         entry = next(one for one in entries if one.name == "smoothing_tolerance")
         given = 2.0 * (table.smoothing_tolerance or 0.0)
-        sizes = {_rounded_up(entry.outward(max(share * error / lever, given))) for share in _SHARES}
+        asked = (entry.outward(max(share * error / lever, given)) for share in _SHARES)
+        sizes = {shortened(size, 1.0, 2) for size in asked}
         for size in sorted(sizes):
             smoother = replace(table, smoothing_tolerance=entry.inward(size))
             try:  # what is left of the error is computed, not assumed
@@ -50,15 +50,9 @@ def _remedies(result: CamResult, finding: Finding) -> Iterator[str]:
             if program.errors[0] * lever <= lead.tolerance:
                 yield f"With motion.{entry.key} = {shown(size)} the scatter is averaged out."
                 break
-    coarser = _rounded_up(error)
+    coarser = shortened(error, 1.0, 2)
     if coarser <= COARSEST:
         yield (
             f"With output.chord_tolerance_mm = {shown(coarser)} the profile is cut only as finely "
             "as the lift is known."
         )
-
-
-def _rounded_up(value: float) -> float:
-    """Return a positive value with two digits, not below it."""
-    step = 10.0 ** (math.floor(math.log10(value)) - 1)
-    return float(f"{step * math.ceil(value / step):.2g}")

@@ -75,10 +75,12 @@ def gentler(result: CamResult, code: str, number: int = 0) -> dict[str, float] |
         times what the follower needs does.
     """
     motion = result.cam.motions[number]
-    if motion.mechanism.slide or motion.mechanism.flat or not any(_steep(result, code, number)):
+    if motion.mechanism.slide or motion.mechanism.flat:
         return None
-    limit = math.radians(next(_steep(result, code, number)).limit or 0.0)
-    found = _least(result, motion, code, limit)
+    steep = next(_steep(result, code, number), None)
+    if steep is None:
+        return None
+    found = _least(result, motion, code, math.radians(steep.limit or 0.0))
     if found is None:
         return None
     for _ in range(_STEPS):

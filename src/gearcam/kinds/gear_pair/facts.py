@@ -295,10 +295,8 @@ def _gear(result: GearPairResult, gear: Gear) -> Tree:
 
 def _part(result: GearPairResult, gear: Gear) -> Tree:
     """Return the overall size of a wheel and, if parts are ordered, the facts of the part."""
-    number, name = (
-        gear.wheel - 1,
-        "the rack" if gear.toothing.track.slides else f"wheel {gear.wheel}",
-    )
+    number = gear.wheel - 1
+    name = "the rack" if gear.toothing.track.slides else f"wheel {gear.wheel}"
     if not result.ordered:
         if gear.hollow or len(result.leads) > 1:
             return {}  # its outside, or its other steps, are not made
