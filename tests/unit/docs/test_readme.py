@@ -21,7 +21,7 @@ from gearcam.laws.ratio.base import LAWS
 from gearcam.laws.rises.base import RISES
 from gearcam.parts.mass import mass_properties
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 PAGES = [
     *sorted(ROOT.glob("*.md")),

@@ -23,7 +23,7 @@ from gearcam.view.command import end_at_once
 from helpers_interrupts import AFTER, BEFORE, CASES, EVERY, PAIR
 
 CODES = {"SIGINT": 130, "SIGTERM": 143, "SIGHUP": 129}
-HERE = Path(__file__).parents[1]
+HERE = Path(__file__).parents[2]
 ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join([str(HERE.parent / "src"), str(HERE)])}
 OUTLINES = {"centrodes.csv", "gear1_outline.csv", "gear2_outline.csv"}
 NEW = {

@@ -22,7 +22,7 @@ from gearcam.view.session import RequestError, Session, State, _Newest
 from gearcam.view.watch import Watch
 from helpers_view import DESIGN, SECONDS, Shown, shown
 
-PROFILES = Path(__file__).parents[2] / "profiles"
+PROFILES = Path(__file__).parents[3] / "profiles"
 NAIL = PROFILES / "nail_machine_two_phase.toml"
 
 

@@ -351,7 +351,7 @@ def test_schema_is_json(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def _run(*arguments: str, cwd: Path, **environment: str) -> subprocess.CompletedProcess[str]:
-    source = str(Path(__file__).parents[2] / "src")
+    source = str(Path(__file__).parents[3] / "src")
     return subprocess.run(
         [sys.executable, "-m", "gearcam", *arguments],
         cwd=cwd,
@@ -377,7 +377,7 @@ def test_the_module_runs_as_a_command_and_a_poor_terminal_is_no_fault(tmp_path: 
 
 
 def test_a_reader_that_leaves_early_is_no_fault(tmp_path: Path) -> None:
-    source = str(Path(__file__).parents[2] / "src")
+    source = str(Path(__file__).parents[3] / "src")
     process = subprocess.Popen(
         [sys.executable, "-m", "gearcam", "laws"],
         cwd=tmp_path,

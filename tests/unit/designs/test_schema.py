@@ -27,7 +27,7 @@ from gearcam.laws.phases_of_lift import PHASES
 from gearcam.laws.ratio.base import LAWS
 from gearcam.laws.rises.base import RISES
 
-PROFILES = sorted((Path(__file__).parents[2] / "profiles").glob("*.toml"))
+PROFILES = sorted((Path(__file__).parents[3] / "profiles").glob("*.toml"))
 GOOD: dict[str, Any] = {
     "kind": "gear-pair",
     "name": "good",

@@ -13,7 +13,7 @@ import gearcam as gc
 from gearcam.cli import GOOD, WRONG, main
 from gearcam.solids import LIBRARIES
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 PROFILE = ROOT / "profiles" / "ellipse.toml"
 PROFILES = {
     "gear-pair": PROFILE,

@@ -15,7 +15,7 @@ from gearcam.gears.spec import Rack
 from gearcam.kinds.gear_pair.design import GearPairDesign, PairOutputSpec
 from gearcam.parts.blank import Blank
 
-PROFILES = sorted((Path(__file__).parents[2] / "profiles").glob("*.toml"))
+PROFILES = sorted((Path(__file__).parents[3] / "profiles").glob("*.toml"))
 
 GOOD = """\
 kind = "gear-pair"

@@ -25,7 +25,7 @@ import pytest
 import gearcam
 from gearcam.designs.kind import KINDS
 
-PROFILES = Path(__file__).parents[2] / "profiles"
+PROFILES = Path(__file__).parents[3] / "profiles"
 
 WATCHED = {
     "gearcam.gears.rolling": ("roll",),
