@@ -246,8 +246,7 @@ def solid_ladder(result: Result, own: float, levels: Sequence[float]) -> Ladder:
 
     def make(tolerance: float) -> list[Mesh]:
         if tolerance not in parts:
-            design = result.design.with_({"output.chord_tolerance_mm": tolerance})
-            parts[tolerance] = type(result)(design, result.tolerances).parts
+            parts[tolerance] = result.with_chords(tolerance).parts
         return [solid(part) for part in parts[tolerance]]
 
     def told(made: list[Mesh]) -> tuple[Array, int]:

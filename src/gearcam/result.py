@@ -12,9 +12,10 @@ import time
 from abc import abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, Final
+from typing import TYPE_CHECKING, Any, ClassVar, Final, Self
 
 from gearcam.designs.design import hash_of, summary_of
 from gearcam.designs.kind import KINDS
@@ -35,7 +36,7 @@ if TYPE_CHECKING:
     from gearcam.parts.body import Part
     from gearcam.solids import Mesh
 
-FORMAT: Final = 3
+FORMAT: Final = 1
 """Version of the layout of ``summary.json``."""
 
 PICTURE: Final = "svg"
@@ -82,6 +83,17 @@ class Result(Displayed):
     def __repr__(self) -> str:
         done = ", ".join(self.timings) or "nothing"
         return cut(f'<{type(self).__name__} of "{self.design.name}", computed: {done}>')
+
+    def with_chords(self, tolerance: float) -> Self:
+        """Return the result with another chord tolerance, mm; it keeps what does not depend on it.
+
+        Raises `InfeasibleError` if a stage that it keeps cannot be made.
+        """
+        known = {name: getattr(self, name) for name in self.before_output}
+        output = replace(self.design.output, chord_tolerance=tolerance)
+        made = type(self)(replace(self.design, output=output, examined=True), self.tolerances)
+        vars(made).update(known)
+        return made
 
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Final
 
 from gearcam.designs.kind import KINDS
@@ -10,7 +9,6 @@ from gearcam.errors import GearcamError
 
 if TYPE_CHECKING:
     from gearcam.result import Result
-    from gearcam.solids import Mesh
 
 CHORDS: Final = 0.02
 """Chord error of the solids shown, mm: finer ones look the same and make the page heavier."""
@@ -35,17 +33,9 @@ def solids_shown(result: Result) -> dict[str, str]:
     # small teeth refuse the chords of the view: then those of the design are shown
     for chords in (CHORDS, 0.0):
         try:
-            return {"view": view_page(_assembled(result, chords))}
+            fine = (result.design.output.chord_tolerance or 0.0) < chords
+            shown = result.with_chords(chords) if fine else result
+            return {"view": view_page(KINDS[result.design.kind].room("files").assembled(shown))}
         except GearcamError as error:
             refusal = str(error)
     return {"refusal": refusal}
-
-
-def _assembled(result: Result, chords: float) -> Mapping[str, Mesh]:
-    """Return the solids of a result, where its own are finer than `chords` with those."""
-    if (result.design.output.chord_tolerance or 0.0) < chords:
-        coarse = result.design.with_({"output.chord_tolerance_mm": chords})
-        known = {name: getattr(result, name) for name in result.before_output}
-        result = type(result)(coarse, result.tolerances)
-        vars(result).update(known)
-    return KINDS[result.design.kind].room("files").assembled(result)

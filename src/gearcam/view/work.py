@@ -182,12 +182,13 @@ def _items(near: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _draft(design: Design) -> Reply:
+    result = build(design)
     try:
-        return draft(build(design.with_({_CHORDS: COARSE})))
-    except (DesignError, InfeasibleError) as error:
+        return draft(result.with_chords(COARSE))
+    except InfeasibleError as error:
         if _CHORDS not in str(error):
             raise
-    return draft(build(design))  # the teeth are too small for coarse chords
+    return draft(result)  # the teeth are too small for coarse chords
 
 
 def _text(content: bytes | None, file: str) -> str:

@@ -29,7 +29,7 @@ NAMES = ("one.dxf", "two.dxf", "three.dxf")
 
 def files_of(word: str, names: tuple[str, ...] = NAMES) -> Callable[..., dict[str, bytes]]:
     """Files that all hold a word, and their summary."""
-    listed = json.dumps({"format": 3, "files": dict.fromkeys(names, word)}).encode()
+    listed = json.dumps({"format": 1, "files": dict.fromkeys(names, word)}).encode()
     return lambda *_: {**{name: word.encode() for name in names}, "summary.json": listed}
 
 
@@ -258,7 +258,7 @@ def test_links_and_pipes_are_replaced_and_never_written_through(desk: Path) -> N
 @pytest.mark.parametrize(
     "summary",
     [
-        b'{"files": {"mine.dxf": "1"}, "format": 3' + b" " * 10_000_000 + b"}",  # huge
+        b'{"files": {"mine.dxf": "1"}, "format": 1' + b" " * 10_000_000 + b"}",  # huge
         b'{"files": {"mine.dxf": "1"}, "format": "1"}',
         b'{"files": ["mine.dxf"], "name": "package"}',
         b"\xff\xfe\x00",

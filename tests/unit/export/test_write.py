@@ -15,7 +15,7 @@ from gearcam.export.write import is_plain, previous_files, rewrite, write_all
 
 
 def summary(*names: object) -> bytes:
-    return json.dumps({"format": 3, "files": {str(name): "of a design" for name in names}}).encode()
+    return json.dumps({"format": 1, "files": {str(name): "of a design" for name in names}}).encode()
 
 
 def build(folder: Path, files: dict[str, bytes]) -> tuple[str, ...]:
@@ -57,14 +57,14 @@ STRANGE = {
     "cut": b"{",
     "list": b"[]",
     "null": b"null",
-    "number": b'{"format": 3, "files": 3}',
-    "mapping": b'{"format": 3, "files": {"mine.txt": 1}}',
+    "number": b'{"format": 1, "files": 3}',
+    "mapping": b'{"format": 1, "files": {"mine.txt": 1}}',
     "of another program": b'{"files": ["mine.txt"]}',
     "of another program, mapping": b'{"format": "x", "files": {"mine.txt": "1"}}',
     "no text": b"\xff\xfe",
     "deep": b"[" * 100_000,
     "elsewhere": summary(*ELSEWHERE),
-    "names alone": json.dumps({"format": 3, "files": ["mine.txt"]}).encode(),
+    "names alone": json.dumps({"format": 1, "files": ["mine.txt"]}).encode(),
     "name too long": summary("a" * 5000),
 }
 
@@ -240,7 +240,7 @@ def test_names_that_are_not_plain_are_refused(tmp_path: Path, name: str) -> None
 
 def test_previous_files_are_those_that_are_there(tmp_path: Path) -> None:
     listed = {
-        "format": 3,
+        "format": 1,
         "files": {"a.dxf": "1", "gone.dxf": "1", "summary.json": "1", "wrong.dxf": 1},
         "stale": {"b.dxf": "2", "c.dxf": None, "folder": "2"},
     }

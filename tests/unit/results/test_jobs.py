@@ -128,7 +128,7 @@ def test_a_summary_holds_what_is_promised(tmp_path: Path) -> None:
     made = small()
     summary = made.write(tmp_path, files=["csv"]).summary
     assert list(summary) == TOP
-    assert summary["format"] == 3
+    assert summary["format"] == 1
     assert (summary["name"], summary["kind"]) == ("sample", "gear-pair")
     assert set(summary["pair"]) == PAIR
     assert summary["pair"]["teeth"] == [22, 22]

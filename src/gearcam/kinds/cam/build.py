@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from gearcam.cams.mechanism import Mechanism
     from gearcam.cams.wall import PitchMotion, Wall
     from gearcam.drawings import Drawing
+    from gearcam.kinds.cam.accuracy import Rows
     from gearcam.parts.body import Part
     from gearcam.parts.checks import PartsSubject
     from gearcam.sheets.sheet import Sheet
@@ -199,6 +200,13 @@ class CamResult(Result):
 
         kerf = self.design.output.kerf
         return tuple(cut_drawing(one, kerf) for one in self.form.drawings(self))
+
+    @cached_property
+    def error_rows(self) -> Rows:
+        """Error estimates and their methods by name, without those of chords and files."""
+        from gearcam.kinds.cam.accuracy import error_rows
+
+        return error_rows(self)
 
     @cached_property
     def drawing(self) -> Drawing:

@@ -10,7 +10,6 @@ from gearcam.cams.checks import KIND, pressure_limit
 from gearcam.export.shared import accuracy, part_facts
 from gearcam.facts import Fact, Facts, extent
 from gearcam.findings import limit_of
-from gearcam.kinds.cam.accuracy import error_rows
 from gearcam.kinds.cam.wall_facts import ends_of
 from gearcam.numerals import shown
 
@@ -174,4 +173,4 @@ def _part(result: CamResult) -> Tree | list[Tree]:
 def _accuracy(result: CamResult, measured: Mapping[str, Any]) -> Tree:
     """Return the error estimates, and how each was made."""
     chord, kerf = max(one.chord_error for one in result.contours), result.design.output.kerf
-    return accuracy(error_rows(result), chord, kerf, measured)
+    return accuracy(result.error_rows, chord, kerf, measured)

@@ -27,6 +27,7 @@ from gearcam.tolerances import DEFAULT, Tolerances
 
 if TYPE_CHECKING:
     from gearcam.gears.contact import FlankPairs
+    from gearcam.gears.estimates import Estimates
     from gearcam.study import Study
 
 MESHING = "meshing.csv"
@@ -180,6 +181,13 @@ class GearPairResult(PairStages):
             side: contact_rows(self, self.flanks_of(side), self.phases, found)
             for side, found in self.touching.items()
         }
+
+    @cached_property
+    def error_rows(self) -> Estimates:
+        """Error estimates and their methods by name, without those of chords and files."""
+        from gearcam.kinds.gear_pair.accuracy import error_rows
+
+        return error_rows(self)
 
     @cached_property
     def contact_ratio(self) -> float:

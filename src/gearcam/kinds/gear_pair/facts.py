@@ -14,7 +14,6 @@ from gearcam.facts import Fact, Facts, extent
 from gearcam.findings import limit_of
 from gearcam.gears.gear_facts import gear_tree
 from gearcam.gears.subject import KIND, Subject
-from gearcam.kinds.gear_pair.accuracy import error_rows
 from gearcam.laws.ratio.span import angle_text
 from gearcam.meshing.drive_checks import side_name
 from gearcam.numerals import shown
@@ -312,4 +311,4 @@ def _accuracy(result: GearPairResult, measured: Mapping[str, Any]) -> Tree:
     """Return the error estimates, and how each was made."""
     # the largest distance from a chord may lie between the places where it is measured
     chord = max(gear.profile.chord_error for gear in result.gears) / MARGIN
-    return accuracy(error_rows(result), chord, result.design.output.kerf, measured)
+    return accuracy(result.error_rows, chord, result.design.output.kerf, measured)
