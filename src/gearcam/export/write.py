@@ -1,18 +1,19 @@
 """Writing the files of a build, all or none.
 
-Every file is first written under a temporary name in the same folder. When all are complete they
-are renamed; files that the *previous summary* lists and this build no longer writes are *stale* and
-removed, so that nobody cuts one; the new summary comes last. The old files are kept until then and
-restored if anything fails; an interruption waits until the end. The folder is locked meanwhile: a
-second build waits. Files are not forced to the disk (fsync, which would double the time of writing,
-40 ms for eleven files), so a power failure may lose them.
+The folder is created if it is missing, and locked: a second build waits. All files are first
+written into a temporary folder in it; then old files are moved there and new ones into place, the
+summary last. If a move fails, all are undone; an interruption waits until the end. Files that the
+*previous summary* lists and this build no longer writes are *stale* and removed, so that nobody
+cuts one. Temporary folders of writers that were killed are removed by the next writer. Files are
+not forced to the disk (fsync, which would double the time of writing, 40 ms for eleven files), so a
+power failure may lose them.
 
 A user's design file is *rewritten* in the same way, and keeps its permissions; links are followed.
 
-Refused: names with a path, a folder that is a file, a design's folder that is a link, and
-whatever the system refuses.
+Refused: names with a path, impossible names, a folder that is a file or a broken link, a design's
+folder that is a link, waiting too long for another writer, and whatever the system refuses.
 
-Depends on folder, errors, interrupts and reading only.
+Depends on errors, interrupts, numerals and reading only.
 """
 
 from __future__ import annotations
@@ -20,16 +21,18 @@ from __future__ import annotations
 import errno
 import json
 import os
+import re
 import shutil
-from collections.abc import Callable, Mapping
-from contextlib import suppress
-from dataclasses import dataclass, field
+import tempfile
+import time
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, Final
 
 from gearcam.errors import WriteError
-from gearcam.export.folder import demand_name, held, lock, spare
 from gearcam.interrupts import unbroken
+from gearcam.numerals import shown
 from gearcam.reading import read
 
 SUMMARY: Final = "summary.json"
@@ -37,6 +40,19 @@ SUMMARY: Final = "summary.json"
 
 _LARGEST: Final = 10_000_000
 """Largest size of a summary, bytes: a thousand times the usual size."""
+
+_PREFIX: Final = ".gearcam-"
+_SUFFIX: Final = ".tmp"
+"""Beginning and end of the names of temporary folders."""
+
+_LEFT_OVER: Final = re.compile(re.escape(_PREFIX) + r"[a-z0-9_]{8}" + re.escape(_SUFFIX))
+"""Names of temporary folders, as `tempfile` makes them."""
+
+_PATIENCE: Final = 30.0
+"""Seconds to wait while another build writes to the folder: moving files takes a few."""
+
+_PAUSE: Final = 0.05
+"""Seconds between two tries to lock the folder."""
 
 Make = Callable[[Mapping[str, str]], Mapping[str, bytes]]
 """Returns contents by name, given the `previous_files` of the folder."""
@@ -72,40 +88,22 @@ def write_all(
         If a name is not plain.
     """
     folder = Path(directory) / name
-    demand_name(folder)
+    _demand_possible(folder)
     try:
-        if name:
-            _demand_no_link(folder)
-        return _write(folder, make, keep)
-    except OSError as error:
-        place = error.filename2 or error.filename or folder
-        raise WriteError(f"cannot write to {place}: {error.strerror or error}") from error
-
-
-def _demand_no_link(folder: Path) -> None:
-    if folder.is_symlink():
-        words = "it is a link: remove it, or choose another folder"
-        raise OSError(errno.ELOOP, words, str(folder))
-
-
-def _write(folder: Path, make: Make, keep: bool) -> tuple[str, ...]:
-    change = _Change(folder)
-    with held(folder):
-        before = previous_files(folder)
-        files = make(before)
-        wrong = [name for name in files if not is_plain(name)]
-        if wrong:
-            raise ValueError(f"not plain file names: {wrong}")
-        try:
-            for name, content in files.items():
-                change.stage(name, content)
-        except BaseException:
+        if name and folder.is_symlink():
+            words = "it is a link: remove it, or choose another folder"
+            raise OSError(errno.ELOOP, words, str(folder))
+        with _stage(folder) as stage:
+            before = previous_files(folder)
+            files = make(before)
+            _fill(stage, folder, files)
+            stale = [] if keep else [old for old in before if old not in files]
             with unbroken():
-                change.finish()
-            raise
-        with unbroken():
-            change.commit([] if keep else [name for name in before if name not in files])
-    return tuple(change.removed)
+                _move(stage, folder, files, stale)
+    except OSError as error:
+        place = error.filename or folder
+        raise WriteError(f"cannot write to {place}: {error.strerror or error}") from error
+    return tuple(stale)
 
 
 def is_plain(name: str) -> bool:
@@ -152,93 +150,119 @@ def _is_there(place: Path) -> bool:
         return False
 
 
-@dataclass
-class _Change:
-    """The changes of a folder so far, and how to undo them."""
+def _demand_possible(path: str | os.PathLike[str]) -> None:
+    """Refuse a path with a character that names cannot have or that the system cannot encode."""
+    with suppress(ValueError):
+        if b"\0" not in os.fsencode(path):
+            return
+    raise WriteError(f"cannot write to {os.fspath(path)!r}: this is not a possible name")
 
-    folder: Path
-    staged: dict[str, Path] = field(default_factory=dict)
-    kept: dict[str, Path] = field(default_factory=dict)
-    fresh: list[str] = field(default_factory=list)
-    removed: list[str] = field(default_factory=list)
-    temporary: list[Path] = field(default_factory=list)
 
-    def _spare(self) -> Path:
-        self.temporary.append(spare(self.folder))
-        return self.temporary[-1]
+@contextmanager
+def _stage(folder: Path) -> Iterator[Path]:
+    """Create and lock a folder and yield a temporary folder in it, which is removed at the end.
 
-    def stage(self, name: str, content: bytes) -> None:
-        """Write a file under a temporary name."""
-        target = self.folder / name
+    New folders are removed again if anything fails.
+    """
+    for place in (folder, *folder.parents):
+        if place.is_symlink() and not place.exists():
+            raise FileNotFoundError(errno.ENOENT, "it is a broken link", str(place))
+    if folder.exists() and not folder.is_dir():
+        raise NotADirectoryError(errno.ENOTDIR, "it is a file, not a folder", str(folder))
+    new = [place for place in (folder, *folder.parents) if not place.exists()]
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with _lock(folder) as locked:
+            for place in folder.iterdir() if locked else ():
+                if _LEFT_OVER.fullmatch(place.name):
+                    shutil.rmtree(place, ignore_errors=True)
+            with _naming(folder):
+                stage = Path(tempfile.mkdtemp(_SUFFIX, _PREFIX, folder))
+            try:
+                yield stage
+            finally:
+                with unbroken():
+                    shutil.rmtree(stage, ignore_errors=True)
+    except BaseException:
+        for empty in new:
+            with suppress(OSError):
+                empty.rmdir()
+        raise
+
+
+@contextmanager
+def _lock(folder: Path) -> Iterator[bool]:
+    """Lock a folder, waiting until nobody else holds it; yield whether the system has locks."""
+    try:
+        import fcntl
+
+        handle = os.open(folder, os.O_RDONLY)
+    except (ImportError, PermissionError):  # Windows; folders that may be written but not read
+        yield False
+        return
+    try:
+        end, locked = time.monotonic() + _PATIENCE, False
+        while not locked:
+            try:
+                fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                locked = True
+            except BlockingIOError as error:
+                if time.monotonic() > end:
+                    words = f"another gearcam has been writing to it for {shown(_PATIENCE)} s"
+                    raise OSError(errno.EBUSY, words, str(folder)) from error
+                time.sleep(_PAUSE)
+            except OSError:  # a network file system may have no locks
+                break
+        yield locked
+    finally:
+        os.close(handle)
+
+
+@contextmanager
+def _naming(place: Path) -> Iterator[None]:
+    """Make errors of the system name the file or folder that is written, not a temporary one."""
+    try:
+        yield
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, str(place)) from error
+
+
+def _fill(stage: Path, folder: Path, files: Mapping[str, bytes]) -> None:
+    """Write all files into the temporary folder."""
+    wrong = [name for name in files if not is_plain(name)]
+    if wrong:
+        raise ValueError(f"not plain file names: {wrong}")
+    for name, content in files.items():
+        target = folder / name
         if target.is_dir() and not target.is_symlink():
             raise IsADirectoryError(errno.EISDIR, "there is a folder of this name", str(target))
-        self.staged[name] = self._spare()
-        try:
-            self.staged[name].write_bytes(content)
-        except OSError as error:
-            raise OSError(error.errno, error.strerror, str(target)) from error
-
-    def commit(self, stale: list[str]) -> None:
-        """Move staged files into place and stale ones away, or undo all if that fails."""
-        try:
-            for name in [name for name in self.staged if name != SUMMARY]:
-                self._replace(name)
-            self._remove(stale)
-            if SUMMARY in self.staged:
-                self._replace(SUMMARY)
-        except BaseException:
-            self._undo()
-            raise
-        finally:
-            self.finish()
-
-    def _replace(self, name: str) -> None:
-        """Move a staged file into place and keep the old one."""
-        target = self.folder / name
-        if os.path.lexists(target):
-            kept = self._spare()
-            _copy(target, kept)
-            self.kept[name] = kept
-        else:
-            self.fresh.append(name)
-        self.staged[name].replace(target)
-
-    def _remove(self, names: list[str]) -> None:
-        """Move stale files away; links are removed, not followed, and folders are left alone."""
-        written = [self.folder / name for name in self.staged]
-        for name in names:
-            target = self.folder / name
-            # if case does not matter, an old name may be that of a new file
-            if not target.is_symlink() and any(
-                path.exists() and path.samefile(target) for path in written
-            ):
-                continue
-            self.kept[name] = self._spare()
-            target.replace(self.kept[name])
-            self.removed.append(name)
-
-    def _undo(self) -> None:
-        """Put everything back."""
-        for name in self.fresh:
-            with suppress(OSError):
-                (self.folder / name).unlink()
-        for name, kept in self.kept.items():
-            with suppress(OSError):
-                kept.replace(self.folder / name)
-
-    def finish(self) -> None:
-        """Remove all temporary files."""
-        for path in self.temporary:
-            with suppress(OSError):
-                path.unlink()
+        with _naming(target):
+            (stage / name).write_bytes(content)
 
 
-def _copy(source: Path, target: Path) -> None:
-    """Link a file to a second name, or copy it if the file system has no hard links."""
+def _move(stage: Path, folder: Path, files: Collection[str], stale: Sequence[str]) -> None:
+    """Move stale and old files away and new ones into place, or undo all if that fails."""
+    old = stage / ".old"
+    moves: list[tuple[Path, Path]] = []
+
+    def move(source: Path, target: Path) -> None:
+        moves.append((source, target))
+        with _naming(folder / source.name):
+            source.replace(target)
+
     try:
-        os.link(source, target, follow_symlinks=False)
-    except (OSError, NotImplementedError):
-        shutil.copy2(source, target, follow_symlinks=False)
+        old.mkdir()
+        # if case does not matter, a stale name may be that of a new file: stale ones go first
+        for name in (*stale, *sorted(files, key=SUMMARY.__eq__)):
+            if os.path.lexists(folder / name):
+                move(folder / name, old / name)
+            if name in files:
+                move(stage / name, folder / name)
+    except BaseException:
+        for source, target in reversed(moves):
+            with suppress(OSError):
+                target.replace(source)
+        raise
 
 
 def write_new(path: str | os.PathLike[str], text: str) -> None:
@@ -256,7 +280,7 @@ def write_new(path: str | os.PathLike[str], text: str) -> None:
     WriteError
         If it exists already, or cannot be written; nothing is left then.
     """
-    demand_name(path)
+    _demand_possible(path)
     try:
         with unbroken(), Path(path).open("x", encoding="utf-8", newline="\n") as stream:
             try:
@@ -288,15 +312,11 @@ def rewrite(file: str | os.PathLike[str], content: bytes) -> None:
         If it cannot be written; the file is unchanged then.
     """
     target = Path(file).resolve()
-    fresh = spare(target.parent)
     try:
-        with lock(target.parent), unbroken():
-            try:
-                fresh.write_bytes(content)
-                shutil.copymode(target, fresh)
-                fresh.replace(target)
-            finally:
-                with suppress(OSError):
-                    fresh.unlink()
+        with _stage(target.parent) as stage, unbroken():
+            fresh = stage / target.name
+            fresh.write_bytes(content)
+            shutil.copymode(target, fresh)
+            fresh.replace(target)
     except OSError as error:
         raise WriteError(f"cannot write to {file}: {error.strerror or error}") from error

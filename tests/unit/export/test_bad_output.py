@@ -8,9 +8,11 @@ import os
 import pty
 import subprocess
 import sys
+import tempfile
 import threading
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -18,7 +20,7 @@ import gearcam
 from gearcam.cli import main
 from gearcam.console import visible
 from gearcam.errors import WriteError
-from gearcam.export import folder as folders
+from gearcam.export import write
 from gearcam.export.write import previous_files, rewrite, write_all, write_new
 from helpers_interrupts import PAIR, state
 
@@ -68,26 +70,6 @@ def test_a_disk_that_is_full_at_any_write(
     assert (tmp_path / "out").exists() == existing
 
 
-def test_a_disk_without_room_for_what_is_kept(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Where there are no second names files are copied, which may fail half way."""
-    write_all(tmp_path, files_of("old"))
-    before, calls = state(tmp_path), list[object]()
-
-    def copy(source: Path, target: Path, **_: object) -> None:
-        calls.append(source)
-        target.write_bytes(source.read_bytes())
-        if len(calls) == 3:
-            full()
-
-    monkeypatch.setattr("os.link", full)
-    monkeypatch.setattr("shutil.copy2", copy)
-    with pytest.raises(WriteError, match="No space left on device"):
-        write_all(tmp_path, files_of("new"))
-    assert state(tmp_path) == before
-
-
 def test_no_folder_is_left_above_one_that_cannot_be(tmp_path: Path) -> None:
     with pytest.raises(WriteError, match="File name too long"):
         write_all(tmp_path / "new" / "deeper" / ("a" * 300), files_of("new"))
@@ -124,12 +106,13 @@ def test_a_new_file_is_whole_or_not_there(tmp_path: Path, monkeypatch: pytest.Mo
 
 
 def test_what_a_killed_writer_left_is_removed_and_nothing_else(tmp_path: Path) -> None:
-    left = tmp_path / f".gearcam-{os.urandom(16).hex()}.tmp"
+    left = Path(tempfile.mkdtemp(".tmp", ".gearcam-", tmp_path))
     mine = {".gearcam-mine.tmp", ".gearcam-", "x.tmp", f"x{left.name}"}
-    for name in (left.name, *mine):
-        (tmp_path / name).write_bytes(b"")
+    for name in mine:
+        (tmp_path / name).mkdir()
+    (left / "half.dxf").write_bytes(b"")
     write_all(tmp_path, files_of("new"))
-    assert state(tmp_path).keys() == {*mine, *NAMES, "summary.json"}
+    assert {path.name for path in tmp_path.iterdir()} == {*mine, *NAMES, "summary.json"}
 
 
 def test_two_builds_write_one_after_the_other(
@@ -142,7 +125,7 @@ def test_two_builds_write_one_after_the_other(
         waits.set()
         os.sched_yield()
 
-    monkeypatch.setattr(folders.time, "sleep", sleep)
+    monkeypatch.setattr(write.time, "sleep", sleep)
 
     def second() -> None:
         def make(before: Mapping[str, object]) -> dict[str, bytes]:
@@ -156,7 +139,7 @@ def test_two_builds_write_one_after_the_other(
     def first(_: object) -> dict[str, bytes]:
         thread.start()
         assert waits.wait(20.0), "the second does not wait"
-        assert list(tmp_path.iterdir()) == []
+        assert state(tmp_path) == {}
         return files_of("first")()
 
     write_all(tmp_path, first)
@@ -168,13 +151,15 @@ def test_two_builds_write_one_after_the_other(
 def test_a_writer_that_does_not_end_is_not_waited_for_for_ever(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(folders, "_PATIENCE", 0.1)
-    with (
-        folders.held(tmp_path),
-        pytest.raises(WriteError, match="another gearcam has been writing to it for"),
-    ):
-        write_all(tmp_path, files_of("new"))
-    write_all(tmp_path, files_of("new"))
+    monkeypatch.setattr(write, "_PATIENCE", 0.1)
+
+    def second_writes(_: object) -> dict[str, bytes]:
+        with pytest.raises(WriteError, match="another gearcam has been writing to it for"):
+            write_all(tmp_path, files_of("new"))
+        return files_of("first")()
+
+    write_all(tmp_path, second_writes)
+    assert (tmp_path / NAMES[0]).read_bytes() == b"first"
 
 
 @pytest.mark.parametrize(
@@ -185,14 +170,17 @@ def test_a_disk_that_knows_no_locks(
 ) -> None:
     """Nobody knows whose the temporary files are, then."""
 
-    def none(*_: object) -> None:
+    real = os.open
+
+    def none(place: object, *rest: Any, **more: Any) -> int:
+        if call == "os.open" and place != tmp_path:
+            return real(place, *rest, **more)  # type: ignore[call-overload]
         raise error
 
     monkeypatch.setattr(call, none)
-    left = tmp_path / f".gearcam-{os.urandom(16).hex()}.tmp"
-    left.write_bytes(b"")
+    left = Path(tempfile.mkdtemp(".tmp", ".gearcam-", tmp_path))
     write_all(tmp_path, files_of("new"))
-    assert state(tmp_path).keys() == {left.name, *NAMES, "summary.json"}
+    assert {path.name for path in tmp_path.iterdir()} == {left.name, *NAMES, "summary.json"}
 
 
 @pytest.fixture

@@ -113,7 +113,7 @@ def test_a_link_in_the_way_is_replaced_but_not_followed(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("error", [OSError(28, "No space left on device"), KeyboardInterrupt()])
-@pytest.mark.parametrize("after", range(6))
+@pytest.mark.parametrize("after", range(9))
 @pytest.mark.parametrize("existing", [True, False])
 def test_a_failure_at_any_move_leaves_everything_as_it_was(
     tmp_path: Path,
@@ -122,7 +122,7 @@ def test_a_failure_at_any_move_leaves_everything_as_it_was(
     after: int,
     existing: bool,
 ) -> None:
-    """Five moves: three files, one stale file put aside, the summary."""
+    """Four files moved into place, and before that three old ones and a stale one put aside."""
     folder = tmp_path / "out"
     before: dict[str, bytes] = {}
     if existing:
@@ -138,7 +138,7 @@ def test_a_failure_at_any_move_leaves_everything_as_it_was(
 
     monkeypatch.setattr(os, "replace", failing)
     new = {"one.dxf": b"one", "two.dxf": b"two", "new.dxf": b"new"}
-    moves = 5 if existing else 4
+    moves = 8 if existing else 4
     if after >= moves:
         build(folder, new)
         assert state(folder).keys() == {*new, "summary.json"}
@@ -162,7 +162,7 @@ def test_a_link_in_the_way_is_put_back_as_a_link(
 
     def failing(source: Path, target: Path) -> None:
         real(source, target)
-        if Path(target).name == "two.dxf":
+        if target == folder / "two.dxf":
             raise KeyboardInterrupt
 
     monkeypatch.setattr(os, "replace", failing)
@@ -177,12 +177,28 @@ def test_the_summary_is_replaced_last(tmp_path: Path, monkeypatch: pytest.Monkey
     real, moved = os.replace, []
 
     def watching(source: Path, target: Path) -> None:
-        moved.append("stale.dxf" if Path(source).name == "stale.dxf" else Path(target).name)
+        moved.append(Path(source).name)
         real(source, target)
 
     monkeypatch.setattr(os, "replace", watching)
     build(tmp_path, {"one.dxf": b"1", "two.dxf": b"2"})
-    assert moved == ["one.dxf", "two.dxf", "stale.dxf", "summary.json"]
+    assert moved == ["stale.dxf", "one.dxf", "one.dxf", "two.dxf", *["summary.json"] * 2]
+
+
+def test_a_new_name_may_differ_from_a_stale_one_in_case_only(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where case does not matter, both names are those of the same file, and the new one stays."""
+    build(tmp_path, {"One.dxf": b"1"})
+    real = os.path.lexists
+
+    def lexists(place: Path) -> bool:
+        lower = {path.name.lower() for path in Path(place).parent.iterdir()}
+        return real(place) or Path(place).name.lower() in lower
+
+    monkeypatch.setattr(os.path, "lexists", lexists)
+    assert build(tmp_path, {"one.dxf": b"new"}) == ("One.dxf",)
+    assert state(tmp_path).keys() == {"one.dxf", "summary.json"}
 
 
 def test_a_disk_that_refuses_leaves_everything_as_it_was(tmp_path: Path) -> None:
@@ -216,13 +232,13 @@ def test_a_folder_in_place_of_a_file(tmp_path: Path) -> None:
 def test_a_folder_that_may_not_be_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     if os.geteuid() == 0:  # the superuser may write everywhere: the disk says no by itself
 
-        def deny(self: Path, *_: object, **__: object) -> None:
-            raise PermissionError(errno.EACCES, "Permission denied", str(self))
+        def deny(path: object, *_: object, **__: object) -> None:
+            raise PermissionError(errno.EACCES, "Permission denied", str(path))
 
-        monkeypatch.setattr(Path, "open", deny)
+        monkeypatch.setattr(os, "mkdir", deny)
     tmp_path.chmod(0o500)
     try:
-        with pytest.raises(WriteError, match="Permission denied"):
+        with pytest.raises(WriteError, match=f"cannot write to {tmp_path}: Permission denied"):
             build(tmp_path, {"one.dxf": b"1"})
     finally:
         tmp_path.chmod(0o700)
