@@ -89,10 +89,10 @@ def write_all(
     """
     folder = Path(directory) / name
     _demand_possible(folder)
+    if name and folder.is_symlink():
+        words = "it is a link: remove it, or choose another folder"
+        raise WriteError(f"cannot write to {folder}: {words}")
     try:
-        if name and folder.is_symlink():
-            words = "it is a link: remove it, or choose another folder"
-            raise OSError(errno.ELOOP, words, str(folder))
         with _stage(folder) as stage:
             before = previous_files(folder)
             files = make(before)
