@@ -335,19 +335,20 @@ def commands() -> Iterator[str]:
     for parser in found:
         yield f"## {code(parser.prog)}"
         yield parser.description or ""
-        rows = [option(action) for action in parser._actions if action.dest != "help"]
+        shown = parser._get_formatter()
+        rows = [option(action, shown) for action in parser._actions if action.dest != "help"]
         if rows:
             yield table(("argument", "meaning"), rows)
 
 
-def option(action: argparse.Action) -> tuple[str, str]:
+def option(action: argparse.Action, shown: argparse.HelpFormatter) -> tuple[str, str]:
     """Return an argument of a command as it is typed, and its meaning."""
     value = "" if action.nargs == 0 else str(action.metavar)
     if not action.option_strings:
         form = {"+": f"{value} ...", "?": f"[{value}]"}.get(str(action.nargs), value)
     else:
         form = ", ".join(f"{name} {value}".rstrip() for name in action.option_strings)
-    return code(form), action.help or ""
+    return code(form), shown._get_help_string(action) or ""
 
 
 def exit_codes() -> Iterator[str]:

@@ -13,12 +13,11 @@ import sys
 import textwrap
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 from gearcam import build, remedies
-from gearcam.commands import demand_new_name
+from gearcam.commands import Command, ResultCommand, demand_new_name
 from gearcam.console import (
     DEBUG,
     all_lines,
@@ -41,7 +40,6 @@ from gearcam.errors import DesignError, InfeasibleError, MissingExtraError, Prob
 from gearcam.interrupts import interruptible
 
 if TYPE_CHECKING:
-    from gearcam.commands import Command
     from gearcam.result import Progress, Result
     from gearcam.written import Written
 
@@ -58,7 +56,6 @@ EXIT_CODES: Final = {
 """Meanings of the exit codes."""
 
 _ABOUT: Final = "Design cams and pairs of non-circular gears from a description of their motion."
-_FILES: Final = "design files (TOML)"
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -86,7 +83,7 @@ def _run(arguments: Sequence[str] | None) -> int:
     try:
         with streams():
             try:
-                _dispatch(words)
+                return _dispatch(words)
             except SystemExit as stop:
                 return stop.code if isinstance(stop.code, int) else GOOD
     except KeyboardInterrupt:
@@ -96,23 +93,15 @@ def _run(arguments: Sequence[str] | None) -> int:
         return WRONG
     except Exception as error:
         return _fault(error, debug="--debug" in words)
-    return GOOD
 
 
-def _dispatch(words: list[str]) -> None:
-    """Run the command named by the first word with the other words."""
-    own, word = _functions(), words[0] if words else ""
-    if word in own:
-        formats = all_formats() if {"-h", "--help"} & set(words) else FORMATS
-        parser = _parser(word, own[word], formats)
-        own[word](**vars(parser.parse_intermixed_args(words[1:])))
-        return
-    other = next((command for command in _commands_of_kinds() if command.name == word), None)
-    if other is not None:
-        _of_kind(other, words[1:])
-        return
-    docs = {name: function.__doc__ or "" for name, function in own.items()}
-    docs |= {command.name: command.doc for command in _commands_of_kinds()}
+def _dispatch(words: list[str]) -> int:
+    """Run the command named by the first word with the other words; return the exit code."""
+    word = words[0] if words else ""
+    command = next((one for one in _commands() if one.name == word), None)
+    if command is not None:
+        return command.run(vars(_parser(command).parse_intermixed_args(words[1:])))
+    docs = {one.name: one.doc for one in _commands()}
     top = argparse.ArgumentParser(
         prog="gearcam",
         description=_ABOUT,
@@ -126,64 +115,54 @@ def _dispatch(words: list[str]) -> None:
         from gearcam.version import __version__
 
         say(f"gearcam {__version__}")
-    elif given.command is None:
-        top.print_help(sys.stderr)
-        raise SystemExit(WRONG)
-    else:
+        return GOOD
+    if given.command is not None:
         _refuse([unknown_word(word, "is not a command", docs)])
+    top.print_help(sys.stderr)
+    return WRONG
 
 
-def _functions() -> dict[str, Callable[..., None]]:
-    functions = (_build, _check, _compare, _view, _laws, _new, _schema)
-    return {function.__name__.lstrip("_"): function for function in functions}
+def _commands() -> Iterator[Command]:
+    """Yield the commands: general ones, those of kinds of design, then studies of any kind."""
+    yield from _COMMANDS
+    for room in rooms("commands"):
+        yield from map(_of_results, room.COMMANDS)
+    from gearcam.studies.commands import COMMANDS
+
+    yield from map(_of_results, COMMANDS)
 
 
 def parsers() -> Iterator[argparse.ArgumentParser]:
     """Yield the argument parser of every command; its description says what the command does."""
-    for name, function in _functions().items():
-        yield _parser(name, function, all_formats())
-    yield from map(_kind_parser, _commands_of_kinds())
-
-
-def _commands_of_kinds() -> Iterator[Command]:
-    """Yield the commands for one kind of design, then those of studies for any kind."""
-    for room in rooms("commands"):
-        yield from room.COMMANDS
-    from gearcam.studies.commands import COMMANDS
-
-    yield from COMMANDS
-
-
-def _parser(
-    name: str, command: Callable[..., None], formats: Sequence[str]
-) -> argparse.ArgumentParser:
-    """Return the argument parser of a command; its help text is the function's docstring."""
-    parser = _new_parser(name, command.__doc__)
-    if command in (_build, _check):
-        parser.add_argument("files", nargs="+", metavar="FILE", help=_FILES)
-    if command in (_build, _check, _compare):
-        _add_common(parser)
-    if command in (_compare, _view):
-        import_module(f"gearcam.{name}.command").arguments(parser)
-    if command is _build:
-        words = f"write these files instead of output.files: {', '.join(formats)}"
-        parser.add_argument("--only", action="append", metavar="A,B,...", help=words)
-    if command is _new:
-        words = f"kind of design: {' or '.join(KINDS)}"
-        parser.add_argument("kind", metavar="KIND", help=words)
-        parser.add_argument("file", nargs="?", metavar="FILE", help="default: stdout")
-        words = "preset backlash, clearance and kerf for printing, laser or wire"
-        parser.add_argument("--for", dest="process", metavar="PROCESS", help=words)
-    return parser
+    return map(_parser, _commands())
 
 
 class _Help(argparse.HelpFormatter):
+    """Help texts with words wrapped at spaces, and formats where they have ``{formats}``."""
+
     def _split_lines(self, text: str, width: int) -> list[str]:
         return textwrap.wrap(text, width, break_on_hyphens=False)
 
+    def _get_help_string(self, action: argparse.Action) -> str:
+        text = action.help or ""
+        # the formats load all kinds of design
+        return text.replace("{formats}", ", ".join(all_formats())) if "{formats}" in text else text
 
-def _new_parser(name: str, doc: str | None) -> argparse.ArgumentParser:
-    return argparse.ArgumentParser(prog=f"gearcam {name}", description=doc, formatter_class=_Help)
+
+def _parser(command: Command) -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog=f"gearcam {command.name}", description=command.doc, formatter_class=_Help
+    )
+    command.arguments(parser)
+    return parser
+
+
+def _add_files(parser: argparse.ArgumentParser, *, many: bool = True) -> None:
+    if many:
+        parser.add_argument("files", nargs="+", metavar="FILE", help="design files (TOML)")
+    else:
+        parser.add_argument("file", metavar="FILE", help="design file (TOML)")
+    _add_common(parser)
 
 
 def _add_common(parser: argparse.ArgumentParser) -> None:
@@ -200,101 +179,45 @@ def _help(docs: Mapping[str, str]) -> str:
     return "\n".join(["commands:", *commands, "", more, "", "exit codes:", *codes])
 
 
-def _build(files: list[str], output: str, only: list[str] | None, debug: bool) -> None:
-    """Build designs and write their files into DIR/NAME/."""
-    kinds = _kinds(only)
-    _each_result(files, "built", lambda one, bar: one.write(output, kinds, bar), debug=debug)
+def _of_results(command: ResultCommand) -> Command:
+    """Return the command that runs a `command` on the result of each design file."""
+
+    def arguments(parser: argparse.ArgumentParser) -> None:
+        _add_files(parser, many=command.many)
+        command.arguments(parser)
+
+    def run(given: Mapping[str, Any]) -> int:
+        options = dict(given)
+        files = options.pop("files") if command.many else [options.pop("file")]
+        output, debug = options.pop("output"), options.pop("debug")
+        return _each_result(
+            files,
+            command.done,
+            lambda result, progress: command.run(result, output, options, progress),
+            debug=debug,
+            adapt=lambda design: command.adapt(design, options),
+        )
+
+    return Command(name=command.name, doc=command.doc, arguments=arguments, run=run)
 
 
-def _check(files: list[str], output: str, debug: bool) -> None:
-    """Check designs; write DIR/NAME/summary.json only."""
-    _each_result(files, "checked", lambda result, _: result.check(output), debug=debug)
+def _build_arguments(parser: argparse.ArgumentParser) -> None:
+    _add_files(parser)
+    words = "write these files instead of output.files: {formats}"
+    parser.add_argument("--only", action="append", metavar="A,B,...", help=words)
 
 
-def _view(file: str, port: int, no_browser: bool) -> None:
-    """Show a design in the browser; update the page when the file is saved."""
-    from gearcam.view.command import view
-
-    _each([file], "shown", lambda one: view(one, port, browser=not no_browser) or GOOD)
-
-
-def _compare(files: list[str], debug: bool, **options: Any) -> None:
-    """Compare designs or variants of one design; write DIR/compare.html."""
-    from gearcam.compare.command import compare
-
-    def work(_: str) -> int:
-        return {"refused": IMPOSSIBLE, "error": FINDINGS}.get(compare(files, **options), GOOD)
-
-    _each([" ".join(files)], "compared", work, debug=debug)
+def _build(options: Mapping[str, Any]) -> int:
+    output, formats = options["output"], _formats(options["only"])
+    return _each_result(
+        options["files"],
+        "built",
+        lambda result, progress: result.write(output, formats, progress),
+        debug=options["debug"],
+    )
 
 
-def _kind_parser(command: Command) -> argparse.ArgumentParser:
-    parser = _new_parser(command.name, command.doc)
-    if command.many:
-        parser.add_argument("files", nargs="+", metavar="FILE", help=_FILES)
-    else:
-        parser.add_argument("file", metavar="FILE", help="design file (TOML)")
-    _add_common(parser)
-    command.arguments(parser)
-    return parser
-
-
-def _of_kind(command: Command, words: list[str]) -> None:
-    """Run a `command` with the words that follow its name."""
-    options = vars(_kind_parser(command).parse_intermixed_args(words))
-    files = options.pop("files") if command.many else [options.pop("file")]
-    output, debug = options.pop("output"), options.pop("debug")
-
-    def action(result: Result, progress: Progress | None) -> Written:
-        return command.run(result, output, options, progress)
-
-    def adapt(design: Design) -> Design:
-        return command.adapt(design, options)
-
-    _each_result(files, command.done, action, debug=debug, adapt=adapt)
-
-
-def _laws() -> None:
-    """List transmission-ratio laws and motion laws with keys, continuity and source."""
-    from gearcam.designs.listing import law_groups, sources_of
-
-    groups = list(law_groups())
-    say("\n".join(catalogue_lines(groups, sources_of(groups))))
-
-
-def _new(kind: str, file: str | None, process: str | None) -> None:
-    """Create a commented design file to start from; never overwrites a file."""
-    from gearcam.designs.template import template
-    from gearcam.export.write import write_new
-
-    if kind not in KINDS:
-        _refuse([unknown_word(kind, "is not a kind of design", KINDS, "KIND")])
-    if process is not None and process not in KINDS[kind].processes:
-        _refuse([unknown_word(process, "is not supported", KINDS[kind].processes, "--for")])
-    text = template(kind, Path(file or "").stem, process or "")
-    if file is None:
-        say(text.rstrip("\n"))
-        return
-    import shlex
-
-    try:
-        write_new(file, text)
-    except WriteError as error:
-        complain(str(error))
-        raise SystemExit(WRONG) from None
-    say(f"{file}: written; build it with: gearcam build {shlex.quote(file)}")
-
-
-def _schema() -> None:
-    """Print the JSON Schema of design files, for use in editors."""
-    import json
-
-    from gearcam.designs.schema import schema as made
-
-    say(json.dumps(made(), indent=2))
-
-
-def _kinds(only: list[str] | None) -> tuple[str, ...] | None:
+def _formats(only: list[str] | None) -> tuple[str, ...] | None:
     """Return the kinds of files listed by ``--only``; None without the option."""
     if only is None:
         return None
@@ -308,7 +231,141 @@ def _kinds(only: list[str] | None) -> tuple[str, ...] | None:
     return tuple(dict.fromkeys(kinds))
 
 
-def _refuse(problems: Sequence[Problem]) -> None:
+def _check(options: Mapping[str, Any]) -> int:
+    return _each_result(
+        options["files"],
+        "checked",
+        lambda result, _: result.check(options["output"]),
+        debug=options["debug"],
+    )
+
+
+def _compare_arguments(parser: argparse.ArgumentParser) -> None:
+    from gearcam.compare.command import arguments
+
+    _add_common(parser)
+    arguments(parser)
+
+
+def _compare(options: Mapping[str, Any]) -> int:
+    from gearcam.compare.command import compare
+
+    given = dict(options)
+    files, debug = given.pop("files"), given.pop("debug")
+
+    def work(_: str) -> int:
+        return {"refused": IMPOSSIBLE, "error": FINDINGS}.get(compare(files, **given), GOOD)
+
+    return _each([" ".join(files)], "compared", work, debug=debug)
+
+
+def _view_arguments(parser: argparse.ArgumentParser) -> None:
+    from gearcam.view.command import arguments
+
+    arguments(parser)
+
+
+def _view(options: Mapping[str, Any]) -> int:
+    from gearcam.view.command import view
+
+    def work(file: str) -> int:
+        view(file, options["port"], browser=not options["no_browser"])
+        return GOOD
+
+    return _each([options["file"]], "shown", work)
+
+
+def _laws(_: Mapping[str, Any]) -> int:
+    from gearcam.designs.listing import law_groups, sources_of
+
+    groups = list(law_groups())
+    say("\n".join(catalogue_lines(groups, sources_of(groups))))
+    return GOOD
+
+
+def _new_arguments(parser: argparse.ArgumentParser) -> None:
+    words = f"kind of design: {' or '.join(KINDS)}"
+    parser.add_argument("kind", metavar="KIND", help=words)
+    parser.add_argument("file", nargs="?", metavar="FILE", help="default: stdout")
+    words = "preset backlash, clearance and kerf for printing, laser or wire"
+    parser.add_argument("--for", dest="process", metavar="PROCESS", help=words)
+
+
+def _new(options: Mapping[str, Any]) -> int:
+    from gearcam.designs.template import template
+    from gearcam.export.write import write_new
+
+    kind, file, process = options["kind"], options["file"], options["process"]
+    if kind not in KINDS:
+        _refuse([unknown_word(kind, "is not a kind of design", KINDS, "KIND")])
+    if process is not None and process not in KINDS[kind].processes:
+        known = KINDS[kind].processes
+        _refuse([unknown_word(process, "is not supported", known, "--for")])
+    text = template(kind, Path(file or "").stem, process or "")
+    if file is None:
+        say(text.rstrip("\n"))
+        return GOOD
+    import shlex
+
+    write_new(file, text)
+    say(f"{file}: written; build it with: gearcam build {shlex.quote(file)}")
+    return GOOD
+
+
+def _schema(_: Mapping[str, Any]) -> int:
+    import json
+
+    from gearcam.designs.schema import schema
+
+    say(json.dumps(schema(), indent=2))
+    return GOOD
+
+
+_COMMANDS: Final = (
+    Command(
+        name="build",
+        doc="Build designs and write their files into DIR/NAME/.",
+        arguments=_build_arguments,
+        run=_build,
+    ),
+    Command(
+        name="check",
+        doc="Check designs; write DIR/NAME/summary.json only.",
+        arguments=_add_files,
+        run=_check,
+    ),
+    Command(
+        name="compare",
+        doc="Compare designs or variants of one design; write DIR/compare.html.",
+        arguments=_compare_arguments,
+        run=_compare,
+    ),
+    Command(
+        name="view",
+        doc="Show a design in the browser; update the page when the file is saved.",
+        arguments=_view_arguments,
+        run=_view,
+    ),
+    Command(
+        name="laws",
+        doc="List transmission-ratio laws and motion laws with keys, continuity and source.",
+        run=_laws,
+    ),
+    Command(
+        name="new",
+        doc="Create a commented design file to start from; never overwrites a file.",
+        arguments=_new_arguments,
+        run=_new,
+    ),
+    Command(
+        name="schema",
+        doc="Print the JSON Schema of design files, for use in editors.",
+        run=_schema,
+    ),
+)
+
+
+def _refuse(problems: Sequence[Problem]) -> NoReturn:
     for problem in problems:
         complain(problem_text(problem))
     raise SystemExit(WRONG)
@@ -320,16 +377,16 @@ Adapt = Callable[[Design], Design]
 
 def _each_result(
     files: Sequence[str], done: str, action: Action, *, debug: bool, adapt: Adapt | None = None
-) -> None:
+) -> int:
     """Run `action` on the result of every file, after `adapt` has changed its design."""
     names: dict[str, str] = {}
-    _each(files, done, lambda file: _one(file, names, done, action, adapt), debug=debug)
+    return _each(files, done, lambda file: _one(file, names, done, action, adapt), debug=debug)
 
 
 def _each(
     files: Sequence[str], done: str, work: Callable[[str], int], *, debug: bool = False
-) -> None:
-    """Run `work` on every file and exit with the largest code."""
+) -> int:
+    """Run `work` on every file and return the largest code."""
     codes = []
     for file in files:
         try:
@@ -337,7 +394,7 @@ def _each(
             if codes[-1] == INTERRUPTED:
                 break
         except KeyboardInterrupt:
-            raise SystemExit(_interrupted()) from None
+            return _interrupted()
         except DesignError as error:
             complain(refusal_text(error, file, done))
             codes.append(WRONG)
@@ -349,7 +406,7 @@ def _each(
     if len(files) > 1:
         count = sum(code in (GOOD, FINDINGS) for code in codes)
         say(f"{len(files)} files: {count} {done}, {len(files) - count} refused")
-    raise SystemExit(max(codes, default=GOOD))
+    return max(codes, default=GOOD)
 
 
 def _one(file: str, names: dict[str, str], done: str, action: Action, adapt: Adapt | None) -> int:
@@ -371,10 +428,8 @@ def _one(file: str, names: dict[str, str], done: str, action: Action, adapt: Ada
         return IMPOSSIBLE
     say(f"{file}: {done} in {time.perf_counter() - start:.2f} s")
     say(textwrap.indent("\n".join(all_lines(written)), "  "))
-    if not written.complete:
-        meshing = written.summary["meshing"]
-        done, steps = meshing["steps_done"], meshing["steps"]
-        complain(f"{file}: interrupted: {done} of {steps} steps were written")
+    if written.interrupted:
+        complain(f"{file}: interrupted: {written.interrupted} were written")
         return INTERRUPTED
     errors = any(finding.severity == "error" for finding in written.findings)
     for line in remedy_lines(remedies(result)) if errors else ():

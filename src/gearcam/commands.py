@@ -1,4 +1,4 @@
-"""Commands for one kind of design, and what all commands share."""
+"""Commands of the command line, as entries: those of kinds of design and studies too."""
 
 from __future__ import annotations
 
@@ -15,18 +15,38 @@ from gearcam.written import Written
 
 @dataclass(frozen=True, kw_only=True)
 class Command:
-    """A command that works on design files.
+    """A command.
 
     Parameters
     ----------
     name : str
         Name on the command line.
-    done : str
-        Past participle for messages, such as ``meshed``.
     doc : str
         One line of help: what it does and which files it writes.
     arguments : callable
-        ``arguments(parser)`` adds its options to a parser.
+        ``arguments(parser)`` adds its files and options to a parser.
+    run : callable
+        ``run(options)`` does the work, prints the outcome and returns the exit code.
+    """
+
+    name: str
+    doc: str
+    arguments: Callable[[argparse.ArgumentParser], None] = lambda _: None
+    run: Callable[[Mapping[str, Any]], int]
+
+
+@dataclass(frozen=True, kw_only=True)
+class ResultCommand:
+    """A command that works on the result of each design file; the command line prints the outcome.
+
+    Parameters
+    ----------
+    name, doc : str
+        As of a `Command`.
+    done : str
+        Past participle for messages, such as ``meshed``.
+    arguments : callable
+        ``arguments(parser)`` adds its own options to a parser.
     adapt : callable
         ``adapt(design, options)`` returns the design to work on; it raises `DesignError` for a
         kind of design that the command does not support.
@@ -37,8 +57,8 @@ class Command:
     """
 
     name: str
-    done: str
     doc: str
+    done: str
     arguments: Callable[[argparse.ArgumentParser], None]
     adapt: Callable[[Design, Mapping[str, Any]], Design]
     run: Callable[[Any, str, Mapping[str, Any], Progress | None], Written]

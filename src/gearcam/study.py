@@ -34,8 +34,8 @@ class Study(Displayed):
         Results of the study by groups of facts.
     findings : tuple of Finding
         Findings of the study, and those of the design that apply to it; errors first.
-    complete : bool
-        False if the study was interrupted.
+    interrupted : str
+        How much was done when it was interrupted: ``125 of 1000 steps``; empty if it is complete.
 
     Examples
     --------
@@ -50,7 +50,12 @@ class Study(Displayed):
     table: Mapping[str, ArrayLike]
     measured: Mapping[str, Any]
     findings: tuple[Finding, ...]
-    complete: bool = True
+    interrupted: str = ""
+
+    @property
+    def complete(self) -> bool:
+        """Whether it was not interrupted."""
+        return not self.interrupted
 
     def __repr__(self) -> str:
         rows = len(next(iter(self.columns.values()), ()))
@@ -99,4 +104,4 @@ class Study(Displayed):
 
         contents = {self.file: table_bytes(self.table)}
         written = self.result.keep(contents, directory, self.measured, self.findings)
-        return replace(written, complete=self.complete)
+        return replace(written, interrupted=self.interrupted)

@@ -39,8 +39,8 @@ class Written(Brief):
         The facts in the summary.
     findings : tuple of Finding
         The findings in the summary.
-    complete : bool
-        False if a study was interrupted.
+    interrupted : str
+        How much of a study was done when it was interrupted; empty if it is complete.
     """
 
     directory: Path
@@ -49,7 +49,7 @@ class Written(Brief):
     summary: dict[str, Any]
     facts: Facts
     findings: tuple[Finding, ...]
-    complete: bool = True
+    interrupted: str = ""
 
 
 def demand_formats(design: Design, kinds: Sequence[str] | None) -> tuple[str, ...]:

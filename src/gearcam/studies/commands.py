@@ -6,7 +6,7 @@ import argparse
 from collections.abc import Mapping
 from typing import Any, Final
 
-from gearcam.commands import Command
+from gearcam.commands import ResultCommand
 from gearcam.designs.design import Design
 from gearcam.numeric.arguments import whole
 from gearcam.result import Progress
@@ -42,7 +42,7 @@ def _run(
 
 
 COMMANDS: Final = (
-    Command(
+    ResultCommand(
         name="accuracy",
         done="measured",
         doc="Measure accuracy against run time; write DIR/NAME/accuracy.csv and accuracy.svg.",

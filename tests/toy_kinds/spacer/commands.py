@@ -2,7 +2,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from gearcam.commands import Command
+from gearcam.commands import ResultCommand
 from gearcam.designs.design import demand_kind
 
 
@@ -19,7 +19,7 @@ def _arguments(parser: Any) -> None:
 
 
 COMMANDS = (
-    Command(
+    ResultCommand(
         name="weigh", done="weighed", doc="Weigh a spacer.", arguments=_arguments, adapt=_adapt,
         run=_run,
     ),

@@ -44,7 +44,7 @@ class Written:
     facts: Facts = field(default_factory=lambda: Facts(TREE, list(TREE)))
     summary: dict[str, Any] = field(default_factory=dict)
     findings: tuple[Finding, ...] = ()
-    complete: bool = True
+    interrupted: str = ""
 
 
 CURED = Remedies(found=(Remedy(changes={"law.ratios[1]": 1.06}, design=None),))  # type: ignore[arg-type]

@@ -6,7 +6,7 @@ import argparse
 from collections.abc import Mapping
 from typing import Any, Final
 
-from gearcam.commands import Command
+from gearcam.commands import ResultCommand
 from gearcam.designs.design import Design, demand_kind
 from gearcam.result import Progress
 from gearcam.written import Written
@@ -33,7 +33,7 @@ def _run(
 
 
 COMMANDS: Final = (
-    Command(
+    ResultCommand(
         name="follow",
         done="followed",
         doc="Compute the follower motion on a given profile; write DIR/NAME/followed.csv.",

@@ -256,13 +256,14 @@ class GearPairResult(PairStages):
             extra = run_checks(MESHING_KIND, meshing, design.limits)
         # the study checks the drive as mounted
         told = [finding for finding in result.findings if finding.code not in _AS_MOUNTED]
+        done = f"{len(meshing.phi1)} of {meshing.asked} steps"
         return Study(
             result=result,
             file=MESHING,
             table=meshing.columns,
             measured={"meshing": numbers(meshing)},
             findings=in_order((*told, *extra)),
-            complete=meshing.complete,
+            interrupted="" if meshing.complete else done,
         )
 
     def _mounted(self, settings: Mapping[str, object]) -> GearPairResult:

@@ -7,7 +7,7 @@ import dataclasses
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Final
 
-from gearcam.commands import Command
+from gearcam.commands import ResultCommand
 from gearcam.designs.design import Design, demand_kind
 from gearcam.designs.kind import KINDS
 from gearcam.result import Progress
@@ -85,7 +85,7 @@ def _run(
 
 
 COMMANDS: Final = (
-    Command(
+    ResultCommand(
         name="mesh",
         done="meshed",
         doc="Study the meshing of gear pairs step by step; write DIR/NAME/meshing.csv.",
