@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
@@ -152,13 +153,25 @@ def test_counts_arcs_and_contacts_agree(made: GearPairResult, side: int) -> None
     assert weighted == pytest.approx(pairs.contact_ratios.sum() * pairs.pitch, rel=1e-9)
 
 
-JUMP = "profiles/extreme/touch_across_a_jump.toml"
+JUMP: dict[str, Any] = {
+    "kind": "gear-pair",
+    "name": "jump",
+    "law": {
+        "type": "three-phase-polynomial",
+        "knots_deg": [0, 60.2705, 124.58, 180],
+        "lowest": 0.443897,
+    },
+    "pair": {"module_mm": 1.09591, "teeth": [46, 69], "backlash_mm": 0.0823727},
+    "blank": {"clearance_mm": 0.0329081},
+    "output": {"chord_tolerance_mm": 0.00815452},
+}
+"""Flanks that touch across a knot where the curvature jumps by half."""
 
 
 @pytest.mark.parametrize("side", [DRIVE, COAST])
 def test_flanks_touch_across_a_jump_of_the_curvature(side: int) -> None:
     """Newton's steps went to and fro there; and of two places the one that comes first is told."""
-    made = gearcam.build(gearcam.load(JUMP))
+    made = gearcam.build(gearcam.design(JUMP))
     phi1 = np.radians(np.linspace(59.0, 62.0, 601))
     pairs = flank_pairs(made.gears, side)
     found = contacts(pairs, phi1)
@@ -172,7 +185,7 @@ def test_flanks_touch_across_a_jump_of_the_curvature(side: int) -> None:
 
 
 def test_patches_beside_a_jump_of_the_curvature_are_the_overlap_of_the_outlines() -> None:
-    design = gearcam.load(JUMP).with_({"output.chord_tolerance_mm": 1e-5})
+    design = gearcam.design(JUMP).with_({"output.chord_tolerance_mm": 1e-5})
     made = gearcam.build(design)
     pairs = flank_pairs(made.gears, COAST)
     phi1, lead = np.radians([60.25, 60.3, 60.4, 60.5]), 0.0027

@@ -234,18 +234,29 @@ def test_a_rim_that_allows_no_bore_of_use_asks_for_more_teeth(
 
 
 def test_a_change_that_leaves_errors_is_not_listed_as_tried_in_vain(tmp_path: Path) -> None:
-    """Finer chords draw a spike of 7 nm, on which no follower can ride."""
-    design = gearcam.load("profiles/extreme/cam_narrow_spike.toml")
-    with pytest.raises(InfeasibleError, match="do not cross") as refused:
+    """A smaller cutter fits the groove, whose walls lose the corners of a jump of the velocity."""
+    motion = [
+        {"type": "rise", "law": "constant-velocity", "angle_deg": 8, "lift_mm": 20},
+        {"type": "return", "law": "cycloidal", "angle_deg": "rest"},
+    ]
+    groove = {"form": "groove", "prime_radius_mm": 30, "outer_diameter_mm": 150}
+    groove |= {"thickness_mm": 20, "groove_depth_mm": 10}
+    document = {"kind": "cam", "name": "groove", "motion": motion, "cam": groove}
+    document |= {"follower": {"type": "roller", "roller_radius_mm": 6}}
+    document |= {"output": {"files": ["tool-path"], "tool_radius_mm": 7}}
+    design = gearcam.design(document)
+    with pytest.raises(InfeasibleError, match="wider than the groove") as refused:
         gearcam.build(design).write(tmp_path)
     found = gearcam.remedies(gearcam.build(design), refused.value)
     ((text, codes),) = found.nearly.items()
     key, value = text.split(" = ")
     made = gearcam.build(design.with_({key: float(value)})).findings
-    assert {one.code for one in made if one.severity == "error"} == {*codes} == {"jamming"}
+    assert (
+        {one.code for one in made if one.severity == "error"} == {*codes} == {"jamming", "undercut"}
+    )
     lines = [*remedy_lines(found)]
-    assert lines[0] == f"with {text} it can be made, but has errors: jamming"
-    assert "chord_tolerance" not in lines[1]
+    assert lines[0] == f"with {text} it can be made, but has errors: jamming, undercut"
+    assert "tool_radius" not in lines[1]
 
 
 def test_a_bore_that_a_cam_cannot_take_leaves_its_wall(tmp_path: Path) -> None:

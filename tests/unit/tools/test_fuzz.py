@@ -69,7 +69,10 @@ def tried(folder: Path, text: str = SMALL, **asked: bool) -> Outcome:
 def test_ends_are_told_from_each_other(tmp_path: Path) -> None:
     texts = {
         BUILT: SMALL,
-        REFUSED: (PROFILES / "extreme" / "drawn_beyond_its_travel.toml").read_text(),
+        REFUSED: SMALL.replace('"svg"]', '"svg"]\nphi1_deg = -250').replace(
+            'type = "ellipse"\neccentricity = 0.1',
+            'type = "log-spiral"\nratios = [2.2, 0.8]\ndriven_travel_deg = 210',
+        ),
         WRONG: SMALL.replace("0.1", "-1"),
     }
     for end, text in texts.items():

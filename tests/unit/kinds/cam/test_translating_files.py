@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import xml.etree.ElementTree as ET
 from dataclasses import replace
@@ -17,7 +18,6 @@ from gearcam.drawings import cut_drawing, reach
 from gearcam.errors import DesignError, InfeasibleError
 from gearcam.sheets import wheel_sheet
 from gearcam.sheets.sheet import LinearDimension
-from helpers_extreme import EXTREME
 from helpers_sliding import DEEP, FILE, ONE, built, cam_of
 
 
@@ -113,22 +113,31 @@ def test_three_points_tell_the_curvature_of_an_open_pitch_curve() -> None:
     assert np.all(np.diff(table["spacing_mm"]) < 0.0)
 
 
-def test_points_on_straight_lines_have_no_order() -> None:
-    """While few of them all fall on the run-out, three points tell exactly that nothing bends."""
-    result = gearcam.build(gearcam.load(EXTREME / "run_of_300_m.toml"))
-    measured: dict[str, Any] = {}
-    rows = result.files("curvature", measured)["curvature.csv"].decode().splitlines()
-    np.testing.assert_array_equal(np.loadtxt(rows[1:], delimiter=",")[:3, 2:], 0.0)
-    assert set(measured["curvature"]) == {"points"}
+def straight(follower: dict[str, Any], cam: dict[str, Any], **motion: float) -> Any:
+    """A plate whose profile is straight from corner to corner."""
+    rise = {"type": "rise", "law": "constant-velocity"} | motion
+    document = {"kind": "cam", "name": "straight", "motion": [rise], "follower": follower}
+    return gearcam.build(
+        gearcam.design(
+            document | {"cam": {"form": "translating"} | cam, "blank": {"height_mm": 90}}
+        )
+    )
 
 
 def test_a_plate_of_a_few_points_is_followed() -> None:
-    """A ramp that is straight from corner to corner."""
-    result = gearcam.build(gearcam.load(EXTREME / "straight_ramp.toml"))
+    arm = {"type": "point", "motion": "oscillating", "arm_mm": 50, "pivot_distance_mm": 50}
+    result = straight(arm, {}, lift_deg=0.09, way_mm=60)
     outline = result.cam.walls[0].outline
     assert len(outline) < 8
     study = result.follow(outline)
     np.testing.assert_allclose(study.columns["difference"], 0.0, atol=1.1e-3)
+
+
+def test_a_straight_pitch_curve_has_no_radius() -> None:
+    roller = {"type": "roller", "roller_radius_mm": 7.5}
+    result = straight(roller, {"thickness_mm": 5, "walls": "both"}, lift_mm=3, way_mm=300)
+    json.dumps(result.facts.document, allow_nan=False)
+    assert [part.outline.shape[1] for part in result.parts] == [2]
 
 
 def test_the_way_of_a_tool() -> None:

@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable
+from functools import partial
 from typing import Any, NamedTuple
 
 import pytest
 import shapely
 
+import gearcam
 from gearcam.errors import InfeasibleError
 from gearcam.gears.spec import Rack
 from gearcam.kinds.gear_pair.build import GearPairResult
@@ -72,6 +74,33 @@ def door(travel: float) -> object:
     return law_of(law)
 
 
+def arms(apart: float) -> object:
+    """Conjugate cams whose second roller would reach the axis beyond a limit."""
+    return built(
+        motion=[
+            {"type": "rise", "law": "cycloidal", "angle_deg": 90, "lift_deg": 10},
+            {"type": "return", "law": "cycloidal", "angle_deg": "rest"},
+        ],
+        follower={"type": "roller", "roller_radius_mm": 8, "motion": "oscillating"}
+        | {"arm_mm": 90, "pivot_distance_mm": 100, "arms_angle_deg": apart},
+        cam={"form": "conjugate", "prime_radius_mm": 40},
+    ).cam
+
+
+def drawn(angle: float) -> object:
+    """An open pair, drawn at an angle of the driver."""
+    return built(
+        law={"type": "log-spiral", "ratios": [2.2, 0.8], "driven_travel_deg": 210},
+        pair={"module_mm": 2, "teeth": [20, 20]},
+        output={"phi1_deg": angle},
+    ).files("svg")
+
+
+def built(**tables: Any) -> Any:
+    kind = "gear-pair" if "law" in tables else "cam"
+    return gearcam.build(gearcam.design({"kind": kind, "name": "limit"} | tables))
+
+
 LIMITS = {
     "harmonics": Limit(
         1.0,
@@ -98,6 +127,11 @@ LIMITS = {
             job(Constant(), (40, 40), rack=Rack(tip_radius=radius, dedendum=1.25))
         ),
     ),
+    "profile shift": Limit(
+        0.95, "", lambda x: build(job(Constant(), (40, 40), rack=Rack(addendum=1.0), x=x))
+    ),
+    "angle of the arms": Limit(210.0, "", arms),
+    "angle of the drawing": Limit(250.0, "", drawn),
     "bore": Limit(40.0, "", lambda bore: build(job(Constant(), (40, 40), bores=(bore, 8.0)))),
     "tolerance": Limit(
         0.1, "", lambda size: build(job(Constant(), (40, 40), distance=40.0, tolerance=size))
@@ -116,6 +150,43 @@ def test_a_limit_that_is_named_is_the_limit(case: str) -> None:
     limit.attempt(nearest * (1 - 2e-6))
     with pytest.raises(InfeasibleError):
         limit.attempt(nearest * 1.01)
+
+
+def test_a_travel_of_a_rack_is_refused_with_the_least() -> None:
+    def travel(driven: float) -> object:
+        law = {"type": "formula", "ratio": "1 + 0.001*phi1", "driver_travel_deg": 115}
+        pair = {"module_mm": 8, "teeth": [21, 21]}
+        return built(law=law | {"driven_travel_deg": driven}, pair=pair).law
+
+    with pytest.raises(InfeasibleError, match="it would be a rack") as caught:
+        travel(1e-6)
+    assert caught.value.limit == pytest.approx(115 / 10000, rel=1e-4)
+    travel(115 / 10000 * 1.001)
+
+
+def test_a_groove_that_reaches_the_axis_is_refused() -> None:
+    """Half its width is the roller's radius and half of the clearance; the inner wall is there."""
+    motion = [
+        {"type": "rise", "law": "cycloidal", "angle_deg": 90, "lift_mm": 10},
+        {"type": "return", "law": "cycloidal", "angle_deg": "rest"},
+    ]
+    size = {"prime_radius_mm": 30, "thickness_mm": 20, "groove_depth_mm": 12}
+    size |= {"form": "groove", "outer_diameter_mm": 400}
+    roller = {"type": "roller", "roller_radius_mm": 6}
+    groove = partial(built, motion=motion, follower=roller)
+    _ = groove(cam=size | {"roller_clearance_mm": 47.9}).cam
+    with pytest.raises(InfeasibleError, match="reaches the cam's axis") as caught:
+        _ = groove(cam=size | {"roller_clearance_mm": 48.0}).cam
+    assert (caught.value.value, caught.value.limit) == (30.0, 30.0)
+
+
+def test_a_typing_error_in_a_table_of_ratios_is_refused_where_it_is() -> None:
+    angles = [10.0 * k for k in range(13)]
+    ratios = [1.0 + 0.01 * math.sin(k) for k in range(13)]
+    ratios[10], ratios[12] = 1e30, ratios[0]
+    table = {"type": "table", "phi1_deg": angles, "ratio": ratios}
+    with pytest.raises(InfeasibleError, match=r"\(phi1 = 100 deg\)"):
+        _ = built(law=table, pair={"module_mm": 2, "teeth": [66, 44]}).law
 
 
 def test_the_shortest_way_of_a_door_is_named() -> None:
