@@ -9,6 +9,8 @@ import re
 import shutil
 import subprocess
 import sys
+from collections.abc import Callable
+from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -160,29 +162,32 @@ def test_a_witness_that_imports_the_program_is_caught(code: str, caught: set[str
     assert _foreign_to_witnesses(code) == caught
 
 
-def _modules(tmp_path: Path, *arguments: str) -> set[str]:
-    """Run a build in a process of its own and return the names of what it loaded."""
-    done = subprocess.run(
-        [sys.executable, "-c", LOADED, "build", *arguments, "-o", str(tmp_path)],
-        cwd=rules.ROOT,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
-    answer = json.loads(done.stdout.splitlines()[-1])
-    assert answer["code"] == 0, done.stdout + done.stderr
-    return set(answer["modules"])
+@pytest.fixture(scope="module")
+def modules(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., frozenset[str]]:
+    """Names of all modules that a build of a profile loads, in a process of its own."""
+
+    @cache
+    def loaded(profile: str, files: str) -> frozenset[str]:
+        folder = tmp_path_factory.mktemp(profile)
+        words = f"profiles/{profile}.toml", "--only", files, "-o", str(folder)
+        done = subprocess.run(
+            [sys.executable, "-c", LOADED, "build", *words],
+            cwd=rules.ROOT,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert done.returncode == 0, done.stderr
+        answer = json.loads(done.stdout.splitlines()[-1])
+        assert answer["code"] == 0, done.stdout + done.stderr
+        assert list((folder / profile).glob(f"*.{files}"))
+        return frozenset(answer["modules"])
+
+    return loaded
 
 
-def _loaded(tmp_path: Path, *arguments: str) -> set[str]:
-    """Return the top names of what a build loads."""
-    return {name.split(".")[0] for name in _modules(tmp_path, *arguments)}
-
-
-def test_a_csv_build_loads_no_other_writer(tmp_path: Path) -> None:
-    loaded = _loaded(tmp_path, "profiles/ellipse.toml")
-    assert (tmp_path / "ellipse" / "gear1_outline.csv").exists()
+def test_a_csv_build_loads_no_other_writer(modules: Callable[..., frozenset[str]]) -> None:
+    loaded = modules("ellipse", "csv")
     assert "numpy" in loaded
     assert loaded.isdisjoint(UNWANTED)
 
@@ -225,13 +230,13 @@ LAWS = {
     ],
 )
 def test_a_build_loads_its_kind_and_its_law(
-    tmp_path: Path, file: str, other: str, laws: set[str]
+    modules: Callable[..., frozenset[str]], file: str, other: str, laws: set[str]
 ) -> None:
-    loaded = _modules(tmp_path, f"profiles/{file}.toml", "--only", "csv")
+    loaded = modules(file, "csv")
     assert f"gearcam.{other}" not in loaded
     assert {name.removeprefix("gearcam.laws.") for name in loaded & LAWS} == laws
 
 
-def test_a_drawing_loads_its_writer(tmp_path: Path) -> None:
+def test_a_drawing_loads_its_writer(modules: Callable[..., frozenset[str]]) -> None:
     """The control: the list of loaded modules does show a library once it is used."""
-    assert "ezdxf" in _loaded(tmp_path, "profiles/ellipse.toml", "--only", "dxf")
+    assert "ezdxf" in modules("ellipse", "dxf")
