@@ -2,11 +2,12 @@
 
 An undercut profile crosses itself: between two crossings it lies where the follower passes at
 another angle. The remaining profile bounds the region of positive winding number that contains the
-axis (see `gearcam.numeric.crossings`), and its corners are self-crossings of the curve.
+axis (see `gearcam.numeric.crossings`), and its corners are self-crossings of the curve. A loop of
+nanometres, which rounding hides, is cut out where it turns back.
 
 Refused: crossings that cannot be separated, and hundreds of undercut stretches.
 
-Depends on curve and numeric.
+Depends on curve, measures and numeric.
 """
 
 from __future__ import annotations
@@ -18,11 +19,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearcam.cams.curve import ProfileSegments
+from gearcam.cams.measures import over_the_end
 from gearcam.display import Brief
 from gearcam.errors import InfeasibleError, Way
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.contour import Contour
-from gearcam.numeric.crossings import Branch, Chain, Ring, remaining, rows_between
+from gearcam.numeric.crossings import (
+    Branch,
+    Chain,
+    CurvePoint,
+    Ring,
+    remaining,
+    rows_between,
+)
 from gearcam.numeric.sampling import Sampler
 
 _PROBES = 33
@@ -40,11 +49,15 @@ _BESIDE = 3.0
 _RUNS = 8.0
 """Run-in and run-out tried as remedy where a wall is undercut at its ends, in follower radii."""
 
-_ROUNDS = 8
-"""How often chords are made four times finer if crossings are not separated."""
+_ROUNDS = 3
+"""How often crossings are searched, each time with chords four times finer."""
 
 _MOST = 500
 """Largest number of undercut stretches: with more, each crosses hundreds of others."""
+
+_TINY = 1e-7
+"""Length of a backward stretch, in sizes of the cam, below which its loop is not searched: without
+it less lift is lost than this times the angle of the stretch."""
 
 _OVERLAP = 1e-12
 """Angle, rad, by which an undercut stretch may reach into the remaining profile: rounding."""
@@ -92,6 +105,68 @@ def star_shaped(points: Plane, tangents: Plane, slides: bool = False) -> bool:
     return bool(np.all(side > 0.0) or np.all(side < 0.0))
 
 
+def without_tiny_loops(
+    segments: ProfileSegments, undercut: Sequence[tuple[float, float]], size: float
+) -> tuple[ProfileSegments, tuple[Corner, ...], list[tuple[float, float]]]:
+    """Return a profile without the backward stretches whose loops rounding hides.
+
+    Parameters
+    ----------
+    segments : ProfileSegments
+        The whole profile, in order from the beginning of the turn.
+    undercut : sequence of (float, float)
+        Cam angles between which it runs backwards, rad.
+    size : float, mm
+        Of the cam.
+
+    Returns
+    -------
+    segments : ProfileSegments
+        Without those stretches.
+    corners : tuple of Corner
+        In their places.
+    left : list of (float, float)
+        The other undercut stretches.
+    """
+    cut: list[tuple[CurvePoint, CurvePoint]] = []
+    left: list[tuple[float, float]] = []
+    closed = segments.curve.program.closed
+    for parts in over_the_end(undercut, closed):
+        # a stretch in two parts, on both sides of the turn's end, begins with the later part; a
+        # jump at that end is no stretch after it
+        ends = _ends(segments, parts[-1][0], parts[0][1] or parts[-1][1])
+        begin, end = segments.at(*(np.array(values) for values in zip(*ends, strict=True)))[0]
+        if abs(end - begin) > _TINY * size:
+            left += parts
+        else:
+            cut.append(ends)
+    if not cut:
+        return segments, (), left
+    after = [*cut[1:], cut[0]] if closed else [*cut, (segments.last, segments.last)]
+    before = cut if closed else [(segments.first, segments.first), *cut]
+    stays = [Branch(one[1], two[0]) for one, two in zip(before, after, strict=True)]
+    return *cut_out(segments, stays), left
+
+
+def _ends(segments: ProfileSegments, low: float, high: float) -> tuple[CurvePoint, CurvePoint]:
+    """Return the ends of an undercut stretch, which includes jumps next to it."""
+    count, back = len(segments.start), segments.backward
+    if low == high:
+        theta = segments.curve.program.knots[segments.piece]
+        k = int(np.flatnonzero(back & (theta == low))[0])
+        return CurvePoint(k, float(segments.start[k])), CurvePoint(k, float(segments.end[k]))
+    sweep = ~segments.jump
+    first = int(np.flatnonzero(sweep & (segments.start <= low) & (low < segments.end))[0])
+    last = int(np.flatnonzero(sweep & (segments.start < high) & (high <= segments.end))[0])
+    begin, end = CurvePoint(first, low), CurvePoint(last, high)
+    if low == segments.start[first] and back[first - 1]:
+        begin = CurvePoint((first - 1) % count, float(segments.start[first - 1]))
+    after = (last + 1) % count
+    if high == segments.end[last] and back[after]:
+        end = CurvePoint(after, float(segments.end[after]))
+    return begin, end
+
+
 def trimmed(
     segments: ProfileSegments, undercut: Sequence[tuple[float, float]], tolerance: float
 ) -> tuple[ProfileSegments, tuple[Corner, ...]]:
@@ -104,7 +179,7 @@ def trimmed(
     undercut : sequence of (float, float)
         Cam angles between which it runs backwards, rad.
     tolerance : float, mm
-        Chord error of the polygons in the search for crossings.
+        Chord tolerance of the profile, and of the first polygon in the search for crossings.
 
     Returns
     -------
@@ -132,7 +207,7 @@ def trimmed(
             ring for ring in remaining(segments, [chain])[0] if chain.open or _about_axis(ring)
         ]
         # too long chords may have missed a loop
-        if len(rings) == 1 and _meets(segments, rings[0], float(np.abs(chain.points).max())):
+        if len(rings) == 1 and _meets(segments, rings[0], chain, tolerance):
             made = cut_out(segments, rings[0].branches) if rings[0].crossed else (segments, ())
             if not _backwards(made[0], undercut):
                 return made
@@ -162,8 +237,8 @@ def _backwards(segments: ProfileSegments, undercut: Sequence[tuple[float, float]
     )
 
 
-def _meets(segments: ProfileSegments, ring: Ring, size: float) -> bool:
-    """Return whether curves meet at the crossings of a ring, within rounding."""
+def _meets(segments: ProfileSegments, ring: Ring, chain: Chain, tolerance: float) -> bool:
+    """Return whether curves meet at the crossings of a ring, within rounding and tolerance."""
     places = [place for branch in ring.branches for place in branch]
     index, parameter = (np.array(values) for values in zip(*places, strict=True))
     rounding = _ROUNDING * np.abs(parameter)
@@ -171,47 +246,8 @@ def _meets(segments: ProfileSegments, ring: Ring, size: float) -> bool:
     # a curve at rest at its beginning may be fast within the rounding of an angle
     beside = (np.clip(parameter + shift, *ends) for shift in (-rounding, 0.0, rounding))
     ways = [rounding * np.abs(segments.moving(index, place)[1]) for place in beside]
-    return ring.gap <= _MISS * size + float(np.max(ways))
-
-
-def demand_joined(segments: ProfileSegments, tolerance: float) -> None:
-    """Refuse a profile whose sides do not meet at its corners.
-
-    Crossings are limited by the movement of the profile within the rounding of a cam angle.
-
-    Parameters
-    ----------
-    segments : ProfileSegments
-        The trimmed profile.
-    tolerance : float, mm
-        Its chord tolerance.
-
-    Raises
-    ------
-    InfeasibleError
-        If sides are farther apart than a tenth of it.
-    """
-    number = np.arange(len(segments.start))
-    after = np.roll(number, -1)
-    sides = (number, segments.end), (after, segments.start[after])
-    before, behind = (segments.at(*side)[0] for side in sides)
-    gaps = np.abs(behind - before)
-    if segments.curve.program.open:
-        gaps = gaps[:-1]
-    worst = int(gaps.argmax())
-    gap, limit = float(gaps[worst]), _JOINED * tolerance
-    if gap <= limit:
-        return
-    fast = max(sides, key=lambda side: float(np.abs(segments.moving(*side)[1][worst])))
-    raise InfeasibleError(
-        "the lift changes so abruptly that the two sides of a corner differ by rounding "
-        "of cam angles",
-        where=segments.curve.mechanism.driver.told(float(segments.states(*fast)[0][worst])),
-        value=gap,
-        limit=limit,
-        unit="mm",
-        nearest="the limit is a tenth of the chord tolerance; use a longer phase there",
-    )
+    rounded = _MISS * float(np.abs(chain.points).max()) + float(np.max(ways))
+    return ring.gap <= min(rounded, _JOINED * tolerance)
 
 
 def _about_axis(ring: Ring) -> bool:
@@ -291,9 +327,9 @@ def crossing_chords(
                 ways=(Way(near={key: finer.tolerance}),),
             )
     return InfeasibleError(
-        f"the {called} crosses itself: the trimmed profile cannot be determined",
+        f"the {called} crosses itself, or has a part much narrower than its chord tolerance",
         where="[cam]",
-        nearest="its pieces do not join to one closed line",
+        nearest="its chords do not form one closed line",
     )
 
 

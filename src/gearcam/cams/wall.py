@@ -8,7 +8,7 @@ curves are mirrored for the other direction.
 
 Refused: profiles that cross themselves and cannot be trimmed.
 
-Depends on curve, measures, loops, trim, lost and numeric.
+Depends on curve, measures, trim, lost and numeric.
 """
 
 from __future__ import annotations
@@ -22,11 +22,10 @@ import numpy as np
 
 from gearcam.cams.contact import Contact
 from gearcam.cams.curve import CamCurve, ProfileSegments, begun, segments
-from gearcam.cams.loops import without_small_loops
 from gearcam.cams.lost import lost_lift
 from gearcam.cams.measures import Extreme, Range, Size, over_the_end, range_of, size_of, undercut
 from gearcam.cams.mechanism import Mechanism
-from gearcam.cams.trim import Corner, crossing_chords, demand_joined, star_shaped, trimmed
+from gearcam.cams.trim import Corner, crossing_chords, star_shaped, trimmed, without_tiny_loops
 from gearcam.display import Brief
 from gearcam.facts import Fact
 from gearcam.laws.program import Program
@@ -248,15 +247,13 @@ class Wall(PitchMotion):
     @cached_property
     def _kept(self) -> _Kept:
         whole = segments(self.curve, self.curve.mechanism.radius)
-        kept, corners, left = without_small_loops(whole, self.undercut, self._reach)
+        kept, corners, left = without_tiny_loops(whole, self.undercut, self._reach)
         drawn, sampler = self._sampled(self._drawn(kept))
         if left or not star_shaped(*sampler.probes, slides=self.program.open):
             kept, more = trimmed(kept, left, self.tolerance)
             starts = set(kept.states(np.arange(len(kept.start)), kept.start)[0].tolist())
             corners = (*(corner for corner in corners if corner.after in starts), *more)
             drawn, sampler = self._sampled(self._drawn(kept))
-        if corners:
-            demand_joined(drawn, self.tolerance)
         corners = tuple(sorted(corners, key=lambda corner: corner.before))
         return _Kept(drawn=drawn, sampler=sampler, corners=corners)
 
