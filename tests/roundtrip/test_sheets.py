@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import os
 import re
-import subprocess
-import sys
 import xml.etree.ElementTree as ET
 from collections import Counter
 from dataclasses import replace
 from functools import cache
 from itertools import combinations
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -337,31 +333,6 @@ def test_special_letters_survive(wheel: tuple[Part, list[float], Sheet], data: b
     texts = [one.plain_text() for one in read_dxf(data).query("TEXT")]  # type: ignore[attr-defined]
     assert TITLE in texts
     assert "7850 kg/m^3" in texts
-
-
-def test_the_same_sheet_gives_the_same_bytes() -> None:
-    """In other processes too, where sets have another order."""
-    script = """
-import hashlib
-from gearcam.export.dxf import DxfStyle
-from gearcam.export.sheet_dxf import sheet_dxf
-from gearcam.export.sheet_svg import sheet_svg
-from gearcam.parts.body import Hub, Part
-from gearcam.sheets import wheel_sheet
-from helpers_contour import square_contour
-part = Part(name="p", contours=(square_contour(90.0),), width=1.0, hub=Hub(diameter=9.0, front=2.0))
-made = [wheel_sheet(part, {"a": "1"}, "t") for _ in range(2)]
-pages = [sheet_svg(s) + sheet_dxf(s, DxfStyle(tolerance=1e-3)) for s in made]
-print(pages[0] == pages[1], hashlib.sha256(pages[0]).hexdigest())
-"""
-    roots = [str(Path(__file__).parents[1]), *sys.path]
-    seen = set()
-    for seed in ("0", "11"):
-        place = {**os.environ, "PYTHONPATH": os.pathsep.join(roots), "PYTHONHASHSEED": seed}
-        run = [sys.executable, "-c", script]
-        seen.add(subprocess.run(run, env=place, capture_output=True, check=True).stdout)
-    assert len(seen) == 1
-    assert seen.pop().startswith(b"True")
 
 
 def test_a_stepped_part_shows_its_steps() -> None:
