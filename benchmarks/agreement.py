@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 import gearcam
 import peers
-from gearcam.errors import InfeasibleError
+from gearcam.base.errors import InfeasibleError
 from gearcam.gears.pair import Gear
 from gearcam.gears.spec import PairSpec
 from gearcam.kinds.gear_pair.design import GearPairDesign, PairOutputSpec

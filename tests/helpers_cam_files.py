@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from gearcam.base.errors import DesignError, Problem
 from gearcam.designs import loads
-from gearcam.errors import DesignError, Problem
 from gearcam.kinds.cam.design import CamDesign
 
 ROLLER = """\

@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gearcam.base.tolerances import DEFAULT
 from gearcam.cams.disc import CHORD_TOLERANCE, DiscCam, make_cam
 from gearcam.cams.mechanism import Mechanism, make_mechanism
 from gearcam.cams.spec import CamSpec, FollowerSpec
 from gearcam.laws.phases_of_lift import DwellPhase, Phase, ReturnPhase, RisePhase
 from gearcam.laws.program import Program, make_program
 from gearcam.laws.rises.base import RISES
-from gearcam.tolerances import DEFAULT
 from witness.cam_sweep import Follower
 
 Array = NDArray[np.float64]

@@ -13,10 +13,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from gearcam.drawings import Drawing
 from gearcam.numeric.contour import Contour, Run
 from gearcam.parts.body import Opening, Part
 from gearcam.parts.shapes import Circle
+from gearcam.pictures.drawings import Drawing
 
 Curve = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 """Parameter (n,) to complex points and complex vectors along the curve, of any length."""

@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 
 import gearcam
-from gearcam.errors import InfeasibleError
+from gearcam.base.errors import InfeasibleError
+from gearcam.base.tolerances import DEFAULT
 from gearcam.gears.bends import bends_of
 from gearcam.gears.estimates import estimates, ratio_error
 from gearcam.gears.pair import GearPair
 from gearcam.gears.rolling import Rolling, roll
 from gearcam.gears.track import Wheel
-from gearcam.tolerances import DEFAULT
 from helpers_exact import RING_TYPE, Case
 from witness.exact import Exact, Number, mp
 

@@ -20,9 +20,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import gearcam
-from gearcam.advice import demand_files
+from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.designs.design import path_of
-from gearcam.errors import DesignError, InfeasibleError
+from gearcam.results.advice import demand_files
 from helpers_pairs import PROFILES
 
 EXTREME = PROFILES / "extreme"

@@ -89,7 +89,7 @@ CASES: dict[str, tuple[tuple[str, ...], str, int, str]] = {
     "compare, writing": (COMPARE, WRITE, 1, BEFORE),
     "follow": (FOLLOW, "gearcam.kinds.cam.follow.follow", 1, BEFORE),
     "follow, writing": (FOLLOW, WRITE, 1, BEFORE),
-    "accuracy": (ACCURACY, "gearcam.studies.accuracy._first_round", 1, BEFORE),
+    "accuracy": (ACCURACY, "gearcam.results.accuracy._first_round", 1, BEFORE),
     "accuracy, writing": (ACCURACY, WRITE, 2, BEFORE),
     "new": (("new", "cam", "new.toml"), "gearcam.designs.template.template", 1, BEFORE),
     "new, writing": (("new", "cam", "new.toml"), "pathlib.Path.open", 1, AFTER),

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from gearcam.base.tolerances import DEFAULT
 from gearcam.gears.cutter import choose_cutter
 from gearcam.gears.flank import Curve, Toothing, trace
 from gearcam.gears.outline import Outline, build_outline
@@ -17,7 +18,6 @@ from gearcam.gears.track import Wheel
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.laws.ratio.phases import Phases
 from gearcam.laws.ratio.span import Lobes
-from gearcam.tolerances import DEFAULT
 from witness import laws
 from witness.kinematics import Basic, Rolling
 

@@ -101,7 +101,7 @@ def main():
     asked, packages, studies = (json.loads(text) for text in sys.argv[2:])
     made = []
     if asked:
-        from gearcam.result import Result
+        from gearcam.results.result import Result
         begun = Result.__init__
         def begin(result, *given, **named):
             begun(result, *given, **named)

@@ -14,12 +14,15 @@ from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
+from gearcam.base.findings import CHECKS, Check
+from gearcam.base.numerals import shown
+from gearcam.base.quantities import REQUIRED
+from gearcam.base.tolerances import DEFAULT
 from gearcam.cams.spec import FOLLOWERS, CamSpec, FollowerSpec
 from gearcam.cli import EXIT_CODES, parsers
 from gearcam.designs import KINDS
 from gearcam.designs.kind import DesignKind
 from gearcam.designs.table import Table
-from gearcam.findings import CHECKS, Check
 from gearcam.kinds.cam.forms.base import FORMS, Form, form_keys
 from gearcam.kinds.cam.motion import WITH_LAW, phase_table, rise_table, summary, turn_tables
 from gearcam.kinds.gear_pair.design import law_table
@@ -28,9 +31,6 @@ from gearcam.laws.phases_of_lift import PHASES, TURN, RisePhase
 from gearcam.laws.program import make_program
 from gearcam.laws.ratio.base import LAWS
 from gearcam.laws.rises.base import RISES
-from gearcam.numerals import shown
-from gearcam.quantities import REQUIRED
-from gearcam.tolerances import DEFAULT
 from reference_parts import (
     CHECKS_INTRO,
     CODES_OUTRO,

@@ -6,11 +6,11 @@ import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, Final
 
+from gearcam.base.numerals import shown
+from gearcam.base.quantities import ANGLE, LENGTH, REQUIRED
 from gearcam.designs.faults import allowed, show
 from gearcam.designs.table import Key, Table
 from gearcam.designs.template import short
-from gearcam.numerals import shown
-from gearcam.quantities import ANGLE, LENGTH, REQUIRED
 
 NONE: Final = "-"
 """Text of an empty cell."""

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from gearcam.charts import Chart, Line
+from gearcam.pictures.charts import Chart, Line
 
 SECONDS = "run time, s"
 SLOW, FEW = 0.2, 3

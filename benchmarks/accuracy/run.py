@@ -18,8 +18,8 @@ import solids
 import wheels
 from gearcam.console import quieten
 from gearcam.numeric.memory import keep_freed_memory
-from gearcam.studies.accuracy import accuracy
-from gearcam.studies.svg import log_charts
+from gearcam.results.accuracy import accuracy
+from gearcam.results.accuracy_svg import log_charts
 from measuring import ROOT, environment
 from methods import Found, climb
 

@@ -12,7 +12,7 @@ import numpy as np
 
 import gearcam
 from cam_profiles import DEGREES, KIND, LAW, LIFT
-from gearcam.solids import solid
+from gearcam.parts.solids import solid
 from helpers_cams import witness_of
 from methods import Case, Method
 from witness.cam_sweep import Exact, Motion

@@ -22,23 +22,23 @@ if TYPE_CHECKING:
     from typing import Protocol, TypeVar
 
     from gearcam import laws
-    from gearcam.advice import Remedies
-    from gearcam.designs import Design
-    from gearcam.errors import (
+    from gearcam.base.errors import (
         DesignError,
         GearcamError,
         InfeasibleError,
         MissingExtraError,
         WriteError,
     )
-    from gearcam.facts import Facts
-    from gearcam.findings import Finding
+    from gearcam.base.facts import Facts
+    from gearcam.base.findings import Finding
+    from gearcam.base.tolerances import Tolerances
+    from gearcam.designs import Design
     from gearcam.kinds import *  # noqa: F403
     from gearcam.laws import rises
     from gearcam.numeric.columns import Columns
-    from gearcam.result import Result
-    from gearcam.study import Study
-    from gearcam.tolerances import Tolerances
+    from gearcam.results.advice import Remedies
+    from gearcam.results.result import Result
+    from gearcam.results.study import Study
 
     _R = TypeVar("_R", covariant=True)
 
@@ -56,15 +56,15 @@ __all__ = [
 _HOMES = {
     **dict.fromkeys(
         ("DesignError", "GearcamError", "InfeasibleError", "MissingExtraError", "WriteError"),
-        "gearcam.errors",
+        "gearcam.base.errors",
     ),
     "Columns": "gearcam.numeric.columns",
     "Design": "gearcam.designs",
-    "Facts": "gearcam.facts",
-    "Finding": "gearcam.findings",
-    "Result": "gearcam.result",
-    "Study": "gearcam.study",
-    "Tolerances": "gearcam.tolerances",
+    "Facts": "gearcam.base.facts",
+    "Finding": "gearcam.base.findings",
+    "Result": "gearcam.results.result",
+    "Study": "gearcam.results.study",
+    "Tolerances": "gearcam.base.tolerances",
     "laws": "gearcam.laws",
     "rises": "gearcam.laws.rises",
 }
@@ -93,8 +93,8 @@ def __dir__() -> list[str]:
 
 
 def _of_kinds() -> dict[str, type]:
+    from gearcam.base.quantities import described
     from gearcam.designs.kind import KINDS
-    from gearcam.quantities import described
 
     rooms = [kind.room("public") for kind in KINDS.values()]
     return {name: described(getattr(room, name)) for room in rooms for name in room.__all__}
@@ -266,9 +266,9 @@ def remedies(
     >>> [list(one.changes) for one in found]
     [['blank.bore_diameter_mm']]
     """
-    from gearcam.advice import remedies as search
     from gearcam.numeric.arguments import instance
-    from gearcam.result import Result
+    from gearcam.results.advice import remedies as search
+    from gearcam.results.result import Result
 
     instance("result", result, Result, "a result, as returned by build")
     return search(result, refusal, patience=patience)

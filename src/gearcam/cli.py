@@ -17,6 +17,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 from gearcam import build, remedies
+from gearcam.base.errors import DesignError, InfeasibleError, MissingExtraError, Problem, WriteError
+from gearcam.base.interrupts import interruptible
 from gearcam.commands import Command, ResultCommand, demand_new_name
 from gearcam.console import (
     DEBUG,
@@ -36,12 +38,10 @@ from gearcam.designs import KINDS, Design, load
 from gearcam.designs.faults import unknown_word
 from gearcam.designs.kind import all_formats, rooms
 from gearcam.designs.outputs import FORMATS
-from gearcam.errors import DesignError, InfeasibleError, MissingExtraError, Problem, WriteError
-from gearcam.interrupts import interruptible
 
 if TYPE_CHECKING:
-    from gearcam.result import Progress, Result
-    from gearcam.written import Written
+    from gearcam.results.result import Progress, Result
+    from gearcam.results.written import Written
 
 GOOD, FINDINGS, WRONG, IMPOSSIBLE, FAULT, INTERRUPTED = 0, 1, 2, 3, 4, 130
 
@@ -127,7 +127,7 @@ def _commands() -> Iterator[Command]:
     yield from _COMMANDS
     for room in rooms("commands"):
         yield from map(_of_results, room.COMMANDS)
-    from gearcam.studies.commands import COMMANDS
+    from gearcam.commands import COMMANDS
 
     yield from map(_of_results, COMMANDS)
 

@@ -5,12 +5,13 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Final
 
+from gearcam.base.errors import DesignError, Problem
 from gearcam.designs.design import Design
-from gearcam.errors import DesignError, Problem
-from gearcam.result import Progress
-from gearcam.written import Written
+from gearcam.numeric.arguments import whole
+from gearcam.results.result import Progress
+from gearcam.results.written import Written
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -86,3 +87,45 @@ def demand_new_name(design: Design, file: str, names: dict[str, str]) -> None:
     if before != file:
         message = f'the design of {before} has the same name, "{design.name}"'
         raise DesignError([Problem(message, file=file, key="name", value=design.name)])
+
+
+def _accuracy_arguments(parser: argparse.ArgumentParser) -> None:
+    words = "stages to measure: law, centrode, flank, outline, solid, contact, cam (default: all)"
+    parser.add_argument("--stage", metavar="A,B,...", help=words)
+    words = "number of runs; the median time is reported (default: 5)"
+    parser.add_argument("--repeat", metavar="K", type=int, default=5, help=words)
+
+
+def _stages(options: Mapping[str, Any]) -> list[str] | None:
+    given = options["stage"]
+    return None if given is None else [word.strip() for word in given.split(",") if word.strip()]
+
+
+def _accuracy_design(design: Design, options: Mapping[str, Any]) -> Design:
+    from gearcam.results.accuracy import stages_of
+
+    whole("--repeat", options["repeat"], 1)
+    stages_of(design, _stages(options))
+    return design
+
+
+def _measure(
+    result: Any, output: str, options: Mapping[str, Any], progress: Progress | None
+) -> Written:
+    from gearcam.results.accuracy import accuracy
+
+    return accuracy(result, _stages(options), options["repeat"], progress).write(output)
+
+
+COMMANDS: Final = (
+    ResultCommand(
+        name="accuracy",
+        done="measured",
+        doc="Measure accuracy against run time; write DIR/NAME/accuracy.csv and accuracy.svg.",
+        arguments=_accuracy_arguments,
+        adapt=_accuracy_design,
+        run=_measure,
+        many=False,
+    ),
+)
+"""The commands for designs of any kind."""

@@ -16,16 +16,16 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, TextIO
 
+from gearcam.base.errors import DesignError, InfeasibleError, Problem, WriteError
+from gearcam.base.facts import lined_up
+from gearcam.base.numerals import size_of, with_unit
 from gearcam.designs.slips import MOST_LISTED
-from gearcam.errors import DesignError, InfeasibleError, Problem, WriteError
-from gearcam.facts import lined_up
-from gearcam.numerals import size_of, with_unit
 
 if TYPE_CHECKING:
-    from gearcam.advice import Remedies
+    from gearcam.base.findings import Finding
     from gearcam.designs.listing import Listed
-    from gearcam.findings import Finding
-    from gearcam.written import Written
+    from gearcam.results.advice import Remedies
+    from gearcam.results.written import Written
 
 DEBUG: Final = "GEARCAM_DEBUG"
 """Environment variable that turns tracebacks on."""

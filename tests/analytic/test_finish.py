@@ -13,14 +13,14 @@ import numpy as np
 import pytest
 import shapely
 
-from gearcam.errors import InfeasibleError
+from gearcam.base.errors import InfeasibleError
+from gearcam.base.tolerances import DEFAULT
 from gearcam.gears.flank import Curve
 from gearcam.gears.pair import Gear, make_gear, make_pair
 from gearcam.gears.spec import Finish, Rack
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.ratio.composite import Multispeed
 from gearcam.parts.parallel import moved, rounded
-from gearcam.tolerances import DEFAULT
 from helpers_pairs import job, profile
 
 TOLERANCE = 2e-4

@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 import pytest
 
+from gearcam.base.tolerances import DEFAULT
 from gearcam.gears.cutter import choose_cutter
 from gearcam.gears.flank import Toothing
 from gearcam.gears.rolling import roll
 from gearcam.gears.spec import BasicRack
 from gearcam.laws.ratio.constant import Constant
 from gearcam.laws.ratio.span import Lobes
-from gearcam.tolerances import DEFAULT
 from witness import oracle
 from witness.oracle import mp
 

@@ -18,7 +18,7 @@ from gearcam.parts.make import make_part
 from gearcam.parts.mass import mass_properties
 from gearcam.parts.openings import Workpiece
 from gearcam.parts.shapes import Circle
-from gearcam.solids import solid
+from gearcam.parts.solids import solid
 from helpers_contour import arc, bore, contour_of, disc_contour, square_contour
 from helpers_pairs import profile
 

@@ -12,7 +12,7 @@ from typing import Any
 import mpmath
 import pytest
 
-from gearcam.errors import InfeasibleError
+from gearcam.base.errors import InfeasibleError
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.ratio.formula import Formula
 from helpers_pairs import job

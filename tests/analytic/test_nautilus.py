@@ -11,11 +11,11 @@ import shapely
 
 import gearcam as gc
 from claims.test_laws import tanh_sinh
-from gearcam.errors import DesignError, InfeasibleError
+from gearcam.base.errors import DesignError, InfeasibleError
+from gearcam.base.tolerances import DEFAULT
 from gearcam.laws.ratio.base import RatioLaw
 from gearcam.laws.ratio.centrodes import LogSpiral
 from gearcam.laws.ratio.span import RING, Lobes
-from gearcam.tolerances import DEFAULT
 from helpers_exact import nautilus
 from helpers_pairs import profile
 

@@ -9,14 +9,14 @@ import numpy as np
 import pytest
 import shapely
 
-from gearcam.errors import InfeasibleError
+from gearcam.base.errors import InfeasibleError
+from gearcam.base.tolerances import DEFAULT
 from gearcam.gears.contact import COAST, DRIVE, flank_pairs
 from gearcam.gears.spec import RingSpec
 from gearcam.laws.ratio.centrodes import LogSpiral
 from gearcam.laws.ratio.formula import Formula, RackLaw
 from gearcam.laws.ratio.phases import Phases
 from gearcam.laws.ratio.span import ONE_LOBE, Travel
-from gearcam.tolerances import DEFAULT
 from helpers_pairs import job, profile
 
 SPIRAL = LogSpiral(ratios=(0.5, 2.0), driven_travel=math.radians(200))

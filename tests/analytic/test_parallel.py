@@ -12,7 +12,7 @@ import shapely
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
-from gearcam.errors import InfeasibleError
+from gearcam.base.errors import InfeasibleError
 from gearcam.numeric.contour import Contour, Run
 from gearcam.parts.parallel import moved, rounded
 from helpers_contour import (

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from gearcam.base.tolerances import DEFAULT
 from gearcam.gears.rolling import Rolling, roll
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.laws.ratio.formula import Formula
 from gearcam.laws.ratio.phases import Phases
 from gearcam.laws.ratio.span import Lobes
-from gearcam.tolerances import DEFAULT
 from witness import laws, oracle
 
 UNDERCUT = math.sin(math.radians(20)) ** 2

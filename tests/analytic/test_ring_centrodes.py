@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from gearcam.base.tolerances import DEFAULT
 from gearcam.gears.rolling import Rolling, roll
 from gearcam.laws.ratio.centrodes import EccentricCircle, Limacon, Lobed, LogSpiral
 from gearcam.laws.ratio.constant import Constant
@@ -18,7 +19,6 @@ from gearcam.laws.ratio.formula import Formula
 from gearcam.laws.ratio.phases import Phases
 from gearcam.laws.ratio.shapes import BSplineLaw
 from gearcam.laws.ratio.span import RING, WHEEL, Lobes
-from gearcam.tolerances import DEFAULT
 
 DIGITS = 2e-13
 """Rounding, in parts of a value."""

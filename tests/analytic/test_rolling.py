@@ -8,13 +8,13 @@ import mpmath
 import numpy as np
 import pytest
 
+from gearcam.base.tolerances import DEFAULT
 from gearcam.gears.rolling import Rolling, roll
 from gearcam.gears.track import Wheel
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.laws.ratio.formula import Formula
 from gearcam.laws.ratio.phases import Phases
 from gearcam.laws.ratio.span import RING, Lobes
-from gearcam.tolerances import DEFAULT
 
 LAWS = {
     "two phases": (

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import shapely
 
-from gearcam.errors import InfeasibleError
+from gearcam.base.errors import InfeasibleError
 from gearcam.gears.spec import Rack
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.ratio.constant import Constant

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from gearcam.base.tolerances import DEFAULT
 from gearcam.gears import stays
 from gearcam.gears.outline import Outline, build_outline
 from gearcam.gears.pair import GearPair
@@ -16,7 +17,6 @@ from gearcam.gears.stays import Stays, find_stays, rolls_of
 from gearcam.gears.tip_pass import TipPass, tip_pass
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.numeric.arrays import Array, Plane
-from gearcam.tolerances import DEFAULT
 from helpers_rings import driver, overlap, passed_on_circles, ring
 
 CONSTANT = {"type": "constant"}

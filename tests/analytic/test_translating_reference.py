@@ -10,6 +10,7 @@ import mpmath
 import numpy as np
 import pytest
 
+from gearcam.base.tolerances import DEFAULT
 from gearcam.cams.follow import follow
 from gearcam.cams.lost_motion import Rest
 from gearcam.cams.measures import over_the_end
@@ -18,7 +19,6 @@ from gearcam.cams.sliding import SlidingCam, make_sliding
 from gearcam.cams.spec import FollowerSpec
 from gearcam.laws.phases_of_lift import DwellPhase, ReturnPhase, RisePhase
 from gearcam.laws.program import make_program
-from gearcam.tolerances import DEFAULT
 from helpers_cams import law
 
 mp: Any = mpmath.mp

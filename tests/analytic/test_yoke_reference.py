@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from gearcam.base.tolerances import DEFAULT
 from gearcam.cams.disc import make_cam
 from gearcam.cams.yoke import YokeCam, make_yoke
 from gearcam.laws.half_turns import completed
 from gearcam.laws.phases_of_lift import Phase, SegmentPhase
 from gearcam.laws.program import Program, make_program
-from gearcam.tolerances import DEFAULT
 from helpers_cams import angles, dwell, mechanism, pieces_of, rise
 from witness.cam_sweep import Follower
 from witness.follower import rest

@@ -13,8 +13,6 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 SOURCE = ROOT / "src" / "gearcam"
-MAX_FILE = 400
-MAX_FUNCTION = 60
 HEAVY = frozenset(
     {"scipy", "trimesh", "manifold3d", "ezdxf", "rich", "lxml", "networkx", "plotly", "jinja2"}
 )
@@ -29,29 +27,7 @@ def parse(path: Path) -> ast.Module:
     return ast.parse(path.read_text(encoding="utf-8"), filename=str(path))
 
 
-# --- size and manners ---------------------------------------------------------------------------
-
-
-def size_faults(path: Path) -> list[str]:
-    """A file that no one can hold in the head, or a function (its docstring not counted)."""
-    faults = []
-    lines = len(path.read_text(encoding="utf-8").splitlines())
-    if lines >= MAX_FILE:
-        faults.append(f"{path.name}: {lines} lines, fewer than {MAX_FILE} are allowed")
-    for node in ast.walk(parse(path)):
-        if isinstance(node, Function):
-            length = _length(node)
-            if length >= MAX_FUNCTION:
-                faults.append(f"{path.name}:{node.lineno} {node.name}: {length} lines of code")
-    return faults
-
-
-def _length(node: Function) -> int:
-    lines = (node.end_lineno or node.lineno) - node.lineno + 1
-    if ast.get_docstring(node) is not None:
-        doc = node.body[0]
-        lines -= (doc.end_lineno or doc.lineno) - doc.lineno + 1
-    return lines
+# --- manners ------------------------------------------------------------------------------------
 
 
 def manner_faults(path: Path) -> list[str]:

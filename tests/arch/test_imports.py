@@ -62,12 +62,12 @@ def test_contracts_hold() -> None:
 
 
 WRONG = [
-    ("errors", "from gearcam import findings", "One way through the house"),
+    ("base", "from gearcam import numeric", "One way through the house"),
     ("designs", "from gearcam import export", "One way through the house"),
     ("numeric", "import shapely", "Mathematics needs numpy and nothing else"),
     ("export", "from gearcam import laws", "Exporters see parts"),
     ("parts", "import manifold3d", "manifold3d only in solids"),
-    ("solids", "import trimesh", "trimesh (and what it needs) only in export.mesh"),
+    ("parts", "import trimesh", "trimesh (and what it needs) only in export.mesh"),
     ("kinds", "import ezdxf", "ezdxf only where DXF is written and read"),
     ("kinds", "import shapely", "shapely only where regions are cut"),
     ("kinds", "import scipy.optimize", "rich only in console"),

@@ -12,11 +12,11 @@ import pytest
 import gearcam
 from arch import rules
 from gearcam import kinds
+from gearcam.base.errors import DesignError
 from gearcam.cli import main
 from gearcam.designs import KINDS, loads
 from gearcam.designs.schema import schema
 from gearcam.designs.template import template
-from gearcam.errors import DesignError
 
 TOY = Path(__file__).parents[1] / "toy_kinds"
 HOME = rules.SOURCE / "kinds"

@@ -15,7 +15,7 @@ from selenium.webdriver.chrome.service import Service
 
 import gearcam
 from gearcam.report.page import document, page
-from gearcam.result import Result
+from gearcam.results.result import Result
 
 PROFILES = Path(__file__).parents[2] / "profiles"
 FLAGS = (

@@ -8,11 +8,11 @@ from typing import Any
 import pytest
 from selenium.webdriver import Chrome
 
-from gearcam.drawings import wheel_drawing
 from gearcam.export.cut_svg import HAIRLINE, cut_svg
 from gearcam.parts.blank import WheelBlank
 from gearcam.parts.make import make_part
 from gearcam.parts.openings import Workpiece
+from gearcam.pictures.drawings import wheel_drawing
 from helpers_contour import gear_contour
 
 WIDTHS = """

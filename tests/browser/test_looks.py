@@ -12,8 +12,8 @@ import pytest
 from selenium.webdriver import ActionChains, Chrome, Keys
 from selenium.webdriver.common.by import By
 
-from gearcam.advice import remedies
 from gearcam.report.page import page
+from gearcam.results.advice import remedies
 from helpers_browser import LAPTOP, PHONE, complaints, go, open_page, settle, unfold, until
 
 NAIL = "nail_machine_two_phase"

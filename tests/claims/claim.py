@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Protocol
 
+from gearcam.base.tolerances import Tolerances
 from gearcam.laws.ratio.base import RatioLaw
 from gearcam.laws.ratio.span import ONE_LOBE, Lobes
 from gearcam.laws.rises.base import RiseParameters
-from gearcam.tolerances import Tolerances
 
 
 class LawParameters(Protocol):

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from gearcam.base.tolerances import DEFAULT
 from gearcam.laws.rises.base import Rise
 from gearcam.numeric.piecewise import extremes
-from gearcam.tolerances import DEFAULT
 
 Array = NDArray[np.float64]
 

@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 
 from claims.of_laws import LAW_CLAIMS
 from claims.of_rises import RISE_CLAIMS
+from gearcam.base.tolerances import DEFAULT
 from gearcam.laws.displacement import Displacement
 from gearcam.laws.motion_formula import MotionFormula
 from gearcam.laws.motion_table import MotionTable
 from gearcam.laws.phases_of_lift import DwellPhase, Phase, ReturnPhase, RisePhase, SegmentPhase
 from gearcam.laws.program import make_program
 from gearcam.laws.rises.base import RiseParameters
-from gearcam.tolerances import DEFAULT
 
 Array = NDArray[np.float64]
 TURN = 2.0 * math.pi

@@ -11,9 +11,9 @@ import pytest
 from claims.claim import LawClaim
 from claims.of_laws import LAW_CLAIMS
 from claims.of_rings import RINGS
+from gearcam.base.tolerances import DEFAULT
 from gearcam.laws.ratio.base import LAWS, RatioLaw
 from gearcam.laws.ratio.span import RACK, RING
-from gearcam.tolerances import DEFAULT
 
 CLAIMS = [
     pytest.param(claim, id=f"{name}-{number}")

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from claims.claim import RiseClaim
 from claims.of_rises import RISE_CLAIMS
 from claims.shown_rise import ShownRise, shown
+from gearcam.base.quantities import params_of
 from gearcam.laws.rises.base import RISES, Rise
-from gearcam.quantities import params_of
 
 Array = NDArray[np.float64]
 

@@ -8,12 +8,12 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
+from gearcam.base.tolerances import DEFAULT
 from gearcam.cams.follow import follow
 from gearcam.cams.measures import size_of
 from gearcam.laws.motion_table import MotionTable
 from gearcam.parts.body import Part
 from gearcam.parts.mass import quadrature_error
-from gearcam.tolerances import DEFAULT
 from helpers_cams import angles, cam
 
 TOLERANCES = (4e-3, 1e-3, 2.5e-4)

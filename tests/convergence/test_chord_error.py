@@ -16,7 +16,7 @@ import pytest
 from shapely import LinearRing
 
 import gearcam
-from gearcam.errors import InfeasibleError
+from gearcam.base.errors import InfeasibleError
 from gearcam.gears.outline import Outline
 from gearcam.gears.track import Wheel
 from gearcam.laws.ratio.constant import Constant

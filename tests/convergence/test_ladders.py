@@ -10,9 +10,9 @@ import pytest
 
 import gearcam
 from gearcam.kinds.cam import ladder as cam_ladders
-from gearcam.ladders import chord_distance, integral_ladder
 from gearcam.numeric.chebyshev import expand
-from gearcam.studies.accuracy import Accuracy, accuracy
+from gearcam.results.accuracy import Accuracy, accuracy
+from gearcam.results.ladders import chord_distance, integral_ladder
 
 PAIR = """
 kind = "gear-pair"

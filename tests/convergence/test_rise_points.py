@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from claims.shown_rise import ShownRise, shown
+from gearcam.base.tolerances import DEFAULT
 from gearcam.laws.rises.points import TableRise
 from gearcam.laws.rises.simple import Cycloidal
-from gearcam.tolerances import DEFAULT
 
 COUNTS = (8, 16, 32, 64)
 FINE = np.linspace(0.0, 1.0, 4001)

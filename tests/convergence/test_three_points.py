@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from gearcam.base.errors import InfeasibleError
 from gearcam.cams.three_points import CurvatureStudy, curvature_study, three_point_curvature
-from gearcam.errors import InfeasibleError
 from gearcam.numeric.bulges import as_pairs
 
 Array = NDArray[np.float64]

@@ -12,7 +12,7 @@ from typing import Final
 from fuzz.outcome import BUILT, FAILED, LATE, REFUSED, WRONG, Failure, Outcome, Task
 from fuzz.pool import Pool
 from fuzz.shrink import Files, shrunk
-from gearcam.facts import lined_up
+from gearcam.base.facts import lined_up
 from random_designs.designs import Drawn, design
 from random_designs.draw import Draw
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Final
 
-from gearcam.findings import run_checks
+from gearcam.base.findings import run_checks
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.meshing.checks import KIND
 from gearcam.meshing.numbers import numbers

@@ -18,10 +18,10 @@ from typing import Any, Final
 import numpy as np
 
 from fuzz.outcome import Failure
-from gearcam.errors import GearcamError, InfeasibleError
+from gearcam.base.errors import GearcamError, InfeasibleError
 from gearcam.numeric.contour import Contour
 from gearcam.parts.body import Layer, Part
-from gearcam.written import Written
+from gearcam.results.written import Written
 
 _ROUNDING: Final = 1e-9
 """Largest rounding of coordinates in files, relative to the size of the part."""

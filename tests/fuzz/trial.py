@@ -15,8 +15,8 @@ from fuzz import cross_checks_cam, cross_checks_pair
 from fuzz.oracles import look_at
 from fuzz.outcome import BUILT, FAILED, REFUSED, WRONG, Failure, Outcome, Task
 from gearcam import build, load, remedies
+from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.console import all_lines, refusal_text, remedy_lines
-from gearcam.errors import DesignError, InfeasibleError
 
 SEARCH: Final = 0.6
 """Patience of the search for remedies, s: enough for a few designs."""

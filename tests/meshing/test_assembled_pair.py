@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from gearcam.base.tolerances import DEFAULT
 from gearcam.gears.outline import build_outline
-from gearcam.tolerances import DEFAULT
 from helpers_few import few
 from helpers_pairs import PHASES, Assembly, profile
 

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
+from gearcam.base.tolerances import DEFAULT
 from gearcam.gears.cutter import choose_cutter
 from gearcam.gears.flank import Toothing
 from gearcam.gears.rolling import roll
@@ -21,7 +22,6 @@ from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.laws.ratio.formula import Formula
 from gearcam.laws.ratio.phases import Phases
 from gearcam.laws.ratio.span import Lobes
-from gearcam.tolerances import DEFAULT
 from witness import laws, oracle
 from witness.oracle import mp
 

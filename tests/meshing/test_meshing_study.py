@@ -11,8 +11,9 @@ import pytest
 
 import gearcam.meshing.study as study_room
 from gearcam import build, loads
-from gearcam.errors import InfeasibleError
-from gearcam.findings import run_checks
+from gearcam.base.errors import InfeasibleError
+from gearcam.base.findings import run_checks
+from gearcam.base.tolerances import DEFAULT
 from gearcam.gears.contact import COAST, DRIVE, flank_pairs
 from gearcam.gears.outline import build_outline
 from gearcam.gears.subject import KIND as PAIR_KIND
@@ -23,7 +24,6 @@ from gearcam.meshing.checks import KIND
 from gearcam.meshing.numbers import numbers, pairs_in_contact
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.meshing.study import Meshing, mount, run, study
-from gearcam.tolerances import DEFAULT
 from helpers_few import few
 from helpers_meshing import moved
 from helpers_pairs import job, profile

@@ -14,8 +14,8 @@ import pytest
 import shapely
 from numpy.typing import NDArray
 
+from gearcam.base.errors import InfeasibleError
 from gearcam.cli import main
-from gearcam.errors import InfeasibleError
 from gearcam.gears.contact import COAST, DRIVE, flank_pairs
 from gearcam.gears.pair import Gear
 from gearcam.kinds.gear_pair.build import GearPairResult

@@ -11,8 +11,9 @@ import pytest
 import shapely
 
 import gearcam as gc
-from gearcam.errors import InfeasibleError
-from gearcam.findings import run_checks
+from gearcam.base.errors import InfeasibleError
+from gearcam.base.findings import run_checks
+from gearcam.base.tolerances import DEFAULT
 from gearcam.gears.contact import COAST, DRIVE
 from gearcam.gears.outline import build_outline
 from gearcam.gears.track import Wheel
@@ -22,7 +23,6 @@ from gearcam.meshing.numbers import numbers
 from gearcam.meshing.overlap import Turning
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.meshing.study import Meshing, mount, run, study
-from gearcam.tolerances import DEFAULT
 from helpers_few import few
 from helpers_internal import (
     ALPHA,

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gearcam.errors import InfeasibleError
+from gearcam.base.errors import InfeasibleError
+from gearcam.base.tolerances import DEFAULT
 from gearcam.gears.pair import Gear, make_gear
 from gearcam.gears.spec import StepsSpec
 from gearcam.gears.steps import leads, stepped
@@ -15,7 +16,6 @@ from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.meshing.numbers import numbers
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.meshing.study import study
-from gearcam.tolerances import DEFAULT
 from helpers_pairs import Assembly, explained, profile
 
 
@@ -105,7 +105,7 @@ def test_open_wheels_cannot_be_stepped() -> None:
 
 
 def test_a_step_that_is_not_there_is_refused_by_reading() -> None:
-    from gearcam.errors import DesignError
+    from gearcam.base.errors import DesignError
 
     with pytest.raises(DesignError, match="no step 3") as caught:
         replace(profile("formula").design, steps=StepsSpec(count=2), meshing=MeshingSpec(step=3))

@@ -15,7 +15,7 @@ import mpmath as mp
 import pytest
 
 import gearcam
-from gearcam.errors import GearcamError
+from gearcam.base.errors import GearcamError
 from helpers_cam_gallery import CAM_NUMBERS
 from helpers_gallery import NUMBERS, Number, misses
 from helpers_pairs import PROFILES, profile

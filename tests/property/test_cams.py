@@ -14,11 +14,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from gearcam.base.errors import InfeasibleError
 from gearcam.cams.disc import DiscCam, make_cam
 from gearcam.cams.follow import follow
 from gearcam.cams.mechanism import make_mechanism
 from gearcam.cams.spec import CamSpec, FollowerSpec
-from gearcam.errors import InfeasibleError
 from gearcam.laws.phases_of_lift import Phase, SegmentPhase, levels
 from helpers_cams import angles, back, corners_of, dwell, program, resting, rise, stiffness
 from helpers_random import QUICK

@@ -13,16 +13,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from gearcam.base.errors import InfeasibleError
+from gearcam.base.tolerances import DEFAULT
 from gearcam.cams.conjugate import ConjugateCam, SecondRoller, make_conjugate
 from gearcam.cams.disc import make_cam
 from gearcam.cams.mechanism import make_mechanism
 from gearcam.cams.spec import CamSpec, FollowerSpec
 from gearcam.cams.yoke import YokeCam, make_yoke
-from gearcam.errors import InfeasibleError
 from gearcam.laws.half_turns import completed, miss
 from gearcam.laws.phases_of_lift import levels
 from gearcam.laws.program import Program, make_program
-from gearcam.tolerances import DEFAULT
 from helpers_cams import TURN, program, rise
 from helpers_random import QUICK, close
 from property.test_cams import LAWS, dwell, programs, rounded, segment

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 import gearcam
 from fuzz.cross_checks_pair import doubts
-from gearcam.errors import InfeasibleError
+from gearcam.base.errors import InfeasibleError
 from gearcam.gears.flank import trace
 from gearcam.gears.outline import Outline
 from gearcam.gears.spec import Rack

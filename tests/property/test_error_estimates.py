@@ -13,6 +13,7 @@ import mpmath
 import numpy as np
 import pytest
 
+from gearcam.base.tolerances import DEFAULT, Tolerances
 from gearcam.gears.bends import bends_of, curvature_errors
 from gearcam.gears.estimates import area_error, ratio_error
 from gearcam.gears.rolling import roll
@@ -23,7 +24,6 @@ from gearcam.laws.ratio.shapes import RoundedPolygon
 from gearcam.laws.ratio.span import ONE_LOBE
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.chebyshev import expand
-from gearcam.tolerances import DEFAULT, Tolerances
 from helpers_estimates import MODULE, gc, rows_of
 from helpers_exact_designs import cases
 

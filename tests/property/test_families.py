@@ -19,7 +19,7 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
 import gearcam
-from gearcam.errors import InfeasibleError
+from gearcam.base.errors import InfeasibleError
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.ratio.centrodes import EccentricCircle, Limacon, Lobed, LogSpiral
 from gearcam.laws.ratio.composite import Fourier, Multispeed, ThreePhasePolynomial

@@ -10,10 +10,10 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from gearcam.base.errors import InfeasibleError
 from gearcam.cams.groove import GrooveCam, make_groove
 from gearcam.cams.mechanism import make_mechanism
 from gearcam.cams.spec import CamSpec, FollowerSpec
-from gearcam.errors import InfeasibleError
 from helpers_cams import program
 from helpers_random import QUICK, close
 from property.test_cams import programs, rounded

@@ -14,7 +14,7 @@ import pytest
 import shapely
 
 import gearcam
-from gearcam.errors import InfeasibleError
+from gearcam.base.errors import InfeasibleError
 
 
 class Walk(NamedTuple):

@@ -15,12 +15,12 @@ import numpy as np
 import pytest
 
 import gearcam
+from gearcam.base.tolerances import DEFAULT
 from gearcam.gears.outline import Outline
 from gearcam.gears.pair import make_gear
 from gearcam.kinds.gear_pair.design import GearPairDesign
 from gearcam.numeric.moments import Moments, curve_moments
 from gearcam.parts.mass import mass_properties
-from gearcam.tolerances import DEFAULT
 from helpers_pairs import PROFILES
 
 gc: Any = gearcam

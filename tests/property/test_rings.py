@@ -8,7 +8,7 @@ from __future__ import annotations
 import pytest
 
 import gearcam
-from gearcam.errors import InfeasibleError
+from gearcam.base.errors import InfeasibleError
 from gearcam.kinds.gear_pair.build import GearPairResult
 from helpers_rings import CHORDS, overlap, random_ring, ring
 

@@ -11,13 +11,13 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from gearcam.base.errors import InfeasibleError
+from gearcam.base.tolerances import DEFAULT
 from gearcam.cams.mechanism import make_sliding_mechanism
 from gearcam.cams.sliding import SlidingCam, make_sliding
 from gearcam.cams.spec import FollowerSpec
-from gearcam.errors import InfeasibleError
 from gearcam.laws.phases_of_lift import DwellPhase, SegmentPhase
 from gearcam.laws.program import make_program
-from gearcam.tolerances import DEFAULT
 from helpers_random import QUICK, close
 from property.test_cams import programs, rounded
 

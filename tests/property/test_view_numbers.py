@@ -11,12 +11,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from gearcam.base.errors import DesignError
+from gearcam.base.quantities import ANGLE, COUNT, LENGTH, NUMBER, Param, Quantity
 from gearcam.designs.design import path_of, value_at
 from gearcam.designs.faults import dotted
 from gearcam.designs.reader import loads
 from gearcam.designs.table import Key
-from gearcam.errors import DesignError
-from gearcam.quantities import ANGLE, COUNT, LENGTH, NUMBER, Param, Quantity
 from gearcam.view.numbers import equals, numbers, replaced, sliders, span
 
 FILES = sorted((Path(__file__).parents[2] / "profiles").glob("*.toml"))

@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 import shapely
 
-from gearcam.drawings import cut_drawing, pair_drawing, wheel_drawing
 from gearcam.export.cut_svg import cut_svg
 from gearcam.export.dxf import DxfStyle, dxf_bytes
 from gearcam.export.dxf_read import measure_dxf, read_dxf
@@ -24,8 +23,9 @@ from gearcam.numeric.moments import Moments
 from gearcam.parts.body import Mark, Opening, Part
 from gearcam.parts.mass import mass_properties, volume_moments
 from gearcam.parts.shapes import Circle
+from gearcam.parts.solids import Mesh, solid, volume_error
+from gearcam.pictures.drawings import cut_drawing, pair_drawing, wheel_drawing
 from gearcam.sheets.wheel import wheel_sheet
-from gearcam.solids import Mesh, solid, volume_error
 from helpers_contour import disc_contour, gear_contour, layers
 
 TEETH = gear_contour(30, 2.0)

@@ -15,7 +15,6 @@ import pytest
 import shapely
 from numpy.typing import NDArray
 
-from gearcam.drawings import Drawing, Feature, cut_drawing, wheel_drawing
 from gearcam.export.cut_svg import cut_svg
 from gearcam.export.lettering import strokes, text_width
 from gearcam.export.nest import GAP, labelled, nested
@@ -26,6 +25,7 @@ from gearcam.parts.blank import Blank, WheelBlank
 from gearcam.parts.body import Mark, Part
 from gearcam.parts.make import make_part
 from gearcam.parts.openings import Workpiece
+from gearcam.pictures.drawings import Drawing, Feature, cut_drawing, wheel_drawing
 from helpers_cam_files import ROLLER, read
 from helpers_contour import disc_contour, gear_contour, square_contour
 from helpers_distance import distances

@@ -12,12 +12,12 @@ from ezdxf.entities.lwpolyline import LWPolyline
 from ezdxf.math import bulge_to_arc
 
 import gearcam
-from gearcam.drawings import Drawing, pair_drawing, wheel_drawing
-from gearcam.drawings import Path as Chain
 from gearcam.export.dxf import DxfStyle, dxf_bytes
 from gearcam.export.dxf_read import DxfError, measure_dxf, read_dxf
 from gearcam.parts.body import Part
 from gearcam.parts.marks import timing_mark
+from gearcam.pictures.drawings import Drawing, pair_drawing, wheel_drawing
+from gearcam.pictures.drawings import Path as Chain
 from helpers_contour import bore, gear_contour, layers, square_contour
 
 TOLERANCE = 1e-3
@@ -246,7 +246,7 @@ def test_the_same_drawing_gives_the_same_bytes(part: Part) -> None:
 
 
 def test_a_turned_wheel_is_measured_too(part: Part) -> None:
-    from gearcam.drawings import place
+    from gearcam.pictures.drawings import place
 
     turned = replace(
         wheel_drawing(part), features=place(wheel_drawing(part).features, 0.7, (3.0, 4.0))

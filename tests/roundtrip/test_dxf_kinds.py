@@ -12,7 +12,6 @@ import pytest
 from ezdxf.entities.polyline import Polyline
 from ezdxf.entities.spline import Spline
 
-from gearcam.drawings import pair_drawing, placed, wheel_drawing
 from gearcam.export.dxf import DxfStyle, dxf_bytes
 from gearcam.export.dxf_read import DxfError, measure_dxf, read_dxf
 from gearcam.numeric import splines
@@ -22,6 +21,7 @@ from gearcam.parts.blank import WheelBlank
 from gearcam.parts.body import Opening, Part
 from gearcam.parts.openings import bore as bore_of
 from gearcam.parts.shapes import Circle, Loop
+from gearcam.pictures.drawings import pair_drawing, placed, wheel_drawing
 from helpers_cams import cam
 from helpers_contour import bore, gear_contour
 from helpers_distance import distances

@@ -17,9 +17,8 @@ from ezdxf.entities.circle import Circle as DxfCircle
 from ezdxf.entities.lwpolyline import LWPolyline
 
 import gearcam
+from gearcam.base.errors import InfeasibleError
 from gearcam.designs import load
-from gearcam.drawings import cut_drawing, wheel_drawing
-from gearcam.errors import InfeasibleError
 from gearcam.export.dxf_read import DxfError, read_dxf, read_outline
 from gearcam.kinds.cam.build import CamResult
 from gearcam.kinds.gear_pair.build import GearPairResult
@@ -28,6 +27,7 @@ from gearcam.parts.blank import Blank, WheelBlank
 from gearcam.parts.body import Part
 from gearcam.parts.make import make_part
 from gearcam.parts.openings import Workpiece
+from gearcam.pictures.drawings import cut_drawing, wheel_drawing
 from helpers_cam_files import ROLLER, read
 from helpers_contour import contour_of, disc_contour, line
 from helpers_distance import distances

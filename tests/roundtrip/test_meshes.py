@@ -15,13 +15,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from gearcam import solids
-from gearcam.errors import InfeasibleError
+from gearcam.base.errors import InfeasibleError
 from gearcam.export.mesh import glb_bytes, stl_bytes, threemf_bytes
 from gearcam.numeric.contour import Contour
+from gearcam.parts import solids
 from gearcam.parts.body import Mark, Part
 from gearcam.parts.marks import timing_mark
-from gearcam.solids import Mesh, SolidError, solid, volume_error
+from gearcam.parts.solids import Mesh, SolidError, solid, volume_error
 from helpers_contour import bore, gear_contour, square_contour
 
 etree: Any = importlib.import_module("lxml.etree")

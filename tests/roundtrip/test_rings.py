@@ -16,13 +16,13 @@ import trimesh
 from ezdxf import filemanagement
 from ezdxf import path as ezpath
 
-from gearcam.drawings import UNMOVED
 from gearcam.export.step import step_bytes
 from gearcam.gears.spec import RingSpec, StepsSpec
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.kinds.gear_pair.design import PairOutputSpec
 from gearcam.kinds.gear_pair.files import FILES
 from gearcam.parts.blank import Blank
+from gearcam.pictures.drawings import UNMOVED
 from helpers_ring_parts import WAIST, ring_job, turned
 
 BOLTS: dict[str, Any] = {

@@ -10,7 +10,7 @@ from pathlib import Path
 
 SCRIPT = """
 import hashlib, json
-from gearcam.drawings import wheel_drawing
+from gearcam.pictures.drawings import wheel_drawing
 from gearcam.export.dxf import DxfStyle, dxf_bytes
 from gearcam.export.sheet_dxf import sheet_dxf
 from gearcam.export.sheet_svg import sheet_svg

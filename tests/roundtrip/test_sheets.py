@@ -15,8 +15,6 @@ from ezdxf.entities.dimension import Dimension
 from ezdxf.lldxf.encoding import decode_dxf_unicode
 
 import gearcam
-from gearcam.drawings import Drawing, pair_drawing
-from gearcam.drawings import Path as Chain
 from gearcam.export.dxf import DxfStyle
 from gearcam.export.dxf_read import measure_dxf, read_dxf
 from gearcam.export.sheet_dxf import sheet_dxf
@@ -26,6 +24,8 @@ from gearcam.parts.body import Hub, Mark, Opening, Part
 from gearcam.parts.make import make_part
 from gearcam.parts.openings import Workpiece
 from gearcam.parts.shapes import Circle
+from gearcam.pictures.drawings import Drawing, pair_drawing
+from gearcam.pictures.drawings import Path as Chain
 from gearcam.sheets import pair_sheet, wheel_sheet
 from gearcam.sheets.sheet import Sheet
 from helpers_contour import disc_contour, edges, gear_contour

@@ -12,7 +12,7 @@ import pytest
 import trimesh
 
 import gearcam as gc
-from gearcam.drawings import OUTER
+from gearcam.pictures.drawings import OUTER
 
 PROFILES = Path(__file__).resolve().parents[2] / "profiles"
 PARTS = {

@@ -18,15 +18,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from gearcam.drawings import UNMOVED
-from gearcam.errors import GearcamError, MissingExtraError
+from gearcam.base.errors import GearcamError, MissingExtraError
 from gearcam.export import step, step_shapes
 from gearcam.export.step import step_bytes
 from gearcam.numeric.contour import Run
 from gearcam.numeric.splines import Spline, fit_splines
 from gearcam.parts.body import Hub, Mark, Opening, Part
 from gearcam.parts.shapes import Circle
-from gearcam.solids import SolidError
+from gearcam.parts.solids import SolidError
+from gearcam.pictures.drawings import UNMOVED
 from helpers_contour import bore, disc_contour, gear_contour, square_contour
 from helpers_step import (
     KEYED,

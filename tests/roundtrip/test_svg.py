@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from gearcam.drawings import Drawing, Path, pair_drawing
 from gearcam.export.svg import svg_bytes
 from gearcam.parts.body import Part
 from gearcam.parts.marks import timing_mark
+from gearcam.pictures.drawings import Drawing, Path, pair_drawing
 from helpers_bulges import distances
 from helpers_contour import bore, gear_contour
 

@@ -17,9 +17,9 @@ from functools import cached_property
 
 import numpy as np
 
+from gearcam.base.display import Displayed, renderer
 from gearcam.cams.measures import Extreme
 from gearcam.cams.wall import PitchMotion, Wall
-from gearcam.display import Displayed
 from gearcam.numeric.arrays import Array
 
 
@@ -58,12 +58,12 @@ class Cam(Displayed):
 
     def picture(self) -> str:
         """Return a drawing of the walls and their pitch curves, SVG, in the cam's frame."""
-        from gearcam.markup import outlines
-
         inside = [wall for wall in self.walls if wall.side > 0]
         pitches = [
             np.vstack([wall.pitch_contour.vertices, wall.pitch_contour.vertices[:1]])
             for wall in inside
             if wall.pitch_contour is not wall.contour
         ]
-        return outlines(self.facts.headline, [wall.outline for wall in self.walls], pitches)
+        return renderer().outlines(
+            self.facts.headline, [wall.outline for wall in self.walls], pitches
+        )

@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from gearcam.base.findings import Remark, check
+from gearcam.base.numerals import shortened, shown
+from gearcam.base.quantities import ANGLE, LENGTH, Param
 from gearcam.cams.cam import Cam
 from gearcam.cams.mechanism import Mechanism
 from gearcam.cams.spec import FOLLOWED, KIND
 from gearcam.cams.wall import PitchMotion, Wall
-from gearcam.findings import Remark, check
-from gearcam.numerals import shortened, shown
-from gearcam.quantities import ANGLE, LENGTH, Param
 
 if TYPE_CHECKING:
     from gearcam.cams.follow import Followed

@@ -24,15 +24,15 @@ import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+from gearcam.base.display import Brief
+from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.facts import Facts
+from gearcam.base.numerals import shown
 from gearcam.cams.cam import Cam
 from gearcam.cams.disc import demand_standing
 from gearcam.cams.mechanism import Mechanism, swing
 from gearcam.cams.wall import CHORD_TOLERANCE, Wall
-from gearcam.display import Brief
-from gearcam.errors import InfeasibleError, Way
-from gearcam.facts import Facts
 from gearcam.laws.program import Program
-from gearcam.numerals import shown
 
 _PRIME2 = "cam.prime_radius2_mm"
 _DISTANCE = "follower.roller_distance_mm"

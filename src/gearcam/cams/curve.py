@@ -20,10 +20,10 @@ from itertools import pairwise
 
 import numpy as np
 
+from gearcam.base.display import Brief
+from gearcam.base.errors import InfeasibleError
 from gearcam.cams.contact import Contact, contact
 from gearcam.cams.mechanism import Mechanism
-from gearcam.display import Brief
-from gearcam.errors import InfeasibleError
 from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.crossings import CurvePoint

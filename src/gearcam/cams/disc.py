@@ -12,13 +12,13 @@ import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+from gearcam.base.errors import InfeasibleError
+from gearcam.base.facts import Facts
+from gearcam.base.numerals import rounded_down
 from gearcam.cams.cam import Cam
 from gearcam.cams.mechanism import Mechanism, swing
 from gearcam.cams.wall import CHORD_TOLERANCE, Wall
-from gearcam.errors import InfeasibleError
-from gearcam.facts import Facts
 from gearcam.laws.program import Program
-from gearcam.numerals import rounded_down
 
 _STANDSTILL = 1e-7
 """Least relative difference of a face's downward speed from the cam's: below it the contact is a

@@ -34,9 +34,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gearcam.base.errors import InfeasibleError
 from gearcam.cams.mechanism import Mechanism
 from gearcam.cams.profile_points import ProfilePoints, profile_points
-from gearcam.errors import InfeasibleError
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 
 _ROUNDING: Final = 1e-12

@@ -18,15 +18,15 @@ import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+from gearcam.base.display import Brief
+from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.facts import Fact, Facts
 from gearcam.cams.cam import Cam
 from gearcam.cams.disc import clears_axis, demand_standing
 from gearcam.cams.lost_motion import Rest, largest_lost_motion
 from gearcam.cams.measures import Extreme
 from gearcam.cams.mechanism import Mechanism
 from gearcam.cams.wall import CHORD_TOLERANCE, PitchMotion, Wall
-from gearcam.display import Brief
-from gearcam.errors import InfeasibleError, Way
-from gearcam.facts import Fact, Facts
 from gearcam.laws.program import Program
 
 

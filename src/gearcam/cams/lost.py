@@ -13,10 +13,10 @@ from collections.abc import Callable
 
 import numpy as np
 
+from gearcam.base.errors import InfeasibleError
 from gearcam.cams.measures import Extreme
 from gearcam.cams.mechanism import Mechanism
 from gearcam.cams.trim import Corner
-from gearcam.errors import InfeasibleError
 from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet, asin, atan, cos, sin, sqrt

@@ -16,12 +16,12 @@ from functools import cached_property
 
 import numpy as np
 
+from gearcam.base.display import Brief
 from gearcam.cams.curve import ProfileSegments, segments, unit
 from gearcam.cams.lost import resting
 from gearcam.cams.measures import Extreme
 from gearcam.cams.mechanism import Mechanism
 from gearcam.cams.wall import Wall
-from gearcam.display import Brief
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import places_between

@@ -14,9 +14,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from gearcam.base.display import Brief
 from gearcam.cams.contact import Contact
 from gearcam.cams.curve import CamCurve, ProfileSegments
-from gearcam.display import Brief
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import extremes_among, places_between

@@ -38,10 +38,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from gearcam.base.display import Brief
+from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.numerals import shown
 from gearcam.cams.spec import CamSpec, FollowerSpec
-from gearcam.display import Brief
-from gearcam.errors import InfeasibleError, Way
-from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array, Plane
 
 

@@ -19,11 +19,11 @@ from typing import Final
 
 import numpy as np
 
+from gearcam.base.display import Brief
 from gearcam.cams.curve import CamCurve
 from gearcam.cams.lost import resting
 from gearcam.cams.mechanism import Mechanism
 from gearcam.cams.wall import PitchMotion, Wall
-from gearcam.display import Brief
 from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.jets import Jet

@@ -13,7 +13,7 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.errors import InfeasibleError
+from gearcam.base.errors import InfeasibleError
 from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.bulges import as_complex
 from gearcam.numeric.sampling import FEWEST

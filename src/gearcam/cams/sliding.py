@@ -21,15 +21,15 @@ from functools import cached_property
 
 import numpy as np
 
+from gearcam.base.display import Brief, renderer
+from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.facts import Fact, Facts
 from gearcam.cams.cam import Cam
 from gearcam.cams.lost_motion import Rest, largest_lost_motion
 from gearcam.cams.measures import Extreme
 from gearcam.cams.mechanism import Mechanism
 from gearcam.cams.sliding_wall import Plate, SlidingWall, arc, joined, straight
 from gearcam.cams.wall import CHORD_TOLERANCE, PitchMotion
-from gearcam.display import Brief
-from gearcam.errors import InfeasibleError, Way
-from gearcam.facts import Fact, Facts
 from gearcam.laws.program import Program
 from gearcam.numeric.bulges import as_complex
 from gearcam.numeric.contour import Contour
@@ -120,11 +120,9 @@ class SlidingCam(Brief, Cam):
 
     def picture(self) -> str:
         """Return a drawing of plate, groove and pitch curve, SVG, in the cam's frame."""
-        from gearcam.markup import outlines
-
         groove = [] if self.groove is None else [self.groove.vertices]
         pitch = [self.lower.pitch_line]
-        return outlines(self.facts.headline, [self.edge.vertices, *groove], pitch)
+        return renderer().outlines(self.facts.headline, [self.edge.vertices, *groove], pitch)
 
     @cached_property
     def facts(self) -> Facts:

@@ -18,9 +18,9 @@ from itertools import pairwise
 
 import numpy as np
 
+from gearcam.base.display import Brief
 from gearcam.cams.trim import crossing_chords
 from gearcam.cams.wall import OVERSAMPLING, Wall
-from gearcam.display import Brief
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.bulges import as_pairs
 from gearcam.numeric.contour import Contour, Run

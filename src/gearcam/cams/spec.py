@@ -16,9 +16,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Final
 
-from gearcam.display import Brief
-from gearcam.numerals import shown
-from gearcam.quantities import ANGLE, LENGTH, TEXT, param
+from gearcam.base.display import Brief
+from gearcam.base.numerals import shown
+from gearcam.base.quantities import ANGLE, LENGTH, TEXT, param
 
 KIND: Final = "cams"
 """The checks of cams."""

@@ -18,8 +18,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gearcam.base.errors import InfeasibleError
 from gearcam.cams.profile_points import in_plane
-from gearcam.errors import InfeasibleError
 from gearcam.numeric.arrays import Array, Ints, Plane
 
 

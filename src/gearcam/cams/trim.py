@@ -18,10 +18,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from gearcam.base.display import Brief
+from gearcam.base.errors import InfeasibleError, Way
 from gearcam.cams.curve import ProfileSegments
 from gearcam.cams.measures import over_the_end
-from gearcam.display import Brief
-from gearcam.errors import InfeasibleError, Way
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.crossings import (

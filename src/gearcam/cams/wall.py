@@ -20,14 +20,14 @@ from functools import cached_property
 
 import numpy as np
 
+from gearcam.base.display import Brief
+from gearcam.base.facts import Fact
 from gearcam.cams.contact import Contact
 from gearcam.cams.curve import CamCurve, ProfileSegments, begun, segments
 from gearcam.cams.lost import lost_lift
 from gearcam.cams.measures import Extreme, Range, Size, over_the_end, range_of, size_of, undercut
 from gearcam.cams.mechanism import Mechanism
 from gearcam.cams.trim import Corner, crossing_chords, star_shaped, trimmed, without_tiny_loops
-from gearcam.display import Brief
-from gearcam.facts import Fact
 from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.bulges import as_complex, as_pairs

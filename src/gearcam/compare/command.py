@@ -6,11 +6,11 @@ import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
+from gearcam.base.errors import InfeasibleError
 from gearcam.compare.page import PAGE, document
 from gearcam.compare.table import lines
 from gearcam.compare.variants import MOST, settings_of, variants_of
 from gearcam.console import infeasible_text, say
-from gearcam.errors import InfeasibleError
 from gearcam.export.write import write_all
 from gearcam.report.page import page
 

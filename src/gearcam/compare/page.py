@@ -8,13 +8,13 @@ from typing import Any, Final
 
 import numpy as np
 
-from gearcam import drawings
-from gearcam.charts import Chart, Limit, Line, MarkedPlace
 from gearcam.compare.table import rows
 from gearcam.compare.variants import Variant
+from gearcam.pictures import drawings
+from gearcam.pictures.charts import Chart, Limit, Line, MarkedPlace
+from gearcam.pictures.scenes import PLACES, MovingBody, Scene
 from gearcam.report.data import chart_data, scene_data
 from gearcam.report.page import BLOCKS, rendered, verdict
-from gearcam.scenes import PLACES, MovingBody, Scene
 
 PAGE: Final = "compare.html"
 """Name of the file."""

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from gearcam.base.display import Brief
+from gearcam.base.facts import NamedFact, lined_up
 from gearcam.compare.variants import Variant
 from gearcam.console import wrapped
-from gearcam.display import Brief
-from gearcam.facts import NamedFact, lined_up
 
 _SEVERITIES = ("error", "warning", "note")
 

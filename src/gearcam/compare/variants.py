@@ -10,13 +10,13 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from gearcam import build
+from gearcam.base.display import Brief
+from gearcam.base.errors import DesignError, GearcamError, Problem
 from gearcam.designs import KINDS, Design, load
 from gearcam.designs.design import path_of
 from gearcam.designs.faults import show
-from gearcam.display import Brief
-from gearcam.errors import DesignError, GearcamError, Problem
-from gearcam.result import Result
-from gearcam.scenes import Scene
+from gearcam.pictures.scenes import Scene
+from gearcam.results.result import Result
 
 MOST: Final = 12
 """Largest number of variants that a table can show."""

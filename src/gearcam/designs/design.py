@@ -16,14 +16,14 @@ from dataclasses import InitVar, dataclass, field, fields
 from functools import cached_property
 from typing import Any, ClassVar, Final, Self
 
+from gearcam.base.display import cut
+from gearcam.base.errors import DesignError, InfeasibleError, Problem
 from gearcam.designs.examine import examine
 from gearcam.designs.faults import dotted, is_deep
 from gearcam.designs.functions import Function, function_name, functions_in, never, pickles
 from gearcam.designs.kind import KINDS
 from gearcam.designs.outputs import OutputSpec
 from gearcam.designs.table import settled
-from gearcam.display import cut
-from gearcam.errors import DesignError, InfeasibleError, Problem
 from gearcam.numeric.arguments import instance
 
 _PLACE: Final = re.compile("[0-9]{1,9}")

@@ -9,12 +9,12 @@ from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
+from gearcam.base.errors import Problem
+from gearcam.base.numerals import shown
 from gearcam.designs.functions import functions_of
 from gearcam.designs.lines import Path
 from gearcam.designs.slips import did_you_mean, nearest
 from gearcam.designs.table import Key
-from gearcam.errors import Problem
-from gearcam.numerals import shown
 
 MISSING: Final = object()
 """Value of a fault about a missing key."""
@@ -39,7 +39,7 @@ class Fault:
     path : tuple
         Keys and indices.
     message, allowed, hint : str
-        As in `gearcam.errors.Problem`.
+        As in `gearcam.base.errors.Problem`.
     value : object
         The rejected value, or `MISSING`.
     """

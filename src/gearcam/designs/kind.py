@@ -4,7 +4,7 @@ Each kind is a folder of the package `gearcam.kinds`, found by its name. No othe
 and only the kind of the design at hand is imported. The modules of a kind:
 
 - `design`: ``KIND``, a `DesignKind`: the tables of a file, their rules, and the design class;
-- `build`: ``build(design, tolerances)`` returns its `gearcam.result.Result`;
+- `build`: ``build(design, tolerances)`` returns its `gearcam.results.result.Result`;
 - `facts`: ``facts(result, measured)`` returns its facts;
 - `files`: ``FILES``, the function that makes each kind of file; paragraphs of its docstring list
   the names of the files (``Files: ...``) and what they hold. With ``report`` also
@@ -18,7 +18,7 @@ and only the kind of the design at hand is imported. The modules of a kind:
   `gearcam.kinds` declares them for type checkers);
 - `describe`: the main part in the schema, the template and the list of laws;
 - `commands`, optional: ``COMMANDS`` for the command line;
-- `ladder`, optional: ``LADDERS``, stages at increasing resolution (see `gearcam.ladders`).
+- `ladder`, optional: ``LADDERS``, stages at increasing resolution (see `gearcam.results.ladders`).
 """
 
 from __future__ import annotations
@@ -33,11 +33,11 @@ from functools import cache
 from types import ModuleType
 from typing import Any, Final
 
+from gearcam.base.findings import CHECKS
 from gearcam.designs.faults import Fault, show
 from gearcam.designs.lines import Path
 from gearcam.designs.slips import misspelt
 from gearcam.designs.table import Key, Table
-from gearcam.findings import CHECKS
 
 _HOME: Final = "gearcam.kinds"
 

@@ -6,9 +6,9 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
+from gearcam.base.display import Brief
+from gearcam.base.quantities import ANGLE, LENGTH, TEXT, param
 from gearcam.designs.faults import Fault, show
-from gearcam.display import Brief
-from gearcam.quantities import ANGLE, LENGTH, TEXT, param
 
 FORMATS: Final = (
     "dxf", "cut-svg", "svg", "stl", "3mf", "glb", "step", "csv", "drawing-dxf", "drawing-svg",

@@ -11,13 +11,13 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, Final
 
+from gearcam.base.errors import DesignError, Problem
+from gearcam.base.reading import UnreadableError, read
 from gearcam.designs.design import Design
 from gearcam.designs.examine import examine
 from gearcam.designs.faults import DEEPEST, TOO_DEEP, Fault, is_deep
 from gearcam.designs.kind import KINDS
 from gearcam.designs.lines import line_at, lines_of
-from gearcam.errors import DesignError, Problem
-from gearcam.reading import UnreadableError, read
 
 LARGEST: Final = 2_000_000
 """Largest size of a design file, bytes: twice that of a motion table of 20 000 rows."""

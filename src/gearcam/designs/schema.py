@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Final
 
+from gearcam.base.quantities import REQUIRED
 from gearcam.designs.faults import description
 from gearcam.designs.kind import KINDS, DesignKind
 from gearcam.designs.table import Key, Table
-from gearcam.quantities import REQUIRED
 
 DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
 

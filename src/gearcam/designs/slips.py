@@ -13,9 +13,9 @@ from functools import lru_cache
 from itertools import islice
 from typing import Any, Final
 
+from gearcam.base.numerals import shown
+from gearcam.base.quantities import ANGLE, LENGTH
 from gearcam.designs.table import Key
-from gearcam.numerals import shown
-from gearcam.quantities import ANGLE, LENGTH
 
 MOST_LISTED: Final = 100
 """Largest number of problems of a file that are listed."""

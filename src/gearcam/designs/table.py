@@ -1,6 +1,6 @@
 """Tables of a design file: their keys, with types and ranges.
 
-They derive from parameter dataclasses (see `gearcam.quantities`): an *entry* is one key, a *table*
+They derive from parameter dataclasses (`gearcam.base.quantities`): an *entry* is one key, a *table*
 the keys of one dataclass. Values are converted here between the units of files and mm and rad.
 """
 
@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
-from gearcam.quantities import REQUIRED, Param, params_of
+from gearcam.base.quantities import REQUIRED, Param, params_of
 
 
 @dataclass(frozen=True)
@@ -160,7 +160,7 @@ def table_of(title: str, owner: type) -> Table:
     title : str
         Its name in the file.
     owner : type
-        The dataclass; its fields are created by `gearcam.quantities.param`.
+        The dataclass; its fields are created by `gearcam.base.quantities.param`.
 
     Returns
     -------

@@ -6,11 +6,11 @@ import textwrap
 from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
+from gearcam.base.quantities import REQUIRED
 from gearcam.designs.examine import name_fault
 from gearcam.designs.faults import description, show
 from gearcam.designs.kind import KINDS, DesignKind
 from gearcam.designs.table import Key, Table
-from gearcam.quantities import REQUIRED
 
 _COLUMN: Final = 36
 _WIDTH: Final = 96

@@ -25,15 +25,15 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from gearcam.drawings import ENGRAVED, OUTER, THROUGH, Drawing, Feature, Path, box
+from gearcam.base.numerals import decimal, shown
 from gearcam.export.dxf import CURVE_PART
 from gearcam.export.svg import arc_data
-from gearcam.markup import svg_document
-from gearcam.numerals import decimal, shown
 from gearcam.numeric.arcs import fit_closed
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.contour import Contour
 from gearcam.parts.shapes import Circle, Loop
+from gearcam.pictures.drawings import ENGRAVED, OUTER, THROUGH, Drawing, Feature, Path, box
+from gearcam.pictures.markup import svg_document
 
 RED: Final = "#ff0000"
 BLUE: Final = "#0000ff"

@@ -20,13 +20,13 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
 
-from gearcam import drawings
-from gearcam.drawings import Circle, Cross, Drawing, Loop, Path, Shape, box
-from gearcam.numerals import shown
+from gearcam.base.numerals import shown
 from gearcam.numeric.arcs import fit_closed
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.splines import DEGREE, fit_splines
+from gearcam.pictures import drawings
+from gearcam.pictures.drawings import Circle, Cross, Drawing, Loop, Path, Shape, box
 
 if TYPE_CHECKING:
     from ezdxf.document import Drawing as Document

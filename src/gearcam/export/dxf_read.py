@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.drawings import CLOSED, INNER, KERF, OUTER_WALL, OUTLINE, PROFILE
-from gearcam.errors import GearcamError
+from gearcam.base.errors import GearcamError
 from gearcam.export.dxf import MILLIMETRES
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.bulges import as_complex, deviation
 from gearcam.numeric.contour import Contour
+from gearcam.pictures.drawings import CLOSED, INNER, KERF, OUTER_WALL, OUTLINE, PROFILE
 
 if TYPE_CHECKING:
     from ezdxf.document import Drawing as Document

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from gearcam.solids import Mesh, SolidError, libraries
+from gearcam.parts.solids import Mesh, SolidError, libraries
 
 if TYPE_CHECKING:
     from trimesh import Scene, Trimesh

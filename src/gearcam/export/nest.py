@@ -19,10 +19,21 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.drawings import LABEL, MARK, OUTER, THROUGH, Drawing, Feature, Path, box, place, reach
+from gearcam.base.numerals import NOISE
 from gearcam.export.lettering import strokes, text_width
-from gearcam.numerals import NOISE
 from gearcam.numeric.arrays import Array
+from gearcam.pictures.drawings import (
+    LABEL,
+    MARK,
+    OUTER,
+    THROUGH,
+    Drawing,
+    Feature,
+    Path,
+    box,
+    place,
+    reach,
+)
 
 if TYPE_CHECKING:
     from shapely import Polygon

@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from gearcam.facts import Fact
-from gearcam.numerals import shown
+from gearcam.base.facts import Fact
+from gearcam.base.numerals import shown
 
 if TYPE_CHECKING:
-    from gearcam.drawings import Drawing
+    from gearcam.base.facts import Facts
     from gearcam.export.dxf import DxfStyle
-    from gearcam.facts import Facts
     from gearcam.parts.body import Part
+    from gearcam.parts.solids import Mesh
     from gearcam.parts.tools import ToolLimits
+    from gearcam.pictures.drawings import Drawing
     from gearcam.sheets.sheet import Sheet
-    from gearcam.solids import Mesh
 
 Files = dict[str, bytes]
 """Contents by file name."""
@@ -267,7 +267,7 @@ def mesh_files(
         Contents by file name.
     """
     from gearcam.export.mesh import glb_bytes, stl_bytes, threemf_bytes
-    from gearcam.solids import volume_error
+    from gearcam.parts.solids import volume_error
 
     measured["solids"] = {
         part.name: {

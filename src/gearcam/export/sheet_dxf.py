@@ -14,9 +14,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, Final
 
-from gearcam.drawings import CENTER, DASHED
 from gearcam.export import dxf
 from gearcam.export.dxf import GREY, DxfStyle
+from gearcam.pictures.drawings import CENTER, DASHED
 from gearcam.sheets.sheet import (
     ARROW,
     CENTERLINE,

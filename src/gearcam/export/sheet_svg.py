@@ -14,10 +14,10 @@ from xml.sax.saxutils import escape, quoteattr
 
 import numpy as np
 
-from gearcam.drawings import CENTRODE, Circle, Feature, chains
-from gearcam.markup import svg_document
-from gearcam.numerals import decimal
+from gearcam.base.numerals import decimal
 from gearcam.numeric.arrays import Array
+from gearcam.pictures.drawings import CENTRODE, Circle, Feature, chains
+from gearcam.pictures.markup import svg_document
 from gearcam.sheets.sheet import CENTERLINE, HEAVY, HIDDEN, THICK, THIN, Sheet, Text
 
 DASHES: Final = {HIDDEN: "3 1.5", CENTRODE: "4 1.5", CENTERLINE: "8 1.5 1 1.5"}

@@ -19,11 +19,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any, Final
 
-from gearcam.drawings import Placement
-from gearcam.errors import MissingExtraError
+from gearcam.base.errors import MissingExtraError
 from gearcam.export.step_shapes import occt, solids_of
 from gearcam.parts.body import Part
-from gearcam.solids import SolidError
+from gearcam.parts.solids import SolidError
+from gearcam.pictures.drawings import Placement
 
 DATE: Final = "1970-01-01T00:00:00"
 """The date in a file: the same for all."""

@@ -28,7 +28,7 @@ from gearcam.numeric.contour import Contour, Run
 from gearcam.numeric.splines import DEGREE, Spline, fit_splines
 from gearcam.parts.body import Edge, Layer, Part
 from gearcam.parts.shapes import Circle, Loop
-from gearcam.solids import OVERSHOOT, SolidError, demand_volume
+from gearcam.parts.solids import OVERSHOOT, SolidError, demand_volume
 
 COLLECTIONS: Final = ("Array1", "IndexedMap", "List", "Sequence")
 """Prefixes of names that are in one module of the binding; all others begin with their module."""

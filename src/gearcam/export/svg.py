@@ -17,12 +17,12 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from gearcam import drawings
-from gearcam.drawings import Circle, Cross, Drawing, Feature, Loop, Path, box, chains
-from gearcam.markup import CENTRODE_INK, FILLS, GROUND, INKS, TEXT_INK, picture
-from gearcam.numerals import decimal
+from gearcam.base.numerals import decimal
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.bulges import bulge_pieces, divided
+from gearcam.pictures import drawings
+from gearcam.pictures.drawings import Circle, Cross, Drawing, Feature, Loop, Path, box, chains
+from gearcam.pictures.markup import CENTRODE_INK, FILLS, GROUND, INKS, TEXT_INK, picture
 
 THINNING: Final = 0.005
 """Largest distance, mm, by which thinning may move a line of the picture."""

@@ -15,7 +15,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearcam.numerals import SHORT, ULPS, exact
+from gearcam.base.numerals import SHORT, ULPS, exact
 from gearcam.numeric.arrays import Array
 
 _NEAR: Final = 8.0 * ULPS * float(np.finfo(float).eps)

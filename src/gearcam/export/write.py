@@ -30,10 +30,10 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, Final
 
-from gearcam.errors import WriteError
-from gearcam.interrupts import unbroken
-from gearcam.numerals import shown
-from gearcam.reading import read
+from gearcam.base.errors import WriteError
+from gearcam.base.interrupts import unbroken
+from gearcam.base.numerals import shown
+from gearcam.base.reading import read
 
 SUMMARY: Final = "summary.json"
 """The file that lists the others; replaced last."""

@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from gearcam.errors import InfeasibleError
+from gearcam.base.errors import InfeasibleError
+from gearcam.base.numerals import shown
 from gearcam.gears.flank import Toothing
 from gearcam.gears.tips import find_tips
 from gearcam.gears.undercut import find_cusps
-from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array
 
 _FAR = 1.5

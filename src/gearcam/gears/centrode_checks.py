@@ -7,11 +7,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from gearcam.findings import ROUNDING, Remark
+from gearcam.base.findings import ROUNDING, Remark
+from gearcam.base.numerals import shown
+from gearcam.base.quantities import ANGLE, COUNT, LENGTH, NUMBER, Param
 from gearcam.gears.subject import Subject, pair_check
 from gearcam.laws.ratio.span import angle_text
-from gearcam.numerals import shown
-from gearcam.quantities import ANGLE, COUNT, LENGTH, NUMBER, Param
 
 CLOSURE = math.radians(1e-7)
 """Default closure error: 0.006 micrometres at 200 mm."""

@@ -11,14 +11,14 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from gearcam.findings import ROUNDING, Remark, Severity
+from gearcam.base.findings import ROUNDING, Remark, Severity
+from gearcam.base.numerals import rounded_down, shown
+from gearcam.base.quantities import LENGTH, NUMBER, Param
 from gearcam.gears import centrode_checks
 from gearcam.gears.cutter import Cutter
 from gearcam.gears.pair import Gear
 from gearcam.gears.subject import CONTACT_RATIO, KIND, Subject, pair_check
 from gearcam.laws.ratio.span import angle_text
-from gearcam.numerals import rounded_down, shown
-from gearcam.quantities import LENGTH, NUMBER, Param
 
 __all__ = [
     "KIND", "Subject", "centrode_checks", "largest_module", "tooth_ranges", "undercut_curvatures",

@@ -23,7 +23,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
-from gearcam.display import Brief
+from gearcam.base.display import Brief
 from gearcam.gears.flank import Toothing
 from gearcam.gears.polar import PolarCurve
 from gearcam.gears.track import Frames

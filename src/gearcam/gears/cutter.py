@@ -14,8 +14,8 @@ from functools import cached_property
 
 import numpy as np
 
-from gearcam.display import Brief
-from gearcam.errors import InfeasibleError, Way
+from gearcam.base.display import Brief
+from gearcam.base.errors import InfeasibleError, Way
 from gearcam.gears.spec import BasicRack
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.roots import largest_fitting

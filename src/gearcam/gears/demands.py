@@ -8,9 +8,9 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
-from gearcam.errors import InfeasibleError, Way
+from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.numerals import rounded_down, shown
 from gearcam.gears.spec import BasicRack, Finish, PairSpec, Rack, RingSpec
-from gearcam.numerals import rounded_down, shown
 
 _TIP_PART = 0.95
 """Largest tip radius over the dedendum: at 1 the arc's centre is on the pitch line, no fillet."""

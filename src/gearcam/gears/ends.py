@@ -14,7 +14,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from gearcam.errors import InfeasibleError, Way
+from gearcam.base.errors import InfeasibleError, Way
 from gearcam.gears.flank import Curve, Rows, Toothing
 from gearcam.gears.spaces import join, select
 from gearcam.gears.spec import RingSpec

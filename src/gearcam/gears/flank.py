@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.display import Brief
+from gearcam.base.display import Brief
 from gearcam.gears.cutter import Cutter
 from gearcam.gears.track import Frames, Track, Wheel
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane

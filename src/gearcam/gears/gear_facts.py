@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from gearcam.facts import Fact
+from gearcam.base.facts import Fact
 from gearcam.gears.bends import bends_of
 
 if TYPE_CHECKING:
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def gear_tree(gear: Gear) -> dict[str, Any]:
-    """Return the facts of a wheel as a nested dict (see `gearcam.facts.Facts`)."""
+    """Return the facts of a wheel as a nested dict (see `gearcam.base.facts.Facts`)."""
     cutter, bends = gear.toothing.cutter, bends_of(gear.pair.rolling.tracks[gear.wheel - 1])
     pinion = cutter.kind == "pinion"
     return {

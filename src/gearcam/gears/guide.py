@@ -14,7 +14,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from gearcam.display import Brief
+from gearcam.base.display import Brief
 from gearcam.laws.ratio.base import RatioLaw
 from gearcam.numeric.arrays import Array, Plane
 

@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gearcam.display import Brief
+from gearcam.base.display import Brief
 from gearcam.gears.flank import Toothing
 from gearcam.gears.guide import Guide
 from gearcam.gears.track import Frames, Track, Wheel

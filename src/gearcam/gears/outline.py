@@ -8,8 +8,10 @@ from functools import cached_property
 
 import numpy as np
 
-from gearcam.display import Brief
-from gearcam.errors import InfeasibleError
+from gearcam.base.display import Brief
+from gearcam.base.errors import InfeasibleError
+from gearcam.base.numerals import shown
+from gearcam.base.tolerances import Tolerances
 from gearcam.gears.corners import highest_corners
 from gearcam.gears.ends import body_runs, cut_ends
 from gearcam.gears.flank import Curve, Rows, Toothing, WheelCurves
@@ -19,12 +21,10 @@ from gearcam.gears.spec import RingSpec
 from gearcam.gears.tips import TipEnds, feet, find_tips, flank_crossings, near
 from gearcam.gears.undercut import Undercut, find_cusps
 from gearcam.laws.ratio.span import angle_text
-from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array, Ints, Mask
 from gearcam.numeric.bulges import as_pairs
 from gearcam.numeric.contour import Contour, Run
 from gearcam.numeric.sampling import MOST, Sampler
-from gearcam.tolerances import Tolerances
 
 _NO_MATE = 3.0
 """Reach in pitches beyond that of any flank."""

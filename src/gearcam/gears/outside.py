@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from gearcam.errors import InfeasibleError, Way
+from gearcam.base.errors import InfeasibleError, Way
 from gearcam.gears.flank import Curve, Rows, WheelCurves
 from gearcam.gears.pair import Gear
 from gearcam.numeric.bulges import as_pairs

@@ -8,9 +8,11 @@ from functools import cached_property
 
 import numpy as np
 
-from gearcam.display import Brief, Displayed
-from gearcam.errors import InfeasibleError, Way
-from gearcam.facts import Facts
+from gearcam.base.display import Brief, Displayed, renderer
+from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.facts import Facts
+from gearcam.base.numerals import shown
+from gearcam.base.tolerances import Tolerances
 from gearcam.gears.bound import demand_cutters
 from gearcam.gears.cutter import choose_cutter, ring_pinions
 from gearcam.gears.demands import demand_clearance, demand_shift, settle_rack
@@ -23,12 +25,10 @@ from gearcam.gears.spec import BasicRack, Finish, PairSpec, Rack, RingSpec
 from gearcam.gears.track import Wheel
 from gearcam.laws.ratio.base import RatioLaw
 from gearcam.laws.ratio.span import RACK, RING, WHEEL, Lobes
-from gearcam.numerals import shown
 from gearcam.numeric.arguments import whole
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.bulges import as_pairs
 from gearcam.numeric.columns import Columns
-from gearcam.tolerances import Tolerances
 
 FINEST = 1e-9
 """Smallest tolerance of an outline, in modules: rounding hides finer ones."""
@@ -213,8 +213,6 @@ class Gear(Brief, Displayed):
 
         A ring is drawn with one module of metal around its teeth.
         """
-        from gearcam.markup import outlines
-
         track = self.toothing.track
         centrode = self.centrode(
             np.linspace(0.0, float(track.angle(self.toothing.length)), PICTURED)
@@ -223,7 +221,7 @@ class Gear(Brief, Displayed):
         if self.hollow:
             spokes = np.exp(1j * np.linspace(0.0, 2.0 * np.pi, PICTURED))
             edges.append((self.largest_radius + self.pair.module) * as_pairs(spokes))
-        return outlines(
+        return renderer().outlines(
             self.facts.headline,
             edges,
             [centrode],

@@ -17,7 +17,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearcam.display import Brief
+from gearcam.base.display import Brief
+from gearcam.base.tolerances import Tolerances
 from gearcam.gears.guide import Guide, RingShaft, Shaft, Slideway
 from gearcam.gears.track import ArcLength, Frames, Track, Wheel
 from gearcam.laws.ratio.base import RatioLaw
@@ -26,7 +27,6 @@ from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.chebyshev import expand
 from gearcam.numeric.piecewise import extremes_of_each
 from gearcam.numeric.quadrature import missed
-from gearcam.tolerances import Tolerances
 
 _MARGIN = 2.0
 """Pitches beyond an open pair's ends over which its last teeth and fillets are formed."""

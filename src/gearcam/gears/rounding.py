@@ -16,12 +16,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gearcam.errors import InfeasibleError
+from gearcam.base.errors import InfeasibleError
+from gearcam.base.numerals import shown
 from gearcam.gears.flank import Curve, Rows, Toothing
 from gearcam.gears.spaces import join, select
 from gearcam.gears.tips import ROUGH, TipEnds, cross, flank_at, flank_crossings, near
 from gearcam.gears.track import Frames
-from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.roots import largest_fitting
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from gearcam.display import Brief
-from gearcam.quantities import ANGLE, COUNT, LENGTH, NUMBER, TEXT, param
+from gearcam.base.display import Brief
+from gearcam.base.quantities import ANGLE, COUNT, LENGTH, NUMBER, TEXT, param
 
 RIM = 2.7
 """Default rim beyond the roots, in modules: 1.2 tooth depths."""

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from gearcam.errors import InfeasibleError, Way
+from gearcam.base.errors import InfeasibleError, Way
 from gearcam.gears.pair import GearPair
 from gearcam.gears.spec import StepsSpec
 

@@ -8,20 +8,20 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from gearcam.display import Brief
-from gearcam.findings import ROUNDING, check
+from gearcam.base.display import Brief
+from gearcam.base.findings import ROUNDING, check
+from gearcam.base.quantities import NUMBER, Param
 from gearcam.gears.contact import COAST, DRIVE, FlankPairs, flank_pairs
 from gearcam.gears.pair import Gear, GearPair
 from gearcam.gears.tip_pass import TipPass, tip_pass
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.piecewise import extremes
-from gearcam.quantities import NUMBER, Param
 
 KIND = "teeth"
 """Registered checks of a pair's teeth and centrodes."""
 
 pair_check = partial(check, kind=KIND)
-"""Decorator that registers a check (see `gearcam.findings.check`)."""
+"""Decorator that registers a check (see `gearcam.base.findings.check`)."""
 
 CONTACT_RATIO = ("contact_ratio", Param(NUMBER, ge=1, le=3, doc="least contact ratio"), 1.1)
 """Limit of the contact ratio, shared by several checks."""

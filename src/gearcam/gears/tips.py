@@ -9,7 +9,7 @@ from functools import partial
 
 import numpy as np
 
-from gearcam.display import Brief
+from gearcam.base.display import Brief
 from gearcam.gears.flank import Toothing
 from gearcam.gears.track import Frames
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane

@@ -25,7 +25,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearcam.display import Brief
+from gearcam.base.display import Brief
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.chebyshev import Expansion
 from gearcam.numeric.hermite import hermite_cubic

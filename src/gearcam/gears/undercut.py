@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gearcam.display import Brief
+from gearcam.base.display import Brief
 from gearcam.gears.flank import Toothing
 from gearcam.numeric.arrays import Array, Ints
 from gearcam.numeric.roots import bracketed_root

@@ -16,8 +16,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from gearcam.quantities import described
-from gearcam.registry import classes_in, lazy_classes
+from gearcam.base.quantities import described
+from gearcam.base.registry import classes_in, lazy_classes
 
 if TYPE_CHECKING:
     from gearcam.laws.ratio.centrodes import EccentricCircle, Limacon, Lobed, LogSpiral

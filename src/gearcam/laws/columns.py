@@ -11,10 +11,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from gearcam.display import Brief
-from gearcam.numerals import shown
+from gearcam.base.display import Brief
+from gearcam.base.numerals import shown
+from gearcam.base.reading import UnreadableError, read
 from gearcam.numeric.arrays import Array
-from gearcam.reading import UnreadableError, read
 
 MOST_ROWS: Final = 20000
 """Largest number of rows of a table."""

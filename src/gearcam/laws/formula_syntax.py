@@ -25,8 +25,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from gearcam.errors import GearcamError
-from gearcam.numerals import shown
+from gearcam.base.errors import GearcamError
+from gearcam.base.numerals import shown
 
 VARIABLE: Final = "phi1"
 """The angle of the driver, rad."""

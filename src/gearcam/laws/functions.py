@@ -18,8 +18,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.errors import InfeasibleError
-from gearcam.numerals import shown
+from gearcam.base.errors import InfeasibleError
+from gearcam.base.numerals import shown
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.chebyshev import Expansion, NotSmoothError, expand
 from gearcam.numeric.jets import Jet, composed, harmonics

@@ -15,7 +15,7 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.display import Brief
+from gearcam.base.display import Brief
 from gearcam.laws.displacement import Deviation
 from gearcam.laws.phases_of_lift import (
     TURN,

@@ -13,7 +13,10 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.errors import InfeasibleError
+from gearcam.base.errors import InfeasibleError
+from gearcam.base.numerals import shown
+from gearcam.base.quantities import TEXT, param
+from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import TYPED
 from gearcam.laws.formula import (
     Axis,
@@ -27,10 +30,7 @@ from gearcam.laws.phases_of_lift import LONGEST, TURN
 from gearcam.laws.program import Program
 from gearcam.laws.rows_of_lift import stretches_of
 from gearcam.laws.smoothness import demand_smooth
-from gearcam.numerals import shown
 from gearcam.numeric.piecewise import Piece, piecewise
-from gearcam.quantities import TEXT, param
-from gearcam.tolerances import Tolerances
 
 _VARIABLE: Final = "theta"
 _WHERE: Final = "motion.lift"

@@ -14,16 +14,16 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.errors import InfeasibleError
+from gearcam.base.errors import InfeasibleError
+from gearcam.base.numerals import shown
+from gearcam.base.quantities import ANGLE, LENGTH, TEXT, Param, Row, param
+from gearcam.base.tolerances import Tolerances
 from gearcam.laws.columns import NARROWEST_STEP, ColumnsError, FromFile, close_angles, degrees
 from gearcam.laws.entry import TYPED
 from gearcam.laws.phases_of_lift import LONGEST, TURN
 from gearcam.laws.program import Program
 from gearcam.laws.rows_of_lift import program_of_rows
-from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array
-from gearcam.quantities import ANGLE, LENGTH, TEXT, Param, Row, param
-from gearcam.tolerances import Tolerances
 
 Problem = tuple[str, int | None, str, str]
 

@@ -22,9 +22,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, Literal
 
-from gearcam.display import Brief
-from gearcam.numerals import shown
-from gearcam.quantities import (
+from gearcam.base.display import Brief
+from gearcam.base.numerals import shown
+from gearcam.base.quantities import (
     ANGLE,
     ANGLE_PER_RAD,
     ANGLE_PER_RAD2,

@@ -17,8 +17,9 @@ from typing import Any
 
 import numpy as np
 
-from gearcam.display import Brief
-from gearcam.errors import InfeasibleError
+from gearcam.base.display import Brief
+from gearcam.base.errors import InfeasibleError
+from gearcam.base.tolerances import Tolerances
 from gearcam.laws.displacement import EXACT, JUMP, Deviation, Displacement, Jump
 from gearcam.laws.phases_of_lift import (
     TURN,
@@ -38,7 +39,6 @@ from gearcam.numeric.arrays import Array
 from gearcam.numeric.hermite import hermite_quintics
 from gearcam.numeric.jets import Jet, Value, polynomial
 from gearcam.numeric.piecewise import Piece, Piecewise, extremes_among, piecewise, places_between
-from gearcam.tolerances import Tolerances
 
 _INNER = slice(5, -5, 6)
 """Number of places that give the size of derivatives well enough to judge jumps."""

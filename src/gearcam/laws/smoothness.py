@@ -7,13 +7,13 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.errors import InfeasibleError
+from gearcam.base.errors import InfeasibleError
+from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import NO_JUMPS
 from gearcam.laws.formula import Axis, Given
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.chebyshev import NotSmoothError, expand
 from gearcam.numeric.jets import Jet
-from gearcam.tolerances import Tolerances
 
 _ODD_SHARE: Final = 0.3819660112501052
 """Where the search for corners is cut first: a corner at a round place then lies inside a part."""

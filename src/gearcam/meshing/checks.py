@@ -10,14 +10,14 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from gearcam.findings import Remark, check
+from gearcam.base.findings import Remark, check
+from gearcam.base.numerals import shown
+from gearcam.base.quantities import NUMBER, Param
 from gearcam.gears.contact import DRIVE
 from gearcam.meshing import drive_checks
 from gearcam.meshing.settings import KIND
 from gearcam.meshing.study import Meshing, explained
-from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array, Mask
-from gearcam.quantities import NUMBER, Param
 
 _CLEARANCE = (
     "tip_clearance",

@@ -10,13 +10,13 @@ import math
 from collections.abc import Iterator
 from typing import Protocol
 
-from gearcam.findings import Remark, Severity, check
+from gearcam.base.findings import Remark, Severity, check
+from gearcam.base.numerals import shown
 from gearcam.gears.contact import DRIVE, FlankPairs
 from gearcam.gears.subject import CONTACT_RATIO
 from gearcam.gears.subject import KIND as PAIR_KIND
 from gearcam.meshing.non_contact import NonContact, non_contact
 from gearcam.meshing.settings import KIND
-from gearcam.numerals import shown
 
 _SHOWN = 3
 """Largest number of driver-angle ranges that a finding lists."""

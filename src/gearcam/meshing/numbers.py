@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from gearcam.facts import extent
+from gearcam.base.facts import extent
+from gearcam.base.numerals import shown
 from gearcam.gears.contact import DRIVE
 from gearcam.meshing.study import Meshing
-from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array, Ints, Mask
 
 LEAST_STEPS = 8

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from gearcam.errors import InfeasibleError
+from gearcam.base.errors import InfeasibleError
+from gearcam.base.numerals import shown
 from gearcam.gears.contact import FlankPairs
 from gearcam.meshing.settings import MeshingSpec
-from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array
 
 _BESIDE = 0.15

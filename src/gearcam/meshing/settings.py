@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from gearcam.display import Brief
-from gearcam.quantities import ANGLE, COUNT, LENGTH, param
+from gearcam.base.display import Brief
+from gearcam.base.quantities import ANGLE, COUNT, LENGTH, param
 
 KIND = "meshing"
 """Registered checks of a study."""

@@ -17,7 +17,8 @@ from typing import Any
 
 import numpy as np
 
-from gearcam.errors import ABOVE, InfeasibleError
+from gearcam.base.errors import ABOVE, InfeasibleError
+from gearcam.base.numerals import shown
 from gearcam.gears.contact import COAST, DRIVE, FlankPairs, flank_pairs
 from gearcam.gears.outline import Outline
 from gearcam.gears.pair import FINEST, Gear, GearPair
@@ -29,7 +30,6 @@ from gearcam.meshing.patches import patches
 from gearcam.meshing.phases import phases, stretch
 from gearcam.meshing.rows import Block, columns_of, on_side
 from gearcam.meshing.settings import MeshingSpec
-from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array, Mask
 
 Progress = Callable[[str, int, int], None]

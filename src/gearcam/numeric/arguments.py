@@ -9,8 +9,8 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearcam.errors import DesignError, Problem
-from gearcam.numerals import shown
+from gearcam.base.errors import DesignError, Problem
+from gearcam.base.numerals import shown
 from gearcam.numeric.arrays import Array
 
 _SHOWN = 60

@@ -14,8 +14,8 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearcam.display import Brief
-from gearcam.errors import GearcamError
+from gearcam.base.display import Brief
+from gearcam.base.errors import GearcamError
 from gearcam.numeric.arrays import Array
 
 _DEGREE = 8

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gearcam.display import line
+from gearcam.base.display import line
 from gearcam.numeric.arrays import Array
 
 

@@ -11,7 +11,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from gearcam.display import Brief
+from gearcam.base.display import Brief
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.bulges import as_pairs
 from gearcam.numeric.contour import Run

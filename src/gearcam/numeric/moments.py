@@ -15,7 +15,7 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.display import Brief
+from gearcam.base.display import Brief
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.bulges import as_complex, bulge_pieces, on_arcs
 from gearcam.numeric.hermite import hermite_arms, hermite_cubic

@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearcam.display import Brief
+from gearcam.base.display import Brief
 from gearcam.numeric.arrays import Array, Ints
 from gearcam.numeric.chebyshev import FIRST_CUTS, Expansion, expand
 from gearcam.numeric.jets import Jet

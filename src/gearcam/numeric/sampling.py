@@ -15,9 +15,9 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from gearcam.display import Brief
-from gearcam.errors import ABOVE, InfeasibleError, Way
-from gearcam.numerals import shown
+from gearcam.base.display import Brief
+from gearcam.base.errors import ABOVE, InfeasibleError, Way
+from gearcam.base.numerals import shown
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.dense import Dense, sags
 

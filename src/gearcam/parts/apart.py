@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from gearcam.errors import InfeasibleError, Way
+from gearcam.base.errors import InfeasibleError, Way
 from gearcam.parts.blank import WheelBlank
 from gearcam.parts.body import Opening
 from gearcam.parts.shapes import Circle

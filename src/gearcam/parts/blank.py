@@ -19,9 +19,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, fields, make_dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar, Final, get_type_hints
 
-from gearcam.display import Brief
-from gearcam.numerals import shown
-from gearcam.quantities import ANGLE, COUNT, DENSITY, LENGTH, TEXT, param, params_of
+from gearcam.base.display import Brief
+from gearcam.base.numerals import shown
+from gearcam.base.quantities import ANGLE, COUNT, DENSITY, LENGTH, TEXT, param, params_of
 
 KIND: Final = "parts"
 """The checks of parts."""

@@ -21,8 +21,8 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol, cast
 
 import numpy as np
 
-from gearcam.display import Brief, Displayed
-from gearcam.facts import Facts
+from gearcam.base.display import Brief, Displayed, renderer
+from gearcam.base.facts import Facts
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.moments import Moments
@@ -236,13 +236,13 @@ class Part(Brief, Displayed):
 
     def picture(self) -> str:
         """Return a drawing of the (lowest) outline with its openings, SVG, in the part's frame."""
-        from gearcam.markup import outlines
-
         step = self.steps[0]
         edges = [step.edge, *(opening.shape for opening in step.openings)]
         for pocket in self.pockets:
             edges += [pocket.edge, *(island.shape for island in pocket.openings)]
-        return outlines(self.facts.headline, [edge.points(self.tolerance) for edge in edges])
+        return renderer().outlines(
+            self.facts.headline, [edge.points(self.tolerance) for edge in edges]
+        )
 
     @property
     def outline(self) -> Array:

@@ -11,14 +11,14 @@ from functools import cached_property
 from math import inf
 from typing import Any
 
-from gearcam.display import Brief
-from gearcam.findings import ROUNDING, Remark, check
-from gearcam.numerals import decimal, shown
+from gearcam.base.display import Brief
+from gearcam.base.findings import ROUNDING, Remark, check
+from gearcam.base.numerals import decimal, shown
+from gearcam.base.quantities import LENGTH, Param
 from gearcam.parts.blank import KIND
 from gearcam.parts.body import Part
 from gearcam.parts.shapes import Circle
 from gearcam.parts.tools import ToolLimits, tool_limits
-from gearcam.quantities import LENGTH, Param
 
 _FINE = 0.01
 """Sagitta, in tolerances, of the chords of round outsides from which walls are measured."""

@@ -11,14 +11,14 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.errors import Way
-from gearcam.numerals import shown
+from gearcam.base.errors import Way
+from gearcam.base.numerals import shown
+from gearcam.base.quantities import LENGTH, params_of
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank
 from gearcam.parts.body import Hub, Mark, Part, Recess
 from gearcam.parts.openings import Workpiece, openings, solid_of
 from gearcam.parts.shapes import Circle
-from gearcam.quantities import LENGTH, params_of
 
 _LEAST: Final = 1e-5
 """Smallest length, as a share of a part's reach. Meshes have single precision, 6e-8 of the reach:

@@ -11,8 +11,8 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.errors import InfeasibleError, Way
-from gearcam.numerals import shown
+from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.numerals import shown
 from gearcam.parts.body import Mark
 
 MARK_DIAMETER: Final = 0.4

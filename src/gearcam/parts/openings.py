@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.errors import InfeasibleError, Way
+from gearcam.base.errors import InfeasibleError, Way
 from gearcam.numeric.contour import Contour
 from gearcam.parts.apart import demand_apart
 from gearcam.parts.blank import WheelBlank

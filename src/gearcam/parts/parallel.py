@@ -18,8 +18,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from gearcam.errors import InfeasibleError, Way
-from gearcam.numerals import shown
+from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.numerals import shown
 from gearcam.numeric.arrays import Mask, Plane
 from gearcam.numeric.bulges import as_complex, as_pairs
 from gearcam.numeric.contour import Contour, Run

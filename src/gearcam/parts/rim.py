@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.errors import Way
-from gearcam.numerals import rounded_down, shown
+from gearcam.base.errors import Way
+from gearcam.base.numerals import rounded_down, shown
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank

@@ -14,7 +14,7 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.display import Brief
+from gearcam.base.display import Brief
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.bulges import (
     arc_centers,

@@ -19,7 +19,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from gearcam.display import Brief
+from gearcam.base.display import Brief
 from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.bulges import as_complex
 from gearcam.numeric.contour import Contour

@@ -12,10 +12,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from gearcam import drawings
-from gearcam.charts import Chart
 from gearcam.numeric.arrays import Array, Plane
-from gearcam.scenes import SAGITTA, ContactPoints, MovingBody, Scene, extent
+from gearcam.pictures import drawings
+from gearcam.pictures.charts import Chart
+from gearcam.pictures.scenes import SAGITTA, ContactPoints, MovingBody, Scene, extent
 
 _MM: Final = 4
 """Decimals of lengths, mm: a tenth of a micrometre."""

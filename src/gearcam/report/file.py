@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 if TYPE_CHECKING:
     from gearcam.export.shared import Files
-    from gearcam.result import Result
+    from gearcam.results.result import Result
 
 _FRAME: Final = "border:0;width:100%;height:min(85vh,760px);resize:vertical"
 """Style of a page in a notebook: parts and first charts in sight, the rest by scrolling."""

@@ -14,17 +14,17 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
-from gearcam.advice import Remedies, remedies
+from gearcam.base.numerals import shown, size_of
 from gearcam.designs.kind import KINDS
-from gearcam.numerals import shown, size_of
 from gearcam.report.data import chart_data, scene_data
+from gearcam.results.advice import Remedies, remedies
 
 if TYPE_CHECKING:
     from jinja2 import Environment
 
-    from gearcam.facts import Facts
-    from gearcam.findings import Finding
-    from gearcam.result import Result
+    from gearcam.base.facts import Facts
+    from gearcam.base.findings import Finding
+    from gearcam.results.result import Result
 
 PAGE: Final = "report.html"
 """File name."""

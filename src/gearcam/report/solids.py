@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
+from gearcam.base.errors import GearcamError
 from gearcam.designs.kind import KINDS
-from gearcam.errors import GearcamError
 
 if TYPE_CHECKING:
-    from gearcam.result import Result
+    from gearcam.results.result import Result
 
 CHORDS: Final = 0.02
 """Chord error of the solids shown, mm: finer ones look the same and make the page heavier."""

@@ -15,9 +15,9 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.drawings import Feature, Path, Shape, chains
-from gearcam.numerals import decimal
+from gearcam.base.numerals import decimal
 from gearcam.numeric.arrays import Array, Ints, Mask
+from gearcam.pictures.drawings import Feature, Path, Shape, chains
 from gearcam.sheets.sheet import (
     ARROW_ROOM,
     CENTERLINE,

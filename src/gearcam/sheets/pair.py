@@ -13,9 +13,9 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.drawings import CENTER, OUTLINE, Circle, Drawing, reach
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.contour import Contour
+from gearcam.pictures.drawings import CENTER, OUTLINE, Circle, Drawing, reach
 from gearcam.sheets.board import FIRST_LEVEL, LEVEL, OVERHANG, Board
 from gearcam.sheets.extent import true_points
 from gearcam.sheets.paper import begin, finish
@@ -46,7 +46,7 @@ def pair_sheet(
     Parameters
     ----------
     drawing : Drawing
-        The pair with its centrodes (see `gearcam.drawings.pair_drawing`).
+        The pair with its centrodes (see `gearcam.pictures.drawings.pair_drawing`).
     center_distance : float, mm
         Position of the second shaft on x, with the first at 0: negative for a ring; 0 for a rack.
     facts : mapping of str to str

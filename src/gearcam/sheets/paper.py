@@ -16,10 +16,10 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearcam.drawings import Feature, Path
-from gearcam.errors import InfeasibleError
-from gearcam.numerals import shown
+from gearcam.base.errors import InfeasibleError
+from gearcam.base.numerals import shown
 from gearcam.numeric.arrays import Array
+from gearcam.pictures.drawings import Feature, Path
 from gearcam.sheets.board import Board
 from gearcam.sheets.sheet import FRAME, GLYPH, HEIGHT, Box, Sheet, Text
 

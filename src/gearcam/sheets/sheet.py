@@ -17,10 +17,10 @@ from typing import Final, Literal
 
 import numpy as np
 
-from gearcam.display import Brief
-from gearcam.drawings import OUTER_WALL, OUTLINE, THROUGH, Feature
-from gearcam.numerals import decimal
+from gearcam.base.display import Brief
+from gearcam.base.numerals import decimal
 from gearcam.numeric.arrays import Array
+from gearcam.pictures.drawings import OUTER_WALL, OUTLINE, THROUGH, Feature
 
 Box = tuple[Array, Array]
 """Lower left and upper right corner."""

@@ -19,12 +19,12 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.drawings import BORE, HOLE, INNER, SLOT, part_features, placed, reach
-from gearcam.numerals import decimal
+from gearcam.base.numerals import decimal
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.bulges import as_complex
 from gearcam.parts.body import Edge, Hub, Part
 from gearcam.parts.shapes import Circle, Loop
+from gearcam.pictures.drawings import BORE, HOLE, INNER, SLOT, part_features, placed, reach
 from gearcam.sheets.board import AROUND, CLEAR, FIRST_LEVEL, LEVEL, OVERHANG, TIGHT, Board
 from gearcam.sheets.extent import true_points
 from gearcam.sheets.paper import begin, finish

@@ -12,9 +12,9 @@ from concurrent.futures import ProcessPoolExecutor
 from multiprocessing import active_children, get_context
 from typing import Any, Final
 
+from gearcam.base.interrupts import unbroken
 from gearcam.console import complain, say
 from gearcam.designs.reader import content_of
-from gearcam.interrupts import unbroken
 from gearcam.view.server import Server
 from gearcam.view.session import Session, State
 from gearcam.view.watch import PAUSE, Watch

@@ -19,8 +19,8 @@ from pathlib import Path
 from string import Template
 from typing import Any, Final
 
+from gearcam.base.errors import DesignError, Problem
 from gearcam.console import complain, fault_text
-from gearcam.errors import DesignError, Problem
 from gearcam.report.page import page
 from gearcam.view.session import RequestError, Session
 

@@ -12,8 +12,8 @@ from functools import partial
 from textwrap import indent
 from typing import Any, Final, TypeVar
 
+from gearcam.base.errors import DesignError, WriteError
 from gearcam.designs.reader import content_of, decoded, loads
-from gearcam.errors import DesignError, WriteError
 from gearcam.export.write import rewrite
 from gearcam.view import work
 from gearcam.view.numbers import numbers, replaced

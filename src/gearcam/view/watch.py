@@ -9,11 +9,11 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Final
 
+from gearcam.base.errors import DesignError
+from gearcam.base.reading import UnreadableError, read
 from gearcam.designs import reader
 from gearcam.designs.reader import decoded, document_in
-from gearcam.errors import DesignError
 from gearcam.laws import columns
-from gearcam.reading import UnreadableError, read
 
 PAUSE: Final = 0.1
 """Time between two looks, s."""

@@ -15,11 +15,11 @@ from multiprocessing import connection, parent_process
 from typing import Any, Final
 
 from gearcam import build, remedies
+from gearcam.base.errors import DesignError, GearcamError, InfeasibleError
+from gearcam.base.interrupts import SIGNALS
 from gearcam.console import fault_text, quieten, refusal_text, remedy_lines
 from gearcam.designs.design import Design
 from gearcam.designs.reader import content_of, decoded, loads
-from gearcam.errors import DesignError, GearcamError, InfeasibleError
-from gearcam.interrupts import SIGNALS
 from gearcam.numeric.memory import keep_freed_memory
 from gearcam.report.page import document, draft
 from gearcam.view.numbers import Values, equals, numbers, replaced, sliders, tidy

@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from gearcam.errors import InfeasibleError, Way
-from gearcam.findings import Finding
-from gearcam.result import Result
+from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.findings import Finding
+from gearcam.results.result import Result
 
 
 class Spacer(Result):

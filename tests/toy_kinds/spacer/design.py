@@ -3,11 +3,11 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from functools import partial
 
+from gearcam.base.quantities import LENGTH, param
 from gearcam.designs.design import Design
 from gearcam.designs.kind import DesignKind
 from gearcam.designs.outputs import OutputSpec, files_param
 from gearcam.designs.table import table_of
-from gearcam.quantities import LENGTH, param
 
 FORMATS = ("csv", "outline-txt")
 

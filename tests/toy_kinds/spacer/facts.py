@@ -3,7 +3,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from gearcam.facts import Fact, Facts
+from gearcam.base.facts import Fact, Facts
 
 
 def facts(result: Any, measured: Mapping[str, Any]) -> Facts:

@@ -18,9 +18,9 @@ import pytest
 
 import gearcam
 from gearcam import kinds
+from gearcam.base.display import Brief, line, word
 from gearcam.console import all_lines
 from gearcam.designs import loads
-from gearcam.display import Brief, line, word
 from gearcam.laws.ratio.ellipse import Ellipse
 from helpers_pairs import PROFILES, job, profile
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import gearcam
-from gearcam.facts import Fact, Facts, extent
+from gearcam.base.facts import Fact, Facts, extent
 from helpers_pairs import profile
 
 TREE = {

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import pytest
 
 import gearcam as gc
-from gearcam.quantities import ANGLE, COUNT, LENGTH, Param, described, param
+from gearcam.base.quantities import ANGLE, COUNT, LENGTH, Param, described, param
 
 MADE = {
     f"{home.__name__}.{name}": getattr(home, name)

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from arch import rules
+from gearcam.base.findings import Finding
+from gearcam.base.numerals import decimal, exact, rounded_down, settled, shown, tree
 from gearcam.export.table import table_bytes
-from gearcam.findings import Finding
-from gearcam.numerals import decimal, exact, rounded_down, settled, shown, tree
 
 
 @pytest.mark.parametrize("degrees", [60.0, 0.1, 22.5, 359.99, 123.456, 7e-3, -60.0, 1e5])

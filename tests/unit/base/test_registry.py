@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from gearcam.registry import Registry
+from gearcam.base.registry import Registry
 
 HOME = """
 from registry_of_sizes import SIZES, Size

@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 
 import gearcam.cams.checks  # noqa: F401  (registers the checks)
+from gearcam.base.findings import CHECKS, Finding, run_checks
+from gearcam.base.tolerances import DEFAULT
 from gearcam.cams.disc import DiscCam, make_cam
 from gearcam.cams.spec import KIND
-from gearcam.findings import CHECKS, Finding, run_checks
 from gearcam.laws.motion_table import MotionTable
-from gearcam.tolerances import DEFAULT
 from helpers_cams import back, cam, dwell, mechanism, program, rise, there_and_back
 
 STEEP = (60.0, 90.0, 60.0, 150.0)

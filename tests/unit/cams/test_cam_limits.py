@@ -12,14 +12,14 @@ import numpy as np
 import pytest
 
 import gearcam
+from gearcam.base.errors import InfeasibleError
+from gearcam.base.tolerances import DEFAULT
 from gearcam.cams.checks import pressure_angle
 from gearcam.cams.disc import make_cam
 from gearcam.cams.groove import make_groove
-from gearcam.errors import InfeasibleError
 from gearcam.laws.motion_formula import MotionFormula
 from gearcam.laws.phases_of_lift import Phase, SegmentPhase
 from gearcam.laws.program import Program
-from gearcam.tolerances import DEFAULT
 from helpers_cams import back, cam, dwell, mechanism, program, rise, there_and_back
 
 BESIDE = 1e-9

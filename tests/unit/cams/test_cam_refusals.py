@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 import gearcam
+from gearcam.base.errors import InfeasibleError
 from gearcam.cams.disc import make_cam
 from gearcam.cams.mechanism import make_mechanism
 from gearcam.cams.spec import CamSpec, FollowerSpec, size_problems
-from gearcam.errors import InfeasibleError
 from gearcam.laws.phases_of_lift import (
     DwellPhase,
     Phase,

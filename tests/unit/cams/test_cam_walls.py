@@ -7,11 +7,11 @@ import math
 import pytest
 import shapely
 
+from gearcam.base.errors import InfeasibleError
 from gearcam.cams.disc import make_cam
 from gearcam.cams.mechanism import make_mechanism
 from gearcam.cams.spec import CamSpec, FollowerSpec
 from gearcam.cams.wall import Wall
-from gearcam.errors import InfeasibleError
 from helpers_cams import back, mechanism, program, rise, there_and_back
 
 RADIUS = 6.0

@@ -10,15 +10,15 @@ import numpy as np
 import pytest
 import shapely
 
+from gearcam.base.findings import run_checks
+from gearcam.base.tolerances import DEFAULT
 from gearcam.cams.checks import KIND
 from gearcam.cams.follow import follow
 from gearcam.cams.groove import GrooveCam, make_groove
 from gearcam.cams.lost import resting
 from gearcam.cams.lost_motion import Rest
-from gearcam.findings import run_checks
 from gearcam.laws.motion_formula import MotionFormula
 from gearcam.numeric.jets import Jet
-from gearcam.tolerances import DEFAULT
 from helpers_cams import angles, back, mechanism, program, rise, there_and_back
 from witness.roller_bands import band, lift
 

@@ -7,11 +7,11 @@ import math
 import mpmath
 import pytest
 
+from gearcam.base.errors import InfeasibleError
 from gearcam.cams.lost import lost_lift, resting
 from gearcam.cams.mechanism import make_mechanism
 from gearcam.cams.spec import CamSpec, FollowerSpec
 from gearcam.cams.trim import Corner
-from gearcam.errors import InfeasibleError
 from gearcam.numeric.jets import Jet
 from helpers_cams import mechanism, there_and_back
 

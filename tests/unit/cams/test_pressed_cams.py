@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 
 import gearcam
+from gearcam.base.findings import Finding, run_checks
 from gearcam.cams.cam import Cam
 from gearcam.cams.checks import JAMMING
 from gearcam.cams.disc import make_cam
 from gearcam.cams.groove import make_groove
 from gearcam.cams.spec import KIND
-from gearcam.findings import Finding, run_checks
 from helpers_cams import mechanism, there_and_back
 from helpers_documents import followed, job_of
 from helpers_remedies import ARM, FACE, ROLLER, cam, plate

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 from shapely import Polygon
 
+from gearcam.base.errors import InfeasibleError
 from gearcam.cams.disc import DiscCam, make_cam
 from gearcam.cams.follow import follow
 from gearcam.cams.mechanism import make_mechanism
 from gearcam.cams.spec import CamSpec, FollowerSpec
 from gearcam.cams.wall import OVERSAMPLING
-from gearcam.errors import InfeasibleError
 from gearcam.kinds.cam.accuracy import error_rows
 from gearcam.kinds.cam.follow import followed
 from gearcam.numeric.moments import curve_moments

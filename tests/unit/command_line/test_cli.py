@@ -13,13 +13,13 @@ from typing import Any, ClassVar
 
 import pytest
 
-from gearcam.advice import Remedies, Remedy
+from gearcam.base.errors import InfeasibleError, WriteError
+from gearcam.base.facts import Fact, Facts
+from gearcam.base.findings import Finding
 from gearcam.cli import main
 from gearcam.designs import KINDS, load
-from gearcam.errors import InfeasibleError, WriteError
-from gearcam.facts import Fact, Facts
-from gearcam.findings import Finding
 from gearcam.kinds.gear_pair.design import GearPairDesign
+from gearcam.results.advice import Remedies, Remedy
 
 GOOD = """\
 kind = "gear-pair"

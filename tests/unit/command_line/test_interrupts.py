@@ -18,7 +18,7 @@ from typing import Any
 import pytest
 
 import helpers_interrupts
-from gearcam.interrupts import SIGNALS, interruptible, unbroken
+from gearcam.base.interrupts import SIGNALS, interruptible, unbroken
 from gearcam.view.command import end_at_once
 from helpers_interrupts import AFTER, BEFORE, CASES, EVERY, PAIR
 

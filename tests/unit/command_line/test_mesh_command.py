@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 
 import gearcam
+from gearcam.base.errors import DesignError
 from gearcam.cli import main
 from gearcam.designs import loads
-from gearcam.errors import DesignError
 from gearcam.gears.contact import FlankPairs
 from gearcam.kinds.gear_pair import build as gear_pair
 from gearcam.kinds.gear_pair.commands import with_meshing

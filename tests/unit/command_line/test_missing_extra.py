@@ -11,7 +11,7 @@ import pytest
 
 import gearcam as gc
 from gearcam.cli import GOOD, WRONG, main
-from gearcam.solids import LIBRARIES
+from gearcam.parts.solids import LIBRARIES
 
 ROOT = Path(__file__).parents[3]
 PROFILE = ROOT / "profiles" / "ellipse.toml"

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 import gearcam
+from gearcam.base.errors import DesignError
 from gearcam.cli import main
 from gearcam.compare.page import _over, document, joined
 from gearcam.compare.table import lines, rows
 from gearcam.compare.variants import Variant, settings_of, variants_of
-from gearcam.errors import DesignError
 from helpers_pairs import PROFILES
 
 ELLIPSE = str(PROFILES / "ellipse.toml")

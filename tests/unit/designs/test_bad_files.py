@@ -13,12 +13,12 @@ from types import FrameType
 import pytest
 
 import gearcam
+from gearcam.base.errors import DesignError
+from gearcam.base.reading import UnreadableError, read
 from gearcam.cli import main
 from gearcam.designs import reader
 from gearcam.designs.slips import MOST_LISTED
-from gearcam.errors import DesignError
 from gearcam.laws import columns
-from gearcam.reading import UnreadableError, read
 from helpers_interrupts import PAIR
 
 GOOD = PAIR.format(eccentricity=0.2, bore=8, files='["csv"]')

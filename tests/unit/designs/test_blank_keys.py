@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from gearcam.base.errors import DesignError, Problem
 from gearcam.designs import loads
-from gearcam.errors import DesignError, Problem
 from gearcam.kinds.gear_pair.design import GearPairDesign
 from gearcam.parts.openings import bore as bore_of
 from gearcam.parts.shapes import Loop

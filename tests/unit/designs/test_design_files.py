@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
+from gearcam.base.errors import DesignError, Problem
 from gearcam.designs import load, loads
 from gearcam.designs.template import template
-from gearcam.errors import DesignError, Problem
 from gearcam.gears.spec import Rack
 from gearcam.kinds.gear_pair.design import GearPairDesign, PairOutputSpec
 from gearcam.parts.blank import Blank

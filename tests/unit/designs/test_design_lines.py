@@ -9,10 +9,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from gearcam.base.errors import DesignError, Problem
 from gearcam.designs import load, loads
 from gearcam.designs.lines import line_at, lines_of
 from gearcam.designs.slips import nearest
-from gearcam.errors import DesignError, Problem
 
 GOOD = """\
 kind = "gear-pair"

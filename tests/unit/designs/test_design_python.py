@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from gearcam.base.errors import DesignError
 from gearcam.designs import document_of, loads
-from gearcam.errors import DesignError
 from gearcam.gears.spec import PairSpec
 from gearcam.kinds.gear_pair.design import GearPairDesign, PairOutputSpec
 from gearcam.laws.ratio.ellipse import Ellipse

@@ -15,7 +15,8 @@ import numpy as np
 import pytest
 
 import gearcam
-from gearcam.errors import DesignError, InfeasibleError
+from gearcam.base.errors import DesignError, InfeasibleError
+from gearcam.base.tolerances import DEFAULT
 from gearcam.laws.program import make_program
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.laws.ratio.formula import Formula, RackLaw
@@ -23,7 +24,6 @@ from gearcam.laws.ratio.position import MotionLaw
 from gearcam.laws.ratio.span import ONE_LOBE, Lobes
 from gearcam.laws.rises.formula import FormulaRise
 from gearcam.laws.rises.simple import Cycloidal
-from gearcam.tolerances import DEFAULT
 from helpers_cams import back, dwell, rise
 from helpers_functions import Bent, swing
 

@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 
 import gearcam as gc
+from gearcam.base.quantities import REQUIRED
 from gearcam.cli import main
 from gearcam.designs import KINDS
 from gearcam.designs import template as template_room
 from gearcam.designs.template import template
-from gearcam.quantities import REQUIRED
 
 PROCESSES = [(kind, process) for kind in KINDS for process in ("", *KINDS[kind].processes)]
 FILES = {"": "report", "printing": "stl", "laser": "cut-svg", "wire": "dxf"}

@@ -16,12 +16,12 @@ import pytest
 
 import gearcam
 from arch import rules
+from gearcam.base.tolerances import DEFAULT
 from gearcam.cli import main
 from gearcam.designs import KINDS
 from gearcam.kinds.cam.motion import phase_table, rise_table, turn_tables
 from gearcam.kinds.gear_pair.design import law_table
 from gearcam.laws.ratio.span import Lobes
-from gearcam.tolerances import DEFAULT
 
 PAGES = [rules.ROOT / "README.md", *sorted((rules.ROOT / "docs").glob("*.md"))]
 FENCE = re.compile(r"^```(\w+)\n(.*?)^```$", re.DOTALL | re.MULTILINE)

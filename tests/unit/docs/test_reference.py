@@ -11,13 +11,13 @@ import pytest
 
 import gearcam
 import reference
+from gearcam.base.findings import CHECKS
+from gearcam.base.quantities import REQUIRED
 from gearcam.designs import KINDS
-from gearcam.findings import CHECKS
 from gearcam.kinds.cam.motion import rise_table
 from gearcam.kinds.gear_pair.design import law_table
 from gearcam.laws.ratio.base import LAWS
 from gearcam.laws.rises.base import RISES
-from gearcam.quantities import REQUIRED
 from helpers_pairs import PROFILES
 
 PAGES = reference.pages()

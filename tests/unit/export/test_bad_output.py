@@ -17,9 +17,9 @@ from typing import Any
 import pytest
 
 import gearcam
+from gearcam.base.errors import WriteError
 from gearcam.cli import main
 from gearcam.console import visible
-from gearcam.errors import WriteError
 from gearcam.export import write
 from gearcam.export.write import previous_files, rewrite, write_all, write_new
 from helpers_interrupts import PAIR, state

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from gearcam.errors import WriteError
+from gearcam.base.errors import WriteError
 from gearcam.export.write import is_plain, previous_files, rewrite, write_all
 
 

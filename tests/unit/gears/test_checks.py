@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from mpmath import ellipe
 
-from gearcam.findings import CHECKS, Finding
+from gearcam.base.findings import CHECKS, Finding
 from gearcam.gears.centrode_checks import remote_cutter
 from gearcam.gears.checks import KIND, Subject, undercut
 from gearcam.gears.spec import Rack, RingSpec

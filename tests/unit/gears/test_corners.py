@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import shapely
 
+from gearcam.base.tolerances import DEFAULT
 from gearcam.gears import corners
 from gearcam.gears.corners import highest_corners
 from gearcam.gears.cutter import Cutter
@@ -17,7 +18,6 @@ from gearcam.gears.outline import Outline, build_outline
 from gearcam.gears.tips import find_tips
 from gearcam.laws.ratio.centrodes import LogSpiral
 from gearcam.numeric.arrays import Array, Mask
-from gearcam.tolerances import DEFAULT
 from helpers_pairs import job
 from helpers_rings import CHORDS, random_ring, ring
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import shapely
 
-from gearcam.errors import DesignError, InfeasibleError
+from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.gears.checks import largest_module
 from gearcam.gears.flank import trace
 from gearcam.gears.outline import Outline

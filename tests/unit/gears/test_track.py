@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from numpy.typing import ArrayLike
 
+from gearcam.base.tolerances import DEFAULT
 from gearcam.gears.cutter import choose_cutter
 from gearcam.gears.flank import Toothing
 from gearcam.gears.outline import build_outline
@@ -23,7 +24,6 @@ from gearcam.laws.ratio.span import Lobes
 from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.chebyshev import expand
 from gearcam.numeric.piecewise import extremes
-from gearcam.tolerances import DEFAULT
 
 E, TEETH = 0.3, 30
 

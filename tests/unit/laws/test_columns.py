@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 
 from gearcam import build, load
-from gearcam.errors import InfeasibleError
+from gearcam.base.errors import InfeasibleError
+from gearcam.base.tolerances import DEFAULT
 from gearcam.laws.columns import ColumnsError, FromFile, read_rows, tables_in
 from gearcam.laws.ratio.formula import Formula
 from gearcam.laws.ratio.span import ONE_LOBE
 from gearcam.laws.ratio.table import TableLaw
 from gearcam.laws.rises.points import TableRise
-from gearcam.tolerances import DEFAULT
 
 POINTS = "x,y\n0,0\n0.25,0.125\n0.75,0.875\n1,1\n"
 

@@ -8,7 +8,7 @@ import time
 import numpy as np
 import pytest
 
-from gearcam.errors import GearcamError
+from gearcam.base.errors import GearcamError
 from gearcam.laws.formula_syntax import MAX_LENGTH, MAX_NESTING, NUMPY, FormulaError, parse
 from gearcam.numeric import jets
 from gearcam.numeric.jets import Jet

@@ -10,11 +10,11 @@ import mpmath
 import numpy as np
 import pytest
 
-from gearcam.errors import InfeasibleError
+from gearcam.base.errors import InfeasibleError
+from gearcam.base.tolerances import DEFAULT
 from gearcam.laws.formula import Axis, Functions
 from gearcam.laws.functions import Expanded, expanded
 from gearcam.numeric.jets import Jet
-from gearcam.tolerances import DEFAULT
 
 TURN = 2.0 * math.pi
 CORNER = 2.0

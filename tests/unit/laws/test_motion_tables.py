@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from gearcam.errors import InfeasibleError
+from gearcam.base.errors import InfeasibleError
+from gearcam.base.tolerances import DEFAULT
 from gearcam.laws.motion_table import MotionTable
 from gearcam.laws.program import Program
-from gearcam.tolerances import DEFAULT
 from helpers_cams import back, dwell, program, rise, there_and_back
 
 Array = NDArray[np.float64]

@@ -8,11 +8,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gearcam.errors import InfeasibleError
+from gearcam.base.errors import InfeasibleError
+from gearcam.base.tolerances import DEFAULT
 from gearcam.laws.phases_of_lift import ReturnPhase, RisePhase, SegmentPhase, program_problems
 from gearcam.laws.program import make_program
 from gearcam.laws.rises.base import RISES
-from gearcam.tolerances import DEFAULT
 from helpers_cams import there_and_back
 
 

@@ -8,16 +8,16 @@ from typing import Any
 import pytest
 
 from claims.of_rises import RISE_CLAIMS
+from gearcam.base.errors import InfeasibleError
+from gearcam.base.tolerances import DEFAULT
 from gearcam.designs.table import table_of
 from gearcam.designs.validate import faults_of
-from gearcam.errors import InfeasibleError
 from gearcam.laws.columns import ColumnsError, read_rows
 from gearcam.laws.rises.base import RISES
 from gearcam.laws.rises.formula import FormulaRise
 from gearcam.laws.rises.points import BSplineRise, TableRise
 from gearcam.laws.rises.polynomials import Polynomial
 from gearcam.laws.rises.scca import Scca
-from gearcam.tolerances import DEFAULT
 
 EVEN = (0.0, 0.25, 0.5, 0.75, 1.0)
 

@@ -10,7 +10,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from gearcam.findings import CHECKS, Finding, run_checks
+from gearcam.base.findings import CHECKS, Finding, run_checks
 from gearcam.gears.contact import COAST, DRIVE, flank_pairs
 from gearcam.gears.spec import Rack
 from gearcam.laws.ratio.constant import Constant

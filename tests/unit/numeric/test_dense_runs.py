@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from gearcam.errors import InfeasibleError
+from gearcam.base.errors import InfeasibleError
 from gearcam.gears.flank import trace
 from gearcam.numeric import sampling
 from gearcam.numeric.bulges import as_complex

@@ -10,7 +10,7 @@ import pytest
 import shapely
 
 import gearcam as gc
-from gearcam.errors import InfeasibleError
+from gearcam.base.errors import InfeasibleError
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank

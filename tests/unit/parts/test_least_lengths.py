@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 import gearcam
-from gearcam.errors import InfeasibleError
+from gearcam.base.errors import InfeasibleError
 
 TOLERANCE = 0.002
 """Of chords, mm."""

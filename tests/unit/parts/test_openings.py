@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import shapely
 
-from gearcam.errors import InfeasibleError
+from gearcam.base.errors import InfeasibleError
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank
 from gearcam.parts.body import Mark, Opening, Part

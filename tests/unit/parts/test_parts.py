@@ -8,14 +8,14 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from gearcam.drawings import Circle, Path, pair_drawing, placed, wheel_drawing
-from gearcam.errors import InfeasibleError
+from gearcam.base.errors import InfeasibleError
+from gearcam.base.quantities import params_of
 from gearcam.numeric.contour import Contour, Run
 from gearcam.parts.blank import Blank
 from gearcam.parts.body import Hub, Mark, Opening, Part
 from gearcam.parts.marks import timing_mark
 from gearcam.parts.shapes import Loop
-from gearcam.quantities import params_of
+from gearcam.pictures.drawings import Circle, Path, pair_drawing, placed, wheel_drawing
 from helpers_contour import bore, gear_contour, layers, square_contour
 
 

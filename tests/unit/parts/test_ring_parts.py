@@ -11,7 +11,7 @@ import pytest
 import shapely
 
 import gearcam
-from gearcam.errors import DesignError, InfeasibleError
+from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.gears.spec import Rack, RingSpec, StepsSpec
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.kinds.gear_pair.design import PairOutputSpec

@@ -13,12 +13,12 @@ import pytest
 
 import gearcam
 from arch import rules
-from gearcam.charts import Chart, Limit, Line, MarkedPlace
+from gearcam.base.errors import DesignError, MissingExtraError
 from gearcam.compare.page import joined
 from gearcam.compare.variants import Variant
 from gearcam.designs.reader import loads
-from gearcam.errors import DesignError, MissingExtraError
 from gearcam.numeric.piecewise import with_both_sides
+from gearcam.pictures.charts import Chart, Limit, Line, MarkedPlace
 from helpers_few import few
 
 mpl.use("Agg")

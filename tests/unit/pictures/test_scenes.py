@@ -14,9 +14,9 @@ from shapely import LineString, Point, Polygon
 import gearcam
 from arch import rules
 from gearcam.designs.kind import KINDS
-from gearcam.drawings import Circle, chains
 from gearcam.numeric.contour import Contour
-from gearcam.scenes import PLACES, MovingBody, Scene, extent
+from gearcam.pictures.drawings import Circle, chains
+from gearcam.pictures.scenes import PLACES, MovingBody, Scene, extent
 
 PROFILES = {path.stem: path for path in sorted((rules.ROOT / "profiles").glob("*.toml"))}
 DOCUMENTS: dict[str, Any] = {

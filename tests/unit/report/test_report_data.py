@@ -12,12 +12,12 @@ import pytest
 
 import gearcam
 from arch import rules
-from gearcam.charts import Chart, Limit, Line, MarkedPlace
 from gearcam.designs.kind import KINDS
-from gearcam.drawings import CENTRODE, OUTLINE, Feature, Path
+from gearcam.pictures.charts import Chart, Limit, Line, MarkedPlace
+from gearcam.pictures.drawings import CENTRODE, OUTLINE, Feature, Path
+from gearcam.pictures.scenes import ContactPoints, MovingBody, Scene
 from gearcam.report.data import chart_data, scene_data
 from gearcam.report.page import blocks
-from gearcam.scenes import ContactPoints, MovingBody, Scene
 
 NAMES = ("ellipse", "ring_ellipse", "feeder", "stepped_ellipse", "groove_cam", "conjugate_cams")
 

@@ -13,8 +13,8 @@ import pytest
 import trimesh
 
 import gearcam
+from gearcam.parts.solids import SolidError
 from gearcam.report.solids import CHORDS, solids_shown
-from gearcam.solids import SolidError
 from helpers_pairs import PROFILES
 
 
@@ -88,7 +88,7 @@ def test_why_solids_cannot_be_shown_is_told(
     def refuse(part: Any) -> Any:
         raise SolidError(f"{part.name}: the solid came out <empty>")
 
-    monkeypatch.setattr("gearcam.solids.solid", refuse)
+    monkeypatch.setattr("gearcam.parts.solids.solid", refuse)
     result = build("ellipse")
     assert solids_shown(result) == {"refusal": "gear1: the solid came out <empty>"}
     written = result.write(tmp_path, files=["report"])

@@ -14,13 +14,13 @@ import polars as pl
 import pytest
 
 import gearcam
-from gearcam.charts import Chart, Line
+from gearcam.base.errors import DesignError, GearcamError
 from gearcam.cli import main
-from gearcam.errors import DesignError, GearcamError
 from gearcam.kinds.cam import ladder as room
-from gearcam.ladders import Ladder
-from gearcam.studies.accuracy import COLUMNS, accuracy, stages_of
-from gearcam.studies.svg import log_charts
+from gearcam.pictures.charts import Chart, Line
+from gearcam.results.accuracy import COLUMNS, accuracy, stages_of
+from gearcam.results.ladders import Ladder
+from gearcam.results.svg import log_charts
 
 TEXT = """
 kind = "cam"
@@ -187,7 +187,7 @@ def test_the_median_counts(planted: dict[str, Any], monkeypatch: pytest.MonkeyPa
     clock = iter([0.0, 5.0, 10.0, 11.0, 20.0, 22.0])
     result = gearcam.build(gearcam.loads(TEXT))
     with monkeypatch.context() as patched:
-        patched.setattr("gearcam.studies.accuracy.time.perf_counter", lambda: next(clock))
+        patched.setattr("gearcam.results.accuracy.time.perf_counter", lambda: next(clock))
         found = accuracy(result, repeat=3)
     assert found.rungs[0].seconds == 2.0
 

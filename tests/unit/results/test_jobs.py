@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from gearcam.base.errors import InfeasibleError
 from gearcam.designs import document_of
-from gearcam.errors import InfeasibleError
 from gearcam.gears.rolling import Centrode
 from gearcam.gears.spec import Rack
 from gearcam.kinds.gear_pair.build import GearPairResult
@@ -386,7 +386,7 @@ def _ring(mark: Any) -> np.ndarray:
 
 @pytest.mark.parametrize("bores", [None, (8.0, 12.0)])
 def test_a_part_weighs_what_its_solid_weighs(bores: tuple[float, float] | None) -> None:
-    from gearcam.solids import solid, volume_error
+    from gearcam.parts.solids import solid, volume_error
 
     made = small(bores=bores, tolerance=0.001)
     for part, gear in zip(made.parts, made.gears, strict=True):

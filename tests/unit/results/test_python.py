@@ -15,8 +15,7 @@ import numpy as np
 import pytest
 
 import gearcam as gc
-from gearcam.designs.design import document_of
-from gearcam.errors import (
+from gearcam.base.errors import (
     DesignError,
     InfeasibleError,
     MissingExtraError,
@@ -24,7 +23,8 @@ from gearcam.errors import (
     Way,
     WriteError,
 )
-from gearcam.tolerances import Tolerances
+from gearcam.base.tolerances import Tolerances
+from gearcam.designs.design import document_of
 
 PROFILES = sorted(Path("profiles").glob("*.toml"))
 PAIR: dict[str, Any] = {

@@ -14,15 +14,15 @@ from typing import Any
 import pytest
 
 import gearcam
-from gearcam.advice import Remedies, Remedy
+from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.cli import main
 from gearcam.console import remedy_lines, wrapped
-from gearcam.errors import DesignError, InfeasibleError
 from gearcam.gears.bound import contact_bound
 from gearcam.gears.checks import Subject, largest_module
 from gearcam.gears.track import LeastRadius
 from gearcam.laws.ratio.constant import Constant
 from gearcam.laws.ratio.ellipse import Ellipse
+from gearcam.results.advice import Remedies, Remedy
 from helpers_documents import followed, job_of, written
 from helpers_pairs import job
 from helpers_remedies import CIRCLE, ERRORS, NAIL, REFUSED, ROLLER, UNDER, WARNED, cam, pair
@@ -217,7 +217,7 @@ def test_a_slow_machine_finds_the_same(folder: Path, monkeypatch: pytest.MonkeyP
     few = gearcam.remedies(made, patience=0.3)
     assert (few.builds, few.gave_up) == (3, True)
     clock = count(step=2.0)
-    monkeypatch.setattr("gearcam.advice.time", SimpleNamespace(perf_counter=clock.__next__))
+    monkeypatch.setattr("gearcam.results.advice.time", SimpleNamespace(perf_counter=clock.__next__))
     assert gearcam.remedies(made) == found
     assert found.found
 
@@ -257,7 +257,7 @@ def test_a_path_longer_than_a_line_is_not_broken() -> None:
 
 
 def test_a_refusal_comes_without_a_search(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("gearcam.advice.remedies", None)
+    monkeypatch.setattr("gearcam.results.advice.remedies", None)
     with pytest.raises(InfeasibleError):
         _ = job_of(DESIGNS["concave part too tight"][0], folder).findings
 

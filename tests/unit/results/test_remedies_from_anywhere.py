@@ -9,9 +9,9 @@ from typing import Any
 import pytest
 
 import gearcam
-from gearcam.changes import between
+from gearcam.base.changes import between
+from gearcam.base.errors import InfeasibleError
 from gearcam.console import remedy_lines
-from gearcam.errors import InfeasibleError
 from helpers_documents import followed, job_of
 from helpers_remedies import ARM, CIRCLE, ROLLER, cam, pair
 

@@ -16,12 +16,12 @@ import polars as pl
 import pytest
 
 import gearcam
-from gearcam.errors import DesignError, InfeasibleError
+from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.kinds.cam.build import CamResult
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.numeric.columns import Columns
-from gearcam.solids import volume_error
+from gearcam.parts.solids import volume_error
 from helpers_cam_files import ROLLER
 from helpers_pairs import PROFILES, job, profile
 

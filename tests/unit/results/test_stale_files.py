@@ -11,9 +11,9 @@ import pytest
 
 import gearcam
 from gearcam import build
+from gearcam.base.errors import InfeasibleError
 from gearcam.cli import main
 from gearcam.designs import hash_of, loads
-from gearcam.errors import InfeasibleError
 from gearcam.kinds.gear_pair.design import GearPairDesign
 from helpers_interrupts import CAM
 

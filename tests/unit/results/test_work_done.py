@@ -41,12 +41,12 @@ WATCHED = {
     "gearcam.cams.measures": ("range_of", "undercut"),
     "gearcam.cams.wall": ("Wall.contour",),
     "gearcam.numeric.sampling": ("Sampler.chords", "Sampler.dense"),
-    "gearcam.findings": ("run_checks",),
+    "gearcam.base.findings": ("run_checks",),
     "gearcam.parts.make": ("make_part",),
     "gearcam.parts.tools": ("tool_limits",),
     "gearcam.parts.mass": ("mass_properties",),
-    "gearcam.solids": ("solid",),
-    "gearcam.drawings": ("pair_drawing", "cam_drawing", "wheel_drawing"),
+    "gearcam.parts.solids": ("solid",),
+    "gearcam.pictures.drawings": ("pair_drawing", "cam_drawing", "wheel_drawing"),
     "gearcam.sheets": ("wheel_sheet", "pair_sheet"),
     "gearcam.export.dxf": ("dxf_bytes",),
     "gearcam.export.dxf_read": ("measure_dxf",),
@@ -269,8 +269,8 @@ def test_a_second_call_is_seen() -> None:
 def test_remedies_are_sought_once_for_the_page_and_the_command(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from gearcam.advice import Search
     from gearcam.cli import main
+    from gearcam.results.advice import Search
 
     begun, old = [], Search.__init__
 

@@ -10,15 +10,15 @@ import numpy as np
 import pytest
 
 from gearcam import build, load
+from gearcam.base.errors import InfeasibleError
+from gearcam.base.facts import Facts
+from gearcam.base.numerals import decimal
 from gearcam.designs.kind import KINDS
-from gearcam.drawings import OUTLINE, Drawing, Feature, Path, pair_drawing, placed
-from gearcam.errors import InfeasibleError
 from gearcam.export.dxf_read import read_dxf
 from gearcam.export.shared import sheet_rows
-from gearcam.facts import Facts
-from gearcam.numerals import decimal
 from gearcam.parts.body import Mark, Opening, Part
 from gearcam.parts.shapes import Circle, Loop
+from gearcam.pictures.drawings import OUTLINE, Drawing, Feature, Path, pair_drawing, placed
 from gearcam.sheets import pair_sheet, wheel_sheet
 from gearcam.sheets.board import Board
 from gearcam.sheets.paper import area_of, choose, scale_words

@@ -23,9 +23,9 @@ from fuzz.cross_checks_cam import doubts as doubts_of_cam
 from fuzz.outcome import BUILT, REFUSED, WRONG, Failure, Outcome, Task
 from fuzz.pool import Pool
 from fuzz.shrink import shrunk
-from gearcam.advice import Remedies, Remedy
-from gearcam.errors import DesignError, InfeasibleError
+from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.meshing.settings import MeshingSpec
+from gearcam.results.advice import Remedies, Remedy
 from helpers_pairs import PROFILES
 from random_designs.designs import MAKERS, design
 

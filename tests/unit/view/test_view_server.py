@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from gearcam.errors import DesignError
+from gearcam.base.errors import DesignError
 from gearcam.view.server import LARGEST, Server
 from helpers_view import DESIGN, SECONDS, Shown, ask, served, shown
 

@@ -14,8 +14,8 @@ from typing import Any
 
 import pytest
 
+from gearcam.base.errors import DesignError
 from gearcam.cli import main
-from gearcam.errors import DesignError
 from gearcam.view import watch, work
 from gearcam.view.command import reporter
 from gearcam.view.session import RequestError, Session, State, _Newest

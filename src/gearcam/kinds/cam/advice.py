@@ -9,19 +9,19 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.advice import kerf_paths
+from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.findings import limit_of
+from gearcam.base.numerals import shortened
 from gearcam.cams.checks import KIND
 from gearcam.designs.design import value_at
-from gearcam.errors import InfeasibleError, Way
-from gearcam.findings import limit_of
 from gearcam.kinds.cam.design import CAM_FORMATS
 from gearcam.kinds.cam.pressed import gentler, grown
-from gearcam.numerals import shortened
 from gearcam.parts.checks import KIND as PARTS_KIND
+from gearcam.results.advice import kerf_paths
 
 if TYPE_CHECKING:
-    from gearcam.advice import Search
-    from gearcam.result import Result
+    from gearcam.results.advice import Search
+    from gearcam.results.result import Result
 
 _LARGER: Final = 100.0
 """How far a cam grows in the search, over what its follower and its lift reach."""

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
+from gearcam.base.quantities import LENGTH, param
 from gearcam.parts.blank import Problem, WheelBlank
-from gearcam.quantities import LENGTH, param
 
 
 def _size(*, doc: str) -> Any:

@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gearcam.base.findings import Finding, in_order, run_checks
+from gearcam.base.tolerances import DEFAULT, Tolerances
 from gearcam.cams.checks import KIND
-from gearcam.findings import Finding, in_order, run_checks
 from gearcam.kinds.cam.blank import CamBlank
 from gearcam.kinds.cam.design import CamDesign
 from gearcam.kinds.cam.forms.base import FORMS, Form
@@ -24,19 +25,18 @@ from gearcam.numeric.columns import Columns
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.parts.blank import KIND as PARTS_KIND
-from gearcam.result import Progress, Result
-from gearcam.tolerances import DEFAULT, Tolerances
+from gearcam.results.result import Progress, Result
 
 if TYPE_CHECKING:
     from gearcam.cams.cam import Cam
     from gearcam.cams.mechanism import Mechanism
     from gearcam.cams.wall import PitchMotion, Wall
-    from gearcam.drawings import Drawing
     from gearcam.kinds.cam.accuracy import Rows
     from gearcam.parts.body import Part
     from gearcam.parts.checks import PartsSubject
+    from gearcam.pictures.drawings import Drawing
+    from gearcam.results.study import Study
     from gearcam.sheets.sheet import Sheet
-    from gearcam.study import Study
 
 FOLLOWED: Final = "followed.csv"
 """The study of a given profile."""
@@ -196,7 +196,7 @@ class CamResult(Result):
     @cached_property
     def to_cut(self) -> tuple[Drawing, ...]:
         """Cutting paths: the parts, or paths offset by the kerf."""
-        from gearcam.drawings import cut_drawing
+        from gearcam.pictures.drawings import cut_drawing
 
         kerf = self.design.output.kerf
         return tuple(cut_drawing(one, kerf) for one in self.form.drawings(self))
@@ -348,7 +348,7 @@ class CamResult(Result):
             If it is not a profile, or the file cannot be read.
         """
         from gearcam.kinds.cam.follow import followed, read_profile
-        from gearcam.study import Study
+        from gearcam.results.study import Study
 
         chosen = self._wall(wall)
         if progress is not None:

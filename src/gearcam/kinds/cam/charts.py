@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from gearcam.base.findings import limit_of
+from gearcam.base.numerals import shown
 from gearcam.cams.checks import KIND, pressure_limit
-from gearcam.charts import Chart, Charts, Limit, Line, MarkedPlace, knot_marks
-from gearcam.findings import limit_of
 from gearcam.kinds.cam.build import pressure_column, rho_column
-from gearcam.numerals import shown
 from gearcam.parts import checks  # noqa: F401  (its checks register themselves)
 from gearcam.parts.blank import KIND as PARTS_KIND
+from gearcam.pictures.charts import Chart, Charts, Limit, Line, MarkedPlace, knot_marks
 
 if TYPE_CHECKING:
     from gearcam.kinds.cam.build import CamResult

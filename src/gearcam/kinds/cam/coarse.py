@@ -6,11 +6,11 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
-from gearcam.errors import InfeasibleError
-from gearcam.findings import Finding
+from gearcam.base.errors import InfeasibleError
+from gearcam.base.findings import Finding
+from gearcam.base.numerals import shortened, shown
 from gearcam.kinds.cam.motion import turn_tables
 from gearcam.laws.motion_table import MotionTable
-from gearcam.numerals import shortened, shown
 
 if TYPE_CHECKING:
     from gearcam.kinds.cam.build import CamResult

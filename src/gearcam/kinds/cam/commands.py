@@ -8,8 +8,8 @@ from typing import Any, Final
 
 from gearcam.commands import ResultCommand
 from gearcam.designs.design import Design, demand_kind
-from gearcam.result import Progress
-from gearcam.written import Written
+from gearcam.results.result import Progress
+from gearcam.results.written import Written
 
 
 def _arguments(parser: argparse.ArgumentParser) -> None:

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from gearcam.base.errors import InfeasibleError
 from gearcam.cams.measures import undercut
 from gearcam.cams.three_points import curvature_study
 from gearcam.cams.wall import PitchMotion
-from gearcam.errors import InfeasibleError
 from gearcam.numeric.arrays import Array, Plane
 
 

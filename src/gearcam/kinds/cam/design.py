@@ -9,6 +9,9 @@ from dataclasses import dataclass, field
 from functools import lru_cache, partial
 from typing import TYPE_CHECKING, Any, Final
 
+from gearcam.base.errors import DesignError, Problem
+from gearcam.base.quantities import ANGLE, COUNT, LENGTH, param
+from gearcam.base.registry import classes_in, name_of
 from gearcam.cams.spec import FOLLOWED, POINTED, CamSpec, FollowerSpec, size_problems
 from gearcam.cams.spec import KIND as CAM_KIND
 from gearcam.designs.design import Design, Wanted
@@ -17,7 +20,6 @@ from gearcam.designs.faults import Fault, quoted, show
 from gearcam.designs.kind import KINDS, DesignKind, Examined, told_faults
 from gearcam.designs.outputs import FORMATS, OutputSpec, files_param, output_faults, pose_param
 from gearcam.designs.table import Table, table_of
-from gearcam.errors import DesignError, Problem
 from gearcam.kinds.cam.blank import CamBlank
 from gearcam.kinds.cam.forms.base import SLIDING, form_faults, form_keys, form_schema
 from gearcam.kinds.cam.motion import TITLE, examine_motion, homes, motion_of, whole_turns
@@ -25,8 +27,6 @@ from gearcam.laws.phases_of_lift import PHASES, RisePhase
 from gearcam.laws.rises.base import RISES
 from gearcam.parts.blank import KIND as PARTS_KIND
 from gearcam.parts.blank import WheelBlank
-from gearcam.quantities import ANGLE, COUNT, LENGTH, param
-from gearcam.registry import classes_in, name_of
 
 if TYPE_CHECKING:
     from gearcam.kinds.cam.build import CamResult

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from gearcam.base.errors import InfeasibleError
 from gearcam.cams.wall import PitchMotion, Wall
-from gearcam.drawings import BLANK, Circle, Drawing, Path, Shape, cam_drawing
-from gearcam.errors import InfeasibleError
 from gearcam.export.shared import sheet_rows
 from gearcam.numeric.contour import Contour
 from gearcam.parts.body import Part
 from gearcam.parts.parallel import moved, sized
+from gearcam.pictures.drawings import BLANK, Circle, Drawing, Path, Shape, cam_drawing
 
 if TYPE_CHECKING:
     from gearcam.kinds.cam.build import CamResult

@@ -6,12 +6,12 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from gearcam.base.facts import Fact, Facts, extent
+from gearcam.base.findings import limit_of
+from gearcam.base.numerals import shown
 from gearcam.cams.checks import KIND, pressure_limit
 from gearcam.export.shared import accuracy, part_facts
-from gearcam.facts import Fact, Facts, extent
-from gearcam.findings import limit_of
 from gearcam.kinds.cam.wall_facts import ends_of
-from gearcam.numerals import shown
 
 if TYPE_CHECKING:
     from gearcam.cams.wall import PitchMotion

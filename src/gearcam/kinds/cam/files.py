@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from gearcam.numeric.arrays import Array
     from gearcam.numeric.contour import Contour
     from gearcam.parts.body import Part
-    from gearcam.solids import Mesh
+    from gearcam.parts.solids import Mesh
 
 Measured = dict[str, Any]
 
@@ -79,7 +79,7 @@ def _mesh(kind: str, result: CamResult, measured: Measured) -> Files:
 
 def assembled(result: CamResult) -> dict[str, Mesh]:
     """Return the solids in their places on the shaft."""
-    from gearcam.drawings import UNMOVED
+    from gearcam.pictures.drawings import UNMOVED
 
     if not result.form.assembly:
         return result.meshes
@@ -138,8 +138,8 @@ def _step(result: CamResult, _: Measured) -> Files:
 
     Exact solids for CAD. Needs `pip install "gearcam[step]"`.
     """
-    from gearcam.drawings import UNMOVED
     from gearcam.export.step import step_bytes
+    from gearcam.pictures.drawings import UNMOVED
 
     tolerance = STEP_PART * result.profile.tolerance
     made: dict[Part, Any] = {}
@@ -214,8 +214,8 @@ def _tool_path(result: CamResult, measured: Measured) -> Files:
     The path of the centre of a cutter of `tool_radius_mm`; in a groove along the pitch curve for a
     cutter as wide as the groove, else along each wall, and for two rollers along the relief.
     """
-    from gearcam.drawings import TOOL, Drawing, Feature, reach
     from gearcam.export.table import outline_bytes
+    from gearcam.pictures.drawings import TOOL, Drawing, Feature, reach
 
     paths = result.form.paths(result, result.design.output.tool_radius)
     tables = {f"{name}.csv": outline_bytes(reach(path)) for name, path in paths.items()}

@@ -10,17 +10,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gearcam.base.errors import DesignError, Problem
+from gearcam.base.facts import Fact
+from gearcam.base.findings import Finding, run_checks
+from gearcam.base.reading import UnreadableError, read
 from gearcam.cams.follow import follow
 from gearcam.cams.spec import FOLLOWED
 from gearcam.cams.wall import Wall
-from gearcam.errors import DesignError, Problem
-from gearcam.facts import Fact
-from gearcam.findings import Finding, run_checks
 from gearcam.laws.columns import LARGEST, read_rows
 from gearcam.numeric.arguments import points
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.bulges import flatten_bulges
-from gearcam.reading import UnreadableError, read
 
 _SAGITTA = 0.01
 """Chord error of flattened arcs, in chord tolerances of the design."""

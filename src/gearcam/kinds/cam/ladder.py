@@ -1,4 +1,4 @@
-"""The stages of a cam at rising resolution (see `gearcam.ladders`)."""
+"""The stages of a cam at rising resolution (see `gearcam.results.ladders`)."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ import numpy as np
 from gearcam.cams.three_points import three_point_curvature
 from gearcam.cams.wall import CHORD_TOLERANCE, Wall
 from gearcam.kinds.cam.follow import followed
-from gearcam.ladders import (
+from gearcam.numeric.arrays import Array, Plane
+from gearcam.results.ladders import (
     CHORD_ORDER,
     Ladder,
     Ladders,
@@ -20,7 +21,6 @@ from gearcam.ladders import (
     solid_ladder,
     tolerances_around,
 )
-from gearcam.numeric.arrays import Array, Plane
 
 if TYPE_CHECKING:
     from gearcam.kinds.cam.build import CamResult

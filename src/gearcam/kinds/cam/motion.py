@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache, partial
 from typing import TYPE_CHECKING, Any, Final
 
+from gearcam.base.registry import name_of
 from gearcam.designs.examine import chosen
 from gearcam.designs.faults import Fault, quoted, show
 from gearcam.designs.kind import Examined, made_of, told_faults
@@ -21,7 +22,6 @@ from gearcam.designs.validate import faults_of
 from gearcam.kinds.cam.forms.base import SLIDING, form_of
 from gearcam.laws.phases_of_lift import PHASES, Phase, RisePhase, fill_half, program_problems
 from gearcam.laws.rises.base import RISES
-from gearcam.registry import name_of
 
 if TYPE_CHECKING:
     from gearcam.laws.motion_formula import MotionFormula

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from gearcam.base.errors import DesignError, InfeasibleError
+from gearcam.base.findings import CHECKS, Finding, limit_of
+from gearcam.base.numerals import shortened, shown
 from gearcam.cams.checks import KIND, driven
 from gearcam.cams.mechanism import position_at
 from gearcam.designs.design import document_of, value_at
-from gearcam.errors import DesignError, InfeasibleError
-from gearcam.findings import CHECKS, Finding, limit_of
-from gearcam.numerals import shortened, shown
 
 if TYPE_CHECKING:
     from gearcam.cams.cam import Cam

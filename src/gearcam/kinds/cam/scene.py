@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gearcam.drawings import CENTER, FOLLOWER, Feature, place
-from gearcam.scenes import PLACES, ContactPoints, MovingBody, Scene, still
+from gearcam.pictures.drawings import CENTER, FOLLOWER, Feature, place
+from gearcam.pictures.scenes import PLACES, ContactPoints, MovingBody, Scene, still
 
 if TYPE_CHECKING:
     from gearcam.cams.wall import PitchMotion, Wall

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from gearcam.errors import ABOVE, InfeasibleError, Way
+from gearcam.base.errors import ABOVE, InfeasibleError, Way
 from gearcam.numeric.arrays import Array
 
 if TYPE_CHECKING:

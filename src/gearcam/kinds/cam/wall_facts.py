@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.facts import Fact, extent
+from gearcam.base.facts import Fact, extent
 
 if TYPE_CHECKING:
     from gearcam.cams.measures import Range

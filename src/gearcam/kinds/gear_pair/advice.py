@@ -8,13 +8,13 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final
 
-from gearcam.advice import kerf_paths
+from gearcam.base.errors import InfeasibleError, Way
 from gearcam.designs.design import value_at
-from gearcam.errors import InfeasibleError, Way
 from gearcam.kinds.gear_pair.shorter import lower, shorter
+from gearcam.results.advice import kerf_paths
 
 if TYPE_CHECKING:
-    from gearcam.advice import Changes, Remedy, Search
+    from gearcam.results.advice import Changes, Remedy, Search
 
 _MOST: Final = 400
 """Largest number of teeth that is tried."""

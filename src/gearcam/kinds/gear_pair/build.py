@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Literal, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearcam.findings import in_order, run_checks
+from gearcam.base.findings import in_order, run_checks
+from gearcam.base.tolerances import DEFAULT, Tolerances
 from gearcam.kinds.gear_pair.columns import (
     centrode_columns,
     contact_ratio_columns,
@@ -22,13 +23,12 @@ from gearcam.meshing.contact import Contacts, contacts
 from gearcam.numeric.arguments import angles, one_of, whole
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
-from gearcam.result import Progress
-from gearcam.tolerances import DEFAULT, Tolerances
+from gearcam.results.result import Progress
 
 if TYPE_CHECKING:
     from gearcam.gears.contact import FlankPairs
     from gearcam.gears.estimates import Estimates
-    from gearcam.study import Study
+    from gearcam.results.study import Study
 
 MESHING = "meshing.csv"
 """The rows of a meshing study."""
@@ -242,7 +242,7 @@ class GearPairResult(PairStages):
         from gearcam.meshing.checks import KIND as MESHING_KIND
         from gearcam.meshing.numbers import numbers
         from gearcam.meshing.study import study
-        from gearcam.study import Study
+        from gearcam.results.study import Study
 
         result = self._mounted(settings)
         design = result.design

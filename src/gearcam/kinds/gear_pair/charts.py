@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from gearcam.charts import Chart, Charts, Limit, Line, MarkedPlace, knot_marks
-from gearcam.findings import limit_of
+from gearcam.base.findings import limit_of
+from gearcam.base.numerals import shown
 from gearcam.gears.checks import KIND, undercut_curvatures
 from gearcam.gears.contact import COAST, DRIVE
-from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
+from gearcam.pictures.charts import Chart, Charts, Limit, Line, MarkedPlace, knot_marks
 
 if TYPE_CHECKING:
     from gearcam.kinds.gear_pair.build import GearPairResult

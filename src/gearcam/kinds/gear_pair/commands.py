@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, Final
 from gearcam.commands import ResultCommand
 from gearcam.designs.design import Design, demand_kind
 from gearcam.designs.kind import KINDS
-from gearcam.result import Progress
-from gearcam.written import Written
+from gearcam.results.result import Progress
+from gearcam.results.written import Written
 
 if TYPE_CHECKING:
     from gearcam.designs.table import Table

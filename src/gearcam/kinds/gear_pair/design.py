@@ -7,6 +7,9 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final, TypeGuard
 
+from gearcam.base.numerals import shown
+from gearcam.base.quantities import COUNT, param
+from gearcam.base.registry import classes_in, name_of
 from gearcam.designs.design import Design, Wanted
 from gearcam.designs.examine import chosen, home_of
 from gearcam.designs.faults import Fault, quoted, show
@@ -20,11 +23,8 @@ from gearcam.gears.subject import KIND as TEETH_KIND
 from gearcam.laws.ratio.base import LAWS
 from gearcam.meshing.settings import KIND as MESHING_KIND
 from gearcam.meshing.settings import MeshingSpec
-from gearcam.numerals import shown
 from gearcam.parts.blank import KIND as PARTS_KIND
 from gearcam.parts.blank import Blank
-from gearcam.quantities import COUNT, param
-from gearcam.registry import classes_in, name_of
 
 if TYPE_CHECKING:
     from gearcam.kinds.gear_pair.build import GearPairResult

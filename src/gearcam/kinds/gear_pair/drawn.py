@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from gearcam.drawings import Drawing, Path, pair_drawing
+from gearcam.base.numerals import shown
 from gearcam.export.shared import sheet_rows
 from gearcam.kinds.gear_pair.files import placements
-from gearcam.numerals import shown
+from gearcam.pictures.drawings import Drawing, Path, pair_drawing
 
 if TYPE_CHECKING:
     from gearcam.kinds.gear_pair.stages import PairStages

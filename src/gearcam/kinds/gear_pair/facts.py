@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from gearcam.base.facts import Fact, Facts, extent
+from gearcam.base.findings import limit_of
+from gearcam.base.numerals import shown
 from gearcam.export.shared import accuracy, part_facts, size_fact
-from gearcam.facts import Fact, Facts, extent
-from gearcam.findings import limit_of
 from gearcam.gears.gear_facts import gear_tree
 from gearcam.gears.subject import KIND, Subject
 from gearcam.laws.ratio.span import angle_text
 from gearcam.meshing.drive_checks import side_name
-from gearcam.numerals import shown
 from gearcam.numeric.sampling import MARGIN
 
 if TYPE_CHECKING:

@@ -22,12 +22,12 @@ from gearcam.report.file import framed as framed
 from gearcam.report.file import report_files
 
 if TYPE_CHECKING:
-    from gearcam.drawings import Placement
     from gearcam.export.dxf import DxfStyle
     from gearcam.kinds.gear_pair.build import GearPairResult
     from gearcam.kinds.gear_pair.stages import PairStages
     from gearcam.parts.body import Part
-    from gearcam.solids import Mesh
+    from gearcam.parts.solids import Mesh
+    from gearcam.pictures.drawings import Placement
 
 Measured = dict[str, Any]
 
@@ -123,8 +123,8 @@ def _steps(result: GearPairResult, _: Measured) -> Files:
     Exact solids for CAD: one spline face for each flank, fillet, land and tip, planes and cylinders
     elsewhere. Needs `pip install "gearcam[step]"`.
     """
-    from gearcam.drawings import UNMOVED
     from gearcam.export.step import step_bytes
+    from gearcam.pictures.drawings import UNMOVED
 
     tolerance = STEP_PART * result.gear1.profile.tolerance
     made: dict[Part, Any] = {}

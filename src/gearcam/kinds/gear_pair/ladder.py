@@ -1,4 +1,4 @@
-"""The stages of a gear pair at rising resolution (see `gearcam.ladders`)."""
+"""The stages of a gear pair at rising resolution (see `gearcam.results.ladders`)."""
 
 from __future__ import annotations
 
@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from gearcam.gears.pair import COARSEST, FINEST, FLANK_POINTS, Gear, make_gear
-from gearcam.ladders import (
+from gearcam.numeric.arrays import Array, Plane
+from gearcam.numeric.piecewise import Piecewise
+from gearcam.results.ladders import (
     CHORD_ORDER,
     COARSER,
     Ladder,
@@ -20,8 +22,6 @@ from gearcam.ladders import (
     solid_ladder,
     tolerances_around,
 )
-from gearcam.numeric.arrays import Array, Plane
-from gearcam.numeric.piecewise import Piecewise
 
 if TYPE_CHECKING:
     from gearcam.kinds.gear_pair.build import GearPairResult

@@ -7,13 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from gearcam.errors import InfeasibleError, Way
-from gearcam.findings import limit_of
+from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.findings import limit_of
+from gearcam.base.numerals import shown
 from gearcam.gears.outside import outside
 from gearcam.gears.pair import Gear
 from gearcam.gears.spec import RIM
 from gearcam.kinds.gear_pair.design import GearPairDesign
-from gearcam.numerals import shown
 from gearcam.numeric.bulges import as_complex
 from gearcam.numeric.columns import Columns
 from gearcam.numeric.contour import Contour

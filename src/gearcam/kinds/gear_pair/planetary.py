@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any, Final
 
+from gearcam.base.numerals import shown
 from gearcam.designs.faults import Fault
-from gearcam.numerals import shown
 
 _RULE: Final = "two tooth counts, driver first; design each pair of wheels separately"
 

@@ -10,12 +10,12 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, Final
 
-from gearcam.errors import InfeasibleError, Way
-from gearcam.findings import limit_of
+from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.findings import limit_of
 from gearcam.gears.subject import KIND
 
 if TYPE_CHECKING:
-    from gearcam.advice import Changes, Search
+    from gearcam.results.advice import Changes, Search
 
 _LOW: Final = 0.3
 """Lowest addendum to try, in modules: lower ones do not mesh."""

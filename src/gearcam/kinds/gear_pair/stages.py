@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gearcam.errors import InfeasibleError, Way
-from gearcam.findings import Finding, in_order, limit_of, run_checks
+from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.findings import Finding, in_order, limit_of, run_checks
+from gearcam.base.numerals import shown
 from gearcam.gears.checks import KIND, Subject
 from gearcam.gears.demands import demand_rim, demand_ring
 from gearcam.gears.pair import Gear, GearPair, lobes_of, make_gear, make_pair
@@ -23,17 +24,16 @@ from gearcam.kinds.gear_pair.design import GearPairDesign
 from gearcam.laws.ratio.base import RatioLaw
 from gearcam.laws.ratio.span import angle_text
 from gearcam.meshing import drive_checks  # noqa: F401  (its checks register themselves)
-from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.parts.blank import KIND as PARTS_KIND
 from gearcam.parts.blank import Blank
-from gearcam.result import Result
+from gearcam.results.result import Result
 
 if TYPE_CHECKING:
-    from gearcam.drawings import Drawing, Path
     from gearcam.parts.body import Part
     from gearcam.parts.checks import PartsSubject
+    from gearcam.pictures.drawings import Drawing, Path
     from gearcam.sheets.sheet import Sheet
 
 _OF_TEETH = ("contact-ratio", "undercut", "thin-tip", "short-flank", "tips-collide")
@@ -257,7 +257,7 @@ class PairStages(Result):
     @cached_property
     def to_cut(self) -> tuple[Drawing, ...]:
         """Cutting paths of both wheels, step by step: parts, or paths offset by the kerf."""
-        from gearcam.drawings import cut_drawing, wheel_drawing
+        from gearcam.pictures.drawings import cut_drawing, wheel_drawing
 
         return tuple(
             cut_drawing(wheel_drawing(part, step), self.design.output.kerf)

@@ -17,8 +17,11 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearcam.display import Brief
-from gearcam.errors import InfeasibleError, Way
+from gearcam.base.display import Brief
+from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.numerals import shown
+from gearcam.base.registry import Registry
+from gearcam.base.tolerances import Tolerances
 from gearcam.laws.displacement import Displacement, Jump
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.ratio.span import (
@@ -30,13 +33,10 @@ from gearcam.laws.ratio.span import (
     demand_smooth,
     demand_travels,
 )
-from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array, Ints
 from gearcam.numeric.chebyshev import Expansion, expand
 from gearcam.numeric.piecewise import Piece, Piecewise, integrate, piecewise
 from gearcam.numeric.quadrature import missed
-from gearcam.registry import Registry
-from gearcam.tolerances import Tolerances
 
 _SWING: Final = 1e6
 """Largest quotient of largest and smallest ratio."""

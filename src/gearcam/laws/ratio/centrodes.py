@@ -10,8 +10,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final, TypeVar
 
-from gearcam.display import Brief
-from gearcam.errors import InfeasibleError, Way
+from gearcam.base.display import Brief
+from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.quantities import ANGLE, COUNT, NUMBER, Solve, param
+from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import TYPED, LawEntry
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.driver import LOBES, demand_lobes, law_of_centrode
@@ -30,8 +32,6 @@ from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet, atan, cos, sin, sqrt
 from gearcam.numeric.piecewise import Piece
 from gearcam.numeric.roots import newton_in_bracket
-from gearcam.quantities import ANGLE, COUNT, NUMBER, Solve, param
-from gearcam.tolerances import Tolerances
 
 _LARGEST: Final = 1e3
 """Largest ratio of a closed spiral, so that 1 - h' keeps 13 digits."""

@@ -9,19 +9,19 @@ from itertools import zip_longest
 
 import numpy as np
 
-from gearcam.display import Brief
-from gearcam.errors import InfeasibleError, Way
+from gearcam.base.display import Brief
+from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.numerals import shown
+from gearcam.base.quantities import ANGLE, NARROWEST, NUMBER, TEXT, Row, RowOfSome, Solve, param
+from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.formula import derivative
 from gearcam.laws.ratio.arcs import ARCS, SMOOTH
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.phases import arcs_law, knot_problems, one_lobe
 from gearcam.laws.ratio.span import SAME, Lobes, Travel, angle_text, demand_equal, open_travel
-from gearcam.numerals import shown
 from gearcam.numeric.jets import Jet, harmonics, polynomial, primitive
 from gearcam.numeric.piecewise import Piece, piecewise
-from gearcam.quantities import ANGLE, NARROWEST, NUMBER, TEXT, Row, RowOfSome, Solve, param
-from gearcam.tolerances import Tolerances
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.span import Lobes
 from gearcam.numeric.piecewise import Piece
-from gearcam.tolerances import Tolerances
 
 
 @dataclass(frozen=True, kw_only=True)

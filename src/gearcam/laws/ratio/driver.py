@@ -7,7 +7,8 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearcam.errors import InfeasibleError, Way
+from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.tolerances import Tolerances
 from gearcam.laws.ratio.base import RatioLaw, make_law
 from gearcam.laws.ratio.span import PLACES, WHEEL, Lobes, Span, angle_text, demand_smooth
 from gearcam.numeric.arrays import Array
@@ -15,7 +16,6 @@ from gearcam.numeric.chebyshev import NotSmoothError, expand
 from gearcam.numeric.jets import Jet, Value
 from gearcam.numeric.piecewise import Piece, piecewise
 from gearcam.numeric.roots import newton_in_bracket
-from gearcam.tolerances import Tolerances
 
 _APART = 1e-9
 """Smallest distance between driven shaft and largest radius, relative: closer values are lost."""

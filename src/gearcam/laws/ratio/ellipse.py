@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from gearcam.base.quantities import COUNT, NUMBER, param
+from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.driver import LOBES, demand_lobes
 from gearcam.laws.ratio.span import Lobes
 from gearcam.numeric.jets import Jet, atan, cos, sin
 from gearcam.numeric.piecewise import Piece
-from gearcam.quantities import COUNT, NUMBER, param
-from gearcam.tolerances import Tolerances
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,8 +8,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gearcam.display import Brief
-from gearcam.errors import InfeasibleError, Way
+from gearcam.base.display import Brief
+from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.numerals import shown
+from gearcam.base.quantities import TEXT, param
+from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import TYPED, LawEntry
 from gearcam.laws.formula import (
     Axis,
@@ -34,12 +37,9 @@ from gearcam.laws.ratio.span import (
     span_of,
     travel_problems,
 )
-from gearcam.numerals import shown
 from gearcam.numeric.chebyshev import expand
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import Piece, integrate
-from gearcam.quantities import TEXT, param
-from gearcam.tolerances import Tolerances
 
 _NAMES = ("phi2", "ratio", "r1")
 

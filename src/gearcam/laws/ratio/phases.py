@@ -9,15 +9,15 @@ from itertools import pairwise
 
 import numpy as np
 
-from gearcam.display import Brief
-from gearcam.errors import InfeasibleError, Way
+from gearcam.base.display import Brief
+from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.numerals import shown
+from gearcam.base.quantities import ANGLE, NARROWEST, NUMBER, TEXT, RowOfSome, Solve, param
+from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.ratio.arcs import ARCS, Arc
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.span import SAME, Lobes, Span, Travel, demand_equal, open_travel
-from gearcam.numerals import shown
-from gearcam.quantities import ANGLE, NARROWEST, NUMBER, TEXT, RowOfSome, Solve, param
-from gearcam.tolerances import Tolerances
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -8,8 +8,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gearcam.display import Brief
-from gearcam.errors import InfeasibleError
+from gearcam.base.display import Brief
+from gearcam.base.errors import InfeasibleError
+from gearcam.base.numerals import shown
+from gearcam.base.quantities import NUMBER, TEXT, param
+from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.formula import Axis, Given, errors_of, formula_problems, function_of, values_of
 from gearcam.laws.formula_syntax import VARIABLE
@@ -17,9 +20,6 @@ from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.formula import axis_of, from_phi2
 from gearcam.laws.ratio.slider import NARROWEST, crank_angle, make_slide
 from gearcam.laws.ratio.span import Lobes, Span, open_travel, span_of, travel_problems
-from gearcam.numerals import shown
-from gearcam.quantities import NUMBER, TEXT, param
-from gearcam.tolerances import Tolerances
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,8 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gearcam.display import Brief
-from gearcam.errors import InfeasibleError, Way
+from gearcam.base.display import Brief
+from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.quantities import COUNT, NUMBER, Row, param
+from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.driver import law_of_centrode
@@ -16,8 +18,6 @@ from gearcam.laws.ratio.span import WHEEL, Lobes
 from gearcam.numeric.jets import Jet, Value, cos, polynomial, sin, sqrt
 from gearcam.numeric.piecewise import Piece, piecewise
 from gearcam.numeric.roots import bracketed_root
-from gearcam.quantities import COUNT, NUMBER, Row, param
-from gearcam.tolerances import Tolerances
 
 _BASIS = np.array([[1, 4, 1, 0], [-3, 0, 3, 0], [3, -6, 3, 0], [-1, 3, -3, 1]]) / 6.0
 """Cubic B-spline on a segment: powers of t (rows) of four control values (columns)."""

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gearcam.errors import InfeasibleError
+from gearcam.base.errors import InfeasibleError
 from gearcam.laws.formula import derivative
 from gearcam.laws.ratio.span import SAME, angle_text
 from gearcam.numeric.arrays import Array

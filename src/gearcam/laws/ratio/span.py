@@ -15,14 +15,14 @@ from typing import Any, ClassVar, Final
 
 import numpy as np
 
-from gearcam.errors import InfeasibleError, Way
+from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.numerals import shown
+from gearcam.base.quantities import ANGLE, param
 from gearcam.laws.entry import NO_JUMPS
-from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.chebyshev import NotSmoothError
 from gearcam.numeric.jets import Jet, exp, log
 from gearcam.numeric.piecewise import Piece, Piecewise
-from gearcam.quantities import ANGLE, param
 
 _FLAT = 1e-9
 """Growth of the radius per radian below which the continued centrode is a circle: rounding."""

@@ -11,7 +11,9 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.errors import InfeasibleError, Way
+from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.quantities import ANGLE, NUMBER, TEXT, Row, param
+from gearcam.base.tolerances import Tolerances
 from gearcam.laws.columns import MOST_ROWS, ColumnsError, CsvRows, FromFile, close_angles
 from gearcam.laws.entry import TYPED, LawEntry
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
@@ -21,8 +23,6 @@ from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet, polynomial, primitive, slope
 from gearcam.numeric.piecewise import Piece, integrate
 from gearcam.numeric.shape_keeping import quintics
-from gearcam.quantities import ANGLE, NUMBER, TEXT, Row, param
-from gearcam.tolerances import Tolerances
 
 _ANGLE: Final = "phi1_deg"
 _VALUES: Final = {"ratio": "ratio", "phi2": "phi2_deg", "r1": "r1"}

@@ -16,12 +16,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Final, Protocol
 
-from gearcam.display import Brief
+from gearcam.base.display import Brief
+from gearcam.base.registry import Registry
+from gearcam.base.tolerances import Tolerances
 from gearcam.laws.displacement import EXACT
 from gearcam.laws.entry import LawEntry
 from gearcam.numeric.piecewise import Piecewise
-from gearcam.registry import Registry
-from gearcam.tolerances import Tolerances
 
 NARROWEST: Final = 1e-6
 """Smallest share of the angle for a sector or a step of a table: a second of arc of a full turn."""

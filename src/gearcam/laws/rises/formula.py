@@ -6,17 +6,17 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
-from gearcam.display import Brief
-from gearcam.errors import InfeasibleError
+from gearcam.base.display import Brief
+from gearcam.base.errors import InfeasibleError
+from gearcam.base.numerals import shown
+from gearcam.base.quantities import TEXT, param
+from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import TYPED, LawEntry
 from gearcam.laws.formula import Axis, Given, errors_of, formula_problems, function_of
 from gearcam.laws.rises.base import RISES, Rise
 from gearcam.laws.smoothness import demand_smooth
-from gearcam.numerals import shown
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import Piece, piecewise
-from gearcam.quantities import TEXT, param
-from gearcam.tolerances import Tolerances
 
 _VARIABLE: Final = "x"
 _WHERE: Final = "motion.formula"

@@ -10,17 +10,17 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.errors import InfeasibleError
+from gearcam.base.errors import InfeasibleError
+from gearcam.base.numerals import shown
+from gearcam.base.quantities import COUNT, NUMBER, TEXT, Row, param
+from gearcam.base.tolerances import Tolerances
 from gearcam.laws.columns import ColumnsError, FromFile
 from gearcam.laws.entry import TYPED, LawEntry
 from gearcam.laws.rises.base import NARROWEST, RISES, ClosedForm, Rise
 from gearcam.laws.rises.pieces import about, spline
-from gearcam.numerals import shown
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.least_jerk import chain_slopes, coefficients
 from gearcam.numeric.piecewise import Piecewise
-from gearcam.quantities import COUNT, NUMBER, TEXT, Row, param
-from gearcam.tolerances import Tolerances
 
 Problem = tuple[str, int | None, str, str]
 

@@ -14,11 +14,11 @@ from typing import Final
 
 import numpy as np
 
+from gearcam.base.quantities import NUMBER, Row, param
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.rises.base import RISES, ClosedForm
 from gearcam.laws.rises.pieces import about, from_both_ends
 from gearcam.numeric.piecewise import Piecewise, piecewise
-from gearcam.quantities import NUMBER, Row, param
 
 _MOST: Final = 8
 """Most derivatives at an end: degree 17, accurate to 1e-12."""

@@ -15,13 +15,13 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from gearcam.base.numerals import shown
+from gearcam.base.quantities import NUMBER, param
 from gearcam.laws.entry import TYPED, LawEntry
 from gearcam.laws.rises.base import NARROWEST, RISES, ClosedForm
 from gearcam.laws.rises.pieces import from_half, lag
-from gearcam.numerals import shown
 from gearcam.numeric.jets import Jet, sin
 from gearcam.numeric.piecewise import Piecewise
-from gearcam.quantities import NUMBER, param
 
 
 @dataclass(frozen=True, kw_only=True)

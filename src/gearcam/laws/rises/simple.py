@@ -5,12 +5,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from gearcam.base.quantities import NUMBER, param
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.rises.base import NARROWEST, RISES, ClosedForm
 from gearcam.laws.rises.pieces import from_half, lag, reflected
 from gearcam.numeric.jets import Jet, sin
 from gearcam.numeric.piecewise import Piece, Piecewise, piecewise
-from gearcam.quantities import NUMBER, param
 
 
 @dataclass(frozen=True, kw_only=True)

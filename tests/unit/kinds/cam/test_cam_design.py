@@ -12,12 +12,12 @@ from typing import Any
 import pytest
 
 from claims.of_rises import RISE_CLAIMS
+from gearcam.base.errors import DesignError
 from gearcam.cams.spec import CamSpec, FollowerSpec
 from gearcam.designs import document_of, load, loads
 from gearcam.designs.kind import KINDS
 from gearcam.designs.template import template
 from gearcam.designs.validate import faults_of
-from gearcam.errors import DesignError
 from gearcam.kinds.cam.blank import CamBlank
 from gearcam.kinds.cam.design import CamDesign, CamOutputSpec
 from gearcam.kinds.cam.motion import phase_table, rise_table, turn_tables

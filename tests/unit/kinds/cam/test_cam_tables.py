@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import gearcam
-from gearcam.errors import InfeasibleError
+from gearcam.base.errors import InfeasibleError
 from gearcam.kinds.cam.build import CamResult
 from helpers_cam_files import FLAT, ROLLER, read
 from helpers_pairs import PROFILES

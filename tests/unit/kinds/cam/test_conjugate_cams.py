@@ -12,13 +12,13 @@ import numpy as np
 import pytest
 
 import gearcam
-from gearcam.advice import Search
+from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.cams.conjugate import ConjugateCam
 from gearcam.cams.follow import follow
 from gearcam.cli import main
 from gearcam.designs import loads
-from gearcam.drawings import Path
-from gearcam.errors import DesignError, InfeasibleError
+from gearcam.pictures.drawings import Path
+from gearcam.results.advice import Search
 from helpers_pairs import PROFILES
 
 PATH = PROFILES / "conjugate_cams.toml"

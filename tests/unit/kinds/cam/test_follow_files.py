@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import gearcam
-from gearcam.errors import DesignError
+from gearcam.base.errors import DesignError
 from gearcam.kinds.cam.build import CamResult
 from helpers_pairs import PROFILES
 

@@ -14,9 +14,9 @@ import pytest
 import shapely
 
 import gearcam
+from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.cams.groove import GrooveCam
 from gearcam.designs import loads
-from gearcam.errors import DesignError, InfeasibleError
 from gearcam.kinds.cam.design import CamDesign
 from helpers_pairs import PROFILES
 from helpers_step_read import read_step

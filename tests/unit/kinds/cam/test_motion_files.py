@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 
 import gearcam
+from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.cams.spec import CamSpec, FollowerSpec
 from gearcam.designs import document_of
 from gearcam.designs.design import hash_of
-from gearcam.errors import DesignError, InfeasibleError
 from gearcam.kinds.cam.design import CamDesign
 from gearcam.laws.motion_formula import MotionFormula
 from gearcam.laws.motion_table import MotionTable

@@ -9,9 +9,9 @@ import pytest
 import shapely
 
 import gearcam
-from gearcam.advice import Search
+from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.designs import loads
-from gearcam.errors import DesignError, InfeasibleError
+from gearcam.results.advice import Search
 from helpers_sliding import DEEP, FILE, ONE, built, cam_of, read
 from helpers_step_read import read_step
 

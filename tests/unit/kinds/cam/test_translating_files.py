@@ -14,8 +14,8 @@ import pytest
 import shapely
 
 import gearcam
-from gearcam.drawings import cut_drawing, reach
-from gearcam.errors import DesignError, InfeasibleError
+from gearcam.base.errors import DesignError, InfeasibleError
+from gearcam.pictures.drawings import cut_drawing, reach
 from gearcam.sheets import wheel_sheet
 from gearcam.sheets.sheet import LinearDimension
 from helpers_sliding import DEEP, FILE, ONE, built, cam_of

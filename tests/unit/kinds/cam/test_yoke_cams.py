@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 import gearcam
+from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.cams.yoke import YokeCam
 from gearcam.designs import loads
-from gearcam.errors import DesignError, InfeasibleError
 from gearcam.laws.half_turns import agreeing, miss
 from gearcam.laws.phases_of_lift import fill_half
 from helpers_cams import back, dwell, program, rise

@@ -9,8 +9,8 @@ from typing import Any
 
 import pytest
 
+from gearcam.base.errors import InfeasibleError
 from gearcam.cli import main
-from gearcam.errors import InfeasibleError
 from gearcam.gears.spec import BasicRack, Rack
 from gearcam.laws.ratio.ellipse import Ellipse
 from helpers_pairs import job

@@ -12,7 +12,8 @@ import pytest
 import shapely
 
 import gearcam
-from gearcam.errors import InfeasibleError
+from gearcam.base.errors import InfeasibleError
+from gearcam.base.tolerances import DEFAULT
 from gearcam.gears.spec import Rack
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.ratio.composite import Fourier, Multispeed, ThreePhasePolynomial
@@ -20,7 +21,6 @@ from gearcam.laws.ratio.constant import Constant
 from gearcam.laws.ratio.phases import Phases
 from gearcam.laws.ratio.shapes import RoundedPolygon
 from gearcam.laws.ratio.span import ONE_LOBE
-from gearcam.tolerances import DEFAULT
 from helpers_pairs import job
 
 TURN = 2 * math.pi

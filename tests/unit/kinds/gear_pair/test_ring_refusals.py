@@ -10,11 +10,11 @@ from typing import Any
 import pytest
 
 import gearcam as gc
-from gearcam.errors import DesignError, InfeasibleError, Problem
+from gearcam.base.errors import DesignError, InfeasibleError, Problem
+from gearcam.base.tolerances import DEFAULT
 from gearcam.gears.pair import GearPair, lobes_of
 from gearcam.kinds.gear_pair.planetary import planet_curve
 from gearcam.laws.ratio.span import RING, Lobes
-from gearcam.tolerances import DEFAULT
 
 ELLIPSE = {"type": "ellipse", "eccentricity": 0.1}
 

@@ -7,7 +7,7 @@ import math
 import pytest
 
 import gearcam
-from gearcam.findings import Finding
+from gearcam.base.findings import Finding
 from gearcam.kinds.gear_pair.build import GearPairResult
 from helpers_pairs import profile
 from helpers_rings import highest_on_circles, overlap, ring

@@ -15,21 +15,21 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any, ClassVar, Final, Protocol
 
+from gearcam.base.facts import Fact
+from gearcam.base.registry import Registry
 from gearcam.designs.faults import Fault, quoted, show
 from gearcam.designs.slips import nearest
 from gearcam.designs.table import Table, table_of
-from gearcam.facts import Fact
 from gearcam.laws.program import Program, make_program
-from gearcam.registry import Registry
 
 if TYPE_CHECKING:
+    from gearcam.base.tolerances import Tolerances
     from gearcam.cams.cam import Cam
-    from gearcam.drawings import Drawing, Path
     from gearcam.kinds.cam.build import CamResult
     from gearcam.kinds.cam.design import CamDesign
     from gearcam.numeric.contour import Contour
     from gearcam.parts.body import Part
-    from gearcam.tolerances import Tolerances
+    from gearcam.pictures.drawings import Drawing, Path
 
 Keys = Mapping[str, tuple[str, ...]]
 """Fields of parameters by the titles of their tables."""

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from gearcam.base.facts import Fact
 from gearcam.cams.conjugate import ConjugateCam, SecondRoller, make_conjugate
 from gearcam.cams.disc import CHORD_TOLERANCE
 from gearcam.cams.mechanism import make_mechanism
 from gearcam.designs.faults import Fault, show
-from gearcam.facts import Fact
 from gearcam.kinds.cam.facts import pressure
 from gearcam.kinds.cam.forms.base import FORMS, plate_keys
 from gearcam.kinds.cam.forms.disc import TOOL_PATH, Disc, plate_part
@@ -21,12 +21,12 @@ from gearcam.kinds.cam.wall_facts import curvature, size, trimming
 
 if TYPE_CHECKING:
     from gearcam.cams.spec import CamSpec, FollowerSpec
-    from gearcam.drawings import Drawing
     from gearcam.kinds.cam.build import CamResult
     from gearcam.kinds.cam.design import CamDesign
     from gearcam.laws.program import Program
     from gearcam.numeric.contour import Contour
     from gearcam.parts.body import Part
+    from gearcam.pictures.drawings import Drawing
 
 _SECOND = ("roller2_radius", "arm2", "roller_distance", "arms_angle", "preload")
 
@@ -106,8 +106,8 @@ class Conjugate(Disc):
 
     def picture(self, result: CamResult) -> Drawing:
         """Return both plates, turned, with their follower."""
-        from gearcam.drawings import CENTER, FOLLOWER, Drawing
         from gearcam.kinds.cam.drawn import follower, plate
+        from gearcam.pictures.drawings import CENTER, FOLLOWER, Drawing
 
         pose = result.design.output.pose
         reach = max(float(np.hypot(*one.vertices.T).max()) for one in result.profiles)

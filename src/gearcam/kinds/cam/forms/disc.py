@@ -7,15 +7,14 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from gearcam.base.facts import Fact
 from gearcam.cams.disc import CHORD_TOLERANCE, DiscCam, make_cam
 from gearcam.cams.mechanism import make_mechanism
-from gearcam.facts import Fact
 from gearcam.kinds.cam.forms.base import FORMS, Form
 from gearcam.kinds.cam.wall_facts import curvature, ends_of, size, trimming
 
 if TYPE_CHECKING:
     from gearcam.cams.cam import Cam
-    from gearcam.drawings import Drawing
     from gearcam.kinds.cam.build import CamResult
     from gearcam.kinds.cam.design import CamDesign
     from gearcam.laws.program import Program
@@ -23,6 +22,7 @@ if TYPE_CHECKING:
     from gearcam.parts.blank import WheelBlank
     from gearcam.parts.body import Part
     from gearcam.parts.openings import Workpiece
+    from gearcam.pictures.drawings import Drawing
 
 STEM: Final = "cam"
 """Stem of its files."""

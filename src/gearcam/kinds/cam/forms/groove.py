@@ -8,24 +8,24 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.facts import Fact
+from gearcam.base.numerals import shown
 from gearcam.cams.disc import CHORD_TOLERANCE
 from gearcam.cams.groove import GrooveCam, make_groove
 from gearcam.cams.mechanism import make_mechanism
 from gearcam.designs.faults import Fault, show
-from gearcam.errors import InfeasibleError, Way
-from gearcam.facts import Fact
 from gearcam.kinds.cam.forms.base import FORMS, Form, Keys, plate_keys
 from gearcam.kinds.cam.forms.disc import STEM, TOOL_PATH, workpiece
 from gearcam.kinds.cam.wall_facts import curvature, size, trimming
-from gearcam.numerals import shown
 
 if TYPE_CHECKING:
-    from gearcam.drawings import Drawing
     from gearcam.kinds.cam.build import CamResult
     from gearcam.kinds.cam.design import CamDesign
     from gearcam.laws.program import Program
     from gearcam.numeric.contour import Contour
     from gearcam.parts.body import Part, Recess
+    from gearcam.pictures.drawings import Drawing
 
 _OWN = ("outer_diameter", "groove_depth", "roller_clearance", "side")
 

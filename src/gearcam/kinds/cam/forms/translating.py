@@ -9,28 +9,28 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.facts import Fact
+from gearcam.base.numerals import shown
 from gearcam.cams.mechanism import make_sliding_mechanism
 from gearcam.cams.sliding import SlidingCam, make_sliding
 from gearcam.cams.wall import CHORD_TOLERANCE
 from gearcam.designs.faults import Fault, show
-from gearcam.errors import InfeasibleError, Way
-from gearcam.facts import Fact
 from gearcam.kinds.cam.blank import CamBlank
 from gearcam.kinds.cam.forms.base import FORMS, Form, Keys
 from gearcam.kinds.cam.forms.disc import STEM, TOOL_PATH, workpiece
 from gearcam.kinds.cam.wall_facts import curvature, trimming
 from gearcam.laws.phases_of_lift import DwellPhase, Phase
 from gearcam.laws.program import Program, make_program
-from gearcam.numerals import shown
 
 if TYPE_CHECKING:
+    from gearcam.base.tolerances import Tolerances
     from gearcam.cams.sliding import SlidingWall
-    from gearcam.drawings import Drawing, Path, Shape
     from gearcam.kinds.cam.build import CamResult
     from gearcam.kinds.cam.design import CamDesign
     from gearcam.numeric.contour import Contour
     from gearcam.parts.body import Opening, Part
-    from gearcam.tolerances import Tolerances
+    from gearcam.pictures.drawings import Drawing, Path, Shape
 
 _ROUNDING = 1e-9
 """Relative difference of a cutter's radius from half the groove that is rounding of digits."""
@@ -156,8 +156,8 @@ class Translating(Form):
 
     def paths(self, result: CamResult, radius: float | None) -> Mapping[str, Contour | Path]:
         """Return the path around the plate, or through the groove."""
-        from gearcam.drawings import Path
         from gearcam.kinds.cam.drawn import cutter_way
+        from gearcam.pictures.drawings import Path
 
         cam = _made(result)
         if cam.groove is None:
@@ -304,7 +304,7 @@ def _bolts(result: CamResult) -> Iterator[Opening]:
 
 def _drawing(result: CamResult, follower: Sequence[Shape] = (), way: float = 0.0) -> Drawing:
     """Return the plate with its pitch curve, moved by `way` below a follower."""
-    from gearcam.drawings import (
+    from gearcam.pictures.drawings import (
         BLANK,
         CENTER,
         CROSS_SIZE,

@@ -9,24 +9,24 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 import numpy as np
 
+from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.facts import Fact
+from gearcam.base.numerals import shown
 from gearcam.cams.yoke import YokeCam, make_yoke
 from gearcam.designs.faults import Fault, show
-from gearcam.drawings import FOLLOWER, Feature, placed
-from gearcam.errors import InfeasibleError, Way
-from gearcam.facts import Fact
 from gearcam.kinds.cam.forms.base import FORMS, PLATE, Keys
 from gearcam.kinds.cam.forms.disc import Disc, disc_cam
 from gearcam.laws.half_turns import agreeing, completed, miss
 from gearcam.laws.phases_of_lift import fill_half
 from gearcam.laws.program import Program, make_program
-from gearcam.numerals import shown
+from gearcam.pictures.drawings import FOLLOWER, Feature, placed
 
 if TYPE_CHECKING:
-    from gearcam.drawings import Drawing
+    from gearcam.base.tolerances import Tolerances
     from gearcam.kinds.cam.build import CamResult
     from gearcam.kinds.cam.design import CamDesign
     from gearcam.kinds.cam.motion import Motion
-    from gearcam.tolerances import Tolerances
+    from gearcam.pictures.drawings import Drawing
 
 _MISS: Final = 1e-6
 """Largest deviation of two half turns from being opposite, mm: rounding of typed digits."""

@@ -11,7 +11,7 @@ from __future__ import annotations
 import os
 import stat
 
-from gearcam.numerals import size_of
+from gearcam.base.numerals import size_of
 
 
 class UnreadableError(OSError):

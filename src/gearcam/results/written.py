@@ -1,24 +1,21 @@
-"""Writing the files of a result, and the record of what was written."""
+"""What a command has written, and the requested kinds of files."""
 
 from __future__ import annotations
 
 import platform
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from gearcam.base.display import Brief
+from gearcam.base.errors import DesignError, Problem
+from gearcam.base.facts import Facts
+from gearcam.base.findings import Finding
 from gearcam.designs.design import Design
 from gearcam.designs.kind import KINDS
-from gearcam.display import Brief
-from gearcam.errors import DesignError, Problem
-from gearcam.facts import Facts
-from gearcam.findings import Finding
 from gearcam.version import __version__
-
-if TYPE_CHECKING:
-    from gearcam.result import Result
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -98,62 +95,3 @@ def versions() -> dict[str, str]:
         if module is not None and hasattr(module, "__version__"):
             found[name] = str(module.__version__)
     return found
-
-
-def put(
-    result: Result,
-    directory: str | Path,
-    contents: Mapping[str, bytes],
-    measured: Mapping[str, Any],
-    findings: Sequence[Finding],
-    *,
-    keep: bool = False,
-) -> Written:
-    """Write files and the summary, all or none.
-
-    Parameters
-    ----------
-    result : Result
-        The result that they belong to.
-    directory : path
-        Parent folder.
-    contents : mapping of str to bytes
-        The files by name.
-    measured : mapping
-        Values measured on the files, for the summary.
-    findings : sequence of Finding
-        For the summary.
-    keep : bool
-        Whether to keep the other files of an earlier build.
-
-    Returns
-    -------
-    Written
-    """
-    import json
-
-    from gearcam.export.write import SUMMARY, write_all
-
-    facts = result.facts_with(measured) if measured else result.facts
-    made = result.design_hash
-    summary: dict[str, Any] = {}
-
-    def complete(before: Mapping[str, str]) -> dict[str, bytes]:
-        hashes = {**(before if keep else {}), **dict.fromkeys(contents, made)}
-        stale = {name: old for name, old in hashes.items() if old != made}
-        about = {"files": {name: made for name in hashes if name not in stale}}
-        more = {"stale": stale} if stale else {}
-        summary.update(result.document(facts, findings, {**about, **more}))
-        text = json.dumps(summary, indent=2, ensure_ascii=False, allow_nan=False)
-        return {**contents, SUMMARY: (text + "\n").encode()}
-
-    name = result.design.name
-    removed = write_all(directory, complete, name=name, keep=keep)
-    return Written(
-        directory=Path(directory) / name,
-        files=(*contents, SUMMARY),
-        removed=removed,
-        summary=summary,
-        facts=facts,
-        findings=tuple(findings),
-    )

@@ -17,7 +17,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
-from gearcam.numerals import shown
+from gearcam.base.numerals import shown
 
 
 class GearcamError(Exception):
@@ -86,7 +86,7 @@ class DesignError(GearcamError, ValueError):
     >>> gc.load("profiles/ellipse.toml").with_({"law.eccentricity": 2})
     Traceback (most recent call last):
         ...
-    gearcam.errors.DesignError: profiles/ellipse.toml: law.eccentricity: 2 is out of range
+    gearcam.base.errors.DesignError: profiles/ellipse.toml: law.eccentricity: 2 is out of range
         allowed: a number from 0 to below 1
     """
 

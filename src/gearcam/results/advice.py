@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final
 
-from gearcam.changes import (
+from gearcam.base.changes import (
     CLOSE,
     INSIDE,
     Changes,
@@ -30,14 +30,14 @@ from gearcam.changes import (
     tidy,
     together,
 )
+from gearcam.base.display import Brief
+from gearcam.base.errors import DesignError, InfeasibleError, Way
 from gearcam.designs.design import Design, document_of, value_at
 from gearcam.designs.kind import KINDS
-from gearcam.display import Brief
-from gearcam.errors import DesignError, InfeasibleError, Way
 
 if TYPE_CHECKING:
-    from gearcam.findings import Finding
-    from gearcam.result import Result
+    from gearcam.base.findings import Finding
+    from gearcam.results.result import Result
 
 PATIENCE: Final = 6.0
 """Seconds after which a search ends, on a usual machine."""

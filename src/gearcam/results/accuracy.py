@@ -16,19 +16,19 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.charts import Chart, Line
+from gearcam.base.display import Brief
+from gearcam.base.errors import DesignError, GearcamError, Problem
+from gearcam.base.facts import Facts, lined_up
+from gearcam.base.numerals import exact, shown
 from gearcam.designs.design import Design
 from gearcam.designs.faults import show
 from gearcam.designs.kind import KINDS, find_room
 from gearcam.designs.slips import did_you_mean
-from gearcam.display import Brief
-from gearcam.errors import DesignError, GearcamError, Problem
-from gearcam.facts import Facts, lined_up
-from gearcam.ladders import Ladder, Ladders
-from gearcam.numerals import exact, shown
 from gearcam.numeric.arguments import whole
-from gearcam.result import Progress, Result
-from gearcam.written import Written
+from gearcam.pictures.charts import Chart, Line
+from gearcam.results.ladders import Ladder, Ladders
+from gearcam.results.result import Progress, Result
+from gearcam.results.written import Written
 
 REPEATS: Final = 5
 """Default number of runs of each level."""
@@ -197,7 +197,7 @@ class Accuracy(Brief):
         WriteError
             If a file cannot be written.
         """
-        from gearcam.studies.svg import log_charts
+        from gearcam.results.svg import log_charts
 
         picture = log_charts(f"{self.result.design.name}: error against run time", self.charts)
         written = self.result.keep({TABLE: self.table, PICTURE: picture}, directory, {})
@@ -286,7 +286,7 @@ def accuracy(
     Examples
     --------
     >>> import gearcam as gc
-    >>> from gearcam.studies.accuracy import accuracy
+    >>> from gearcam.results.accuracy import accuracy
     >>> found = accuracy(gc.build(gc.load("profiles/ellipse.toml")), ["flank"], repeat=1)
     >>> round(found.order("flank"), 1)
     2.0

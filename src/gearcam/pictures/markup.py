@@ -14,10 +14,10 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 from xml.sax.saxutils import escape
 
-from gearcam.numerals import decimal
+from gearcam.base.numerals import decimal
 
 if TYPE_CHECKING:
-    from gearcam.facts import Facts, NamedFact
+    from gearcam.base.facts import Facts, NamedFact
 
 PIXELS: Final = 960
 """Default width of a picture, pixels."""

@@ -14,9 +14,9 @@ from dataclasses import dataclass
 from functools import wraps
 from typing import Any, Final, Literal, NamedTuple
 
-from gearcam.display import Brief
-from gearcam.numerals import settled, with_unit
-from gearcam.quantities import NUMBER, Param
+from gearcam.base.display import Brief
+from gearcam.base.numerals import settled, with_unit
+from gearcam.base.quantities import NUMBER, Param
 
 Severity = Literal["note", "warning", "error"]
 

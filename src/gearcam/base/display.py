@@ -1,11 +1,13 @@
 """Representations of objects: one line of text, and a picture with facts in a notebook.
 
-Pictures and tables come from `gearcam.markup`, which is imported when a notebook needs it.
+The module that writes pictures and tables (`renderer`) is named here and imported when a notebook
+needs it, so that whatever is shown depends on no other package.
 """
 
 from __future__ import annotations
 
 import dataclasses
+import importlib
 import os
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
@@ -13,7 +15,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final
 
 if TYPE_CHECKING:
-    from gearcam.facts import Facts
+    from gearcam.base.facts import Facts
 
 WIDTH: Final = 96
 """Length of the one-line representation, characters."""
@@ -23,6 +25,14 @@ _WORD: Final = 30
 
 _FEW: Final = 4
 """Number of items up to which all are shown."""
+
+RENDERER: Final = "gearcam.pictures.markup"
+"""The module that writes pictures and tables as SVG and HTML."""
+
+
+def renderer() -> Any:
+    """Return the module that writes pictures and tables, with ``outlines`` and ``page``."""
+    return importlib.import_module(RENDERER)
 
 
 class Brief:
@@ -109,6 +119,4 @@ class Displayed(ABC):
         return self.picture() or None
 
     def _repr_html_(self) -> str:
-        from gearcam.markup import page
-
-        return page(self.picture(), self.facts)
+        return renderer().page(self.picture(), self.facts)

@@ -13,10 +13,10 @@ from xml.sax.saxutils import escape
 
 import numpy as np
 
-from gearcam.charts import Chart, Line
-from gearcam.markup import CENTRODE_INK, GROUND, TEXT_INK, svg_document
-from gearcam.numerals import decimal
+from gearcam.base.numerals import decimal
 from gearcam.numeric.arrays import Array
+from gearcam.pictures.charts import Chart, Line
+from gearcam.pictures.markup import CENTRODE_INK, GROUND, TEXT_INK, svg_document
 
 COLUMNS: Final = 2
 """Number of charts in a row."""

@@ -4,7 +4,7 @@ A *ladder* repeats a computation at several *levels*, from coarse to fine: numbe
 points on a flank, chord tolerances. The result at one level is a *rung*. Its error is the deviation
 from a closed form if there is one, else from a level finer than all others, which is computed once
 and not timed. The folder of a kind defines its ladders (see `gearcam.designs.kind`);
-`gearcam.studies.accuracy` measures them.
+`gearcam.results.accuracy` measures them.
 
 Depends on results, solids and numeric.
 """
@@ -22,8 +22,8 @@ from gearcam.numeric.chebyshev import FIRST_CUTS, Expansion, expand
 from gearcam.numeric.sampling import Sampler
 
 if TYPE_CHECKING:
-    from gearcam.result import Result
-    from gearcam.solids import Mesh
+    from gearcam.parts.solids import Mesh
+    from gearcam.results.result import Result
 
 INTERVALS: Final = (1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, float(FIRST_CUTS), 2.0 * FIRST_CUTS)
 """Numbers of intervals of expansions; the program starts with the last but one."""
@@ -240,7 +240,7 @@ def solid_ladder(result: Result, own: float, levels: Sequence[float]) -> Ladder:
     Ladder
         The parts of each level are made once, and not timed again.
     """
-    from gearcam.solids import solid
+    from gearcam.parts.solids import solid
 
     parts: dict[float, Any] = {}
 

@@ -19,10 +19,10 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.display import Brief
-from gearcam.drawings import Feature, chains
+from gearcam.base.display import Brief
 from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.bulges import as_complex
+from gearcam.pictures.drawings import Feature, chains
 
 PLACES: Final = 720
 """Steps of the driver in a cycle; there is one more place for its end."""

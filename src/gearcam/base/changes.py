@@ -12,8 +12,8 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
-from gearcam.errors import Way
-from gearcam.numerals import shortened, shown
+from gearcam.base.errors import Way
+from gearcam.base.numerals import shortened, shown
 
 Changes = Mapping[str, Any]
 

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Final
 
-from gearcam.display import Brief, line
-from gearcam.numerals import shown
+from gearcam.base.display import Brief, line, renderer
+from gearcam.base.numerals import shown
 
 _UNITS: Final = {
     "_kg_m3": "kg/m3",
@@ -167,9 +167,7 @@ class Facts(Mapping[str, Any]):
         return "\n".join(self.lines())
 
     def _repr_html_(self) -> str:
-        from gearcam.markup import page
-
-        return page("", self)
+        return renderer().page("", self)
 
     def _ipython_key_completions_(self) -> list[str]:
         return list(self)

@@ -10,12 +10,12 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from gearcam.display import Displayed, cut
-from gearcam.facts import Facts
-from gearcam.findings import Finding
+from gearcam.base.display import Displayed, cut
+from gearcam.base.facts import Facts
+from gearcam.base.findings import Finding
 from gearcam.numeric.columns import Columns
-from gearcam.result import Result
-from gearcam.written import Written
+from gearcam.results.result import Result
+from gearcam.results.written import Written
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

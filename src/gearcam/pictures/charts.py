@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.errors import MissingExtraError
-from gearcam.numerals import shown
+from gearcam.base.errors import MissingExtraError
+from gearcam.base.numerals import shown
 from gearcam.numeric.arrays import Array
 
 if TYPE_CHECKING:

@@ -24,9 +24,9 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.display import Brief
-from gearcam.errors import InfeasibleError
-from gearcam.numerals import shown
+from gearcam.base.display import Brief
+from gearcam.base.errors import InfeasibleError
+from gearcam.base.numerals import shown
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.contour import Contour
 from gearcam.parts.body import Part

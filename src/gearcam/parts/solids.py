@@ -20,8 +20,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.errors import GearcamError, InfeasibleError, MissingExtraError
-from gearcam.numerals import shown
+from gearcam.base.errors import GearcamError, InfeasibleError, MissingExtraError
+from gearcam.base.numerals import shown
 from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.bulges import as_complex, as_pairs
 from gearcam.numeric.contour import Contour

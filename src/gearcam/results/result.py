@@ -17,24 +17,24 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Final, Self
 
+from gearcam.base.display import Displayed, cut, renderer
+from gearcam.base.errors import GearcamError
+from gearcam.base.facts import Fact, Facts
+from gearcam.base.findings import Finding
+from gearcam.base.numerals import tree
+from gearcam.base.tolerances import DEFAULT, Tolerances
 from gearcam.designs.design import hash_of, summary_of
 from gearcam.designs.kind import KINDS
-from gearcam.display import Displayed, cut
-from gearcam.errors import GearcamError
-from gearcam.facts import Fact, Facts
-from gearcam.findings import Finding
-from gearcam.numerals import tree
 from gearcam.numeric.arguments import one_of, refused
-from gearcam.tolerances import DEFAULT, Tolerances
-from gearcam.written import Written, demand_formats, put, versions
+from gearcam.results.written import Written, demand_formats, versions
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from trimesh import Trimesh
 
-    from gearcam.charts import Chart
     from gearcam.parts.body import Part
-    from gearcam.solids import Mesh
+    from gearcam.parts.solids import Mesh
+    from gearcam.pictures.charts import Chart
 
 FORMAT: Final = 1
 """Version of the layout of ``summary.json``."""
@@ -125,7 +125,7 @@ class Result(Displayed):
     @cached_property
     def meshes(self) -> dict[str, Mesh]:
         """The parts as closed meshes of plain arrays by name, mm, as used for files."""
-        from gearcam.solids import solid
+        from gearcam.parts.solids import solid
 
         return {part.name: solid(part) for part in self.parts}
 
@@ -136,22 +136,18 @@ class Result(Displayed):
         try:
             (data,) = self.files(PICTURE).values()
         except GearcamError as error:
-            from gearcam.markup import refusal_picture
-
-            return refusal_picture(self.design.name, error)
+            return renderer().refusal_picture(self.design.name, error)
         return data.decode()
 
     def _repr_html_(self) -> str:
-        from gearcam.markup import page, refusal
-
         try:
             facts, findings = self.facts, self.findings
             if REPORT in KINDS[self.design.kind].formats:
                 return KINDS[self.design.kind].room("files").framed(self)
         except GearcamError as error:
-            return refusal(self.design.name, error)
+            return renderer().refusal(self.design.name, error)
         told = [f"{one.severity}, {one.code}: {one.message} {one.where}" for one in findings]
-        return page(self.picture(), facts, told)
+        return renderer().page(self.picture(), facts, told)
 
     @cached_property
     def design_hash(self) -> str:
@@ -381,7 +377,7 @@ class Result(Displayed):
                 contents |= self.files(kind, measured)
             self.sizes = {name: len(content) for name, content in contents.items()}
         tell("writing")
-        return put(self, directory, contents, measured, self.findings)
+        return self._put(directory, contents, measured, self.findings)
 
     def keep(
         self,
@@ -408,4 +404,42 @@ class Result(Displayed):
         Written
         """
         found = self.findings if findings is None else findings
-        return put(self, directory, contents, measured, found, keep=True)
+        return self._put(directory, contents, measured, found, keep=True)
+
+    def _put(
+        self,
+        directory: str | Path,
+        contents: Mapping[str, bytes],
+        measured: Mapping[str, Any],
+        findings: Sequence[Finding],
+        *,
+        keep: bool = False,
+    ) -> Written:
+        """Write files and the summary, all or none; `keep` the other files of an earlier build."""
+        import json
+
+        from gearcam.export.write import SUMMARY, write_all
+
+        facts = self.facts_with(measured) if measured else self.facts
+        made = self.design_hash
+        summary: dict[str, Any] = {}
+
+        def complete(before: Mapping[str, str]) -> dict[str, bytes]:
+            hashes = {**(before if keep else {}), **dict.fromkeys(contents, made)}
+            stale = {name: old for name, old in hashes.items() if old != made}
+            about = {"files": {name: made for name in hashes if name not in stale}}
+            more = {"stale": stale} if stale else {}
+            summary.update(self.document(facts, findings, {**about, **more}))
+            text = json.dumps(summary, indent=2, ensure_ascii=False, allow_nan=False)
+            return {**contents, SUMMARY: (text + "\n").encode()}
+
+        name = self.design.name
+        removed = write_all(directory, complete, name=name, keep=keep)
+        return Written(
+            directory=Path(directory) / name,
+            files=(*contents, SUMMARY),
+            removed=removed,
+            summary=summary,
+            facts=facts,
+            findings=tuple(findings),
+        )
