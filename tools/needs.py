@@ -97,6 +97,12 @@ def stages(made, studies):
     done += [name for name in studies if name in result.timings]
     return [*done, f"other results: {len(others)}"] if others else done
 
+def room(parts):
+    """Return the package of a module, or its own name where outputs need some of a package only."""
+    if parts[1] in ("results", "pictures"):
+        return parts[2] if parts[2:] else ""
+    return "solids" if parts[1:] == ["parts", "solids"] else parts[1]
+
 def main():
     asked, packages, studies = (json.loads(text) for text in sys.argv[2:])
     made = []
@@ -117,7 +123,9 @@ def main():
         print(json.dumps({
             "stages": stages(made, studies) if made else [],
             "packages": [name for name in packages if [name] in loaded],
-            "rooms": sorted({parts[1] for parts in loaded if parts[0] == "gearcam" and parts[1:]}),
+            "rooms": sorted(
+                {room(parts) for parts in loaded if parts[0] == "gearcam" and parts[1:]} - {""}
+            ),
             "seconds": time.process_time(),
             "memory": kept(),
         }), flush=True)
