@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, Final, NoReturn
 from gearcam import build, remedies
 from gearcam.base.errors import DesignError, InfeasibleError, MissingExtraError, Problem, WriteError
 from gearcam.base.interrupts import interruptible
-from gearcam.commands import Command, ResultCommand, demand_new_name
+from gearcam.commands import COMMANDS, Command, ResultCommand, demand_new_name
 from gearcam.console import (
     DEBUG,
     all_lines,
@@ -123,12 +123,10 @@ def _dispatch(words: list[str]) -> int:
 
 
 def _commands() -> Iterator[Command]:
-    """Yield the commands: general ones, those of kinds of design, then studies of any kind."""
+    """Yield the commands: general ones, those of kinds of design, then those for all kinds."""
     yield from _COMMANDS
     for room in rooms("commands"):
         yield from map(_of_results, room.COMMANDS)
-    from gearcam.commands import COMMANDS
-
     yield from map(_of_results, COMMANDS)
 
 
