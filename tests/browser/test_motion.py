@@ -331,6 +331,21 @@ def test_knots_are_drawn_and_told(browser: Chrome, page_of: Written) -> None:
     assert "knot" not in figure.find_element(By.CLASS_NAME, "legend").text
 
 
+RECORD = """
+const pen = CanvasRenderingContext2D.prototype;
+const fill = pen.fillText;
+window.written = {};
+pen.fillText = function (text, ...place) {
+    if (document.querySelector(".chart").contains(this.canvas)) {
+        window.written[text] = [this.textBaseline, ...place];
+    }
+    return fill.call(this, text, ...place);
+};
+gearcam.show({ charts: arguments[0] });
+"""
+"""Shows charts, and records what is written in the first one: baseline and place by text."""
+
+
 def test_small_numbers_stand_at_the_axis_and_labels_of_limits_apart(
     browser: Chrome, page_of: Written
 ) -> None:
@@ -341,24 +356,34 @@ def test_small_numbers_stand_at_the_axis_and_labels_of_limits_apart(
     tiny = charts[0] | {
         "lines": [charts[0]["lines"][0] | {"x": [0, 360], "y": [-2e-16, 3e-16]}],
         "range": [-2e-16, 3e-16],
+        "ends": [[0, 360], [-2.3e-16, 3.3e-16]],
         "limits": [{"label": one, "value": at, "seen": True} for one, at in levels.items()],
     }
-    record = """
-    const pen = CanvasRenderingContext2D.prototype;
-    const fill = pen.fillText;
-    window.written = {};
-    pen.fillText = function (text, ...place) {
-        window.written[text] = this.textBaseline;
-        return fill.call(this, text, ...place);
-    };
-    gearcam.show({ charts: arguments[0] });
-    """
-    browser.execute_script(record, [tiny, *charts[1:]])
+    browser.execute_script(RECORD, [tiny, *charts[1:]])
     settle(browser)
     written = browser.execute_script("return window.written")
-    assert {name: written.get(name) for name in levels} == {
+    assert {name: written.get(name, [None])[0] for name in levels} == {
         "outer": None,  # it would lie upon the inner one
         "inner": "alphabetic",
         "low": "alphabetic",
     }
     assert {"-2e-16", "0", "2e-16"} <= {*written}
+
+
+def test_numbers_at_logarithmic_axes_stand_at_their_logarithms(
+    browser: Chrome, page_of: Written
+) -> None:
+    """An axis that is logarithmic after it was linear."""
+    charts = open_page(browser, page_of("groove_cam"))["charts"]
+    drawn(browser, browser.find_elements(By.CLASS_NAME, "chart")[0])
+    x, y = [1e-3, 1e-2, 1.0], [1e-5, None, 1e-11]
+    errors = charts[0] | {"lines": [charts[0]["lines"][0] | {"x": x, "y": y}], "limits": []}
+    errors |= {"log": "xy", "range": [1e-11, 1e-5], "ends": [[1e-3, 1.0], [1e-11, 1e-5]]}
+    browser.execute_script(RECORD, [errors, *charts[1:]])
+    settle(browser)
+    written = browser.execute_script("return window.written")
+    numbers = {text: place for text, (_, *place) in written.items() if re.match(r"[\d.e-]+$", text)}
+    for texts, axis in ((("0.001", "0.01", "0.1"), 0), (("1e-11", "1e-9", "1e-7"), 1)):
+        places = [numbers[text][axis] for text in texts]
+        assert places[2] - places[1] == pytest.approx(places[1] - places[0], abs=1.0)
+        assert abs(places[1] - places[0]) > 50.0

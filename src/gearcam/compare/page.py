@@ -83,10 +83,8 @@ def joined(name: str, variants: Sequence[Variant]) -> Chart:
             _line(line, label if single else f"{label}: {line.label}") for line in chart.lines
         ]
         limits += [(label, limit) for limit in chart.limits]
-    return Chart(
-        title=first.title,
-        x=first.x,
-        y=first.y,
+    return replace(
+        first,
         lines=(*lines,),
         limits=_limits(limits),
         marks=_common([chart.marks for _, chart in charts]),

@@ -1,13 +1,15 @@
 """Charts as data, and their drawing with matplotlib.
 
 A *chart* has one horizontal axis, *lines* over it, *limits* for their values, and *marked places*
-on the axis, such as the knots of a law. The folder of each kind of design defines its charts (see
-`gearcam.designs.kind`). Drawing needs matplotlib, which the extra ``plot`` installs.
+on the axis, such as the knots of a law. Either axis can be logarithmic; what is not positive is not
+drawn there. The folder of each kind of design defines its charts (see `gearcam.designs.kind`).
+Drawing needs matplotlib, which the extra ``plot`` installs.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import math
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
@@ -26,6 +28,8 @@ _FAR: Final = 1.5
 _MARGIN: Final = 0.06
 """Margin above and below the lines, and beside dots, relative to the range."""
 
+_DECADES: Final = 1.2
+"""Least number of decades on a logarithmic axis, so that noise does not fill the chart."""
 
 _MOST_KNOTS: Final = 36
 """Largest number of knots that are marked: one in ten degrees."""
@@ -102,6 +106,8 @@ class Chart:
         Limits for the lines.
     marks : tuple of MarkedPlace
         Marked places on the horizontal axis.
+    log : str
+        Logarithmic axes: ``x``, ``y`` or ``xy``.
     """
 
     title: str
@@ -110,6 +116,7 @@ class Chart:
     lines: tuple[Line, ...]
     limits: tuple[Limit, ...] = ()
     marks: tuple[MarkedPlace, ...] = ()
+    log: str = ""
 
     def __repr__(self) -> str:
         return f"<Chart of {self.title}: {', '.join(line.label for line in self.lines)}>"
@@ -133,6 +140,9 @@ class Chart:
             If matplotlib is not installed.
         """
         ax = _new_axes() if ax is None else ax
+        for axis in self.log:
+            set_scale = ax.set_xscale if axis == "x" else ax.set_yscale
+            set_scale("log", nonpositive="mask")
         for line in self.lines:
             style: Mapping[str, Any] = _DOTS if line.dots else {}
             ax.plot(line.x, line.y, label=line.label, **style)
@@ -148,9 +158,7 @@ class Chart:
             label = None if mark.label in told else mark.label
             ax.axvline(mark.value, color="0.5", ls=":", lw=0.8, label=label)
             told.add(mark.label)
-        free = _MARGIN * (high - low)
-        ax.set(title=self.title, xlabel=self.x, ylabel=self.y, ylim=(low - free, high + free))
-        ax.margins(x=_MARGIN if any(line.dots for line in self.lines) else 0.0)
+        ax.set(title=self.title, xlabel=self.x, ylabel=self.y, xlim=self.ends[0], ylim=self.ends[1])
         ax.grid(visible=True, alpha=0.3)
         if self.limits or self.marks or len(self.lines) > 1:
             ax.legend(fontsize="small")
@@ -162,14 +170,41 @@ class Chart:
 
         The range of a constant line is widened.
         """
-        values = np.concatenate([line.y[np.isfinite(line.y)] for line in self.lines])
-        low, high = (float(values.min()), float(values.max())) if values.size else (0.0, 0.0)
-        room = 0.0 if high - low > 1e-9 * max(abs(low), abs(high)) else 0.05 * abs(high) or 1.0
-        low, high = low - room, high + room
-        levels = [limit.value for limit in self.limits]
-        near = _FAR * (high - low)
-        seen = [one for one in levels if low - near <= one <= high + near]
+        low, high = ends = _range([line.y for line in self.lines], "y" in self.log)
+        least, most = _extended(ends, _FAR, "y" in self.log)
+        seen = [limit.value for limit in self.limits if least <= limit.value <= most]
         return min(low, *seen, low), max(high, *seen, high)
+
+    @property
+    def ends(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """The ends of the horizontal and of the vertical axis: the ranges with their margins."""
+        across = _range([line.x for line in self.lines], "x" in self.log)
+        dots = any(line.dots for line in self.lines)
+        return (
+            _extended(across, _MARGIN if dots else 0.0, "x" in self.log),
+            _extended(self.range, _MARGIN, "y" in self.log),
+        )
+
+
+def _range(columns: Sequence[Array], log: bool) -> tuple[float, float]:
+    """Return the smallest and the largest of values on an axis, apart from each other."""
+    values = np.concatenate(columns)
+    values = values[np.isfinite(values) & (values > (0.0 if log else -math.inf))]
+    low, high = (float(values.min()), float(values.max())) if values.size else (1.0 * log,) * 2
+    if log:
+        factor = math.sqrt(max(1.0, 10.0**_DECADES * low / high))
+        return low / factor, high * factor
+    room = 0.0 if high - low > 1e-9 * max(abs(low), abs(high)) else 0.05 * abs(high) or 1.0
+    return low - room, high + room
+
+
+def _extended(ends: tuple[float, float], share: float, log: bool) -> tuple[float, float]:
+    """Return a range extended on both sides by a `share` of its length on the axis."""
+    low, high = ends
+    if log:
+        factor = (high / low) ** share
+        return low / factor, high * factor
+    return low - share * (high - low), high + share * (high - low)
 
 
 def knot_marks(knots: Array, low: float, high: float) -> tuple[MarkedPlace, ...]:

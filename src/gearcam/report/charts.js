@@ -5,7 +5,6 @@ const DASHES = [[], [9, 3], [9, 3, 2, 3], [2, 3], [14, 4], [5, 2]];
 const HEIGHT = 230; // of a chart, pixels
 const PRINTED = { width: 330, height: 200 };
 const PRINTED_FIRST = { ...PRINTED, width: 676 }; // over both columns
-const FREE = 0.06; // margin of a range, above and below, and beside dots
 const LETTERS = 12; // height of a line of text in a chart, pixels
 const AT_ONCE = 3; // charts drawn per frame, so that the parts keep moving
 const LEADING = 3; // charts in sight; the others are folded
@@ -15,6 +14,14 @@ const brief = (value) => String(Number(value.toPrecision(5)));
 // Numbers at an axis without rounding errors, however small the steps are.
 const ticks = (_, values, axis, space, step) =>
   values.map((value) => String(Number((Math.round(value / step) * step).toPrecision(12))));
+
+// Numbers at a logarithmic axis; null where there is no room for one.
+const powers = (_, values) =>
+  values.map((value) => {
+    if (value === null) return "";
+    const plain = value >= 1e-3 && value < 1e4;
+    return plain ? brief(value) : Number(brief(value)).toExponential().replace("+", "");
+  });
 
 // All values of a line at a place: two at a jump, more where its pieces overlap.
 function valuesAt(line, place) {
@@ -28,25 +35,6 @@ function valuesAt(line, place) {
     else found.add(brief(low + ((place - from) / (to - from)) * (high - low)));
   }
   return [...found];
-}
-
-function spanOf(chart) {
-  let [low, high] = [Infinity, -Infinity];
-  for (const line of chart.lines) {
-    for (const x of line.x) {
-      if (x === null) continue;
-      low = Math.min(low, x);
-      high = Math.max(high, x);
-    }
-  }
-  if (low > high) return [0, 1];
-  const free = chart.lines.some((line) => line.dots) || low === high ? FREE * (high - low) || 1 : 0;
-  return [low - free, high + free];
-}
-
-function heightOf({ range: [low, high] }) {
-  const free = FREE * (high - low);
-  return [low - free, high + free];
 }
 
 function add(parent, tag, attributes = {}, text = "") {
@@ -121,7 +109,7 @@ class ChartView {
 
   // Replace this chart by another one.
   show(chart) {
-    const shape = (one) => one.lines.map((line) => line.dots).join();
+    const shape = (one) => [one.log, ...one.lines.map((line) => line.dots)].join();
     const same = shape(chart) === shape(this.chart) && chart.x === this.chart.x;
     this.chart = chart;
     this.describe();
@@ -146,8 +134,12 @@ class ChartView {
       font: "12px system-ui, sans-serif",
       labelFont: "12px system-ui, sans-serif",
       grid: { stroke: ink("rule"), width: 1 }, ticks: { stroke: ink("rule"), width: 1, size: 4 },
-      values: ticks,
     };
+    const scale = (name, k) => ({
+      distr: this.chart.log.includes(name) ? 3 : 1, // logarithmic or linear
+      range: () => this.chart.ends[k],
+    });
+    const values = (name) => (this.chart.log.includes(name) ? powers : ticks);
     // wide enough for most numbers, so that charts line up
     const wide = (_, texts) => 14 + 7 * Math.max(6, ...(texts ?? []).map((text) => text.length));
     this.plot = new uPlot({
@@ -156,11 +148,11 @@ class ChartView {
       height: HEIGHT,
       legend: { show: false },
       cursor: { x: false, y: false, drag: { x: false, y: false }, points: { show: false } },
-      scales: {
-        x: { time: false, range: () => spanOf(this.chart) },
-        y: { range: () => heightOf(this.chart) },
-      },
-      axes: [{ ...axis, label: this.chart.x, labelSize: 18, size: 30 }, { ...axis, size: wide }],
+      scales: { x: { time: false, ...scale("x", 0) }, y: scale("y", 1) },
+      axes: [
+        { ...axis, values: values("x"), label: this.chart.x, labelSize: 18, size: 30 },
+        { ...axis, values: values("y"), size: wide },
+      ],
       series: [null, ...this.chart.lines.map((line, k) => this.series(line, k))],
       hooks: { draw: [() => this.marks(), () => this.limits(), () => this.follow()] },
     }, this.data(), this.home);
@@ -241,17 +233,18 @@ class ChartView {
     pen.font = `${11 * ratio}px system-ui, sans-serif`;
     pen.textAlign = "right";
     pen.textBaseline = "alphabetic"; // the axes have set another one
-    const [low, high] = heightOf(this.chart);
-    const off = (limit) => Math.abs(limit.value - 0.5 * (low + high));
+    const height = (limit) => this.plot.valToPos(limit.value, "y", true);
+    const middle = bbox.top + 0.5 * bbox.height;
+    const off = (limit) => Math.abs(height(limit) - middle);
     const seen = this.chart.limits.filter((one) => one.seen).sort((a, b) => off(a) - off(b));
     const labels = []; // of limits close together the inner one is labelled; the legend lists all
     for (const limit of seen) {
-      const y = this.plot.valToPos(limit.value, "y", true);
+      const y = height(limit);
       pen.beginPath();
       pen.moveTo(bbox.left, y);
       pen.lineTo(bbox.left + bbox.width, y);
       pen.stroke();
-      const above = limit.value < 0.5 * (low + high); // on the inner side, where there is room
+      const above = y > middle; // on the inner side, where there is room
       const base = y + (above ? -4 : LETTERS) * ratio;
       if (labels.some((other) => Math.abs(other - base) < LETTERS * ratio)) continue;
       pen.fillText(limit.label, bbox.left + bbox.width - 4 * ratio, base);
@@ -269,7 +262,7 @@ class ChartView {
   // Show values and cursor at the place of the parts.
   mark(place) {
     if (!this.plot) return;
-    const [low, high] = spanOf(this.chart);
+    const [low, high] = this.chart.ends[0];
     const inside = this.chart.moves && place >= low && place <= high;
     this.cursor.hidden = !inside;
     if (inside) this.follow();

@@ -24,7 +24,8 @@ _RAD: Final = 7
 """Decimals of rotations, rad: less than a tenth of a micrometre at a radius of 1 m."""
 
 _DIGITS: Final = 6
-"""Significant digits of the largest value of a chart; the others have as many decimals."""
+"""Significant digits of the largest value of a chart; the others have as many decimals, or as many
+digits on a logarithmic axis."""
 
 
 def scene_data(scene: Scene) -> dict[str, Any]:
@@ -117,21 +118,25 @@ def chart_data(name: str, chart: Chart, driver: str) -> dict[str, Any]:
     Returns
     -------
     dict
-        ``name``, ``title``, ``x`` and ``y`` (axis labels), ``moves`` (whether it has a cursor),
-        ``range`` (of the vertical axis, including the limits near the lines), ``lines`` (``label``,
-        ``x``, ``y``, ``dots``), ``limits`` (``label``, ``value``, ``seen``: whether it is within
-        the range) and ``marks`` on the horizontal axis (``label``, ``value``).
+        ``name``, ``title``, ``x`` and ``y`` (axis labels), ``log`` (the logarithmic axes),
+        ``moves`` (whether it has a cursor), ``range`` (of the vertical axis, including the limits
+        near the lines), ``ends`` (of both axes, with margins), ``lines`` (``label``, ``x``, ``y``,
+        ``dots``), ``limits`` (``label``, ``value``, ``seen``: whether it is within the range) and
+        ``marks`` on the horizontal axis (``label``, ``value``).
     """
     low, high = chart.range
+    across, up = (_significant if axis in chart.log else _digits for axis in "xy")
     return {
         "name": name,
         "title": chart.title,
         "x": chart.x,
         "y": chart.y,
+        "log": chart.log,
         "moves": chart.x == driver,
         "range": [low, high],
+        "ends": chart.ends,
         "lines": [
-            {"label": one.label, "x": _digits(one.x), "y": _digits(one.y), "dots": one.dots}
+            {"label": one.label, "x": across(one.x), "y": up(one.y), "dots": one.dots}
             for one in chart.lines
         ],
         "limits": [
@@ -155,6 +160,13 @@ def _digits(values: Array) -> list[float | None]:
     known = np.abs(values[np.isfinite(values)])
     size = float(known.max(initial=0.0))
     return _rounded(values, _DIGITS - math.ceil(math.log10(size)) if size else 0)
+
+
+def _significant(values: Array) -> list[float | None]:
+    """Return values for a logarithmic axis, each rounded by itself; null if not positive."""
+    return [
+        float(f"{one:.{_DIGITS}g}") if 0.0 < one < math.inf else None for one in values.tolist()
+    ]
 
 
 def _rounded(values: Array, decimals: int) -> list[float | None]:

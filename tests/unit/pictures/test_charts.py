@@ -330,6 +330,33 @@ def test_axes_may_be_given_and_level_lines_have_room():
     plt.close("all")
 
 
+def log_chart(x, y, **more):
+    line = Line(label="errors", x=np.array(x), y=np.array(y), dots=True)
+    return Chart(title="t", x="s", y="mm", lines=(line,), log="xy", **more)
+
+
+def test_margins_of_logarithmic_axes_are_shares_of_their_decades():
+    found = log_chart([1e-3, 1e-1], [1e-12, 1e-2])
+    assert found.range == pytest.approx((1e-12, 1e-2))
+    assert np.log10(found.ends) == pytest.approx(np.array([[-3.12, -0.88], [-12.6, -1.4]]))
+    far = tuple(Limit(label="", value=value) for value in (1e-20, 1e-30, 0.0, -1.0))
+    assert log_chart([1e-3, 1e-1], [1e-12, 1e-2], limits=far).range[0] == pytest.approx(1e-20)
+
+
+def test_a_logarithmic_axis_has_a_decade_or_more_and_positive_values_only():
+    found = log_chart([2.0, 2.0, 2.0], [0.0, 3.0, -1.0])
+    low, high = found.range
+    assert (math.log10(high / low), low * high) == (pytest.approx(1.2), pytest.approx(9.0))
+    assert log_chart([1.0], [0.0]).range[0] > 0.0
+
+
+def test_logarithmic_axes_are_drawn():
+    ax = log_chart([1e-3, 0.0, 1e-1], [1e-12, 1.0, 1e-2]).draw()
+    assert (ax.get_xscale(), ax.get_yscale()) == ("log", "log")
+    assert ax.get_xlim()[0] == pytest.approx(10**-3.12)
+    assert ax.get_ylim()[1] == pytest.approx(10**0.72)
+
+
 def test_places_of_knots():
     turn, knots = np.linspace(0.0, 2.0, 101), np.array([-1.0, 0.503, 1.003, 2.0, 9.0])
     places = with_both_sides(turn, knots)

@@ -121,10 +121,24 @@ def test_a_chart_is_read_back_to_six_digits():
     assert told["x"] == [0.0, 1.0, 2.0, 359.123]
     assert told["y"] == [1.235e-5, None, -9.87654e-3, 0.0]
     assert data["range"] == list(chart.range)
+    assert data["ends"] == [list(ends) for ends in chart.ends]
     assert [one["seen"] for one in data["limits"]] == [True, False]
     assert data["marks"] == [{"label": "knots", "value": 2.0}]
     assert data["moves"] is True
     assert chart_data("c", chart, "another, deg")["moves"] is False
+
+
+def test_on_a_logarithmic_axis_each_value_has_six_digits():
+    """And what has no logarithm is left out, on this axis only."""
+    x, y = (
+        np.array([0.0, 1.0, 2.0, 3.0, 4.0]),
+        np.array([1.23456789e-5, 987654321.0, 0.0, -1, np.nan]),
+    )
+    line = Line(label="values", x=x, y=y)
+    data = read(chart_data("c", Chart(title="t", x="x", y="y", lines=(line,), log="y"), ""))
+    assert data["lines"][0]["x"] == x.tolist()
+    assert data["lines"][0]["y"] == [1.23457e-5, 987654000.0, None, None, None]
+    assert data["log"] == "y"
 
 
 @pytest.mark.parametrize("name", NAMES)
