@@ -39,8 +39,7 @@ REQUIRED: Final = dataclasses.MISSING
 class Quantity:
     """A quantity: its suffix in files, its factor to mm or rad, the name of its unit.
 
-    Values that must be positive are at least `least`, in the unit of the file, so that their powers
-    do not underflow.
+    Values that must be positive are at least `least`, in the unit of the file: nobody makes less.
     """
 
     suffix: str
@@ -50,7 +49,7 @@ class Quantity:
 
 
 ANGLE: Final = Quantity("_deg", math.pi / 180.0, "deg", least=1e-6)
-LENGTH: Final = Quantity("_mm", 1.0, "mm", least=1e-15)
+LENGTH: Final = Quantity("_mm", 1.0, "mm", least=1e-3)
 NUMBER: Final = Quantity("", 1.0, "")
 COUNT: Final = Quantity("", 1.0, "")
 TEXT: Final = Quantity("", 1.0, "")
@@ -61,8 +60,15 @@ ANGLE_PER_RAD: Final = Quantity("_deg_per_rad", math.pi / 180.0, "deg/rad")
 ANGLE_PER_RAD2: Final = Quantity("_deg_per_rad2", math.pi / 180.0, "deg/rad2")
 
 
-NARROWEST: Final = ANGLE.least * ANGLE.factor
-"""Least width of a phase, rad; narrower ones cannot be distinguished from jumps."""
+LONGEST: Final = 1e5
+"""Largest length of a design, mm."""
+
+FINEST: Final = 1e-9
+"""Least tolerance of a design, mm."""
+
+NARROWEST_DEG: Final = 0.01
+NARROWEST: Final = NARROWEST_DEG * ANGLE.factor
+"""Least width of a phase, degrees and rad: a narrower one is a jump."""
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from typing import Any, Final
 
 from gearcam.base.display import Brief
 from gearcam.base.numerals import shown
-from gearcam.base.quantities import ANGLE, LENGTH, TEXT, param
+from gearcam.base.quantities import ANGLE, LENGTH, LONGEST, TEXT, param
 
 KIND: Final = "cams"
 """The checks of cams."""
@@ -46,17 +46,17 @@ _ROUND: Final = {"roller": "roller_radius", "domed": "dome_radius"}
 
 def _size(*, doc: str) -> Any:
     """Return a length that a follower or cam may have."""
-    return param(LENGTH, default=None, gt=0, le=1e6, doc=doc)
+    return param(LENGTH, default=None, gt=0, le=LONGEST, doc=doc)
 
 
 def _run(*, doc: str) -> Any:
     """Return a length before or after the motion."""
-    return param(LENGTH, default=None, ge=0, le=1e6, doc=doc)
+    return param(LENGTH, default=None, ge=0, le=LONGEST, doc=doc)
 
 
 def _aside(*, doc: str) -> Any:
     """Return a length to either side."""
-    return param(LENGTH, default=0.0, ge=-1e6, le=1e6, doc=doc)
+    return param(LENGTH, default=0.0, ge=-LONGEST, le=LONGEST, doc=doc)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -131,8 +131,8 @@ class FollowerSpec(Brief):
     pivot_height: float | None = param(
         LENGTH,
         default=None,
-        ge=-1e6,
-        le=1e6,
+        ge=-LONGEST,
+        le=LONGEST,
         doc="of an oscillating follower on a translating cam: height of its pivot above the "
         "roller's centre at zero lift; 0 if left out",
     )
@@ -211,7 +211,7 @@ class CamSpec(Brief):
         doc="base radius: from the cam's axis to the profile at zero lift; give it instead of "
         "prime_radius_mm, and always with a flat follower"
     )
-    thickness: float = param(LENGTH, default=10.0, gt=0, le=1e5, doc="thickness of the plate")
+    thickness: float = param(LENGTH, default=10.0, gt=0, le=LONGEST, doc="thickness of the plate")
     rotation: str = param(
         TEXT,
         default="ccw",
@@ -222,7 +222,7 @@ class CamSpec(Brief):
         doc="from the axis to the centre of conjugate cams' second roller, at the highest lift"
     )
     gap: float | None = param(
-        LENGTH, default=None, ge=0, le=1e5, doc="gap between conjugate cams; 0 if left out"
+        LENGTH, default=None, ge=0, le=LONGEST, doc="gap between conjugate cams; 0 if left out"
     )
     outer_diameter: float | None = _size(doc="diameter of the disc of a groove cam")
     groove_depth: float | None = _size(doc="depth of a groove, less than the thickness")

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from gearcam.base.display import Brief
-from gearcam.base.quantities import ANGLE, LENGTH, TEXT, param
+from gearcam.base.quantities import ANGLE, FINEST, LENGTH, TEXT, param
 from gearcam.designs.faults import Fault, show
 
 FORMATS: Final = (
@@ -49,7 +49,7 @@ class OutputSpec(Brief):
     chord_tolerance: float | None = param(
         LENGTH,
         default=None,
-        gt=0,
+        ge=FINEST,
         doc="largest distance of an outline from the true curve, at most module/50; 0.001 mm or "
         "module/1000 if left out, the smaller one",
     )

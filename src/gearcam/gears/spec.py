@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from gearcam.base.display import Brief
-from gearcam.base.quantities import ANGLE, COUNT, LENGTH, NUMBER, TEXT, param
+from gearcam.base.quantities import ANGLE, COUNT, LENGTH, LONGEST, NUMBER, TEXT, param
 
 RIM = 2.7
 """Default rim beyond the roots, in modules: 1.2 tooth depths."""
@@ -130,7 +130,9 @@ class PairSpec(Brief):
         choices=("external", "internal"),
         doc="external: wheel 2 is beside wheel 1; internal: it is a ring around wheel 1",
     )
-    center_distance: float | None = param(LENGTH, default=None, gt=0, le=1e6, doc="centre distance")
+    center_distance: float | None = param(
+        LENGTH, default=None, gt=0, le=LONGEST, doc="centre distance"
+    )
     module: float | None = param(
         LENGTH,
         default=None,
@@ -158,7 +160,9 @@ class PairSpec(Brief):
         le=1e4,
         doc="backlash along the pitch curve, of both wheels together",
     )
-    face_width: float = param(LENGTH, default=10.0, gt=0, le=1e5, doc="face width of the wheels")
+    face_width: float = param(
+        LENGTH, default=10.0, gt=0, le=LONGEST, doc="face width of the wheels"
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -182,11 +186,15 @@ class RingSpec:
         LENGTH,
         default=None,
         gt=0,
-        le=1e6,
+        le=LONGEST,
         doc="least rim outside the roots; 2.7 modules if left out",
     )
     outer_diameter: float | None = param(
-        LENGTH, default=None, gt=0, le=1e6, doc="outer diameter of a round ring, instead of rim_mm"
+        LENGTH,
+        default=None,
+        gt=0,
+        le=LONGEST,
+        doc="outer diameter of a round ring, instead of rim_mm",
     )
     cutter_teeth: float | None = param(
         NUMBER,

@@ -15,7 +15,7 @@ import numpy as np
 
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.numerals import shown
-from gearcam.base.quantities import TEXT, param
+from gearcam.base.quantities import LONGEST, TEXT, param
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import TYPED
 from gearcam.laws.formula import (
@@ -26,7 +26,7 @@ from gearcam.laws.formula import (
     function_of,
     values_of,
 )
-from gearcam.laws.phases_of_lift import LONGEST, TURN
+from gearcam.laws.phases_of_lift import TURN
 from gearcam.laws.program import Program
 from gearcam.laws.rows_of_lift import stretches_of
 from gearcam.laws.smoothness import demand_smooth

@@ -16,11 +16,11 @@ import numpy as np
 
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.numerals import shown
-from gearcam.base.quantities import ANGLE, LENGTH, TEXT, Param, Row, param
+from gearcam.base.quantities import ANGLE, FINEST, LENGTH, LONGEST, TEXT, Param, Row, param
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.columns import NARROWEST_STEP, ColumnsError, FromFile, close_angles, degrees
 from gearcam.laws.entry import TYPED
-from gearcam.laws.phases_of_lift import LONGEST, TURN
+from gearcam.laws.phases_of_lift import TURN
 from gearcam.laws.program import Program
 from gearcam.laws.rows_of_lift import program_of_rows
 from gearcam.numeric.arrays import Array
@@ -77,7 +77,7 @@ class MotionTable(FromFile):
     smoothing_tolerance: float | None = param(
         LENGTH,
         default=None,
-        gt=0,
+        ge=FINEST,
         doc="largest distance from a row; 0 if left out (translating follower)",
         angular=Param(ANGLE, gt=0, doc="largest distance from a row (oscillating follower)"),
     )

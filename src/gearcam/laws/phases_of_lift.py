@@ -31,7 +31,8 @@ from gearcam.base.quantities import (
     LENGTH,
     LENGTH_PER_RAD,
     LENGTH_PER_RAD2,
-    NARROWEST,
+    LONGEST,
+    NARROWEST_DEG,
     Param,
     Quantity,
     param,
@@ -49,14 +50,17 @@ Problem = tuple[int | None, str, str, str]
 TURN: Final = 2.0 * math.pi
 """A turn of the cam, rad."""
 
-LONGEST: Final = 1e6
-"""Largest lift, mm."""
+_WAY: Final = Param(LENGTH, word="way", gt=0, le=LONGEST, doc="travel of a translating cam")
 
-_WAY: Final = Param(LENGTH, word="way", gt=0, le=1e6, doc="travel of a translating cam")
+_NARROWEST_SHARE: Final = 1e-6
+"""Least share of the whole travel that a phase covers."""
 
 _SPAN: Final[dict[str, Any]] = {
-    "gt": 0, "le": 360, "doc": "cam angle of the phase, or the rest of the turn", "sliding": _WAY,
-}  # fmt: skip
+    "ge": NARROWEST_DEG,
+    "le": 360,
+    "doc": "cam angle of the phase, or the rest of the turn",
+    "sliding": _WAY,
+}
 """Parameter for the angle, or the travel, of a phase."""
 
 
@@ -310,7 +314,7 @@ def _way_problems(phases: Sequence[Phase]) -> Iterator[Problem]:
                 "a length above 0",
             )
     whole = sum(ways.values())
-    least = whole * NARROWEST / TURN
+    least = whole * _NARROWEST_SHARE
     for number, way in ways.items():
         if way < least:
             rule = f"at least {shown(least)} mm of {shown(whole)} mm"

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from gearcam.base.display import Brief
-from gearcam.base.quantities import ANGLE, COUNT, LENGTH, param
+from gearcam.base.quantities import ANGLE, COUNT, LENGTH, LONGEST, param
 
 KIND = "meshing"
 """Registered checks of a study."""
@@ -65,6 +65,6 @@ class MeshingSpec(Brief):
         LENGTH,
         default=None,
         gt=0,
-        le=1e6,
+        le=LONGEST,
         doc="centre distance as mounted, not for racks; as designed by default",
     )

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final, get_type_hints
 
 from gearcam.base.display import Brief
 from gearcam.base.numerals import shown
-from gearcam.base.quantities import ANGLE, COUNT, DENSITY, LENGTH, TEXT, param, params_of
+from gearcam.base.quantities import ANGLE, COUNT, DENSITY, LENGTH, LONGEST, TEXT, param, params_of
 
 KIND: Final = "parts"
 """The checks of parts."""
@@ -40,7 +40,7 @@ Problem = tuple[str, int | None, str, str]
 """Field, number of the wheel's value, what is wrong, what is allowed."""
 
 
-def _length(*, doc: str, le: float = 1e6) -> Any:
+def _length(*, doc: str, le: float = LONGEST) -> Any:
     """Return a length; 0 means that there is nothing to measure."""
     return param(LENGTH, default=0.0, ge=0, le=le, doc=doc)
 
@@ -66,7 +66,7 @@ class WheelBlank(Brief):
     """
 
     bore_diameter: float | None = param(
-        LENGTH, default=None, ge=0, le=1e6, doc="diameter of the bore; no bore if left out"
+        LENGTH, default=None, ge=0, le=LONGEST, doc="diameter of the bore; no bore if left out"
     )
     keyway_width: float = _length(doc="width of the keyway")
     keyway_depth: float = _length(doc="depth of the keyway from the bore's circle, at its middle")
@@ -77,15 +77,15 @@ class WheelBlank(Brief):
     bolt_diameter: float = _length(doc="diameter of each bolt hole")
     bolt_angle: float = _angle(doc="direction of the first bolt hole")
     hub_diameter: float = _length(doc="diameter of the hub, larger than the bore with its keyway")
-    hub_front: float = _length(doc="height of the hub on the front face (+z)", le=1e5)
-    hub_back: float = _length(doc="height of the hub on the back face", le=1e5)
+    hub_front: float = _length(doc="height of the hub on the front face (+z)")
+    hub_back: float = _length(doc="height of the hub on the back face")
     lightening_holes: int = _count(doc="number of round lightening holes", le=36)
     rim: float | None = param(
-        LENGTH, default=None, gt=0, le=1e6,
+        LENGTH, default=None, gt=0, le=LONGEST,
         doc="least metal between lightening holes and roots; 2.7 modules if left out",
     )  # fmt: skip
     web: float | None = param(
-        LENGTH, default=None, gt=0, le=1e6,
+        LENGTH, default=None, gt=0, le=LONGEST,
         doc="least metal between lightening holes, and from them to bore, hub and bolt holes; the "
         "rim if left out",
     )  # fmt: skip
@@ -99,7 +99,7 @@ class WheelBlank(Brief):
         LENGTH,
         default=None,
         gt=0,
-        le=1e5,
+        le=LONGEST,
         doc="diameter of the timing marks; 0.4 modules if left out",
     )
     density: float | None = param(

@@ -312,7 +312,7 @@ REFUSED = {
     "close": (4, "90.0003 deg follows 90 deg", "above the one before"),
     "half": (None, "the rows go from 0 deg to 165 deg", "over the whole turn"),
     "end": (None, "the rows go from 0 deg to 300 deg", "may be left out"),
-    "high": (5, "the lift is 2000000 mm", "at most 1000000 mm"),
+    "high": (5, "the lift is 2000000 mm", "at most 100000 mm"),
     "flat": (None, "the follower never moves", "at least two different lifts"),
     "smooth": (None, "leaves no lift", "below 5 mm, half of"),
     "jump": (12, "after the turn is 0.2 mm: it jumps by 0.2 mm", "that of the first row, 0 mm"),

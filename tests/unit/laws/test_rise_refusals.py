@@ -35,11 +35,11 @@ def only(parameters: Any) -> tuple[str, int | None, str, str]:
 @pytest.mark.parametrize(
     ("law", "key", "value", "allowed"),
     [
-        ("constant-acceleration", "q", 0.0, "a number from 1e-06 to 0.999999"),
-        ("constant-acceleration", "q", 1.0, "a number from 1e-06 to 0.999999"),
-        ("trapezoidal-velocity", "q", 0.51, "a number from 1e-06 to 0.5"),
-        ("sine-trapezoidal-velocity", "q", -0.1, "a number from 1e-06 to 0.5"),
-        ("trapezoidal-acceleration", "q", 0.26, "a number from 1e-06 to 0.25"),
+        ("constant-acceleration", "q", 0.0, "a number from 0.0001 to 0.9999"),
+        ("constant-acceleration", "q", 1.0, "a number from 0.0001 to 0.9999"),
+        ("trapezoidal-velocity", "q", 0.51, "a number from 0.0001 to 0.5"),
+        ("sine-trapezoidal-velocity", "q", -0.1, "a number from 0.0001 to 0.5"),
+        ("trapezoidal-acceleration", "q", 0.26, "a number from 0.0001 to 0.25"),
         ("b-spline", "degree", 6, "a whole number from 3 to 5"),
         ("scca", "b", 1.1, "a number from 0 to 1"),
     ],
@@ -69,7 +69,7 @@ def test_sectors_must_fill_the_angle() -> None:
     assert only(Scca(b=0.8, c=0.5, d=0.0))[3] == "b + c + d = 1"
     assert told(Scca(b=1 / 3, c=1 / 3, d=1 / 3)) == []
     field, _, message, rule = only(Scca(b=1e-7, c=0.5, d=0.5 - 1e-7))
-    assert (field, message, rule) == ("b", "this sector is too narrow", "0, or at least 1e-06")
+    assert (field, message, rule) == ("b", "this sector is too narrow", "0, or at least 0.0001")
 
 
 def test_polynomials_have_an_end() -> None:

@@ -21,7 +21,6 @@ OUTPUT = {"files": ["csv", "dxf", "stl"], "chord_tolerance_mm": TOLERANCE}
 
 BOLTS = {"bolts": 3, "bolt_circle_mm": 20, "bolt_angle_deg": 11}
 HUB = {"hub_diameter_mm": 12}
-HOLES = {"lightening_holes": 3, "web_mm": 3}
 KEYED = {"bore_diameter_mm": 1, "keyway_width_mm": 0.4, "keyway_depth_mm": 0.4}
 
 PLATE: dict[str, dict[str, Any]] = {
@@ -32,14 +31,10 @@ PLATE: dict[str, dict[str, Any]] = {
     "hub_diameter_mm": {"hub_front_mm": 4},
     "hub_front_mm": HUB,
     "hub_back_mm": HUB,
-    "rim_mm": HOLES,
-    "web_mm": {"lightening_holes": 3},
 }
 """What a blank has beside a key."""
 
 WHEEL = PLATE | {
-    "rim_mm": HOLES | {"timing_marks": False},
-    "mark_diameter_mm": {},
     "tip_rounding_mm": {},
 }
 

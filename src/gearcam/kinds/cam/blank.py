@@ -6,12 +6,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
-from gearcam.base.quantities import LENGTH, param
+from gearcam.base.quantities import LENGTH, LONGEST, param
 from gearcam.parts.blank import Problem, WheelBlank
 
 
 def _size(*, doc: str) -> Any:
-    return param(LENGTH, default=None, gt=0, le=1e6, doc=doc)
+    return param(LENGTH, default=None, gt=0, le=LONGEST, doc=doc)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -10,7 +10,7 @@ from functools import lru_cache, partial
 from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.base.errors import DesignError, Problem
-from gearcam.base.quantities import ANGLE, COUNT, LENGTH, param
+from gearcam.base.quantities import ANGLE, COUNT, FINEST, LENGTH, LONGEST, param
 from gearcam.base.registry import classes_in, name_of
 from gearcam.cams.spec import FOLLOWED, POINTED, CamSpec, FollowerSpec, size_problems
 from gearcam.cams.spec import KIND as CAM_KIND
@@ -77,7 +77,7 @@ class CamOutputSpec(OutputSpec):
     chord_tolerance: float | None = param(
         LENGTH,
         default=None,
-        gt=0,
+        ge=FINEST,
         le=1,
         doc="largest distance of an outline from the true curve; 0.001 mm if left out",
     )
@@ -86,11 +86,11 @@ class CamOutputSpec(OutputSpec):
         ANGLE, default=math.radians(1), gt=0, le=90, doc="step of the cam angle in motion.csv"
     )
     way_step: float | None = param(
-        LENGTH, default=None, gt=0, le=1e6,
+        LENGTH, default=None, gt=0, le=LONGEST,
         doc="step of a translating cam's travel in motion.csv; 1 mm if left out",
     )  # fmt: skip
     place: float | None = param(
-        LENGTH, default=None, ge=0, le=1e6, word="u",
+        LENGTH, default=None, ge=0, le=LONGEST, word="u",
         doc="travel of a translating cam in the assembly drawing; 0 if left out",
     )  # fmt: skip
     inspection_points: int = param(
@@ -104,7 +104,7 @@ class CamOutputSpec(OutputSpec):
         LENGTH,
         default=None,
         gt=0,
-        le=1e6,
+        le=LONGEST,
         doc="radius of the cutter of the tool path; the follower's, or half a groove, if left out",
     )
 

@@ -12,7 +12,17 @@ import numpy as np
 from gearcam.base.display import Brief
 from gearcam.base.errors import InfeasibleError, Way
 from gearcam.base.numerals import shown
-from gearcam.base.quantities import ANGLE, NARROWEST, NUMBER, TEXT, Row, RowOfSome, Solve, param
+from gearcam.base.quantities import (
+    ANGLE,
+    NARROWEST,
+    NARROWEST_DEG,
+    NUMBER,
+    TEXT,
+    Row,
+    RowOfSome,
+    Solve,
+    param,
+)
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.formula import derivative
@@ -39,7 +49,10 @@ class Multispeed(Brief):
         ANGLE, ge=0, le=360, min_length=2, doc="driver angle over which each ratio holds"
     )
     transition: float = param(
-        ANGLE, gt=0, le=360, doc="driver angle of each transition; a closed law ends with one"
+        ANGLE,
+        ge=NARROWEST_DEG,
+        le=360,
+        doc="driver angle of each transition; a closed law ends with one",
     )
     shape: str = param(TEXT, default="quintic", choices=SMOOTH, doc="shape of the transitions")
     driven_travel: float | None = open_travel("driven wheel")
@@ -49,6 +62,10 @@ class Multispeed(Brief):
         if len(self.angles) != len(self.ratios):
             message = f"{len(self.angles)} angles for {len(self.ratios)} ratios"
             yield "angles", None, message, "one angle for each ratio"
+        for index, angle in enumerate(self.angles):
+            if 0.0 < angle < NARROWEST:
+                rule = f"0, or at least {shown(NARROWEST_DEG)} deg"
+                yield "angles", index, "this phase is too short", rule
         unknown = [k for k, value in enumerate(self.ratios) if value == "solve"]
         if len(unknown) > 1:
             yield "ratios", unknown[1], 'more than one "solve"', 'one "solve"'
@@ -65,7 +82,7 @@ class Multispeed(Brief):
             (width, place)
             for place, angle in enumerate(self.angles)
             for width in (self.transition, angle)
-            if width >= NARROWEST  # a shorter phase is left out
+            if width  # a phase of 0 is left out
         ]
         steps[0] = (0.0, 0)  # no transition leads to it
         if self.driven_travel is None:

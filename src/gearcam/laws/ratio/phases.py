@@ -12,7 +12,16 @@ import numpy as np
 from gearcam.base.display import Brief
 from gearcam.base.errors import InfeasibleError, Way
 from gearcam.base.numerals import shown
-from gearcam.base.quantities import ANGLE, NARROWEST, NUMBER, TEXT, RowOfSome, Solve, param
+from gearcam.base.quantities import (
+    ANGLE,
+    NARROWEST,
+    NARROWEST_DEG,
+    NUMBER,
+    TEXT,
+    RowOfSome,
+    Solve,
+    param,
+)
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.ratio.arcs import ARCS, Arc
@@ -112,7 +121,7 @@ def knot_problems(knots: RowOfSome) -> Iterator[tuple[str, int | None, str, str]
     known = [(k, value) for k, value in enumerate(knots) if value != "solve"]
     for (_, before), (index, value) in pairwise(known):
         if not value >= before + NARROWEST:
-            rule = f"at least {shown(ANGLE.least)} deg more than the knot before"
+            rule = f"at least {shown(NARROWEST_DEG)} deg more than the knot before"
             yield "knots", index, "knots must rise", rule
 
 

@@ -23,8 +23,8 @@ from gearcam.laws.displacement import EXACT
 from gearcam.laws.entry import LawEntry
 from gearcam.numeric.piecewise import Piecewise
 
-NARROWEST: Final = 1e-6
-"""Smallest share of the angle for a sector or a step of a table: a second of arc of a full turn."""
+NARROWEST: Final = 1e-4
+"""Smallest share of the angle for a sector or a step of a table."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
