@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from gearcam.base.tolerances import DEFAULT
-from gearcam.cams.disc import make_cam
-from gearcam.cams.yoke import YokeCam, make_yoke
+from gearcam.cams.disc import YokeCam, make_cam, make_yoke
 from gearcam.laws.half_turns import completed
 from gearcam.laws.phases_of_lift import Phase, SegmentPhase
 from gearcam.laws.program import Program, make_program

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from gearcam.base.errors import InfeasibleError
 from gearcam.cams.three_points import CurvatureStudy, curvature_study, three_point_curvature
-from gearcam.numeric.bulges import as_pairs
 
 Array = NDArray[np.float64]
 Plane = NDArray[np.complex128]
@@ -120,12 +119,11 @@ def test_a_circle_is_exact_and_signed(uneven: bool) -> None:
     assert three_point_curvature(np.conj(points), closed=False) == pytest.approx(
         np.full(58, -1.0 / 12.0), rel=1e-10
     )
-    assert np.array_equal(three_point_curvature(as_pairs(points)), three_point_curvature(points))
 
 
 def test_a_straight_line_has_none() -> None:
     line = np.arange(9.0)
-    aslant = as_pairs(np.asarray(line * (0.3 + 0.7j), dtype=np.complex128))
+    aslant = np.asarray(line * (0.3 + 0.7j), dtype=np.complex128)
     assert np.abs(three_point_curvature(aslant, closed=False)).max() < 1e-14
     assert np.all(three_point_curvature(line.astype(np.complex128), closed=False) == 0.0)
 

@@ -16,10 +16,9 @@ from hypothesis import strategies as st
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.tolerances import DEFAULT
 from gearcam.cams.conjugate import ConjugateCam, SecondRoller, make_conjugate
-from gearcam.cams.disc import make_cam
+from gearcam.cams.disc import YokeCam, make_cam, make_yoke
 from gearcam.cams.mechanism import make_mechanism
 from gearcam.cams.spec import CamSpec, FollowerSpec
-from gearcam.cams.yoke import YokeCam, make_yoke
 from gearcam.laws.half_turns import completed, miss
 from gearcam.laws.phases_of_lift import levels
 from gearcam.laws.program import Program, make_program

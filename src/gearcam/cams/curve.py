@@ -21,7 +21,6 @@ from itertools import pairwise
 import numpy as np
 
 from gearcam.base.display import Brief
-from gearcam.base.errors import InfeasibleError
 from gearcam.cams.contact import Contact, contact
 from gearcam.cams.mechanism import Mechanism
 from gearcam.laws.program import Program
@@ -217,7 +216,7 @@ class ProfileSegments(Brief):
         names = ("piece", "start", "end", "jump", "corner")
         return replace(self, **{name: getattr(self, name)[index] for name in names})
 
-    def resolved(self, points: Plane, tangents: Plane, tolerance: float) -> ProfileSegments:
+    def resolved(self, tangents: Plane) -> ProfileSegments:
         """Return the segments, divided where a sweep turns far in a small part of itself.
 
         With a steep lift the profile turns where its velocity passes that of the cam, in a small
@@ -225,36 +224,20 @@ class ProfileSegments(Brief):
 
         Parameters
         ----------
-        points, tangents : (n, k + 1) complex arrays, mm and 1
+        tangents : (n, k + 1) complex array
             At even positions of every segment, including both ends.
-        tolerance : float, mm
-            Largest chord error.
 
         Returns
         -------
         ProfileSegments
-            The same segments if no two neighbouring positions differ by much.
-
-        Raises
-        ------
-        InfeasibleError
-            If a chord between two adjacent floating-point angles has a larger error.
+            The same segments if no two neighbouring tangents differ by much.
         """
         turns = np.abs(np.angle(tangents[:, 1:] * np.conj(tangents[:, :-1])))
         sharp = (turns > _SHARP) & ~self.jump[:, None]
         if not sharp.any():
             return self
         places = np.linspace(self.start, self.end, tangents.shape[1], axis=1)
-        rounded = np.diff(places) <= _GRAIN * np.spacing(np.abs(places[:, 1:]))
-        lost = sharp & rounded & (np.abs(np.diff(points)) * turns > 8.0 * tolerance)
-        if lost.any():
-            raise InfeasibleError(
-                "the lift changes so abruptly that the profile turns between two adjacent cam "
-                "angles of double precision",
-                where=self.curve.mechanism.driver.told(float(places[:, :-1][lost][0])),
-                nearest="use a longer phase there",
-            )
-        sharp &= ~rounded
+        sharp &= np.diff(places) > _GRAIN * np.spacing(np.abs(places[:, 1:]))
         if not sharp.any():
             return self
         begins = np.zeros(sharp.shape, dtype=bool)

@@ -1,5 +1,10 @@
 """A disc cam: one wall, inside the pitch curve (see `wall`).
 
+A *yoke cam* is a disc between two flat faces, or two rollers, of one follower. Both touch it at
+every angle if lifts half a turn apart have a constant sum (see `gearcam.laws.half_turns`): then the
+cam has a constant *breadth* between faces, or its pitch curve a constant *diameter* through the
+axis, the distance of the rollers. It touches the second face half a turn later.
+
 Refused: lifts that bring the follower onto the cam's axis or its arm over the line of centres,
 flat followers that swing down faster than the cam turns.
 
@@ -60,6 +65,22 @@ class DiscCam(Wall, Cam):
         return Facts(tree, ("total_lift",), "disc cam")
 
 
+@dataclass(frozen=True, eq=False, kw_only=True)
+class YokeCam(DiscCam):
+    """A disc cam whose follower encloses it (see the module)."""
+
+    @property
+    def breadth(self) -> float:
+        """Distance of both faces, or of the rollers' centres, mm."""
+        return 2.0 * self.mechanism.start + sum(self.program.range)
+
+    @property
+    def face_width(self) -> float | None:
+        """Least width of a flat face, mm, without margin: twice the contact's largest offset."""
+        place = self.contact_place
+        return None if place is None else 2.0 * place.largest
+
+
 def make_cam(
     program: Program,
     mechanism: Mechanism,
@@ -91,6 +112,26 @@ def make_cam(
     """
     demand_standing(program, mechanism)
     return DiscCam(program=program, mechanism=mechanism, clockwise=clockwise, tolerance=tolerance)
+
+
+def make_yoke(cam: DiscCam) -> YokeCam:
+    """Return a yoke cam from a disc cam.
+
+    Parameters
+    ----------
+    cam : DiscCam
+        With a lift of two opposite half turns, and a translating follower without offset.
+
+    Returns
+    -------
+    YokeCam
+    """
+    return YokeCam(
+        program=cam.program,
+        mechanism=cam.mechanism,
+        clockwise=cam.clockwise,
+        tolerance=cam.tolerance,
+    )
 
 
 def demand_standing(program: Program, mechanism: Mechanism) -> None:

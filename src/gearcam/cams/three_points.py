@@ -19,7 +19,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearcam.base.errors import InfeasibleError
-from gearcam.cams.profile_points import in_plane
 from gearcam.numeric.arrays import Array, Ints, Plane
 
 
@@ -43,12 +42,12 @@ class CurvatureStudy:
     rms: Array
 
 
-def three_point_curvature(points: Plane | Array, closed: bool = True) -> Array:
+def three_point_curvature(points: Plane, closed: bool = True) -> Array:
     """Return the curvature of the circle through each point and its two neighbours.
 
     Parameters
     ----------
-    points : (n,) complex array or (n, 2) array, mm
+    points : (n,) complex array, mm
         Points of a curve in order.
     closed : bool
         Whether the last point is followed by the first, which is not repeated.
@@ -64,7 +63,7 @@ def three_point_curvature(points: Plane | Array, closed: bool = True) -> Array:
     InfeasibleError
         If there are fewer than three points, or equal neighbours.
     """
-    z = in_plane(points)
+    z = points
     if len(z) < 3:
         raise InfeasibleError("too few points for a circle", value=len(z), limit=3, unit="points")
     if closed:

@@ -270,7 +270,7 @@ class Wall(PitchMotion):
         """Return a curve divided so that the probes of its sampler resolve it, and that sampler."""
         while True:
             sampler = Sampler(curves=drawn, tolerance=self.tolerance, closed=self.program.closed)
-            before, drawn = drawn, drawn.resolved(*sampler.probes, self.tolerance)
+            before, drawn = drawn, drawn.resolved(sampler.probes[1])
             if drawn is before:
                 return drawn, sampler
 

@@ -11,9 +11,8 @@ import pytest
 from numpy.typing import NDArray
 
 from gearcam.base.errors import InfeasibleError
-from gearcam.cams.follow import follow
+from gearcam.cams.follow import follow, profile_points
 from gearcam.cams.mechanism import Mechanism
-from gearcam.cams.profile_points import profile_points
 from gearcam.numeric.bulges import as_pairs
 from helpers_bulges import distances
 

@@ -11,7 +11,7 @@ import pytest
 
 import gearcam
 from gearcam.base.errors import DesignError, InfeasibleError
-from gearcam.cams.yoke import YokeCam
+from gearcam.cams.disc import YokeCam
 from gearcam.designs import loads
 from gearcam.laws.half_turns import agreeing, miss
 from gearcam.laws.phases_of_lift import fill_half

@@ -12,7 +12,7 @@ import numpy as np
 from gearcam.base.errors import InfeasibleError, Way
 from gearcam.base.facts import Fact
 from gearcam.base.numerals import shown
-from gearcam.cams.yoke import YokeCam, make_yoke
+from gearcam.cams.disc import YokeCam, make_yoke
 from gearcam.designs.faults import Fault, show
 from gearcam.kinds.cam.forms.base import FORMS, PLATE, Keys
 from gearcam.kinds.cam.forms.disc import Disc, disc_cam
