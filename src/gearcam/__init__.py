@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from gearcam.base.registry import lazy_names
 from gearcam.version import __version__
 
 if TYPE_CHECKING:
@@ -54,42 +55,20 @@ __all__ = [
 ]  # fmt: skip
 
 _HOMES = {
-    **dict.fromkeys(
-        ("DesignError", "GearcamError", "InfeasibleError", "MissingExtraError", "WriteError"),
-        "gearcam.base.errors",
+    "gearcam.designs": ("Design",),
+    "gearcam.base.errors": (
+        "DesignError", "GearcamError", "InfeasibleError", "MissingExtraError", "WriteError",
     ),
-    "Columns": "gearcam.numeric.columns",
-    "Design": "gearcam.designs",
-    "Facts": "gearcam.base.facts",
-    "Finding": "gearcam.base.findings",
-    "Result": "gearcam.results.result",
-    "Study": "gearcam.results.study",
-    "Tolerances": "gearcam.base.tolerances",
-    "laws": "gearcam.laws",
-    "rises": "gearcam.laws.rises",
-}
-"""Modules of names that are imported on demand; kinds of design add theirs."""
-
-
-def _brought(name: str) -> Any:
-    """Return a class, function or module of the package by name, imported on demand."""
-    from importlib import import_module
-
-    if name in _HOMES:
-        module = import_module(_HOMES[name])
-        return getattr(module, name, module)
-    made = _of_kinds() if name[:1].isupper() else {}
-    if name in made:
-        return made[name]
-    raise AttributeError(f"gearcam has no {name}; dir(gearcam) lists all names")
-
-
-if not TYPE_CHECKING:  # so that type checkers report misspelt names
-    __getattr__ = _brought
-
-
-def __dir__() -> list[str]:
-    return sorted({*__all__, *_of_kinds()})
+    "gearcam.base.facts": ("Facts",),
+    "gearcam.base.findings": ("Finding",),
+    "gearcam.laws": ("laws",),
+    "gearcam.laws.rises": ("rises",),
+    "gearcam.numeric.columns": ("Columns",),
+    "gearcam.results.result": ("Result",),
+    "gearcam.results.study": ("Study",),
+    "gearcam.base.tolerances": ("Tolerances",),
+}  # fmt: skip
+"""Names that are imported on demand, by their modules; kinds of design add theirs."""
 
 
 def _of_kinds() -> dict[str, type]:
@@ -97,7 +76,15 @@ def _of_kinds() -> dict[str, type]:
     from gearcam.designs.kind import KINDS
 
     rooms = [kind.room("public") for kind in KINDS.values()]
-    return {name: described(getattr(room, name)) for room in rooms for name in room.__all__}
+    return {name: getattr(room, name) for room in rooms for name in room.__all__}
+
+
+if not TYPE_CHECKING:  # so that type checkers report misspelt names
+    __getattr__, _ = lazy_names("gearcam has no", _of_kinds, _HOMES)
+
+
+def __dir__() -> list[str]:
+    return sorted({*__all__, *_of_kinds()})
 
 
 def load(path: str | os.PathLike[str]) -> Design:

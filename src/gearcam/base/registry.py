@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Callable, Iterator, Mapping
+from types import MappingProxyType
 from typing import Any, Generic, Protocol, TypeVar
 
 
@@ -87,26 +88,37 @@ def classes_in(registry: Registry[Any]) -> dict[str, type]:
     return {one.parameters.__name__: one.parameters for one in registry.values()}
 
 
-def lazy_classes(
-    what: str, load: Callable[[], Mapping[str, Any]]
+def lazy_names(
+    lacks: str,
+    classes: Callable[[], Mapping[str, type]],
+    homes: Mapping[str, tuple[str, ...]] = MappingProxyType({}),
 ) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
-    """Return ``__getattr__`` and ``__dir__`` of a package that loads classes on demand.
+    """Return ``__getattr__`` and ``__dir__`` of a package whose names are loaded on demand.
 
     Parameters
     ----------
-    what : str
-        Word for a class in messages.
-    load : callable
-        Returns the classes by name; called only for names with a capital letter.
+    lacks : str
+        Beginning of the message for other names, such as ``there is no law``.
+    classes : callable
+        Returns classes by name; called only for names with a capital letter.
+    homes : mapping of str to tuple of str
+        Other names, by the module that has them or is called so.
 
     Returns
     -------
     getattr, dir : callable
     """
+    modules = {name: module for module, names in homes.items() for name in names}
 
     def find(name: str) -> Any:
-        if name[:1].isupper() and name in (known := load()):
-            return known[name]
-        raise AttributeError(f"there is no {what} {name}; dir() lists all names")
+        if name in modules:
+            module = importlib.import_module(modules[name])
+            return getattr(module, name, module)
+        known = classes() if name[:1].isupper() else {}
+        if name not in known:
+            raise AttributeError(f"{lacks} {name}; dir() lists all names")
+        from gearcam.base.quantities import described
 
-    return find, lambda: sorted(load())
+        return described(known[name])
+
+    return find, lambda: sorted({*modules, *classes()})

@@ -16,8 +16,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from gearcam.base.quantities import described
-from gearcam.base.registry import classes_in, lazy_classes
+from gearcam.base.registry import classes_in, lazy_names
 
 if TYPE_CHECKING:
     from gearcam.laws.ratio.centrodes import EccentricCircle, Limacon, Lobed, LogSpiral
@@ -40,8 +39,8 @@ __all__ = [
 def _classes() -> dict[str, type]:
     from gearcam.laws.ratio.base import LAWS
 
-    return {name: described(one) for name, one in classes_in(LAWS).items()}
+    return classes_in(LAWS)
 
 
 if not TYPE_CHECKING:  # type checkers then find misspelt names
-    __getattr__, __dir__ = lazy_classes("law", _classes)
+    __getattr__, __dir__ = lazy_names("there is no law", _classes)

@@ -13,8 +13,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from gearcam.base.quantities import described
-from gearcam.base.registry import classes_in, lazy_classes
+from gearcam.base.registry import classes_in, lazy_names
 
 if TYPE_CHECKING:
     from gearcam.laws.rises.formula import FormulaRise
@@ -49,8 +48,8 @@ __all__ = [
 def _classes() -> dict[str, type]:
     from gearcam.laws.rises.base import RISES
 
-    return {name: described(one) for name, one in classes_in(RISES).items()}
+    return classes_in(RISES)
 
 
 if not TYPE_CHECKING:  # type checkers then find misspelt names
-    __getattr__, __dir__ = lazy_classes("rise", _classes)
+    __getattr__, __dir__ = lazy_names("there is no rise", _classes)
