@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, Final, NoReturn
 from gearcam import build, remedies
 from gearcam.base.errors import DesignError, InfeasibleError, MissingExtraError, Problem, WriteError
 from gearcam.base.interrupts import interruptible
-from gearcam.commands import COMMANDS, Command, ResultCommand, demand_new_name
+from gearcam.commands import COMMANDS, Command, ResultCommand
 from gearcam.console import (
     DEBUG,
     all_lines,
@@ -411,7 +411,10 @@ def _one(file: str, names: dict[str, str], done: str, action: Action, adapt: Ada
     """Run `action` on the result of one file, print the outcome and return the exit code."""
     start = time.perf_counter()
     design = load(file) if adapt is None else adapt(load(file))
-    demand_new_name(design, file, names)
+    before = names.setdefault(design.name.casefold(), file)
+    if before != file:  # its files would be overwritten
+        message = f'the design of {before} has the same name, "{design.name}"'
+        raise DesignError([Problem(message, file=file, key="name", value=design.name)])
     from gearcam.numeric.memory import keep_freed_memory
 
     keep_freed_memory()

@@ -7,7 +7,6 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
-from gearcam.base.errors import DesignError, Problem
 from gearcam.designs.design import Design
 from gearcam.numeric.arguments import whole
 from gearcam.results.result import Progress
@@ -64,29 +63,6 @@ class ResultCommand:
     adapt: Callable[[Design, Mapping[str, Any]], Design]
     run: Callable[[Any, str, Mapping[str, Any], Progress | None], Written]
     many: bool = True
-
-
-def demand_new_name(design: Design, file: str, names: dict[str, str]) -> None:
-    """Refuse a design that would overwrite the files of another one in the same call.
-
-    Parameters
-    ----------
-    design : Design
-        The design read from `file`.
-    file : str
-        Its design file.
-    names : dict of str to str
-        Design files by the names of their designs; this one is added.
-
-    Raises
-    ------
-    DesignError
-        If the design of another file has the same name.
-    """
-    before = names.setdefault(design.name.casefold(), file)
-    if before != file:
-        message = f'the design of {before} has the same name, "{design.name}"'
-        raise DesignError([Problem(message, file=file, key="name", value=design.name)])
 
 
 def _accuracy_arguments(parser: argparse.ArgumentParser) -> None:

@@ -12,8 +12,8 @@ from selenium.webdriver.common.by import By
 
 from gearcam.compare.page import document as document_of_variants
 from gearcam.compare.variants import variants_of
+from gearcam.report.file import solids_shown
 from gearcam.report.page import document, page
-from gearcam.report.solids import solids_shown
 from helpers_browser import LAPTOP, PHONE, complaints, open_page, requests, settle, until
 
 NAIL = "nail_machine_two_phase"

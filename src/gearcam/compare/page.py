@@ -11,7 +11,7 @@ import numpy as np
 from gearcam.compare.table import rows
 from gearcam.compare.variants import Variant
 from gearcam.pictures import drawings
-from gearcam.pictures.charts import Chart, Limit, Line, MarkedPlace
+from gearcam.pictures.charts import Chart, Limit, MarkedPlace
 from gearcam.pictures.scenes import PLACES, MovingBody, Scene
 from gearcam.report.data import chart_data, scene_data
 from gearcam.report.page import BLOCKS, rendered, verdict
@@ -80,7 +80,8 @@ def joined(name: str, variants: Sequence[Variant]) -> Chart:
     for label, chart in charts:
         single = len(chart.lines) == 1
         lines += [
-            _line(line, label if single else f"{label}: {line.label}") for line in chart.lines
+            replace(line, label=label if single else f"{label}: {line.label}")
+            for line in chart.lines
         ]
         limits += [(label, limit) for limit in chart.limits]
     return replace(
@@ -89,10 +90,6 @@ def joined(name: str, variants: Sequence[Variant]) -> Chart:
         limits=_limits(limits),
         marks=_common([chart.marks for _, chart in charts]),
     )
-
-
-def _line(line: Line, label: str) -> Line:
-    return replace(line, label=label)
 
 
 def _common(marks: Sequence[tuple[MarkedPlace, ...]]) -> tuple[MarkedPlace, ...]:

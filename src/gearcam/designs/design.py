@@ -10,8 +10,9 @@ import contextlib
 import hashlib
 import json
 import os
+import pickle
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import InitVar, dataclass, field, fields
 from functools import cached_property
 from typing import Any, ClassVar, Final, Self
@@ -19,9 +20,9 @@ from typing import Any, ClassVar, Final, Self
 from gearcam.base.display import cut
 from gearcam.base.errors import DesignError, InfeasibleError, Problem
 from gearcam.designs.examine import examine
-from gearcam.designs.faults import dotted, is_deep
-from gearcam.designs.functions import Function, function_name, functions_in, never, pickles
+from gearcam.designs.faults import dotted, functions_of, is_deep
 from gearcam.designs.kind import KINDS
+from gearcam.designs.lines import Path
 from gearcam.designs.outputs import OutputSpec
 from gearcam.designs.table import settled
 from gearcam.numeric.arguments import instance
@@ -31,6 +32,8 @@ _PLACE: Final = re.compile("[0-9]{1,9}")
 
 HASH_DIGITS: Final = 16
 """Hexadecimal digits of the hash of a design: 64 bits."""
+
+Function = Callable[..., Any]
 
 Wanted = tuple[str, Any, tuple[type, ...]]
 """Key of a part, the part, and its allowed types."""
@@ -121,7 +124,7 @@ class Design:
 
     def __getstate__(self) -> dict[str, Any]:
         document, rule = document_of(self), "a function that is defined with def in a module"
-        _demand(pickles, document, self.source, "cannot be pickled", rule)
+        _demand(_pickles, document, self.source, "cannot be pickled", rule)
         if any(functions_in(document)):
             _ = self._token  # the copy keeps it
         return vars(self)
@@ -154,7 +157,13 @@ class Design:
             If the design contains a Python function, which a file cannot.
         """
         document = document_of(self)
-        _demand(never, document, self.source, "cannot be written to a file", "a formula as text")
+        _demand(
+            lambda _: False,
+            document,
+            self.source,
+            "cannot be written to a file",
+            "a formula as text",
+        )
         return document
 
     def with_(self, changes: Mapping[str, object]) -> Self:
@@ -273,7 +282,30 @@ def document_of(design: Design) -> dict[str, Any]:
 
 def summary_of(design: Design) -> dict[str, Any]:
     """Return the document of a `design` with Python functions replaced by their names."""
-    return json.loads(json.dumps(document_of(design), default=function_name))
+    return json.loads(json.dumps(document_of(design), default=_function_name))
+
+
+def functions_in(part: Any, path: Path = ()) -> Iterator[tuple[Path, tuple[Function, ...]]]:
+    """Yield the paths of functions in a `part` of a document at a `path`, with the functions."""
+    if functions := functions_of(part):
+        yield path, functions
+    elif isinstance(part, dict | list):
+        for key, item in part.items() if isinstance(part, dict) else enumerate(part):
+            yield from functions_in(item, (*path, key))
+
+
+def _function_name(function: Function) -> str:
+    """Return the name of a function for messages: ``Python function module.name``."""
+    named = function if hasattr(function, "__qualname__") else type(function)
+    return f"Python function {named.__module__}.{named.__qualname__}"
+
+
+def _pickles(function: Function) -> bool:
+    try:
+        pickle.dumps(function)
+    except Exception:
+        return False  # other classes may raise anything
+    return True
 
 
 def _demand(
@@ -281,7 +313,7 @@ def _demand(
 ) -> None:
     """Raise `DesignError` if a function in a document does not satisfy `can`."""
     problems = [
-        Problem(f"the {function_name(one)} {what}", file=file, key=dotted(path), allowed=allowed)
+        Problem(f"the {_function_name(one)} {what}", file=file, key=dotted(path), allowed=allowed)
         for path, functions in functions_in(document)
         for one in functions
         if not can(one)
@@ -331,9 +363,9 @@ def hash_of(design: Design) -> str:
 
     It depends on the values of all keys, including defaults, and on the rows of CSV files, but not
     on comments, spaces, the order of keys, or the paths of CSV files; degrees are rounded to 13
-    digits. Values that do not change any file are excluded: ``[limits]``, ``[meshing]`` and the
-    list of files. Python functions cannot be compared: a design with one shares its hash only with
-    its copies.
+    digits. Values that do not change any file are excluded: ``[limits]``, the settings of studies
+    and the list of files. Python functions cannot be compared: a design with one shares its hash
+    only with its copies.
 
     Parameters
     ----------
@@ -351,7 +383,7 @@ def hash_of(design: Design) -> str:
         If a CSV file of the design cannot be read any more.
     """
     document = document_of(design)
-    for title in ("limits", "meshing"):
+    for title in ("limits", *KINDS[design.kind].studies):
         document.pop(title, None)
     del document["output"]["files"]
     made = _with_rows(document, design)

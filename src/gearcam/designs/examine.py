@@ -12,18 +12,11 @@ from collections.abc import Iterator, Mapping
 from functools import partial
 from typing import Any, Final
 
-from gearcam.designs.faults import (
-    MISSING,
-    TOO_DEEP,
-    Fault,
-    is_deep,
-    quoted,
-    show,
-)
-from gearcam.designs.kind import KINDS, DesignKind, Examined, own_faults
+from gearcam.designs.faults import MISSING, TOO_DEEP, Fault, is_deep, quoted, show
+from gearcam.designs.kind import KINDS, DesignKind, Examined
 from gearcam.designs.lines import Path
 from gearcam.designs.slips import STRONG, SURE, did_you_mean, hinted, key_hint, nearest
-from gearcam.designs.validate import faults_of
+from gearcam.designs.validate import faults_of, own_faults
 
 _NAME = re.compile(r"\w[\w.-]*")
 _NAME_RULE: Final = (
@@ -68,7 +61,9 @@ def examine(document: Mapping[str, Any], *, stem: str = "") -> Examined:
     kind.examine_main(document, found)
     for title in kind.tables:
         _examine_table(document, kind, title, found)
-    _examine_limits(document, kind, found)
+    found.parts["limits"] = {}
+    if "limits" in document:  # the table loads the checks
+        _examine_table(document, kind, "limits", found)
     found.faults += kind.rules(document, found)
     return found
 
@@ -193,29 +188,19 @@ def _examine_table(
     document: Mapping[str, Any], kind: DesignKind, title: str, found: Examined
 ) -> None:
     known, raw = kind.table(title), document.get(title, {})
+    listed = tuple(kind.listed(document, known) if known.owner else known.entries)
     if title not in document and title in kind.required:
-        rule = ", ".join(kind.listed(document, known))
+        rule = ", ".join(listed)
         found.faults.append(Fault((title,), f"the table [{title}] is missing", allowed=rule))
         return
-    listed = kind.listed(document, known)
     home = partial(_elsewhere, kind)
     faults = list(faults_of(known, raw, home=home, far=_other_home, listed=listed))
     found.faults += faults
-    if not faults and known.owner is not None:
-        made = known.owner(**known.inward(raw))
+    if not faults:
+        values = known.inward(raw)
+        made = known.owner(**values) if known.owner else values
         found.faults += own_faults(made, known, raw, (title,))
         found.parts[title] = made
-
-
-def _examine_limits(document: Mapping[str, Any], kind: DesignKind, found: Examined) -> None:
-    if "limits" not in document:
-        found.parts["limits"] = {}
-        return
-    known, raw = kind.table("limits"), document["limits"]
-    faults = list(faults_of(known, raw, home=partial(_elsewhere, kind), far=_other_home))
-    found.faults += faults
-    if not faults:
-        found.parts["limits"] = known.inward(raw)
 
 
 def chosen(

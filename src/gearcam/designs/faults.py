@@ -5,13 +5,12 @@ from __future__ import annotations
 import json
 import math
 import re
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
 from gearcam.base.errors import Problem
 from gearcam.base.numerals import shown
-from gearcam.designs.functions import functions_of
 from gearcam.designs.lines import Path
 from gearcam.designs.slips import did_you_mean, nearest
 from gearcam.designs.table import Key
@@ -55,6 +54,14 @@ class Fault:
         value = None if self.value is MISSING else self.value
         value = show(value) if functions_of(value) else value  # a problem must be picklable
         return Problem(self.message, file, line, dotted(self.path), value, self.allowed, self.hint)
+
+
+def functions_of(value: Any) -> tuple[Callable[..., Any], ...]:
+    """Return the Python functions in a value: one function, or a list of functions only."""
+    if callable(value):
+        return (value,)
+    many = value if isinstance(value, list | tuple) else ()
+    return tuple(many) if all(map(callable, many)) else ()
 
 
 def is_deep(document: Any) -> bool:

@@ -34,9 +34,7 @@ from types import ModuleType
 from typing import Any, Final
 
 from gearcam.base.findings import CHECKS
-from gearcam.designs.faults import Fault, show
-from gearcam.designs.lines import Path
-from gearcam.designs.slips import misspelt
+from gearcam.designs.faults import Fault
 from gearcam.designs.table import Key, Table
 
 _HOME: Final = "gearcam.kinds"
@@ -102,6 +100,8 @@ class DesignKind:
         Modules that register checks.
     checks : tuple of str
         Kinds of subject of those checks.
+    studies : tuple of str
+        Titles of tables with settings of studies, on which no file of a build depends.
     example : mapping
         A design that builds without a warning, by title, in the units of a file.
     notes : mapping of str to str
@@ -129,6 +129,7 @@ class DesignKind:
     formats: tuple[str, ...]
     rooms: tuple[str, ...] = ()
     checks: tuple[str, ...] = ()
+    studies: tuple[str, ...] = ()
     example: Mapping[str, Any]
     notes: Mapping[str, str] = field(default_factory=dict)
     processes: Mapping[str, Mapping[str, Mapping[str, Any]]] = field(default_factory=dict)
@@ -218,96 +219,3 @@ def _folders(path: tuple[str, ...]) -> tuple[str, ...]:
 
 def _package(name: str) -> str:
     return f"{_HOME}.{name.replace('-', '_')}"
-
-
-Told = Iterable[tuple[str, int | None, str, str]]
-"""Mistakes found by parameter classes: field, index of an item, message, what is allowed."""
-
-
-def told_faults(told: Told, known: Table, raw: Mapping[str, Any], at: Path) -> Iterator[Fault]:
-    """Yield the faults for mistakes found by a parameter class, with keys and values.
-
-    Parameters
-    ----------
-    told : iterable of tuple
-        See `Told`.
-    known : Table
-        The table of the parameters.
-    raw : mapping
-        The table as in the file.
-    at : tuple
-        Path of the table.
-    """
-    keys = {entry.name: entry.key for entry in known.entries.values()}
-    seen: set[Path] = set()
-    for name, index, message, rule in told:
-        key = keys[name]
-        value, path = raw.get(key), (*at, key)
-        if index is not None and (isinstance(value, list) or not known.entries[key].param.both):
-            path = (*at, key, index)
-            if isinstance(value, list) and index < len(value):
-                value = value[index]
-        if path not in seen:  # report one value for both wheels once
-            seen.add(path)
-            shown = f"{show(value)}: {message}" if value is not None else message
-            yield Fault(path, shown, value, rule)
-
-
-def own_faults(made: Any, known: Table, raw: Mapping[str, Any], at: Path) -> Iterator[Fault]:
-    """Yield the mistakes that parameters find themselves (their optional method ``problems``).
-
-    Parameters
-    ----------
-    made : object
-        The parameters.
-    known, raw, at
-        As for `told_faults`.
-    """
-    yield from told_faults(getattr(made, "problems", tuple)(), known, raw, at)
-
-
-def made_of(
-    known: Table,
-    make: Callable[..., Any],
-    raw: Mapping[str, Any],
-    faults: Sequence[Fault],
-    at: Path,
-) -> tuple[Any, list[Fault]]:
-    """Create parameters if their values can be read, and collect the mistakes that they find.
-
-    These are reported in addition to faults of single values.
-
-    Parameters
-    ----------
-    known : Table
-        Their table.
-    make : callable
-        Creates them from internal values by name.
-    raw : mapping
-        The table as in the file; unknown keys are ignored.
-    faults : sequence of Fault
-        Faults of single values in the table.
-    at : tuple
-        Path of the table.
-
-    Returns
-    -------
-    made : object
-        The parameters; None if their values cannot be read.
-    problems : list of Fault
-        Mistakes that they find.
-    """
-    depth = len(at)
-    here = [fault.path[depth:] for fault in faults]
-    if any(len(path) == 1 and path[0] in known.entries for path in here):
-        return None, []
-    wrong = {path[0] for path in here} | misspelt(raw if faults else {}, known.entries)
-    readable = {key: value for key, value in raw.items() if key in known.entries}
-    try:
-        made = make(**known.inward(readable))
-        problems = [p for p in own_faults(made, known, raw, at) if p.path[depth] not in wrong]
-    except (TypeError, ValueError, AttributeError, IndexError, KeyError):
-        if not faults:
-            raise
-        return None, []
-    return made, problems

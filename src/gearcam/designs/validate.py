@@ -1,13 +1,12 @@
-"""Validation of a single table of a design file: keys, types, ranges, list lengths."""
+"""Validation of a single table of a design file: its values, and the parameters made of them."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
-from gearcam.designs.faults import Fault, allowed, is_of, show, value_fault
-from gearcam.designs.functions import functions_of
+from gearcam.designs.faults import Fault, allowed, functions_of, is_of, show, value_fault
 from gearcam.designs.lines import Path
 from gearcam.designs.slips import STRONG, hinted, key_hint, misspelt
 from gearcam.designs.table import Key, Table
@@ -106,3 +105,96 @@ def _fits(key: Key, value: Any) -> bool:
         and (made.lt is None or number < made.lt)
         and (made.le is None or number <= made.le)
     )
+
+
+Told = Iterable[tuple[str, int | None, str, str]]
+"""Mistakes found by parameter classes: field, index of an item, message, what is allowed."""
+
+
+def told_faults(told: Told, known: Table, raw: Mapping[str, Any], at: Path) -> Iterator[Fault]:
+    """Yield the faults for mistakes found by a parameter class, with keys and values.
+
+    Parameters
+    ----------
+    told : iterable of tuple
+        See `Told`.
+    known : Table
+        The table of the parameters.
+    raw : mapping
+        The table as in the file.
+    at : tuple
+        Path of the table.
+    """
+    keys = {entry.name: entry.key for entry in known.entries.values()}
+    seen: set[Path] = set()
+    for name, index, message, rule in told:
+        key = keys[name]
+        value, path = raw.get(key), (*at, key)
+        if index is not None and (isinstance(value, list) or not known.entries[key].param.both):
+            path = (*at, key, index)
+            if isinstance(value, list) and index < len(value):
+                value = value[index]
+        if path not in seen:  # report one value for both wheels once
+            seen.add(path)
+            shown = f"{show(value)}: {message}" if value is not None else message
+            yield Fault(path, shown, value, rule)
+
+
+def own_faults(made: Any, known: Table, raw: Mapping[str, Any], at: Path) -> Iterator[Fault]:
+    """Yield the mistakes that parameters find themselves (their optional method ``problems``).
+
+    Parameters
+    ----------
+    made : object
+        The parameters.
+    known, raw, at
+        As for `told_faults`.
+    """
+    yield from told_faults(getattr(made, "problems", tuple)(), known, raw, at)
+
+
+def made_of(
+    known: Table,
+    make: Callable[..., Any],
+    raw: Mapping[str, Any],
+    faults: Sequence[Fault],
+    at: Path,
+) -> tuple[Any, list[Fault]]:
+    """Create parameters if their values can be read, and collect the mistakes that they find.
+
+    These are reported in addition to faults of single values.
+
+    Parameters
+    ----------
+    known : Table
+        Their table.
+    make : callable
+        Creates them from internal values by name.
+    raw : mapping
+        The table as in the file; unknown keys are ignored.
+    faults : sequence of Fault
+        Faults of single values in the table.
+    at : tuple
+        Path of the table.
+
+    Returns
+    -------
+    made : object
+        The parameters; None if their values cannot be read.
+    problems : list of Fault
+        Mistakes that they find.
+    """
+    depth = len(at)
+    here = [fault.path[depth:] for fault in faults]
+    if any(len(path) == 1 and path[0] in known.entries for path in here):
+        return None, []
+    wrong = {path[0] for path in here} | misspelt(raw if faults else {}, known.entries)
+    readable = {key: value for key, value in raw.items() if key in known.entries}
+    try:
+        made = make(**known.inward(readable))
+        problems = [p for p in own_faults(made, known, raw, at) if p.path[depth] not in wrong]
+    except (TypeError, ValueError, AttributeError, IndexError, KeyError):
+        if not faults:
+            raise
+        return None, []
+    return made, problems

@@ -1,13 +1,19 @@
-"""The file format ``report``, for every kind of design, and the page in a notebook."""
+"""The file format ``report``, for every kind of design, its solids, and the page in a notebook."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Final
 
+from gearcam.base.errors import GearcamError
+from gearcam.designs.kind import KINDS
+
 if TYPE_CHECKING:
     from gearcam.export.shared import Files
     from gearcam.results.result import Result
+
+CHORDS: Final = 0.02
+"""Chord error of the solids shown, mm: finer ones look the same and make the page heavier."""
 
 _FRAME: Final = "border:0;width:100%;height:min(85vh,760px);resize:vertical"
 """Style of a page in a notebook: parts and first charts in sight, the rest by scrolling."""
@@ -34,9 +40,35 @@ def report_files(result: Result, measured: Mapping[str, Any]) -> Files:
         The page by its name.
     """
     from gearcam.report.page import PAGE, document, page
-    from gearcam.report.solids import solids_shown
 
     return {PAGE: page(document(result, measured), solids=solids_shown(result))}
+
+
+def solids_shown(result: Result) -> dict[str, str]:
+    """Return a view of the solids of a result, assembled.
+
+    Parameters
+    ----------
+    result : Result
+        Of any kind with reports.
+
+    Returns
+    -------
+    dict
+        ``view``, a page of its own; or ``refusal``, why there is none.
+    """
+    from gearcam.export.mesh import view_page
+
+    refusal = ""
+    # small teeth refuse the chords of the view: then those of the design are shown
+    for chords in (CHORDS, 0.0):
+        try:
+            fine = (result.design.output.chord_tolerance or 0.0) < chords
+            shown = result.with_chords(chords) if fine else result
+            return {"view": view_page(KINDS[result.design.kind].room("files").assembled(shown))}
+        except GearcamError as error:
+            refusal = str(error)
+    return {"refusal": refusal}
 
 
 def framed(result: Result) -> str:

@@ -87,7 +87,7 @@ def page(
     live : mapping, optional
         Data of the live view for its script; without them the page stands alone.
     solids : mapping, optional
-        A view of the solids (see `gearcam.report.solids`).
+        A view of the solids (see `gearcam.report.file`).
 
     Returns
     -------

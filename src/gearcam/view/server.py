@@ -132,7 +132,14 @@ class Handler(BaseHTTPRequestHandler):
 
     def do_POST(self) -> None:
         """Answer a POST request."""
-        self._answer({"follow": self._follow, "remedies": self._remedies, "save": self._save})
+        session = self._home.session
+        self._answer(
+            {
+                "follow": lambda: self._reply(session.follow),
+                "remedies": lambda: self._reply(session.remedies),
+                "save": lambda: self._reply(session.save, HTTPStatus.CONFLICT),
+            }
+        )
 
     def end_headers(self) -> None:
         """Add the headers of every response."""
@@ -203,33 +210,21 @@ class Handler(BaseHTTPRequestHandler):
             except OSError:
                 return
 
-    def _follow(self) -> None:
-        self._reply(self._home.session.follow)
-
-    def _remedies(self) -> None:
-        self._reply(self._home.session.remedies)
-
-    def _reply(self, answer: Callable[[dict[str, Any]], bytes | dict[str, Any] | None]) -> None:
+    def _reply(
+        self,
+        answer: Callable[[dict[str, Any]], bytes | dict[str, Any] | None],
+        refused: HTTPStatus = HTTPStatus.BAD_REQUEST,
+    ) -> None:
         """Send the answer to a request, or that it was overtaken by a newer one."""
         asked = self._asked()
         if asked is not None:
             try:
                 reply = answer(asked)
             except RequestError as error:
-                self._refuse(HTTPStatus.BAD_REQUEST, str(error))
+                self._refuse(refused, str(error))
             else:
                 reply = {"stale": True} if reply is None else reply
                 self._send(reply if isinstance(reply, bytes) else _as_json(reply))
-
-    def _save(self) -> None:
-        asked = self._asked()
-        if asked is not None:
-            try:
-                self._home.session.save(asked)
-            except RequestError as error:
-                self._refuse(HTTPStatus.CONFLICT, str(error))
-            else:
-                self._send(_as_json({"error": ""}))
 
     def _asked(self) -> dict[str, Any] | None:
         """Return the object in a request; None if it was refused."""

@@ -225,13 +225,18 @@ class Session:
             lambda: _result(self._workers.submit(work.seek, text, self.file), self.file)
         )
 
-    def save(self, asked: Mapping[str, Any]) -> None:
+    def save(self, asked: Mapping[str, Any]) -> dict[str, Any]:
         """Write changed numbers into the file; comments and order are kept.
 
         Parameters
         ----------
         asked : mapping
             ``changes``, and ``made``: the hash of the content that they refer to.
+
+        Returns
+        -------
+        dict
+            ``error``, an empty text.
 
         Raises
         ------
@@ -251,6 +256,7 @@ class Session:
             rewrite(self.file, mark + text.encode())
         except (DesignError, WriteError) as error:
             raise RequestError(f"nothing was written: {error}") from error
+        return {"error": ""}
 
 
 class _Newest:

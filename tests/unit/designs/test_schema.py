@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from claims.of_laws import LAW_CLAIMS
 from claims.of_rises import RISE_CLAIMS
 from gearcam.designs import load
-from gearcam.designs.functions import functions_in
+from gearcam.designs.design import functions_in
 from gearcam.designs.kind import KINDS
 from gearcam.designs.reader import examine
 from gearcam.designs.schema import schema

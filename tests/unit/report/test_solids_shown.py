@@ -14,7 +14,7 @@ import trimesh
 
 import gearcam
 from gearcam.parts.solids import SolidError
-from gearcam.report.solids import CHORDS, solids_shown
+from gearcam.report.file import CHORDS, solids_shown
 from helpers_pairs import PROFILES
 
 

@@ -340,7 +340,7 @@ def test_solids_have_the_vertices_of_the_outlines_and_no_more(name: str, chords:
 
 def test_a_page_shows_solids_of_fewer_vertices(monkeypatch: pytest.MonkeyPatch) -> None:
     """What is drawn on a screen takes the coarser outlines, not those of files."""
-    from gearcam.report import solids
+    from gearcam.report import file as solids
 
     shown: dict[str, Any] = {}
     monkeypatch.setattr("gearcam.export.mesh.view_page", lambda bodies: shown.update(bodies) or "")

@@ -17,9 +17,10 @@ from gearcam.cams.spec import KIND as CAM_KIND
 from gearcam.designs.design import Design, Wanted
 from gearcam.designs.examine import home_of
 from gearcam.designs.faults import Fault, quoted, show
-from gearcam.designs.kind import KINDS, DesignKind, Examined, told_faults
+from gearcam.designs.kind import KINDS, DesignKind, Examined
 from gearcam.designs.outputs import FORMATS, OutputSpec, files_param, output_faults, pose_param
 from gearcam.designs.table import Table, table_of
+from gearcam.designs.validate import told_faults
 from gearcam.kinds.cam.blank import CamBlank
 from gearcam.kinds.cam.forms.base import SLIDING, form_faults, form_keys, form_schema
 from gearcam.kinds.cam.motion import TITLE, examine_motion, homes, motion_of, whole_turns

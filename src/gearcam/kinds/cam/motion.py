@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING, Any, Final
 from gearcam.base.registry import name_of
 from gearcam.designs.examine import chosen
 from gearcam.designs.faults import Fault, quoted, show
-from gearcam.designs.kind import Examined, made_of, told_faults
+from gearcam.designs.kind import Examined
 from gearcam.designs.lines import Path
 from gearcam.designs.slips import misspelt
 from gearcam.designs.table import Table, table_of
-from gearcam.designs.validate import faults_of
+from gearcam.designs.validate import faults_of, made_of, told_faults
 from gearcam.kinds.cam.forms.base import SLIDING, form_of
 from gearcam.laws.phases_of_lift import PHASES, Phase, RisePhase, fill_half, program_problems
 from gearcam.laws.rises.base import RISES

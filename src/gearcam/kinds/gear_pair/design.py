@@ -13,11 +13,11 @@ from gearcam.base.registry import classes_in, name_of
 from gearcam.designs.design import Design, Wanted
 from gearcam.designs.examine import chosen, home_of
 from gearcam.designs.faults import Fault, quoted, show
-from gearcam.designs.kind import KINDS, DesignKind, Examined, made_of
+from gearcam.designs.kind import KINDS, DesignKind, Examined
 from gearcam.designs.outputs import FORMATS, OutputSpec, output_faults, pose_param
 from gearcam.designs.slips import misspelt
 from gearcam.designs.table import Table, table_of
-from gearcam.designs.validate import faults_of
+from gearcam.designs.validate import faults_of, made_of
 from gearcam.gears.spec import PairSpec, Rack, RingSpec, StepsSpec
 from gearcam.gears.subject import KIND as TEETH_KIND
 from gearcam.laws.ratio.base import LAWS
@@ -316,6 +316,7 @@ KIND: Final = DesignKind(
     formats=FORMATS,
     rooms=("gearcam.gears.checks", "gearcam.meshing.checks", "gearcam.parts.checks"),
     checks=(TEETH_KIND, MESHING_KIND, PARTS_KIND),
+    studies=("meshing",),
     example={
         "law": {
             "type": "phases",
