@@ -72,7 +72,6 @@ _HOMES = {
 
 
 def _of_kinds() -> dict[str, type]:
-    from gearcam.base.quantities import described
     from gearcam.designs.kind import KINDS
 
     rooms = [kind.room("public") for kind in KINDS.values()]
