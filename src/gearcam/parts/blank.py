@@ -8,7 +8,7 @@ a pin of the housing, which limits the travel of an open wheel. *Clearance* is t
 all around, and if `clearance_bores` is set, off bores, bolt holes and slots too.
 
 Refused when a design is read: sizes that contradict each other, sizes without those that belong to
-them, and too fine keyways.
+them, and lengths that nobody makes.
 
 Depends on quantities only.
 """
@@ -28,10 +28,6 @@ KIND: Final = "parts"
 
 _FOLLOWING: Final = ("bore_diameter", "keyway_width", "bore_flat", "bolt_diameter", "stop_pin")
 """Sizes of openings for a shaft, a bolt or a pin."""
-
-_KEYED: Final = 1e-4
-"""Least size of a keyway over the bore, a micrometre in 10 mm: its corners stay apart in meshes of
-single precision too."""
 
 _COMMON: Final = ("timing_marks", "mark_diameter", "clearance_bores")
 """Given once for both wheels."""
@@ -147,8 +143,17 @@ class WheelBlank(Brief):
 
     def problems(self) -> Iterator[Problem]:
         """Yield what is wrong by reading: field, None, message, allowed."""
-        for name, message, rule in (*_bore_problems(self), *_other_problems(self)):
+        for name, message, rule in (
+            *_small_lengths(self), *_bore_problems(self), *_other_problems(self)
+        ):  # fmt: skip
             yield name, None, message, rule
+
+
+def _small_lengths(one: WheelBlank) -> Iterator[tuple[str, str, str]]:
+    for name, made in params_of(type(one)).items():
+        may_be_zero = made.quantity is LENGTH and made.ge == 0
+        if may_be_zero and 0.0 < (getattr(one, name) or 0.0) < LENGTH.least:
+            yield name, "is too small", f"{shown(LENGTH.least)} mm or more; 0 for none"
 
 
 def _bore_problems(one: WheelBlank) -> Iterator[tuple[str, str, str]]:
@@ -160,11 +165,6 @@ def _bore_problems(one: WheelBlank) -> Iterator[tuple[str, str, str]]:
     if bool(one.keyway_width) != bool(one.keyway_depth):
         missing = "keyway_width" if one.keyway_depth else "keyway_depth"
         yield missing, "a keyway needs both width and depth", "keyway_width_mm with keyway_depth_mm"
-    least = shown(_KEYED * bore)
-    for name in ("keyway_width", "keyway_depth"):
-        if 0.0 < getattr(one, name) < float(least):
-            rule = f"{least} mm or more in this bore; no keyway with 0 for width and depth"
-            yield name, "is too fine for a keyway", rule
     if bore and one.keyway_width >= bore:
         yield "keyway_width", "is as wide as the bore", f"below the bore's {shown(bore)} mm"
     if one.keyway_width and one.bore_flat:

@@ -1,35 +1,21 @@
 """Building a part: finished outlines, openings, hub and mark.
 
-Lengths too small for their part are refused, as are openings and marks without space.
+Refused: openings, hubs and marks without space.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Final
 
 import numpy as np
 
 from gearcam.base.errors import Way
-from gearcam.base.numerals import shown
-from gearcam.base.quantities import LENGTH, params_of
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank
 from gearcam.parts.body import Hub, Mark, Part, Recess
 from gearcam.parts.openings import Workpiece, openings, solid_of
 from gearcam.parts.shapes import Circle
-
-_LEAST: Final = 1e-5
-"""Smallest length, as a share of a part's reach. Meshes have single precision, 6e-8 of the reach:
-vertices of the coarsest circle of this size are still dozens of that apart."""
-
-_SHAPED: Final = tuple(
-    name
-    for name, one in params_of(WheelBlank).items()
-    if one.quantity is LENGTH and name != "clearance"
-)
-"""Lengths that create vertices: a clearance only moves those of the outline."""
 
 
 def make_part(
@@ -74,10 +60,8 @@ def make_part(
     Raises
     ------
     InfeasibleError
-        If a length is too small for the part, or an opening, hub or mark has no space.
+        If an opening, hub or mark has no space.
     """
-    height = width + blank.hub_front + blank.hub_back
-    _demand_coarse(blank, max(height, *(edge.reach for edge in contours)), work)
     found = openings(blank, room or contours, work, inner)
     hub = None
     if blank.hub_diameter:
@@ -130,24 +114,6 @@ def finished(contour: Contour, blank: WheelBlank, work: Workpiece) -> Contour:
     return sized(
         lambda size: rounded(clear, size), blank.tip_rounding, f"{where}.tip_rounding_mm", "radius"
     )
-
-
-def _demand_coarse(blank: WheelBlank, reach: float, work: Workpiece) -> None:
-    """Refuse lengths that are too small for a part of this `reach`, mm."""
-    least = float(shown(_LEAST * reach, 3))
-    for name in _SHAPED:
-        length = getattr(blank, name)
-        if length and length < least:
-            key = work.key(f"{name}_mm")
-            raise work.refusal(
-                "the length is too small for a part of this size",
-                f"blank.{name}_mm",
-                value=length,
-                limit=least,
-                nearest=f"the limit is 1/{round(1.0 / _LEAST)} of the part's reach, from its axis "
-                "or along it",
-                ways=(Way(near={key: least}, far={key: 100.0 * least}),),
-            )
 
 
 def _demand_within(hub: Hub, contours: Sequence[Contour | Circle], work: Workpiece) -> None:

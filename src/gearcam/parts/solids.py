@@ -3,8 +3,8 @@
 This is the only module that uses manifold3d. A *mesh* is plain arrays: the library's own objects
 cannot be pickled and its interface changes.
 
-Refused: layers too thin for single precision, and parts whose solid is empty, open, or lacks a part
-of its volume. (The library returns nothing for clockwise contours; parts refuse them.)
+Refused: parts whose solid is empty, open, or lacks a part of its volume. (The library returns
+nothing for clockwise contours; parts refuse them.)
 
 Depends on parts; manifold3d only inside the functions.
 """
@@ -12,7 +12,7 @@ Depends on parts; manifold3d only inside the functions.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property, singledispatch
@@ -20,12 +20,10 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.base.errors import GearcamError, InfeasibleError, MissingExtraError
+from gearcam.base.errors import GearcamError, MissingExtraError
 from gearcam.base.numerals import shown
-from gearcam.numeric.arrays import Array, Ints, Plane
-from gearcam.numeric.bulges import as_complex, as_pairs
+from gearcam.numeric.arrays import Array, Ints
 from gearcam.numeric.contour import Contour
-from gearcam.numeric.fans import fans
 from gearcam.parts.body import Body, Layer, Mark, Part
 from gearcam.parts.shapes import circle_segments
 
@@ -41,14 +39,6 @@ _FILLED: Final = 18
 
 ROUNDING: Final = 1e-8 * 2.0 ** (1 - _FILLED)
 """Largest size of that grid, over the reach of an outline."""
-
-_MANY: Final = 4000
-"""Vertices of an edge from which on it is reduced by fans: triangulation time grows with their
-square."""
-
-_THINNEST: Final = 1e-6
-"""Least height of a layer in reaches of its part: single precision rounds to 6e-8 of it."""
-
 
 LIBRARIES: Final = '"manifold3d>=3.5,<3.6" "trimesh>=5,<6" networkx lxml'
 """Libraries that only solids need, as arguments of pip."""
@@ -159,9 +149,7 @@ def solid(body: Body) -> Mesh:
 def _(part: Part) -> Mesh:
     import manifold3d
 
-    _demand_thick(part)
-    fanned = not part.recesses  # their edges would lie in the few triangles that fans leave
-    slabs = [_slab(manifold3d, layer, part.tolerance, fanned=fanned) for layer in part.layers]
+    slabs = [_slab(manifold3d, layer, part.tolerance) for layer in part.layers]
     made = slabs[0]
     if len(slabs) > 1:
         made = manifold3d.Manifold.batch_boolean(slabs, manifold3d.OpType.Add)
@@ -174,21 +162,6 @@ def _(part: Part) -> Mesh:
         raise SolidError(f"{part.name}: the solid is empty or open")
     demand_volume(part, mesh.volume, volume_error(part))
     return mesh
-
-
-def _demand_thick(part: Part) -> None:
-    """Refuse layers so thin that their faces coincide in files of single precision."""
-    reach = max(edge.reach for edge in part.contours)
-    height = min(layer.height for layer in part.layers)
-    if height < _THINNEST * reach:
-        raise InfeasibleError(
-            "a layer is too thin for a mesh",
-            where=f"{part.name}, its thickness",
-            value=height,
-            limit=_THINNEST * reach,
-            unit="mm",
-            nearest="the limit is a millionth of the part's reach from its axis",
-        )
 
 
 def demand_volume(part: Part, volume: float, allowed: float) -> None:
@@ -216,61 +189,14 @@ def demand_volume(part: Part, volume: float, allowed: float) -> None:
         )
 
 
-def _slab(manifold3d: Any, layer: Layer, tolerance: float, *, fanned: bool = True) -> Manifold:
+def _slab(manifold3d: Any, layer: Layer, tolerance: float) -> Manifold:
     """Return a layer: its edge extruded along z, less its openings, which run clockwise."""
     holes = [opening.shape.points(tolerance)[::-1] for opening in layer.openings]
     loops = [np.ascontiguousarray(loop) for loop in (layer.edge.points(tolerance), *holes)]
-    many = fanned and max(map(len, loops)) > _MANY
-    if many and (faces := _faces(manifold3d, loops)) is not None:
-        return _prism(manifold3d, loops, faces, layer)
     times = math.ldexp(1.0, _FILLED - math.frexp(layer.edge.reach)[1])
     section = manifold3d.CrossSection([times * loop for loop in loops])
     slab = manifold3d.Manifold.extrude(section, layer.height).scale((1.0 / times, 1.0 / times, 1.0))
     return slab.translate((0.0, 0.0, layer.low))
-
-
-def _faces(manifold3d: Any, loops: Sequence[Array]) -> tuple[Plane, Ints] | None:
-    """Return the points, those of loops first, and triangles of a face; None if any is reversed.
-
-    Made of fans along the edges, and the library's triangulation of the rest.
-    """
-    points = np.concatenate([as_complex(loop) for loop in loops])
-    left: list[Ints] = []
-    triangles: list[Ints] = []
-    low = 0
-    for loop in loops:
-        cut = fans(as_complex(loop))
-        own, apexes = np.arange(len(loop)), np.arange(len(cut.apexes))
-        numbers = np.append(low + own, len(points) + apexes)
-        points = np.append(points, cut.apexes)
-        left.append(numbers[cut.loop])
-        triangles.append(numbers[cut.triangles])
-        low += len(loop)
-    rest = manifold3d.triangulate([as_pairs(points[loop]) for loop in left])
-    made = np.concatenate([*triangles, np.concatenate(left)[rest]])
-    a, b, c = points[made].T
-    return (points, made) if np.all((np.conj(b - a) * (c - a)).imag >= 0.0) else None
-
-
-def _prism(
-    manifold3d: Any, loops: Sequence[Array], faces: tuple[Plane, Ints], layer: Layer
-) -> Manifold:
-    """Return a layer from its faces, with its walls."""
-    points, above = faces
-    count = len(points)
-    triangles, first = [above[:, ::-1], count + above], 0
-    for loop in loops:
-        one = first + np.arange(len(loop))
-        two = np.roll(one, -1)
-        triangles.append(np.stack([one, two, count + two], axis=1))
-        triangles.append(np.stack([one, count + two, count + one], axis=1))
-        first += len(loop)
-    heights = np.repeat([layer.low, layer.high], count)
-    mesh = manifold3d.Mesh64(
-        vert_properties=np.column_stack([np.tile(as_pairs(points), (2, 1)), heights]),
-        tri_verts=np.concatenate(triangles).astype(np.uint64),
-    )
-    return manifold3d.Manifold(mesh)
 
 
 def _cutter(manifold3d: Any, mark: Mark, part: Part) -> Manifold:

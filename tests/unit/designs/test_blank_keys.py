@@ -5,14 +5,12 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
 import pytest
 
 from gearcam.base.errors import DesignError, Problem
+from gearcam.base.quantities import LENGTH
 from gearcam.designs import loads
 from gearcam.kinds.gear_pair.design import GearPairDesign
-from gearcam.parts.openings import bore as bore_of
-from gearcam.parts.shapes import Loop
 
 GOOD = """\
 kind = "gear-pair"
@@ -84,8 +82,10 @@ KEYED = "bore_diameter_mm = 20\nkeyway_width_mm = {}\nkeyway_depth_mm = {}\n"
         ("keyway_width_mm = 5\nkeyway_depth_mm = 2", "blank.keyway_width_mm", "no bore"),
         ("bore_diameter_mm = 20\nkeyway_width_mm = 5", "blank.keyway_depth_mm", "width and depth"),
         (KEYED.format(20, 2), "blank.keyway_width_mm", "as wide as the bore"),
-        (KEYED.format(1e-300, 2), "blank.keyway_width_mm", "too fine for a keyway"),
-        (KEYED.format(5, 0.00199), "blank.keyway_depth_mm", "too fine for a keyway"),
+        (KEYED.format(1e-300, 2), "blank.keyway_width_mm", "is too small"),
+        (KEYED.format(5, 0.99 * LENGTH.least), "blank.keyway_depth_mm", "is too small"),
+        (f"bore_diameter_mm = {0.99 * LENGTH.least}", "blank.bore_diameter_mm", "is too small"),
+        ("tip_rounding_mm = 1e-300", "blank.tip_rounding_mm", "is too small"),
         (KEYED.format(5, 2) + "bore_flat_mm = 18", "blank.bore_flat_mm", "has a keyway"),
         ("bore_diameter_mm = 20\nbore_flat_mm = 10", "blank.bore_flat_mm", "not within the bore"),
         ("bore_diameter_mm = 20\nbore_flat_mm = 20", "blank.bore_flat_mm", "not within the bore"),
@@ -105,18 +105,6 @@ def test_contradictions_are_refused_by_reading(text: str, key: str, words: str) 
     assert problem.key == key
     assert words in problem.message
     assert problem.allowed
-
-
-@pytest.mark.parametrize(("bore", "least"), [(20.0, 0.002), (5150.44777, 0.515045)])
-def test_the_finest_keyway_that_is_told_has_four_corners(bore: float, least: float) -> None:
-    """Those of a finer one fall together in the end: a cutter's path along it has no direction."""
-    blank = f"bore_diameter_mm = {bore}\nkeyway_width_mm = {{}}\nkeyway_depth_mm = {{}}\n"
-    (problem,) = problems(blank.format(0.99 * least, least))
-    assert problem.allowed.startswith(f"{least} mm or more")
-    opening = bore_of(read(blank.format(least, least) + "keyway_angle_deg = 33").blank.wheel(1))
-    assert isinstance(opening, Loop)
-    corners = opening.vertices.astype(np.float32).tolist()
-    assert len({tuple(corner) for corner in corners}) == 5
 
 
 def test_two_values_are_judged_one_by_one() -> None:
