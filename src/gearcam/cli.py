@@ -196,7 +196,7 @@ def _of_results(command: ResultCommand) -> Command:
             adapt=lambda design: command.adapt(design, options),
         )
 
-    return Command(name=command.name, doc=command.doc, arguments=arguments, run=run)
+    return Command(command.name, command.doc, run, arguments)
 
 
 def _build_arguments(parser: argparse.ArgumentParser) -> None:
@@ -248,13 +248,13 @@ def _compare_arguments(parser: argparse.ArgumentParser) -> None:
 def _compare(options: Mapping[str, Any]) -> int:
     from gearcam.compare.command import compare
 
-    given = dict(options)
-    files, debug = given.pop("files"), given.pop("debug")
+    files, settings, output = options["files"], options["settings"], options["output"]
 
     def work(_: str) -> int:
-        return {"refused": IMPOSSIBLE, "error": FINDINGS}.get(compare(files, **given), GOOD)
+        worst = compare(files, settings, output, every=options["every"])
+        return {"refused": IMPOSSIBLE, "error": FINDINGS}.get(worst, GOOD)
 
-    return _each([" ".join(files)], "compared", work, debug=debug)
+    return _each([" ".join(files)], "compared", work, debug=options["debug"])
 
 
 def _view_arguments(parser: argparse.ArgumentParser) -> None:
@@ -321,45 +321,36 @@ def _schema(_: Mapping[str, Any]) -> int:
 
 _COMMANDS: Final = (
     Command(
-        name="build",
-        doc="Build designs and write their files into DIR/NAME/.",
-        arguments=_build_arguments,
-        run=_build,
+        "build",
+        "Build designs and write their files into DIR/NAME/.",
+        _build,
+        _build_arguments,
+    ),
+    Command("check", "Check designs; write DIR/NAME/summary.json only.", _check, _add_files),
+    Command(
+        "compare",
+        "Compare designs or variants of one design; write DIR/compare.html.",
+        _compare,
+        _compare_arguments,
     ),
     Command(
-        name="check",
-        doc="Check designs; write DIR/NAME/summary.json only.",
-        arguments=_add_files,
-        run=_check,
+        "view",
+        "Show a design in the browser; update the page when the file is saved.",
+        _view,
+        _view_arguments,
     ),
     Command(
-        name="compare",
-        doc="Compare designs or variants of one design; write DIR/compare.html.",
-        arguments=_compare_arguments,
-        run=_compare,
+        "laws",
+        "List transmission-ratio laws and motion laws with keys, continuity and source.",
+        _laws,
     ),
     Command(
-        name="view",
-        doc="Show a design in the browser; update the page when the file is saved.",
-        arguments=_view_arguments,
-        run=_view,
+        "new",
+        "Create a commented design file to start from; never overwrites a file.",
+        _new,
+        _new_arguments,
     ),
-    Command(
-        name="laws",
-        doc="List transmission-ratio laws and motion laws with keys, continuity and source.",
-        run=_laws,
-    ),
-    Command(
-        name="new",
-        doc="Create a commented design file to start from; never overwrites a file.",
-        arguments=_new_arguments,
-        run=_new,
-    ),
-    Command(
-        name="schema",
-        doc="Print the JSON Schema of design files, for use in editors.",
-        run=_schema,
-    ),
+    Command("schema", "Print the JSON Schema of design files, for use in editors.", _schema),
 )
 
 

@@ -13,7 +13,7 @@ from gearcam.results.result import Progress
 from gearcam.results.written import Written
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Command:
     """A command.
 
@@ -23,16 +23,16 @@ class Command:
         Name on the command line.
     doc : str
         One line of help: what it does and which files it writes.
-    arguments : callable
-        ``arguments(parser)`` adds its files and options to a parser.
     run : callable
         ``run(options)`` does the work, prints the outcome and returns the exit code.
+    arguments : callable
+        ``arguments(parser)`` adds its files and options to a parser.
     """
 
     name: str
     doc: str
-    arguments: Callable[[argparse.ArgumentParser], None] = lambda _: None
     run: Callable[[Mapping[str, Any]], int]
+    arguments: Callable[[argparse.ArgumentParser], None] = lambda _: None
 
 
 @dataclass(frozen=True, kw_only=True)
