@@ -229,7 +229,7 @@ class Comparison:
     def _gallery(self) -> Iterator[Task]:
         names = [{path.name for path in (tree / GALLERY).iterdir()} for tree in self.trees]
         for side, tree in zip(self.sides, self.trees, strict=True):
-            for path in (tree / GALLERY).iterdir():
+            for path in filter(Path.is_file, (tree / GALLERY).iterdir()):
                 shutil.copy(path, side.folder)
         for name in sorted(names[0] | names[1]):
             if name.endswith(".toml"):
