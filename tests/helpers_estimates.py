@@ -12,7 +12,6 @@ import numpy as np
 import gearcam
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.tolerances import DEFAULT
-from gearcam.gears.bends import bends_of
 from gearcam.gears.estimates import estimates, ratio_error
 from gearcam.gears.pair import GearPair
 from gearcam.gears.rolling import Rolling, roll
@@ -140,7 +139,7 @@ def of_curvatures(case: Case, rolling: Rolling, exact: Exact) -> list[Row]:
 
     radii, concave = [], []
     for track in rolling.tracks:
-        told = bends_of(track)
+        told = track.bends
         if (true := most_bent(track, 1)) and told.radius < math.inf:
             off = float(abs(mp.mpf(told.radius) - 1 / true[0]))
             radii.append((off, told.radius_error, told.radius**2 * true[1] * finest))

@@ -9,12 +9,11 @@ import numpy as np
 import pytest
 
 from gearcam.base.tolerances import DEFAULT
-from gearcam.gears import stays
+from gearcam.gears import tip_pass as room
 from gearcam.gears.outline import Outline, build_outline
 from gearcam.gears.pair import GearPair
 from gearcam.gears.polar import PolarCurve
-from gearcam.gears.stays import Stays, find_stays, rolls_of
-from gearcam.gears.tip_pass import TipPass, tip_pass
+from gearcam.gears.tip_pass import Stays, TipPass, find_stays, rolls_of, tip_pass
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.numeric.arrays import Array, Plane
 from helpers_rings import driver, overlap, passed_on_circles, ring
@@ -230,7 +229,7 @@ def test_corners_that_are_hardly_looked_at_stay_where_all_looks_see_them(
 
     def found(first: int) -> tuple[Stays, int]:
         looks.clear()
-        monkeypatch.setattr(stays, "_FIRST", first)
+        monkeypatch.setattr(room, "_FIRST", first)
         return find_stays(rolls, points, np.zeros(3, dtype=int), count, edge), sum(looks)
 
     told = PolarCurve.beyond

@@ -9,9 +9,8 @@ import pytest
 
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.tolerances import DEFAULT
-from gearcam.gears.pair import Gear, make_gear
+from gearcam.gears.pair import Gear, leads, make_gear, stepped
 from gearcam.gears.spec import StepsSpec
-from gearcam.gears.steps import leads, stepped
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.meshing.numbers import numbers
 from gearcam.meshing.settings import MeshingSpec

@@ -14,9 +14,8 @@ import numpy as np
 import pytest
 
 from gearcam.base.tolerances import DEFAULT, Tolerances
-from gearcam.gears.bends import bends_of, curvature_errors
 from gearcam.gears.estimates import area_error, ratio_error
-from gearcam.gears.rolling import roll
+from gearcam.gears.rolling import curvature_errors, roll
 from gearcam.laws.ratio.base import LAWS
 from gearcam.laws.ratio.composite import Fourier
 from gearcam.laws.ratio.formula import Formula, RackLaw
@@ -160,7 +159,7 @@ def test_the_error_of_the_size_is_one_of_radii() -> None:
         for tolerances in (DEFAULT, Tolerances(expansion=1e-5))
     )
     for one, other in zip(fine.tracks, rough.tracks, strict=True):
-        off, told = abs(one.convex.radius - other.convex.radius), bends_of(other).radius_error
+        off, told = abs(one.convex.radius - other.convex.radius), other.bends.radius_error
         assert 1e-10 < off <= told <= 100.0 * off
 
 

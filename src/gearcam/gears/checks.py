@@ -1,4 +1,4 @@
-"""The checks of a gear pair's teeth; importing this module registers those of its centrodes too.
+"""The checks of a gear pair: of its law and centrodes, then of its teeth.
 
 A check takes a `Subject` and yields findings. Values and limits of findings are in the units of
 design files.
@@ -13,19 +13,27 @@ import numpy as np
 
 from gearcam.base.findings import ROUNDING, Remark, Severity
 from gearcam.base.numerals import rounded_down, shown
-from gearcam.base.quantities import LENGTH, NUMBER, Param
-from gearcam.gears import centrode_checks
+from gearcam.base.quantities import ANGLE, COUNT, LENGTH, NUMBER, Param
 from gearcam.gears.cutter import Cutter
 from gearcam.gears.pair import Gear
-from gearcam.gears.subject import CONTACT_RATIO, KIND, Subject, pair_check
+from gearcam.gears.subject import CONTACT_RATIO, Subject, pair_check
 from gearcam.laws.ratio.span import angle_text
-
-__all__ = [
-    "KIND", "Subject", "centrode_checks", "largest_module", "tooth_ranges", "undercut_curvatures",
-]  # fmt: skip
 
 _POINTED = 1e-9
 """Thickness of a tip, in modules, below which the tooth counts as pointed."""
+
+CLOSURE = math.radians(1e-7)
+"""Default closure error: 0.006 micrometres at 200 mm."""
+
+_ANY_RADIUS = 1e6
+"""Default of the concave radius, mm: every concave part is reported."""
+
+_CUTTER_TEETH = (
+    "cutter_teeth",
+    Param(NUMBER, ge=0, doc="fewest teeth of a pinion cutter"),
+    12.0,
+)
+"""Limit of the number of teeth of a pinion cutter, in concave parts and in rings."""
 
 
 def tooth_ranges(numbers: tuple[int, ...] | list[int]) -> str:
@@ -82,6 +90,264 @@ def _straight_depth(cutter: Cutter) -> float:
     """Depth of a rack's straight flank, modules; a pinion cutter's at a small module."""
     depth = cutter.depth + cutter.tip_radius * math.sin(cutter.alpha)
     return math.ceil(depth * math.pi / cutter.pitch * 1e4 - 0.5) / 1e4
+
+
+@pair_check(
+    "closure", limit=("closure", Param(ANGLE, ge=0, le=1, doc="largest closure error"), CLOSURE)
+)
+def closure(subject: Subject, limit: float) -> Iterator[Remark]:
+    """Warn if the law does not close exactly, as its ratios have too few digits.
+
+    Beyond 1e-6 rad the design is refused.
+
+    Looks at: the error of the driven angle over one lobe.
+    """
+    miss = abs(subject.pair.law.closure_error)
+    if miss > limit:
+        yield Remark(
+            "The law does not close exactly: this is the error of the driven angle over one lobe.",
+            "law",
+            math.degrees(miss),
+        )
+
+
+@pair_check(
+    "ratio-positive", limit=("ratio_swing", Param(NUMBER, gt=1, doc="largest i21 or 1/i21"), 10.0)
+)
+def ratio_positive(subject: Subject, limit: float) -> Iterator[Remark]:
+    """Warn if the ratio comes close to zero or becomes very large.
+
+    Looks at: the largest ratio and the inverse of the smallest, relative to the mean.
+    """
+    law = subject.pair.law
+    (low_place, low), (high_place, high) = law.ratio_range
+    mean = subject.pair.rolling.mean_radius
+    low, high = low / mean, high / mean
+    for place, value, swing in ((low_place, low, 1.0 / low), (high_place, high, high)):
+        if swing > limit:
+            yield Remark(
+                f"The ratio is {shown(value)} here: one wheel hardly turns, and its centrode comes "
+                "close to the shaft of the other.",
+                angle_text(place),
+                swing,
+            )
+
+
+@pair_check(
+    "ratio-continuity",
+    limit=("ratio_continuity", Param(COUNT, ge=1, le=3, doc="least order of continuity"), 1.0),
+)
+def ratio_continuity(subject: Subject, limit: float) -> Iterator[Remark]:
+    """Warn of a knot at which a derivative of the ratio jumps, up to the order of the limit.
+
+    Looks at: the order to which the ratio is continuous at its knots.
+    """
+    law = subject.pair.law
+    for jump in law.jumps:
+        order = jump.order - 2  # of the ratio, which is a derivative itself
+        if order < limit:
+            yield Remark(
+                f"The ratio is C{order} here: its derivative of order {order + 1} jumps.",
+                angle_text(jump.theta or law.period),
+                float(order),
+            )
+
+
+@pair_check(
+    "concave",
+    limit=(
+        "concave_radius",
+        Param(LENGTH, gt=0, doc="concave radii below this are reported"),
+        _ANY_RADIUS,
+    ),
+    severity="note",
+)
+def concave(subject: Subject, limit: float) -> Iterator[Remark]:
+    """Note a concave part of a centrode: no rack or hob can cut that wheel.
+
+    Looks at: the radius of concave parts of the centrodes, except those of a ring.
+    """
+    for gear in subject.gears:
+        cutter, (place, radius) = gear.toothing.cutter, gear.toothing.track.concave
+        if gear.ring:
+            continue
+        if cutter.kind == "pinion" and radius < limit:
+            yield Remark(
+                "The centrode is concave here: no rack or hob can cut this wheel. Its fillets are "
+                f"those of a pinion cutter with up to {shown(cutter.teeth, 3)} teeth.",
+                f"wheel {gear.wheel}, {angle_text(place)}",
+                radius,
+                limit=limit if limit < _ANY_RADIUS else math.inf,
+            )
+
+
+@pair_check(
+    "sharp",
+    limit=("convex_radius", Param(NUMBER, gt=0, doc="least convex radius, in modules"), 2.5),
+    unit="modules",
+)
+def sharp(subject: Subject, limit: float) -> Iterator[Remark]:
+    """Warn of a sharp bend of a centrode, where teeth have hardly any root.
+
+    Looks at: the smallest convex radius of the centrodes.
+    """
+    for gear in subject.gears:
+        place, radius = gear.toothing.track.convex
+        modules = radius / subject.pair.module
+        if modules < limit * (1.0 - ROUNDING):
+            yield Remark(
+                f"The centrode has a radius of only {shown(radius)} mm here. "
+                f"{subject.with_teeth(limit / modules)} the limit is kept.",
+                f"wheel {gear.wheel}, {angle_text(place)}",
+                modules,
+            )
+
+
+@pair_check("concave-teeth", limit=_CUTTER_TEETH, unit="teeth")
+def concave_teeth(subject: Subject, limit: float) -> Iterator[Remark]:
+    """Warn of a concave part into which only a pinion cutter with few teeth fits.
+
+    Looks at: the number of teeth of the largest pinion cutter that fits into the concave parts.
+    """
+    for gear in subject.gears:
+        count, (place, radius) = gear.toothing.cutter.teeth, gear.toothing.track.concave
+        if count < limit and not gear.ring:
+            yield Remark(
+                "The teeth are large for this concave part, which has a radius of "
+                f"{shown(radius)} mm. {subject.with_teeth(limit / count)} the limit is kept.",
+                f"wheel {gear.wheel}, {angle_text(place)}",
+                count,
+            )
+
+
+@pair_check("cutter-small", limit=_CUTTER_TEETH, severity="note", unit="teeth")
+def cutter_small(subject: Subject, limit: float) -> Iterator[Remark]:
+    """Note that the pinion cutter of a ring has few teeth.
+
+    Looks at: the number of teeth of the pinion cutter of a ring.
+    """
+    for gear in subject.gears:
+        count = gear.toothing.cutter.teeth
+        if gear.ring and count < limit:
+            yield Remark(
+                "The pinion cutter of the ring has few teeth: there may be no shaper cutter of "
+                "this size, for which the fillets are drawn.",
+                f"wheel {gear.wheel}",
+                count,
+            )
+
+
+@pair_check(
+    "pressure-angle",
+    limit=(
+        "pressure_angle",
+        Param(ANGLE, gt=0, le=90, doc="largest pressure angle of the tooth force"),
+        math.radians(50.0),
+    ),
+)
+def pressure_angle(subject: Subject, limit: float) -> Iterator[Remark]:
+    """Warn of a tooth force that loads the bearings more than it turns the wheel.
+
+    Looks at: the angle between the tooth force and the motion of the pitch point, driving forward
+    and backward.
+    """
+    found = {way: ends for way, ends in subject.pressure_angles.items() if ends[1] > limit}
+    if found:
+        where = (f"driving {way}, {angle_text(place)}" for way, (place, _) in found.items())
+        largest = max(angle for _, angle in found.values())
+        does = (
+            "no longer turns the wheel" if largest >= 0.5 * math.pi else "mostly loads the bearings"
+        )
+        yield Remark(
+            f"The tooth force {does}: the slope of the centrode adds to the rack's pressure angle "
+            f"of {shown(math.degrees(subject.pair.rack.pressure_angle))} deg.",
+            "; ".join(where),
+            math.degrees(largest),
+        )
+
+
+@pair_check(
+    "self-crossing",
+    limit=(
+        "end_gap",
+        Param(ANGLE, ge=0, le=360, doc="least angle between the ends"),
+        math.radians(10.0),
+    ),
+)
+def self_crossing(subject: Subject, limit: float) -> Iterator[Remark]:
+    """Warn of an open wheel whose ends nearly meet; a wheel whose ends meet is refused.
+
+    Looks at: the angle between the ends of an open wheel.
+    """
+    for gear in subject.gears:
+        track = gear.toothing.track
+        if track.closed or track.slides:
+            continue
+        # a centrode given by its radius over a rising angle crosses itself only beyond a full turn
+        gap = 2.0 * math.pi - float(np.ptp(track.rotation(track.angle(gear.toothing.ends))))
+        if gap < limit:
+            yield Remark(
+                "There is little room between the first and the last tooth.",
+                f"wheel {gear.wheel}",
+                math.degrees(gap),
+            )
+
+
+@pair_check(
+    "acceleration",
+    limit=("acceleration_ratio", Param(NUMBER, gt=0, doc="largest d(i21)/dphi1"), 2.0),
+)
+def acceleration(subject: Subject, limit: float) -> Iterator[Remark]:
+    """Warn of a large acceleration of the driven wheel at constant speed of the driver.
+
+    Looks at: `d(i21)/dphi1`, the acceleration of the driven wheel divided by the square of the
+    driver's speed.
+    """
+    places, values = subject.accelerations
+    worst = int(np.argmax(np.abs(values)))
+    if abs(float(values[worst])) > limit:
+        yield Remark(
+            "The ratio changes fast here: with the driver at n revolutions per second the angular "
+            "acceleration of the driven wheel is this number times (2*pi*n)^2 rad/s2.",
+            angle_text(float(places[worst])),
+            abs(float(values[worst])),
+        )
+
+
+@pair_check("remote-cutter", unit="mm")
+def remote_cutter(subject: Subject, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Warn of a pinion cutter that would cut another part of the wheel too.
+
+    Looks at: the distance of the pinion cutter from parts of the wheel that it does not cut.
+    """
+    for gear in subject.gears:
+        cutter = gear.toothing.cutter
+        if cutter.kind != "pinion" or not gear.toothing.closed:
+            continue
+        length, count = gear.toothing.track.length, 180
+        s = length * np.arange(count) / count
+        frames = gear.toothing.frames(gear.toothing.track.angle(s))
+        center = frames.p + gear.toothing.turn * frames.t / cutter.kc
+        steps = np.arange(count)
+        ahead = frames.p[(steps[:, None] + steps) % count]
+        clear = np.abs(ahead - center[:, None]) - (1.0 / cutter.kc + cutter.dedendum)
+        # once the centrode has left the cutter, in either direction, it must not return to it
+        half = count // 2
+        for way in (1, -1):
+            path = clear[:, way * np.arange(half)]
+            again = np.where(np.maximum.accumulate(path, axis=1) > 0.0, path, np.inf)
+            if again.min() < 0.0:
+                row, column = np.unravel_index(int(again.argmin()), again.shape)
+                places = s[[row, (row + way * column) % count]]
+                teeth = np.floor(places / gear.toothing.pitch).astype(int) % gear.toothing.teeth + 1
+                yield Remark(
+                    "A pinion cutter in this tooth space would also cut into the other tooth: the "
+                    "wheel cannot be shaped, but it can be cut by laser or wire, or printed.",
+                    f"wheel {gear.wheel}, space after tooth {teeth[0]} and tooth {teeth[1]}",
+                    float(-again.min()),
+                    limit=0.0,
+                )
+                break
 
 
 @pair_check("undercut", limit=CONTACT_RATIO, severity=("warning", "error"), unit="teeth")

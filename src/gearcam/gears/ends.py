@@ -16,7 +16,6 @@ import numpy as np
 
 from gearcam.base.errors import InfeasibleError, Way
 from gearcam.gears.flank import Curve, Rows, Toothing
-from gearcam.gears.spaces import join, select
 from gearcam.gears.spec import RingSpec
 from gearcam.gears.tips import TipEnds
 from gearcam.numeric.arrays import Array
@@ -61,11 +60,11 @@ def cut_ends(toothing: Toothing, rows: Rows, tips: TipEnds) -> Rows:
     if toothing.wheel == 1:
         first, last = toothing.numbers[0], toothing.numbers[-1]
         outside = ((rows.tooth == first) & (rows.sigma > 0.0)) | (rows.tooth == last)
-        kept = select(rows, np.flatnonzero(~outside))
+        kept = rows.select(np.flatnonzero(~outside))
     else:
-        lead = select(rows, np.array([len(rows.kind) - 1]))
+        lead = rows.select(np.array([len(rows.kind) - 1]))
         z = len(toothing.numbers)
-        kept = join(
+        kept = Rows.joined(
             [
                 replace(
                     lead,

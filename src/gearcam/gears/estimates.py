@@ -14,11 +14,10 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.gears.bends import EPS, FEW, bends_of, systematic_errors
 from gearcam.gears.flank import Curve
 from gearcam.gears.outline import Outline
 from gearcam.gears.pair import Gear, GearPair
-from gearcam.gears.rolling import Rolling
+from gearcam.gears.rolling import EPS, FEW, Rolling, systematic_errors
 from gearcam.gears.subject import Subject
 from gearcam.gears.tip_pass import TipPass
 from gearcam.numeric.arrays import Array
@@ -110,7 +109,7 @@ def _pass_error(passed: TipPass, corners: float) -> Estimates:
 
 def _bend_errors(rolling: Rolling, function: str) -> Estimates:
     """Return the larger error of the two centrodes' least radii."""
-    bends = [bends_of(track) for track in rolling.tracks]
+    bends = [track.bends for track in rolling.tracks]
     how = "scatter near extremes, ratio and derivatives at knots, closure, size" + function
     return {
         "convex_radius_mm": (max(one.radius_error for one in bends), how),

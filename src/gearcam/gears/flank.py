@@ -192,6 +192,20 @@ class Rows(Brief):
     corner: Mask
     tooth: Ints
 
+    def select(self, index: Ints) -> Rows:
+        """Return the rows `index`, in that order."""
+        return Rows(**{name: values[index] for name, values in vars(self).items()})
+
+    @classmethod
+    def joined(cls, parts: list[Rows]) -> Rows:
+        """Return the rows of `parts`, in order."""
+        return cls(
+            **{
+                name: np.concatenate([getattr(part, name) for part in parts])
+                for name in cls.__dataclass_fields__
+            }
+        )
+
 
 def trace(toothing: Toothing, rows: Rows, index: Ints, phi: Array) -> tuple[Plane, Plane]:
     """Return points and forward unit tangents of rows at driver angles.

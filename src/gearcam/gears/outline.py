@@ -16,7 +16,7 @@ from gearcam.gears.corners import highest_corners
 from gearcam.gears.ends import body_runs, cut_ends
 from gearcam.gears.flank import Curve, Rows, Toothing, WheelCurves
 from gearcam.gears.rounding import round_tips
-from gearcam.gears.spaces import ROWS_PER_TOOTH, entangled, join, regular_rows, select, untangle
+from gearcam.gears.spaces import ROWS_PER_TOOTH, entangled, regular_rows, untangle
 from gearcam.gears.spec import RingSpec
 from gearcam.gears.tips import TipEnds, feet, find_tips, flank_crossings, near
 from gearcam.gears.undercut import Undercut, find_cusps
@@ -308,14 +308,14 @@ def _assemble(toothing: Toothing, rows: Rows, flanks: Flanks, spaces: Ints) -> t
     parts, done = [], 0
     for space, part in zip(spaces, untangle(toothing, rows, spaces), strict=True):
         first = ROWS_PER_TOOTH * int(space)
-        parts += [select(rows, np.arange(done, first)), part]
+        parts += [rows.select(np.arange(done, first)), part]
         done = first + ROWS_PER_TOOTH
-    joined = join([*parts, select(rows, np.arange(done, len(rows.kind)))])
+    joined = Rows.joined([*parts, rows.select(np.arange(done, len(rows.kind)))])
     lowest = _lowest(toothing, joined)
     if not toothing.closed:
         joined = cut_ends(toothing, joined, flanks.tips)
     pointed = (joined.kind == Curve.TIP) & (joined.start == joined.end)
-    joined = select(joined, np.flatnonzero(~pointed))
+    joined = joined.select(np.flatnonzero(~pointed))
     highest = flanks.highest
     if toothing.rounding > near(toothing):  # below it has no effect
         joined, reach = round_tips(toothing, joined, flanks.tips)

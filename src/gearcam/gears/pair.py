@@ -3,25 +3,23 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
-from gearcam.base.display import Brief, Displayed, renderer
+from gearcam.base.display import Brief, Displayed
 from gearcam.base.errors import InfeasibleError, Way
-from gearcam.base.facts import Facts
+from gearcam.base.facts import Fact, Facts
 from gearcam.base.numerals import shown
 from gearcam.base.tolerances import Tolerances
-from gearcam.gears.bound import demand_cutters
 from gearcam.gears.cutter import choose_cutter, ring_pinions
-from gearcam.gears.demands import demand_clearance, demand_shift, settle_rack
+from gearcam.gears.demands import demand_clearance, demand_cutters, demand_shift, settle_rack
 from gearcam.gears.flank import Toothing
-from gearcam.gears.flank_points import flank_points
-from gearcam.gears.gear_facts import gear_tree
 from gearcam.gears.outline import Outline, build_outline
 from gearcam.gears.rolling import Rolling, roll
-from gearcam.gears.spec import BasicRack, Finish, PairSpec, Rack, RingSpec
+from gearcam.gears.spec import BasicRack, Finish, PairSpec, Rack, RingSpec, StepsSpec
 from gearcam.gears.track import Wheel
 from gearcam.laws.ratio.base import RatioLaw
 from gearcam.laws.ratio.span import RACK, RING, WHEEL, Lobes
@@ -201,7 +199,36 @@ class Gear(Brief, Displayed):
         DesignError
             If `count` is not a whole number, or less than 2.
         """
-        return flank_points(self.profile, whole("count", count, 2))
+        count = whole("count", count, 2)
+        toothing, flanks = self.toothing, self.profile.flanks
+        kept = np.flatnonzero(toothing.whole_flanks & (flanks.highest > flanks.lowest))
+        tooth = np.tile(np.array(toothing.numbers), 2)[kept]
+        order = np.lexsort((-flanks.sigma[kept], tooth))
+        kept, tooth = kept[order], tooth[order]
+        share = np.linspace(0.0, 1.0, count)
+        lowest, highest = flanks.lowest[kept, None], flanks.highest[kept, None]
+        reach = (lowest + share * (highest - lowest)).ravel()
+        sf, sigma = (np.repeat(values[kept], count) for values in (flanks.sf, flanks.sigma))
+        phi1 = toothing.track.angle(sf - sigma * reach)
+        frames = toothing.frames(phi1)
+        points = toothing.flank_points(frames, sf, sigma)
+        normals = sigma * toothing.normals(frames, sigma)
+        with np.errstate(divide="ignore"):  # at a cusp
+            curvature = frames.kappa / toothing.regularity(frames, sf, sigma)
+        return Columns(
+            {
+                "tooth": np.repeat(tooth, count),
+                "side": sigma.astype(np.int64),
+                "point": np.tile(np.arange(1, count + 1), len(kept)),
+                "x_mm": points.real,
+                "y_mm": points.imag,
+                "nx": normals.real,
+                "ny": normals.imag,
+                "curvature_per_mm": curvature,
+                "reach_mm": reach,
+                "phi1_deg": np.degrees(phi1),
+            }
+        )
 
     @cached_property
     def facts(self) -> Facts:
@@ -213,6 +240,8 @@ class Gear(Brief, Displayed):
 
         A ring is drawn with one module of metal around its teeth.
         """
+        from gearcam.pictures.markup import outlines
+
         track = self.toothing.track
         centrode = self.centrode(
             np.linspace(0.0, float(track.angle(self.toothing.length)), PICTURED)
@@ -221,7 +250,7 @@ class Gear(Brief, Displayed):
         if self.hollow:
             spokes = np.exp(1j * np.linspace(0.0, 2.0 * np.pi, PICTURED))
             edges.append((self.largest_radius + self.pair.module) * as_pairs(spokes))
-        return renderer().outlines(
+        return outlines(
             self.facts.headline,
             edges,
             [centrode],
@@ -368,8 +397,81 @@ def make_gear(
     return Gear(pair=pair, wheel=wheel, profile=profile)
 
 
+def gear_tree(gear: Gear) -> dict[str, Any]:
+    """Return the facts of a wheel as a nested dict (see `gearcam.base.facts.Facts`)."""
+    cutter, bends = gear.toothing.cutter, gear.pair.rolling.tracks[gear.wheel - 1].bends
+    pinion = cutter.kind == "pinion"
+    return {
+        "name": gear.name,
+        "internal": True if gear.ring else None,
+        "teeth": gear.toothing.teeth,
+        "centrode": {
+            "length_mm": Fact(gear.toothing.length, "centrode length"),
+            "min_convex_radius_mm": bends.radius if bends.radius < math.inf else None,
+            "max_concave_curvature_per_mm": bends.concave,
+            "closed": gear.toothing.closed,
+        },
+        "cutter": cutter.kind,
+        "cutter_pitch_radius_mm": 1.0 / cutter.kc if pinion else None,
+        "cutter_teeth": cutter.teeth if pinion else None,
+        "cutter_tip_radius_mm": cutter.tip_radius,
+        "undercut_teeth": list(gear.profile.undercut_teeth),
+        "tip_thickness_min_mm": float(gear.profile.tip_thickness.min()),
+        "root_radius_min_mm": None if gear.ring else gear.least_radius,
+        "root_radius_max_mm": gear.largest_radius if gear.ring else None,
+        "outline": {
+            "vertices": len(gear.outline),
+            "least_vertices": gear.profile.sampler.least,
+            "area_mm2": gear.profile.contour.area,
+            "chord_error_mm": gear.profile.chord_error,
+        },
+    }
+
+
 def lobes_of(spec: PairSpec) -> Lobes:
     """Return the numbers of lobes of a pair's wheels: ``z1 : z2`` in lowest terms."""
     common = math.gcd(*spec.teeth)
     z1, z2 = spec.teeth
     return Lobes(z1 // common, z2 // common, RING if spec.type == "internal" else WHEEL)
+
+
+def leads(pair: GearPair, spec: StepsSpec) -> tuple[float, ...]:
+    """Return the tooth offsets of the steps, mm along the pitch curves.
+
+    Parameters
+    ----------
+    pair : GearPair
+        The lowest step.
+    spec : StepsSpec
+        Count and offset.
+
+    Returns
+    -------
+    tuple of float
+        Reduced to one pitch, since whole pitches change nothing; the first is 0.
+
+    Raises
+    ------
+    InfeasibleError
+        If the wheels are open.
+    """
+    if spec.count > 1 and not pair.closed:
+        raise InfeasibleError(
+            "open wheels and racks cannot be stepped: their end teeth would leave the blank",
+            where="steps.count",
+            value=spec.count,
+            limit=1,
+            nearest="open wheels have one step",
+            ways=(Way(near={"steps.count": 1}),),
+        )
+    pitch = pair.toothings[0].pitch
+    offset = pitch / spec.count if spec.offset is None else spec.offset
+    return tuple(number * offset % pitch for number in range(spec.count))
+
+
+def stepped(pair: GearPair, moved: float) -> GearPair:
+    """Return the pair with its teeth offset by `moved`, mm (see `leads`)."""
+    if moved == 0.0:
+        return pair
+    first, second = (replace(toothing, moved=moved) for toothing in pair.toothings)
+    return replace(pair, toothings=(first, second))

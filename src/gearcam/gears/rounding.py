@@ -19,7 +19,6 @@ import numpy as np
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.numerals import shown
 from gearcam.gears.flank import Curve, Rows, Toothing
-from gearcam.gears.spaces import join, select
 from gearcam.gears.tips import ROUGH, TipEnds, cross, flank_at, flank_crossings, near
 from gearcam.gears.track import Frames
 from gearcam.numeric.arrays import Array, Ints, Plane
@@ -166,7 +165,7 @@ def _arcs(
     kept = np.ones(len(place), dtype=bool)
     kept[tops.tip[both[0]][tops.tip[both[0]] >= 0]] = False
     order = np.argsort(place, kind="stable")
-    made = select(join([ends, arcs]), order[kept[order]])
+    made = Rows.joined([ends, arcs]).select(order[kept[order]])
     made.corner[0] = True  # start of a chain without corners
     return made, np.where(there, reach, np.nan)
 

@@ -152,22 +152,7 @@ def _along(curves: WheelCurves, space: int, ring: Ring) -> Rows:
     *inner, last = ring.branches
     branches = [*inner, Branch(last.begin, CurvePoint(tip, float(curves.rows.end[tip])))]
     index, start, end, corner = rows_between(curves, branches)
-    return replace(select(curves.rows, index), start=start, end=end, corner=corner)
-
-
-def select(rows: Rows, index: Ints) -> Rows:
-    """Return the rows `index`, in that order."""
-    return Rows(**{name: getattr(rows, name)[index] for name in Rows.__dataclass_fields__})
-
-
-def join(parts: list[Rows]) -> Rows:
-    """Return the rows joined into one."""
-    return Rows(
-        **{
-            name: np.concatenate([getattr(part, name) for part in parts])
-            for name in Rows.__dataclass_fields__
-        }
-    )
+    return replace(curves.rows.select(index), start=start, end=end, corner=corner)
 
 
 def _chains(curves: WheelCurves, spaces: Ints, samples: int) -> list[Chain]:

@@ -12,9 +12,9 @@ import pytest
 from mpmath import ellipe
 
 from gearcam.base.findings import CHECKS, Finding
-from gearcam.gears.centrode_checks import remote_cutter
-from gearcam.gears.checks import KIND, Subject, undercut
+from gearcam.gears.checks import remote_cutter, undercut
 from gearcam.gears.spec import Rack, RingSpec
+from gearcam.gears.subject import KIND, Subject
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.ratio.composite import Fourier
 from gearcam.laws.ratio.constant import Constant

@@ -12,8 +12,7 @@ import pytest
 import shapely
 
 from gearcam.gears.polar import PolarCurve
-from gearcam.gears.stays import Rolls, Stays, find_stays
-from gearcam.gears.tip_pass import tip_pass
+from gearcam.gears.tip_pass import Rolls, Stays, find_stays, tip_pass
 from gearcam.laws.ratio.centrodes import LogSpiral
 from gearcam.laws.ratio.constant import Constant
 from gearcam.laws.ratio.ellipse import Ellipse

@@ -17,8 +17,9 @@ import gearcam
 from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.cli import main
 from gearcam.console import remedy_lines, wrapped
-from gearcam.gears.bound import contact_bound
-from gearcam.gears.checks import Subject, largest_module
+from gearcam.gears.checks import largest_module
+from gearcam.gears.demands import contact_bound
+from gearcam.gears.subject import Subject
 from gearcam.gears.track import LeastRadius
 from gearcam.laws.ratio.constant import Constant
 from gearcam.laws.ratio.ellipse import Ellipse

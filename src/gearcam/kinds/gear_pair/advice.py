@@ -69,7 +69,7 @@ def _count(remedy: Remedy) -> int:
 
 def hopeless(result: Any) -> bool:
     """Return whether the flanks alone exclude a contact ratio of 1, before outlines are made."""
-    from gearcam.gears.bound import contact_bound
+    from gearcam.gears.demands import contact_bound
 
     return contact_bound(*result.pair.toothings) < 1.0
 

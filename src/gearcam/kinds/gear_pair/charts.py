@@ -11,8 +11,9 @@ import numpy as np
 
 from gearcam.base.findings import limit_of
 from gearcam.base.numerals import shown
-from gearcam.gears.checks import KIND, undercut_curvatures
+from gearcam.gears.checks import undercut_curvatures
 from gearcam.gears.contact import COAST, DRIVE
+from gearcam.gears.subject import KIND
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
 from gearcam.pictures.charts import Chart, Charts, Limit, Line, MarkedPlace, knot_marks

@@ -13,7 +13,7 @@ from gearcam.base.facts import Fact, Facts, extent
 from gearcam.base.findings import limit_of
 from gearcam.base.numerals import shown
 from gearcam.export.shared import accuracy, part_facts, size_fact
-from gearcam.gears.gear_facts import gear_tree
+from gearcam.gears.pair import gear_tree
 from gearcam.gears.subject import KIND, Subject
 from gearcam.laws.ratio.span import angle_text
 from gearcam.meshing.drive_checks import side_name

@@ -14,11 +14,11 @@ import numpy as np
 from gearcam.base.errors import InfeasibleError, Way
 from gearcam.base.findings import Finding, in_order, limit_of, run_checks
 from gearcam.base.numerals import shown
-from gearcam.gears.checks import KIND, Subject
+from gearcam.gears import checks  # noqa: F401  (its checks register themselves)
 from gearcam.gears.demands import demand_rim, demand_ring
-from gearcam.gears.pair import Gear, GearPair, lobes_of, make_gear, make_pair
+from gearcam.gears.pair import Gear, GearPair, leads, lobes_of, make_gear, make_pair, stepped
 from gearcam.gears.spec import Finish
-from gearcam.gears.steps import leads, stepped
+from gearcam.gears.subject import KIND, Subject
 from gearcam.gears.track import Wheel
 from gearcam.kinds.gear_pair.design import GearPairDesign
 from gearcam.laws.ratio.base import RatioLaw
