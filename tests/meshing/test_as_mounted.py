@@ -13,8 +13,7 @@ from gearcam.gears.contact import COAST, DRIVE, FlankPairs, flank_pairs
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.meshing.contact import contacts
-from gearcam.meshing.edges import first_touch, touches
-from gearcam.meshing.non_contact import non_contact
+from gearcam.meshing.edges import first_touch, non_contact, touches
 from gearcam.meshing.numbers import harmonics, numbers
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.meshing.study import Meshing, study

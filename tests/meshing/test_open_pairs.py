@@ -26,9 +26,8 @@ from gearcam.meshing.contact import contacts
 from gearcam.meshing.edges import touches
 from gearcam.meshing.half_teeth import HalfTeeth, half_teeth
 from gearcam.meshing.overlap import Turning
-from gearcam.meshing.phases import phases
 from gearcam.meshing.settings import MeshingSpec
-from gearcam.meshing.study import mount, study
+from gearcam.meshing.study import mount, phases, study
 from helpers_few import few
 from helpers_pairs import PROFILES, explained, job, profile
 

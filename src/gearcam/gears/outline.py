@@ -1,7 +1,11 @@
-"""The outline of a wheel: flanks, fillets, lands and tips, joined, trimmed and verified."""
+"""The outline of a wheel: flanks, fillets, lands and tips, joined, trimmed and verified.
+
+And the outside of a ring that follows its roots.
+"""
 
 from __future__ import annotations
 
+import math
 from copy import deepcopy
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -9,7 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from gearcam.base.display import Brief
-from gearcam.base.errors import InfeasibleError
+from gearcam.base.errors import InfeasibleError, Way
 from gearcam.base.numerals import shown
 from gearcam.base.tolerances import Tolerances
 from gearcam.gears.corners import highest_corners
@@ -390,4 +394,77 @@ def _demand_shaft(outline: Outline) -> None:
         nearest="the value is the module; at the limit the roots reach the shaft, where the "
         f"centrode comes within {shown(radius)} mm of it",
         more_teeth=module / largest,
+    )
+
+
+def outside(ring: Outline, rim: float) -> Contour:
+    """Return the outside of a ring that follows its roots at a distance `rim`.
+
+    It is a parallel of the centrode on the metal's side, as the land of a root is. Parallels that
+    have corners or cross themselves are refused.
+
+    Parameters
+    ----------
+    ring : Outline
+        The teeth of the ring, closed.
+    rim : float, mm
+        Distance from the lands of its roots.
+
+    Returns
+    -------
+    Contour
+        Counter-clockwise, with the chord tolerance of the teeth.
+
+    Raises
+    ------
+    InfeasibleError
+        If a concave part of the centrode is too tight for the rim.
+    """
+    toothing = ring.toothing
+    away = toothing.cutter.dedendum + rim
+    most = toothing.track.convex.radius - toothing.cutter.dedendum
+    if rim >= most:
+        raise _refusal("a concave part of the pitch curve is too tight", rim, most)
+    # a piece for each tooth, as dense as its curvature needs
+    ends = np.linspace(0.0, toothing.track.around, toothing.teeth + 1)
+    none = np.zeros(toothing.teeth)
+    rows = Rows(
+        kind=np.full(toothing.teeth, int(Curve.LAND)),
+        sf=none,
+        sigma=none,
+        start=ends[:-1],
+        end=ends[1:],
+        low=none - away,
+        high=none - away,
+        corner=np.arange(toothing.teeth) == 0,
+        tooth=np.arange(toothing.teeth),
+    )
+    curves = WheelCurves(toothing=toothing, rows=rows)
+    sampler = Sampler(curves=curves, tolerance=ring.tolerance)
+    _, points, error = sampler.chords
+    made = Contour(
+        dense=lambda: sampler.dense(ring.oversampling).runs(),
+        vertices=as_pairs(points),
+        tolerance=ring.tolerance,
+        chord_error=error,
+    )
+    if not made.polygon.is_valid:
+        raise _refusal("it would cross itself", rim, 0.0)
+    return made
+
+
+def _refusal(why: str, rim: float, most: float) -> InfeasibleError:
+    """Return the error for a parallel; `most` is the largest rim the curvature allows, if any."""
+    ways = [Way(near={"ring.outer": "round"})]
+    bent = 0.0 < most < math.inf
+    if bent:
+        ways.insert(0, Way(near={"ring.rim_mm": 0.99 * most}, far={"ring.rim_mm": 0.1 * most}))
+    return InfeasibleError(
+        f"the outside of the ring cannot follow its roots: {why}",
+        where="ring.rim_mm",
+        value=rim,
+        limit=most if bent else None,
+        unit="mm",
+        nearest="at the limit the outside gets a corner" if bent else "",
+        ways=ways,
     )

@@ -15,7 +15,7 @@ from gearcam.base.numerals import shown
 from gearcam.gears.contact import DRIVE, FlankPairs
 from gearcam.gears.subject import CONTACT_RATIO
 from gearcam.gears.subject import KIND as PAIR_KIND
-from gearcam.meshing.non_contact import NonContact, non_contact
+from gearcam.meshing.edges import NonContact, non_contact
 from gearcam.meshing.settings import KIND
 
 _SHOWN = 3

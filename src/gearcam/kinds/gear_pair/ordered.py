@@ -10,7 +10,7 @@ import numpy as np
 from gearcam.base.errors import InfeasibleError, Way
 from gearcam.base.findings import limit_of
 from gearcam.base.numerals import shown
-from gearcam.gears.outside import outside
+from gearcam.gears.outline import outside
 from gearcam.gears.pair import Gear
 from gearcam.gears.spec import RIM
 from gearcam.kinds.gear_pair.design import GearPairDesign
@@ -88,7 +88,11 @@ def _ring(gears: list[Gear], design: GearPairDesign) -> Part:
     toothed = [one.profile.contour for one in gears]
     contours: list[Contour | Circle] = [*toothed]
     if gear.hollow:
-        edge = Circle(center=np.zeros(2), diameter=2.0 * around) if around else outside(gear, rim)
+        edge = (
+            Circle(center=np.zeros(2), diameter=2.0 * around)
+            if around
+            else outside(gear.profile, rim)
+        )
         contours = [edge] * len(gears)
     inner = toothed if gear.hollow else []
     work = Workpiece(name="wheel 2", rim=RIM * gear.pair.module, wheel=2)
