@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from gearcam.base.display import Brief, Displayed
+from gearcam.base.display import Brief, Displayed, renderer
 from gearcam.base.errors import InfeasibleError, Way
 from gearcam.base.facts import Fact, Facts
 from gearcam.base.numerals import shown
@@ -240,8 +240,6 @@ class Gear(Brief, Displayed):
 
         A ring is drawn with one module of metal around its teeth.
         """
-        from gearcam.pictures.markup import outlines
-
         track = self.toothing.track
         centrode = self.centrode(
             np.linspace(0.0, float(track.angle(self.toothing.length)), PICTURED)
@@ -250,7 +248,7 @@ class Gear(Brief, Displayed):
         if self.hollow:
             spokes = np.exp(1j * np.linspace(0.0, 2.0 * np.pi, PICTURED))
             edges.append((self.largest_radius + self.pair.module) * as_pairs(spokes))
-        return outlines(
+        return renderer().outlines(
             self.facts.headline,
             edges,
             [centrode],
