@@ -88,8 +88,8 @@ def _ring(gears: list[Gear], design: GearPairDesign) -> Part:
     toothed = [one.profile.contour for one in gears]
     contours: list[Contour | Circle] = [*toothed]
     if gear.hollow:
-        edge = around and Circle(center=np.zeros(2), diameter=2.0 * around)
-        contours = [edge or outside(gear.profile, rim)] * len(gears)
+        circle = Circle(center=np.zeros(2), diameter=2.0 * (roots + rim))
+        contours = [circle if around else outside(gear.profile, rim)] * len(gears)
     inner = toothed if gear.hollow else []
     work = Workpiece(name="wheel 2", rim=RIM * gear.pair.module, wheel=2)
     wall = limit_of(PARTS_KIND, "thin-wall", design.limits)
