@@ -15,22 +15,25 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from gearcam.base.errors import InfeasibleError, Way
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.contour import Contour
-from gearcam.parts.apart import demand_apart
 from gearcam.parts.blank import WheelBlank
 from gearcam.parts.body import Edge, Opening
 from gearcam.parts.shapes import Circle, Loop
-from gearcam.parts.workpiece import GRAIN, Workpiece
 
 if TYPE_CHECKING:
     from shapely import Polygon
 
+
+_FINE: Final = 4e-5
+"""Chord error of openings in tests for overlap, in rims."""
 
 _SEARCH: Final = 1e-3
 """Tolerance of the largest circle, in rims; the hole is made smaller by it."""
@@ -44,6 +47,59 @@ _RAYS: Final = 91
 
 _QUARTER: Final = 64
 """Chords per quarter circle of the clear zone around core and openings."""
+
+_SMALLER: Final = (
+    ("bolt", "bolt_diameter_mm", 0.1),
+    ("hub", "hub_diameter_mm", 0.1),
+    ("bore", "bore_diameter_mm", 0.1),
+)
+"""Text of a refusal, and the keys to reduce, with their least values, mm."""
+
+_FARTHER: Final = 2.0
+_NEARER: Final = 0.05
+"""Factors by which bolt positions are moved in remedies."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Workpiece:
+    """The finished piece of a blank: a wheel of a pair, or a cam.
+
+    Parameters
+    ----------
+    name : str
+        Its name in messages.
+    rim : float, mm
+        Default of the rim between lightening holes and the edge.
+    travel : float or None, rad
+        Travel of an open wheel; None for a closed one.
+    wheel : int or None
+        1 or 2; None for a single part.
+    within : str
+        Name of the boundary of its openings.
+    """
+
+    name: str
+    rim: float
+    travel: float | None = None
+    wheel: int | None = None
+    within: str = "the outline"
+
+    def points(self, edge: Edge) -> Array:
+        """Return points of an `edge`, (n, 2), mm, for tests of overlap."""
+        return edge.points(self.sagitta)
+
+    @property
+    def sagitta(self) -> float:
+        """Largest distance of the chords between those points from the edge, mm."""
+        return _FINE * self.rim
+
+    def key(self, name: str) -> str:
+        """Return the dotted key of its value of key `name` in ``[blank]``."""
+        return f"blank.{name}" if self.wheel is None else f"blank.{name}[{self.wheel - 1}]"
+
+    def refusal(self, what: str, place: str = "[blank]", **told: Any) -> InfeasibleError:
+        """Return the error `what` at `place`, in mm; `told` are arguments of `InfeasibleError`."""
+        return InfeasibleError(what, where=f"{self.name}, {place}", unit="mm", **told)
 
 
 def bore(blank: WheelBlank) -> Circle | Loop:
@@ -157,6 +213,90 @@ def openings(
     return tuple(found)
 
 
+def demand_apart(
+    found: Sequence[Opening],
+    blank: WheelBlank,
+    solid: Polygon,
+    work: Workpiece,
+    places: Mapping[str, float] | None = None,
+) -> None:
+    """Refuse openings that meet each other, the hub's edge or the outline.
+
+    Parameters
+    ----------
+    found : sequence of Opening
+        The openings.
+    blank : WheelBlank
+        With the hub, and the widening of bores.
+    solid : shapely.Polygon
+        The region they go through.
+    work : Workpiece
+        The part, for messages.
+    places : mapping of str to float, optional
+        Keys of ``[blank]`` that position the bolts, with their values, mm; by default those of a
+        bolt circle.
+
+    Raises
+    ------
+    InfeasibleError
+        If any two meet.
+    """
+    from shapely import Polygon
+
+    given = {"bolt_circle_mm": blank.bolt_circle} if places is None else places
+    edges = [work.points(opening.shape) for opening in found]
+    regions = [Polygon(edge) for edge in edges]
+    # chords of openings that touch each other may be apart by this
+    gap = 2.0 * work.sagitta
+    for number, (opening, edge, region) in enumerate(zip(found, edges, regions, strict=True)):
+        if not solid.contains(region) or solid.boundary.dwithin(region, gap):
+            raise _no_room(opening, solid, work.within, work, blank.widening, given)
+        away = np.hypot(*edge.T)
+        if blank.hub_diameter and away.min() <= 0.5 * blank.hub_diameter <= away.max():
+            raise _no_room(opening, solid, "the edge of the hub", work, blank.widening, given)
+        for other, second in zip(found[:number], regions[:number], strict=True):
+            if region.dwithin(second, gap):
+                raise _no_room(opening, solid, f"the {other.name}", work, blank.widening, given)
+
+
+def _no_room(
+    opening: Opening,
+    solid: Polygon,
+    what: str,
+    work: Workpiece,
+    widening: float,
+    places: Mapping[str, float],
+) -> InfeasibleError:
+    """Return the refusal of an opening that meets something; diameters as given in the design."""
+    from shapely import Point
+
+    shape, value, limit = opening.shape, None, None
+    nearest = "they must not overlap"
+    if isinstance(shape, Circle) and what == work.within:
+        center = Point(*shape.center)
+        inside = solid.contains(center)
+        value = shape.diameter - widening
+        limit = 2.0 * solid.boundary.distance(center) - widening if inside else None
+        nearest = f"its centre lies outside {what}"
+        if limit:
+            nearest = "the limit is the free space around its centre"
+    told = f"{opening.name} {what}"
+    ways = [Way(far={work.key(key): small}) for word, key, small in _SMALLER if word in told]
+    if "bolt" in told:
+        ways += [
+            Way(far={work.key(key): times * place})
+            for key, place in places.items()
+            for times in (_NEARER, _FARTHER)
+        ]
+    return work.refusal(
+        f"the {opening.name} meets {what}",
+        value=value,
+        limit=limit,
+        nearest=nearest,
+        ways=ways,
+    )
+
+
 def _slot(blank: WheelBlank, solid: Polygon, work: Workpiece, chord: float) -> Opening:
     """Return the slot for the stop pin of an open wheel.
 
@@ -239,7 +379,7 @@ def _lightening(
     count = blank.lightening_holes
     core = max(blank.bore_reach, 0.5 * blank.hub_diameter)
     far = 2.0 * float(np.abs(solid.bounds).max())
-    fine = max(_SEARCH * rim, GRAIN * far)
+    fine = _SEARCH * rim
     outside = 1.0 / math.cos(math.pi / (4 * _QUARTER))  # chords outside the arcs, not inside
     taken = [Point(0.0, 0.0).buffer((core + web) * outside, quad_segs=_QUARTER)]
     taken += [

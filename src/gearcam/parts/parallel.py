@@ -11,7 +11,6 @@ Depends on numeric; shapely inside the functions.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any, Final
@@ -19,7 +18,7 @@ from typing import Any, Final
 import numpy as np
 
 from gearcam.base.errors import InfeasibleError, Way
-from gearcam.base.numerals import shown
+from gearcam.base.numerals import rounded_down, shown
 from gearcam.numeric.arrays import Mask, Plane
 from gearcam.numeric.bulges import as_complex, as_pairs
 from gearcam.numeric.contour import Contour, Run
@@ -168,7 +167,7 @@ def sized(make: Callable[[float], Contour], size: float, where: str, what: str) 
         for _ in range(_HALVINGS):
             middle = 0.5 * (low + high)
             try:
-                make(tried := _fewer_digits(middle))
+                make(tried := float(rounded_down(middle, 3)))
             except InfeasibleError:
                 high = middle
             else:
@@ -182,12 +181,6 @@ def sized(make: Callable[[float], Contour], size: float, where: str, what: str) 
             nearest=f"a {what} of {shown(low, 3)} mm leaves one" if low else "leave it out",
             ways=(Way(near={key: low} if low else {}, far={key: 0.0}),),
         ) from None
-
-
-def _fewer_digits(size: float) -> float:
-    """Return a size rounded down to three digits, as it is printed."""
-    step = 10.0 ** (math.floor(math.log10(size)) - 2)
-    return float(f"{math.floor(size / step) * step:.3g}")
 
 
 def _contour(runs: Sequence[Run], old: Contour, by: float) -> Contour:

@@ -21,7 +21,7 @@ from gearcam.numeric.arrays import Array
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank
 from gearcam.parts.body import Edge
-from gearcam.parts.workpiece import FINE, Workpiece
+from gearcam.parts.openings import Workpiece
 
 if TYPE_CHECKING:
     from shapely import Polygon
@@ -105,7 +105,7 @@ def demand_bolts(
             moved = {} if clears else {circle: across}
             radius = (0.5 * across + reach) / _SHARE
             ways.append(Way(near={**moved, **outside(radius)}))
-            if far - low > FINE * work.rim:  # not round: the least radius is smaller
+            if far - low > work.sagitta:  # not round: the least radius is smaller
                 ways[-1] = replace(ways[-1], far={**moved, **outside(radius + far - low)})
     ways.append(Way(near={work.key("bolts"): 0}))
     roomiest = f"no bolt circle keeps walls of {shown(wall)} mm: a larger rim in [ring] may"

@@ -102,8 +102,8 @@ class Translating(Form):
 
     def parts(self, result: CamResult) -> tuple[Part, ...]:
         """Return the plate, with its wall or its groove, and its bolts."""
-        from gearcam.parts.apart import demand_apart
         from gearcam.parts.body import Opening, Part, Recess
+        from gearcam.parts.openings import demand_apart
 
         design, cam = result.design, _made(result)
         thickness, depth = design.cam.thickness, design.cam.groove_depth
