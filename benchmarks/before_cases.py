@@ -24,7 +24,7 @@ CHILD = """
 import sys, tempfile, time
 import numpy as np
 import gearcam
-from gearcam.numeric.memory import keep_freed_memory
+from gearcam.numeric.arrays import keep_freed_memory
 keep_freed_memory()
 nail, cam = (gearcam.load(path) for path in sys.argv[1:3])
 
@@ -195,7 +195,7 @@ def _ratio(
 GROWING = """
 import sys, time
 import gearcam
-from gearcam.numeric.memory import keep_freed_memory
+from gearcam.numeric.arrays import keep_freed_memory
 keep_freed_memory()
 design = gearcam.load(sys.argv[1])
 for _ in sys.stdin:

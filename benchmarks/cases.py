@@ -70,7 +70,7 @@ Times faster: {listed}."""
 CHILD = """
 import json, resource, statistics, sys, time, tracemalloc
 import gearcam
-from gearcam.numeric.memory import keep_freed_memory
+from gearcam.numeric.arrays import keep_freed_memory
 keep_freed_memory()
 design = gearcam.load(sys.argv[1])
 def both():

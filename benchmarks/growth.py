@@ -20,7 +20,7 @@ import numpy as np
 
 import gearcam
 import growth_cases
-from gearcam.numeric.memory import keep_freed_memory
+from gearcam.numeric.arrays import keep_freed_memory
 from measuring import ROOT, environment, show
 
 PAGE = ROOT / "benchmarks" / "results" / "growth.md"

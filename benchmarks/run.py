@@ -15,7 +15,7 @@ import cases
 import law_cases
 import needs
 import ring_cases
-from gearcam.numeric.memory import keep_freed_memory
+from gearcam.numeric.arrays import keep_freed_memory
 from measuring import Result, environment
 
 HEAD = """# Performance

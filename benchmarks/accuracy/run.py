@@ -17,7 +17,7 @@ import integrals
 import solids
 import wheels
 from gearcam.console import quieten
-from gearcam.numeric.memory import keep_freed_memory
+from gearcam.numeric.arrays import keep_freed_memory
 from gearcam.results.accuracy import accuracy
 from gearcam.results.accuracy_svg import log_charts
 from measuring import ROOT, environment

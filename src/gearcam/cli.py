@@ -406,7 +406,7 @@ def _one(file: str, names: dict[str, str], done: str, action: Action, adapt: Ada
     if before != file:  # its files would be overwritten
         message = f'the design of {before} has the same name, "{design.name}"'
         raise DesignError([Problem(message, file=file, key="name", value=design.name)])
-    from gearcam.numeric.memory import keep_freed_memory
+    from gearcam.numeric.arrays import keep_freed_memory
 
     keep_freed_memory()
     result = build(design)

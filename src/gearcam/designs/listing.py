@@ -9,7 +9,7 @@ from typing import Any
 from gearcam.designs.faults import description
 from gearcam.designs.kind import KINDS
 from gearcam.designs.table import Table
-from gearcam.laws.sources import SOURCES
+from gearcam.laws.entry import SOURCES
 
 
 @dataclass(frozen=True, kw_only=True)

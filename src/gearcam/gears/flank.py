@@ -24,7 +24,7 @@ from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 
 _BLOCK = 1 << 15
 """Points computed at once: with more, intermediate arrays leave the processor's cache and the
-allocator returns them to the system (see `gearcam.numeric.memory`)."""
+allocator returns them to the system (see `gearcam.numeric.arrays`)."""
 
 
 class Curve(IntEnum):

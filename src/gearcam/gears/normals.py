@@ -24,7 +24,7 @@ from gearcam.gears.flank import Toothing
 from gearcam.gears.guide import Guide
 from gearcam.gears.track import Frames, Track, Wheel
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
-from gearcam.numeric.newton import damped_newton, solve
+from gearcam.numeric.roots import damped_newton, solve
 
 _SMALL = 1e-7
 """Step, in pitches, after which the next one is below rounding."""

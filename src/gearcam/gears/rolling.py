@@ -26,9 +26,8 @@ from gearcam.gears.track import ArcLength, Frames, Track, Wheel
 from gearcam.laws.ratio.base import RatioLaw
 from gearcam.laws.ratio.span import RACK, RING, WHEEL, demand_smooth
 from gearcam.numeric.arrays import Array, Ints, Plane
-from gearcam.numeric.chebyshev import expand
+from gearcam.numeric.chebyshev import expand, missed
 from gearcam.numeric.piecewise import extremes_of_each
-from gearcam.numeric.quadrature import missed
 
 _MARGIN = 2.0
 """Pitches beyond an open pair's ends over which its last teeth and fillets are formed."""

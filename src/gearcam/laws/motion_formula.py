@@ -21,6 +21,7 @@ from gearcam.laws.entry import TYPED
 from gearcam.laws.formula import (
     Axis,
     Given,
+    demand_smooth,
     errors_of,
     formula_problems,
     function_of,
@@ -29,7 +30,6 @@ from gearcam.laws.formula import (
 from gearcam.laws.phases_of_lift import TURN
 from gearcam.laws.program import Program
 from gearcam.laws.rows_of_lift import stretches_of
-from gearcam.laws.smoothness import demand_smooth
 from gearcam.numeric.piecewise import Piece, piecewise
 
 _VARIABLE: Final = "theta"

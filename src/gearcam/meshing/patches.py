@@ -22,8 +22,7 @@ from gearcam.gears.track import WHEELS, Wheel
 from gearcam.meshing.contact import outermost, sought
 from gearcam.meshing.placed_flanks import PlacedFlanks
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
-from gearcam.numeric.newton import damped_newton
-from gearcam.numeric.roots import newton_in_bracket
+from gearcam.numeric.roots import damped_newton, newton_in_bracket
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
 

@@ -1,4 +1,4 @@
-"""Type names of arrays."""
+"""Type names of arrays, and a setting of the memory allocator for them."""
 
 from __future__ import annotations
 
@@ -10,3 +10,18 @@ Ints = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 Plane = NDArray[np.complex128]
 """Points or directions in the plane, ``x + 1j*y``."""
+
+
+_BLOCK = 31 << 20
+"""Size of the block, bytes: just below 32 MiB, the largest for which glibc adapts its threshold."""
+
+
+def keep_freed_memory() -> None:
+    """Make the allocator keep freed arrays for reuse.
+
+    The C library of most Linux systems returns freed arrays of some hundred kB to the system and
+    requests them anew, page by page, until a larger block has been freed once. That costs a
+    seventh of the time of an outline and two fifths of that of an overlap. The block here is never
+    written to. On other systems this has no effect.
+    """
+    np.empty(_BLOCK, dtype=np.uint8)

@@ -9,8 +9,10 @@ chord the error is measured, and the chord is halved if the error is too large.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -19,7 +21,9 @@ from gearcam.base.display import Brief
 from gearcam.base.errors import ABOVE, InfeasibleError, Way
 from gearcam.base.numerals import shown
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
-from gearcam.numeric.dense import Dense, sags
+from gearcam.numeric.bulges import as_pairs
+from gearcam.numeric.contour import Run
+from gearcam.numeric.moments import halving
 
 _PROBES = 24
 """Intervals per curve for the density of points."""
@@ -68,6 +72,13 @@ _RISING = 1e-9
 
 _ROUNDS = 12
 """Halvings of a chord whose error is too large; each reduces it 4 times, or 2 times at a jump."""
+
+_SAFE = 3.0
+"""Error over the change by one halving. All further halvings add a fifteenth where steps are small,
+and as much again on a step whose curvature is concentrated in a small part."""
+
+_BACK = 0.5
+"""Angle, rad, between both tangents and the reversed chord below which it is run backwards."""
 
 
 class Curves(Protocol):
@@ -388,9 +399,135 @@ class Sampler(Brief):
             new = long + 1 + np.arange(long.size)
             points, tangents = np.insert([points, tangents], long + 1, self.at(j[new]), axis=1)
         made = Dense(j, points, tangents, rank, self._left_ends(j[rank == 0][1:]))
-        return made.told_apart(_GRAIN * self.tolerance, _DENSE * self.tolerance)
+        return made.merged(_GRAIN * self.tolerance)
 
     def _left_ends(self, j: Array) -> tuple[Plane, Plane]:
         """Points and tangents at the ends of the curves that end at corners."""
         index = np.searchsorted(self.joints, j) - 1
         return self.curves.at(index, self.curves.end[index])
+
+
+@dataclass(frozen=True, eq=False)
+class Dense(Brief):
+    """Points of curves in order, with the ends of runs.
+
+    Parameters
+    ----------
+    places : (n,) array
+        Their positions, as the sampler's J.
+    points, tangents : (n,) complex arrays, mm and 1
+        At a corner those after it.
+    rank : (n,) array of int
+        0 for corners and both ends, 1 for joints (see `Run`), more for other points.
+    ends : (points, tangents)
+        Ends of runs, (runs,) complex arrays: before the corner.
+    """
+
+    places: Array
+    points: Plane
+    tangents: Plane
+    rank: Ints
+    ends: tuple[Plane, Plane]
+
+    def merged(self, grain: float) -> Dense:
+        """Return points no nearer to each other than a `grain`, mm; all corners are kept."""
+        kept = _merged(self.points, self.rank, grain)
+        return replace(
+            self,
+            places=self.places[kept],
+            points=self.points[kept],
+            tangents=self.tangents[kept],
+            rank=self.rank[kept],
+        )
+
+    def _stretches(self) -> Iterator[tuple[slice, Plane, Plane]]:
+        """Yield the numbers of each run's steps, and its points and tangents."""
+        cuts = np.flatnonzero(self.rank == 0)
+        for (start, end), point, tangent in zip(pairwise(cuts.tolist()), *self.ends, strict=True):
+            steps = slice(start, end)
+            yield (
+                steps,
+                np.append(self.points[steps], point),
+                np.append(self.tangents[steps], tangent),
+            )
+
+    def runs(self, reverse: bool = False) -> tuple[Run, ...]:
+        """Return the smooth runs between corners, with `reverse` in the opposite sense."""
+        made = []
+        for steps, points, tangents in self._stretches():
+            joints = np.flatnonzero(self.rank[steps] == 1).tolist()
+            made.append(
+                Run(points=as_pairs(points), tangents=as_pairs(tangents), joints=tuple(joints))
+            )
+        return tuple(run.reversed for run in made[::-1]) if reverse else tuple(made)
+
+    def missed(self, at: Callable[[Array], tuple[Plane, Plane]]) -> float:
+        """Return a bound of the area between the curves and the cubics through the points, mm^2.
+
+        Parameters
+        ----------
+        at : callable
+            The sampler's points and tangents at places.
+
+        Returns
+        -------
+        float
+            From the change when every step is halved. Steps of a steep curve have very different
+            lengths, so that leaving out every second point would not give the error of the longest.
+        """
+        points, tangents = at(0.5 * (self.places[:-1] + self.places[1:]))
+        return _SAFE * sum(
+            halving(own, ends, points[steps], tangents[steps])
+            for steps, own, ends in self._stretches()
+        )
+
+
+def _merged(points: Plane, rank: Ints, grain: float) -> Mask:
+    """Return a choice of points no nearer to each other than a grain; lowest ranks are kept.
+
+    Parameters
+    ----------
+    points : (n,) complex array, mm
+        In order.
+    rank : (n,) array of int
+        Points of rank 0, the corners, are all kept.
+    grain : float, mm
+        Least distance.
+
+    Returns
+    -------
+    (n,) array of bool
+        Mask of the points kept.
+    """
+    kept = np.ones(len(points), dtype=bool)
+    while True:
+        index = np.flatnonzero(kept)
+        near = np.flatnonzero(np.abs(np.diff(points[index])) <= grain)
+        one, two = index[near], index[near + 1]
+        drop = np.where(rank[one] > rank[two], one, two)
+        drop = drop[rank[drop] > 0]
+        if drop.size == 0:
+            return kept
+        kept[drop] = False
+
+
+def sags(points: Plane, tangents: Plane, rank: Ints) -> Array:
+    """Return approximate distances of curves from the chords between dense points.
+
+    Parameters
+    ----------
+    points, tangents : (n,) complex arrays, mm and 1
+        At a corner those after it.
+    rank : (n,) array of int
+        As in `Dense`: before a corner only the tangent at the start of the chord counts.
+
+    Returns
+    -------
+    (n - 1,) array, mm
+    """
+    chord = np.diff(points)
+    before = np.abs(np.angle(chord * np.conj(tangents[:-1])))
+    after = np.abs(np.angle(tangents[1:] * np.conj(chord)))
+    bow: Array = np.maximum(before, np.where(rank[1:] == 0, 0.0, after))
+    back = np.pi - np.minimum(before, after)  # undercut stretches run against their tangents
+    return 0.25 * np.abs(chord) * np.where(back < _BACK, back, bow)

@@ -20,7 +20,7 @@ from gearcam.base.interrupts import SIGNALS
 from gearcam.console import fault_text, quieten, refusal_text, remedy_lines
 from gearcam.designs.design import Design
 from gearcam.designs.reader import content_of, decoded, loads
-from gearcam.numeric.memory import keep_freed_memory
+from gearcam.numeric.arrays import keep_freed_memory
 from gearcam.report.page import document, draft
 from gearcam.view.numbers import Values, equals, numbers, replaced, sliders, tidy
 

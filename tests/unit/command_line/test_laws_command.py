@@ -7,9 +7,9 @@ import re
 import pytest
 
 from gearcam.cli import main
+from gearcam.laws.entry import SOURCES
 from gearcam.laws.ratio.base import LAWS
 from gearcam.laws.rises.base import RISES
-from gearcam.laws.sources import SOURCES
 
 
 def test_laws_shows_every_law_with_keys_continuity_and_source(

@@ -12,9 +12,8 @@ from gearcam.base.errors import InfeasibleError
 from gearcam.gears.flank import trace
 from gearcam.numeric import sampling
 from gearcam.numeric.bulges import as_complex
-from gearcam.numeric.dense import sags
 from gearcam.numeric.hermite import on_cubics
-from gearcam.numeric.sampling import Sampler
+from gearcam.numeric.sampling import Sampler, sags
 from helpers_pairs import profile
 
 NAMES = ["rounded_square", "log_spiral"]

@@ -9,12 +9,10 @@ import numpy as np
 import pytest
 
 from gearcam.numeric import jets
-from gearcam.numeric.chebyshev import NotSmoothError, expand
+from gearcam.numeric.chebyshev import NotSmoothError, expand, missed
 from gearcam.numeric.jets import FUNCTIONS, Jet, Value
-from gearcam.numeric.newton import damped_newton
 from gearcam.numeric.piecewise import Piece, extremes, extremes_among, integrate, piecewise
-from gearcam.numeric.quadrature import missed
-from gearcam.numeric.roots import bracketed_root, newton_in_bracket
+from gearcam.numeric.roots import bracketed_root, damped_newton, newton_in_bracket
 
 POINTS = np.array([0.21, 0.47, 0.83])
 

@@ -34,9 +34,8 @@ from gearcam.laws.ratio.span import (
     demand_travels,
 )
 from gearcam.numeric.arrays import Array, Ints
-from gearcam.numeric.chebyshev import Expansion, expand
+from gearcam.numeric.chebyshev import Expansion, expand, missed
 from gearcam.numeric.piecewise import Piece, Piecewise, integrate, piecewise
-from gearcam.numeric.quadrature import missed
 
 _SWING: Final = 1e6
 """Largest quotient of largest and smallest ratio."""

@@ -26,9 +26,8 @@ from gearcam.base.quantities import (
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.formula import derivative
-from gearcam.laws.ratio.arcs import ARCS, SMOOTH
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
-from gearcam.laws.ratio.phases import arcs_law, knot_problems, one_lobe
+from gearcam.laws.ratio.phases import ARCS, SMOOTH, arcs_law, knot_problems, one_lobe
 from gearcam.laws.ratio.span import SAME, Lobes, Travel, angle_text, demand_equal, open_travel
 from gearcam.numeric.jets import Jet, harmonics, polynomial, primitive
 from gearcam.numeric.piecewise import Piece, piecewise

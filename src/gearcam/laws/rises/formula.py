@@ -12,9 +12,15 @@ from gearcam.base.numerals import shown
 from gearcam.base.quantities import TEXT, param
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import TYPED, LawEntry
-from gearcam.laws.formula import Axis, Given, errors_of, formula_problems, function_of
+from gearcam.laws.formula import (
+    Axis,
+    Given,
+    demand_smooth,
+    errors_of,
+    formula_problems,
+    function_of,
+)
 from gearcam.laws.rises.base import RISES, Rise
-from gearcam.laws.smoothness import demand_smooth
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import Piece, piecewise
 
