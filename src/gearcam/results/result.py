@@ -87,7 +87,8 @@ class Result(Displayed):
     def with_chords(self, tolerance: float) -> Self:
         """Return the result with another chord tolerance, mm; it keeps what does not depend on it.
 
-        Raises `InfeasibleError` if a stage that it keeps cannot be made.
+        For the program's own use: the tolerance is not examined, as `Design.with_` does. Raises
+        `InfeasibleError` if a stage that it keeps cannot be made.
         """
         known = {name: getattr(self, name) for name in self.before_output}
         output = replace(self.design.output, chord_tolerance=tolerance)

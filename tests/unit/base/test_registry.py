@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -9,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from gearcam.base.registry import Registry
+from gearcam.base.registry import Registry, lazy_names
 
 HOME = """
 from registry_of_sizes import SIZES, Size
@@ -72,3 +73,24 @@ def test_a_name_is_given_once(sizes: Registry[Size]) -> None:
     with pytest.raises(ValueError, match="size 'small' is registered twice"):
         sizes.register(Size("small"))
     assert sizes["small"] is first
+
+
+def test_names_of_a_package_load_what_they_need() -> None:
+    """Others than those of classes do not load the classes."""
+    loaded: list[str] = []
+
+    def classes() -> dict[str, type]:
+        loaded.append("classes")
+        return {"Size": Size}
+
+    find, names = lazy_names("there is no size", classes, {"json": ("json", "loads")})
+    assert find("json") is json
+    assert find("loads") is json.loads
+    for wrong in ("_repr_html_", "size"):
+        with pytest.raises(AttributeError, match=f"there is no size {wrong};"):
+            find(wrong)
+    assert loaded == []
+    assert find("Size") is Size
+    assert names() == ["Size", "json", "loads"]
+    with pytest.raises(AttributeError, match="there is no size Sise;"):
+        find("Sise")

@@ -195,6 +195,20 @@ def test_other_settings_of_a_study_leave_the_wheels_as_they_are(pair: GearPairRe
         np.testing.assert_array_equal(other.columns[key], values)
 
 
+@pytest.mark.parametrize("name", ["ellipse", "plate_cam_offset_roller"])
+def test_other_chords_give_the_outlines_of_a_design_that_has_them(name: str) -> None:
+    design: Any = gearcam.load(PROFILES / f"{name}.toml")
+    result = gearcam.build(design)
+    coarse = result.with_chords(0.02)
+    asked = gearcam.build(design.with_({"output.chord_tolerance_mm": 0.02}))
+    assert coarse.design == asked.design
+    for part, same, fine in zip(coarse.parts, asked.parts, result.parts, strict=True):
+        np.testing.assert_array_equal(part.contour.vertices, same.contour.vertices)
+        assert len(part.contour.vertices) < len(fine.contour.vertices)
+    for stage in result.before_output:
+        assert getattr(coarse, stage) is getattr(result, stage)
+
+
 def test_a_profile_is_followed_from_points_as_from_a_file(cam: CamResult, tmp_path: Path) -> None:
     points = cam.profile.vertices
     path = tmp_path / "given.csv"
