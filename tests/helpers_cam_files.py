@@ -1,12 +1,16 @@
-"""Texts of cam designs, and how they are read and refused."""
+"""Texts of cam designs, and how they are changed, read, refused and built."""
 
 from __future__ import annotations
 
 import pytest
 
+import gearcam
 from gearcam.base.errors import DesignError, Problem
+from gearcam.cams.sliding import SlidingCam
 from gearcam.designs import loads
+from gearcam.kinds.cam.build import CamResult
 from gearcam.kinds.cam.design import CamDesign
+from helpers_pairs import PROFILES
 
 ROLLER = """\
 kind = "cam"
@@ -84,10 +88,64 @@ FLAT = ROLLER.replace("prime_radius", "base_radius").replace('"roller"', '"flat"
 FLAT = FLAT.replace("roller_radius_mm = 6\noffset_mm = 8\n", "")
 
 
-def read(text: str, file: str = "") -> CamDesign:
+PLATE = (PROFILES / "translating_cam.toml").read_text("utf-8")
+"""A plate that slides, with a groove."""
+DEEP = "groove_depth_mm = 8\n"
+"""A line of `PLATE`."""
+EDGE = """
+kind = "cam"
+name = "one"
+[[motion]]
+type = "rise"
+way_mm = 60
+law = "3-4-5"
+lift_mm = 15
+[[motion]]
+type = "dwell"
+way_mm = 30
+[[motion]]
+type = "return"
+way_mm = 40
+law = "cycloidal"
+[follower]
+type = "roller"
+roller_radius_mm = 6
+[cam]
+form = "translating"
+run_in_mm = 20
+run_out_mm = 20
+thickness_mm = 10
+[blank]
+height_mm = 40
+"""
+"""A bar that slides, with one wall."""
+
+
+def read(text: str, *changes: tuple[str, str], file: str = "") -> CamDesign:
+    """The design of a text in which words, which must be there, are replaced."""
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
     design = loads(text, file=file)
     assert isinstance(design, CamDesign)
     return design
+
+
+def built(text: str, *changes: tuple[str, str]) -> CamResult:
+    return gearcam.build(read(text, *changes))
+
+
+def sliding_of(result: CamResult) -> SlidingCam:
+    """The cam of a result, which slides."""
+    assert isinstance(result.cam, SlidingCam)
+    return result.cam
+
+
+def refused(text: str, *changes: tuple[str, str]) -> dict[str, str]:
+    """What is wrong with a text, and what is allowed, by its key."""
+    with pytest.raises(DesignError) as caught:
+        read(text, *changes)
+    return {one.key: f"{one.message}; {one.allowed}" for one in caught.value.problems}
 
 
 def problems(text: str) -> list[Problem]:

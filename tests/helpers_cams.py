@@ -1,4 +1,4 @@
-"""Cams of every kind of follower with sizes that suit each other, and their points."""
+"""Cams of every kind of follower with sizes that suit each other, and what is measured of them."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from gearcam.base.tolerances import DEFAULT
@@ -200,3 +201,9 @@ def stiffness(made: DiscCam, theta: Array) -> Array:
         # perpendicular to the face, whatever its offset
         return 1.0 / place
     return 1.0 / (m.arm * along)
+
+
+def close(contour: Any, region: Any, chord: float) -> None:
+    """Demand that a contour encloses a region within its chords, whose tolerance is in mm."""
+    off = shapely.symmetric_difference(contour.polygon, region).area
+    assert off < 3.0 * chord * region.length + 1e-9

@@ -1,9 +1,16 @@
-"""Designs that are refused, have errors, or warnings that name tooth counts."""
+"""Designs that are refused, have errors or warnings, and how a person follows their remedies."""
 
 from __future__ import annotations
 
+import copy
+import re
 from collections.abc import Mapping
+from itertools import pairwise
+from pathlib import Path
 from typing import Any
+
+import gearcam
+from random_designs.toml import toml
 
 ELLIPSE = {"type": "ellipse", "eccentricity": 0.2}
 CIRCLE = {"type": "constant"}
@@ -362,3 +369,24 @@ WARNED = {
     ),
 }  # fmt: skip
 """Design files with warnings that name tooth counts."""
+
+
+def followed(document: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+    """A document with other values at dotted keys; a value for both wheels becomes two."""
+    made = copy.deepcopy(dict(document))
+    for key, value in changes.items():
+        steps: list[Any] = [int(s) if s.isdigit() else s for s in re.findall(r"[^.\[\]]+", key)]
+        place: Any = made
+        for step, after in pairwise(steps):
+            if isinstance(after, int) and not isinstance(place.get(step), list):
+                place[step] = [place.get(step, 0)] * 2
+            place = place.setdefault(step, {}) if isinstance(place, dict) else place[step]
+        place[steps[-1]] = value
+    return made
+
+
+def job_of(document: Mapping[str, Any], folder: Path) -> Any:
+    """The job of a design that is read from its file."""
+    file = folder / "design.toml"
+    file.write_text(toml(document), encoding="utf-8")
+    return gearcam.build(gearcam.load(file))

@@ -1,18 +1,123 @@
-"""Internal pairs at random, and whether a whole wheel fits into its whole ring."""
+"""Internal pairs: as parts, in mesh, at random, and whether a whole wheel fits into its ring.
+
+In mesh, the ring's shaft stands at -A; wheel 1 is turned by -phi1 and the ring by -phi2.
+"""
 
 from __future__ import annotations
 
 import math
 import random
+from functools import cache
 from typing import Any
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 from shapely.affinity import affine_transform
 
 import gearcam
 from gearcam.gears.outline import Outline
+from gearcam.gears.spec import PairSpec
 from gearcam.kinds.gear_pair.build import GearPairResult
+from gearcam.kinds.gear_pair.design import GearPairDesign
+from gearcam.laws.ratio.formula import Formula
+from gearcam.laws.ratio.phases import Phases
+from helpers_pairs import job
+
+# --- as parts ------------------------------------------------------------------------------
+
+UNEVEN = Phases(knots=(0.0, math.radians(130.0), 2.0 * math.pi), ratios=(0.6, 0.4, 0.6))
+"""Not symmetric: the ring is not its own mirror image."""
+
+WAIST = Formula(ratio="1 + 0.3*cos(phi1)")
+"""The ring's centrode bends towards its shaft twice."""
+
+
+def ring_design(law: Any = UNEVEN, pair: Any = None, **tables: Any) -> GearPairDesign:
+    """Return the design of an internal pair, 24 : 48 of module 2 where nothing else is said."""
+    sizes = {"type": "internal", "teeth": (24, 48), "module": 2.0} | (pair or {})
+    return GearPairDesign(name="ring", law=law, pair=PairSpec(**sizes), **tables)
+
+
+def ring_job(law: Any = UNEVEN, pair: Any = None, **tables: Any) -> GearPairResult:
+    return gearcam.build(ring_design(law, pair, **tables))
+
+
+@cache
+def plain(law: Any = UNEVEN) -> GearPairResult:
+    """Return a result that nothing is ordered of beyond its teeth."""
+    return ring_job(law)
+
+
+def centrode(made: GearPairResult, count: int = 20001) -> np.ndarray:
+    """Return dense points of the ring's centrode, (n, 2), mm, in its own frame."""
+    end = made.gear2.toothing.track.around
+    return made.gear2.centrode(np.linspace(0.0, end, count)[:-1])
+
+
+def turned(points: np.ndarray, angle: float, shift: float) -> shapely.Polygon:
+    """Return a polygon turned about the origin, then shifted along x."""
+    z = (points @ [1.0, 1.0j]) * np.exp(1j * angle) + shift
+    return shapely.Polygon(np.column_stack([z.real, z.imag]))
+
+
+# --- in mesh -------------------------------------------------------------------------------
+
+Array = NDArray[np.float64]
+Plane = NDArray[np.complex128]
+
+ALPHA = math.radians(20.0)
+OVERCLOSURE = math.radians(0.005)
+DEEP = gearcam.Rack(dedendum=1.5, tip_radius=0.0)
+"""Straight flanks so deep that the tips of the rings below keep their full height."""
+
+FOCUS = "22.3517355864508/(22.3517355864508 + 22.87542426332165*(1 + 0.3*cos(phi1)))"
+TWO_LOBES = "37.668247881141/(37.668247881141 + 18.96124240457442*(1 + 0.2*cos(2*phi1)))"
+ROUND = gearcam.laws.Constant()
+LAWS = {
+    "circular": (ROUND, (28, 40), 1.0, DEEP),
+    "one lobe": (gearcam.laws.Formula(ratio=FOCUS), (24, 48), 2.0, gearcam.Rack()),
+    "two lobes": (gearcam.laws.Formula(ratio=TWO_LOBES), (40, 60), 2.0, gearcam.Rack()),
+    "asymmetric": (
+        gearcam.laws.Formula(ratio="1 + 0.2*cos(phi1) + 0.04*sin(2*phi1)"),
+        (30, 60),
+        2.0,
+        gearcam.Rack(),
+    ),
+}
+CLEAN = ["circular", "one lobe", "asymmetric"]
+"""The tips of the two lobes meet outside the mesh."""
+
+
+def pair_of(
+    law: object, teeth: tuple[int, int], module: float, rack: gearcam.Rack
+) -> GearPairResult:
+    return job(law, teeth, module=module, rack=rack, internal=True)
+
+
+@cache
+def made(name: str) -> GearPairResult:
+    return pair_of(*LAWS[name])
+
+
+def phases(count: int = 41) -> Array:
+    """Driver angles of a turn, clear of knots."""
+    return np.linspace(0.05, 2.0 * math.pi + 0.01, count)
+
+
+def driven_angles(name: str, phi1: Array) -> Array:
+    """The driven angle by Gauss-Legendre quadrature of the ratio."""
+    nodes, weights = np.polynomial.legendre.leggauss(96)
+    law = made(name).law
+    half = 0.5 * phi1[:, None]
+    return (
+        (law.derivatives((half * (1.0 + nodes)).ravel(), 1)[1].reshape(half.size, -1))
+        @ (weights)
+        * half.ravel()
+    )
+
+
+# --- at random -----------------------------------------------------------------------------
 
 LOBES = [(1, 2), (1, 3), (2, 3), (3, 4), (3, 5), (2, 5), (4, 5), (5, 6)]
 MODULES = [0.1, 0.5, 1.0, 2.0, 5.0, 20.0]
@@ -62,11 +167,11 @@ def passed_on_circles(
     at1, at2 = (math.acos(r * math.cos(alpha) / tip) for r, tip in ((r1, tip1), (r2, tip2)))
     turn1 = math.acos((tip2**2 - tip1**2 - a * a) / (2.0 * tip1 * a))
     turn2 = math.acos((tip2**2 + a * a - tip1**2) / (2.0 * tip2 * a))
-    theta1 = turn1 + _involute(at1) - _involute(alpha)
-    return r2 * (theta1 * z1 / z2 + _involute(alpha) - _involute(at2) - turn2)
+    theta1 = turn1 + involute(at1) - involute(alpha)
+    return r2 * (theta1 * z1 / z2 + involute(alpha) - involute(at2) - turn2)
 
 
-def _involute(angle: float) -> float:
+def involute(angle: float) -> float:
     return math.tan(angle) - angle
 
 

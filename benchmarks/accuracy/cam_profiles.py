@@ -11,9 +11,9 @@ import shapely
 
 from gearcam.cams.three_points import three_point_curvature
 from helpers_cams import cam, corners_of, witness_of
-from helpers_distance import distances
 from methods import Case, Method
 from witness.cam_sweep import Exact, Motion, pairs, swept
+from witness.distance import distances
 
 mp: Any = mpmath.mp
 KIND, LAW, LIFT, DEGREES = "roller, offset", "3-4-5", 8.0, (60.0, 90.0, 60.0, 150.0)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from gearcam.cams.follow import Followed, follow
 from gearcam.cams.mechanism import Mechanism
 from gearcam.numeric.bulges import as_complex, as_pairs, flatten_bulges
-from helpers_few import few
+from helpers_sampling import few
 from witness.cam_sweep import Follower
 from witness.follower import Rest, rest
 

@@ -25,8 +25,8 @@ from helpers_contour import (
     line,
     square_contour,
 )
-from helpers_distance import distances
 from helpers_pairs import profile
+from witness.distance import distances
 
 TOLERANCE = 1e-3
 

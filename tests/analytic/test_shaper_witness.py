@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from gearcam.gears.flank import trace
-from helpers_wheels import cut_points, kinematics, outline, toothings
+from helpers_witnessed import cut_points, kinematics, outline, toothings
 from witness import shaper, sweep
 
 ALLOWED = 1e-4

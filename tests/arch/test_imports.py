@@ -138,12 +138,12 @@ def _foreign_to_witnesses(code: str) -> set[str]:
     return {name.split(".")[0] for name in names} - sys.stdlib_module_names - WITNESSES
 
 
-WITNESSES = frozenset({"witness", "helpers_distance", "numpy", "shapely", "mpmath"})
+WITNESSES = frozenset({"witness", "numpy", "shapely", "mpmath"})
 
 
 def test_witnesses_share_no_code_with_the_program() -> None:
     tests = rules.ROOT / "tests"
-    files = [*rules.python_files(tests / "witness"), tests / "helpers_distance.py"]
+    files = rules.python_files(tests / "witness")
     assert len(files) > 5
     found = {path.name: _foreign_to_witnesses(path.read_text(encoding="utf-8")) for path in files}
     assert {name: what for name, what in found.items() if what} == {}

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from helpers_wheels import cut_points, kinematics, outline
+from helpers_witnessed import cut_points, kinematics, outline
 from witness import sweep
 
 STEPS = np.array([1000, 2000, 4000, 8000])

@@ -23,9 +23,9 @@ from gearcam.laws.ratio.constant import Constant
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.laws.ratio.formula import Formula
 from gearcam.numeric.contour import polygon_area
-from helpers_distance import distances
-from helpers_few import few
 from helpers_pairs import job, profile
+from helpers_sampling import few
+from witness.distance import distances
 
 FINE = 1e-6
 """Tolerance of the outline that stands for the true curve, modules."""

@@ -16,7 +16,7 @@ import pytest
 from gearcam.numeric.contour import Run
 from gearcam.numeric.splines import DEGREE, Spline, fit_splines
 from helpers_contour import Curve, arc, as_pairs
-from helpers_splines import cubics
+from helpers_curves import cubics
 
 FINE = np.linspace(0.0, 1.0, 60001)
 

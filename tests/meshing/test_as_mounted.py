@@ -18,8 +18,8 @@ from gearcam.meshing.numbers import harmonics, numbers
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.meshing.study import Meshing, study
 from gearcam.parts.blank import Blank
-from helpers_few import few
 from helpers_pairs import job, profile
+from helpers_sampling import few
 
 MADE = ["nail_machine_two_phase", "nail_machine_three_phase", "ellipse", "shop_order"]
 MORE = [-0.1, 0.0, 0.05, 0.3]

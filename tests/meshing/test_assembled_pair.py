@@ -15,8 +15,8 @@ import pytest
 
 from gearcam.base.tolerances import DEFAULT
 from gearcam.gears.outline import build_outline
-from helpers_few import few
 from helpers_pairs import PHASES, Assembly, profile
+from helpers_sampling import few
 
 FINE = 1e-5
 """Chord tolerance, mm."""

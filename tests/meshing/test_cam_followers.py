@@ -33,7 +33,7 @@ from helpers_cams import (
     stiffness,
     witness_of,
 )
-from helpers_few import few
+from helpers_sampling import few
 from witness.cam_sweep import Exact, Follower, Motion, dot, mp
 from witness.follower import rest
 

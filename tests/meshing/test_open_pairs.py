@@ -28,8 +28,8 @@ from gearcam.meshing.half_teeth import HalfTeeth, half_teeth
 from gearcam.meshing.overlap import Turning
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.meshing.study import mount, phases, study
-from helpers_few import few
 from helpers_pairs import PROFILES, explained, job, profile
+from helpers_sampling import few
 
 Array = NDArray[np.float64]
 

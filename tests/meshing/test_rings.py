@@ -15,7 +15,8 @@ from gearcam.meshing.edges import first_touch, touches
 from gearcam.meshing.numbers import numbers
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.meshing.study import study
-from helpers_internal import (
+from helpers_pairs import job
+from helpers_rings import (
     ALPHA,
     DEEP,
     LAWS,
@@ -27,7 +28,6 @@ from helpers_internal import (
     pair_of,
     phases,
 )
-from helpers_pairs import job
 
 FLANK_POINTS = [
     ("one lobe", 1, 1, 3.0, 0.670422458743, 17.3669675696998 + 1.50032475382222j,

@@ -23,8 +23,8 @@ from gearcam.meshing.numbers import numbers
 from gearcam.meshing.overlap import Turning
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.meshing.study import Meshing, mount, run, study
-from helpers_few import few
-from helpers_internal import (
+from helpers_pairs import moved
+from helpers_rings import (
     ALPHA,
     CLEAN,
     DEEP,
@@ -36,7 +36,7 @@ from helpers_internal import (
     made,
     pair_of,
 )
-from helpers_meshing import moved
+from helpers_sampling import few
 
 FEW = 24
 """Steps of a turn that tell how a pair is mounted."""

@@ -15,8 +15,8 @@ from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.meshing.half_teeth import HalfTeeth, half_teeth
 from gearcam.meshing.overlap import Turning
-from helpers_few import few
 from helpers_pairs import job, profile
+from helpers_sampling import few
 
 Array = NDArray[np.float64]
 

@@ -16,8 +16,7 @@ import pytest
 
 import gearcam
 from gearcam.base.errors import GearcamError
-from helpers_cam_gallery import CAM_NUMBERS
-from helpers_gallery import NUMBERS, Number, misses
+from helpers_gallery import CAM_NUMBERS, NUMBERS, Number, misses
 from helpers_pairs import PROFILES, profile
 
 

@@ -21,7 +21,7 @@ from gearcam.cams.mechanism import make_mechanism
 from gearcam.cams.spec import CamSpec, FollowerSpec
 from gearcam.laws.phases_of_lift import Phase, SegmentPhase, levels
 from helpers_cams import angles, back, corners_of, dwell, program, resting, rise, stiffness
-from helpers_random import QUICK
+from helpers_sampling import QUICK
 
 LAWS = [
     "constant-velocity",

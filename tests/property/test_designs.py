@@ -26,7 +26,7 @@ from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.laws.ratio.formula import Formula
 from gearcam.laws.ratio.phases import Phases
 from helpers_pairs import Assembly, explained, job
-from helpers_random import QUICK
+from helpers_sampling import QUICK
 
 MODULE = 2.0
 """mm; the size is a matter of scale, which has a test of its own."""

@@ -14,8 +14,8 @@ from gearcam.base.errors import InfeasibleError
 from gearcam.cams.groove import GrooveCam, make_groove
 from gearcam.cams.mechanism import make_mechanism
 from gearcam.cams.spec import CamSpec, FollowerSpec
-from helpers_cams import program
-from helpers_random import QUICK, close
+from helpers_cams import close, program
+from helpers_sampling import QUICK
 from property.test_cams import programs, rounded
 from witness.roller_bands import band, island
 

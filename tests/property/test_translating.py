@@ -18,7 +18,8 @@ from gearcam.cams.sliding import SlidingCam, make_sliding
 from gearcam.cams.spec import FollowerSpec
 from gearcam.laws.phases_of_lift import DwellPhase, SegmentPhase
 from gearcam.laws.program import make_program
-from helpers_random import QUICK, close
+from helpers_cams import close
+from helpers_sampling import QUICK
 from property.test_cams import programs, rounded
 
 CHORD = 2e-3

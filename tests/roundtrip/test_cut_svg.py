@@ -28,8 +28,8 @@ from gearcam.parts.openings import Workpiece
 from gearcam.pictures.drawings import Drawing, Feature, cut_drawing, wheel_drawing
 from helpers_cam_files import ROLLER, read
 from helpers_contour import disc_contour, gear_contour, square_contour
-from helpers_distance import distances
 from helpers_pairs import profile
+from witness.distance import distances
 
 SVG = "{http://www.w3.org/2000/svg}"
 RED, BLUE = "#ff0000", "#0000ff"

@@ -24,7 +24,7 @@ from gearcam.parts.shapes import Circle, Loop
 from gearcam.pictures.drawings import pair_drawing, placed, wheel_drawing
 from helpers_cams import cam
 from helpers_contour import bore, gear_contour
-from helpers_distance import distances
+from witness.distance import distances
 
 TOLERANCE = 1e-3
 

@@ -30,8 +30,8 @@ from gearcam.parts.openings import Workpiece
 from gearcam.pictures.drawings import cut_drawing, wheel_drawing
 from helpers_cam_files import ROLLER, read
 from helpers_contour import contour_of, disc_contour, line
-from helpers_distance import distances
 from helpers_pairs import profile
+from witness.distance import distances
 
 PROFILES = Path(__file__).parents[2] / "profiles"
 TOLERANCE = 0.005

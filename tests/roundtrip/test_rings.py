@@ -23,7 +23,7 @@ from gearcam.kinds.gear_pair.design import PairOutputSpec
 from gearcam.kinds.gear_pair.files import FILES
 from gearcam.parts.blank import Blank
 from gearcam.pictures.drawings import UNMOVED
-from helpers_ring_parts import WAIST, ring_job, turned
+from helpers_rings import WAIST, ring_job, turned
 
 BOLTS: dict[str, Any] = {
     "bolts": (0, 5), "bolt_diameter": (0, 3), "bolt_circle": (0, 120), "bolt_angle": (0.0, 0.3),
@@ -237,7 +237,7 @@ def test_the_sheet_of_an_internal_pair_has_its_centre_distance(made: GearPairRes
 
 @pytest.mark.skipif(find_spec("OCP") is None, reason="needs the extra for STEP files")
 def test_rings_are_exact_step_solids() -> None:
-    from helpers_step_read import read_step
+    from helpers_step import read_step
 
     made = ring_job(
         pair={"teeth": (12, 24)},
@@ -258,7 +258,7 @@ def test_rings_are_exact_step_solids() -> None:
 
 @pytest.mark.skipif(find_spec("OCP") is None, reason="needs the extra for STEP files")
 def test_a_ring_that_follows_its_roots_is_a_step_solid() -> None:
-    from helpers_step_read import read_step
+    from helpers_step import read_step
 
     made = ring_job(
         pair={"teeth": (12, 24)},

@@ -30,6 +30,7 @@ from gearcam.pictures.drawings import UNMOVED
 from helpers_contour import bore, disc_contour, gear_contour, square_contour
 from helpers_step import (
     KEYED,
+    StepSolid,
     corners,
     entities,
     floor_radius,
@@ -38,9 +39,9 @@ from helpers_step import (
     one_run,
     pieces,
     plate,
+    read_step,
     spline_area,
 )
-from helpers_step_read import StepSolid, read_step
 
 TOLERANCE = 1e-5
 

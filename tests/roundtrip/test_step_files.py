@@ -11,7 +11,7 @@ from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.kinds.gear_pair.design import PairOutputSpec
 from gearcam.parts.blank import Blank
 from helpers_pairs import profile
-from helpers_step_read import read_step
+from helpers_step import read_step
 
 
 @pytest.fixture(scope="module")

@@ -13,8 +13,8 @@ from gearcam.export.svg import svg_bytes
 from gearcam.parts.body import Part
 from gearcam.parts.marks import timing_mark
 from gearcam.pictures.drawings import Drawing, Path, pair_drawing
-from helpers_bulges import distances
 from helpers_contour import bore, gear_contour
+from helpers_curves import distances
 
 etree: Any = importlib.import_module("lxml.etree")
 

@@ -14,7 +14,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from helpers_distance import distances
+from witness.distance import distances
 from witness.kinematics import Basic, Frames, Rolling
 
 Array = NDArray[np.floating[Any]]

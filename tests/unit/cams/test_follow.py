@@ -14,7 +14,7 @@ from gearcam.base.errors import InfeasibleError
 from gearcam.cams.follow import follow, profile_points
 from gearcam.cams.mechanism import Mechanism
 from gearcam.numeric.bulges import as_pairs
-from helpers_bulges import distances
+from helpers_curves import distances
 
 Array = NDArray[np.float64]
 Plane = NDArray[np.complex128]

@@ -18,8 +18,7 @@ from gearcam.cams.disc import make_cam
 from gearcam.cams.groove import make_groove
 from gearcam.cams.spec import KIND
 from helpers_cams import mechanism, there_and_back
-from helpers_documents import followed, job_of
-from helpers_remedies import ARM, FACE, ROLLER, cam, plate
+from helpers_remedies import ARM, FACE, ROLLER, cam, followed, job_of, plate
 
 GROOVE = {"form": "groove", "outer_diameter_mm": 130, "groove_depth_mm": 5}
 TWO = {"form": "conjugate", "prime_radius2_mm": 30}

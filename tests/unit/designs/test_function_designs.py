@@ -25,7 +25,7 @@ from gearcam.laws.ratio.span import ONE_LOBE, Lobes
 from gearcam.laws.rises.formula import FormulaRise
 from gearcam.laws.rises.simple import Cycloidal
 from helpers_cams import back, dwell, rise
-from helpers_functions import Bent, swing
+from helpers_processes import Bent, swing
 
 gc: Any = gearcam
 TEXT = "phi1 - 0.6*sin(phi1)"
@@ -237,7 +237,7 @@ def test_files_are_made_and_the_summary_names_the_function(tmp_path: Path) -> No
     result = gc.build(pair(Formula(phi2=swing)))
     written = result.write(tmp_path, files=["csv"])
     summary = json.loads((tmp_path / "mine" / "summary.json").read_text("utf-8"))
-    law = {"type": "formula", "phi2": "Python function helpers_functions.swing"}
+    law = {"type": "formula", "phi2": "Python function helpers_processes.swing"}
     assert summary["design"]["law"] == law
     assert "Python function" in summary["accuracy"]["how"]["law"]
     assert len(written.files) > 2

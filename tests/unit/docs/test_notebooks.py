@@ -10,7 +10,7 @@ import pytest
 from nbclient.exceptions import CellExecutionError
 
 import notebooks
-from helpers_few import few
+from helpers_sampling import few
 
 STORED = sorted(notebooks.HOME.glob("*.ipynb"))
 LARGEST = 300_000

@@ -22,8 +22,7 @@ from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.laws.ratio.formula import Formula
 from gearcam.laws.ratio.phases import Phases
 from helpers_pairs import job, profile
-from helpers_ring_parts import ring_job
-from helpers_rings import highest_on_circles, ring
+from helpers_rings import highest_on_circles, ring, ring_job
 
 HALF = (0.0, math.pi, 2 * math.pi)
 UNEVEN = (0.0, math.radians(160), 2 * math.pi)

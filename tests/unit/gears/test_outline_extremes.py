@@ -21,8 +21,8 @@ from gearcam.laws.ratio.constant import Constant
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.laws.ratio.formula import Formula
 from gearcam.laws.ratio.phases import Phases
-from helpers_few import few
 from helpers_pairs import Assembly, job
+from helpers_sampling import few
 
 SLOWEST = 5.0
 """Seconds of work, however busy the machine is; the one that this was written on takes a tenth."""

@@ -18,8 +18,7 @@ from gearcam.meshing.checks import KIND, clearances, spans
 from gearcam.meshing.drive_checks import contact_ratio
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.meshing.study import Meshing, mount, run, study
-from helpers_meshing import moved
-from helpers_pairs import job, profile
+from helpers_pairs import job, moved, profile
 
 ALPHA = math.radians(20.0)
 FEW = MeshingSpec(steps=24, end=math.radians(36.0))

@@ -13,9 +13,8 @@ from gearcam.numeric.arcs import fit_arcs, fit_closed
 from gearcam.numeric.bulges import deviation, farthest, flatten_bulges
 from gearcam.numeric.contour import Run
 from gearcam.numeric.splines import Spline, fit_splines
-from helpers_bulges import distances
 from helpers_contour import arc, as_pairs, disc_contour, gear_contour, line, sample, squashed
-from helpers_splines import cubics
+from helpers_curves import cubics, distances
 
 TOLERANCE = 1e-3
 

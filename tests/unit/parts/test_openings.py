@@ -20,8 +20,8 @@ from gearcam.parts.marks import timing_mark
 from gearcam.parts.openings import Workpiece, bore, openings
 from gearcam.parts.shapes import Circle, Loop
 from helpers_contour import disc_contour, gear_contour
-from helpers_distance import distances
 from helpers_pairs import profile
+from witness.distance import distances
 
 FINE = 1e-6
 """Chords of openings in these tests, mm."""

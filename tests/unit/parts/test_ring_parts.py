@@ -21,7 +21,7 @@ from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import Blank
 from gearcam.parts.shapes import Circle
 from helpers_pairs import job
-from helpers_ring_parts import UNEVEN, WAIST, centrode, plain, ring_design, ring_job
+from helpers_rings import UNEVEN, WAIST, centrode, plain, ring_design, ring_job
 
 FOLLOW = RingSpec(outer="follow", rim=6.0)
 

@@ -19,7 +19,7 @@ from gearcam.compare.variants import Variant
 from gearcam.designs.reader import loads
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.pictures.charts import Chart, Limit, Line, MarkedPlace
-from helpers_few import few
+from helpers_sampling import few
 
 mpl.use("Agg")
 PROFILES = sorted((rules.ROOT / "profiles").glob("*.toml"))

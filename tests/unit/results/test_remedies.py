@@ -24,9 +24,21 @@ from gearcam.gears.track import LeastRadius
 from gearcam.laws.ratio.constant import Constant
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.results.advice import Remedies, Remedy
-from helpers_documents import followed, job_of, written
 from helpers_pairs import job
-from helpers_remedies import CIRCLE, ERRORS, NAIL, REFUSED, ROLLER, UNDER, WARNED, cam, pair
+from helpers_remedies import (
+    CIRCLE,
+    ERRORS,
+    NAIL,
+    REFUSED,
+    ROLLER,
+    UNDER,
+    WARNED,
+    cam,
+    followed,
+    job_of,
+    pair,
+)
+from random_designs.toml import toml
 
 DESIGNS = {name: (made[0], made[-1]) for name, made in (REFUSED | ERRORS).items()}
 
@@ -334,11 +346,11 @@ def test_a_sound_design_needs_no_remedy(folder: Path) -> None:
 
 def test_the_command_tells_what_was_built(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = folder / "told.toml"
-    file.write_text(written(DESIGNS["shift"][0]), encoding="utf-8")
+    file.write_text(toml(DESIGNS["shift"][0]), encoding="utf-8")
     assert main(["check", str(file), "-o", str(folder)]) == 3
     told = capsys.readouterr().err
     assert "was built without errors:\n    pair.x = 0." in told
-    file.write_text(written(DESIGNS["short teeth"][0]), encoding="utf-8")
+    file.write_text(toml(DESIGNS["short teeth"][0]), encoding="utf-8")
     assert main(["check", str(file), "-o", str(folder)]) == 1
     assert "    rack.addendum = 0." in capsys.readouterr().out
 

@@ -12,8 +12,7 @@ import gearcam
 from gearcam.base.changes import between
 from gearcam.base.errors import InfeasibleError
 from gearcam.console import remedy_lines
-from helpers_documents import followed, job_of
-from helpers_remedies import ARM, CIRCLE, ROLLER, cam, pair
+from helpers_remedies import ARM, CIRCLE, ROLLER, cam, followed, job_of, pair
 
 STEEP = [30, 60, 60, 210]
 LIFT = 20.0

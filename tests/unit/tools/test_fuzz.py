@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import gearcam
-import helpers_fuzz
+import helpers_processes
 from fuzz import cross_checks_pair as of_pair
 from fuzz import oracles, trial
 from fuzz.campaign import Campaign, Case
@@ -51,7 +51,7 @@ files = ["csv", "stl", "svg"]
 def test_whatever_happens_in_a_process_every_task_has_its_outcome() -> None:
     words = ["one", "run for ever", "die", "eat", "sleep", "two"]
     tasks = [(number, Task(files={"a.toml": word})) for number, word in enumerate(words)]
-    with Pool(helpers_fuzz.odd, processes=1, seconds=0.3) as pool:
+    with Pool(helpers_processes.odd, processes=1, seconds=0.3) as pool:
         ends = dict(pool.each(tasks))
     failures = [ends[number].failure for number in range(len(words))]
     assert [one and one.kind for one in failures] == [None, "time", "crash", "memory", "time", None]
@@ -301,7 +301,7 @@ def test_a_text_that_is_no_toml_is_made_small() -> None:
 def test_a_failure_is_told_made_small_saved_and_reproduced(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr("fuzz.command.tried", helpers_fuzz.dislikes_cycloids)
+    monkeypatch.setattr("fuzz.command.tried", helpers_processes.dislikes_cycloids)
     words = ["--kind", "cam", "--jobs", "1", "-o", str(tmp_path)]
     assert main([*words, "--count", "30"]) == 1
     out, err = capsys.readouterr()
@@ -320,7 +320,7 @@ def test_a_failure_is_told_made_small_saved_and_reproduced(
 
 def test_what_takes_too_long_is_tried_once_more() -> None:
     """A machine that pauses is no fault of the program."""
-    with Pool(helpers_fuzz.late_at_first, processes=1, seconds=0.2) as pool:
+    with Pool(helpers_processes.late_at_first, processes=1, seconds=0.2) as pool:
         campaign = Campaign(cases=[Case(kind="cam", seed=1, index=0)], pool=pool)
         assert [*campaign.run(None)] == []
     assert sum(campaign.counts.values()) == 1

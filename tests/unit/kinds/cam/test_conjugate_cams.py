@@ -16,9 +16,9 @@ from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.cams.conjugate import ConjugateCam
 from gearcam.cams.follow import follow
 from gearcam.cli import main
-from gearcam.designs import loads
 from gearcam.pictures.drawings import Path
 from gearcam.results.advice import Search
+from helpers_cam_files import read, refused
 from helpers_pairs import PROFILES
 
 PATH = PROFILES / "conjugate_cams.toml"
@@ -26,21 +26,6 @@ FILE = PATH.read_text("utf-8")
 SLIDING = FILE.replace("lift_deg", "lift_mm").replace('motion = "oscillating"\n', "")
 for _line in ("pivot_distance_mm = 100\n", "arm_mm = 90\n", "arm2_mm = 85\n"):
     SLIDING = SLIDING.replace(_line, "")
-
-
-def read(*changes: tuple[str, str], file: str = FILE) -> Any:
-    for old, new in changes:
-        assert old in file
-        file = file.replace(old, new)
-    return loads(file)
-
-
-def told(*changes: tuple[str, str], file: str = FILE) -> dict[str, str]:
-    with pytest.raises(DesignError) as caught:
-        read(*changes, file=file)
-    return {one.key: f"{one.message}; {one.allowed}" for one in caught.value.problems}
-
-
 PRIME2 = ("prime_radius2_mm = 38", "")
 ROLLERS = "preload_mm = 0.02"
 
@@ -66,12 +51,12 @@ ROLLERS = "preload_mm = 0.02"
 def test_what_does_not_fit_is_told_by_reading(
     file: str, change: tuple[str, str], key: str, words: str
 ) -> None:
-    found = told(change, file=file)
+    found = refused(file, change)
     assert re.search(words, found[key])
 
 
 def refusal(*changes: tuple[str, str], file: str = FILE) -> tuple[Any, InfeasibleError]:
-    design = read(*changes, file=file)
+    design = read(file, *changes)
     with pytest.raises(InfeasibleError) as caught:
         _ = gearcam.build(design).cam
     return design, caught.value
@@ -120,7 +105,7 @@ def test_a_remedy_is_found_and_works() -> None:
 @pytest.mark.parametrize(("pivot", "other"), [(30.0, 50.0), (200.0, 130.0)])
 def test_a_pivot_out_of_reach_is_moved(pivot: float, other: float) -> None:
     """Of a triangle with the arm, 90, and the prime radius, 40; the second arm asks for more."""
-    result = gearcam.build(read().with_({"follower.pivot_distance_mm": pivot}))
+    result = gearcam.build(read(FILE).with_({"follower.pivot_distance_mm": pivot}))
     with pytest.raises(InfeasibleError, match="cannot reach the prime circle") as caught:
         _ = result.cam
     (_, way) = caught.value.ways
@@ -145,7 +130,7 @@ PLAIN = ("keyway_width_mm = 8\nkeyway_depth_mm = 3.3", "")
 
 
 def test_both_bodies_and_where_they_stand() -> None:
-    result = gearcam.build(read(PLAIN))
+    result = gearcam.build(read(FILE, PLAIN))
     assert [part.name for part in result.parts] == ["cam1", "cam2"]
     for number, mesh in enumerate(result.solids.values()):
         assert mesh.is_watertight
@@ -162,18 +147,18 @@ def test_both_bodies_and_where_they_stand() -> None:
 
 def test_a_hub_stands_on_outer_faces_only() -> None:
     hub = "hub_diameter_mm = 40\nhub_front_mm = 6\nhub_back_mm = 4"
-    one, two = gearcam.build(read((PLAIN[0], hub))).parts
+    one, two = gearcam.build(read(FILE, (PLAIN[0], hub))).parts
     assert one.hub is not None
     assert two.hub is not None
     assert (one.hub.front, one.hub.back) == (0.0, 4.0)
     assert (two.hub.front, two.hub.back) == (6.0, 0.0)
-    one, two = gearcam.build(read((PLAIN[0], hub.replace("hub_back_mm = 4", "")))).parts
+    one, two = gearcam.build(read(FILE, (PLAIN[0], hub.replace("hub_back_mm = 4", "")))).parts
     assert one.hub is None
     assert two.thickness == 18.0
 
 
 def test_files() -> None:
-    result = gearcam.build(read())
+    result = gearcam.build(read(FILE))
     assert set(result.files("csv")) == {"profile_1.csv", "profile_2.csv", "motion.csv"}
     assert set(result.files("dxf")) == {"cam1.dxf", "cam2.dxf"}
     assert set(result.files("tool-path")) == {
@@ -192,14 +177,14 @@ def test_files() -> None:
 
 
 def test_the_follower_goes_on_beyond_both_rollers() -> None:
-    result = gearcam.build(read(file=SLIDING))
+    result = gearcam.build(read(SLIDING))
     shapes = [one.shape for one in result.form.picture(result).features if one.layer == "FOLLOWER"]
     up, down = (shape.points[:, 1] for shape in shapes if isinstance(shape, Path))
     assert up[1] > up[0] > 0.0 > down[0] > down[1]
 
 
 def test_the_drawing_of_each_tells_its_own_sizes() -> None:
-    files = gearcam.build(read()).files("drawing-svg")
+    files = gearcam.build(read(FILE)).files("drawing-svg")
     assert set(files) == {"cam1_drawing.svg", "cam2_drawing.svg"}
     one, two = (files[f"cam{number}_drawing.svg"].decode() for number in (1, 2))
     assert "prime radius</text>" in one
@@ -213,7 +198,7 @@ def test_the_drawing_of_each_tells_its_own_sizes() -> None:
 
 def test_step_files_hold_both() -> None:
     pytest.importorskip("OCP")
-    files = gearcam.build(read()).files("step")
+    files = gearcam.build(read(FILE)).files("step")
     assert set(files) == {"cam1.step", "cam2.step", "cams.step"}
     text = files["cams.step"].decode()
     assert text.count("MANIFOLD_SOLID_BREP(") == 2
@@ -224,7 +209,7 @@ def test_step_files_hold_both() -> None:
 @pytest.mark.parametrize("file", [FILE, SLIDING])
 def test_each_follows_its_own_file(file: str, rotation: str, tmp_path: File) -> None:
     turned = ('form = "conjugate"', f'form = "conjugate"\nrotation = "{rotation}"')
-    result = gearcam.build(read(turned, file=file))
+    result = gearcam.build(read(file, turned))
     written = result.write(tmp_path, files=["csv", "dxf"])
     for key in "12":
         for name in (f"profile_{key}.csv", f"cam{key}.dxf"):
@@ -235,7 +220,7 @@ def test_each_follows_its_own_file(file: str, rotation: str, tmp_path: File) -> 
 
 
 def test_the_command_follows_either(tmp_path: File, capsys: pytest.CaptureFixture[str]) -> None:
-    written = gearcam.build(read()).write(tmp_path, files=["csv"])
+    written = gearcam.build(read(FILE)).write(tmp_path, files=["csv"])
     profile = str(written.directory / "profile_2.csv")
     assert main(["follow", str(PATH), profile, "--wall", "2", "-o", str(tmp_path)]) == 0
     assert "largest difference" in capsys.readouterr().out
@@ -244,7 +229,7 @@ def test_the_command_follows_either(tmp_path: File, capsys: pytest.CaptureFixtur
 
 
 def test_the_picture_shows_two_tints_and_both_rollers_on_top() -> None:
-    text = gearcam.build(read()).files("svg")["cams.svg"].decode()
+    text = gearcam.build(read(FILE)).files("svg")["cams.svg"].decode()
     fills = [re.search(rf'class="{name}-profile" fill="(#\w+)"', text) for name in ("cam1", "cam2")]
     first, second = (found and found[1] for found in fills)
     assert None not in (first, second)
@@ -254,7 +239,7 @@ def test_the_picture_shows_two_tints_and_both_rollers_on_top() -> None:
 
 
 def test_facts() -> None:
-    result = gearcam.build(read())
+    result = gearcam.build(read(FILE))
     cam = result.cam
     assert isinstance(cam, ConjugateCam)
     facts = result.facts.document["cam"]
@@ -282,7 +267,7 @@ def test_an_undercut_second_cam_is_told_as_such() -> None:
         (PLAIN[0], ""),
         ("= 25", "= 5"),
     )
-    result = gearcam.build(read(*changes, file=STEEP))
+    result = gearcam.build(read(STEEP, *changes))
     second = result.cam.walls[1]
     assert second.corners
     found = [one for one in result.findings if one.code == "undercut"]

@@ -16,28 +16,11 @@ import shapely
 import gearcam
 from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.cams.groove import GrooveCam
-from gearcam.designs import loads
-from gearcam.kinds.cam.design import CamDesign
+from helpers_cam_files import read, refused
 from helpers_pairs import PROFILES
-from helpers_step_read import read_step
+from helpers_step import read_step
 
 FILE = (PROFILES / "groove_cam.toml").read_text("utf-8")
-
-
-def read(*changes: tuple[str, str]) -> CamDesign:
-    text = FILE
-    for old, new in changes:
-        assert old in text
-        text = text.replace(old, new)
-    made = loads(text)
-    assert isinstance(made, CamDesign)
-    return made
-
-
-def refused(*changes: tuple[str, str]) -> dict[str, str]:
-    with pytest.raises(DesignError) as caught:
-        read(*changes)
-    return {one.key: f"{one.message}; {one.allowed}" for one in caught.value.problems}
 
 
 def volume_of(gaps: Sequence[tuple[float, float]]) -> float:
@@ -52,7 +35,7 @@ PLAIN = ("keyway_width_mm = 5\nkeyway_depth_mm = 2.3\n", "")
 
 @pytest.mark.parametrize("side", ["front", "back"])
 def test_the_solid_is_the_disc_less_its_groove(side: str) -> None:
-    result = gearcam.build(read(PLAIN, ('"front"', f'"{side}"')))
+    result = gearcam.build(read(FILE, PLAIN, ('"front"', f'"{side}"')))
     (mesh,) = result.solids.values()
     inner, outer = (wall.size.area for wall in result.cam.walls)
     expected = volume_of([(outer - inner, 12.0)])
@@ -67,7 +50,7 @@ def test_the_solid_is_the_disc_less_its_groove(side: str) -> None:
 @pytest.mark.parametrize("radius2", [5.0, 7.0])
 def test_the_groove_of_two_rollers_has_a_step(radius2: float) -> None:
     change = ("roller_radius_mm = 6", f"roller_radius_mm = 6\nroller2_radius_mm = {radius2}")
-    result = gearcam.build(read(PLAIN, change))
+    result = gearcam.build(read(FILE, PLAIN, change))
     (mesh,) = result.solids.values()
     cam = result.cam
     assert isinstance(cam, GrooveCam)
@@ -83,7 +66,7 @@ def test_the_groove_of_two_rollers_has_a_step(radius2: float) -> None:
 
 @pytest.mark.parametrize("side", [pytest.param("front", marks=pytest.mark.slow), "back"])
 def test_step_holds_the_groove(side: str) -> None:
-    result = gearcam.build(read(PLAIN, ('"front"', f'"{side}"')))
+    result = gearcam.build(read(FILE, PLAIN, ('"front"', f'"{side}"')))
     (solid,) = read_step(result.files("step")["cam.step"])
     inner, outer = (wall.size.area for wall in result.cam.walls)
     assert solid.volume == pytest.approx(volume_of([(outer - inner, 12.0)]), rel=1e-6)
@@ -125,7 +108,7 @@ def test_files_of_a_groove() -> None:
     ET.fromstring(result.files("svg")["cam.svg"])
 
 
-FILE_DESIGN = read()
+FILE_DESIGN = read(FILE)
 
 
 def test_an_unknown_key_is_answered_with_those_of_the_form() -> None:
@@ -220,13 +203,13 @@ def test_the_paths_of_a_smaller_tool_keep_to_the_walls() -> None:
 def test_what_a_groove_cannot_have_is_told_by_reading(
     old: str, new: str, key: str, words: str
 ) -> None:
-    found = refused((old, new))
+    found = refused(FILE, (old, new))
     assert key in found
     assert re.search(words, found[key])
 
 
 def test_keys_of_a_groove_are_refused_with_a_disc() -> None:
-    found = refused(('form = "groove"', 'form = "disc"'))
+    found = refused(FILE, ('form = "groove"', 'form = "disc"'))
     assert set(found) == {
         f"cam.{key}"
         for key in ("outer_diameter_mm", "groove_depth_mm", "roller_clearance_mm", "side")
@@ -236,23 +219,23 @@ def test_keys_of_a_groove_are_refused_with_a_disc() -> None:
 def test_a_blank_that_the_groove_opens_is_refused_with_the_least() -> None:
     farthest = math.hypot(8.0, math.sqrt(836.0) + 10.0) + 6.025
     with pytest.raises(InfeasibleError, match="opens the edge") as caught:
-        _ = gearcam.build(read(("outer_diameter_mm = 110", "outer_diameter_mm = 90"))).cam
+        _ = gearcam.build(read(FILE, ("outer_diameter_mm = 110", "outer_diameter_mm = 90"))).cam
     assert caught.value.limit == pytest.approx(2.0 * farthest, rel=1e-14)
     just = 2.0 * farthest + 1e-6
-    result = gearcam.build(read(("outer_diameter_mm = 110", f"outer_diameter_mm = {just!r}")))
+    result = gearcam.build(read(FILE, ("outer_diameter_mm = 110", f"outer_diameter_mm = {just!r}")))
     thin = [one for one in result.findings if one.code == "thin-wall"]
     assert [one.value for one in thin] == [pytest.approx(0.0, abs=2e-3)]
     assert "groove and the outline" in thin[0].message
 
 
 def test_a_remedy_for_a_blank_that_is_opened_works() -> None:
-    result = gearcam.build(read(("outer_diameter_mm = 110", "outer_diameter_mm = 90")))
+    result = gearcam.build(read(FILE, ("outer_diameter_mm = 110", "outer_diameter_mm = 90")))
     found = gearcam.remedies(result, patience=5.0).found
     assert any("outer_diameter_mm" in str(one.changes) for one in found)
 
 
 def test_a_thin_floor_is_told() -> None:
-    result = gearcam.build(read(("depth_mm = 12", "depth_mm = 19.5")))
+    result = gearcam.build(read(FILE, ("depth_mm = 12", "depth_mm = 19.5")))
     thin = [one for one in result.findings if one.code == "thin-wall"]
     assert [one.value for one in thin] == [pytest.approx(0.5)]
     assert "floor" in thin[0].message
@@ -260,10 +243,14 @@ def test_a_thin_floor_is_told() -> None:
 
 @pytest.mark.parametrize(("tool", "count"), [(12.04, 0), (12.06, 1)])
 def test_a_tool_wider_than_the_groove_is_told(tool: float, count: int) -> None:
-    result = gearcam.build(read(("[output]", f"[limits]\ntool_diameter_mm = {tool}\n[output]")))
+    result = gearcam.build(
+        read(FILE, ("[output]", f"[limits]\ntool_diameter_mm = {tool}\n[output]"))
+    )
     assert [one.code for one in result.findings].count("large-tool") == count
 
 
 def test_a_bore_that_reaches_the_groove_is_refused() -> None:
     with pytest.raises(InfeasibleError):
-        _ = gearcam.build(read(PLAIN, ("bore_diameter_mm = 16", "bore_diameter_mm = 60"))).parts
+        _ = gearcam.build(
+            read(FILE, PLAIN, ("bore_diameter_mm = 16", "bore_diameter_mm = 60"))
+        ).parts

@@ -18,11 +18,11 @@ from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.pictures.drawings import cut_drawing, reach
 from gearcam.sheets import wheel_sheet
 from gearcam.sheets.sheet import LinearDimension
-from helpers_sliding import DEEP, FILE, ONE, built, cam_of
+from helpers_cam_files import DEEP, EDGE, PLATE, built, sliding_of
 
 
 def test_files_of_a_groove(tmp_path: Path) -> None:
-    result = built(FILE)
+    result = built(PLATE)
     assert set(result.files("csv")) == {"profile_lower.csv", "profile_upper.csv", "motion.csv"}
     assert set(result.files("inspection")) == {"inspection_lower.csv", "inspection_upper.csv"}
     text = result.files("dxf")["cam.dxf"].decode()
@@ -58,7 +58,7 @@ SWUNG = (
     ids=["leans", "swings"],
 )
 def test_both_walls_are_followed(changes: tuple[tuple[str, str], ...]) -> None:
-    result = built(FILE, *changes)
+    result = built(PLATE, *changes)
     assert len(result.cam.walls) == 2
     for wall in result.cam.walls:
         study = result.follow(wall.outline, wall=wall.key)
@@ -67,8 +67,8 @@ def test_both_walls_are_followed(changes: tuple[tuple[str, str], ...]) -> None:
 
 
 def test_a_profile_is_followed() -> None:
-    result = built(ONE, ("height_mm = 40", "height_mm = 40\n[output]\nchord_tolerance_mm = 1e-4"))
-    study = result.follow(cam_of(result).edge.vertices)
+    result = built(EDGE, ("height_mm = 40", "height_mm = 40\n[output]\nchord_tolerance_mm = 1e-4"))
+    study = result.follow(sliding_of(result).edge.vertices)
     difference = study.columns["difference"]
     assert np.abs(difference).max() < 2e-4
     assert study.columns["error"].max() < 0.02  # the plate's corners are no curve
@@ -76,10 +76,10 @@ def test_a_profile_is_followed() -> None:
 
 
 def test_the_kerf_of_a_groove_that_goes_through() -> None:
-    result = built(FILE, (DEEP, ""), ("[output]", "[output]\nkerf_mm = 0.4"))
+    result = built(PLATE, (DEEP, ""), ("[output]", "[output]\nkerf_mm = 0.4"))
     (drawing,) = result.form.drawings(result)
     paths = {one.layer: one.shape for one in cut_drawing(drawing, 0.4).features}
-    cam = cam_of(result)
+    cam = sliding_of(result)
     assert cam.groove is not None
     groove = shapely.Polygon(reach(paths["GROOVE_KERF"]))
     assert groove.area == pytest.approx(cam.groove.polygon.buffer(-0.2).area, rel=1e-4)
@@ -90,7 +90,7 @@ def test_the_kerf_of_a_groove_that_goes_through() -> None:
 
 def test_the_sheet_shows_the_origin_of_its_bolts() -> None:
     """A cross, and its distances from the nearer side and from the lower edge."""
-    (sheet,) = (wheel_sheet(part, {}, "t") for part in built(FILE).parts)
+    (sheet,) = (wheel_sheet(part, {}, "t") for part in built(PLATE).parts)
     told = sorted(
         float(abs(one.second - one.first)[int(one.vertical)])
         for one in sheet.dimensions
@@ -98,13 +98,13 @@ def test_the_sheet_shows_the_origin_of_its_bolts() -> None:
     )
     assert told == pytest.approx([8.0, 12.0, 12.05, 22.5, 60.0, 194.1])
     assert any("X, Y from the cross" in text.text for text in sheet.texts)
-    bare = built(FILE, ("bolts = 2", "bolts = 0"), ("bolt_spacing_mm = 160\n", ""))
+    bare = built(PLATE, ("bolts = 2", "bolts = 0"), ("bolt_spacing_mm = 160\n", ""))
     assert len(wheel_sheet(bare.part, {}, "t").dimensions) == 4
 
 
 def test_three_points_tell_the_curvature_of_an_open_pitch_curve() -> None:
     """The error falls: with its sign and all, the exact curvature is that of the points."""
-    rows = built(ONE).files("curvature")["curvature.csv"].decode().splitlines()
+    rows = built(EDGE).files("curvature")["curvature.csv"].decode().splitlines()
     table = dict(zip(rows[0].split(","), np.loadtxt(rows[1:], delimiter=",").T, strict=True))
     # second order but at knots, where the slope of the curvature jumps: there the first
     order = np.polyfit(np.log(table["spacing_mm"]), np.log(table["rms_error_per_mm"]), 1)[0]
@@ -141,14 +141,14 @@ def test_a_straight_pitch_curve_has_no_radius() -> None:
 
 
 def test_the_way_of_a_tool() -> None:
-    result = built(FILE)
+    result = built(PLATE)
     rows = result.files("tool-path")["tool_path.csv"].decode().splitlines()
     points = np.loadtxt(rows, delimiter=",", skiprows=1)
-    np.testing.assert_allclose(points, cam_of(result).lower.pitch_line, atol=1e-6)
+    np.testing.assert_allclose(points, sliding_of(result).lower.pitch_line, atol=1e-6)
     design = replace(result.design, output=replace(result.design.output, tool_radius=4.0))
     rows = gearcam.build(design).files("tool-path")["tool_path.csv"].decode().splitlines()
     path = shapely.LinearRing(np.loadtxt(rows, delimiter=",", skiprows=1))
-    middle = shapely.LineString(cam_of(result).lower.pitch_line)
+    middle = shapely.LineString(sliding_of(result).lower.pitch_line)
     away = shapely.distance(shapely.points(path.coords), middle)
     np.testing.assert_allclose(away, 2.025, atol=2e-3)
     design = replace(result.design, output=replace(result.design.output, tool_radius=6.1))
@@ -157,9 +157,9 @@ def test_the_way_of_a_tool() -> None:
 
 
 def test_the_picture_stands_where_it_is_asked() -> None:
-    result = built(FILE)
+    result = built(PLATE)
     with pytest.raises(InfeasibleError, match="beyond the travel of the cam") as caught:
-        built(FILE, ("u_mm = 80", "u_mm = 171")).files("svg")
+        built(PLATE, ("u_mm = 80", "u_mm = 171")).files("svg")
     assert caught.value.limit == pytest.approx(170.0)
     drawing = result.form.picture(result)
     x = reach(drawing.features[0].shape)[:, 0]

@@ -15,28 +15,13 @@ from gearcam.cams.disc import YokeCam
 from gearcam.designs import loads
 from gearcam.laws.half_turns import agreeing, miss
 from gearcam.laws.phases_of_lift import fill_half
+from helpers_cam_files import read, refused
 from helpers_cams import back, dwell, program, rise
 from helpers_pairs import PROFILES
 
 FILE = (PROFILES / "yoke_cam.toml").read_text("utf-8")
 ROLLER = ('type = "flat"', 'type = "roller"\nroller_radius_mm = 10')
 PRIME = ("base_radius_mm = 40", "prime_radius_mm = 50")
-
-
-def read(*changes: tuple[str, str]) -> Any:
-    text = FILE
-    for old, new in changes:
-        assert old in text
-        text = text.replace(old, new)
-    return loads(text)
-
-
-def told(*changes: tuple[str, str]) -> dict[str, str]:
-    with pytest.raises(DesignError) as caught:
-        read(*changes)
-    return {one.key: f"{one.message}; {one.allowed}" for one in caught.value.problems}
-
-
 LAST = '[[motion]]\ntype = "dwell"\nangle_deg = 30\n\n[follower]'
 WHOLE = """\
 [[motion]]
@@ -54,7 +39,7 @@ angle_deg = 30
 
 
 def test_a_whole_turn_of_two_opposite_half_turns_is_the_same_cam() -> None:
-    half, whole = (gearcam.build(read(*change)) for change in ((), ((LAST, WHOLE),)))
+    half, whole = (gearcam.build(read(FILE, *change)) for change in ((), ((LAST, WHOLE),)))
     assert isinstance(whole.cam, YokeCam)
     assert whole.cam.breadth == pytest.approx(100.0, abs=1e-12)
     theta = np.linspace(0.0, 2.0 * math.pi, 50)
@@ -63,10 +48,10 @@ def test_a_whole_turn_of_two_opposite_half_turns_is_the_same_cam() -> None:
 
 
 def test_rest_fills_what_the_lift_means() -> None:
-    half = gearcam.build(read((LAST, LAST.replace("angle_deg = 30", 'angle_deg = "rest"'))))
+    half = gearcam.build(read(FILE, (LAST, LAST.replace("angle_deg = 30", 'angle_deg = "rest"'))))
     assert half.program.stretches[2].end == pytest.approx(math.pi)
     rest = WHOLE.replace("angle_deg = 30", 'angle_deg = "rest"')
-    whole = gearcam.build(read((LAST, rest)))
+    whole = gearcam.build(read(FILE, (LAST, rest)))
     assert [one.kind for one in whole.program.stretches] == [
         "dwell", "rise", "dwell", "return", "dwell",
     ]  # fmt: skip
@@ -86,25 +71,25 @@ def test_rest_fills_what_the_lift_means() -> None:
 def test_phases_that_fill_neither_half_a_turn_nor_a_whole(
     change: tuple[str, str], words: str
 ) -> None:
-    assert re.search(words, told(change)["motion"])
+    assert re.search(words, refused(FILE, change)["motion"])
 
 
 def test_other_cams_want_the_whole_turn() -> None:
     with pytest.raises(DesignError, match="take 180 deg\n    allowed: 360 deg in all"):
-        read(('form = "yoke"', 'form = "disc"'))
+        read(FILE, ('form = "yoke"', 'form = "disc"'))
 
 
 SWING = 'type = "roller"\nroller_radius_mm = 10\nmotion = "oscillating"\narm_mm = 90\n'
 
 
 def test_a_yoke_slides_on_the_axis() -> None:
-    found = told(
-        ('type = "flat"', f"{SWING}pivot_distance_mm = 100"), PRIME, ("_mm = 20", "_deg = 9")
+    found = refused(
+        FILE, ('type = "flat"', f"{SWING}pivot_distance_mm = 100"), PRIME, ("_mm = 20", "_deg = 9")
     )
     assert "a yoke is a translating follower" in found["follower.motion"]
-    found = told((ROLLER[0], f"{ROLLER[1]}\noffset_mm = 3"), PRIME)
+    found = refused(FILE, (ROLLER[0], f"{ROLLER[1]}\noffset_mm = 3"), PRIME)
     assert set(found) == {"follower.offset_mm"}
-    flat = told((ROLLER[0], 'type = "flat"\noffset_mm = 3'))  # where it moves nothing
+    flat = refused(FILE, (ROLLER[0], 'type = "flat"\noffset_mm = 3'))  # where it moves nothing
     assert "does not apply to a yoke cam" in flat["follower.offset_mm"]
 
 
@@ -175,15 +160,15 @@ def test_the_largest_miss_counts_both_ways() -> None:
 
 
 def test_findings_facts_and_files() -> None:
-    result = gearcam.build(read())
+    result = gearcam.build(read(FILE))
     (finding,) = result.findings
     assert (finding.code, finding.severity) == ("face-width", "note")
     assert finding.value == pytest.approx(2 * 19.09859317103, abs=1e-10)
     assert result.facts["cam.least_base_radius_mm"] == pytest.approx(10.66399483762, abs=1e-10)
     picture = result.files("svg")["cam.svg"].decode()
-    disc = gearcam.build(read((LAST, WHOLE), ('form = "yoke"', 'form = "disc"')))
+    disc = gearcam.build(read(FILE, (LAST, WHOLE), ('form = "yoke"', 'form = "disc"')))
     assert picture.count("<path") > disc.files("svg")["cam.svg"].decode().count("<path")
-    rollers = gearcam.build(read(ROLLER, PRIME))
+    rollers = gearcam.build(read(FILE, ROLLER, PRIME))
     assert rollers.findings == ()
     assert rollers.facts["cam.roller_distance_mm"] == pytest.approx(120.0, abs=1e-12)
 
@@ -191,7 +176,7 @@ def test_findings_facts_and_files() -> None:
 def test_a_small_base_circle_is_undercut_on_one_side() -> None:
     bore = "bore_diameter_mm = 25\nkeyway_width_mm = 8\nkeyway_depth_mm = 3.3\n"
     just, less = (
-        gearcam.build(read((bore, ""), ("base_radius_mm = 40", f"base_radius_mm = {size}")))
+        gearcam.build(read(FILE, (bore, ""), ("base_radius_mm = 40", f"base_radius_mm = {size}")))
         for size in (10.665, 10.0)
     )
     assert just.cam.walls[0].undercut == []

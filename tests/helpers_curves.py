@@ -1,11 +1,13 @@
-"""Exact distances to bulge polylines: every point is held against every piece that may be near."""
+"""Fitted curves once more: exact distances to bulge polylines, Bezier points of splines."""
 
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.bulges import as_complex, bulge_pieces, off_circle
+from gearcam.numeric.splines import Spline
 
 BLOCK = 24
 """Points whose distances are computed together."""
@@ -65,3 +67,13 @@ def _nearest(points: Plane, start: Plane, chord: Plane, bends: Array) -> Array:
     beside = np.where(np.abs(bends) <= 1, ahead & behind, ahead | behind)
     ends = np.minimum(np.abs(from_start), np.abs(from_end))
     return np.where(beside, off_circle(local, bend), ends).min(axis=1)
+
+
+def cubics(spline: Spline) -> NDArray[np.float64]:
+    """Bezier points of the cubics of a spline with double knots, (k, 4, 2), mm."""
+    steps = np.diff(spline.breaks)[:, None]
+    first, second = spline.poles[1:-1:2], spline.poles[2::2]
+    share = steps[:-1] / (steps[:-1] + steps[1:])
+    joints = second[:-1] + share * (first[1:] - second[:-1])
+    ends = np.vstack([spline.poles[:1], joints, spline.poles[-1:]])
+    return np.stack([ends[:-1], first, second, ends[1:]], axis=1)

@@ -1,4 +1,4 @@
-"""Cases of which a few run each time, and all of them among the slow tests."""
+"""Which cases run each time: a few of many, and the same random ones."""
 
 from __future__ import annotations
 
@@ -6,6 +6,21 @@ from collections.abc import Iterable
 from typing import Any
 
 import pytest
+from hypothesis import HealthCheck, Phase, settings
+
+QUICK = settings(
+    derandomize=True,
+    database=None,
+    deadline=None,
+    max_examples=20,
+    phases=[Phase.generate, Phase.shrink],
+    suppress_health_check=[
+        HealthCheck.too_slow,
+        HealthCheck.data_too_large,
+        HealthCheck.filter_too_much,
+    ],
+)
+"""Random cases of a property: drawn anew, but the same ones in every run."""
 
 
 def few(cases: Iterable[Any], every: int = 2) -> list[Any]:

@@ -1,7 +1,8 @@
-"""Work for processes of the fuzzer that is done in other ways than it should be."""
+"""Functions that are sent to other processes, which load them from a module."""
 
 from __future__ import annotations
 
+import math
 import os
 import time
 from pathlib import Path
@@ -48,3 +49,17 @@ def late_at_first(task: Task, folder: Path) -> Outcome:  # noqa: ARG001
         mark.touch()
         time.sleep(1e3)
     return Outcome(end=BUILT)
+
+
+def swing(phi1: float) -> float:
+    return phi1 - 0.6 * math.sin(phi1)
+
+
+class Bent:
+    """A function with a number that can be pickled."""
+
+    def __init__(self, share: float) -> None:
+        self.share = share
+
+    def __call__(self, phi1: float) -> float:
+        return phi1 - self.share * math.sin(phi1)
