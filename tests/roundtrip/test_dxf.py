@@ -14,9 +14,10 @@ from ezdxf.math import bulge_to_arc
 import gearcam
 from gearcam.export.dxf import DxfStyle, dxf_bytes
 from gearcam.export.dxf_read import DxfError, measure_dxf, read_dxf
+from gearcam.kinds.gear_pair.drawn import pair_drawing
 from gearcam.parts.body import Part
 from gearcam.parts.marks import timing_mark
-from gearcam.pictures.drawings import Drawing, pair_drawing, wheel_drawing
+from gearcam.pictures.drawings import Drawing, wheel_drawing
 from gearcam.pictures.drawings import Path as Chain
 from helpers_contour import bore, gear_contour, layers, square_contour
 

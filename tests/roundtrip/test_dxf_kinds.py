@@ -14,6 +14,7 @@ from ezdxf.entities.spline import Spline
 
 from gearcam.export.dxf import DxfStyle, dxf_bytes
 from gearcam.export.dxf_read import DxfError, measure_dxf, read_dxf
+from gearcam.kinds.gear_pair.drawn import pair_drawing
 from gearcam.numeric import splines
 from gearcam.numeric.arcs import fit_closed
 from gearcam.numeric.contour import Contour, Run
@@ -21,7 +22,7 @@ from gearcam.parts.blank import WheelBlank
 from gearcam.parts.body import Opening, Part
 from gearcam.parts.openings import bore as bore_of
 from gearcam.parts.shapes import Circle, Loop
-from gearcam.pictures.drawings import pair_drawing, placed, wheel_drawing
+from gearcam.pictures.drawings import placed, wheel_drawing
 from helpers_cams import cam
 from helpers_contour import bore, gear_contour
 from witness.distance import distances

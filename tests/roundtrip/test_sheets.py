@@ -19,14 +19,16 @@ from gearcam.export.dxf import DxfStyle
 from gearcam.export.dxf_read import measure_dxf, read_dxf
 from gearcam.export.sheet_dxf import sheet_dxf
 from gearcam.export.sheet_svg import sheet_svg
+from gearcam.kinds.gear_pair.drawn import pair_drawing
+from gearcam.kinds.gear_pair.sheet import pair_sheet
 from gearcam.parts.blank import WheelBlank
 from gearcam.parts.body import Hub, Mark, Opening, Part
 from gearcam.parts.make import make_part
 from gearcam.parts.openings import Workpiece
 from gearcam.parts.shapes import Circle
-from gearcam.pictures.drawings import Drawing, pair_drawing
+from gearcam.pictures.drawings import Drawing
 from gearcam.pictures.drawings import Path as Chain
-from gearcam.sheets import pair_sheet, wheel_sheet
+from gearcam.sheets import wheel_sheet
 from gearcam.sheets.sheet import Sheet
 from helpers_contour import disc_contour, edges, gear_contour
 from helpers_pairs import PROFILES

@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 
 from gearcam.export.svg import svg_bytes
+from gearcam.kinds.gear_pair.drawn import pair_drawing
 from gearcam.parts.body import Part
 from gearcam.parts.marks import timing_mark
-from gearcam.pictures.drawings import Drawing, Path, pair_drawing
+from gearcam.pictures.drawings import Drawing, Path
 from helpers_contour import bore, gear_contour
 from helpers_curves import distances
 

@@ -18,7 +18,7 @@ Depends on parts and numeric, numpy only.
 from __future__ import annotations
 
 import cmath
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import Final
 
@@ -293,95 +293,3 @@ def wheel_drawing(part: Part, step: int = 0) -> Drawing:
     """Return a `part`, or a `step` of it, in its own frame: outline, openings, marks."""
     name = part.name if len(part.contours) == 1 else f"{part.name}_step{step + 1}"
     return Drawing(name=name, features=part_features(part, step))
-
-
-def pair_drawing(
-    parts: Sequence[Part],
-    center_distance: float,
-    centrodes: Sequence[Path] = (),
-    *,
-    placements: tuple[Placement, Placement] | None = None,
-) -> Drawing:
-    """Return the drawing of the assembled pair.
-
-    The default placement is phi1 = 0: wheel 1 in its own frame, wheel 2 shifted by the centre
-    distance.
-
-    Parameters
-    ----------
-    parts : two Part
-        Driver first.
-    center_distance : float, mm
-        Position of the second shaft on x, negative for a ring; 0 for a rack, which has none.
-    centrodes : sequence of Path
-        In the wheels' own frames, driver first; may be empty.
-    placements : two Placement, optional
-        Rotation, rad, and shift, mm, of each wheel.
-
-    Returns
-    -------
-    Drawing
-
-    Raises
-    ------
-    ValueError
-        If there are not two parts, or centrodes for another number of wheels.
-    """
-    if len(parts) != 2 or len(centrodes) not in (0, 2):
-        raise ValueError("a pair takes two parts, and two centrodes or none")
-    offsets = ((0.0, 0.0), (float(center_distance), 0.0))
-    stands = placements or ((0.0, offsets[0]), (0.0, offsets[1]))
-    features: list[Feature] = []
-    numbered = enumerate(zip(parts, stands, strict=True), start=1)
-    # drawn later means on top: a wheel in its ring
-    for number, (part, stand) in sorted(numbered, key=lambda one: not one[1][0].inner):
-        features += place(part_features(part), *stand, prefix=f"GEAR{number}_")
-    for path, stand in zip(centrodes, stands, strict=False):
-        features += place([Feature(layer=CENTRODE, shape=path)], *stand)
-    size = CROSS_SIZE * (abs(center_distance) or float(np.ptp(parts[0].contour.vertices)))
-    for offset in offsets if center_distance else offsets[:1]:
-        features.append(Feature(layer=CENTER, shape=Cross(center=np.array(offset), size=size)))
-    return Drawing(name="pair", features=tuple(features))
-
-
-def cam_drawing(
-    part: Part,
-    pitch: Contour | None,
-    prime_radius: float,
-    follower: Sequence[Shape] = (),
-    *,
-    angle: float = 0.0,
-    outline: str = PROFILE,
-) -> Drawing:
-    """Return the drawing of a turned cam with its pitch curve, prime circle and follower.
-
-    Parameters
-    ----------
-    part : Part
-        The cam.
-    pitch : Contour or None
-        Its pitch curve, in the part's frame; None if that is the profile.
-    prime_radius : float, mm
-        Radius of the prime circle; for a flat follower of the base circle.
-    follower : sequence of Shape
-        The follower in its position; may be empty.
-    angle : float, rad
-        Rotation of the cam, counter-clockwise.
-    outline : str
-        Layer of the part's outline.
-
-    Returns
-    -------
-    Drawing
-        With the name of the part.
-    """
-    turning = list(part_features(part, outline=outline))
-    if pitch is not None:
-        turning.append(Feature(layer=PITCH, shape=pitch))
-    features = list(place(turning, angle, (0.0, 0.0)))
-    circle = Circle(center=np.zeros(2), diameter=2.0 * prime_radius)
-    features.append(Feature(layer=PRIME, shape=circle))
-    features += [Feature(layer=FOLLOWER, shape=shape) for shape in follower]
-    cross = Cross(center=np.zeros(2), size=CROSS_SIZE * float(np.ptp(part.contour.vertices)))
-    features.append(Feature(layer=CENTER, shape=cross))
-    return Drawing(name=part.name, features=tuple(features))

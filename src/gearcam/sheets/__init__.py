@@ -1,11 +1,10 @@
-"""Sheets: dimensioned workshop drawings of each wheel and of the assembled pair.
+"""Sheets: dimensioned workshop drawings.
 
 `sheet` defines the elements of a sheet, `paper` selects paper and scale and draws frame, table and
-title block, `extent` measures outlines, `board` places dimensions where there is space, `wheel` and
-`pair` draw the two types of sheet. Exporters use sheets only.
+title block, `extent` measures outlines, `board` places dimensions where there is space, `wheel`
+draws the sheet of a part. Exporters use sheets only.
 """
 
-from gearcam.sheets.pair import pair_sheet
 from gearcam.sheets.wheel import wheel_sheet
 
-__all__ = ["pair_sheet", "wheel_sheet"]
+__all__ = ["wheel_sheet"]

@@ -10,12 +10,13 @@ import pytest
 
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.quantities import params_of
+from gearcam.kinds.gear_pair.drawn import pair_drawing
 from gearcam.numeric.contour import Contour, Run
 from gearcam.parts.blank import Blank
 from gearcam.parts.body import Hub, Mark, Opening, Part
 from gearcam.parts.marks import timing_mark
 from gearcam.parts.shapes import Loop
-from gearcam.pictures.drawings import Circle, Path, pair_drawing, placed, wheel_drawing
+from gearcam.pictures.drawings import Circle, Path, placed, wheel_drawing
 from helpers_contour import bore, gear_contour, layers, square_contour
 
 

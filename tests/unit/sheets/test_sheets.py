@@ -16,10 +16,12 @@ from gearcam.base.numerals import decimal
 from gearcam.designs.kind import KINDS
 from gearcam.export.dxf_read import read_dxf
 from gearcam.export.shared import sheet_rows
+from gearcam.kinds.gear_pair.drawn import pair_drawing
+from gearcam.kinds.gear_pair.sheet import pair_sheet
 from gearcam.parts.body import Mark, Opening, Part
 from gearcam.parts.shapes import Circle, Loop
-from gearcam.pictures.drawings import OUTLINE, Drawing, Feature, Path, pair_drawing, placed
-from gearcam.sheets import pair_sheet, wheel_sheet
+from gearcam.pictures.drawings import OUTLINE, Drawing, Feature, Path, placed
+from gearcam.sheets import wheel_sheet
 from gearcam.sheets.board import Board
 from gearcam.sheets.paper import area_of, choose, scale_words
 from gearcam.sheets.sheet import (

@@ -15,7 +15,23 @@ from gearcam.export.shared import sheet_rows
 from gearcam.numeric.contour import Contour
 from gearcam.parts.body import Part
 from gearcam.parts.parallel import moved, sized
-from gearcam.pictures.drawings import BLANK, Circle, Drawing, Path, Shape, cam_drawing
+from gearcam.parts.shapes import Circle
+from gearcam.pictures.drawings import (
+    BLANK,
+    CENTER,
+    CROSS_SIZE,
+    FOLLOWER,
+    PITCH,
+    PRIME,
+    PROFILE,
+    Cross,
+    Drawing,
+    Feature,
+    Path,
+    Shape,
+    part_features,
+    place,
+)
 
 if TYPE_CHECKING:
     from gearcam.kinds.cam.build import CamResult
@@ -62,6 +78,49 @@ def cutter_way(edge: Contour, radius: float, *, side: int = 1) -> Contour:
             nearest="the default is the radius of a round follower; this follower has none",
         )
     return sized(lambda by: moved(edge, side * by), radius, TOOL_RADIUS, "radius of the cutter")
+
+
+def cam_drawing(
+    part: Part,
+    pitch: Contour | None,
+    prime_radius: float,
+    follower: Sequence[Shape] = (),
+    *,
+    angle: float = 0.0,
+    outline: str = PROFILE,
+) -> Drawing:
+    """Return the drawing of a turned cam with its pitch curve, prime circle and follower.
+
+    Parameters
+    ----------
+    part : Part
+        The cam.
+    pitch : Contour or None
+        Its pitch curve, in the part's frame; None if that is the profile.
+    prime_radius : float, mm
+        Radius of the prime circle; for a flat follower of the base circle.
+    follower : sequence of Shape
+        The follower in its position; may be empty.
+    angle : float, rad
+        Rotation of the cam, counter-clockwise.
+    outline : str
+        Layer of the part's outline.
+
+    Returns
+    -------
+    Drawing
+        With the name of the part.
+    """
+    turning = list(part_features(part, outline=outline))
+    if pitch is not None:
+        turning.append(Feature(layer=PITCH, shape=pitch))
+    features = list(place(turning, angle, (0.0, 0.0)))
+    circle = Circle(center=np.zeros(2), diameter=2.0 * prime_radius)
+    features.append(Feature(layer=PRIME, shape=circle))
+    features += [Feature(layer=FOLLOWER, shape=shape) for shape in follower]
+    cross = Cross(center=np.zeros(2), size=CROSS_SIZE * float(np.ptp(part.contour.vertices)))
+    features.append(Feature(layer=CENTER, shape=cross))
+    return Drawing(name=part.name, features=tuple(features))
 
 
 def plate(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -9,7 +10,19 @@ import numpy as np
 from gearcam.base.numerals import shown
 from gearcam.export.shared import sheet_rows
 from gearcam.kinds.gear_pair.files import placements
-from gearcam.pictures.drawings import Drawing, Path, pair_drawing
+from gearcam.parts.body import Part
+from gearcam.pictures.drawings import (
+    CENTER,
+    CENTRODE,
+    CROSS_SIZE,
+    Cross,
+    Drawing,
+    Feature,
+    Path,
+    Placement,
+    part_features,
+    place,
+)
 
 if TYPE_CHECKING:
     from gearcam.kinds.gear_pair.stages import PairStages
@@ -42,6 +55,55 @@ def centrode_paths(result: PairStages) -> tuple[Path, Path]:
     return first, second
 
 
+def pair_drawing(
+    parts: Sequence[Part],
+    center_distance: float,
+    centrodes: Sequence[Path] = (),
+    *,
+    placements: tuple[Placement, Placement] | None = None,
+) -> Drawing:
+    """Return the drawing of the assembled pair.
+
+    The default placement is phi1 = 0: wheel 1 in its own frame, wheel 2 shifted by the centre
+    distance.
+
+    Parameters
+    ----------
+    parts : two Part
+        Driver first.
+    center_distance : float, mm
+        Position of the second shaft on x, negative for a ring; 0 for a rack, which has none.
+    centrodes : sequence of Path
+        In the wheels' own frames, driver first; may be empty.
+    placements : two Placement, optional
+        Rotation, rad, and shift, mm, of each wheel.
+
+    Returns
+    -------
+    Drawing
+
+    Raises
+    ------
+    ValueError
+        If there are not two parts, or centrodes for another number of wheels.
+    """
+    if len(parts) != 2 or len(centrodes) not in (0, 2):
+        raise ValueError("a pair takes two parts, and two centrodes or none")
+    offsets = ((0.0, 0.0), (float(center_distance), 0.0))
+    stands = placements or ((0.0, offsets[0]), (0.0, offsets[1]))
+    features: list[Feature] = []
+    numbered = enumerate(zip(parts, stands, strict=True), start=1)
+    # drawn later means on top: a wheel in its ring
+    for number, (part, stand) in sorted(numbered, key=lambda one: not one[1][0].inner):
+        features += place(part_features(part), *stand, prefix=f"GEAR{number}_")
+    for path, stand in zip(centrodes, stands, strict=False):
+        features += place([Feature(layer=CENTRODE, shape=path)], *stand)
+    size = CROSS_SIZE * (abs(center_distance) or float(np.ptp(parts[0].contour.vertices)))
+    for offset in offsets if center_distance else offsets[:1]:
+        features.append(Feature(layer=CENTER, shape=Cross(center=np.array(offset), size=size)))
+    return Drawing(name="pair", features=tuple(features))
+
+
 def assembled(result: PairStages) -> Drawing:
     """Return the drawing of the assembled pair of a `result`, with its centrodes."""
     return pair_drawing(
@@ -51,7 +113,8 @@ def assembled(result: PairStages) -> Drawing:
 
 def sheets(result: PairStages) -> tuple[Sheet, ...]:
     """Return the workshop drawings of both wheels of a `result` and of the pair."""
-    from gearcam.sheets import pair_sheet, wheel_sheet
+    from gearcam.kinds.gear_pair.sheet import pair_sheet
+    from gearcam.sheets import wheel_sheet
 
     facts, title, pose = result.facts, result.design.name, result.design.output.pose
     radius = float(abs(result.pair.rolling.tracks[0].frames(np.array([pose])).p[0]))

@@ -46,7 +46,7 @@ def pair_sheet(
     Parameters
     ----------
     drawing : Drawing
-        The pair with its centrodes (see `gearcam.pictures.drawings.pair_drawing`).
+        The pair with its centrodes (see `gearcam.kinds.gear_pair.drawn.pair_drawing`).
     center_distance : float, mm
         Position of the second shaft on x, with the first at 0: negative for a ring; 0 for a rack.
     facts : mapping of str to str
