@@ -337,7 +337,7 @@ def design(d: Draw, index: int) -> dict[str, Any]:
     """
     law = [*LAWS][index % len(LAWS)]
     given, z = LAWS[law](d)
-    module = d.pick([d.log(0.05, 10000), d.log(0.5, 10)])
+    module = d.pick([d.log(0.05, 1000), d.log(0.5, 10)])
     opened, closed = "driven_travel_deg" in given, law != "rack"
     made: dict[str, Any] = {
         "law": {"type": law, **given},

@@ -10,6 +10,12 @@ from gearcam.base.quantities import ANGLE, COUNT, LENGTH, LONGEST, NUMBER, TEXT,
 RIM = 2.7
 """Default rim beyond the roots, in modules: 1.2 tooth depths."""
 
+MOST_TEETH = 3000
+"""Largest number of teeth of a wheel, and of a pinion cutter."""
+
+LARGEST_MODULE = 1e3
+"""Largest module, mm."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Rack:
@@ -137,13 +143,13 @@ class PairSpec(Brief):
         LENGTH,
         default=None,
         gt=0,
-        le=1e4,
+        le=LARGEST_MODULE,
         doc="module, L/(pi*z) with the length L of a pitch curve",
     )
     teeth: tuple[int, int] = param(
         COUNT,
         ge=3,
-        le=10000,
+        le=MOST_TEETH,
         doc="numbers of teeth, driver first; a ring that turns fully has more than its pinion",
     )
     x: float = param(
@@ -200,7 +206,7 @@ class RingSpec:
         NUMBER,
         default=None,
         ge=3,
-        le=10000,
+        le=MOST_TEETH,
         doc="teeth of the pinion cutter, not necessarily whole; if left out, a number that leaves "
         "room for the tips of wheel 1",
     )

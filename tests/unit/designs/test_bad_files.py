@@ -163,7 +163,7 @@ CONTENTS: dict[str, tuple[bytes, str]] = {
     "infinite": (number("1e999"), "inf is not a finite number"),
     "nothing below zero": (number("-0.0"), "-0.0 is out of range"),
     "nearly nothing": (number("1e-18"), "1e-18 is too small"),
-    "how near": (number("1e-18"), "allowed: a number above 0 up to 10000 mm, at least 0.001 mm"),
+    "how near": (number("1e-18"), "allowed: a number above 0 up to 1000 mm, at least 0.001 mm"),
     "date": (number("2026-01-02"), "2026-01-02 is not a number"),
     "time": (number("07:30:00"), "07:30:00 is not a number"),
     "key twice": (number("2\nmodule_mm = 3"), "the key module_mm is given twice"),

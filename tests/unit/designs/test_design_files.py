@@ -144,7 +144,7 @@ def test_a_problem_carries_file_line_key_value_rule_and_hint() -> None:
     assert problem.line == 11
     assert problem.key == "pair.teeth[1]"
     assert problem.value == 2
-    assert problem.allowed == "a whole number from 3 to 10000"
+    assert problem.allowed == "a whole number from 3 to 3000"
     assert str(problem).startswith("design.toml:11: pair.teeth[1]: 2 is out of range")
     assert only(changed("teeth =", "shaft = 1\nteeth =")).hint == ""
 

@@ -51,7 +51,7 @@ SLIPS: dict[str, tuple[str, str, str, str, str]] = {
     "circle's radius": (PAIR, "[output]", "[blank]\nbolt_circle_radius_mm = 5\n[output]",
                         "blank.bolt_circle_radius_mm", "mean bolt_circle_mm? (twice the radius)"),
     "one of two": (PAIR, "[36, 36]", "36", "pair.teeth",
-                   "from 3 to 10000 write teeth = [36, 36]"),
+                   "from 3 to 3000 write teeth = [36, 36]"),
     "one of any": (PAIR, '["csv"]', '"csv, dfx"', "output.files",
                    'write files = ["csv", "dxf"]'),
     "no quotes": (PAIR, '"gear-pair"', "gear-pair", "", 'write kind = "gear-pair"'),

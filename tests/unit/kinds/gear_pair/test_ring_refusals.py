@@ -13,7 +13,6 @@ import gearcam as gc
 from gearcam.base.errors import DesignError, InfeasibleError, Problem
 from gearcam.base.tolerances import DEFAULT
 from gearcam.gears.pair import GearPair, lobes_of
-from gearcam.kinds.gear_pair.planetary import planet_curve
 from gearcam.laws.ratio.span import RING, Lobes
 
 ELLIPSE = {"type": "ellipse", "eccentricity": 0.1}
@@ -167,60 +166,19 @@ def test_lobes_know_their_mate() -> None:
     assert lobes_of(spec) == Lobes(2, 3, RING)
 
 
-# lobes of sun, planet and ring; x and e in thirty digits
-PLANETS = {
-    (4, 4, 12): (0.5, 0.0),
-    (4, 4, 13): (0.459104938271605, 0.44939366285989),
-    (3, 3, 10): (0.447704081632653, 0.523976471730756),
-    (8, 8, 25): (0.478157439446367, 0.312444475974748),
-    (2, 1, 5): (0.279513888888889, 0.977526096923783),
-}
-
-
-@pytest.mark.parametrize("lobes", PLANETS)
-def test_the_curve_of_a_planet(lobes: tuple[int, int, int]) -> None:
-    assert planet_curve(*lobes) == pytest.approx(PLANETS[lobes], abs=1e-14)
-
-
-@pytest.mark.parametrize("lobes", [(4, 4, 13), (3, 3, 10), (8, 8, 25), (2, 1, 5)])
-def test_the_planet_meshes_with_both_at_one_distance(lobes: tuple[int, int, int]) -> None:
-    """Trapezia of the ratios to the sun and to the ring, over a turn of the planet."""
-    sun, planet, ring = lobes
-    x, e = planet_curve(*lobes)
-    radii = [x * (1 + e * math.cos(2 * math.pi * k / 4096)) for k in range(4096)]
-    assert sum(r / (1 - r) for r in radii) / 4096 == pytest.approx(planet / sun, rel=1e-12)
-    assert sum(r / (1 + r) for r in radii) / 4096 == pytest.approx(planet / ring, rel=1e-12)
-
-
-@pytest.mark.parametrize(
-    ("teeth", "words"),
-    [
-        ([24, 24, 78], "0.459105*A*(1 + 0.449394*cos(4*phi)), A being the centre distance"),
-        ([24, 24, 72], "only round wheels mesh with these teeth"),
-        (
-            [20, 10, 80],
-            "*cos(phi)), A being the centre distance, which does not close around a shaft",
-        ),
-        ([24, 24, 60], "a ring needs at least 72 teeth here"),
-        ([24, 24, 20], "a ring needs at least 72 teeth here"),
-    ],
-)
 @pytest.mark.parametrize("kind", ["internal", "external", "planetary"])
-def test_a_planet_on_a_carrier_is_refused_with_its_numbers(
-    teeth: list[int], words: str, kind: str
-) -> None:
-    with pytest.raises(DesignError) as caught:
+@pytest.mark.parametrize("teeth", [[24, 24, 78], [24, 24, 0.5]])
+def test_a_planet_on_a_carrier_is_refused(teeth: list[float], kind: str) -> None:
+    with pytest.raises(DesignError, match="a planet between sun and ring on a carrier") as caught:
         built(ELLIPSE, teeth, pair={"type": kind})
-    problem = only(caught)
-    assert problem.key == "pair.teeth"
-    assert words in problem.message
-    assert len(problem.message) < 200
-    assert f"with {teeth[0] + 2 * teeth[1]} teeth the ring and all wheels are round" in problem.hint
+    assert only(caught).key == "pair.teeth"
+    assert "two tooth counts, driver first" in only(caught).allowed
+    assert "sun + 2*planet teeth" in only(caught).hint
 
 
-@pytest.mark.parametrize("teeth", [[24, 48], [24, 24, 0.5], "many"])
+@pytest.mark.parametrize("teeth", [[24, 48], "many"])
 def test_a_planetary_pair_is_refused_whatever_its_teeth(teeth: Any) -> None:
-    with pytest.raises(DesignError, match=r"more than sun \+ 2\*planet teeth") as caught:
+    with pytest.raises(DesignError, match="a planet between sun and ring on a carrier") as caught:
         built(ELLIPSE, teeth, pair={"type": "planetary"})
     assert only(caught).key == "pair"
 
