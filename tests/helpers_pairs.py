@@ -19,6 +19,7 @@ from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.kinds.gear_pair.design import GearPairDesign, PairOutputSpec
 from gearcam.meshing.study import Setup
 from gearcam.parts.blank import Blank
+from helpers_built import built
 
 PROFILES = Path(__file__).parent.parent / "profiles"
 
@@ -39,10 +40,10 @@ def job(
     internal: bool = False,
     ring: RingSpec | None = None,
 ) -> GearPairResult:
-    """Return the job of a design made in Python; lengths in mm, limits in inner units."""
+    """Return the shared result of a design made in Python; lengths in mm, limits in inner units."""
     if module is None and distance is None:
         module = 1.0
-    return gearcam.build(
+    return built(
         GearPairDesign(
             name="sample",
             law=law,
@@ -65,11 +66,11 @@ def job(
 
 @cache
 def profile(name: str, tolerance: float | None = None) -> GearPairResult:
-    """Return the job of a file in ``profiles/``, at a tolerance of its own where one is given."""
+    """Return the shared result of a file in ``profiles/``, at another tolerance if one is given."""
     design = gearcam.load(PROFILES / f"{name}.toml")
     assert isinstance(design, GearPairDesign)
     if tolerance is None:
-        return gearcam.build(design)
+        return built(design)
     return job(
         design.law,
         design.pair.teeth,

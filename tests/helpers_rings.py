@@ -22,6 +22,7 @@ from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.kinds.gear_pair.design import GearPairDesign
 from gearcam.laws.ratio.formula import Formula
 from gearcam.laws.ratio.phases import Phases
+from helpers_built import built
 from helpers_pairs import job
 
 # --- as parts ------------------------------------------------------------------------------
@@ -40,7 +41,7 @@ def ring_design(law: Any = UNEVEN, pair: Any = None, **tables: Any) -> GearPairD
 
 
 def ring_job(law: Any = UNEVEN, pair: Any = None, **tables: Any) -> GearPairResult:
-    return gearcam.build(ring_design(law, pair, **tables))
+    return built(ring_design(law, pair, **tables))
 
 
 @cache
@@ -140,7 +141,7 @@ def ring(law: dict[str, Any], teeth: tuple[int, int], **tables: Any) -> GearPair
     output = {"files": ["csv"], "chord_tolerance_mm": 0.01 * pair["module_mm"]}
     output |= tables.pop("output", {})
     document = {"kind": "gear-pair", "name": "r", "law": law, "pair": pair, "output": output}
-    return gearcam.build(gearcam.design(document | tables))
+    return built(gearcam.design(document | tables))
 
 
 def driver(e: float, n1: int, n2: int) -> dict[str, Any]:

@@ -20,6 +20,7 @@ from gearcam.meshing.contact import contacts
 from gearcam.meshing.numbers import numbers
 from gearcam.meshing.study import study
 from gearcam.parts.blank import Blank
+from helpers_built import built
 from helpers_pairs import job
 
 ALPHA = math.radians(20.0)
@@ -57,7 +58,7 @@ class Wheels:
         self.play = backlash + 2.0 * sum(clearance) / math.cos(ALPHA)
         made = job(Constant(), teeth, module=module, x=x, backlash=backlash)
         blank = Blank(clearance=clearance, tip_rounding=rounding)
-        self.job = GearPairResult(replace(made.design, blank=blank))
+        self.job: GearPairResult = built(replace(made.design, blank=blank))
 
     def operating(self, distance: float) -> float:
         """Pressure angle at which the wheels run."""

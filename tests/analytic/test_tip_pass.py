@@ -16,6 +16,7 @@ from gearcam.gears.polar import PolarCurve
 from gearcam.gears.tip_pass import Stays, TipPass, find_stays, rolls_of, tip_pass
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.numeric.arrays import Array, Plane
+from helpers_built import fresh
 from helpers_rings import driver, overlap, passed_on_circles, ring
 
 CONSTANT = {"type": "constant"}
@@ -214,7 +215,7 @@ def test_tips_of_the_wheel_stay_out_of_fillets_of_a_ring() -> None:
 def test_corners_that_are_hardly_looked_at_stay_where_all_looks_see_them(
     monkeypatch: pytest.MonkeyPatch, law: dict[str, Any], teeth: tuple[int, int]
 ) -> None:
-    wheel, hole = full(ring(law, teeth).pair)
+    wheel, hole = full(fresh(ring(law, teeth)).pair)
     own, mate = wheel.toothing, hole.toothing
     edge = PolarCurve(mate, mate.cutter.addendum)
     count, z = 60 * own.teeth, own.teeth

@@ -18,6 +18,7 @@ from gearcam.gears.outline import Outline, build_outline
 from gearcam.gears.tips import find_tips
 from gearcam.laws.ratio.centrodes import LogSpiral
 from gearcam.numeric.arrays import Array, Mask
+from helpers_built import fresh
 from helpers_pairs import job
 from helpers_rings import CHORDS, random_ring, ring
 
@@ -200,7 +201,7 @@ def test_nothing_is_seen_of_corners_where_an_open_mate_has_no_space() -> None:
 def test_crossings_that_are_not_wanted_are_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
     """A flank of this ring may never come to its addendum curve: Newton's steps go anywhere."""
     teeth, law = CLEAR["24 : 48"]
-    one, two = ring(law, teeth, pair={"module_mm": 2.0}).pair.toothings
+    one, two = fresh(ring(law, teeth, pair={"module_mm": 2.0})).pair.toothings
     sf, sigma = two.flanks
     asked: list[int] = []
     plain = Toothing.frames

@@ -22,6 +22,7 @@ from gearcam.numeric.contour import Run
 from gearcam.numeric.jets import Jet, sin
 from gearcam.numeric.piecewise import Piece, Piecewise
 from gearcam.numeric.sampling import Sampler
+from helpers_built import fresh
 from helpers_pairs import job
 from helpers_rings import ring
 
@@ -47,7 +48,8 @@ def counted(owner: Any, name: str, size: Callable[..., int]) -> tuple[Any, list[
 def test_vertices_are_spread_a_few_times(tolerance: float) -> None:
     """With few chords between corners it went to and fro, for 120 places a vertex."""
     for law in (Constant(), Ellipse(eccentricity=0.3)):
-        sampler = job(law, (20, 20), module=2.0, tolerance=tolerance).gear1.profile.sampler
+        made = fresh(job(law, (20, 20), module=2.0, tolerance=tolerance))
+        sampler = made.gear1.profile.sampler
         _ = sampler.density
         patch, places = counted(Sampler, "at", lambda _, j: np.size(j))
         with patch:
@@ -106,7 +108,7 @@ def test_corners_are_seen_wherever_they_come_into_a_ring(
             np.testing.assert_array_equal(one, other)
         return found
 
-    profiles = [gear.profile for gear in ring(law, teeth).gears]
+    profiles = [gear.profile for gear in fresh(ring(law, teeth)).gears]
     with mock.patch.object(room, "find_stays", compared):
         assert math.isfinite(tip_pass(*profiles).margin)
 
@@ -115,7 +117,7 @@ def test_corners_in_a_ring_are_looked_at_as_often_as_it_has_teeth() -> None:
     """Every corner at every roll were 64 times as many places with 8 times the teeth."""
     asked = []
     for z in (60, 480):
-        profiles = [gear.profile for gear in ring(ELLIPSE, (z, 2 * z)).gears]
+        profiles = [gear.profile for gear in fresh(ring(ELLIPSE, (z, 2 * z))).gears]
         patch, places = counted(PolarCurve, "clear", lambda _, points, *__: points.size)
         with patch:
             tip_pass(*profiles)

@@ -22,6 +22,7 @@ from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.laws.ratio.formula import Formula
 from gearcam.laws.ratio.phases import Phases
 from gearcam.numeric.contour import polygon_area
+from helpers_built import fresh
 from helpers_pairs import job, profile
 
 TOP = [
@@ -80,7 +81,7 @@ def test_a_fresh_job_has_computed_nothing(monkeypatch: pytest.MonkeyPatch) -> No
         return build(self, *given)
 
     monkeypatch.setattr(Ellipse, "build", counted)
-    made = small()
+    made = fresh(small())
     assert calls == []
     assert computed(made) == set()
     assert made.timings == {}
@@ -90,7 +91,7 @@ def test_a_fresh_job_has_computed_nothing(monkeypatch: pytest.MonkeyPatch) -> No
 
 def test_each_stage_brings_only_what_it_needs() -> None:
     """A stage is on the clock by itself: all together are not more than the whole."""
-    made, start = small(), time.perf_counter()
+    made, start = fresh(small()), time.perf_counter()
     stages = [
         ("law", {"law"}),
         ("pair", {"law", "centrodes"}),
@@ -107,7 +108,7 @@ def test_each_stage_brings_only_what_it_needs() -> None:
 
 
 def test_a_stage_is_computed_once() -> None:
-    made = small()
+    made = fresh(small())
     first = made.gear1, made.findings
     before = dict(made.timings)
     assert (made.gear1, made.findings) == first
@@ -336,7 +337,7 @@ def test_the_table_of_centrodes_has_signed_radii(tmp_path: Path) -> None:
 def test_a_straight_part_has_an_infinite_radius(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    made = small()
+    made = fresh(small())
     _ = made.gears
     frames = Centrode.frames
     straight = slice(3, 9)

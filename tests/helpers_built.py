@@ -1,0 +1,47 @@
+"""Results that the tests of a process share: each design is computed once.
+
+Not for tests that count work, measure time, replace functions of the package or change a result:
+these call `gearcam.build`, or `fresh`.
+"""
+
+from __future__ import annotations
+
+import pickle
+from collections import OrderedDict
+from dataclasses import fields
+from os import PathLike
+from typing import Any, Final
+
+import gearcam
+from gearcam.base.errors import GearcamError
+from gearcam.designs import Design
+from gearcam.designs.design import hash_of
+
+_KEPT: Final = 96
+"""Results kept at a time, those used last."""
+
+_results: OrderedDict[tuple[str, bytes], Any] = OrderedDict()
+
+
+def built(asked: Design | str | PathLike[str]) -> Any:
+    """The result of a design or a design file, the same one for the same design.
+
+    Designs are the same if their hashes are, and all other values, such as names, limits and
+    files, to the last digit.
+    """
+    design = asked if isinstance(asked, Design) else gearcam.load(asked)
+    try:
+        values = pickle.dumps([getattr(design, one.name) for one in fields(design)])
+        key = hash_of(design), values
+    except (GearcamError, pickle.PicklingError, AttributeError):
+        return gearcam.build(design)  # a file that has gone, or a function without a name
+    result = _results.pop(key, None) or gearcam.build(design)
+    _results[key] = result
+    if len(_results) > _KEPT:
+        _results.popitem(last=False)
+    return result
+
+
+def fresh(result: Any) -> Any:
+    """The result of the same design, of which nothing has been computed."""
+    return gearcam.build(result.design, result.tolerances)
