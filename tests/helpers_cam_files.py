@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import pytest
 
-import gearcam
 from gearcam.base.errors import DesignError, Problem
 from gearcam.cams.sliding import SlidingCam
 from gearcam.designs import loads
 from gearcam.kinds.cam.build import CamResult
 from gearcam.kinds.cam.design import CamDesign
+from helpers_built import built as shared
 from helpers_pairs import PROFILES
 
 ROLLER = """\
@@ -132,7 +132,8 @@ def read(text: str, *changes: tuple[str, str], file: str = "") -> CamDesign:
 
 
 def built(text: str, *changes: tuple[str, str]) -> CamResult:
-    return gearcam.build(read(text, *changes))
+    """The shared result of a text in which words are replaced."""
+    return shared(read(text, *changes))
 
 
 def sliding_of(result: CamResult) -> SlidingCam:

@@ -31,6 +31,11 @@ NAILS = ("nail_machine_two_phase", "nail_machine_three_phase")
 OVERCLOSURE = math.radians(0.005)
 TURN = np.radians(np.arange(360.0))
 
+FORWARDS = [(name, OVERCLOSURE) for name in NAILS]
+BACKWARDS = [(name, -OVERCLOSURE) for name in NAILS]
+TURNS = [*few(FORWARDS), *few(reversed(BACKWARDS))]
+"""Pairs that are turned once, forwards or backwards."""
+
 
 @cache
 def full_turn(name: str, overclosure: float) -> Meshing:
@@ -41,8 +46,7 @@ def codes(meshing: Meshing) -> dict[str, str]:
     return {found.code: found.severity for found in run_checks(KIND, meshing, {})}
 
 
-@pytest.mark.parametrize("name", NAILS)
-@pytest.mark.parametrize("overclosure", [OVERCLOSURE, -OVERCLOSURE])
+@pytest.mark.parametrize(("name", "overclosure"), TURNS)
 def test_a_full_turn_runs_clean(name: str, overclosure: float) -> None:
     meshing = full_turn(name, overclosure)
     found = numbers(meshing)
@@ -57,8 +61,7 @@ def test_a_full_turn_runs_clean(name: str, overclosure: float) -> None:
     assert codes(meshing) == {}
 
 
-@pytest.mark.parametrize("name", NAILS)
-@pytest.mark.parametrize("overclosure", [OVERCLOSURE, -OVERCLOSURE])
+@pytest.mark.parametrize(("name", "overclosure"), TURNS)
 def test_outlines_and_exact_flanks_agree(name: str, overclosure: float) -> None:
     agreement = numbers(full_turn(name, overclosure))["agreement"]
     assert agreement["inside"] < 0.02
@@ -67,12 +70,15 @@ def test_outlines_and_exact_flanks_agree(name: str, overclosure: float) -> None:
 
 
 @pytest.mark.parametrize("name", few(NAILS))
-def test_outlines_count_the_unloaded_pairs_but_within_a_step_of_a_change(name: str) -> None:
+@pytest.mark.parametrize("steps", few([60, 180]))
+def test_outlines_count_the_unloaded_pairs_but_within_a_step_of_a_change(
+    name: str, steps: int
+) -> None:
     """Edges overlap by half a lens outside their arcs: the overclosure must be small.
 
     Where an undercut flank ends its mate is nearly parallel, and the lens is long.
     """
-    meshing = study(profile(name).gears, MeshingSpec(overclosure=math.radians(5e-4), steps=180))
+    meshing = study(profile(name).gears, MeshingSpec(overclosure=math.radians(5e-4), steps=steps))
     pairs, phi = meshing.setup.pairs[DRIVE], meshing.phi1
     stepwise, unloaded = pairs_in_contact(meshing), pairs.carrying(phi)
     assert np.all(stepwise >= unloaded)
@@ -87,7 +93,7 @@ def test_outlines_count_the_unloaded_pairs_but_within_a_step_of_a_change(name: s
     assert len(far) <= 2
 
 
-@pytest.mark.parametrize("name", NAILS)
+@pytest.mark.parametrize("name", few(NAILS))
 def test_held_back_the_flanks_come_apart_by_the_overclosure(name: str) -> None:
     meshing = full_turn(name, OVERCLOSURE)
     held, setup = numbers(meshing)["held_back_gap_mm"], meshing.setup
@@ -195,11 +201,11 @@ def test_teeth_choose_the_phases() -> None:
     assert {1.0, 27.0} <= set(meshing.columns["tooth1"].tolist())
 
 
-def test_both_sides_are_those_of_the_motion() -> None:
+@pytest.mark.parametrize(("name", "overclosure"), TURNS)
+def test_both_sides_are_those_of_the_motion(name: str, overclosure: float) -> None:
     """With the driver ahead it is the drive side that overlaps, held back the other."""
-    for overclosure, side in ((OVERCLOSURE, DRIVE), (-OVERCLOSURE, COAST)):
-        columns = full_turn(NAILS[0], overclosure).columns
-        assert set(columns["side"].tolist()) == {float(side)}
+    side = DRIVE if overclosure > 0.0 else COAST
+    assert set(full_turn(name, overclosure).columns["side"].tolist()) == {float(side)}
 
 
 def test_the_pair_s_own_check_names_the_sides_alike() -> None:

@@ -28,6 +28,7 @@ from helpers_rings import (
     pair_of,
     phases,
 )
+from helpers_sampling import few
 
 FLANK_POINTS = [
     ("one lobe", 1, 1, 3.0, 0.670422458743, 17.3669675696998 + 1.50032475382222j,
@@ -220,8 +221,9 @@ def dense_touch(name: str, side: int, phi1: float, distance: float) -> float:
 @pytest.mark.parametrize("name", ["one lobe", "asymmetric"])
 @pytest.mark.parametrize("side", [DRIVE, COAST])
 @pytest.mark.parametrize("more", [0.0, 0.1, -0.1])
-def test_first_touch_is_that_of_dense_points(name: str, side: int, more: float) -> None:
-    phi1 = phases(5)
+@pytest.mark.parametrize("every", few([2, 1]))
+def test_first_touch_is_that_of_dense_points(name: str, side: int, more: float, every: int) -> None:
+    phi1 = phases(5)[::every]
     distance = made(name).pair.center_distance + more
     pairs = flank_pairs(made(name).gears, side, -distance)
     found = touches(pairs, phi1)

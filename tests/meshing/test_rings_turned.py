@@ -121,13 +121,14 @@ def whole_areas(name: str, distance: float, angles: Array, lead: float) -> list[
 
 @pytest.mark.parametrize("name", LAWS)
 @pytest.mark.parametrize("more", few([-0.03, 0.0, 0.03, 0.4], 4))
-def test_all_overlap_is_that_of_the_whole_outlines(name: str, more: float) -> None:
+@pytest.mark.parametrize("count", few([3, 9]))
+def test_all_overlap_is_that_of_the_whole_outlines(name: str, more: float, count: int) -> None:
     """In place, mounted far and near (in modules), and turned by up to half a tooth."""
     result, module = made(name), made(name).pair.module
     first, second = (half_teeth(gear.profile) for gear in result.gears)
     distance = result.pair.center_distance + more * module
     turning = Turning(rolling=result.pair.rolling, driver=first, driven=second, distance=-distance)
-    angles = np.radians(np.linspace(0.0, 360.0, 9) + 0.3)
+    angles = np.radians(np.arange(count) * 360.0 / count + 0.3)
     most = 0.0
     for lead in np.array([0.0, 0.01, -0.01, 0.2, -0.4]) * module / distance:
         found = turning.overlaps(angles, OVERCLOSURE, lead)

@@ -64,12 +64,13 @@ def overlapping(name: str) -> GearPairResult:
 
 @pytest.mark.parametrize("name", OVERLAPPING)
 @pytest.mark.parametrize("shift", few([-0.03, 0.0, 0.4, 0.03]))
-def test_all_overlap_is_that_of_the_whole_outlines(name: str, shift: float) -> None:
+@pytest.mark.parametrize("count", few([3, 9]))
+def test_all_overlap_is_that_of_the_whole_outlines(name: str, shift: float, count: int) -> None:
     """In its place, mounted close and wide (in modules), and turned by up to half a tooth."""
     made = overlapping(name)
     module = made.pair.module
     turning = turning_of(made, shift * module)
-    angles = np.radians(np.linspace(0.0, 360.0, 9) + 0.3)
+    angles = np.radians(np.arange(count) * 360.0 / count + 0.3)
     for lead in np.array([0.0, 0.01, -0.01, 0.2, -0.4]) * module / turning.distance:
         found = turning.overlaps(angles, OVERCLOSURE, lead)
         areas = np.bincount(found.step, found.area, minlength=len(angles))
