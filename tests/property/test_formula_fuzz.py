@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gearcam.laws.formula_syntax import NUMPY, Expression, FormulaError, parse
+from gearcam.laws.formula_syntax import Expression, FormulaError, parse
+from helpers_formulas import NUMPY
 
 WORDS = st.sampled_from(
     [
@@ -42,7 +43,7 @@ def test_any_text_is_read_or_refused(text: str) -> None:
         assert str(expression)
         assert expression.column is None or 1 <= expression.column <= len(text) + 1
     else:
-        assert np.shape(expression.evaluate(np.array([0.3, 4.0]))) == (2,)
+        assert np.shape(expression.evaluate(np.array([0.3, 4.0]), NUMPY)) == (2,)
 
 
 def _read(text: str) -> Expression | FormulaError:
@@ -89,5 +90,5 @@ def test_a_formula_agrees_with_the_same_text_in_math(text: str, angle: float) ->
         return
     if isinstance(expected, complex) or not abs(expected) < 1e12:
         return
-    value = float(expression.evaluate(np.float64(angle)))
+    value = float(expression.evaluate(np.float64(angle), NUMPY))
     assert value == pytest.approx(expected, rel=1e-9, abs=1e-9)

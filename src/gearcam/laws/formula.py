@@ -19,7 +19,7 @@ from gearcam.laws.entry import NO_JUMPS
 from gearcam.laws.formula_syntax import VARIABLE, FormulaError, parse
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.chebyshev import NotSmoothError, expand
-from gearcam.numeric.jets import FUNCTIONS, Jet, Value
+from gearcam.numeric.jets import Jet, Value
 
 Function = Callable[[Any], Any]
 """A Python function of a float array or a float; it returns as many values."""
@@ -75,8 +75,7 @@ def formula_problems(
 
 def compiled(text: str, variable: str = VARIABLE) -> Callable[[Jet], Jet]:
     """Return a formula as a function of jets (see `parse`)."""
-    expression = parse(text, variable)
-    return lambda x: expression.evaluate(x, FUNCTIONS)
+    return parse(text, variable).evaluate
 
 
 def function_of(given: Given, axis: Axis, tolerance: float) -> Callable[[Jet], Jet]:

@@ -27,6 +27,7 @@ import numpy as np
 
 from gearcam.base.errors import GearcamError
 from gearcam.base.numerals import shown
+from gearcam.numeric.jets import FUNCTIONS
 
 VARIABLE: Final = "phi1"
 """The angle of the driver, rad."""
@@ -42,23 +43,7 @@ MAX_EXPONENT: Final = 100.0
 
 CONSTANTS: Final = {"pi": math.pi}
 
-NUMPY: Final[dict[str, Callable[[Any], Any]]] = {
-    "sin": np.sin,
-    "cos": np.cos,
-    "tan": np.tan,
-    "asin": np.arcsin,
-    "acos": np.arccos,
-    "atan": np.arctan,
-    "sinh": np.sinh,
-    "cosh": np.cosh,
-    "tanh": np.tanh,
-    "exp": np.exp,
-    "log": np.log,
-    "sqrt": np.sqrt,
-}
-"""Functions of formulas for arrays; tables for other types have the same names."""
-
-ALLOWED: Final = f"{VARIABLE}, pi, numbers, + - * / ** ( ), {', '.join(NUMPY)}"
+ALLOWED: Final = f"{VARIABLE}, pi, numbers, + - * / ** ( ), {', '.join(FUNCTIONS)}"
 """Allowed elements of a formula, for messages."""
 
 _OPERATORS: Final[dict[type, Callable[..., Any]]] = {
@@ -163,7 +148,7 @@ class Expression:
         """Whether the formula does not contain the angle."""
         return isinstance(self.result, float)
 
-    def evaluate(self, x: Any, functions: Mapping[str, Callable[[Any], Any]] = NUMPY) -> Any:
+    def evaluate(self, x: Any, functions: Mapping[str, Callable[[Any], Any]] = FUNCTIONS) -> Any:
         """Compute the formula.
 
         Parameters
@@ -171,7 +156,7 @@ class Expression:
         x : array, float or any object with the operators
             The driver's angle, rad.
         functions : mapping of str to callable
-            The functions for this type of `x`, by the names of `NUMPY`.
+            The functions for this type of `x`, by the same names; those of jets by default.
 
         Returns
         -------
@@ -264,7 +249,7 @@ def _words(text: str, variable: str) -> Iterator[tuple[str, str, int]]:
         position = match.end()
         if kind == "name":
             _check_name(word, column, variable)
-            yield "function" if word in NUMPY else "value", word, column
+            yield "function" if word in FUNCTIONS else "value", word, column
         elif kind == "number":
             _check_number(word, column)
             yield "value", word, column
@@ -273,7 +258,7 @@ def _words(text: str, variable: str) -> Iterator[tuple[str, str, int]]:
 
 
 def _check_name(word: str, column: int, variable: str) -> None:
-    known = (variable, *CONSTANTS, *NUMPY)
+    known = (variable, *CONSTANTS, *FUNCTIONS)
     if word in known:
         return
     import difflib
@@ -349,7 +334,7 @@ def _steps(root: ast.expr, names: Mapping[str, Operand]) -> tuple[tuple[Step, ..
                 todo += [(_OPERATORS[type(op)], item, (left, right)), right, left]
             case ast.UnaryOp(op=op, operand=part) if type(op) in _OPERATORS:
                 todo += [(_OPERATORS[type(op)], item, (part,)), part]
-            case ast.Call(func=ast.Name(id=name), args=[part], keywords=[]) if name in NUMPY:
+            case ast.Call(func=ast.Name(id=name), args=[part], keywords=[]) if name in FUNCTIONS:
                 todo += [(name, item, (part,)), part]
             case _:
                 raise FormulaError("this is not allowed", column=item.col_offset, allowed=ALLOWED)

@@ -407,7 +407,7 @@ def near_chords(starts: Array, ends: Array) -> tuple[Ints, Ints]:
         levels.append((low, high))
     one, two = np.triu_indices(len(low))
     for number, (low, high) in enumerate(reversed(levels)):
-        if number:  # both halves of each
+        if number:  # each in two
             one = (2 * one[:, None] + [0, 0, 1, 1]).ravel()
             two = (2 * two[:, None] + [0, 1, 0, 1]).ravel()
         near = (low[one] <= high[two]).all(axis=1) & (low[two] <= high[one]).all(axis=1)

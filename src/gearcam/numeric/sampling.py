@@ -28,9 +28,6 @@ from gearcam.numeric.moments import halving
 _PROBES = 24
 """Intervals per curve for the density of points."""
 
-_CURVES = 1 << 11
-"""Curves whose density is computed at once, to limit memory."""
-
 _MEASURED = 2.0
 """Largest factor by which measured errors may increase the number of chords."""
 
@@ -151,32 +148,21 @@ class Sampler(Brief):
     @cached_property
     def probes(self) -> tuple[Plane, Plane]:
         """Points and tangents at even positions of every curve and at its ends, a row per curve."""
-        return self._probed(0, len(self.curves.start))
-
-    def _probed(self, first: int, last: int) -> tuple[Plane, Plane]:
-        """Return the probes of the curves from `first` to before `last`."""
-        index = np.arange(first, last).repeat(_PROBES + 1)
-        shares = np.tile(np.linspace(0.0, 1.0, _PROBES + 1), last - first)
-        points, tangents = self._along(index, shares)
-        return points.reshape(last - first, -1), tangents.reshape(last - first, -1)
+        count = len(self.curves.start)
+        shares = np.tile(np.linspace(0.0, 1.0, _PROBES + 1), count)
+        points, tangents = self._along(np.arange(count).repeat(_PROBES + 1), shares)
+        return points.reshape(count, -1), tangents.reshape(count, -1)
 
     @cached_property
     def density(self) -> Array:
         """J from the start at ``_PROBES`` points per curve, rising; one more for the end."""
-        count = len(self.curves.start)
-        cuts = range(0, count, _CURVES)
-        blocks = (self._probed(k, min(k + _CURVES, count)) for k in cuts)
-        probes = blocks if len(cuts) > 1 else [self.probes]
-        steps = np.concatenate([self._chords_at(*block) for block in probes])
-        steps += _RISING * max(1.0, float(steps.max()))
-        return np.concatenate([[0.0], np.cumsum(steps)])
-
-    def _chords_at(self, points: Plane, tangents: Plane) -> Array:
-        """Return the numbers of chords that the curvature needs between probes."""
+        points, tangents = self.probes
         turning = np.abs(np.angle(tangents[:, 1:] * np.conj(tangents[:, :-1])))
         turning[turning <= _STRAIGHT] = 0.0  # the square root of rounding would not be small
         chords = np.abs(np.diff(points, axis=1))
-        return np.sqrt(turning * chords / (8.0 * self.tolerance)).ravel()
+        steps = np.sqrt(turning * chords / (8.0 * self.tolerance)).ravel()
+        steps += _RISING * max(1.0, float(steps.max()))
+        return np.concatenate([[0.0], np.cumsum(steps)])
 
     @property
     def least(self) -> float:

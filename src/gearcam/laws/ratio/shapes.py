@@ -15,6 +15,7 @@ from gearcam.laws.entry import LawEntry
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.driver import law_of_centrode
 from gearcam.laws.ratio.span import WHEEL, Lobes
+from gearcam.numeric.chebyshev import NotSmoothError, expand
 from gearcam.numeric.jets import Jet, Value, cos, polynomial, sin, sqrt
 from gearcam.numeric.piecewise import Piece, piecewise
 from gearcam.numeric.roots import bracketed_root
@@ -143,34 +144,22 @@ class RoundedPolygon(Brief):
 
         In a ring any h is possible up to `largest`, that of a circular wheel.
         """
-        nodes, weights = np.polynomial.legendre.leggauss(64)
         highest = largest
         if lobes.mate == WHEEL:  # at the limit the corner reaches the other shaft: d + c = 1
             half = math.pi / self.corners
             highest = self.corner_radius + (1.0 - self.corner_radius) * math.cos(half)
 
         def excess(heights: np.ndarray) -> np.ndarray:
-            found = []
-            for h in np.atleast_1d(heights):
-                knots, pieces = self._pieces(float(h), lobes.mate)
-                ratio = piecewise(knots, pieces)
-                # a corner close to the other shaft gives a sharp peak: graded intervals
-                grid = np.concatenate([knots[0] + np.linspace(0, 1, 5) * knots[1], _graded(knots)])
-                width = 0.5 * np.diff(grid)
-                x = grid[:-1] + width * (1.0 + nodes[:, None])
-                driven = 2.0 * float((weights @ ratio(x)) @ width)
-                found.append(driven - 2.0 * math.pi / self.corners * lobes.n1 / lobes.n2)
-            return np.array(found).reshape(np.shape(heights))
+            knots, pieces = self._pieces(float(heights), lobes.mate)
+            try:
+                driven = expand(piecewise(knots, pieces), knots, 0.0).antiderivative().last
+            except NotSmoothError:
+                driven = math.inf  # a corner too close to the other shaft
+            return np.array(driven - 2.0 * math.pi / self.corners * lobes.n1 / lobes.n2)
 
         edge = _EDGE * (highest - self.corner_radius)
         low = np.array(self.corner_radius * (1.0 + _ROUND))
         return float(bracketed_root(excess, low, np.array(highest - edge), _HEIGHT))
-
-
-def _graded(knots: np.ndarray) -> np.ndarray:
-    """Return angles from the end of a side to the middle of its corner, denser there."""
-    middle = 0.5 * (knots[1] + knots[2])
-    return middle - (middle - knots[1]) * 0.5 ** np.append(np.arange(1, 24), np.inf)
 
 
 LAWS.register(
