@@ -110,7 +110,7 @@ class Found:
             error = np.array([max(one.error, self.case.rounding / 4) for one in rungs])
             lines.append(Line(label=name, x=cost, y=error))
         what = f"error of {self.case.what}, {self.case.unit}"
-        return Chart(title=self.case.title, x=self.case.cost, y=what, lines=tuple(lines))
+        return Chart(title=self.case.title, x=self.case.cost, y=what, lines=tuple(lines), log="xy")
 
     def rows(self) -> list[str]:
         """Return a table with a row for each method: order, coarsest and finest rung."""

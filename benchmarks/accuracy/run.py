@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from itertools import chain
 from pathlib import Path
 
 # for the other benchmarks, and for the boolean sweeps of the tests
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
+
+from matplotlib import rc_context
+from matplotlib.figure import Figure
 
 import cam_profiles
 import contacts
@@ -18,8 +22,8 @@ import solids
 import wheels
 from gearcam.console import quieten
 from gearcam.numeric.arrays import keep_freed_memory
+from gearcam.pictures.charts import Chart
 from gearcam.results.accuracy import accuracy
-from gearcam.results.accuracy_svg import log_charts
 from measuring import ROOT, environment
 from methods import Found, climb
 
@@ -50,6 +54,22 @@ def section(found: Found) -> list[str]:
     ]
 
 
+def draw(name: str, charts: Sequence[Chart]) -> None:
+    """Write charts into one figure, two in a row, with a mark at every level."""
+    columns = min(2, len(charts))
+    rows = -(-len(charts) // columns)
+    figure = Figure((6.0 * columns, 4.0 * rows), layout="constrained")
+    for number, chart in enumerate(charts):
+        ax = chart.draw(figure.add_subplot(rows, columns, number + 1))
+        if not any(line.dots for line in chart.lines):
+            for line in ax.lines:
+                line.set_marker(".")
+        ax.legend(fontsize="small")
+    # text as text, and the same file from the same numbers
+    with rc_context({"svg.fonttype": "none", "svg.hashsalt": name}):
+        figure.savefig(FIGURES / f"{name}.svg", metadata={"Date": None})
+
+
 def main() -> int:
     """Measure all cases and write figures and page."""
     keep_freed_memory()  # as the command line does
@@ -59,14 +79,13 @@ def main() -> int:
         found = accuracy(
             gearcam.build(gearcam.load(ROOT / "profiles" / f"{name}.toml")), repeat=REPEATS
         )
-        picture = log_charts(f"{name}: error against run time", found.charts)
-        (FIGURES / f"{name}.svg").write_bytes(picture)
+        draw(name, found.charts)
         print(f"{name}: {', '.join(found.ladders)}", flush=True)
     text, behind = [*environment(), ""], []
     rooms = (integrals, wheels, contacts, cam_profiles, solids)
     for case in chain.from_iterable(room.cases() for room in rooms):
         found = climb(case, REPEATS)
-        (FIGURES / f"{case.name}.svg").write_bytes(log_charts(case.title, [found.chart]))
+        draw(case.name, [found.chart])
         text += section(found)
         if not found.on_front:
             behind.append(case.title)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 from gearcam.designs.design import Design
@@ -88,16 +88,21 @@ def _accuracy_design(design: Design, options: Mapping[str, Any]) -> Design:
 def _measure(
     result: Any, output: str, options: Mapping[str, Any], progress: Progress | None
 ) -> Written:
-    from gearcam.results.accuracy import accuracy
+    from gearcam.report.page import charts_page
+    from gearcam.results.accuracy import PAGE, TABLE, accuracy
 
-    return accuracy(result, _stages(options), options["repeat"], progress).write(output)
+    found = accuracy(result, _stages(options), options["repeat"], progress)
+    lines = tuple(found.lines())
+    title = f"{result.design.name}, error against run time"
+    page = charts_page(title, found.charts, "\n".join(lines))
+    return replace(result.keep({TABLE: found.table, PAGE: page}, output, {}), table=lines)
 
 
 COMMANDS: Final = (
     ResultCommand(
         name="accuracy",
         done="measured",
-        doc="Measure accuracy against run time; write DIR/NAME/accuracy.csv and accuracy.svg.",
+        doc="Measure accuracy against run time; write DIR/NAME/accuracy.csv and accuracy.html.",
         arguments=_accuracy_arguments,
         adapt=_accuracy_design,
         run=_measure,

@@ -71,8 +71,8 @@ def finding_lines(findings: Sequence[Finding]) -> Iterator[str]:
 
 
 def all_lines(written: Written) -> Iterator[str]:
-    """Yield facts, findings and files of what was `written`."""
-    yield from written.facts.lines()
+    """Yield facts or table, findings and files of what was `written`."""
+    yield from written.table or written.facts.lines()
     yield from finding_lines(written.findings)
     yield from written_lines(written)
 

@@ -34,8 +34,8 @@ _DECADES: Final = 1.2
 _MOST_KNOTS: Final = 36
 """Largest number of knots that are marked: one in ten degrees."""
 
-_DOTS: Final = {"ls": "", "marker": ".", "ms": 3.0, "zorder": 1.9}
-"""Style of dots: they lie below the lines."""
+_SHORT: Final = 2.5
+"""Number of decades up to which a logarithmic axis has labels between powers of ten."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -140,12 +140,10 @@ class Chart:
             If matplotlib is not installed.
         """
         ax = _new_axes() if ax is None else ax
-        for axis in self.log:
-            set_scale = ax.set_xscale if axis == "x" else ax.set_yscale
-            set_scale("log", nonpositive="mask")
+        if self.log:
+            _set_logarithmic(ax, self.log)
         for line in self.lines:
-            style: Mapping[str, Any] = _DOTS if line.dots else {}
-            ax.plot(line.x, line.y, label=line.label, **style)
+            ax.plot(line.x, line.y, label=line.label, **(_dots(len(line.x)) if line.dots else {}))
         low, high = self.range
         for limit in self.limits:
             text = f"{limit.label}: {shown(limit.value)}"
@@ -216,6 +214,22 @@ def knot_marks(knots: Array, low: float, high: float) -> tuple[MarkedPlace, ...]
 
 Charts = Mapping[str, Callable[[Any], Chart | None]]
 """Functions that return the charts of a result, by name: None where a chart would say nothing."""
+
+
+def _dots(count: int) -> dict[str, Any]:
+    """Return the style of dots: small if many, large if one, which marks one of others."""
+    size = 14.0 if count == 1 else min(9.0, max(3.0, 120.0 / max(count, 1)))
+    return {"ls": "", "marker": ".", "ms": size, "zorder": 1.9}  # below the lines
+
+
+def _set_logarithmic(ax: Axes, log: str) -> None:
+    """Set logarithmic scales, with ticks at powers of ten and their double and fivefold."""
+    from matplotlib.ticker import LogFormatterSciNotation
+
+    for name in log:
+        set_scale, axis = (ax.set_xscale, ax.xaxis) if name == "x" else (ax.set_yscale, ax.yaxis)
+        set_scale("log", subs=(2, 5), nonpositive="mask")
+        axis.set_minor_formatter(LogFormatterSciNotation(minor_thresholds=(_SHORT, _SHORT)))
 
 
 def _new_axes() -> Axes:

@@ -5,6 +5,8 @@ const DASHES = [[], [9, 3], [9, 3, 2, 3], [2, 3], [14, 4], [5, 2]];
 const HEIGHT = 230; // of a chart, pixels
 const PRINTED = { width: 330, height: 200 };
 const PRINTED_FIRST = { ...PRINTED, width: 676 }; // over both columns
+const MOST_TICKS = 8; // of a logarithmic axis
+const SHORT = 2.5; // decades on an axis with ticks between powers of ten
 const LETTERS = 12; // height of a line of text in a chart, pixels
 const AT_ONCE = 3; // charts drawn per frame, so that the parts keep moving
 const LEADING = 3; // charts in sight; the others are folded
@@ -15,12 +17,21 @@ const brief = (value) => String(Number(value.toPrecision(5)));
 const ticks = (_, values, axis, space, step) =>
   values.map((value) => String(Number((Math.round(value / step) * step).toPrecision(12))));
 
-// Numbers at a logarithmic axis; null where there is no room for one.
-const powers = (_, values) =>
+// Ticks of a logarithmic axis: powers of ten, and their double and fivefold on a short axis.
+function powers(_, axis, low, high) {
+  const decades = Math.log10(high / low);
+  const step = Math.ceil(decades / MOST_TICKS);
+  const found = [];
+  for (let power = Math.floor(Math.log10(low)); 10 ** power <= high; power += step) {
+    for (const part of decades < SHORT ? [1, 2, 5] : [1]) found.push(Number(`${part}e${power}`));
+  }
+  return found.filter((value) => value >= low && value <= high);
+}
+
+const powerTexts = (_, values) =>
   values.map((value) => {
-    if (value === null) return "";
     const plain = value >= 1e-3 && value < 1e4;
-    return plain ? brief(value) : Number(brief(value)).toExponential().replace("+", "");
+    return plain ? brief(value) : value.toExponential().replace("+", "");
   });
 
 // All values of a line at a place: two at a jump, more where its pieces overlap.
@@ -139,7 +150,10 @@ class ChartView {
       distr: this.chart.log.includes(name) ? 3 : 1, // logarithmic or linear
       range: () => this.chart.ends[k],
     });
-    const values = (name) => (this.chart.log.includes(name) ? powers : ticks);
+    const ticked = (name) =>
+      this.chart.log.includes(name)
+        ? { splits: powers, values: powerTexts, filter: (_, values) => values }
+        : { values: ticks };
     // wide enough for most numbers, so that charts line up
     const wide = (_, texts) => 14 + 7 * Math.max(6, ...(texts ?? []).map((text) => text.length));
     this.plot = new uPlot({
@@ -150,8 +164,8 @@ class ChartView {
       cursor: { x: false, y: false, drag: { x: false, y: false }, points: { show: false } },
       scales: { x: { time: false, ...scale("x", 0) }, y: scale("y", 1) },
       axes: [
-        { ...axis, values: values("x"), label: this.chart.x, labelSize: 18, size: 30 },
-        { ...axis, values: values("y"), size: wide },
+        { ...axis, ...ticked("x"), label: this.chart.x, labelSize: 18, size: 30 },
+        { ...axis, ...ticked("y"), size: wide },
       ],
       series: [null, ...this.chart.lines.map((line, k) => this.series(line, k))],
       hooks: { draw: [() => this.marks(), () => this.limits(), () => this.follow()] },
@@ -181,8 +195,9 @@ class ChartView {
     pen.strokeStyle = pen.fillStyle = this.page.colours[ink];
     pen.lineWidth = 1.6 * ratio;
     pen.setLineDash(dots ? [] : DASHES[k % DASHES.length].map((length) => length * ratio));
-    // many dots are drawn small, and dots below lines
-    const radius = Math.max(1.2 * ratio, Math.min(2.5 * ratio, (0.5 * width) / xs.length));
+    // many dots are drawn small, a single one large, and dots below lines
+    const most = xs.length > 1 ? 2.5 : 5;
+    const radius = Math.max(1.2 * ratio, Math.min(most * ratio, (0.5 * width) / xs.length));
     if (dots) pen.globalCompositeOperation = "destination-over";
     pen.beginPath();
     let up = true;
@@ -308,12 +323,14 @@ class Charts {
   rebuild(charts) {
     this.sight.disconnect();
     this.home.querySelectorAll("figure").forEach((figure) => figure.remove());
-    const more = this.home.querySelector("details");
-    more.hidden = charts.length <= LEADING;
-    more.querySelector("summary").textContent = `${charts.length - LEADING} more charts`;
-    const place = (k) => (k < LEADING ? this.home : more.querySelector("div"));
+    const more = this.home.querySelector("details"); // on a page of charts none is folded
+    const place = (k) => (k < LEADING || !more ? this.home : more.querySelector("div"));
     this.views = charts.map((chart, k) => new ChartView(chart, place(k), this.page));
-    this.home.append(more);
+    if (more) {
+      more.hidden = charts.length <= LEADING;
+      more.querySelector("summary").textContent = `${charts.length - LEADING} more charts`;
+      this.home.append(more);
+    }
     for (const view of this.views) this.sight.observe(view.figure);
   }
 
@@ -349,7 +366,8 @@ class Charts {
   print(on) {
     for (const [k, view] of this.views.entries()) {
       if (on) this.update(view);
-      view.resize(on ? (k ? PRINTED : PRINTED_FIRST) : undefined);
+      const wide = !k && !this.home.classList.contains("alike");
+      view.resize(on ? (wide ? PRINTED_FIRST : PRINTED) : undefined);
       view.repaint();
     }
   }

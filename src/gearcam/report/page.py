@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
     from gearcam.base.facts import Facts
     from gearcam.base.findings import Finding
+    from gearcam.pictures.charts import Chart
     from gearcam.results.result import Result
 
 PAGE: Final = "report.html"
@@ -38,8 +39,11 @@ DRAFTED: Final = ("verdict", "remedies", "findings", "facts")
 DRAFT_PLACES: Final = 120
 """Steps of the driver in the scene of a draft: 3 degrees of a turn, interpolated linearly."""
 
+UPLOT: Final = "uPlot/uPlot.iife.min.js"
+"""The library that draws axes."""
+
 SCRIPTS: Final = (
-    "uPlot/uPlot.iife.min.js",
+    UPLOT,
     "scene.js",
     "parts.js",
     "saves.js",
@@ -111,6 +115,35 @@ def page(
         )
         .encode()
     )
+
+
+def charts_page(title: str, charts: Sequence[Chart], text: str) -> bytes:
+    """Return a page of charts.
+
+    Parameters
+    ----------
+    title : str
+        Its title.
+    charts : sequence of Chart
+        With different titles; all are in sight.
+    text : str
+        Lines below the charts, in letters of one width.
+
+    Returns
+    -------
+    bytes
+        HTML, UTF-8, including scripts, styles and data.
+    """
+    data = [chart_data(chart.title, chart, "") for chart in charts]
+    told = {
+        "title": title,
+        "text": text,
+        "data": _embedded({"title": title, "charts": data}),
+        "style": _own("uPlot/uPlot.min.css", "page.css"),
+        "script": _own(UPLOT, "parts.js", "saves.js", "charts.js", "charts_page.js"),
+        "licence": _own("uPlot/LICENSE"),
+    }
+    return rendered("charts.html", told).encode()
 
 
 def document(

@@ -9,16 +9,15 @@ import math
 import statistics
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 from typing import Final
 
 import numpy as np
 
 from gearcam.base.display import Brief
 from gearcam.base.errors import DesignError, GearcamError, Problem
-from gearcam.base.facts import Facts, lined_up
+from gearcam.base.facts import lined_up
 from gearcam.base.numerals import exact, shown
 from gearcam.designs.design import Design
 from gearcam.designs.faults import show
@@ -28,13 +27,13 @@ from gearcam.numeric.arguments import whole
 from gearcam.pictures.charts import Chart, Line
 from gearcam.results.ladders import Ladder, Ladders
 from gearcam.results.result import Progress, Result
-from gearcam.results.written import Written
 
 REPEATS: Final = 5
 """Default number of runs of each level."""
 
 TABLE: Final = "accuracy.csv"
-PICTURE: Final = "accuracy.svg"
+PAGE: Final = "accuracy.html"
+"""Files of the command ``accuracy``."""
 
 COLUMNS: Final = (
     "stage", "measured", "refined", "level", "own", "error", "unit", "rounding",
@@ -162,58 +161,21 @@ class Accuracy(Brief):
 
     @cached_property
     def charts(self) -> tuple[Chart, ...]:
-        """A chart for each stage: errors over run times, with a ring around the level used."""
+        """A chart for each stage: errors over run times, both logarithmic, and the level used."""
         return tuple(self._chart(stage) for stage in self.ladders)
 
     def _chart(self, stage: str) -> Chart:
         ladder, rungs = self.ladders[stage], self.of(stage)
+        own = [rung for rung in rungs if rung.own]
 
         def line(label: str, some: Sequence[Rung], dots: bool) -> Line:
-            x = np.array([rung.seconds for rung in some])
-            return Line(label=label, x=x, y=np.array([rung.error for rung in some]), dots=dots)
+            x, y = np.array([(rung.seconds, rung.error) for rung in some]).T
+            return Line(label=label, x=x, y=y, dots=dots)
 
-        own = [rung for rung in rungs if rung.own]
-        lines = (line(f"levels: {ladder.refined}", rungs, False),)
-        if own:
-            lines += (line("as used by gearcam", own, True),)
-        what = f"{ladder.measured}, {ladder.unit}" if ladder.unit else ladder.measured
-        return Chart(title=stage, x="run time, s", y=f"error of {what}", lines=lines)
-
-    def write(self, directory: str | Path = "output") -> Written:
-        """Write table and figure; the files of a build are kept.
-
-        Parameters
-        ----------
-        directory : path
-            Parent folder.
-
-        Returns
-        -------
-        Written
-            Its facts print as the table.
-
-        Raises
-        ------
-        WriteError
-            If a file cannot be written.
-        """
-        from gearcam.results.svg import log_charts
-
-        picture = log_charts(f"{self.result.design.name}: error against run time", self.charts)
-        written = self.result.keep({TABLE: self.table, PICTURE: picture}, directory, {})
-        return replace(written, facts=_Told(self))
-
-
-class _Told(Facts):
-    """The facts of a result, printed as the table of its accuracy."""
-
-    def __init__(self, made: Accuracy) -> None:
-        super().__init__(made.result.facts.document)
-        self._made = made
-
-    def lines(self) -> Iterator[str]:
-        """Yield the lines of the table."""
-        return self._made.lines()
+        lines = [line("error", rungs, False), line(f"levels: {ladder.refined}", rungs, True)]
+        lines += [line("as used by gearcam", own, True)] if own else []
+        what = f"error of {ladder.measured}, {ladder.unit}".removesuffix(", ")
+        return Chart(title=stage, x="run time, s", y=what, lines=tuple(lines), log="xy")
 
 
 def stages_of(design: Design, asked: Sequence[str] | None = None) -> tuple[str, ...]:

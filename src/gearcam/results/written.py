@@ -38,6 +38,8 @@ class Written(Brief):
         The findings in the summary.
     interrupted : str
         How much of a study was done when it was interrupted; empty if it is complete.
+    table : tuple of str
+        Lines to print in place of the facts.
     """
 
     directory: Path
@@ -47,6 +49,7 @@ class Written(Brief):
     facts: Facts
     findings: tuple[Finding, ...]
     interrupted: str = ""
+    table: tuple[str, ...] = ()
 
 
 def demand_formats(design: Design, kinds: Sequence[str] | None) -> tuple[str, ...]:

@@ -46,6 +46,7 @@ class Written:
     summary: dict[str, Any] = field(default_factory=dict)
     findings: tuple[Finding, ...] = ()
     interrupted: str = ""
+    table: tuple[str, ...] = ()
 
 
 CURED = Remedies(found=(Remedy(changes={"law.ratios[1]": 1.06}, design=None),))  # type: ignore[arg-type]

@@ -357,6 +357,17 @@ def test_logarithmic_axes_are_drawn():
     assert ax.get_ylim()[1] == pytest.approx(10**0.72)
 
 
+def test_a_short_logarithmic_axis_has_numbers_between_powers_of_ten():
+    ax = log_chart([1e-3, 2e-2], [1e-12, 1e-2]).draw()
+    ax.figure.canvas.draw()
+    x, y = (
+        [text.get_text() for text in axis.get_minorticklabels() if text.get_text()]
+        for axis in (ax.xaxis, ax.yaxis)
+    )
+    assert "$\\mathdefault{2\\times10^{-3}}$" in x
+    assert y == []
+
+
 def test_places_of_knots():
     turn, knots = np.linspace(0.0, 2.0, 101), np.array([-1.0, 0.503, 1.003, 2.0, 9.0])
     places = with_both_sides(turn, knots)

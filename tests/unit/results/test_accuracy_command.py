@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
-from xml.etree import ElementTree as ET
 
-import numpy as np
 import polars as pl
 import pytest
 
@@ -17,10 +16,8 @@ import gearcam
 from gearcam.base.errors import DesignError, GearcamError
 from gearcam.cli import main
 from gearcam.kinds.cam import ladder as room
-from gearcam.pictures.charts import Chart, Line
 from gearcam.results.accuracy import COLUMNS, accuracy, stages_of
 from gearcam.results.ladders import Ladder
-from gearcam.results.svg import log_charts
 
 TEXT = """
 kind = "cam"
@@ -33,7 +30,6 @@ follower = { type = "roller", roller_radius_mm = 8 }
 cam = { base_radius_mm = 40, thickness_mm = 10 }
 output = { files = ["csv"] }
 """
-SVG = "{http://www.w3.org/2000/svg}"
 
 
 @pytest.fixture
@@ -105,7 +101,7 @@ def test_the_files_of_a_build_stay(design: str) -> None:
     before = set(json.loads((folder / "cam/summary.json").read_text("utf-8"))["files"])
     run(design, "--stage", "cam", "--repeat", "1")
     after = set(json.loads((folder / "cam/summary.json").read_text("utf-8"))["files"])
-    assert after == before | {"accuracy.csv", "accuracy.svg"}
+    assert after == before | {"accuracy.csv", "accuracy.html"}
     assert all((folder / "cam" / name).exists() for name in after)
 
 
@@ -234,59 +230,30 @@ def test_rounding_has_no_order(planted: dict[str, Any]) -> None:
 # --- the figure ---------------------------------------------------------------------------------
 
 
-def circles(data: bytes) -> list[tuple[float, float]]:
-    root = ET.fromstring(data)
-    marks = [one for one in root.iter(f"{SVG}circle") if one.get("r") == "3"]
-    return [(float(one.attrib["cx"]), float(one.attrib["cy"])) for one in marks]
-
-
-def test_axes_are_logarithmic() -> None:
-    x, y = np.array([1e-4, 1e-3, 1e-1]), np.array([1e-2, 1e-6, 1e-14])
-    data = log_charts("a & b", [Chart(title="<t>", x="s", y="mm", lines=(_line(x, y),))])
-    places = np.array(circles(data))
-    for values, seen in ((x, places[:, 0]), (y, places[:, 1])):
-        slopes = np.diff(seen) / np.diff(np.log10(values))
-        assert slopes == pytest.approx([slopes[0]] * 2, rel=1e-3)
-    assert places[2, 0] > places[0, 0]
-    assert places[2, 1] > places[0, 1]  # downwards in a picture
-    root = ET.fromstring(data)
-    words = {one.text for one in root.iter(f"{SVG}text")}
-    assert {"<t>", "s", "mm", "1e-3", "1e-2"} <= words
-    assert root.findtext(f"{SVG}title") == "a & b"
-
-
-def test_ticks_stand_where_their_values_do() -> None:
-    x = np.array([1e-3, 1e-2])
-    data = log_charts("", [Chart(title="", x="", y="", lines=(_line(x, x),))])
-    places = circles(data)
-    ticks = {
-        one.text: float(one.attrib["x"])
-        for one in ET.fromstring(data).iter(f"{SVG}text")
-        if one.get("text-anchor") == "middle" and one.text
-    }
-    assert ticks["1e-3"] == pytest.approx(places[0][0], abs=0.02)
-    assert ticks["1e-2"] == pytest.approx(places[1][0], abs=0.02)
-    share = (ticks["2e-3"] - places[0][0]) / (places[1][0] - places[0][0])
-    assert share == pytest.approx(math.log10(2.0), abs=1e-3)
-
-
-def test_what_has_no_logarithm_is_left_out() -> None:
-    x, y = np.array([1.0, 2.0, np.nan]), np.array([0.0, 1.0, 1.0])
-    for values in (y, 0.0 * y):
-        chart = Chart(title="", x="", y="", lines=(_line(x, values),))
-        assert len(circles(log_charts("", [chart]))) == np.count_nonzero(values[:2])
-
-
-def test_every_rung_is_drawn_and_the_own_has_a_ring(planted: dict[str, Any]) -> None:
+def test_every_level_is_drawn_and_the_own_is_marked(planted: dict[str, Any]) -> None:
     planted["one"] = lambda _: ladder()
     planted["two"] = lambda _: ladder(own=None)
-    found = accuracy(gearcam.build(gearcam.loads(TEXT)), repeat=1)
-    data = log_charts("", found.charts)
-    assert len(circles(data)) == 6
-    root = ET.fromstring(data)
-    rings = [one for one in root.iter(f"{SVG}circle") if one.get("r") == "6"]
-    assert [one.get("fill") for one in rings] == ["none"]
+    one, two = accuracy(gearcam.build(gearcam.loads(TEXT)), repeat=1).charts
+    assert (one.title, one.log, one.y) == ("one", "xy", "error of nothing, mm")
+    assert [(len(line.x), line.dots) for line in one.lines] == [(3, False), (3, True), (1, True)]
+    assert one.lines[0].y.tolist() == [0.01, 0.0025, 0.000625]
+    assert one.lines[2].y.tolist() == [0.0025]
+    assert [line.label for line in two.lines] == ["error", "levels: steps"]
 
 
-def _line(x: Any, y: Any) -> Line:
-    return Line(label="", x=x, y=y)
+def test_the_page_shows_the_charts_and_the_printed_table(
+    design: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    code, folder = run(design, "--stage", "cam,outline", "--repeat", "1")
+    assert code == 0
+    page = (folder / "accuracy.html").read_text("utf-8")
+    (shown,) = re.findall(r"<pre>(error against run time.*?)</pre>", page, re.DOTALL)
+    printed = capsys.readouterr().out
+    assert all(f"  {line}".rstrip() in printed.splitlines() for line in shown.splitlines())
+    (data,) = re.findall(r'id="document">(.*?)</script>', page)
+    rows = pl.read_csv(folder / "accuracy.csv")
+    for chart in json.loads(data)["charts"]:
+        of = rows.filter(pl.col("stage") == chart["title"])
+        line = chart["lines"][0]
+        assert line["x"] == pytest.approx(of["time_s"].to_list(), rel=1e-5)
+        assert line["y"] == pytest.approx(of["error"].to_list(), rel=1e-5)
