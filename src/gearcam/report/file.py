@@ -9,7 +9,7 @@ from gearcam.base.errors import GearcamError
 from gearcam.designs.kind import KINDS
 
 if TYPE_CHECKING:
-    from gearcam.export.shared import Files
+    from gearcam.export.files import Files
     from gearcam.results.result import Result
 
 CHORDS: Final = 0.02

@@ -5,7 +5,7 @@ table is on the right, the title block below it, notes beside that; the rest is 
 views. The smaller paper is used if it shows the part at full size or larger, or at the same scale
 as the larger paper.
 
-Depends on drawings and sheets.
+Depends on drawings, facts and sheets.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.base.errors import InfeasibleError
+from gearcam.base.facts import Facts
 from gearcam.base.numerals import shown
 from gearcam.numeric.arrays import Array
 from gearcam.pictures.drawings import Feature, Path
@@ -51,6 +52,9 @@ SCALES: Final = tuple(base * 10.0**power for power in range(2, -7, -1) for base 
     2:
 ]
 """100:1 and smaller."""
+
+_FEW: Final = 4
+"""Digits of numbers in rows with several numbers."""
 
 PROJECTION: Final = "first angle"
 """The view from the left is placed on the right."""
@@ -104,6 +108,18 @@ def choose(size: ArrayLike, room: ArrayLike, rows: int) -> tuple[str, float]:
             nearest=f"the smallest scale is 1 : {shown(1.0 / min(SCALES))}",
         )
     return max(found, key=lambda one: min(one[1], 1.0))
+
+
+def sheet_rows(facts: Facts, names: Sequence[str]) -> dict[str, str]:
+    """Return the rows of a drawing's table: the quantities `names` that exist in `facts`."""
+    known = {one.name: one for one in facts.quantities()}
+    found = [known[name] for name in names if name in known]
+    return {
+        one.meaning: " : ".join(shown(part, _FEW) for part in one.value) + f" {one.unit}"
+        if isinstance(one.value, list)
+        else one.text
+        for one in found
+    }
 
 
 def begin(size: Array, room: Box, low: Array, rows: int) -> Board:

@@ -15,7 +15,6 @@ from gearcam.base.facts import Facts
 from gearcam.base.numerals import decimal
 from gearcam.designs.kind import KINDS
 from gearcam.export.dxf_read import read_dxf
-from gearcam.export.shared import sheet_rows
 from gearcam.kinds.gear_pair.drawn import pair_drawing
 from gearcam.kinds.gear_pair.sheet import pair_sheet
 from gearcam.parts.body import Mark, Opening, Part
@@ -23,7 +22,7 @@ from gearcam.parts.shapes import Circle, Loop
 from gearcam.pictures.drawings import OUTLINE, Drawing, Feature, Path, placed
 from gearcam.sheets import wheel_sheet
 from gearcam.sheets.board import Board
-from gearcam.sheets.paper import area_of, choose, scale_words
+from gearcam.sheets.paper import area_of, choose, scale_words, sheet_rows
 from gearcam.sheets.sheet import (
     LinearDimension,
     RoundDimension,

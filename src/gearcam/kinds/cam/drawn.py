@@ -11,7 +11,6 @@ import numpy as np
 
 from gearcam.base.errors import InfeasibleError
 from gearcam.cams.wall import PitchMotion, Wall
-from gearcam.export.shared import sheet_rows
 from gearcam.numeric.contour import Contour
 from gearcam.parts.body import Part
 from gearcam.parts.parallel import moved, sized
@@ -203,6 +202,7 @@ def grooved(
 def sheets(result: CamResult) -> tuple[Sheet, ...]:
     """Return the workshop drawings of the parts of a `result`."""
     from gearcam.sheets import wheel_sheet
+    from gearcam.sheets.paper import sheet_rows
 
     facts, title = result.facts, result.design.name
     other = f"{'prime' if result.mechanism.flat else 'base'}_radius_mm"

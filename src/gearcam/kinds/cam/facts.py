@@ -10,8 +10,9 @@ from gearcam.base.facts import Fact, Facts, extent
 from gearcam.base.findings import limit_of
 from gearcam.base.numerals import shown
 from gearcam.cams.checks import KIND, pressure_limit
-from gearcam.export.shared import accuracy, part_facts
+from gearcam.export.files import accuracy
 from gearcam.kinds.cam.wall_facts import ends_of
+from gearcam.parts.facts import part_facts
 
 if TYPE_CHECKING:
     from gearcam.cams.wall import PitchMotion

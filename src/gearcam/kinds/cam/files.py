@@ -7,14 +7,14 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
-from gearcam.export.shared import (
-    STEP_PART,
+from gearcam.export.files import (
     Files,
     cut_files,
     drawn,
     dxf_style,
     mesh_files,
     sheet_files,
+    step_files,
 )
 from gearcam.report.file import framed as framed
 from gearcam.report.file import report_files
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from gearcam.kinds.cam.build import CamResult
     from gearcam.numeric.arrays import Array
     from gearcam.numeric.contour import Contour
-    from gearcam.parts.body import Part
     from gearcam.parts.solids import Mesh
 
 Measured = dict[str, Any]
@@ -138,21 +137,8 @@ def _step(result: CamResult, _: Measured) -> Files:
 
     Exact solids for CAD. Needs `pip install "gearcam[step]"`.
     """
-    from gearcam.export.step import step_bytes
-    from gearcam.pictures.drawings import UNMOVED
-
-    tolerance = STEP_PART * result.profile.tolerance
-    made: dict[Part, Any] = {}
-    files = {
-        f"{part.name}.step": step_bytes([(part, UNMOVED)], part.name, tolerance, made)
-        for part in result.parts
-    }
-    whole = result.form.assembly
-    if whole:
-        items = [(part, UNMOVED) for part in result.parts]
-        heights = result.form.heights(result)
-        files[f"{whole}.step"] = step_bytes(items, whole, tolerance, made, heights)
-    return files
+    form, tolerance = result.form, result.profile.tolerance
+    return step_files(result.parts, tolerance, form.assembly, heights=form.heights(result))
 
 
 def _sheet(ending: str, result: CamResult, _: Measured) -> Files:

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from gearcam.base.numerals import shown
-from gearcam.export.shared import sheet_rows
 from gearcam.kinds.gear_pair.files import placements
 from gearcam.parts.body import Part
 from gearcam.pictures.drawings import (
@@ -115,6 +114,7 @@ def sheets(result: PairStages) -> tuple[Sheet, ...]:
     """Return the workshop drawings of both wheels of a `result` and of the pair."""
     from gearcam.kinds.gear_pair.sheet import pair_sheet
     from gearcam.sheets import wheel_sheet
+    from gearcam.sheets.paper import sheet_rows
 
     facts, title, pose = result.facts, result.design.name, result.design.output.pose
     radius = float(abs(result.pair.rolling.tracks[0].frames(np.array([pose])).p[0]))

@@ -12,12 +12,13 @@ import numpy as np
 from gearcam.base.facts import Fact, Facts, extent
 from gearcam.base.findings import limit_of
 from gearcam.base.numerals import shown
-from gearcam.export.shared import accuracy, part_facts, size_fact
+from gearcam.export.files import accuracy
 from gearcam.gears.pair import gear_tree
 from gearcam.gears.subject import KIND, Subject
 from gearcam.laws.ratio.span import angle_text
 from gearcam.meshing.drive_checks import side_name
 from gearcam.numeric.sampling import MARGIN
+from gearcam.parts.facts import part_facts, size_fact
 
 if TYPE_CHECKING:
     from gearcam.gears.contact import FlankPairs

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.export.shared import (
-    STEP_PART,
+from gearcam.export.files import (
     Files,
     cut_files,
     drawn,
     dxf_style,
     mesh_files,
     sheet_files,
+    step_files,
 )
 from gearcam.kinds.gear_pair.columns import POINTS
 from gearcam.report.file import framed as framed
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from gearcam.export.dxf import DxfStyle
     from gearcam.kinds.gear_pair.build import GearPairResult
     from gearcam.kinds.gear_pair.stages import PairStages
-    from gearcam.parts.body import Part
     from gearcam.parts.solids import Mesh
     from gearcam.pictures.drawings import Placement
 
@@ -123,17 +122,8 @@ def _steps(result: GearPairResult, _: Measured) -> Files:
     Exact solids for CAD: one spline face for each flank, fillet, land and tip, planes and cylinders
     elsewhere. Needs `pip install "gearcam[step]"`.
     """
-    from gearcam.export.step import step_bytes
-    from gearcam.pictures.drawings import UNMOVED
-
-    tolerance = STEP_PART * result.gear1.profile.tolerance
-    made: dict[Part, Any] = {}
-    files = {
-        f"{part.name}.step": step_bytes([(part, UNMOVED)], part.name, tolerance, made)
-        for part in result.parts
-    }
-    placed = list(zip(result.parts, placements(result), strict=True))
-    return files | {f"{PAIR}.step": step_bytes(placed, PAIR, tolerance, made)}
+    parts, tolerance = result.parts, result.gear1.profile.tolerance
+    return step_files(parts, tolerance, PAIR, placements(result))
 
 
 def _meshes(kind: str, result: GearPairResult, measured: Measured) -> Files:

@@ -1,20 +1,15 @@
-"""Files and facts common to all types of design: DXF, meshes, sheets, parts, accuracy."""
+"""Files that all types of design have in common: their names, options and measured errors."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from gearcam.base.facts import Fact
-from gearcam.base.numerals import shown
-
 if TYPE_CHECKING:
-    from gearcam.base.facts import Facts
     from gearcam.export.dxf import DxfStyle
     from gearcam.parts.body import Part
     from gearcam.parts.solids import Mesh
-    from gearcam.parts.tools import ToolLimits
-    from gearcam.pictures.drawings import Drawing
+    from gearcam.pictures.drawings import Drawing, Placement
     from gearcam.sheets.sheet import Sheet
 
 Files = dict[str, bytes]
@@ -61,76 +56,6 @@ def accuracy(
         what = "the edge, or its parallel at half the kerf" if kerf else "the curve"
         how["dxf_mm"] = f"files read back ({dxf['curves']}), against {what}, both ways"
     return {**made, "how": how}
-
-
-def size_fact(extents: Sequence[float], name: str) -> Fact:
-    """Return the overall size of a part as a fact.
-
-    Parameters
-    ----------
-    extents : sequence of 3 floats, mm
-        Along x, y and z of the part's own frame.
-    name : str
-        Name of the part in messages, such as ``wheel 1``; empty for a single part.
-
-    Returns
-    -------
-    Fact
-        Shown to hundredths of a millimetre.
-    """
-    meaning = f"overall size of {name}" if name else "overall size"
-    text = " x ".join(shown(round(one, 2), 9) for one in extents)
-    return Fact([float(one) for one in extents], meaning, text=text, shown=True)
-
-
-def part_facts(part: Part, name: str, tools: ToolLimits, density: float | None) -> dict[str, Any]:
-    """Return the facts of a part.
-
-    Parameters
-    ----------
-    part : Part
-        The finished part.
-    name : str
-        Its name in messages (see `size_fact`).
-    tools : ToolLimits
-        The largest tools for it.
-    density : float or None, kg/m^3
-        With a density the mass properties are included.
-
-    Returns
-    -------
-    dict
-        Facts that exist.
-    """
-    from gearcam.parts.mass import mass_properties
-
-    made: dict[str, Any] = {
-        "size_mm": size_fact(part.size, name),
-        "tool": tools.as_dict(),
-        "openings": [opening.as_dict() for opening in part.openings],
-    }
-    if density is not None:
-        made["density_kg_m3"] = density
-        mass = mass_properties(part, density).as_dict()
-        about = () if part.turns else ("unbalance_g_mm", "unbalance_direction_deg")
-        made["mass"] = {name: value for name, value in mass.items() if name not in about}
-    return {name: value for name, value in made.items() if value}
-
-
-_FEW = 4
-"""Digits of numbers in rows with several numbers of a drawing's table."""
-
-
-def sheet_rows(facts: Facts, names: Sequence[str]) -> dict[str, str]:
-    """Return the rows of a drawing's table: the quantities `names` that exist in `facts`."""
-    known = {one.name: one for one in facts.quantities()}
-    found = [known[name] for name in names if name in known]
-    return {
-        one.meaning: " : ".join(shown(part, _FEW) for part in one.value) + f" {one.unit}"
-        if isinstance(one.value, list)
-        else one.text
-        for one in found
-    }
 
 
 def sheet_files(sheets: Sequence[Sheet], style: DxfStyle, ending: str) -> Files:
@@ -280,3 +205,44 @@ def mesh_files(
     to_bytes = {"stl": stl_bytes, "3mf": threemf_bytes, "glb": glb_bytes}[kind]
     scenes = {**{name: {name: mesh} for name, mesh in solids.items()}, **together}
     return {f"{stem}.{kind}": to_bytes(scene, stem) for stem, scene in scenes.items()}
+
+
+def step_files(
+    parts: Sequence[Part],
+    tolerance: float,
+    assembly: str = "",
+    placements: Sequence[Placement] = (),
+    heights: Sequence[float] = (),
+) -> Files:
+    """Return parts as STEP files: one for each, and one for their assembly.
+
+    Parameters
+    ----------
+    parts : sequence of Part
+        The finished parts.
+    tolerance : float, mm
+        Tolerance of the outlines.
+    assembly : str
+        Stem of the assembly's file; empty without one.
+    placements : sequence of Placement
+        Of the parts in the assembly; by default they are not moved.
+    heights : sequence of float, mm
+        Of the parts in the assembly; 0 by default.
+
+    Returns
+    -------
+    dict of str to bytes
+        Contents by file name.
+    """
+    from gearcam.export.step import step_bytes
+    from gearcam.pictures.drawings import UNMOVED
+
+    close = STEP_PART * tolerance
+    made: dict[Part, Any] = {}
+    files = {
+        f"{part.name}.step": step_bytes([(part, UNMOVED)], part.name, close, made) for part in parts
+    }
+    if assembly:
+        placed = list(zip(parts, placements or [UNMOVED] * len(parts), strict=True))
+        files[f"{assembly}.step"] = step_bytes(placed, assembly, close, made, heights)
+    return files
