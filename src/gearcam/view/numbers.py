@@ -40,7 +40,7 @@ def numbers(text: str) -> dict[str, float]:
     document = document_in(text, "")
     return {
         dotted(path): value
-        for path, value in _leaves(document)
+        for path, value in leaves(document)
         if isinstance(value, int | float) and not isinstance(value, bool)
     }
 
@@ -212,10 +212,11 @@ def _within(
     return value
 
 
-def _leaves(part: Any, path: Path = ()) -> Iterator[tuple[Path, Any]]:
+def leaves(part: Any, path: Path = ()) -> Iterator[tuple[Path, Any]]:
+    """Yield the path and the value of each single value in a `part` of a document at a `path`."""
     if isinstance(part, dict | list):
         for key, item in part.items() if isinstance(part, dict) else enumerate(part):
-            yield from _leaves(item, (*path, key))
+            yield from leaves(item, (*path, key))
     else:
         yield path, part
 

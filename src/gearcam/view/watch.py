@@ -5,15 +5,15 @@ from __future__ import annotations
 import hashlib
 import os
 import time
-from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, Final
+from typing import Final
 
 from gearcam.base.errors import DesignError
 from gearcam.base.reading import UnreadableError, read
 from gearcam.designs import reader
 from gearcam.designs.reader import decoded, document_in
 from gearcam.laws import columns
+from gearcam.view.numbers import leaves
 
 PAUSE: Final = 0.1
 """Time between two looks, s."""
@@ -103,15 +103,8 @@ def tables(content: bytes, file: str, before: list[str]) -> list[str]:
         document = document_in(decoded(content, file), file)
     except DesignError:
         return before
-    return [os.fspath(Path(file).parent / name) for name in _named(document)]
-
-
-def _named(part: Any) -> Iterator[str]:
-    for key, item in part.items() if isinstance(part, dict) else enumerate(part):
-        if key == "file" and isinstance(item, str) and item:
-            yield item
-        elif isinstance(item, dict | list):
-            yield from _named(item)
+    named = [value for path, value in leaves(document) if path[-1] == "file"]
+    return [os.fspath(Path(file).parent / one) for one in named if isinstance(one, str) and one]
 
 
 def _content(name: str, most: int) -> bytes | None:
