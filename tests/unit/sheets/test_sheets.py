@@ -13,14 +13,13 @@ from gearcam import build, load
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.facts import Facts
 from gearcam.base.numerals import decimal
-from gearcam.designs.kind import KINDS
 from gearcam.export.dxf_read import read_dxf
 from gearcam.kinds.gear_pair.drawn import pair_drawing
 from gearcam.kinds.gear_pair.sheet import pair_sheet
 from gearcam.parts.body import Mark, Opening, Part
 from gearcam.parts.shapes import Circle, Loop
 from gearcam.pictures.drawings import OUTLINE, Drawing, Feature, Path, placed
-from gearcam.sheets import wheel_sheet
+from gearcam.sheets import paper, wheel_sheet
 from gearcam.sheets.board import Board
 from gearcam.sheets.paper import area_of, choose, scale_words, sheet_rows
 from gearcam.sheets.sheet import (
@@ -263,8 +262,7 @@ def test_every_row_of_a_sheet_is_a_fact_of_some_design(monkeypatch: pytest.Monke
         known.update(facts)
         return sheet_rows(facts, names)
 
-    for kind in KINDS.values():
-        monkeypatch.setattr(kind.room("drawn"), "sheet_rows", rows)
+    monkeypatch.setattr(paper, "sheet_rows", rows)
     changes = {
         "stepped_ellipse": {
             "blank.density_kg_m3": 7850.0,
