@@ -223,7 +223,7 @@ class Facts(Mapping[str, Any]):
 
     def quantity(self, name: str) -> NamedFact:
         """Return the quantity with a dotted `name`."""
-        return next(one for one in self.quantities() if one.name == name)
+        return next(_quantity(path, fact) for path, fact in _leaves(self._tree) if path == name)
 
     def record(self) -> dict[str, float | str]:
         """Return all quantities as plain numbers and texts by dotted names (`Result.record`)."""
