@@ -193,6 +193,11 @@ def test_a_rack_goes_all_its_way_and_a_turn_ends_a_closed_pair():
     assert np.ptp(pair.bodies[1].turn) == pytest.approx(math.pi)
 
 
+@pytest.mark.parametrize(("angle", "start"), [(-150.0, 0.0), (100.0, 100.0), (900.0, 540.0)])
+def test_a_rack_drawn_beyond_its_travel_starts_at_its_end(angle: float, start: float) -> None:
+    assert scene(made("feeder", "output.phi1_deg", angle)).start == pytest.approx(start)
+
+
 @pytest.mark.parametrize("name", ["ellipse", "limacon", "ring_uneven", "feeder", "log_spiral"])
 def test_the_pitch_point_divides_the_line_of_centres(name):
     result = made(name)
