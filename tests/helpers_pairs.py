@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import shapely
 
 import gearcam
+from arch import rules
 from gearcam.gears.contact import DRIVE
 from gearcam.gears.spec import PairSpec, Rack, RingSpec
 from gearcam.gears.track import Wheel
@@ -21,7 +21,10 @@ from gearcam.meshing.study import Setup
 from gearcam.parts.blank import Blank
 from helpers_built import built
 
-PROFILES = Path(__file__).parent.parent / "profiles"
+PROFILES = rules.ROOT / "profiles"
+
+OVERCLOSURE = math.radians(0.005)
+"""By which a driver is turned too far, so that flanks in contact overlap."""
 
 
 def job(

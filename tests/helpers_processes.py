@@ -1,4 +1,4 @@
-"""Functions that are sent to other processes, which load them from a module."""
+"""Other processes: the environment that they need, and functions that they load from a module."""
 
 from __future__ import annotations
 
@@ -7,8 +7,12 @@ import os
 import time
 from pathlib import Path
 
+from arch import rules
 from fuzz.outcome import BUILT, FAILED, Failure, Outcome, Task
 from fuzz.pool import MEMORY
+
+ENVIRONMENT = {**os.environ, "PYTHONPATH": str(rules.SOURCE.parent)}
+"""In which a process loads the sources beside these tests."""
 
 
 def text_of(task: Task) -> str:

@@ -68,7 +68,6 @@ Array = NDArray[np.float64]
 Plane = NDArray[np.complex128]
 
 ALPHA = math.radians(20.0)
-OVERCLOSURE = math.radians(0.005)
 DEEP = gearcam.Rack(dedendum=1.5, tip_radius=0.0)
 """Straight flanks so deep that the tips of the rings below keep their full height."""
 

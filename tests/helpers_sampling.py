@@ -1,4 +1,4 @@
-"""Which cases run each time: a few of many, and the same random ones."""
+"""Which cases run each time: a few of many, and random ones, the same in every run."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, Phase, settings
+from hypothesis import strategies as st
 
 QUICK = settings(
     derandomize=True,
@@ -20,7 +21,7 @@ QUICK = settings(
         HealthCheck.filter_too_much,
     ],
 )
-"""Random cases of a property: drawn anew, but the same ones in every run."""
+"""Few random cases, the same ones in every run."""
 
 
 def few(cases: Iterable[Any], every: int = 2) -> list[Any]:
@@ -30,3 +31,8 @@ def few(cases: Iterable[Any], every: int = 2) -> list[Any]:
         pytest.param(*case, marks=() if number % every == 0 else pytest.mark.slow)
         for number, case in enumerate(given)
     ]
+
+
+def rounded(low: float, high: float) -> st.SearchStrategy[float]:
+    """Numbers of at most three decimals, as people type them."""
+    return st.integers(round(low * 1000), round(high * 1000)).map(lambda n: n / 1000)

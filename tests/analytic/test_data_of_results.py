@@ -14,7 +14,7 @@ from gearcam.kinds.gear_pair.build import GearPairResult, Side
 from gearcam.laws.ratio.constant import Constant
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.numeric.columns import Columns
-from helpers_cam_files import ROLLER, SWINGING
+from helpers_files import ROLLER, SWINGING
 from helpers_pairs import PROFILES, job, profile
 
 E, MODULE, ALPHA = 0.3, 2.0, math.radians(20.0)

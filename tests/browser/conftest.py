@@ -16,8 +16,8 @@ from selenium.webdriver.chrome.service import Service
 import gearcam
 from gearcam.report.page import document, page
 from gearcam.results.result import Result
+from helpers_pairs import PROFILES
 
-PROFILES = Path(__file__).parents[2] / "profiles"
 FLAGS = (
     "--headless=new",
     "--no-sandbox",  # which root may not have

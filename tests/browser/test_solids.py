@@ -15,9 +15,9 @@ from gearcam.compare.variants import variants_of
 from gearcam.report.file import solids_shown
 from gearcam.report.page import document, page
 from helpers_browser import LAPTOP, PHONE, complaints, open_page, requests, settle, until
+from helpers_pairs import PROFILES
 
 NAIL = "nail_machine_two_phase"
-PROFILES = Path(__file__).parents[2] / "profiles"
 INSIDE = "const view = document.querySelector('#solids iframe').contentWindow;"
 
 

@@ -17,7 +17,9 @@ from selenium.webdriver import Chrome
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 
-NAIL = Path(__file__).parents[2] / "profiles" / "nail_machine_two_phase.toml"
+from helpers_pairs import PROFILES
+
+NAIL = PROFILES / "nail_machine_two_phase.toml"
 SECONDS = 60.0
 SPY = """
     window.documents = [];

@@ -24,11 +24,10 @@ from gearcam.meshing.checks import KIND
 from gearcam.meshing.numbers import numbers, pairs_in_contact
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.meshing.study import Meshing, mount, run, study
-from helpers_pairs import job, moved, profile
+from helpers_pairs import OVERCLOSURE, job, moved, profile
 from helpers_sampling import few
 
 NAILS = ("nail_machine_two_phase", "nail_machine_three_phase")
-OVERCLOSURE = math.radians(0.005)
 TURN = np.radians(np.arange(360.0))
 
 FORWARDS = [(name, OVERCLOSURE) for name in NAILS]

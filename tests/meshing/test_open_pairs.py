@@ -28,12 +28,11 @@ from gearcam.meshing.half_teeth import HalfTeeth, half_teeth
 from gearcam.meshing.overlap import Turning
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.meshing.study import mount, phases, study
-from helpers_pairs import PROFILES, explained, job, profile
+from helpers_pairs import OVERCLOSURE, PROFILES, explained, job, profile
 from helpers_sampling import few
 
 Array = NDArray[np.float64]
 
-OVERCLOSURE = math.radians(0.005)
 
 SECTOR = Formula(
     ratio="1 + 0.3*cos(phi1) + 0.2*sin(phi1)",

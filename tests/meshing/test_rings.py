@@ -24,6 +24,7 @@ from helpers_rings import (
     Array,
     Plane,
     driven_angles,
+    involute,
     made,
     pair_of,
     phases,
@@ -142,10 +143,6 @@ def test_contact_ratios_of_circular_rings(teeth: tuple[int, int], ratio: float) 
     result = pair_of(ROUND, teeth, 1.0, DEEP)
     assert result.contact_ratio == pytest.approx(ratio, abs=1e-9)
     assert result.contact_ratios["contact_ratio"] == pytest.approx(ratio, abs=1e-9)
-
-
-def involute(angle: float) -> float:
-    return math.tan(angle) - angle
 
 
 @pytest.mark.parametrize("more", [-0.1, -0.3, 0.1])

@@ -23,13 +23,12 @@ from gearcam.meshing.numbers import numbers
 from gearcam.meshing.overlap import Turning
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.meshing.study import Meshing, mount, run, study
-from helpers_pairs import moved
+from helpers_pairs import OVERCLOSURE, moved
 from helpers_rings import (
     ALPHA,
     CLEAN,
     DEEP,
     LAWS,
-    OVERCLOSURE,
     ROUND,
     Array,
     driven_angles,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from functools import cache
 from typing import Any
 
@@ -15,12 +14,11 @@ from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.meshing.half_teeth import HalfTeeth, half_teeth
 from gearcam.meshing.overlap import Turning
-from helpers_pairs import job, profile
+from helpers_pairs import OVERCLOSURE, job, profile
 from helpers_sampling import few
 
 Array = NDArray[np.float64]
 
-OVERCLOSURE = math.radians(0.005)
 TURN = np.radians(np.arange(360.0))
 
 

@@ -17,9 +17,10 @@ from typing import NamedTuple
 import pytest
 from ezdxf import filemanagement
 
+from arch import rules
 from gearcam import __version__
 
-ROOT = Path(__file__).parents[2]
+ROOT = rules.ROOT
 DEMO = ROOT / "profiles" / "nail_machine_two_phase.toml"
 SOURCE = ROOT / "src" / "gearcam"
 KEPT_OUT = ("output/", ".venv/", ".matrix/", "build/", "dist/", ".git/", ".pytest_cache/")

@@ -21,7 +21,7 @@ from gearcam.cams.mechanism import make_mechanism
 from gearcam.cams.spec import CamSpec, FollowerSpec
 from gearcam.laws.phases_of_lift import Phase, SegmentPhase, levels
 from helpers_cams import angles, back, corners_of, dwell, program, resting, rise, stiffness
-from helpers_sampling import QUICK
+from helpers_sampling import QUICK, rounded
 
 LAWS = [
     "constant-velocity",
@@ -38,10 +38,6 @@ LAWS = [
 CHORD = 2e-3
 
 Given = tuple[dict[str, Any], dict[str, Any], list[Phase]]
-
-
-def rounded(low: float, high: float) -> st.SearchStrategy[float]:
-    return st.integers(round(low * 1000), round(high * 1000)).map(lambda n: n / 1000)
 
 
 @st.composite

@@ -23,8 +23,8 @@ from gearcam.laws.half_turns import completed, miss
 from gearcam.laws.phases_of_lift import levels
 from gearcam.laws.program import Program, make_program
 from helpers_cams import TURN, close, program, rise
-from helpers_sampling import QUICK
-from property.test_cams import LAWS, dwell, programs, rounded, segment
+from helpers_sampling import QUICK, rounded
+from property.test_cams import LAWS, dwell, programs, segment
 from witness.cam_sweep import Follower, swept
 from witness.roller_bands import band, island
 

@@ -26,7 +26,7 @@ from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.laws.ratio.formula import Formula
 from gearcam.laws.ratio.phases import Phases
 from helpers_pairs import Assembly, explained, job
-from helpers_sampling import QUICK
+from helpers_sampling import QUICK, rounded
 
 MODULE = 2.0
 """mm; the size is a matter of scale, which has a test of its own."""
@@ -42,11 +42,6 @@ NEAR_RACK = [
 ]
 
 Given = tuple[Any, tuple[int, int], Rack, float]
-
-
-def rounded(low: float, high: float) -> st.SearchStrategy[float]:
-    """Numbers of a few digits, as people type them."""
-    return st.integers(round(low * 1000), round(high * 1000)).map(lambda n: n / 1000)
 
 
 @st.composite

@@ -34,6 +34,7 @@ from gearcam.laws.ratio.table import TableLaw
 from gearcam.meshing.half_teeth import half_teeth
 from gearcam.meshing.overlap import Turning
 from helpers_pairs import explained, job
+from helpers_sampling import rounded
 
 MODULE = 2.0
 TURN = 2 * math.pi
@@ -41,10 +42,6 @@ PHASES_PER_TOOTH = 64
 FEW_TEETH, FEW_PHASES = 60, 24
 
 Given = tuple[Any, tuple[int, int], float]
-
-
-def rounded(low: float, high: float) -> st.SearchStrategy[float]:
-    return st.integers(round(low * 1000), round(high * 1000)).map(lambda n: n / 1000)
 
 
 def degrees(low: int, high: int) -> st.SearchStrategy[float]:

@@ -15,8 +15,8 @@ from gearcam.cams.groove import GrooveCam, make_groove
 from gearcam.cams.mechanism import make_mechanism
 from gearcam.cams.spec import CamSpec, FollowerSpec
 from helpers_cams import close, program
-from helpers_sampling import QUICK
-from property.test_cams import programs, rounded
+from helpers_sampling import QUICK, rounded
+from property.test_cams import programs
 from witness.roller_bands import band, island
 
 CHORD = 2e-3

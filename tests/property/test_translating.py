@@ -19,8 +19,8 @@ from gearcam.cams.spec import FollowerSpec
 from gearcam.laws.phases_of_lift import DwellPhase, SegmentPhase
 from gearcam.laws.program import make_program
 from helpers_cams import close
-from helpers_sampling import QUICK
-from property.test_cams import programs, rounded
+from helpers_sampling import QUICK, rounded
+from property.test_cams import programs
 
 CHORD = 2e-3
 HIGH = 1e3

@@ -18,8 +18,9 @@ from gearcam.designs.faults import dotted
 from gearcam.designs.reader import loads
 from gearcam.designs.table import Key
 from gearcam.view.numbers import equals, numbers, replaced, sliders, span
+from helpers_pairs import PROFILES
 
-FILES = sorted((Path(__file__).parents[2] / "profiles").glob("*.toml"))
+FILES = sorted(PROFILES.glob("*.toml"))
 BY_NAME = pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)
 
 

@@ -26,8 +26,8 @@ from gearcam.parts.body import Mark, Part
 from gearcam.parts.make import make_part
 from gearcam.parts.openings import Workpiece
 from gearcam.pictures.drawings import Drawing, Feature, cut_drawing, wheel_drawing
-from helpers_cam_files import ROLLER, read
 from helpers_contour import disc_contour, gear_contour, square_contour
+from helpers_files import ROLLER, read
 from helpers_pairs import profile
 from witness.distance import distances
 

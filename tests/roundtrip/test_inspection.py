@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -14,6 +12,7 @@ import pytest
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.kinds.gear_pair.design import PairOutputSpec
 from gearcam.parts.blank import Blank
+from helpers_files import table
 from helpers_pairs import profile
 
 
@@ -28,9 +27,7 @@ def job(name: str, count: int = 7, **blank: Any) -> GearPairResult:
 
 def read(made: GearPairResult) -> dict[str, np.ndarray]:
     """The file, by the standard library's reader."""
-    text = made.files("inspection")["inspection.csv"].decode("ascii")
-    rows = list(csv.DictReader(io.StringIO(text)))
-    return {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
+    return table(made.files("inspection")["inspection.csv"])
 
 
 def distances(made: GearPairResult, rows: dict[str, np.ndarray], wheel: int) -> np.ndarray:

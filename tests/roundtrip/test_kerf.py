@@ -6,7 +6,6 @@ import io
 import math
 from dataclasses import replace
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -28,12 +27,11 @@ from gearcam.parts.body import Part
 from gearcam.parts.make import make_part
 from gearcam.parts.openings import Workpiece
 from gearcam.pictures.drawings import cut_drawing, wheel_drawing
-from helpers_cam_files import ROLLER, read
 from helpers_contour import contour_of, disc_contour, line
-from helpers_pairs import profile
+from helpers_files import ROLLER, read
+from helpers_pairs import PROFILES, profile
 from witness.distance import distances
 
-PROFILES = Path(__file__).parents[2] / "profiles"
 TOLERANCE = 0.005
 KERF = 0.2
 

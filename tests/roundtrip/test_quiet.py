@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import os
 import subprocess
 import sys
 import warnings
@@ -14,11 +13,11 @@ from typing import Any
 
 import pytest
 
-from arch import rules
 from gearcam import cli
 from gearcam.cli import FINDINGS, GOOD, main
 from gearcam.designs import load
 from helpers_pairs import PROFILES
+from helpers_processes import ENVIRONMENT
 
 GEARS = "dxf,cut-svg,svg,stl,3mf,glb,csv,drawing-dxf,drawing-svg,inspection"
 STEP = ",step" if find_spec("OCP") else ""
@@ -39,7 +38,7 @@ sys.exit(cli.main())
 
 
 def run(*words: str, debug: str = "") -> subprocess.CompletedProcess[str]:
-    environment = os.environ | {"PYTHONPATH": str(rules.SOURCE.parent), "GEARCAM_DEBUG": debug}
+    environment = ENVIRONMENT | {"GEARCAM_DEBUG": debug}
     return subprocess.run(
         [sys.executable, *words], capture_output=True, text=True, env=environment, check=False
     )

@@ -13,8 +13,8 @@ import trimesh
 
 import gearcam as gc
 from gearcam.pictures.drawings import OUTER
+from helpers_pairs import PROFILES
 
-PROFILES = Path(__file__).resolve().parents[2] / "profiles"
 PARTS = {
     "shop_order": ("gears.{}", ("gear1", "gear2")),
     "ring_ellipse": ("gears.{}", ("gear1", "gear2")),

@@ -20,8 +20,8 @@ from gearcam.kinds.cam.follow import followed
 from gearcam.numeric.moments import curve_moments
 from gearcam.parts.body import Part
 from gearcam.parts.mass import quadrature_error
-from helpers_cam_files import built
 from helpers_cams import back, corners_of, dwell, mechanism, program, rise
+from helpers_files import built
 
 TOP, FALL, LIFT = 150.0, 90.0, 10.0
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import json
-import os
 import subprocess
 import sys
 from dataclasses import dataclass, field
@@ -20,6 +19,7 @@ from gearcam.cli import main
 from gearcam.designs import KINDS, load
 from gearcam.kinds.gear_pair.design import GearPairDesign
 from gearcam.results.advice import Remedies, Remedy
+from helpers_processes import ENVIRONMENT
 
 GOOD = """\
 kind = "gear-pair"
@@ -352,16 +352,13 @@ def test_schema_is_json(capsys: pytest.CaptureFixture[str]) -> None:
         assert files["items"]["enum"] == list(kind.formats)
 
 
-SOURCE = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[3] / "src")}
-
-
 def test_the_module_runs_as_a_command_and_a_poor_terminal_is_no_fault(tmp_path: Path) -> None:
     file = tmp_path / "räder.toml"
     file.write_text('kind = "gear-pair"\nname = "rä der"\n', encoding="utf-8")
     done = subprocess.run(
         [sys.executable, "-m", "gearcam", "build", file.name],
         cwd=tmp_path,
-        env={**SOURCE, "PYTHONIOENCODING": "ascii", "PYTHONUTF8": "0"},
+        env={**ENVIRONMENT, "PYTHONIOENCODING": "ascii", "PYTHONUTF8": "0"},
         capture_output=True,
         text=True,
         check=False,
@@ -385,7 +382,7 @@ def test_a_reader_that_leaves_early_is_no_fault(tmp_path: Path) -> None:
     process = subprocess.Popen(
         [sys.executable, "-m", "gearcam", "laws"],
         cwd=tmp_path,
-        env=SOURCE,
+        env=ENVIRONMENT,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
     )

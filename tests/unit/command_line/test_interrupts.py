@@ -21,10 +21,9 @@ import helpers_interrupts
 from gearcam.base.interrupts import SIGNALS, interruptible, unbroken
 from gearcam.view.command import end_at_once
 from helpers_interrupts import AFTER, BEFORE, CASES, EVERY, PAIR
+from helpers_processes import ENVIRONMENT
 
 CODES = {"SIGINT": 130, "SIGTERM": 143, "SIGHUP": 129}
-HERE = Path(__file__).parents[2]
-ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join([str(HERE.parent / "src"), str(HERE)])}
 OUTLINES = {"centrodes.csv", "gear1_outline.csv", "gear2_outline.csv"}
 NEW = {
     # what has changed where a command was not stopped before it was done

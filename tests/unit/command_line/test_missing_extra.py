@@ -10,10 +10,11 @@ from pathlib import Path
 import pytest
 
 import gearcam as gc
+from arch import rules
 from gearcam.cli import GOOD, WRONG, main
 from gearcam.parts.solids import LIBRARIES
 
-ROOT = Path(__file__).parents[3]
+ROOT = rules.ROOT
 PROFILE = ROOT / "profiles" / "ellipse.toml"
 PROFILES = {
     "gear-pair": PROFILE,

@@ -7,10 +7,11 @@ from typing import Any
 
 import pytest
 
-from gearcam.base.errors import DesignError, Problem
+from gearcam.base.errors import DesignError
 from gearcam.base.quantities import LENGTH
 from gearcam.designs import loads
 from gearcam.kinds.gear_pair.design import GearPairDesign
+from helpers_files import problems
 
 GOOD = """\
 kind = "gear-pair"
@@ -30,12 +31,6 @@ def read(blank: str) -> GearPairDesign:
     design = loads(GOOD + blank)
     assert isinstance(design, GearPairDesign)
     return design
-
-
-def problems(blank: str) -> list[Problem]:
-    with pytest.raises(DesignError) as caught:
-        loads(GOOD + blank)
-    return list(caught.value.problems)
 
 
 def test_one_value_holds_for_both_wheels() -> None:
@@ -66,7 +61,7 @@ def test_one_value_holds_for_both_wheels() -> None:
     ],
 )
 def test_wrong_values_are_named(text: str, key: str, words: str) -> None:
-    (problem,) = problems(text)
+    (problem,) = problems(GOOD + text)
     assert problem.key == key
     assert words in problem.message
     assert problem.allowed
@@ -101,14 +96,14 @@ KEYED = "bore_diameter_mm = 20\nkeyway_width_mm = {}\nkeyway_depth_mm = {}\n"
     ],
 )
 def test_contradictions_are_refused_by_reading(text: str, key: str, words: str) -> None:
-    (problem,) = problems(text)
+    (problem,) = problems(GOOD + text)
     assert problem.key == key
     assert words in problem.message
     assert problem.allowed
 
 
 def test_two_values_are_judged_one_by_one() -> None:
-    (problem,) = problems("bore_diameter_mm = [20, 10]\nbore_flat_mm = [18, 18]\n")
+    (problem,) = problems(GOOD + "bore_diameter_mm = [20, 10]\nbore_flat_mm = [18, 18]\n")
     assert problem.key == "blank.bore_flat_mm[1]"
     assert problem.value == 18
     assert "above 5 and below the bore's 10 mm" in problem.allowed

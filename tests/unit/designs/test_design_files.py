@@ -4,35 +4,21 @@ from __future__ import annotations
 
 import math
 import tomllib
+from functools import partial
 from pathlib import Path
 
 import pytest
 
-from gearcam.base.errors import DesignError, Problem
 from gearcam.designs import load, loads
 from gearcam.designs.template import template
 from gearcam.gears.spec import Rack
 from gearcam.kinds.gear_pair.design import GearPairDesign, PairOutputSpec
 from gearcam.parts.blank import Blank
+from helpers_files import PAIR, only, problems
+from helpers_files import changed as changed_text
+from helpers_pairs import PROFILES
 
-PROFILES = sorted((Path(__file__).parents[3] / "profiles").glob("*.toml"))
-
-GOOD = """\
-kind = "gear-pair"
-name = "good"
-
-[law]
-type = "phases"
-knots_deg = [0, 160, 360]
-ratios = [1.6, 0.4, 1.6]
-
-[pair]
-center_distance_mm = 180
-teeth = [36, 36]
-
-[output]
-files = ["csv"]
-"""
+changed = partial(changed_text, text=PAIR)
 
 
 def read(text: str, file: str = "") -> GearPairDesign:
@@ -41,24 +27,7 @@ def read(text: str, file: str = "") -> GearPairDesign:
     return design
 
 
-def problems(text: str, file: str = "design.toml") -> list[Problem]:
-    with pytest.raises(DesignError) as caught:
-        loads(text, file=file)
-    return list(caught.value.problems)
-
-
-def only(text: str) -> Problem:
-    found = problems(text)
-    assert len(found) == 1, "\n".join(map(str, found))
-    return found[0]
-
-
-def changed(old: str, new: str) -> str:
-    assert old in GOOD
-    return GOOD.replace(old, new)
-
-
-@pytest.mark.parametrize("path", PROFILES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", sorted(PROFILES.glob("*.toml")), ids=lambda path: path.stem)
 def test_every_profile_is_read(path: Path) -> None:
     design = load(path)
     assert design.name == path.stem
@@ -77,7 +46,7 @@ def test_angles_become_radians_and_lengths_stay_millimetres() -> None:
 
 
 def test_what_is_left_out_takes_its_default() -> None:
-    design = read(GOOD.replace('[output]\nfiles = ["csv"]\n', ""))
+    design = read(PAIR.replace('[output]\nfiles = ["csv"]\n', ""))
     assert design.output.files == PairOutputSpec().files
     assert design.rack == Rack()
     assert design.blank == Blank()
@@ -255,16 +224,16 @@ def test_what_a_law_finds_wrong_gets_its_place(old: str, new: str, key: str, wor
 
 
 def test_a_unit_where_none_belongs_is_noticed_even_on_a_short_key() -> None:
-    law = GOOD[GOOD.index("type") : GOOD.index("[pair]")]
-    found = problems(GOOD.replace(law, 'type = "formula"\nr1_mm = "1"\n\n'))
+    law = PAIR[PAIR.index("type") : PAIR.index("[pair]")]
+    found = problems(PAIR.replace(law, 'type = "formula"\nr1_mm = "1"\n\n'))
     assert {problem.key: problem.hint for problem in found}["law.r1_mm"] == (
         "did you mean r1? (it has no unit)"
     )
 
 
 def test_a_formula_that_cannot_be_read_tells_the_column() -> None:
-    law = GOOD[GOOD.index("type") : GOOD.index("[pair]")]
-    problem = only(GOOD.replace(law, 'type = "formula"\nphi2 = "phi1 - sine(phi1)"\n\n'))
+    law = PAIR[PAIR.index("type") : PAIR.index("[pair]")]
+    problem = only(PAIR.replace(law, 'type = "formula"\nphi2 = "phi1 - sine(phi1)"\n\n'))
     assert problem.key == "law.phi2"
     assert problem.line == 6
     assert "column 8" in problem.message
@@ -294,8 +263,8 @@ def test_what_is_missing_names_its_table() -> None:
 @pytest.mark.parametrize("name", ["law", "pair", "rack", "blank", "output", "limits"])
 @pytest.mark.parametrize("value", ["3", '"text"', "[[1]]", "true"])
 def test_a_table_that_is_no_table_is_refused(name: str, value: str) -> None:
-    document = tomllib.loads(GOOD)
-    text = "\n".join(line for line in (f"{name} = {value}", *GOOD.splitlines()[:2]))
+    document = tomllib.loads(PAIR)
+    text = "\n".join(line for line in (f"{name} = {value}", *PAIR.splitlines()[:2]))
     text += "".join(
         f"\n[{key}]\n" + "\n".join(f"{k} = {v!r}" for k, v in table.items())
         for key, table in document.items()
@@ -315,7 +284,7 @@ def test_only_an_open_pair_solves_a_knot() -> None:
 
 
 def test_tables_of_another_kind_are_named_as_such() -> None:
-    (problem,) = problems(GOOD + '\n[follower]\ntype = "roller"\n')
+    (problem,) = problems(PAIR + '\n[follower]\ntype = "roller"\n')
     assert problem.message == "unknown table"
     assert problem.hint == 'this table belongs to kind = "cam"'
 
@@ -337,8 +306,8 @@ def test_without_a_kind_the_likeliest_one_is_judged(text: str, wrong: set[str]) 
 
 
 def test_splines_are_refused_in_r12_only() -> None:
-    assert loads(GOOD + 'dxf_curves = "splines"\n').output.dxf_curves == "splines"
-    problem = only(GOOD + 'dxf_curves = "splines"\ndxf_version = "R12"\n')
+    assert loads(PAIR + 'dxf_curves = "splines"\n').output.dxf_curves == "splines"
+    problem = only(PAIR + 'dxf_curves = "splines"\ndxf_version = "R12"\n')
     assert problem.key == "output.dxf_version"
     assert "does not support splines" in problem.message
 
@@ -371,7 +340,7 @@ def test_a_design_without_a_name_takes_that_of_its_file() -> None:
 
 
 def test_limits_are_those_of_the_checks() -> None:
-    problem = only(GOOD + "\n[limits]\nno_such_limit = 1\n")
+    problem = only(PAIR + "\n[limits]\nno_such_limit = 1\n")
     assert problem.key == "limits.no_such_limit"
 
 

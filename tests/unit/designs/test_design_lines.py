@@ -9,34 +9,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gearcam.base.errors import DesignError, Problem
-from gearcam.designs import load, loads
+from gearcam.base.errors import DesignError
+from gearcam.designs import load
 from gearcam.designs.lines import line_at, lines_of
 from gearcam.designs.slips import nearest
-
-GOOD = """\
-kind = "gear-pair"
-name = "good"
-
-[law]
-type = "phases"
-knots_deg = [0, 160, 360]
-ratios = [1.6, 0.4, 1.6]
-
-[pair]
-center_distance_mm = 180
-teeth = [36, 36]
-
-[output]
-files = ["csv"]
-"""
-
-
-def only(text: str) -> Problem:
-    with pytest.raises(DesignError) as caught:
-        loads(text)
-    assert len(caught.value.problems) == 1
-    return caught.value.problems[0]
+from helpers_files import PAIR, only
 
 
 @pytest.mark.parametrize(
@@ -99,9 +76,9 @@ def test_files_that_cannot_be_read_are_told_plainly(tmp_path: Path) -> None:
 
 def test_byte_order_mark_and_windows_line_ends_do_not_matter(tmp_path: Path) -> None:
     path = tmp_path / "windows.toml"
-    path.write_bytes(b"\xef\xbb\xbf" + GOOD.replace("\n", "\r\n").encode())
+    path.write_bytes(b"\xef\xbb\xbf" + PAIR.replace("\n", "\r\n").encode())
     assert load(path).name == "good"
-    path.write_bytes(GOOD.replace("\n", "\r\n").replace("180", "-180").encode())
+    path.write_bytes(PAIR.replace("\n", "\r\n").replace("180", "-180").encode())
     with pytest.raises(DesignError) as caught:
         load(path)
     assert caught.value.problems[0].line == 10
@@ -172,6 +149,6 @@ def test_a_table_that_its_own_part_came_before_has_the_line_of_its_header() -> N
 
 
 def test_a_place_that_is_not_there_falls_back_to_its_parent() -> None:
-    lines = lines_of(GOOD)
+    lines = lines_of(PAIR)
     assert line_at(lines, ("pair", "module_mm")) == 9
     assert line_at(lines, ("nowhere", "x")) == 1

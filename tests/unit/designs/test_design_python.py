@@ -16,27 +16,11 @@ from gearcam.gears.spec import PairSpec
 from gearcam.kinds.gear_pair.design import GearPairDesign, PairOutputSpec
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.laws.ratio.phases import Phases
-
-GOOD = """\
-kind = "gear-pair"
-name = "good"
-
-[law]
-type = "phases"
-knots_deg = [0, 160, 360]
-ratios = [1.6, 0.4, 1.6]
-
-[pair]
-center_distance_mm = 180
-teeth = [36, 36]
-
-[output]
-files = ["csv"]
-"""
+from helpers_files import PAIR
 
 
 def test_a_design_made_in_python_equals_the_one_read() -> None:
-    read = loads(GOOD)
+    read = loads(PAIR)
     assert isinstance(read, GearPairDesign)
     made = GearPairDesign(
         name="good",
@@ -91,5 +75,5 @@ def test_numbers_from_numpy_serve_in_python() -> None:
 @given(st.floats(min_value=5, max_value=35))
 def test_degrees_keep_their_range_through_radians(angle: float) -> None:
     rack = f"\n[rack]\npressure_angle_deg = {angle!r}\n"
-    design = loads(GOOD.replace("[output]", rack + "[output]"))
+    design = loads(PAIR.replace("[output]", rack + "[output]"))
     assert document_of(design)["rack"]["pressure_angle_deg"] == pytest.approx(angle, rel=1e-12)

@@ -26,8 +26,9 @@ from gearcam.kinds.gear_pair.design import law_table
 from gearcam.laws.phases_of_lift import PHASES
 from gearcam.laws.ratio.base import LAWS
 from gearcam.laws.rises.base import RISES
+from helpers_pairs import PROFILES
 
-PROFILES = sorted((Path(__file__).parents[3] / "profiles").glob("*.toml"))
+FILES = sorted(PROFILES.glob("*.toml"))
 GOOD: dict[str, Any] = {
     "kind": "gear-pair",
     "name": "good",
@@ -61,7 +62,7 @@ def validator() -> jsonschema.Draft202012Validator:
     return jsonschema.Draft202012Validator(made)
 
 
-@pytest.mark.parametrize("path", PROFILES, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
 def test_every_profile_is_valid(validator: jsonschema.Draft202012Validator, path: Path) -> None:
     validator.validate(tomllib.loads(path.read_text("utf-8")))
     load(path)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from helpers_cam_files import ROLLER as CAM
-from helpers_cam_files import problems
+from helpers_files import ROLLER as CAM
+from helpers_files import problems
 
 PAIR = """\
 kind = "gear-pair"

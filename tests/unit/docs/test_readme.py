@@ -15,13 +15,14 @@ import pytest
 
 import gearcam
 import picture
+from arch import rules
 from gearcam.designs import document_of, loads
 from gearcam.kinds.gear_pair.design import GearPairDesign
 from gearcam.laws.ratio.base import LAWS
 from gearcam.laws.rises.base import RISES
 from gearcam.parts.mass import mass_properties
 
-ROOT = Path(__file__).parents[3]
+ROOT = rules.ROOT
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 PAGES = [
     *sorted(ROOT.glob("*.md")),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 import runpy
 import subprocess
@@ -12,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from arch import rules
+from helpers_processes import ENVIRONMENT
 
 PAGE = (rules.ROOT / "docs" / "python.md").read_text("utf-8")
 RECIPES = dict(re.findall(r"^## (.+?)\n.*?^```python\n(.*?)^```$", PAGE, re.DOTALL | re.MULTILINE))
@@ -28,8 +28,7 @@ def desk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def apart(script: Path) -> str:
     """Run a script in a process of its own, whose module others can load, and give its output."""
     environment = {
-        **os.environ,
-        "PYTHONPATH": str(rules.SOURCE.parent),
+        **ENVIRONMENT,
         "PYTHONWARNINGS": "error,default::DeprecationWarning",  # forks beside threads of numpy warn
     }
     done = subprocess.run(

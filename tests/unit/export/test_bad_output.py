@@ -23,9 +23,9 @@ from gearcam.console import visible
 from gearcam.export import write
 from gearcam.export.write import previous_files, rewrite, write_all, write_new
 from helpers_interrupts import PAIR, state
+from helpers_processes import ENVIRONMENT
 
 GOOD = PAIR.format(eccentricity=0.2, bore=8, files='["csv"]')
-ENVIRONMENT = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[3] / "src")}
 NAMES = ("one.dxf", "two.dxf", "three.dxf")
 
 

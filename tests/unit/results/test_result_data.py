@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 import math
 import pickle
@@ -22,7 +20,7 @@ from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.numeric.columns import Columns
 from gearcam.parts.solids import volume_error
-from helpers_cam_files import ROLLER
+from helpers_files import ROLLER, table
 from helpers_pairs import PROFILES, job, profile
 
 
@@ -34,11 +32,6 @@ def pair() -> GearPairResult:
 @pytest.fixture(scope="module")
 def cam() -> CamResult:
     return gearcam.build(gearcam.loads(ROLLER))
-
-
-def read(data: bytes) -> dict[str, np.ndarray]:
-    rows = list(csv.DictReader(io.StringIO(data.decode())))
-    return {name: np.array([float(row[name] or "nan") for row in rows]) for name in rows[0]}
 
 
 def tables(pair: GearPairResult, cam: CamResult) -> dict[str, Columns]:
@@ -82,14 +75,14 @@ def test_frames_take_every_table(pair: GearPairResult, cam: CamResult) -> None:
 @pytest.mark.parametrize("name", ["ellipse", "feeder", "press"])
 def test_centrodes_are_those_of_the_file(name: str) -> None:
     result = profile(name)
-    rows, found = read(result.files("csv")["centrodes.csv"]), result.centrodes()
+    rows, found = table(result.files("csv")["centrodes.csv"]), result.centrodes()
     assert set(found) - set(rows) == {"x1_mm", "y1_mm", "x2_mm", "y2_mm"}
     for key, values in rows.items():
         np.testing.assert_allclose(found[key], values, rtol=1e-15, atol=1e-300)
 
 
 def test_the_motion_of_a_cam_is_that_of_the_file(cam: CamResult) -> None:
-    rows = read(cam.files("csv")["motion.csv"])
+    rows = table(cam.files("csv")["motion.csv"])
     names = ["theta_deg", "s", "ds", "d2s", "d3s", "pressure_angle_deg"]
     assert list(rows) == [*names, "rho_pitch_mm", "rho_profile_mm"]
     for one, two in zip(rows.values(), cam.motion().values(), strict=True):
@@ -169,7 +162,7 @@ def test_a_study_is_data_that_may_be_written(pair: GearPairResult, tmp_path: Pat
     assert study.to_dict()["meshing"]["steps_done"] == 6
     assert "mesh" not in study.facts.document
     written = study.write(tmp_path)
-    rows = read((written.directory / "meshing.csv").read_bytes())
+    rows = table((written.directory / "meshing.csv").read_bytes())
     assert list(rows) == list(study.columns)
     for key, values in study.columns.items():
         np.testing.assert_allclose(values, rows[key], rtol=1e-15, atol=1e-300)

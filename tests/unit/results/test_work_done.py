@@ -24,8 +24,7 @@ import pytest
 
 import gearcam
 from gearcam.designs.kind import KINDS
-
-PROFILES = Path(__file__).parents[3] / "profiles"
+from helpers_pairs import PROFILES
 
 WATCHED = {
     "gearcam.gears.rolling": ("roll",),

@@ -20,9 +20,9 @@ from gearcam.view import watch, work
 from gearcam.view.command import reporter
 from gearcam.view.session import RequestError, Session, State, _Newest
 from gearcam.view.watch import Watch
+from helpers_pairs import PROFILES
 from helpers_view import DESIGN, SECONDS, Shown, shown
 
-PROFILES = Path(__file__).parents[3] / "profiles"
 NAIL = PROFILES / "nail_machine_two_phase.toml"
 
 

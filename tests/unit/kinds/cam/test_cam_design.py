@@ -32,7 +32,7 @@ from gearcam.laws.phases_of_lift import (
 )
 from gearcam.laws.rises.base import RISES
 from gearcam.parts.blank import WheelBlank
-from helpers_cam_files import FLAT, ROLLER, SWINGING, changed, read
+from helpers_files import FLAT, ROLLER, SWINGING, changed, read
 
 
 def phases_of(design: CamDesign) -> tuple[Phase, ...]:

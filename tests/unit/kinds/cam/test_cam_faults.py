@@ -7,7 +7,7 @@ import re
 import pytest
 
 from gearcam.designs import document_of
-from helpers_cam_files import FLAT, RISE, ROLLER, SWINGING, changed, only, problems, read
+from helpers_files import FLAT, RISE, ROLLER, SWINGING, changed, only, problems, read
 
 
 @pytest.mark.parametrize(

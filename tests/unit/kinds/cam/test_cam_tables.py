@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 from dataclasses import replace
 from typing import Any
@@ -14,7 +12,7 @@ import pytest
 import gearcam
 from gearcam.base.errors import InfeasibleError
 from gearcam.kinds.cam.build import CamResult
-from helpers_cam_files import FLAT, ROLLER, read
+from helpers_files import FLAT, ROLLER, read, table
 from helpers_pairs import PROFILES
 
 
@@ -27,11 +25,6 @@ def eccentric(**output: Any) -> CamResult:
     """A disc of radius 31 mm, its centre 6 mm from the axis."""
     design = gearcam.load(PROFILES / "eccentric_cam.toml")
     return CamResult(replace(design, output=replace(design.output, **output)))
-
-
-def table(data: bytes) -> dict[str, np.ndarray]:
-    rows = list(csv.DictReader(io.StringIO(data.decode())))
-    return {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
 
 
 def test_the_curvature_from_three_points_of_a_circle_is_exact() -> None:

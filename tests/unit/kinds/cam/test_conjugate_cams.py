@@ -18,7 +18,7 @@ from gearcam.cams.follow import follow
 from gearcam.cli import main
 from gearcam.pictures.drawings import Path
 from gearcam.results.advice import Search
-from helpers_cam_files import read, refused
+from helpers_files import read, refused
 from helpers_pairs import PROFILES
 
 PATH = PROFILES / "conjugate_cams.toml"

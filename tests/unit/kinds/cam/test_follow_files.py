@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import math
 from pathlib import Path
 
@@ -12,17 +11,12 @@ import pytest
 import gearcam
 from gearcam.base.errors import DesignError
 from gearcam.kinds.cam.build import CamResult
+from helpers_files import table
 from helpers_pairs import PROFILES
 
 
 def made(name: str) -> CamResult:
     return gearcam.build(gearcam.load(PROFILES / f"{name}.toml"))
-
-
-def columns(path: Path) -> dict[str, np.ndarray]:
-    with path.open(newline="") as stream:
-        rows = list(csv.DictReader(stream))
-    return {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
 
 
 @pytest.mark.parametrize("file", ["profile.csv", "cam.dxf"])
@@ -41,7 +35,7 @@ def test_a_cam_s_own_files_move_its_follower_as_asked(
     found = study.write(tmp_path)
     assert "followed.csv" in found.files
     summary = found.summary["followed"]
-    rows = columns(found.directory / "followed.csv")
+    rows = table((found.directory / "followed.csv").read_bytes())
     np.testing.assert_array_equal(rows["theta_deg"], np.arange(361.0))
     assert summary["unit"] == unit
     # a chord tolerance of 1 um on a lever of more than 50 mm is less than 2 um or its angle

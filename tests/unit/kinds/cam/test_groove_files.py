@@ -16,7 +16,7 @@ import shapely
 import gearcam
 from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.cams.groove import GrooveCam
-from helpers_cam_files import read, refused
+from helpers_files import read, refused
 from helpers_pairs import PROFILES
 from helpers_step import read_step
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 import pickle
 from pathlib import Path
@@ -20,7 +18,7 @@ from gearcam.designs.design import hash_of
 from gearcam.kinds.cam.design import CamDesign
 from gearcam.laws.motion_formula import MotionFormula
 from gearcam.laws.motion_table import MotionTable
-from helpers_cam_files import only, problems, read
+from helpers_files import only, problems, read, table
 
 THETA = np.arange(0.0, 360.0, 10.0)
 LIFT = 5.0 * (1.0 - np.cos(np.radians(THETA)))
@@ -194,16 +192,11 @@ def test_both_ways_to_give_a_motion_are_told_where_there_is_none() -> None:
     assert "belongs under [motion]" in str(stray[0])
 
 
-def columns(data: bytes) -> dict[str, np.ndarray]:
-    found = list(csv.DictReader(io.StringIO(data.decode())))
-    return {name: np.array([float(row[name]) for row in found]) for name in found[0]}
-
-
 def test_the_made_profile_gives_back_the_rows(tmp_path: Path) -> None:
     """Measured, smoothed, cut within 1 um, and followed again: within both tolerances."""
     result = gearcam.build(gearcam.load("profiles/measured_cam.toml"))
-    measured = columns(Path("profiles/measured_cam.csv").read_bytes().partition(b"\n")[2])
-    asked = columns(result.files("csv")["motion.csv"])
+    measured = table(Path("profiles/measured_cam.csv").read_bytes().partition(b"\n")[2])
+    asked = table(result.files("csv")["motion.csv"])
     off = asked["s"][:360] - measured["lift_mm"]
     told = result.facts["motion.deviation"]
     assert np.abs(off).max() == pytest.approx(abs(told), abs=1e-12)
@@ -211,7 +204,7 @@ def test_the_made_profile_gives_back_the_rows(tmp_path: Path) -> None:
     written = result.write(tmp_path, files=["csv", "dxf"])
     for name in ("profile.csv", "cam.dxf"):
         found = result.follow(written.directory / name).write(tmp_path)
-        followed = columns((found.directory / "followed.csv").read_bytes())
+        followed = table((found.directory / "followed.csv").read_bytes())
         # 1 um along the normal is less than 1.04 um of lift at 15.1 deg of pressure angle
         assert np.abs(followed["s"][:360] - measured["lift_mm"]).max() < 0.006 + 0.00104
 

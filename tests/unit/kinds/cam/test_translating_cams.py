@@ -12,7 +12,7 @@ import gearcam
 from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.designs import loads
 from gearcam.results.advice import Search
-from helpers_cam_files import DEEP, EDGE, PLATE, built, read, refused, sliding_of
+from helpers_files import DEEP, EDGE, PLATE, built, read, refused, sliding_of
 from helpers_step import read_step
 
 

@@ -18,7 +18,7 @@ from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.pictures.drawings import cut_drawing, reach
 from gearcam.sheets import wheel_sheet
 from gearcam.sheets.sheet import LinearDimension
-from helpers_cam_files import DEEP, EDGE, PLATE, built, sliding_of
+from helpers_files import DEEP, EDGE, PLATE, built, sliding_of
 
 
 def test_files_of_a_groove(tmp_path: Path) -> None:

@@ -15,8 +15,8 @@ from gearcam.cams.disc import YokeCam
 from gearcam.designs import loads
 from gearcam.laws.half_turns import agreeing, miss
 from gearcam.laws.phases_of_lift import fill_half
-from helpers_cam_files import read, refused
 from helpers_cams import back, dwell, program, rise
+from helpers_files import read, refused
 from helpers_pairs import PROFILES
 
 FILE = (PROFILES / "yoke_cam.toml").read_text("utf-8")

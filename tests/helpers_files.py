@@ -1,7 +1,11 @@
-"""Texts of cam designs, and how they are changed, read, refused and built."""
+"""Files that go in and come out: texts of designs, changed, read, refused and built; tables."""
 
 from __future__ import annotations
 
+import csv
+import io
+
+import numpy as np
 import pytest
 
 from gearcam.base.errors import DesignError, Problem
@@ -11,6 +15,23 @@ from gearcam.kinds.cam.build import CamResult
 from gearcam.kinds.cam.design import CamDesign
 from helpers_built import built as shared
 from helpers_pairs import PROFILES
+
+PAIR = """\
+kind = "gear-pair"
+name = "good"
+
+[law]
+type = "phases"
+knots_deg = [0, 160, 360]
+ratios = [1.6, 0.4, 1.6]
+
+[pair]
+center_distance_mm = 180
+teeth = [36, 36]
+
+[output]
+files = ["csv"]
+"""
 
 ROLLER = """\
 kind = "cam"
@@ -149,9 +170,9 @@ def refused(text: str, *changes: tuple[str, str]) -> dict[str, str]:
     return {one.key: f"{one.message}; {one.allowed}" for one in caught.value.problems}
 
 
-def problems(text: str) -> list[Problem]:
+def problems(text: str, file: str = "design.toml") -> list[Problem]:
     with pytest.raises(DesignError) as caught:
-        loads(text, file="cam.toml")
+        loads(text, file=file)
     return list(caught.value.problems)
 
 
@@ -166,3 +187,9 @@ def changed(old: str, new: str, text: str = ROLLER) -> str:
     """A text with the first of a few words replaced."""
     assert old in text
     return text.replace(old, new, 1)
+
+
+def table(data: bytes) -> dict[str, np.ndarray]:
+    """Columns of numbers by the standard library's reader; NaN where a cell is empty."""
+    rows = list(csv.DictReader(io.StringIO(data.decode("ascii"))))
+    return {name: np.array([float(row[name] or "nan") for row in rows]) for name in rows[0]}
