@@ -10,8 +10,7 @@ are given by curvature, not radius, so that nearly straight pieces lose no digit
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 from functools import partial
 from typing import NamedTuple
 
@@ -46,22 +45,6 @@ NEAR = 0.02
 
 WIDEST = np.tan(1.0)
 """Tangent of half the largest angle of one arc."""
-
-_BLOCK = 64
-"""Points per block of a long run, in the search by angle of the tangent."""
-
-
-@dataclass(frozen=True, eq=False)
-class _Curves:
-    """Points, the accumulated angle of the tangent, `turned`, and points for distances.
-
-    `ranges` holds the least and the largest angle of each block of `_BLOCK` points, (2, n).
-    """
-
-    rows: RunPoints
-    turned: Array
-    ranges: Array
-    checks: Checks
 
 
 class _Biarcs(NamedTuple):
@@ -104,9 +87,9 @@ def fit_arcs(runs: Sequence[Run], tolerance: float) -> list[tuple[Array, Array]]
         points.
     """
     rows = points_to_fit(runs, tolerance)
-    curves = _curves(rows, tolerance)
-    errors, furthest = partial(_errors, curves), partial(_furthest, curves)
-    start, end = longest_pieces(errors, furthest, rows, tolerance, 3, NEAR)
+    turned = np.append(0.0, np.cumsum(turns(rows.tangents)))
+    errors = partial(_errors, rows, turned, checks_of(rows, tolerance, even=True))
+    start, end = longest_pieces(errors, rows, tolerance, 3, NEAR)
     made = _biarcs(rows, start, end)
     kept = np.stack([np.ones_like(made.single), ~made.single], axis=1)
     knots = np.stack([rows.points[start], made.joint, rows.points[end]])
@@ -150,47 +133,6 @@ def fit_closed(runs: Sequence[Run], tolerance: float) -> tuple[Array, Array]:
     return np.vstack([points[:-1] for points, _ in made]), np.concatenate([b for _, b in made])
 
 
-def _curves(rows: RunPoints, tolerance: float) -> _Curves:
-    turned = np.append(0.0, np.cumsum(turns(rows.tangents)))
-    blocks = np.arange(0, len(turned), _BLOCK)
-    ranges = np.stack([end.reduceat(turned, blocks) for end in (np.minimum, np.maximum)])
-    return _Curves(rows, turned, ranges, checks_of(rows, tolerance, even=True))
-
-
-def _furthest(curves: _Curves, start: Ints, last: Ints) -> Ints:
-    """Return the last indices to which the tangent turns by no more than `MAX_TURN`.
-
-    The first index beyond is searched among the next few points, then among blocks, and then in
-    its block, since it may be as far away as the end of the run.
-    """
-    begin = curves.turned[start]
-
-    def point(index: Ints, of: Ints) -> Mask:
-        return np.abs(curves.turned[index] - begin[of]) > MAX_TURN
-
-    def block(index: Ints, of: Ints) -> Mask:
-        low, high = curves.ranges[:, index]
-        return np.maximum(high - begin[of], begin[of] - low) > MAX_TURN
-
-    beyond = last + 1
-    edge = np.minimum(_BLOCK * (start // _BLOCK + 1), beyond)
-    near = _first(point, start + 1, edge)
-    sought = (near == edge) & (edge < beyond)
-    number = _first(block, edge // _BLOCK, np.where(sought, last // _BLOCK + 1, 0))
-    inside = np.where(sought, np.minimum(_BLOCK * number, beyond), beyond)
-    far = _first(point, inside, np.minimum(inside + _BLOCK, beyond))
-    return np.maximum(np.where(sought, far, near) - 1, start + 1)
-
-
-def _first(is_it: Callable[[Ints, Ints], Mask], low: Ints, high: Ints) -> Ints:
-    """Return the first index in each range for which it is true; the upper end if for none."""
-
-    def short(index: Ints, of: Ints) -> Array:
-        return np.where(is_it(index, of), high[of] - index, 0)
-
-    return high - largest(short, low, high).astype(np.int64)
-
-
 def _biarcs(rows: RunPoints, start: Ints, end: Ints) -> _Biarcs:
     """Return the biarcs between points."""
     p, q = rows.points[start], rows.points[end]
@@ -217,23 +159,26 @@ def _biarcs(rows: RunPoints, start: Ints, end: Ints) -> _Biarcs:
     return _Biarcs(np.where(pair, joint, q), bulges, ~pair, ~pair & ~single)
 
 
-def _errors(curves: _Curves, start: Ints, end: Ints) -> Array:
-    """Return the largest distance of check points to the biarcs between their points."""
-    made = _biarcs(curves.rows, start, end)
-    p, t = curves.rows.points[start], curves.rows.tangents[start]
+def _errors(rows: RunPoints, turned: Array, checks: Checks, start: Ints, end: Ints) -> Array:
+    """Return the largest distance of check points to the biarcs between their points.
+
+    `turned` is the accumulated angle of the tangent at the points.
+    """
+    made = _biarcs(rows, start, end)
+    p, t = rows.points[start], rows.tangents[start]
     begin = np.array([p, made.joint])
-    chord = np.array([made.joint - p, curves.rows.points[end] - made.joint])
+    chord = np.array([made.joint - p, rows.points[end] - made.joint])
     square = np.maximum(chord.real**2 + chord.imag**2, np.finfo(float).tiny)
     # the tangent at the joint is the start tangent mirrored at the chord
     back = np.array([np.conj(t), t * np.conj(chord[0]) ** 2 / square[0]])
     bend = 2 * (chord * back).imag / square
 
     def away(index: Ints, of: Ints) -> Array:
-        points = curves.checks.points[index]
+        points = checks.points[index]
         beyond = ((points - made.joint[of]) * back[1, of]).real >= 0
         side = (beyond & ~made.single[of]).astype(np.int64)
         return off_circle((points - begin[side, of]) * back[side, of], bend[side, of])
 
-    place = curves.checks.place
-    stop = np.where(made.fails, 0, place[end])
-    return np.where(made.fails, np.inf, largest(away, place[start] + 1, stop))
+    fails = made.fails | (np.abs(turned[end] - turned[start]) > MAX_TURN)
+    stop = np.where(fails, 0, checks.place[end])
+    return np.where(fails, np.inf, largest(away, checks.place[start] + 1, stop))

@@ -24,6 +24,9 @@ _SPREAD: Final = np.array([1.0, 0.8, 0.92, 0.97, 1.03, 1.1, 1.3])
 _FEW: Final = 8
 """Number of runs up to which that costs hardly more than one trial."""
 
+_FIRST: Final = 64
+"""Number of steps of the first trial of a run."""
+
 _GROWTH: Final = 10.0
 """Largest growth of a length per trial: very small errors are useless for prediction."""
 
@@ -192,7 +195,6 @@ def largest(measure: Callable[[Ints, Ints], Array], low: Ints, high: Ints) -> Ar
 
 def longest_pieces(
     errors: Callable[[Ints, Ints], Array],
-    furthest: Callable[[Ints, Ints], Ints],
     rows: RunPoints,
     tolerance: float,
     order: int,
@@ -204,8 +206,6 @@ def longest_pieces(
     ----------
     errors : callable
         ``errors(start, end)``: errors of the fit of the pieces between points.
-    furthest : callable
-        ``furthest(start, last) -> end``: the furthest end of a piece, for any error.
     rows : RunPoints
         The runs.
     tolerance : float
@@ -222,8 +222,7 @@ def longest_pieces(
     """
     start, last = rows.first, rows.last
     found: list[tuple[Ints, Ints]] = []
-    low, top = start + 1, furthest(start, last)
-    trial = high = top
+    low, high, trial = start + 1, last, np.minimum(start + _FIRST, last)
     while start.size:
         done = high - low <= near * (low - start)
         if done.any():
@@ -231,15 +230,12 @@ def longest_pieces(
             trial = np.where(done, 2 * low - start, trial)
             start = np.where(done, low, start)
             left = start < last
-            start, last, low, high, top, trial = (
-                one[left] for one in (start, last, low, high, top, trial)
-            )
+            start, last, low, high, trial = (one[left] for one in (start, last, low, high, trial))
             done = done[left]
-            low[done] = start[done] + 1
-            high[done] = top[done] = furthest(start[done], last[done])
+            low, high = np.where(done, start + 1, low), np.where(done, last, high)
             continue
         # a prediction outside the bracket is useless: the middle is tried instead
-        inside = (trial > low) & ((trial < high) | (high == top))
+        inside = (trial > low) & ((trial < high) | (high == last))
         trial = np.where(inside, np.minimum(trial, high), (low + high + 1) // 2)
         spread = _SPREAD[:, None] if start.size <= _FEW else np.ones((1, 1))
         tried = start + np.rint(spread * (trial - start)).astype(np.int64)

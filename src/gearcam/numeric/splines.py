@@ -84,14 +84,8 @@ def fit_splines(runs: Sequence[Run], tolerance: float) -> list[Spline]:
     way = np.append(0.0, np.cumsum(hermite_arms(p, t)))
     checks = checks_of(rows, tolerance, even=False)
     gone = np.interp(np.arange(len(checks.points)), checks.place, way)  # steps are divided evenly
-    start, end = longest_pieces(
-        partial(_errors, rows, way, checks, gone),
-        lambda _, last: last,
-        rows,
-        tolerance,
-        4,
-        _NEAR,
-    )
+    errors = partial(_errors, rows, way, checks, gone)
+    start, end = longest_pieces(errors, rows, tolerance, 4, _NEAR)
     arms = (way[end] - way[start]) / 3.0
     inner = np.stack([p[start] + arms * t[start], p[end] - arms * t[end]], axis=1)
     made = []

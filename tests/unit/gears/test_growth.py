@@ -164,25 +164,23 @@ def test_half_teeth_are_as_far_as_their_union(law: Any) -> None:
 
 @pytest.mark.parametrize("sense", [1.0, -1.0])
 def test_a_long_run_is_not_looked_through_for_every_arc(sense: float) -> None:
-    """Twice around a circle in one run: 16 times the points, and little more to look at."""
-    asked = []
+    """Twice around a circle in one run: each point is measured some 15 times, however many there are."""
     for count in (2000, 32000):
         t = np.linspace(0.0, 4.0 * math.pi, count)
         ahead = sense * np.stack([-np.sin(t), np.cos(t)], axis=1)
         points = 30.0 * np.stack([np.cos(t), np.sin(t)], axis=1)
         run = Run(points=points[:: int(sense)], tangents=ahead[:: int(sense)])
         patch, ranges = counted(
-            arcs, "_first", lambda _, low, high: int(np.maximum(high - low, 0).sum())
+            arcs, "largest", lambda _, low, high: int(np.maximum(high - low, 0).sum())
         )
         with patch:
             ((_, bulges),) = arcs.fit_arcs([run], 1e-3)
-        asked.append(sum(ranges))
+        assert sum(ranges) < 25 * count
         # as few arcs as may turn by a quarter of a circle each, a point less where none is there
         turns = sense * 4.0 * np.arctan(bulges)
         assert np.all(turns <= arcs.MAX_TURN * (1.0 + 1e-9))
         assert len(turns) in (8, 9)
         assert turns.sum() == pytest.approx(4.0 * math.pi, abs=1e-3)
-    assert asked[1] < 4.0 * asked[0]
 
 
 def test_many_places_are_evaluated_in_blocks() -> None:
