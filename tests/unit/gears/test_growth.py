@@ -164,7 +164,7 @@ def test_half_teeth_are_as_far_as_their_union(law: Any) -> None:
 
 @pytest.mark.parametrize("sense", [1.0, -1.0])
 def test_a_long_run_is_not_looked_through_for_every_arc(sense: float) -> None:
-    """Twice around a circle in one run: each point is measured some 15 times, however many there are."""
+    """Twice around a circle in one run: each point is measured some 15 times, at any length."""
     for count in (2000, 32000):
         t = np.linspace(0.0, 4.0 * math.pi, count)
         ahead = sense * np.stack([-np.sin(t), np.cos(t)], axis=1)
