@@ -26,7 +26,7 @@ ROUND = {"face_width_mm": 0.1, "backlash_mm": 5e-4}
 EDGES = {
     "bore_diameter_mm": [0.08, 0.1],
     "density_kg_m3": 7850,
-    "clearance_mm": 5e-5,
+    "clearance_mm": 1e-3,
     "timing_marks": False,
 }
 SPIRAL = {"type": "formula", "ratio": "exp(phi1/3)", "driver_travel_deg": 200}

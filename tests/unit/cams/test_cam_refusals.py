@@ -267,17 +267,17 @@ def test_a_base_radius_is_the_prime_radius_less_the_roller() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "key", "step"),
+    ("name", "changes"),
     [
-        ("tappet", "output.motion_step_deg", 1e-6),
-        ("translating_cam", "output.way_step_mm", 1e-5),
+        ("tappet", {"output.motion_step_deg": 1e-6}),
+        ("translating_cam", {"output.way_step_mm": 1e-3, "cam.run_out_mm": 1200.0}),
     ],
 )
 def test_a_step_with_too_many_rows_is_refused_with_the_smallest(
-    name: str, key: str, step: float
+    name: str, changes: dict[str, float]
 ) -> None:
-    design = gearcam.load(f"profiles/{name}.toml").with_({key: step})
-    result = gearcam.build(design)
+    key = next(iter(changes))
+    result = gearcam.build(gearcam.load(f"profiles/{name}.toml").with_(changes))
     with pytest.raises(InfeasibleError, match="1000000 rows") as refused:
         result.files("csv")
     assert refused.value.where == key
