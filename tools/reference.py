@@ -20,8 +20,6 @@ from gearcam.base.quantities import REQUIRED
 from gearcam.base.tolerances import DEFAULT
 from gearcam.cams.spec import FOLLOWERS, CamSpec, FollowerSpec
 from gearcam.cli import EXIT_CODES, parsers
-from gearcam.designs import KINDS
-from gearcam.designs.kind import DesignKind
 from gearcam.designs.table import Table
 from gearcam.kinds.cam.forms.base import FORMS, Form, form_keys
 from gearcam.kinds.cam.motion import WITH_LAW, phase_table, rise_table, summary, turn_tables
@@ -31,6 +29,7 @@ from gearcam.laws.phases_of_lift import PHASES, TURN, RisePhase
 from gearcam.laws.program import make_program
 from gearcam.laws.ratio.base import LAWS
 from gearcam.laws.rises.base import RISES
+from gearcam.results.kind import KINDS, Kind
 from reference_parts import (
     CHECKS_INTRO,
     CODES_OUTRO,
@@ -205,7 +204,7 @@ def checks() -> Iterator[str]:
     for kind in ordered_kinds():
         yield f"## {TITLES[kind.name]}"
         kind.load_checks()
-        for group in kind.checks:
+        for group in kind.check_groups:
             yield f"### {TITLES[kind.name]}: {GROUPS[group]}"
             rows = (
                 (
@@ -220,7 +219,7 @@ def checks() -> Iterator[str]:
             yield table(("code", "severity", "limit, default", "meaning"), rows)
 
 
-def ordered_kinds() -> Iterator[DesignKind]:
+def ordered_kinds() -> Iterator[Kind]:
     """Yield the kinds of design in the order of the pages."""
     return (KINDS[name] for name in TITLES)
 
@@ -231,7 +230,7 @@ def about(known: Table) -> str:
     return re.sub(r"\s*\(see `\w+`\)|`", "", first)
 
 
-def table_section(kind: DesignKind, title: str) -> Iterator[str]:
+def table_section(kind: Kind, title: str) -> Iterator[str]:
     """Yield the section of a table with fixed keys."""
     known = kind.table(title)
     yield f"### {TITLES[kind.name]}: `[{title}]`"
@@ -309,9 +308,9 @@ def files() -> Iterator[str]:
         yield table(("`files`", "names", "contents"), rows)
 
 
-def format_words(kind: DesignKind, word: str) -> tuple[str, str]:
+def format_words(kind: Kind, word: str) -> tuple[str, str]:
     """Return the names of the files of a word of ``files``, and what they hold."""
-    made = kind.room("files").FILES[word]
+    made = kind.files[word]
     doc = inspect.getdoc(made.func if isinstance(made, partial) else made) or ""
     _, listed, holds, *_ = doc.replace("{format}", word.removeprefix("drawing-")).split("\n\n")
     return names(listed.removeprefix("Files: ").rstrip(".")), names(holds)

@@ -72,10 +72,9 @@ _HOMES = {
 
 
 def _of_kinds() -> dict[str, type]:
-    from gearcam.designs.kind import KINDS
+    from gearcam.results.kind import KINDS
 
-    rooms = [kind.room("public") for kind in KINDS.values()]
-    return {name: getattr(room, name) for room in rooms for name in room.__all__}
+    return {name: one for kind in KINDS.values() for name, one in kind.public.items()}
 
 
 if not TYPE_CHECKING:  # so that type checkers report misspelt names
@@ -216,7 +215,7 @@ def build(design: _Buildable[_R], tolerances: Tolerances | None = None) -> _R:
 
     kind = instance("design", design, Design, "a design, as returned by load").kind
     given = () if tolerances is None else (tolerances,)
-    return KINDS[kind].room("build").build(design, *given)
+    return KINDS[kind].result(design, *given)
 
 
 def remedies(

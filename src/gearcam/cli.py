@@ -34,10 +34,11 @@ from gearcam.console import (
     say,
     streams,
 )
-from gearcam.designs import KINDS, Design, load
+from gearcam.designs import Design, load
 from gearcam.designs.faults import unknown_word
-from gearcam.designs.kind import all_formats, rooms
+from gearcam.designs.kind import all_formats
 from gearcam.designs.outputs import FORMATS
+from gearcam.results.kind import KINDS
 
 if TYPE_CHECKING:
     from gearcam.results.result import Progress, Result
@@ -125,8 +126,8 @@ def _dispatch(words: list[str]) -> int:
 def _commands() -> Iterator[Command]:
     """Yield the commands: general ones, those of kinds of design, then those for all kinds."""
     yield from _COMMANDS
-    for room in rooms("commands"):
-        yield from map(_of_results, room.COMMANDS)
+    for kind in KINDS.values():
+        yield from map(_of_results, kind.commands())
     yield from map(_of_results, COMMANDS)
 
 

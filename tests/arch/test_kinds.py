@@ -20,7 +20,7 @@ from gearcam.designs.template import template
 
 TOY = Path(__file__).parents[1] / "toy_kinds"
 HOME = rules.SOURCE / "kinds"
-NAMES = sorted(folder.name for folder in HOME.iterdir() if (folder / "design.py").exists())
+NAMES = sorted(folder.name for folder in HOME.iterdir() if (folder / "kind.py").exists())
 NAMED = re.compile(
     rf"""["'](?:{"|".join({*NAMES, *(name.replace("_", "-") for name in NAMES)})})["']"""
     rf"""|\bkinds\.(?:{"|".join(NAMES)})\b|\b(?:GearPair|Cam)(?:Design|Result)\b"""

@@ -77,6 +77,36 @@ class Registry(Mapping[str, E], Generic[E]):
         return name in self._homes or name in self._entries
 
 
+def deferred(place: str) -> Callable[..., Any]:
+    """Return a function that imports the one at a `place`, ``package.module:name``, to call it."""
+
+    def call(*arguments: Any, **named: Any) -> Any:
+        return _imported(place)(*arguments, **named)
+
+    return call
+
+
+class DeferredMapping(Mapping[str, Any]):
+    """The mapping at a `place`, ``package.module:name``, imported when it is first used."""
+
+    def __init__(self, place: str) -> None:
+        self._place = place
+
+    def __getitem__(self, name: str) -> Any:
+        return _imported(self._place)[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(_imported(self._place))
+
+    def __len__(self) -> int:
+        return len(_imported(self._place))
+
+
+def _imported(place: str) -> Any:
+    module, _, name = place.partition(":")
+    return getattr(importlib.import_module(module), name)
+
+
 def name_of(registry: Registry[Any], part: object) -> str:
     """Return the name of the entry in `registry` whose parameters `part` is; else an empty text."""
     # the class of the object was imported, so its entry is registered

@@ -12,7 +12,7 @@ from typing import Any, Final
 from gearcam import build
 from gearcam.base.display import Brief
 from gearcam.base.errors import DesignError, GearcamError, Problem
-from gearcam.designs import KINDS, Design, load
+from gearcam.designs import Design, load
 from gearcam.designs.design import path_of
 from gearcam.designs.faults import show
 from gearcam.pictures.scenes import Scene
@@ -172,7 +172,7 @@ def _built(label: str, design: Design) -> Variant:
     result = build(design)
     try:
         _ = result.facts, result.findings
-        scene = KINDS[design.kind].room("scene").scene(result)
+        scene = result.scene()
     except GearcamError as error:
         return Variant(label=label, result=result, refusal=error)
     return Variant(label=label, result=result, scene=scene)

@@ -114,7 +114,7 @@ class Design:
     @property
     def _built(self) -> Any:
         """The result, which provides the picture of a design in notebooks."""
-        return KINDS[self.kind].room("build").build(self)
+        return KINDS[self.kind].result(self)
 
     def __copy__(self) -> Self:
         return self
@@ -266,7 +266,7 @@ def document_of(design: Design) -> dict[str, Any]:
     kind = KINDS[design.kind]
     document: dict[str, Any] = {"kind": kind.name, "name": design.name}
     if kind.main:
-        document[kind.main] = kind.main_of(design)
+        document[kind.main.title] = kind.main.document(design)
     for title in kind.tables:
         document[title] = kind.table(title).document(getattr(design, title))
     if design.limits:

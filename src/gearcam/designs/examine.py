@@ -58,7 +58,8 @@ def examine(document: Mapping[str, Any], *, stem: str = "") -> Examined:
     found.faults += _kind_faults(document)
     found.faults += _top_faults(document, kind)
     _examine_name(document, stem, found)
-    kind.examine_main(document, found)
+    if kind.main:
+        kind.main.examine(document, found)
     for title in kind.tables:
         _examine_table(document, kind, title, found)
     found.parts["limits"] = {}
@@ -88,7 +89,7 @@ def home_of(kind: DesignKind, key: str) -> str:
     homes |= dict.fromkeys(
         ("kind", "name"), "this key belongs at the top of the file, above all tables"
     )
-    return homes.get(key) or kind.homes().get(key, "")
+    return homes.get(key) or (kind.main.homes().get(key, "") if kind.main else "")
 
 
 def _elsewhere(kind: DesignKind, key: str) -> str:

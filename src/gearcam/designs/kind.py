@@ -1,36 +1,18 @@
-"""The kinds of design, and the outcome of validating a design.
+"""The kinds of design: how a design of each kind is read, and the outcome of validating one.
 
-Each kind is a folder of the package `gearcam.kinds`, found by its name. No other code names a kind,
-and only the kind of the design at hand is imported. The modules of a kind:
-
-- `design`: ``KIND``, a `DesignKind`: the tables of a file, their rules, and the design class;
-- `build`: ``build(design, tolerances)`` returns its `gearcam.results.result.Result`;
-- `facts`: ``facts(result, measured)`` returns its facts;
-- `files`: ``FILES``, the function that makes each kind of file; paragraphs of its docstring list
-  the names of the files (``Files: ...``) and what they hold. With ``report`` also
-  ``assembled(result)``, the solids in their places, and ``framed(result)``, the HTML for notebooks;
-- `charts`: ``CHARTS``, functions that return charts; `scene`: ``scene(result)`` returns the scene;
-- `advice`: ``seek(search, refusal)`` searches for remedies of a refused design or one with errors,
-  ``hopeless(result)`` tells which designs need not be built completely, ``moves(design, other)``
-  which ones change the motion, ``FILE_DEMANDS`` has
-  functions by kind of file that refuse a file although all parts can be made;
-- `public`: ``__all__`` lists the classes for designs written in Python (the package
-  `gearcam.kinds` declares them for type checkers);
-- `describe`: the main part in the schema, the template and the list of laws;
-- `commands`, optional: ``COMMANDS`` for the command line;
-- `ladder`, optional: ``LADDERS``, stages at increasing resolution (see `gearcam.results.ladders`).
+Each kind is a folder of the package `gearcam.kinds`, found by its name; its module `kind` has its
+``KIND``. No other code names a kind, and only the kind of the design at hand is imported. What a
+kind does beside reading (results, files, charts, studies) is in `gearcam.results.kind.Kind`.
 """
 
 from __future__ import annotations
 
 import importlib
-import importlib.util
 import math
 import pkgutil
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
-from types import ModuleType
 from typing import Any, Final
 
 from gearcam.base.findings import CHECKS
@@ -57,8 +39,45 @@ class Examined:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
+class Main:
+    """The part of a design whose keys depend on a registry.
+
+    Parameters
+    ----------
+    title : str
+        Its title in a file.
+    examine : callable
+        ``examine(document, found)`` validates it.
+    document : callable
+        ``document(design)`` returns it as in a design file.
+    table : callable
+        ``table(raw)`` returns its table, or that of one of its items, as in a file.
+    homes : callable
+        ``homes()`` returns hints by key that say where a key of it belongs.
+    schema : callable
+        ``schema()`` returns its JSON schema and the definitions in it.
+    template : callable
+        ``template(example, note)`` yields its lines in the template.
+    laws : callable
+        ``laws()`` returns a heading and the laws for ``gearcam laws``.
+    """
+
+    title: str
+    examine: Callable[[Mapping[str, Any], Examined], None]
+    document: Callable[[Any], Any]
+    table: Callable[[Mapping[str, Any]], Table]
+    homes: Callable[[], Mapping[str, str]]
+    schema: Callable[[], tuple[dict[str, Any], dict[str, Any]]]
+    template: Callable[[Any, str], Iterable[str]]
+    laws: Callable[[], tuple[str, list[Any]]]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
 class DesignKind:
-    """A kind of design.
+    """How designs of one kind are read and described.
+
+    A design has tables with fixed keys and may have a *main* part whose keys depend on a registry,
+    such as ``[law]``.
 
     Parameters
     ----------
@@ -68,16 +87,11 @@ class DesignKind:
         Short description.
     design : type
         Class of its designs: a frozen dataclass with ``name``, ``source``, ``limits``, the result
-        of `examine_main` and a field for each table.
-    main : str
-        Title of the part whose keys depend on a registry; empty if there is none, and then neither
-        the next three nor the module `describe` are needed.
-    examine_main : callable
-        ``examine_main(document, found)`` validates that part.
-    main_of : callable
-        ``main_of(design)`` returns that part as in a design file.
-    homes : callable
-        Returns hints by key that say where a key of that part belongs.
+        of the main part's ``examine`` and a field for each table.
+    result : callable
+        ``result(design, tolerances)`` returns its `gearcam.results.result.Result`.
+    main : Main, optional
+        The main part.
     tables : mapping of str to callable
         Functions that return the tables with fixed keys, by title, which is also the field name.
     required : tuple of str
@@ -96,10 +110,10 @@ class DesignKind:
         fault is reported then.
     formats : tuple of str
         Kinds of files that ``output.files`` may list.
-    rooms : tuple of str
+    check_modules : tuple of str
         Modules that register checks.
-    checks : tuple of str
-        Kinds of subject of those checks.
+    check_groups : tuple of str
+        Groups of those checks: what they look at.
     studies : tuple of str
         Titles of tables with settings of studies, on which no file of a build depends.
     example : mapping
@@ -113,10 +127,8 @@ class DesignKind:
     name: str
     doc: str
     design: type
-    main: str = ""
-    examine_main: Callable[[Mapping[str, Any], Examined], None] = lambda *_: None
-    main_of: Callable[[Any], Any] = lambda _: None
-    homes: Callable[[], Mapping[str, str]] = dict
+    result: Callable[..., Any]
+    main: Main | None = None
     tables: Mapping[str, Callable[[], Table]]
     required: tuple[str, ...]
     one_of: Mapping[str, tuple[str | Mapping[str, Sequence[str]], ...]] = field(
@@ -127,8 +139,8 @@ class DesignKind:
     listed: Callable[[Mapping[str, Any], Table], Iterable[str]] = lambda _, table: table.entries
     later: Callable[[Mapping[str, Any]], Fault | None] = lambda _: None
     formats: tuple[str, ...]
-    rooms: tuple[str, ...] = ()
-    checks: tuple[str, ...] = ()
+    check_modules: tuple[str, ...] = ()
+    check_groups: tuple[str, ...] = ()
     studies: tuple[str, ...] = ()
     example: Mapping[str, Any]
     notes: Mapping[str, str] = field(default_factory=dict)
@@ -137,29 +149,25 @@ class DesignKind:
     @property
     def titles(self) -> tuple[str, ...]:
         """The top-level keys and tables of a file of this kind."""
-        main = (self.main,) if self.main else ()
+        main = (self.main.title,) if self.main else ()
         return ("kind", "name", *main, *self.tables, "limits")
 
     def table(self, title: str) -> Table:
         """Return a table by its title: one of `tables`, or ``limits``."""
         return self._limits() if title == "limits" else self.tables[title]()
 
-    def room(self, name: str) -> ModuleType:
-        """Import and return a module of its folder by `name`."""
-        return importlib.import_module(f"{_package(self.name)}.{name}")
-
     def load_checks(self) -> None:
         """Import the modules that register checks."""
         # on demand, since a file without limits does not need them
-        for room in self.rooms:
-            importlib.import_module(room)
+        for module in self.check_modules:
+            importlib.import_module(module)
 
     def _limits(self) -> Table:
         self.load_checks()
         entries = {}
-        for room in self.checks:
+        for group in self.check_groups:
             for check in CHECKS.values():
-                if check.kind == room and check.limit is not None:
+                if check.kind == group and check.limit is not None:
                     name, made_of, default = check.limit
                     key = made_of.key(name)
                     # nan: it depends on the design
@@ -183,22 +191,11 @@ class _Kinds(Mapping[str, DesignKind]):
     def __getitem__(self, name: str) -> DesignKind:
         if name not in _names():
             raise KeyError(name)
-        return importlib.import_module(f"{_package(name)}.design").KIND
+        return importlib.import_module(f"{_package(name)}.kind").KIND
 
 
 KINDS: Final[Mapping[str, DesignKind]] = _Kinds()
 """The kinds of design by name."""
-
-
-def find_room(kind: str, name: str) -> ModuleType | None:
-    """Return an optional module of a `kind` by `name`, or None; its designs are not imported."""
-    home = f"{_package(kind)}.{name}"
-    return importlib.import_module(home) if importlib.util.find_spec(home) else None
-
-
-def rooms(name: str) -> Iterator[ModuleType]:
-    """Yield the modules called `name` of all kinds, without importing their designs."""
-    return (room for kind in _names() if (room := find_room(kind, name)) is not None)
 
 
 def all_formats() -> tuple[str, ...]:

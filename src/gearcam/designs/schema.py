@@ -37,7 +37,7 @@ def schema() -> Schema:
     """
     definitions: Schema = {}
     for kind in KINDS.values():
-        main, own = kind.room("describe").schema() if kind.main else ({}, {})
+        main, own = kind.main.schema() if kind.main else ({}, {})
         definitions[kind.name] = _branch(kind, main)
         for title in (*kind.tables, "limits"):
             definitions[f"{kind.name}-{title}"] = _titled(kind, title)
@@ -122,7 +122,7 @@ def _branch(kind: DesignKind, main: Schema) -> Schema:
         "type": "object",
         "description": kind.doc,
         "additionalProperties": False,
-        "required": ["kind", *([kind.main] if kind.main else []), *kind.required],
+        "required": ["kind", *([kind.main.title] if kind.main else []), *kind.required],
         "properties": {
             "kind": {"const": kind.name, "description": kind.doc},
             "name": {
@@ -131,7 +131,7 @@ def _branch(kind: DesignKind, main: Schema) -> Schema:
                 "maxLength": 100,
                 "description": "names the output folder; default: the name of the design file",
             },
-            **({kind.main: main} if kind.main else {}),
+            **({kind.main.title: main} if kind.main else {}),
         }
         | {title: {"$ref": f"#/$defs/{kind.name}-{title}"} for title in (*kind.tables, "limits")},
     }

@@ -112,7 +112,8 @@ def _lines(kind: DesignKind, name: str, process: str) -> Iterator[str]:
     yield key_line("name", name, "name of the output folder")
     yield ""
     if kind.main:
-        yield from kind.room("describe").lines()
+        title = kind.main.title
+        yield from kind.main.template(kind.example[title], kind.notes.get(title, ""))
     for title in (*kind.tables, "limits"):
         given = {**kind.example.get(title, {}), **more.get(title, {})}
         yield from _table(title, kind.table(title), given, kind.notes.get(title, ""))

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.base.errors import GearcamError
-from gearcam.designs.kind import KINDS
 
 if TYPE_CHECKING:
     from gearcam.export.files import Files
@@ -65,7 +64,7 @@ def solids_shown(result: Result) -> dict[str, str]:
         try:
             fine = (result.design.output.chord_tolerance or 0.0) < chords
             shown = result.with_chords(chords) if fine else result
-            return {"view": view_page(KINDS[result.design.kind].room("files").assembled(shown))}
+            return {"view": view_page(result.kind.assembled(shown))}
         except GearcamError as error:
             refusal = str(error)
     return {"refusal": refusal}

@@ -12,10 +12,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, cast
 
 from gearcam.base.numerals import shown, size_of
-from gearcam.designs.kind import KINDS
 from gearcam.report.data import chart_data, scene_data
 from gearcam.results.advice import Remedies, remedies
 
@@ -25,6 +24,7 @@ if TYPE_CHECKING:
     from gearcam.base.facts import Facts
     from gearcam.base.findings import Finding
     from gearcam.pictures.charts import Chart
+    from gearcam.pictures.scenes import Scene
     from gearcam.results.result import Result
 
 PAGE: Final = "report.html"
@@ -170,7 +170,7 @@ def document(
     InfeasibleError
         If the design cannot be made.
     """
-    scene = KINDS[result.design.kind].room("scene").scene(result)
+    scene = _moving(result)
     return {
         "title": result.design.name,
         "kind": result.design.kind,
@@ -180,9 +180,14 @@ def document(
     }
 
 
+def _moving(result: Result, places: int | None = None) -> Scene:
+    """Return the moving parts of a result; every kind with a report has them."""
+    return cast("Scene", result.scene(places))
+
+
 def draft(result: Result) -> dict[str, Any]:
     """Return the part of a document that follows a slider: without charts, remedies and files."""
-    made = KINDS[result.design.kind].room("scene").scene(result, DRAFT_PLACES)
+    made = _moving(result, DRAFT_PLACES)
     return {
         "title": result.design.name,
         "kind": result.design.kind,

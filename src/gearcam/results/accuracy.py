@@ -21,10 +21,10 @@ from gearcam.base.facts import lined_up
 from gearcam.base.numerals import exact, shown
 from gearcam.designs.design import Design
 from gearcam.designs.faults import show
-from gearcam.designs.kind import KINDS, find_room
 from gearcam.designs.slips import did_you_mean
 from gearcam.numeric.arguments import whole
 from gearcam.pictures.charts import Chart, Line
+from gearcam.results.kind import KINDS
 from gearcam.results.ladders import Ladder, Ladders
 from gearcam.results.result import Progress, Result
 
@@ -333,8 +333,7 @@ def _rungs(
 
 def _ladders(kind: str) -> Ladders:
     """Return the ladders of a kind of design; empty if it defines none."""
-    room = find_room(kind, "ladder")
-    return {} if room is None else room.LADDERS
+    return KINDS[kind].ladders
 
 
 def _right(rows: Sequence[tuple[str, ...]]) -> list[tuple[str, ...]]:

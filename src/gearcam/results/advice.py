@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.base.changes import (
@@ -33,7 +34,7 @@ from gearcam.base.changes import (
 from gearcam.base.display import Brief
 from gearcam.base.errors import DesignError, InfeasibleError, Way
 from gearcam.designs.design import Design, document_of, value_at
-from gearcam.designs.kind import KINDS
+from gearcam.results.kind import kind_of
 
 if TYPE_CHECKING:
     from gearcam.base.findings import Finding
@@ -210,10 +211,29 @@ def demand_files(result: Result) -> None:
     InfeasibleError
         If one of the files cannot be made.
     """
-    demands = KINDS[result.design.kind].room("advice").FILE_DEMANDS
+    demands = kind_of(result.design).advice().file_demands
     for kind in result.design.output.files:
         if kind in demands:
             demands[kind](result)
+
+
+class Advice:
+    """How remedies are searched for in designs of one kind; a kind overrides what it knows."""
+
+    file_demands: Mapping[str, Callable[[Any], object]] = MappingProxyType({})
+    """Functions by kind of file that refuse a file of a result although all parts can be made."""
+
+    def seek(self, search: Search, refusal: InfeasibleError | None) -> None:
+        """Guide a `search` for remedies of a `refusal`, or of findings that are errors."""
+        search.follow(refusal.ways if refusal else ())
+
+    def hopeless(self, result: Any) -> bool:  # noqa: ARG002
+        """Return whether a changed `result` is known not to help before it is built completely."""
+        return False
+
+    def moves(self, design: Any, other: Any) -> bool:  # noqa: ARG002
+        """Return whether the `other`, changed `design` moves differently."""
+        return False
 
 
 class Search:
@@ -239,7 +259,7 @@ class Search:
         patience: float,
     ) -> None:
         self.result, self.refusal, self.codes = result, refusal, codes
-        self.advice = KINDS[result.design.kind].room("advice")
+        self.advice = kind_of(result.design).advice()
         self.most, self.builds = round(_PACE * patience), 0
         self.until = time.perf_counter() + _SLACK * patience
         self.found: list[Remedy] = []

@@ -24,8 +24,8 @@ from gearcam.base.findings import Finding
 from gearcam.base.numerals import tree
 from gearcam.base.tolerances import DEFAULT, Tolerances
 from gearcam.designs.design import hash_of, summary_of
-from gearcam.designs.kind import KINDS
 from gearcam.numeric.arguments import one_of, refused
+from gearcam.results.kind import Kind, kind_of
 from gearcam.results.written import Written, demand_formats, versions
 
 if TYPE_CHECKING:
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from gearcam.parts.body import Part
     from gearcam.parts.solids import Mesh
     from gearcam.pictures.charts import Chart
+    from gearcam.pictures.scenes import Scene
 
 FORMAT: Final = 1
 """Version of the layout of ``summary.json``."""
@@ -96,6 +97,11 @@ class Result(Displayed):
         vars(made).update(known)
         return made
 
+    @property
+    def kind(self) -> Kind:
+        """The kind of the design."""
+        return kind_of(self.design)
+
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
         """Add the time spent inside the context to the stage called `name`."""
@@ -132,7 +138,7 @@ class Result(Displayed):
 
     def picture(self) -> str:
         """Return the picture of the file kind ``svg``, or why there is none, as SVG text."""
-        if PICTURE not in KINDS[self.design.kind].formats:
+        if PICTURE not in self.kind.formats:
             return ""
         try:
             (data,) = self.files(PICTURE).values()
@@ -143,8 +149,8 @@ class Result(Displayed):
     def _repr_html_(self) -> str:
         try:
             facts, findings = self.facts, self.findings
-            if REPORT in KINDS[self.design.kind].formats:
-                return KINDS[self.design.kind].room("files").framed(self)
+            if REPORT in self.kind.formats:
+                return self.kind.framed(self)
         except GearcamError as error:
             return renderer().refusal(self.design.name, error)
         told = [f"{one.severity}, {one.code}: {one.message} {one.where}" for one in findings]
@@ -162,7 +168,7 @@ class Result(Displayed):
 
     def facts_with(self, measured: Mapping[str, Any]) -> Facts:
         """Return the facts, extended by values `measured` on files or in studies, by group."""
-        made = KINDS[self.design.kind].room("facts").facts(self, measured)
+        made = self.kind.facts(self, measured)
         columns = sys.modules.get("gearcam.laws.columns")  # loaded only if a design has read a file
         tables = columns.tables_in(self.design) if columns else ()
         notes = [Fact(rows.note, Path(rows.file).name, shown=True) for rows in tables]
@@ -255,14 +261,12 @@ class Result(Displayed):
             If the design cannot be made.
         """
         demand_formats(self.design, (kind,))
-        makers = KINDS[self.design.kind].room("files").FILES
-        return makers[kind](self, {} if measured is None else measured)
+        return self.kind.files[kind](self, {} if measured is None else measured)
 
     @property
     def charts(self) -> tuple[str, ...]:
         """Names that `chart` and `plot` accept; `InfeasibleError` if it cannot be made."""
-        makers = KINDS[self.design.kind].room("charts").CHARTS
-        return tuple(name for name, make in makers.items() if make(self) is not None)
+        return tuple(name for name, make in self.kind.charts.items() if make(self) is not None)
 
     def chart(self, name: str) -> Chart:
         """Return a chart as data: lines and limits, with the labels of the axes.
@@ -283,7 +287,7 @@ class Result(Displayed):
         InfeasibleError
             If the design cannot be made.
         """
-        makers = KINDS[self.design.kind].room("charts").CHARTS
+        makers = self.kind.charts
         made = makers[one_of("name", name, (*makers,))](self)
         if made is None:
             raise refused("there is no such chart here", "name", name, ", ".join(self.charts))
@@ -311,6 +315,27 @@ class Result(Displayed):
             If matplotlib is not installed.
         """
         return self.chart(name).draw(ax)
+
+    def scene(self, places: int | None = None) -> Scene | None:
+        """Return the moving parts as data; None for kinds without them.
+
+        Parameters
+        ----------
+        places : int, optional
+            Steps of the driver over its turn or travel; by default those of the report.
+
+        Returns
+        -------
+        Scene or None
+
+        Raises
+        ------
+        InfeasibleError
+            If the design cannot be made.
+        """
+        from gearcam.pictures.scenes import PLACES
+
+        return self.kind.scene(self, PLACES if places is None else places)
 
     def check(self, directory: str | Path = "output") -> Written:
         """Run the checks and write the summary only; the files of an earlier build are kept.

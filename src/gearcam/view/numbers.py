@@ -188,11 +188,11 @@ def _written(value: float, before: str) -> str:
 def _entry(document: Mapping[str, Any], path: Path) -> Key | None:
     """Return the key of a number; None if its table has no such key."""
     kind, (title, *rest) = KINDS[document["kind"]], path
-    if title == kind.main:
-        raw = document[kind.main]
+    if kind.main and title == kind.main.title:
+        raw = document[kind.main.title]
         if rest and isinstance(rest[0], int):
             raw, rest = raw[rest[0]], rest[1:]
-        known = kind.room("describe").known(raw)
+        known = kind.main.table(raw)
     elif title in (*kind.tables, "limits"):
         known = kind.table(str(title))
     else:

@@ -13,11 +13,11 @@ import gearcam
 import reference
 from gearcam.base.findings import CHECKS
 from gearcam.base.quantities import REQUIRED
-from gearcam.designs import KINDS
 from gearcam.kinds.cam.motion import rise_table
 from gearcam.kinds.gear_pair.design import law_table
 from gearcam.laws.ratio.base import LAWS
 from gearcam.laws.rises.base import RISES
+from gearcam.results.kind import KINDS
 from helpers_pairs import PROFILES
 
 PAGES = reference.pages()
@@ -128,7 +128,7 @@ def test_severities_of_checks_are_those_of_their_code() -> None:
 def test_severities_of_findings_are_those_told(name: str, changes: dict[str, object]) -> None:
     """Those that helpers of checks decide too."""
     result = gearcam.build(gearcam.load(PROFILES / f"{name}.toml").with_(changes))
-    groups = KINDS[result.design.kind].checks
+    groups = KINDS[result.design.kind].check_groups
     assert {"note", "warning", "error"} & {one.severity for one in result.findings}
     for found in result.findings:
         told = [

@@ -13,7 +13,6 @@ from shapely import LineString, Point, Polygon
 
 import gearcam
 from arch import rules
-from gearcam.designs.kind import KINDS
 from gearcam.numeric.contour import Contour
 from gearcam.pictures.drawings import Circle, chains
 from gearcam.pictures.scenes import PLACES, MovingBody, Scene, extent
@@ -69,7 +68,7 @@ def sliding(name: str) -> Any:
 
 
 def scene(result: Any, places: int = FEW) -> Scene:
-    return KINDS[result.design.kind].room("scene").scene(result, places)
+    return result.scene(places)
 
 
 def wheels(found: Scene, result: Any) -> list[MovingBody]:

@@ -12,7 +12,6 @@ import pytest
 
 import gearcam
 from arch import rules
-from gearcam.designs.kind import KINDS
 from gearcam.pictures.charts import Chart, Limit, Line, MarkedPlace
 from gearcam.pictures.drawings import CENTRODE, OUTLINE, Feature, Path
 from gearcam.pictures.scenes import ContactPoints, MovingBody, Scene
@@ -24,7 +23,7 @@ NAMES = ("ellipse", "ring_ellipse", "feeder", "stepped_ellipse", "groove_cam", "
 
 def made(name: str) -> tuple[Any, Scene]:
     result = gearcam.build(gearcam.load(rules.ROOT / "profiles" / f"{name}.toml"))
-    return result, KINDS[result.design.kind].room("scene").scene(result, 24)
+    return result, result.scene(24)
 
 
 def read(data: Any) -> Any:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -17,11 +18,10 @@ from gearcam.designs.design import value_at
 from gearcam.kinds.cam.design import CAM_FORMATS
 from gearcam.kinds.cam.pressed import gentler, grown
 from gearcam.parts.checks import KIND as PARTS_KIND
-from gearcam.results.advice import kerf_paths
+from gearcam.results.advice import Advice, kerf_paths
 
 if TYPE_CHECKING:
     from gearcam.results.advice import Search
-    from gearcam.results.result import Result
 
 _LARGER: Final = 100.0
 """How far a cam grows in the search, over what its follower and its lift reach."""
@@ -45,32 +45,19 @@ def _demand(kind: str) -> Callable[[Any], object]:
     return lambda result: (result.profiles, kind in _ALSO and _ALSO[kind](result))
 
 
-FILE_DEMANDS: Final[Mapping[str, Callable[[Any], object]]] = {
-    kind: _demand(kind) for kind in CAM_FORMATS
-}
-"""Checks of file formats of cams that can be made."""
+class CamAdvice(Advice):
+    """Remedies of cams: changes that a refusal names, then other sizes."""
 
+    file_demands = MappingProxyType({kind: _demand(kind) for kind in CAM_FORMATS})
 
-def seek(search: Search, refusal: InfeasibleError | None) -> None:
-    """Guide a `search` for remedies: changes that a `refusal` names, then other sizes."""
-    first = _walled(search, refusal) if refusal else _of_errors(search)
-    search.follow([*first, *_sizes(search)])
+    def seek(self, search: Search, refusal: InfeasibleError | None) -> None:
+        """Guide a `search` by changes that a `refusal` names, then by other sizes."""
+        first = _walled(search, refusal) if refusal else _of_errors(search)
+        search.follow([*first, *_sizes(search)])
 
-
-def hopeless(_: Result) -> bool:
-    """Return whether a changed design is known not to help without building it: never."""
-    return False
-
-
-def moves(design: Any, other: Any) -> bool:
-    """Return whether a changed design moves otherwise: by another lift.
-
-    Parameters
-    ----------
-    design, other : Design
-        Before and after the change.
-    """
-    return bool(design.motion != other.motion)
+    def moves(self, design: Any, other: Any) -> bool:
+        """Return whether the `other` design has another lift than the `design`."""
+        return bool(design.motion != other.motion)
 
 
 def _walled(search: Search, refusal: InfeasibleError) -> Iterator[Way]:

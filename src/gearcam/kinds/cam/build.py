@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.base.findings import Finding, in_order, run_checks
-from gearcam.base.tolerances import DEFAULT, Tolerances
 from gearcam.cams.checks import KIND
 from gearcam.kinds.cam.blank import CamBlank
 from gearcam.kinds.cam.design import CamDesign
@@ -381,8 +380,3 @@ def pressure_column(motion: PitchMotion) -> str:
 def rho_column(what: str, one: PitchMotion) -> str:
     """Return the column of radii of `what`, ``pitch`` or ``profile``, of motion or wall `one`."""
     return f"rho_{what}{_ending(one)}_mm"
-
-
-def build(design: CamDesign, tolerances: Tolerances = DEFAULT) -> CamResult:
-    """Return the result of a `design` to `tolerances`, which is computed on demand."""
-    return CamResult(design, tolerances)

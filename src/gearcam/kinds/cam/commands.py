@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Mapping
-from typing import Any, Final
+from typing import Any
 
 from gearcam.commands import ResultCommand
 from gearcam.designs.design import Design, demand_kind
@@ -32,14 +32,16 @@ def _run(
     return study.write(output)
 
 
-COMMANDS: Final = (
-    ResultCommand(
-        name="follow",
-        done="followed",
-        doc="Compute the follower motion on a given profile; write DIR/NAME/followed.csv.",
-        arguments=_arguments,
-        adapt=_adapt,
-        run=_run,
-        many=False,
-    ),
-)
+def commands() -> tuple[ResultCommand, ...]:
+    """Return the commands."""
+    return (
+        ResultCommand(
+            name="follow",
+            done="followed",
+            doc="Compute the follower motion on a given profile; write DIR/NAME/followed.csv.",
+            arguments=_arguments,
+            adapt=_adapt,
+            run=_run,
+            many=False,
+        ),
+    )

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Final
 
 from gearcam.designs.listing import Listed, listed
 from gearcam.designs.schema import chosen, table_schema, told
 from gearcam.designs.table import Table
 from gearcam.designs.template import comment_line, entry_lines, key_line, law_comment
-from gearcam.kinds.cam.design import KIND
 from gearcam.kinds.cam.motion import (
     LIFT,
     SPAN,
@@ -89,10 +88,9 @@ def known(raw: Mapping[str, Any]) -> Table:
     return formula if "lift" in raw else rows
 
 
-def lines() -> Iterator[str]:
-    """Yield the lines of the template: the example's phases; other phases and laws as comments."""
-    example = KIND.example["motion"]
-    yield f"# {KIND.notes['motion']}"
+def lines(example: Sequence[Mapping[str, Any]], note: str) -> Iterator[str]:
+    """Yield lines of the template: a `note`, the phases of an `example`, others as comments."""
+    yield f"# {note}"
     for phase in example:
         yield from _phase(phase)
         yield ""

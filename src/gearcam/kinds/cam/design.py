@@ -12,21 +12,19 @@ from typing import TYPE_CHECKING, Any, Final
 from gearcam.base.errors import DesignError, Problem
 from gearcam.base.quantities import ANGLE, COUNT, FINEST, LENGTH, LONGEST, param
 from gearcam.base.registry import classes_in, name_of
-from gearcam.cams.spec import FOLLOWED, POINTED, CamSpec, FollowerSpec, size_problems
-from gearcam.cams.spec import KIND as CAM_KIND
+from gearcam.cams.spec import POINTED, CamSpec, FollowerSpec, size_problems
 from gearcam.designs.design import Design, Wanted
 from gearcam.designs.examine import home_of
 from gearcam.designs.faults import Fault, quoted, show
-from gearcam.designs.kind import KINDS, DesignKind, Examined
+from gearcam.designs.kind import KINDS, Examined
 from gearcam.designs.outputs import FORMATS, OutputSpec, files_param, output_faults, pose_param
 from gearcam.designs.table import Table, table_of
 from gearcam.designs.validate import told_faults
 from gearcam.kinds.cam.blank import CamBlank
-from gearcam.kinds.cam.forms.base import SLIDING, form_faults, form_keys, form_schema
-from gearcam.kinds.cam.motion import TITLE, examine_motion, homes, motion_of, whole_turns
+from gearcam.kinds.cam.forms.base import SLIDING, form_faults
+from gearcam.kinds.cam.motion import examine_motion, whole_turns
 from gearcam.laws.phases_of_lift import PHASES, RisePhase
 from gearcam.laws.rises.base import RISES
-from gearcam.parts.blank import KIND as PARTS_KIND
 from gearcam.parts.blank import WheelBlank
 
 if TYPE_CHECKING:
@@ -182,7 +180,7 @@ def _unmarked(blank: WheelBlank, source: str) -> CamBlank:
 
 
 @lru_cache(maxsize=1)
-def _blank_table() -> Table:
+def blank_table() -> Table:
     """Return the table of a cam's blank: the keys of a wheel's without those of teeth."""
     entries = {}
     for key, entry in table_of("blank", CamBlank).entries.items():
@@ -194,11 +192,13 @@ def _blank_table() -> Table:
     return Table("blank", CamBlank, entries)
 
 
-def _examine_motion(document: Mapping[str, Any], found: Examined) -> None:
+def examine_motion_of(document: Mapping[str, Any], found: Examined) -> None:
+    """Validate the motion of a `document`; add its faults and the motion to `found`."""
     examine_motion(document, found, partial(home_of, KINDS[NAME]))
 
 
-def _later(document: Mapping[str, Any]) -> Fault | None:
+def later(document: Mapping[str, Any]) -> Fault | None:
+    """Return the fault of a form of cams that is planned, or None."""
     cam = document.get("cam")
     form = cam.get("form") if isinstance(cam, Mapping) else None
     if document.get("kind") != NAME or form not in LATER_FORMS:
@@ -208,7 +208,8 @@ def _later(document: Mapping[str, Any]) -> Fault | None:
     return Fault(("cam", "form"), message, form, rule)
 
 
-def _rules(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
+def rules(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
+    """Yield contradictions between the tables of a `document` of which parts are `found`."""
     output, follower = document.get("output"), document.get("follower")
     yield from output_faults(output)
     yield from _tool_faults(output, follower)
@@ -234,67 +235,3 @@ def _tool_faults(output: Any, follower: Any) -> Iterator[Fault]:
     if asked and kind in ("flat", *POINTED) and "tool_radius_mm" not in output:
         message = f"is missing: a {kind} follower has no radius that a cutter could have"
         yield Fault(("output", "tool_radius_mm"), message, allowed="a radius above 0")
-
-
-KIND: Final = DesignKind(
-    name=NAME,
-    doc="a cam with its follower",
-    design=CamDesign,
-    main=TITLE,
-    examine_main=_examine_motion,
-    main_of=lambda design: motion_of(
-        design.motion,
-        oscillating=design.follower.oscillating,
-        sliding=design.cam.form in SLIDING,
-    ),
-    homes=homes,
-    tables={
-        "follower": partial(table_of, "follower", FollowerSpec),
-        "cam": partial(table_of, "cam", CamSpec),
-        "blank": _blank_table,
-        "output": partial(table_of, "output", CamOutputSpec),
-    },
-    required=("follower", "cam"),
-    one_of={"cam": ("prime_radius_mm", "base_radius_mm", {"form": SLIDING})},
-    conditions={"cam": partial(form_schema, "cam", CamSpec)},
-    rules=_rules,
-    listed=form_keys,
-    later=_later,
-    formats=CAM_FORMATS,
-    rooms=("gearcam.cams.checks", "gearcam.parts.checks"),
-    checks=(CAM_KIND, PARTS_KIND, FOLLOWED),
-    example={
-        "motion": [
-            {"type": "rise", "angle_deg": 120, "law": "cycloidal", "lift_mm": 10},
-            {"type": "dwell", "angle_deg": 60},
-            {"type": "return", "angle_deg": 120, "law": "cycloidal"},
-            {"type": "dwell", "angle_deg": "rest"},
-        ],
-        "follower": {"type": "roller", "motion": "translating", "roller_radius_mm": 8},
-        "cam": {"prime_radius_mm": 42, "thickness_mm": 10},
-        "blank": {"bore_diameter_mm": 8},
-        "output": {"files": ["dxf", "csv", "report"]},
-    },
-    processes={
-        "printing": {
-            "cam": {"thickness_mm": 8},
-            "blank": {"clearance_mm": 0.05, "clearance_bores": True},
-            "output": {"files": ["stl", "report"], "chord_tolerance_mm": 0.01},
-        },
-        "laser": {
-            "cam": {"thickness_mm": 4},
-            "output": {
-                "files": ["dxf", "cut-svg", "report"],
-                "kerf_mm": 0.15,
-                "chord_tolerance_mm": 0.02,
-            },
-        },
-        "wire": {
-            "output": {"files": ["dxf", "report"], "kerf_mm": 0.3, "chord_tolerance_mm": 0.002}
-        },
-    },
-    notes={
-        "motion": "Phases of the motion, one after the other, 360 deg in all.",
-        "cam": "give prime_radius_mm or base_radius_mm; with a flat follower base_radius_mm",
-    },
-)

@@ -16,7 +16,6 @@ from gearcam.export.files import (
     sheet_files,
     step_files,
 )
-from gearcam.report.file import framed as framed
 from gearcam.report.file import report_files
 
 if TYPE_CHECKING:

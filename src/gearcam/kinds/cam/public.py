@@ -15,3 +15,5 @@ __all__ = [
     "CamBlank", "CamDesign", "CamOutputSpec", "CamResult", "CamSpec", "DwellPhase", "FollowerSpec",
     "MotionFormula", "MotionTable", "ReturnPhase", "RisePhase", "SegmentPhase", "WheelBlank",
 ]  # fmt: skip
+
+PUBLIC = {name: globals()[name] for name in __all__}

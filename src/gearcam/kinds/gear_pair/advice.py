@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import replace
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.base.errors import InfeasibleError, Way
 from gearcam.designs.design import value_at
 from gearcam.kinds.gear_pair.shorter import lower, shorter
-from gearcam.results.advice import kerf_paths
+from gearcam.results.advice import Advice, kerf_paths
 
 if TYPE_CHECKING:
     from gearcam.results.advice import Changes, Remedy, Search
@@ -38,52 +39,42 @@ _EDGES: Final = (Way(far={"blank.tip_rounding_mm": 0.0}), Way(far={"blank.cleara
 """Ways to edges without rounding and clearance."""
 
 
-FILE_DEMANDS: Final[Mapping[str, Callable[[Any], object]]] = {
-    "dxf": kerf_paths,
-    "cut-svg": kerf_paths,
-}
-"""Checks of file formats of pairs that can be made."""
+class PairAdvice(Advice):
+    """Remedies of pairs: tooth numbers, changes that a refusal names, a milder law."""
 
+    file_demands = MappingProxyType({"dxf": kerf_paths, "cut-svg": kerf_paths})
 
-def seek(search: Search, refusal: InfeasibleError | None) -> None:
-    """Guide a `search`: tooth numbers, changes that a `refusal` names, a milder law."""
-    factor = refusal.more_teeth if refusal else _LIKELY * bool(search.codes & _OF_TEETH)
-    collide = "tips-collide" in search.codes
-    if collide:
-        search.follow(lower(search))
-    lowered = bool(search.found)
-    times = _more_teeth(search, factor) if factor else None
-    if collide and not lowered and (times is None or times > _USUAL):
-        shorter(search, times)
-        search.found.sort(key=_count)
-    search.follow([*(refusal.ways if refusal else ()), *_others(search, refusal, factor)])
-    if all(key.startswith("law.") for remedy in search.found for key in remedy.changes):
-        any(search.along(way) for way in _larger_ring(search))
+    def seek(self, search: Search, refusal: InfeasibleError | None) -> None:
+        """Guide a `search`: tooth numbers, changes that a `refusal` names, a milder law."""
+        factor = refusal.more_teeth if refusal else _LIKELY * bool(search.codes & _OF_TEETH)
+        collide = "tips-collide" in search.codes
+        if collide:
+            search.follow(lower(search))
+        lowered = bool(search.found)
+        times = _more_teeth(search, factor) if factor else None
+        if collide and not lowered and (times is None or times > _USUAL):
+            shorter(search, times)
+            search.found.sort(key=_count)
+        search.follow([*(refusal.ways if refusal else ()), *_others(search, refusal, factor)])
+        if all(key.startswith("law.") for remedy in search.found for key in remedy.changes):
+            any(search.along(way) for way in _larger_ring(search))
+
+    def hopeless(self, result: Any) -> bool:
+        """Return whether the flanks of a `result` alone exclude a contact ratio of 1."""
+        from gearcam.gears.demands import contact_bound
+
+        return contact_bound(*result.pair.toothings) < 1.0
+
+    def moves(self, design: Any, other: Any) -> bool:
+        """Return whether the `other` design has another law or mean ratio than the `design`."""
+        (a, b), (z1, z2) = design.pair.teeth, other.pair.teeth
+        return bool(design.law != other.law or a * z2 != b * z1)
 
 
 def _count(remedy: Remedy) -> int:
     """Return the sum of the tooth numbers of a remedy."""
     design: Any = remedy.design
     return sum(design.pair.teeth)
-
-
-def hopeless(result: Any) -> bool:
-    """Return whether the flanks alone exclude a contact ratio of 1, before outlines are made."""
-    from gearcam.gears.demands import contact_bound
-
-    return contact_bound(*result.pair.toothings) < 1.0
-
-
-def moves(design: Any, other: Any) -> bool:
-    """Return whether a changed design moves otherwise: by another law or mean ratio.
-
-    Parameters
-    ----------
-    design, other : Design
-        Before and after the change.
-    """
-    (a, b), (z1, z2) = design.pair.teeth, other.pair.teeth
-    return bool(design.law != other.law or a * z2 != b * z1)
 
 
 def _more_teeth(search: Search, factor: float) -> float | None:

@@ -10,14 +10,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.base.findings import in_order, run_checks
-from gearcam.base.tolerances import DEFAULT, Tolerances
 from gearcam.kinds.gear_pair.columns import (
     centrode_columns,
     contact_ratio_columns,
     contact_rows,
     motion_columns,
 )
-from gearcam.kinds.gear_pair.design import GearPairDesign
 from gearcam.kinds.gear_pair.stages import PairStages
 from gearcam.meshing.contact import Contacts, contacts
 from gearcam.numeric.arguments import angles, one_of, whole
@@ -276,8 +274,3 @@ class GearPairResult(PairStages):
         own = {"design": design, "timings": dict(self.timings), "sought": {}}
         vars(other).update(vars(self) | own)
         return other
-
-
-def build(design: GearPairDesign, tolerances: Tolerances = DEFAULT) -> GearPairResult:
-    """Return the result of a `design` to `tolerances`, which is computed on demand."""
-    return GearPairResult(design, tolerances)

@@ -84,13 +84,15 @@ def _run(
     return result.mesh(progress=progress).write(output)
 
 
-COMMANDS: Final = (
-    ResultCommand(
-        name="mesh",
-        done="meshed",
-        doc="Study the meshing of gear pairs step by step; write DIR/NAME/meshing.csv.",
-        arguments=_arguments,
-        adapt=_adapt,
-        run=_run,
-    ),
-)
+def commands() -> tuple[ResultCommand, ...]:
+    """Return the commands."""
+    return (
+        ResultCommand(
+            name="mesh",
+            done="meshed",
+            doc="Study the meshing of gear pairs step by step; write DIR/NAME/meshing.csv.",
+            arguments=_arguments,
+            adapt=_adapt,
+            run=_run,
+        ),
+    )

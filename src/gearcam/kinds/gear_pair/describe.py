@@ -7,9 +7,8 @@ from typing import Any
 
 from gearcam.designs.listing import Listed, listed
 from gearcam.designs.schema import chosen, table_schema, told
-from gearcam.designs.table import Table
 from gearcam.designs.template import beside, entry_lines, key_line, law_comment
-from gearcam.kinds.gear_pair.design import KIND, law_table
+from gearcam.kinds.gear_pair.design import law_table
 from gearcam.laws.ratio.base import LAWS
 
 
@@ -26,15 +25,9 @@ def schema() -> tuple[dict[str, Any], dict[str, Any]]:
     return {"type": "object", "description": f"the ratio of the pair. {words}", **main}, laws
 
 
-def known(raw: Mapping[str, Any]) -> Table:
-    """Return the table of the law that a file names."""
-    return law_table(raw["type"])
-
-
-def lines() -> Iterator[str]:
-    """Yield the lines of the template: the law of the example, other laws as comments."""
-    example = KIND.example["law"]
-    yield beside("[law]", KIND.notes["law"])
+def lines(example: Mapping[str, Any], note: str) -> Iterator[str]:
+    """Yield the lines of the template: the law of the `example` and a `note`, then other laws."""
+    yield beside("[law]", note)
     yield key_line("type", example["type"], LAWS[example["type"]].doc)
     yield from entry_lines(law_table(example["type"]), example)
     yield ""

@@ -13,17 +13,14 @@ from gearcam.base.registry import classes_in, name_of
 from gearcam.designs.design import Design, Wanted
 from gearcam.designs.examine import chosen, home_of
 from gearcam.designs.faults import Fault, quoted, show
-from gearcam.designs.kind import KINDS, DesignKind, Examined
-from gearcam.designs.outputs import FORMATS, OutputSpec, output_faults, pose_param
+from gearcam.designs.kind import KINDS, Examined
+from gearcam.designs.outputs import OutputSpec, output_faults, pose_param
 from gearcam.designs.slips import misspelt
 from gearcam.designs.table import Table, table_of
 from gearcam.designs.validate import faults_of, made_of
 from gearcam.gears.spec import PairSpec, Rack, RingSpec, StepsSpec
-from gearcam.gears.subject import KIND as TEETH_KIND
 from gearcam.laws.ratio.base import LAWS
-from gearcam.meshing.settings import KIND as MESHING_KIND
 from gearcam.meshing.settings import MeshingSpec
-from gearcam.parts.blank import KIND as PARTS_KIND
 from gearcam.parts.blank import Blank
 
 if TYPE_CHECKING:
@@ -125,7 +122,8 @@ def law_table(law_type: str) -> Table:
     return table_of("law", LAWS[law_type].parameters)
 
 
-def _examine_law(document: Mapping[str, Any], found: Examined) -> None:
+def examine_law(document: Mapping[str, Any], found: Examined) -> None:
+    """Validate the law of a `document`; add its faults and the law to `found`."""
     raw = document.get("law")
     if not isinstance(raw, Mapping):
         rule = f"type = {quoted(LAWS)}"
@@ -150,11 +148,13 @@ def _examine_law(document: Mapping[str, Any], found: Examined) -> None:
         found.parts["law"] = law
 
 
-def _law_of(design: GearPairDesign) -> dict[str, Any]:
+def law_of(design: GearPairDesign) -> dict[str, Any]:
+    """Return the table ``[law]`` of a `design`."""
     return {"type": design.law_type} | law_table(design.law_type).document(design.law)
 
 
-def _homes() -> Mapping[str, str]:
+def law_homes() -> Mapping[str, str]:
+    """Return hints by key that name the laws to which a key belongs."""
     laws: dict[str, list[str]] = {}
     for law_type in LAWS:
         for key in law_table(law_type).entries:
@@ -166,7 +166,7 @@ def _homes() -> Mapping[str, str]:
     return homes | {"type": "this key belongs under [law]"}
 
 
-def _planetary(document: Mapping[str, Any]) -> Fault | None:
+def planetary(document: Mapping[str, Any]) -> Fault | None:
     """Return the fault of a design with a planet between sun and ring, or None."""
     pair = document.get("pair")
     given = pair if isinstance(pair, Mapping) and document.get("kind") == NAME else {}
@@ -178,7 +178,8 @@ def _planetary(document: Mapping[str, Any]) -> Fault | None:
     return planetary_fault(teeth)
 
 
-def _rules(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
+def rules(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
+    """Yield contradictions between the tables of a `document` of which parts are `found`."""
     pair, output = document.get("pair"), document.get("output")
     yield from _pair_faults(pair)
     yield from _ring_faults(document.get("ring"), pair)
@@ -287,68 +288,3 @@ def _step_faults(meshing: Any, stepped: Any) -> Iterator[Fault]:
 
 def _is_number(value: Any) -> TypeGuard[float]:
     return isinstance(value, int | float) and not isinstance(value, bool)
-
-
-KIND: Final = DesignKind(
-    name=NAME,
-    doc="a pair of non-circular gears",
-    design=GearPairDesign,
-    main="law",
-    examine_main=_examine_law,
-    main_of=_law_of,
-    homes=_homes,
-    tables={
-        title: partial(table_of, title, owner)
-        for title, owner in {
-            "pair": PairSpec,
-            "rack": Rack,
-            "blank": Blank,
-            "ring": RingSpec,
-            "steps": StepsSpec,
-            "output": PairOutputSpec,
-            "meshing": MeshingSpec,
-        }.items()
-    },
-    required=("pair",),
-    one_of={"pair": ("center_distance_mm", "module_mm")},
-    rules=_rules,
-    later=_planetary,
-    formats=FORMATS,
-    rooms=("gearcam.gears.checks", "gearcam.meshing.checks", "gearcam.parts.checks"),
-    checks=(TEETH_KIND, MESHING_KIND, PARTS_KIND),
-    studies=("meshing",),
-    example={
-        "law": {
-            "type": "phases",
-            "shape": "cosine",
-            "knots_deg": [0, 160, 360],
-            "ratios": [1.25, 0.75, 1.25],
-        },
-        "pair": {"center_distance_mm": 80, "teeth": [32, 32], "face_width_mm": 10},
-        "blank": {"bore_diameter_mm": 8},
-        "output": {"files": ["dxf", "csv", "report"]},
-    },
-    processes={
-        "printing": {
-            "pair": {"backlash_mm": 0.1, "face_width_mm": 8},
-            "blank": {"clearance_mm": 0.05, "clearance_bores": True},
-            "output": {"files": ["stl", "report"], "chord_tolerance_mm": 0.01},
-        },
-        "laser": {
-            "pair": {"backlash_mm": 0.1, "face_width_mm": 4},
-            "output": {
-                "files": ["dxf", "cut-svg", "report"],
-                "kerf_mm": 0.15,
-                "chord_tolerance_mm": 0.02,
-            },
-        },
-        "wire": {
-            "pair": {"backlash_mm": 0.03},
-            "output": {"files": ["dxf", "report"], "kerf_mm": 0.3, "chord_tolerance_mm": 0.002},
-        },
-    },
-    notes={
-        "law": "the ratio i21 = dphi2/dphi1 over the driver's angle",
-        "pair": "give center_distance_mm or module_mm; the other is computed",
-    },
-)

@@ -18,7 +18,6 @@ from gearcam.export.files import (
     step_files,
 )
 from gearcam.kinds.gear_pair.columns import POINTS
-from gearcam.report.file import framed as framed
 from gearcam.report.file import report_files
 
 if TYPE_CHECKING:

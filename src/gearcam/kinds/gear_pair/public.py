@@ -12,3 +12,5 @@ __all__ = [
     "Blank", "GearPairDesign", "GearPairResult", "MeshingSpec", "PairOutputSpec", "PairSpec",
     "Rack", "RingSpec", "StepsSpec",
 ]  # fmt: skip
+
+PUBLIC = {name: globals()[name] for name in __all__}

@@ -1,0 +1,108 @@
+"""The kind ``cam``: what a cam with its follower is read from and what is made of it."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Final
+
+from gearcam.base.registry import DeferredMapping, deferred
+from gearcam.cams.spec import FOLLOWED, CamSpec, FollowerSpec
+from gearcam.cams.spec import KIND as CAM
+from gearcam.designs.kind import Main
+from gearcam.designs.table import table_of
+from gearcam.kinds.cam.design import (
+    CAM_FORMATS,
+    NAME,
+    CamDesign,
+    CamOutputSpec,
+    blank_table,
+    examine_motion_of,
+    later,
+    rules,
+)
+from gearcam.kinds.cam.forms.base import SLIDING, form_keys, form_schema
+from gearcam.kinds.cam.motion import TITLE, homes, motion_of
+from gearcam.parts.blank import KIND as PARTS
+from gearcam.results.kind import Kind
+
+_HERE: Final = "gearcam.kinds.cam"
+
+KIND: Final = Kind(
+    name=NAME,
+    doc="a cam with its follower",
+    design=CamDesign,
+    result=deferred(f"{_HERE}.build:CamResult"),
+    main=Main(
+        title=TITLE,
+        examine=examine_motion_of,
+        document=lambda design: motion_of(
+            design.motion,
+            oscillating=design.follower.oscillating,
+            sliding=design.cam.form in SLIDING,
+        ),
+        table=deferred(f"{_HERE}.describe:known"),
+        homes=homes,
+        schema=deferred(f"{_HERE}.describe:schema"),
+        template=deferred(f"{_HERE}.describe:lines"),
+        laws=deferred(f"{_HERE}.describe:laws"),
+    ),
+    tables={
+        "follower": partial(table_of, "follower", FollowerSpec),
+        "cam": partial(table_of, "cam", CamSpec),
+        "blank": blank_table,
+        "output": partial(table_of, "output", CamOutputSpec),
+    },
+    required=("follower", "cam"),
+    one_of={"cam": ("prime_radius_mm", "base_radius_mm", {"form": SLIDING})},
+    conditions={"cam": partial(form_schema, "cam", CamSpec)},
+    rules=rules,
+    listed=form_keys,
+    later=later,
+    formats=CAM_FORMATS,
+    check_modules=("gearcam.cams.checks", "gearcam.parts.checks"),
+    check_groups=(CAM, PARTS, FOLLOWED),
+    example={
+        "motion": [
+            {"type": "rise", "angle_deg": 120, "law": "cycloidal", "lift_mm": 10},
+            {"type": "dwell", "angle_deg": 60},
+            {"type": "return", "angle_deg": 120, "law": "cycloidal"},
+            {"type": "dwell", "angle_deg": "rest"},
+        ],
+        "follower": {"type": "roller", "motion": "translating", "roller_radius_mm": 8},
+        "cam": {"prime_radius_mm": 42, "thickness_mm": 10},
+        "blank": {"bore_diameter_mm": 8},
+        "output": {"files": ["dxf", "csv", "report"]},
+    },
+    processes={
+        "printing": {
+            "cam": {"thickness_mm": 8},
+            "blank": {"clearance_mm": 0.05, "clearance_bores": True},
+            "output": {"files": ["stl", "report"], "chord_tolerance_mm": 0.01},
+        },
+        "laser": {
+            "cam": {"thickness_mm": 4},
+            "output": {
+                "files": ["dxf", "cut-svg", "report"],
+                "kerf_mm": 0.15,
+                "chord_tolerance_mm": 0.02,
+            },
+        },
+        "wire": {
+            "output": {"files": ["dxf", "report"], "kerf_mm": 0.3, "chord_tolerance_mm": 0.002}
+        },
+    },
+    notes={
+        "motion": "Phases of the motion, one after the other, 360 deg in all.",
+        "cam": "give prime_radius_mm or base_radius_mm; with a flat follower base_radius_mm",
+    },
+    facts=deferred(f"{_HERE}.facts:facts"),
+    files=DeferredMapping(f"{_HERE}.files:FILES"),
+    charts=DeferredMapping(f"{_HERE}.charts:CHARTS"),
+    scene=deferred(f"{_HERE}.scene:scene"),
+    assembled=deferred(f"{_HERE}.files:assembled"),
+    framed=deferred("gearcam.report.file:framed"),
+    advice=deferred(f"{_HERE}.advice:CamAdvice"),
+    commands=deferred(f"{_HERE}.commands:commands"),
+    ladders=DeferredMapping(f"{_HERE}.ladder:LADDERS"),
+    public=DeferredMapping(f"{_HERE}.public:PUBLIC"),
+)

@@ -1,0 +1,112 @@
+"""The kind ``gear-pair``: what a pair of non-circular gears is read from and what is made of it."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Final
+
+from gearcam.base.registry import DeferredMapping, deferred
+from gearcam.designs.kind import Main
+from gearcam.designs.outputs import FORMATS
+from gearcam.designs.table import table_of
+from gearcam.gears.spec import PairSpec, Rack, RingSpec, StepsSpec
+from gearcam.gears.subject import KIND as TEETH
+from gearcam.kinds.gear_pair.design import (
+    NAME,
+    GearPairDesign,
+    PairOutputSpec,
+    examine_law,
+    law_homes,
+    law_of,
+    law_table,
+    planetary,
+    rules,
+)
+from gearcam.meshing.settings import KIND as MESHING
+from gearcam.meshing.settings import MeshingSpec
+from gearcam.parts.blank import KIND as PARTS
+from gearcam.parts.blank import Blank
+from gearcam.results.kind import Kind
+
+_HERE: Final = "gearcam.kinds.gear_pair"
+
+KIND: Final = Kind(
+    name=NAME,
+    doc="a pair of non-circular gears",
+    design=GearPairDesign,
+    result=deferred(f"{_HERE}.build:GearPairResult"),
+    main=Main(
+        title="law",
+        examine=examine_law,
+        document=law_of,
+        table=lambda raw: law_table(raw["type"]),
+        homes=law_homes,
+        schema=deferred(f"{_HERE}.describe:schema"),
+        template=deferred(f"{_HERE}.describe:lines"),
+        laws=deferred(f"{_HERE}.describe:laws"),
+    ),
+    tables={
+        title: partial(table_of, title, owner)
+        for title, owner in {
+            "pair": PairSpec,
+            "rack": Rack,
+            "blank": Blank,
+            "ring": RingSpec,
+            "steps": StepsSpec,
+            "output": PairOutputSpec,
+            "meshing": MeshingSpec,
+        }.items()
+    },
+    required=("pair",),
+    one_of={"pair": ("center_distance_mm", "module_mm")},
+    rules=rules,
+    later=planetary,
+    formats=FORMATS,
+    check_modules=("gearcam.gears.checks", "gearcam.meshing.checks", "gearcam.parts.checks"),
+    check_groups=(TEETH, MESHING, PARTS),
+    studies=("meshing",),
+    example={
+        "law": {
+            "type": "phases",
+            "shape": "cosine",
+            "knots_deg": [0, 160, 360],
+            "ratios": [1.25, 0.75, 1.25],
+        },
+        "pair": {"center_distance_mm": 80, "teeth": [32, 32], "face_width_mm": 10},
+        "blank": {"bore_diameter_mm": 8},
+        "output": {"files": ["dxf", "csv", "report"]},
+    },
+    processes={
+        "printing": {
+            "pair": {"backlash_mm": 0.1, "face_width_mm": 8},
+            "blank": {"clearance_mm": 0.05, "clearance_bores": True},
+            "output": {"files": ["stl", "report"], "chord_tolerance_mm": 0.01},
+        },
+        "laser": {
+            "pair": {"backlash_mm": 0.1, "face_width_mm": 4},
+            "output": {
+                "files": ["dxf", "cut-svg", "report"],
+                "kerf_mm": 0.15,
+                "chord_tolerance_mm": 0.02,
+            },
+        },
+        "wire": {
+            "pair": {"backlash_mm": 0.03},
+            "output": {"files": ["dxf", "report"], "kerf_mm": 0.3, "chord_tolerance_mm": 0.002},
+        },
+    },
+    notes={
+        "law": "the ratio i21 = dphi2/dphi1 over the driver's angle",
+        "pair": "give center_distance_mm or module_mm; the other is computed",
+    },
+    facts=deferred(f"{_HERE}.facts:facts"),
+    files=DeferredMapping(f"{_HERE}.files:FILES"),
+    charts=DeferredMapping(f"{_HERE}.charts:CHARTS"),
+    scene=deferred(f"{_HERE}.scene:scene"),
+    assembled=deferred(f"{_HERE}.files:assembled"),
+    framed=deferred("gearcam.report.file:framed"),
+    advice=deferred(f"{_HERE}.advice:PairAdvice"),
+    commands=deferred(f"{_HERE}.commands:commands"),
+    ladders=DeferredMapping(f"{_HERE}.ladder:LADDERS"),
+    public=DeferredMapping(f"{_HERE}.public:PUBLIC"),
+)

@@ -1,0 +1,88 @@
+"""A kind of design and everything that it does: one object, in the module ``kind`` of its folder.
+
+A kind must have how its designs are read (`gearcam.designs.kind.DesignKind`) and their result; all
+else is optional. What is only needed at times is given by its place (`gearcam.base.registry`), so
+that a build imports only what it needs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Final, cast
+
+from gearcam.base.facts import Facts
+from gearcam.designs import kind as reading
+from gearcam.designs.kind import DesignKind
+
+if TYPE_CHECKING:
+    from gearcam.designs.design import Design
+    from gearcam.parts.solids import Mesh
+    from gearcam.pictures.charts import Chart
+    from gearcam.pictures.scenes import Scene
+    from gearcam.results.advice import Advice
+    from gearcam.results.ladders import Ladder
+
+FileMaker = Callable[[Any, dict[str, Any]], dict[str, bytes]]
+"""``maker(result, measured)`` returns contents by file name, and adds values measured on them to
+`measured`. Paragraphs of its docstring list the names of the files (``Files: ...``) and say what
+they hold."""
+
+ChartMaker = Callable[[Any], "Chart | None"]
+"""``maker(result)`` returns a chart, or None if there is nothing to show."""
+
+
+def _plain_advice() -> Advice:
+    from gearcam.results.advice import Advice
+
+    return Advice()
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Kind(DesignKind):
+    """A kind of design with all that it does (the other parameters are those of `DesignKind`).
+
+    Parameters
+    ----------
+    facts : callable
+        ``facts(result, measured)`` returns its facts, with values measured on files, by group.
+    files : mapping of str to FileMaker
+        What makes each kind of file, by the names in `formats`.
+    charts : mapping of str to ChartMaker
+        Charts by name; the report leads with the first three.
+    scene : callable
+        ``scene(result, places)`` returns the moving parts at so many positions of the driver;
+        needed for a report.
+    assembled : callable
+        ``assembled(result)`` returns the solids in their places; needed for a report.
+    framed : callable
+        ``framed(result)`` returns the page for a notebook as HTML; empty: picture and facts.
+    advice : callable
+        ``advice()`` returns how remedies are searched for.
+    commands : callable
+        ``commands()`` returns its commands (see `gearcam.commands`).
+    ladders : mapping of str to callable
+        Stages at increasing resolution (see `gearcam.results.ladders`).
+    public : mapping of str to type
+        Classes for designs written in Python, by name.
+    """
+
+    facts: Callable[[Any, Mapping[str, Any]], Facts] = lambda _, measured: Facts({**measured})
+    files: Mapping[str, FileMaker] = field(default_factory=dict)
+    charts: Mapping[str, ChartMaker] = field(default_factory=dict)
+    scene: Callable[[Any, int], Scene | None] = lambda *_: None
+    assembled: Callable[[Any], dict[str, Mesh]] = lambda _: {}
+    framed: Callable[[Any], str] = lambda _: ""
+    advice: Callable[[], Advice] = _plain_advice
+    commands: Callable[[], Sequence[Any]] = tuple
+    ladders: Mapping[str, Callable[[Any], Ladder]] = field(default_factory=dict)
+    public: Mapping[str, type] = field(default_factory=dict)
+
+
+KINDS: Final = cast("Mapping[str, Kind]", reading.KINDS)
+"""The kinds by name, each imported when it is used."""
+
+
+def kind_of(design: Design) -> Kind:
+    """Return the kind of a `design`."""
+    return KINDS[design.kind]

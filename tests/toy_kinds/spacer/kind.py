@@ -1,0 +1,123 @@
+"""A kind of design that only a test knows: spacers, flat rings."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property, partial
+from typing import Any
+
+import numpy as np
+
+from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.facts import Fact, Facts
+from gearcam.base.findings import Finding
+from gearcam.base.quantities import LENGTH, param
+from gearcam.commands import ResultCommand
+from gearcam.designs.design import Design, demand_kind
+from gearcam.designs.outputs import OutputSpec, files_param
+from gearcam.designs.table import table_of
+from gearcam.export.table import outline_bytes
+from gearcam.results.kind import Kind
+from gearcam.results.result import Result
+
+FORMATS = ("csv", "outline-txt")
+
+
+@dataclass(frozen=True, kw_only=True)
+class RingSpec:
+    bore: float = param(LENGTH, gt=0, le=100, doc="inner diameter")
+    width: float = param(LENGTH, default=5.0, gt=0, le=50, doc="of the ring")
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpacerOutput(OutputSpec):
+    files: tuple[str, ...] = files_param(FORMATS)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class SpacerDesign(Design):
+    kind = "spacer"
+
+    ring: RingSpec
+    output: SpacerOutput = field(default_factory=SpacerOutput)
+
+
+class Spacer(Result):
+    stages = {"outline": "outline", "checks": "findings"}  # noqa: RUF012
+
+    @cached_property
+    def outline(self) -> np.ndarray[Any, Any]:
+        ring = self.design.ring
+        if ring.width > ring.bore:
+            raise InfeasibleError(
+                "the ring is wider than its bore",
+                where="ring.width_mm",
+                value=ring.width,
+                limit=ring.bore,
+                unit="mm",
+                ways=(Way(near={"ring.width_mm": ring.bore}),),
+            )
+        angle = np.linspace(0.0, 2.0 * np.pi, 90, endpoint=False)
+        radius = 0.5 * ring.bore + ring.width
+        return radius * np.column_stack([np.cos(angle), np.sin(angle)])
+
+    @cached_property
+    def findings(self) -> tuple[Finding, ...]:
+        return ()
+
+
+def facts(result: Any, measured: Mapping[str, Any]) -> Facts:
+    ring = result.design.ring
+    outer = Fact(ring.bore + 2.0 * ring.width, "outer diameter", shown=True)
+    tree = {"ring": {"bore_mm": ring.bore, "outer_mm": outer}, **measured}
+    return Facts(tree, ["ring.bore_mm"], "spacer")
+
+
+def _text(result: Any, _: dict[str, Any]) -> dict[str, bytes]:
+    return {"spacer.txt": repr(result.outline.tolist()).encode()}
+
+
+FILES = {
+    "csv": lambda result, _: {"spacer.csv": outline_bytes(result.outline)},
+    "outline-txt": _text,
+}
+
+
+def _adapt(design: Any, _: Any) -> Any:
+    return demand_kind(design, "spacer")
+
+
+def _run(result: Any, output: str, options: Any, _: Any) -> Any:
+    return result.keep({"weight.txt": str(options["density"]).encode()}, output, {"weighed": True})
+
+
+def _arguments(parser: Any) -> None:
+    parser.add_argument("--density", type=float, default=7.8)
+
+
+def commands() -> Any:
+    return (
+    ResultCommand(
+        name="weigh", done="weighed", doc="Weigh a spacer.", arguments=_arguments, adapt=_adapt,
+        run=_run,
+    ),
+    )  # fmt: skip
+
+
+KIND = Kind(
+    name="spacer",
+    doc="a spacer, a flat ring",
+    design=SpacerDesign,
+    result=Spacer,
+    tables={
+        "ring": partial(table_of, "ring", RingSpec),
+        "output": partial(table_of, "output", SpacerOutput),
+    },
+    required=("ring",),
+    formats=FORMATS,
+    example={"ring": {"bore_mm": 20}},
+    facts=facts,
+    files=FILES,
+    commands=commands,
+)
