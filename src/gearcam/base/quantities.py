@@ -87,6 +87,8 @@ class Param:
         Least length, for lists.
     doc : str
         One line for schema, template and messages.
+    example : object
+        A value for the template, in the unit of files; required where there is no fixed default.
     word : str
         The word of the key if a field cannot have this name, such as ``from``.
     both : bool
@@ -107,6 +109,7 @@ class Param:
     choices: tuple[str, ...] | None = None
     min_length: int | None = None
     doc: str = ""
+    example: Any = None
     word: str = ""
     both: bool = False
     function: bool = False

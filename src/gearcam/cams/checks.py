@@ -86,7 +86,13 @@ def _deg(theta: float) -> str:
     kind=KIND,
     limit=(
         "pressure_angle",
-        Param(ANGLE, gt=0, lt=90, doc="largest pressure angle; 30 translating, 45 oscillating"),
+        Param(
+            ANGLE,
+            gt=0,
+            lt=90,
+            example=30,
+            doc="largest pressure angle; 30 translating, 45 oscillating",
+        ),
         math.nan,
     ),
 )
@@ -106,7 +112,13 @@ def pressure_angle(cam: Cam, limit: float) -> Iterator[Remark]:
     severity="error",
     limit=(
         "jamming_angle",
-        Param(ANGLE, gt=0, le=90, doc="pressure angle that jams; 65 translating, 80 oscillating"),
+        Param(
+            ANGLE,
+            gt=0,
+            le=90,
+            example=65,
+            doc="pressure angle that jams; 65 translating, 80 oscillating",
+        ),
         math.nan,
     ),
 )

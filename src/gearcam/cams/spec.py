@@ -44,14 +44,14 @@ _ROUND: Final = {"roller": "roller_radius", "domed": "dome_radius"}
 """The radii of round followers."""
 
 
-def _size(*, doc: str) -> Any:
+def _size(*, example: float | None = None, doc: str) -> Any:
     """Return a length that a follower or cam may have."""
-    return param(LENGTH, default=None, gt=0, le=LONGEST, doc=doc)
+    return param(LENGTH, default=None, gt=0, le=LONGEST, example=example, doc=doc)
 
 
-def _run(*, doc: str) -> Any:
+def _run(*, example: float | None = None, doc: str) -> Any:
     """Return a length before or after the motion."""
-    return param(LENGTH, default=None, ge=0, le=LONGEST, doc=doc)
+    return param(LENGTH, default=None, ge=0, le=LONGEST, example=example, doc=doc)
 
 
 def _aside(*, doc: str) -> Any:
@@ -83,32 +83,35 @@ class FollowerSpec(Brief):
     )
     roller_radius: float | None = _size(doc="radius of the roller")
     roller2_radius: float | None = _size(
+        example=6,
         doc="radius of the second roller: on the same pin, for the outer wall of a groove, or on "
-        "the second of conjugate cams; roller_radius_mm if left out"
+        "the second of conjugate cams; roller_radius_mm if left out",
     )
-    dome_radius: float | None = _size(doc="radius of the face of a domed follower")
+    dome_radius: float | None = _size(example=60, doc="radius of the face of a domed follower")
     offset: float = _aside(
         doc="offset of a translating follower's line of motion from the cam's axis; a positive one "
         "lowers the pressure angle of the rise"
     )
     arm: float | None = _size(
-        doc="distance from the pivot of an oscillating follower to its roller's centre"
+        example=60, doc="distance from the pivot of an oscillating follower to its roller's centre"
     )
     pivot_distance: float | None = _size(
-        doc="distance from the cam's axis to the pivot of an oscillating follower"
+        example=70, doc="distance from the cam's axis to the pivot of an oscillating follower"
     )
     arm2: float | None = _size(
+        example=60,
         doc="distance from the pivot to the roller on the second of conjugate cams; arm_mm if left "
-        "out"
+        "out",
     )
     roller_distance: float | None = _size(
-        doc="distance of the two rollers of a translating follower on conjugate cams"
+        example=85, doc="distance of the two rollers of a translating follower on conjugate cams"
     )
     arms_angle: float | None = param(
         ANGLE,
         default=None,
         gt=0,
         lt=360,
+        example=80,
         doc="angle between the two arms of an oscillating follower on conjugate cams",
     )
     preload: float | None = param(
@@ -116,6 +119,7 @@ class FollowerSpec(Brief):
         default=None,
         ge=0,
         le=10,
+        example=0.02,
         doc="how much closer than nominal the rollers of conjugate cams are mounted, so that "
         "they are pressed apart when fitted; 0 if left out",
     )
@@ -125,6 +129,7 @@ class FollowerSpec(Brief):
 
     axis: float | None = param(
         ANGLE, default=None, ge=-80, le=80,
+        example=10,
         doc="inclination of a translating follower on a translating cam, towards the direction in "
         "which the cam moves; 0 if left out",
     )  # fmt: skip
@@ -133,6 +138,7 @@ class FollowerSpec(Brief):
         default=None,
         ge=-LONGEST,
         le=LONGEST,
+        example=0,
         doc="of an oscillating follower on a translating cam: height of its pivot above the "
         "roller's centre at zero lift; 0 if left out",
     )
@@ -208,8 +214,9 @@ class CamSpec(Brief):
         doc="prime radius: from the cam's axis to the centre of a round follower at zero lift"
     )
     base_radius: float | None = _size(
+        example=34,
         doc="base radius: from the cam's axis to the profile at zero lift; give it instead of "
-        "prime_radius_mm, and always with a flat follower"
+        "prime_radius_mm, and always with a flat follower",
     )
     thickness: float = param(LENGTH, default=10.0, gt=0, le=LONGEST, doc="thickness of the plate")
     rotation: str = param(
@@ -219,31 +226,40 @@ class CamSpec(Brief):
         doc="direction in which the cam turns; cw is the mirror image of ccw",
     )
     prime_radius2: float | None = _size(
-        doc="from the axis to the centre of conjugate cams' second roller, at the highest lift"
+        example=45,
+        doc="from the axis to the centre of conjugate cams' second roller, at the highest lift",
     )
     gap: float | None = param(
-        LENGTH, default=None, ge=0, le=LONGEST, doc="gap between conjugate cams; 0 if left out"
+        LENGTH,
+        default=None,
+        ge=0,
+        le=LONGEST,
+        example=2,
+        doc="gap between conjugate cams; 0 if left out",
     )
-    outer_diameter: float | None = _size(doc="diameter of the disc of a groove cam")
-    groove_depth: float | None = _size(doc="depth of a groove, less than the thickness")
+    outer_diameter: float | None = _size(example=130, doc="diameter of the disc of a groove cam")
+    groove_depth: float | None = _size(example=6, doc="depth of a groove, less than the thickness")
     roller_clearance: float | None = param(
         LENGTH, default=None, ge=0, le=100,
+        example=0.05,
         doc="width of a groove minus the roller's diameter; 0 if left out",
     )  # fmt: skip
     side: str | None = param(
         TEXT, default=None, choices=("front", "back"),
-        doc="face that a groove is cut into; front (+z) if left out",
+        example="front", doc="face that a groove is cut into; front (+z) if left out",
     )  # fmt: skip
 
     walls: str | None = param(
         TEXT, default=None, choices=("lower", "both"),
+        example="lower",
         doc="walls of a translating cam: the lower one (if left out), or both walls of a groove",
     )  # fmt: skip
     run_in: float | None = _run(
-        doc="length of a translating cam before its motion, at zero lift; 0 if left out"
+        example=10, doc="length of a translating cam before its motion, at zero lift; 0 if left out"
     )
     run_out: float | None = _run(
-        doc="length of a translating cam after its motion, at the last lift; 0 if left out"
+        example=10,
+        doc="length of a translating cam after its motion, at the last lift; 0 if left out",
     )
 
     @property

@@ -50,6 +50,7 @@ class OutputSpec(Brief):
         LENGTH,
         default=None,
         ge=FINEST,
+        example=0.001,
         doc="largest distance of an outline from the true curve, at most module/50; 0.001 mm or "
         "module/1000 if left out, the smaller one",
     )
@@ -71,6 +72,7 @@ class OutputSpec(Brief):
         TEXT,
         default=None,
         choices=("R2010", "R12"),
+        example="R2010",
         doc="version of dxf files; if left out R12 (for old machines) with lines, else R2010",
     )
 

@@ -15,68 +15,6 @@ from gearcam.designs.table import Key, Table
 _COLUMN: Final = 36
 _WIDTH: Final = 96
 
-_EXAMPLES: Final = {
-    "driven_travel_deg": 180,
-    "driver_travel_deg": 180,
-    "module_mm": 2.5,
-    "chord_tolerance_mm": 0.001,
-    "teeth": [1, 2],
-    "center_distance_mm": 80.1,
-    "density_kg_m3": 7850,
-    "addendum": 1,
-    "dedendum": 1.25,
-    "tip_radius": 0.38,
-    "rim_mm": 6,
-    "outer_diameter_mm": 130,
-    "cutter_teeth": 30,
-    "web_mm": 5,
-    "mark_diameter_mm": 1,
-    "offset_mm": 1.5,
-    "angle_deg": 60,
-    "way_mm": 60,
-    "lift_mm": 10,
-    "lift_deg": 20,
-    "to_mm": 4,
-    "to_deg": 8,
-    "end_velocity_mm_per_rad": 5,
-    "end_velocity_deg_per_rad": 10,
-    "end_acceleration_mm_per_rad2": 0,
-    "end_acceleration_deg_per_rad2": 0,
-    "roller2_radius_mm": 6,
-    "dome_radius_mm": 60,
-    "arm_mm": 60,
-    "pivot_distance_mm": 70,
-    "arm2_mm": 60,
-    "roller_distance_mm": 85,
-    "arms_angle_deg": 80,
-    "preload_mm": 0.02,
-    "axis_deg": 10,
-    "pivot_height_mm": 0,
-    "base_radius_mm": 34,
-    "prime_radius2_mm": 45,
-    "gap_mm": 2,
-    "groove_depth_mm": 6,
-    "roller_clearance_mm": 0.05,
-    "side": "front",
-    "walls": "lower",
-    "run_in_mm": 10,
-    "run_out_mm": 10,
-    "length_mm": 150,
-    "height_mm": 40,
-    "bolt_spacing_mm": 60,
-    "bolt_height_mm": 10,
-    "dxf_version": "R2010",
-    "way_step_mm": 1,
-    "u_mm": 0,
-    "tool_radius_mm": 8,
-    "pressure_angle_deg": 30,
-    "jamming_angle_deg": 65,
-    "file": "motion.csv",
-    "smoothing_tolerance_mm": 0.01,
-    "smoothing_tolerance_deg": 0.01,
-}
-"""Examples of keys that have no fixed default."""
-
 _HEADER: Final = """\
 # {doc}. Build it with: gearcam build FILE
 # Lengths are in mm, angles in degrees.
@@ -140,7 +78,7 @@ def comment_line(entry: Key) -> str:
     """Return the line of an optional key: with its default, or with an example."""
     if entry.default in (None, REQUIRED):
         words = f"(example) {description(entry)}"
-        return key_line(entry.key, _EXAMPLES.get(entry.key, 1), words, "# ")
+        return key_line(entry.key, entry.param.example, words, "# ")
     value = entry.outward(entry.default)
     if entry.param.both and len(set(value)) == 1:
         value = value[0]

@@ -40,6 +40,7 @@ class Rack:
         default=None,
         gt=0.1,
         le=2,
+        example=1,
         doc="tooth height above the pitch curve, in modules; 1 if left out, or what the other "
         "values leave room for",
     )
@@ -48,6 +49,7 @@ class Rack:
         default=None,
         gt=0.1,
         le=2.5,
+        example=1.25,
         doc="tooth depth below the pitch curve, in modules; 1.25 if left out, or what the other "
         "values leave room for",
     )
@@ -56,6 +58,7 @@ class Rack:
         default=None,
         ge=0,
         le=1,
+        example=0.38,
         doc="tip radius of the cutter, in modules; 0.38 if left out, or less where it does not fit",
     )
 
@@ -113,6 +116,7 @@ class StepsSpec:
         default=None,
         ge=-1e4,
         le=1e4,
+        example=1.5,
         doc="offset of each step's teeth from those of the step below, along the pitch curves; the "
         "pitch divided by the number of steps if left out",
     )
@@ -144,6 +148,7 @@ class PairSpec(Brief):
         default=None,
         gt=0,
         le=LARGEST_MODULE,
+        example=2.5,
         doc="module, L/(pi*z) with the length L of a pitch curve",
     )
     teeth: tuple[int, int] = param(
@@ -193,6 +198,7 @@ class RingSpec:
         default=None,
         gt=0,
         le=LONGEST,
+        example=6,
         doc="least rim outside the roots; 2.7 modules if left out",
     )
     outer_diameter: float | None = param(
@@ -200,6 +206,7 @@ class RingSpec:
         default=None,
         gt=0,
         le=LONGEST,
+        example=130,
         doc="outer diameter of a round ring, instead of rim_mm",
     )
     cutter_teeth: float | None = param(
@@ -207,6 +214,7 @@ class RingSpec:
         default=None,
         ge=3,
         le=MOST_TEETH,
+        example=30,
         doc="teeth of the pinion cutter, not necessarily whole; if left out, a number that leaves "
         "room for the tips of wheel 1",
     )

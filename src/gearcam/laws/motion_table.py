@@ -58,7 +58,10 @@ class MotionTable(FromFile):
     """
 
     file: str | None = param(
-        TEXT, default=None, doc="CSV file, up to 3600 rows: theta_deg and lift_mm or lift_deg"
+        TEXT,
+        default=None,
+        example="motion.csv",
+        doc="CSV file, up to 3600 rows: theta_deg and lift_mm or lift_deg",
     )
     theta: Row | None = param(
         ANGLE, default=None, ge=0, le=360, min_length=_FEWEST, doc="cam angles, without a file"
@@ -78,6 +81,7 @@ class MotionTable(FromFile):
         LENGTH,
         default=None,
         ge=FINEST,
+        example=0.01,
         doc="largest distance from a row; 0 if left out (translating follower)",
         angular=Param(ANGLE, gt=0, doc="largest distance from a row (oscillating follower)"),
     )

@@ -50,7 +50,9 @@ Problem = tuple[int | None, str, str, str]
 TURN: Final = 2.0 * math.pi
 """A turn of the cam, rad."""
 
-_WAY: Final = Param(LENGTH, word="way", gt=0, le=LONGEST, doc="travel of a translating cam")
+_WAY: Final = Param(
+    LENGTH, word="way", gt=0, le=LONGEST, example=60, doc="travel of a translating cam"
+)
 
 _NARROWEST_SHARE: Final = 1e-6
 """Least share of the whole travel that a phase covers."""
@@ -58,6 +60,7 @@ _NARROWEST_SHARE: Final = 1e-6
 _SPAN: Final[dict[str, Any]] = {
     "ge": NARROWEST_DEG,
     "le": 360,
+    "example": 60,
     "doc": "cam angle of the phase, or the rest of the turn",
     "sliding": _WAY,
 }
@@ -105,8 +108,11 @@ class RisePhase(Brief):
         default=None,
         gt=0,
         le=LONGEST,
+        example=10,
         doc="lift of the phase (translating follower)",
-        angular=Param(ANGLE, gt=0, lt=180, doc="lift of the phase (oscillating follower)"),
+        angular=Param(
+            ANGLE, gt=0, lt=180, example=20, doc="lift of the phase (oscillating follower)"
+        ),
     )
 
 
@@ -122,9 +128,12 @@ class ReturnPhase(RisePhase):
     """
 
 
-def _rate(length: Quantity, angle: Quantity, word: str, sign: str) -> Any:
+def _rate(
+    length: Quantity, angle: Quantity, word: str, sign: str, examples: tuple[float, float]
+) -> Any:
     said: Any = {"word": f"end_{word}", "doc": f"{sign} at its end; 0 if left out"}
-    return param(length, default=None, angular=Param(angle, **said), **said)
+    angular = Param(angle, example=examples[1], **said)
+    return param(length, default=None, example=examples[0], angular=angular, **said)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -146,12 +155,15 @@ class SegmentPhase(Brief):
         default=None,
         ge=-LONGEST,
         le=LONGEST,
+        example=4,
         doc="lift at its end (translating follower)",
-        angular=Param(ANGLE, gt=-180, lt=180, doc="lift at its end (oscillating follower)"),
+        angular=Param(
+            ANGLE, gt=-180, lt=180, example=8, doc="lift at its end (oscillating follower)"
+        ),
     )
-    velocity: float | None = _rate(LENGTH_PER_RAD, ANGLE_PER_RAD, "velocity", "ds/dtheta")
+    velocity: float | None = _rate(LENGTH_PER_RAD, ANGLE_PER_RAD, "velocity", "ds/dtheta", (5, 10))
     acceleration: float | None = _rate(
-        LENGTH_PER_RAD2, ANGLE_PER_RAD2, "acceleration", "d2s/dtheta2"
+        LENGTH_PER_RAD2, ANGLE_PER_RAD2, "acceleration", "d2s/dtheta2", (0, 0)
     )
 
     @property

@@ -42,6 +42,7 @@ class MeshingSpec(Brief):
         ge=-36000,
         le=36000,
         word="to",
+        example=8,
         doc="driver angle at the end of the study; by default a turn, or the end of travel",
     )
     overclosure: float = param(
@@ -56,6 +57,7 @@ class MeshingSpec(Brief):
         default=None,
         ge=1,
         min_length=1,
+        example=[1, 2],
         doc="tooth numbers of the driver to study; all by default",
     )
     step: int = param(
@@ -66,5 +68,6 @@ class MeshingSpec(Brief):
         default=None,
         gt=0,
         le=LONGEST,
+        example=80.1,
         doc="centre distance as mounted, not for racks; as designed by default",
     )

@@ -77,11 +77,11 @@ class WheelBlank(Brief):
     hub_back: float = _length(doc="height of the hub on the back face")
     lightening_holes: int = _count(doc="number of round lightening holes", le=36)
     rim: float | None = param(
-        LENGTH, default=None, gt=0, le=LONGEST,
+        LENGTH, default=None, gt=0, le=LONGEST, example=6,
         doc="least metal between lightening holes and roots; 2.7 modules if left out",
     )  # fmt: skip
     web: float | None = param(
-        LENGTH, default=None, gt=0, le=LONGEST,
+        LENGTH, default=None, gt=0, le=LONGEST, example=5,
         doc="least metal between lightening holes, and from them to bore, hub and bolt holes; the "
         "rim if left out",
     )  # fmt: skip
@@ -96,6 +96,7 @@ class WheelBlank(Brief):
         default=None,
         gt=0,
         le=LONGEST,
+        example=1,
         doc="diameter of the timing marks; 0.4 modules if left out",
     )
     density: float | None = param(
@@ -103,6 +104,7 @@ class WheelBlank(Brief):
         default=None,
         gt=0,
         le=1e5,
+        example=7850,
         doc="density, for mass, centre of mass, unbalance and inertia",
     )
     clearance: float = _length(doc="what is taken off the toothed edge, along its normal", le=100)

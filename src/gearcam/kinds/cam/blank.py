@@ -10,8 +10,8 @@ from gearcam.base.quantities import LENGTH, LONGEST, param
 from gearcam.parts.blank import Problem, WheelBlank
 
 
-def _size(*, doc: str) -> Any:
-    return param(LENGTH, default=None, gt=0, le=LONGEST, doc=doc)
+def _size(*, example: float, doc: str) -> Any:
+    return param(LENGTH, default=None, gt=0, le=LONGEST, example=example, doc=doc)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,16 +32,18 @@ class CamBlank(WheelBlank):
 
     timing_marks: bool = field(default=False)
     length: float | None = _size(
-        doc="length of a translating cam's plate; as long as its profile needs if left out"
+        example=150,
+        doc="length of a translating cam's plate; as long as its profile needs if left out",
     )
     height: float | None = _size(
-        doc="height of a translating cam's plate; with one wall, up to the largest lift"
+        example=40, doc="height of a translating cam's plate; with one wall, up to the largest lift"
     )
     bolt_spacing: float | None = _size(
-        doc="distance of the bolts in the row of a translating cam, centred on the plate"
+        example=60,
+        doc="distance of the bolts in the row of a translating cam, centred on the plate",
     )
     bolt_height: float | None = _size(
-        doc="from the lower edge of a translating cam's plate to the row of bolts"
+        example=10, doc="from the lower edge of a translating cam's plate to the row of bolts"
     )
 
     def problems(self) -> Iterator[Problem]:

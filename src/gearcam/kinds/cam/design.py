@@ -78,6 +78,7 @@ class CamOutputSpec(OutputSpec):
         default=None,
         ge=FINEST,
         le=1,
+        example=0.001,
         doc="largest distance of an outline from the true curve; 0.001 mm if left out",
     )
     pose: float = pose_param("theta", "cam angle of the assembly drawing")
@@ -86,11 +87,11 @@ class CamOutputSpec(OutputSpec):
     )
     way_step: float | None = param(
         LENGTH, default=None, gt=0, le=LONGEST,
-        doc="step of a translating cam's travel in motion.csv; 1 mm if left out",
+        example=1, doc="step of a translating cam's travel in motion.csv; 1 mm if left out",
     )  # fmt: skip
     place: float | None = param(
         LENGTH, default=None, ge=0, le=LONGEST, word="u",
-        doc="travel of a translating cam in the assembly drawing; 0 if left out",
+        example=0, doc="travel of a translating cam in the assembly drawing; 0 if left out",
     )  # fmt: skip
     inspection_points: int = param(
         COUNT,
@@ -104,6 +105,7 @@ class CamOutputSpec(OutputSpec):
         default=None,
         gt=0,
         le=LONGEST,
+        example=8,
         doc="radius of the cutter of the tool path; the follower's, or half a groove, if left out",
     )
 

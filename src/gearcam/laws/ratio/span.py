@@ -298,7 +298,7 @@ def demand_smooth(name: str) -> Iterator[None]:
 def open_travel(wheel: str) -> Any:
     """Return the optional parameter of a law for the travel of a `wheel` (see `param`)."""
     doc = f"how far the {wheel} of an open pair turns"
-    return param(ANGLE, default=None, gt=0, le=360, doc=doc)
+    return param(ANGLE, default=None, gt=0, le=360, example=180, doc=doc)
 
 
 def angle_text(angle: float) -> str:
