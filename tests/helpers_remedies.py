@@ -9,7 +9,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-import gearcam
+from helpers_built import built
 from random_designs.toml import toml
 
 ELLIPSE = {"type": "ellipse", "eccentricity": 0.2}
@@ -386,7 +386,7 @@ def followed(document: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[st
 
 
 def job_of(document: Mapping[str, Any], folder: Path) -> Any:
-    """The job of a design that is read from its file."""
+    """The shared result of a design that is read from its file."""
     file = folder / "design.toml"
     file.write_text(toml(document), encoding="utf-8")
-    return gearcam.build(gearcam.load(file))
+    return built(file)

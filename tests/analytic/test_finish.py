@@ -22,6 +22,7 @@ from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.ratio.composite import Multispeed
 from gearcam.parts.parallel import moved, rounded
 from helpers_pairs import job, profile
+from helpers_sampling import few
 
 TOLERANCE = 2e-4
 
@@ -41,7 +42,7 @@ def finished(made: GearPairResult, number: int, clearance: float, rounding: floa
 
 
 @pytest.mark.parametrize("name", ["circular", "ellipse", "press"])
-@pytest.mark.parametrize("number", [1, 2])
+@pytest.mark.parametrize("number", few([1, 2]))
 @pytest.mark.parametrize(
     ("clearance", "rounding"),
     [

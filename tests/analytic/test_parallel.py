@@ -26,6 +26,7 @@ from helpers_contour import (
     square_contour,
 )
 from helpers_pairs import profile
+from helpers_sampling import few
 from witness.distance import distances
 
 TOLERANCE = 1e-3
@@ -178,7 +179,7 @@ def test_a_wheel_is_rounded_as_an_opening_does(radius: float) -> None:
 
 @pytest.mark.parametrize(
     ("name", "number", "modules"),
-    [("ellipse", 1, 0.05), ("ellipse", 1, -0.05), ("ellipse", 1, 0.45), ("bspline", 2, 0.45)],
+    few([("ellipse", 1, 0.45), ("ellipse", 1, 0.05), ("ellipse", 1, -0.05), ("bspline", 2, 0.45)]),
 )
 def test_a_real_wheel_moves_as_a_buffer_does(name: str, number: int, modules: float) -> None:
     """0.45 modules are more than the fillets' radius: their parallels have swallow-tails."""
@@ -372,10 +373,21 @@ def test_nothing_is_done_for_nothing() -> None:
     assert rounded(contour, 0.0) is contour
 
 
-@settings(max_examples=10, deadline=None, derandomize=True)
+@settings(max_examples=4, deadline=None, derandomize=True)
 @given(by=st.floats(-2.4, 2.4))
 @example(by=-0.05)
 def test_any_distance_gives_the_points_at_that_distance(by: float) -> None:
+    demand_distance(by)
+
+
+@pytest.mark.slow
+@settings(max_examples=40, deadline=None, derandomize=True)
+@given(by=st.floats(-2.4, 2.4))
+def test_forty_distances_give_the_points_at_that_distance(by: float) -> None:
+    demand_distance(by)
+
+
+def demand_distance(by: float) -> None:
     assume(abs(by) > 1e-6)
     contour = gear()
     made = moved(contour, by)

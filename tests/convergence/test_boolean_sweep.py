@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from helpers_sampling import few
 from helpers_witnessed import cut_points, kinematics, outline
 from witness import sweep
 
@@ -42,7 +43,7 @@ def slope(errors: list[float]) -> float:
     return -float(np.polyfit(np.log(STEPS), np.log(errors), 1)[0])
 
 
-@pytest.mark.parametrize(("name", "wheel", "spaces"), WHEELS)
+@pytest.mark.parametrize(("name", "wheel", "spaces"), few(WHEELS))
 def test_difference_falls_with_the_square_of_the_step(
     name: str, wheel: Any, spaces: tuple[int, ...]
 ) -> None:

@@ -14,8 +14,8 @@ from typing import Any
 import mpmath as mp
 import pytest
 
-import gearcam
 from gearcam.base.errors import GearcamError
+from helpers_built import built
 from helpers_gallery import CAM_NUMBERS, NUMBERS, Number, misses
 from helpers_pairs import PROFILES, profile
 
@@ -134,7 +134,7 @@ def test_a_file_shows_its_numbers(name: str) -> None:
 
 @pytest.mark.parametrize("name", sorted(CAM_NUMBERS))
 def test_a_cam_shows_its_numbers(name: str) -> None:
-    result = gearcam.build(gearcam.load(PROFILES / f"{name}.toml"))
+    result = built(PROFILES / f"{name}.toml")
     assert list(misses(result.facts.document, CAM_NUMBERS[name])) == []
     errors = [finding for finding in result.findings if finding.severity == "error"]
     assert bool(errors) == (name in FLAWED)
@@ -157,11 +157,7 @@ def kind_of(file: str) -> str:
 
 @pytest.mark.parametrize("name", sorted(ALL))
 def test_a_file_writes_what_it_lists(name: str, tmp_path: Path) -> None:
-    made = (
-        profile(name)
-        if name in EXPECTED
-        else gearcam.build(gearcam.load(PROFILES / f"{name}.toml"))
-    )
+    made = profile(name) if name in EXPECTED else built(PROFILES / f"{name}.toml")
     try:
         written = made.write(tmp_path)
     except GearcamError as error:  # pragma: no cover

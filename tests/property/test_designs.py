@@ -158,7 +158,7 @@ def demand_pair(given: Given) -> GearPairResult | None:
     return made
 
 
-quick = settings(QUICK, max_examples=30)
+quick = settings(QUICK, max_examples=12)
 
 
 @quick

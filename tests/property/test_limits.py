@@ -15,6 +15,7 @@ import shapely
 
 import gearcam
 from gearcam.base.errors import InfeasibleError
+from helpers_sampling import few
 
 
 class Walk(NamedTuple):
@@ -129,7 +130,7 @@ def stop(walk: Walk, value: float) -> Stop | None:
 
 
 @pytest.mark.parametrize("steps", [6, pytest.param(48, marks=pytest.mark.slow)])
-@pytest.mark.parametrize("name", WALKS)
+@pytest.mark.parametrize("name", few(WALKS))
 def test_nothing_jumps_but_what_is_told(name: str, steps: int) -> None:
     walk = WALKS[name]
     values = np.linspace(*walk.values, steps)

@@ -19,6 +19,7 @@ from gearcam.parts.body import Part
 from gearcam.parts.marks import timing_mark
 from gearcam.pictures.drawings import Drawing, wheel_drawing
 from gearcam.pictures.drawings import Path as Chain
+from helpers_built import built
 from helpers_contour import bore, gear_contour, layers, square_contour
 
 TOLERANCE = 1e-3
@@ -151,7 +152,7 @@ BENDS: dict[str, dict[str, Any]] = {
 def test_long_curves_that_end_in_short_bends_keep_the_tolerance(
     document: dict[str, Any], curves: str
 ) -> None:
-    part = gearcam.build(gearcam.design(document)).parts[0]
+    part = built(gearcam.design(document)).parts[0]
     data = dxf_bytes(wheel_drawing(part), style(curves, tolerance=part.tolerance))
     assert measure_dxf(data, wheel_drawing(part).contours) <= part.tolerance
 

@@ -22,6 +22,7 @@ from gearcam.kinds.gear_pair.files import placements
 from gearcam.parts.blank import Blank
 from gearcam.parts.mass import mass_properties
 from helpers_pairs import profile
+from helpers_sampling import few
 
 etree: Any = importlib.import_module("lxml.etree")
 PHI1 = math.radians(40.0)
@@ -133,18 +134,18 @@ def test_a_pair_that_is_not_turned_stands_elsewhere() -> None:
     assert math.dist(place, own) > 1.0
 
 
-def test_the_drawn_pair_does_not_overlap_at_any_angle() -> None:
+@pytest.mark.parametrize("degrees", few([77.7, 301.0]))
+def test_the_drawn_pair_does_not_overlap_at_any_angle(degrees: float) -> None:
     from shapely import Polygon
 
-    for degrees in (77.7, 301.0):
-        output = PairOutputSpec(files=("dxf",), dxf_curves="lines", pose=math.radians(degrees))
-        made = GearPairResult(replace(profile("ellipse").design, output=output))
-        document = read_dxf(io.StringIO(made.files("dxf")["pair.dxf"].decode()))
-        drawn: Any = document.modelspace()
-        one, two = (
-            Polygon([(place.x, place.y) for line in drawn.query(f'POLYLINE[layer=="{layer}"]')
-                     for place in line.points()])
-            for layer in ("GEAR1_OUTLINE", "GEAR2_OUTLINE")
-        )  # fmt: skip
-        assert one.intersection(two).area < 0.01
-        assert one.distance(two) < 1e-3
+    output = PairOutputSpec(files=("dxf",), dxf_curves="lines", pose=math.radians(degrees))
+    made = GearPairResult(replace(profile("ellipse").design, output=output))
+    document = read_dxf(io.StringIO(made.files("dxf")["pair.dxf"].decode()))
+    drawn: Any = document.modelspace()
+    one, two = (
+        Polygon([(place.x, place.y) for line in drawn.query(f'POLYLINE[layer=="{layer}"]')
+                 for place in line.points()])
+        for layer in ("GEAR1_OUTLINE", "GEAR2_OUTLINE")
+    )  # fmt: skip
+    assert one.intersection(two).area < 0.01
+    assert one.distance(two) < 1e-3

@@ -26,6 +26,8 @@ PARTS = {
     "translating_cam": ("part", ("cam",)),
     "conjugate_cams": ("part.{}", ("cam1", "cam2")),
 }
+LONG = ("stepped_ellipse", "feeder", "log_spiral")
+"""Those whose files take long; others, and fewer steps, are measured each time."""
 
 
 def box(path: Path) -> Any:
@@ -37,11 +39,20 @@ def box(path: Path) -> Any:
     return np.array(ezdxf.bbox.extents(edges).size)[:2]
 
 
-@pytest.mark.parametrize("name", PARTS)
-def test_the_size_of_a_part_is_that_of_its_files(name: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("name", "changes"),
+    [
+        *((name, {}) for name in PARTS if name not in LONG),
+        ("stepped_ellipse", {"steps.count": 2}),
+        *(pytest.param(name, {}, marks=pytest.mark.slow) for name in LONG),
+    ],
+)
+def test_the_size_of_a_part_is_that_of_its_files(
+    name: str, changes: dict[str, int], tmp_path: Path
+) -> None:
     group, stems = PARTS[name]
-    design = gc.load(PROFILES / f"{name}.toml").with_({"output.files": ["stl", "dxf"]})
-    result = gc.build(design)
+    files = {"output.files": ["stl", "dxf"]}
+    result = gc.build(gc.load(PROFILES / f"{name}.toml").with_(files | changes))
     folder = Path(result.write(tmp_path).directory)
     for number, stem in enumerate(stems):
         size = result.facts[f"{group.format(number)}.size_mm"]

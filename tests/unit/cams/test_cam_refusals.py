@@ -24,6 +24,7 @@ from gearcam.laws.phases_of_lift import (
     program_problems,
 )
 from helpers_cams import back, cam, dwell, law, mechanism, program, rise, there_and_back
+from helpers_sampling import few
 
 # --- programs ------------------------------------------------------------------------------------
 
@@ -268,10 +269,12 @@ def test_a_base_radius_is_the_prime_radius_less_the_roller() -> None:
 
 @pytest.mark.parametrize(
     ("name", "changes"),
-    [
-        ("tappet", {"output.motion_step_deg": 1e-6}),
-        ("translating_cam", {"output.way_step_mm": 1e-3, "cam.run_out_mm": 1200.0}),
-    ],
+    few(
+        [
+            ("tappet", {"output.motion_step_deg": 1e-6}),
+            ("translating_cam", {"output.way_step_mm": 1e-3, "cam.run_out_mm": 1200.0}),
+        ]
+    ),
 )
 def test_a_step_with_too_many_rows_is_refused_with_the_smallest(
     name: str, changes: dict[str, float]

@@ -5,12 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import matplotlib.pyplot as plt
 import nbformat
 import pytest
 from nbclient.exceptions import CellExecutionError
 
 import notebooks
-from helpers_sampling import few
 
 STORED = sorted(notebooks.HOME.glob("*.ipynb"))
 LARGEST = 300_000
@@ -37,7 +37,28 @@ def test_there_are_notebooks() -> None:
     assert [path.stem for path in STORED] == ["elliptical_pair", "measured_cam"]
 
 
-@pytest.mark.parametrize("path", few(STORED), ids=lambda path: path.stem)
+def test_cells_print_and_draw_what_is_stored(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The quickest of them in this process, without a kernel; the slow test runs all of them."""
+    (path,) = (one for one in STORED if one.stem == "measured_cam")
+    stored = nbformat.read(path, as_version=4)
+    monkeypatch.chdir(tmp_path)
+    plt.switch_backend("agg")
+    names: dict[str, Any] = {}
+    told = []
+    for cell in stored.cells:
+        if cell.cell_type == "code":
+            exec(cell.source, names)
+            told.append(capsys.readouterr().out)
+    kinds = [kind for cell in shown(stored) for kind in cell]
+    assert [text for text in told if text] == printed(stored)
+    assert len(plt.get_fignums()) == kinds.count("image/png")
+    plt.close("all")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("path", STORED, ids=lambda path: path.stem)
 def test_a_notebook_does_what_is_stored(path: Path, tmp_path: Path) -> None:
     stored = nbformat.read(path, as_version=4)
     made = notebooks.run(path, tmp_path)

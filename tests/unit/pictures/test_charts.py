@@ -19,6 +19,7 @@ from gearcam.compare.variants import Variant
 from gearcam.designs.reader import loads
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.pictures.charts import Chart, Limit, Line, MarkedPlace
+from helpers_built import built
 from helpers_sampling import few
 
 mpl.use("Agg")
@@ -30,14 +31,14 @@ PAIR, CAM = (
 
 
 def chart(path: Path, name: str) -> Chart:
-    return gearcam.build(gearcam.load(path)).chart(name)
+    return built(path).chart(name)
 
 
 @pytest.mark.parametrize("path", few(PROFILES), ids=lambda path: path.stem)
 def test_every_chart_of_every_design_is_drawn(path):
     import matplotlib.pyplot as plt
 
-    result = gearcam.build(gearcam.load(path))
+    result = built(path)
     for name in result.charts:
         made = result.chart(name)
         ax = result.plot(name)
@@ -60,7 +61,7 @@ def test_a_smoothed_lift_is_drawn_with_the_points_that_were_given():
 
     path = rules.ROOT / "profiles" / "measured_cam.toml"
     given = np.loadtxt(path.with_suffix(".csv"), delimiter=",", skiprows=2)
-    result = gearcam.build(gearcam.load(path))
+    result = built(path)
     made = result.chart("lift")
     curve, points = made.lines
     assert points.dots
@@ -80,7 +81,7 @@ def test_a_smoothed_lift_is_drawn_with_the_points_that_were_given():
 
 @pytest.mark.parametrize("path", PROFILES, ids=lambda path: path.stem)
 def test_extremes_are_those_of_the_facts(path):
-    result = gearcam.build(gearcam.load(path))
+    result = built(path)
     facts, steps = result.facts, 1e-3
     if result.design.kind == "cam":
         lift = result.chart("lift").lines[0].y
@@ -118,12 +119,12 @@ def test_both_sides_of_a_knot_are_drawn():
 def test_curvature_is_held_against_the_limit_of_undercut():
     found = chart(PAIR, "curvature")
     # a straight flank of a module below the pitch line: sin(alpha)^2/m
-    module = gearcam.build(gearcam.load(PAIR)).pair.module
+    module = built(PAIR).pair.module
     limit = math.sin(math.radians(20.0)) ** 2 / module
     assert [one.value for one in found.limits] == pytest.approx([limit, -limit], rel=1e-3)
     # the driven wheel of this pair is undercut, the driver is not
     above = [line.y.max() > limit for line in found.lines]
-    result = gearcam.build(gearcam.load(PAIR))
+    result = built(PAIR)
     assert above == [bool(gear.profile.undercut_teeth) for gear in result.gears] == [False, True]
 
 
@@ -141,10 +142,7 @@ def test_the_roller_limits_the_pitch_curve():
 
 
 def test_charts_that_say_nothing_are_left_out():
-    flat, roller = (
-        gearcam.build(gearcam.load(PAIR.with_name(f"{name}.toml")))
-        for name in ("flat_follower", CAM.stem)
-    )
+    flat, roller = (built(PAIR.with_name(f"{name}.toml")) for name in ("flat_follower", CAM.stem))
     assert flat.charts == tuple(name for name in roller.charts if name != "pressure_angle")
     with pytest.raises(DesignError, match="lift, curvature, velocity") as refused:
         flat.plot("pressure_angle")
@@ -197,7 +195,7 @@ def test_a_pair_of_teeth_is_one_line_of_sliding_without_bridges():
 
 def test_the_ratio_is_the_slope_of_the_position():
     for path, scale in ((PAIR, 1.0), (PAIR.with_name("feeder.toml"), math.degrees(1.0))):
-        result = gearcam.build(gearcam.load(path))
+        result = built(path)
         place, ratio = (result.chart(name).lines[0] for name in ("position", "ratio"))
         x = 0.5 * (place.x[1:] + place.x[:-1])
         long = np.diff(place.x) > 0.1
@@ -217,7 +215,7 @@ def test_the_ratio_is_the_slope_of_the_position():
     ],
 )
 def test_knots_are_marked(name, knots):
-    result = gearcam.build(gearcam.load(PAIR.with_name(f"{name}.toml")))
+    result = built(PAIR.with_name(f"{name}.toml"))
     over = result.charts[0]
     for chart in map(result.chart, result.charts):
         if chart.x != result.chart(over).x or "patch" in chart.title or "Sliding" in chart.title:
@@ -228,7 +226,7 @@ def test_knots_are_marked(name, knots):
 
 def test_contact_patches_are_those_of_a_study():
     # the closed form of a study is that of the exact depth, the chart's that of the lever
-    result = gearcam.build(gearcam.load(PAIR.with_name("ellipse.toml")))
+    result = built(PAIR.with_name("ellipse.toml"))
     each, together = result.chart("contact_patch").lines
     table = result.mesh(steps=24).columns
     known = np.isfinite(table["closed_mm2"])
@@ -250,7 +248,7 @@ def test_contact_patches_are_those_of_a_study():
 
 def test_transmission_errors_are_those_of_a_study():
     # backlash lets the driven wheel lag, by more where it is small
-    result = gearcam.build(gearcam.load(PAIR.with_name("shop_order.toml")))
+    result = built(PAIR.with_name("shop_order.toml"))
     told = result.mesh(steps=72).facts["meshing.transmission_error"]
     drive, coast = result.chart("transmission_error").lines
     assert np.ptp(drive.y) == pytest.approx(told["peak_to_peak"], rel=1e-3)
@@ -262,7 +260,7 @@ def test_transmission_errors_are_those_of_a_study():
         shown = np.interp([0.0, 180.0], line.x, line.y)
         assert np.diff(shown) == pytest.approx(np.diff(lags), rel=1e-6)
     # without backlash there is none
-    assert not np.any(gearcam.build(gearcam.load(PAIR)).chart("transmission_error").lines[0].y)
+    assert not np.any(built(PAIR).chart("transmission_error").lines[0].y)
 
 
 @pytest.mark.parametrize(
@@ -285,7 +283,7 @@ def test_all_walls_have_their_curvature_and_their_roller(name, ends, limits):
 
 def test_pressure_angles_of_both_conjugate_cams():
     path = PAIR.with_name("conjugate_cams.toml")
-    result = gearcam.build(gearcam.load(path))
+    result = built(path)
     for line, told in zip(
         result.chart("pressure_angle").lines,
         (result.facts["cam.pressure_angle_deg"], result.facts["cam.cam2.pressure_angle_deg"]),
@@ -387,7 +385,7 @@ def test_between_knots_that_are_near_each_other_a_curve_has_places(count: int) -
 
 def test_a_chart_shows_what_happens_in_a_degree() -> None:
     short = Path("profiles") / "extreme" / "cam_one_degree.toml"
-    result = gearcam.build(gearcam.load(short))
+    result = built(short)
     low, high = result.chart("velocity").range
     peak = result.facts.quantity("motion.peak_velocity").value
     assert high == pytest.approx(peak, rel=0.01)
@@ -395,14 +393,14 @@ def test_a_chart_shows_what_happens_in_a_degree() -> None:
 
 
 def test_unknown_charts_are_refused_with_the_known_ones():
-    result = gearcam.build(gearcam.load(CAM))
+    result = built(CAM)
     with pytest.raises(DesignError, match="speed") as refused:
         result.plot("speed")
     assert all(name in str(refused.value) for name in result.charts)
 
 
 def test_without_matplotlib_the_extra_is_named(monkeypatch):
-    result = gearcam.build(gearcam.load(CAM))
+    result = built(CAM)
     monkeypatch.setitem(sys.modules, "matplotlib.pyplot", None)
     with pytest.raises(MissingExtraError, match="plot"):
         result.plot("lift")

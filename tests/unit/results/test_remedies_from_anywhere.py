@@ -13,6 +13,7 @@ from gearcam.base.changes import between
 from gearcam.base.errors import InfeasibleError
 from gearcam.console import remedy_lines
 from helpers_remedies import ARM, CIRCLE, ROLLER, cam, followed, job_of, pair
+from helpers_sampling import few
 
 STEEP = [30, 60, 60, 210]
 LIFT = 20.0
@@ -76,7 +77,10 @@ STARTS: dict[str, tuple[Any, str, tuple[float, ...]]] = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("name", STARTS)
+@pytest.mark.parametrize(
+    "name",
+    ["a roller", *(pytest.param(name, marks=pytest.mark.slow) for name in list(STARTS)[::2])],
+)
 def test_the_remedy_does_not_depend_on_the_start(name: str, tmp_path: Path) -> None:
     make, key, starts = STARTS[name]
     told = [values(make(size), key, tmp_path) for size in starts]
@@ -201,8 +205,10 @@ def test_ratios_that_close_a_law_are_those_of_the_file(name: str, tmp_path: Path
 
 @pytest.mark.parametrize(
     "law",
-    [SPEEDS | {"ratios": [5, "solve"]}, {"type": "phases", "knots_deg": [0, 180, 360],
-                                         "ratios": [3, "solve", 3]}],
+    few([
+        {"type": "phases", "knots_deg": [0, 180, 360], "ratios": [3, "solve", 3]},
+        SPEEDS | {"ratios": [5, "solve"]},
+    ]),
 )  # fmt: skip
 def test_where_no_positive_ratio_closes_smaller_ones_are_tried(law: Any, tmp_path: Path) -> None:
     document = pair(law, [60, 60])

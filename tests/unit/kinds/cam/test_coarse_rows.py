@@ -11,6 +11,7 @@ import pytest
 
 import gearcam
 from gearcam.kinds.cam.build import CamResult
+from helpers_sampling import few
 
 NAMED = re.compile(r"With ([\w.]+) = ([\d.e-]+) ")
 
@@ -46,7 +47,7 @@ def warning(result: CamResult) -> Any:
     [
         (30, 0.0, False),
         (90, 1e-3, True),
-        (180, 4e-4, True),
+        pytest.param(180, 4e-4, True, marks=pytest.mark.slow),
         pytest.param(360, 5e-3, True, marks=pytest.mark.slow),
         pytest.param(720, 1e-3, True, marks=pytest.mark.slow),
     ],
@@ -66,8 +67,8 @@ def test_the_values_that_are_named_lift_the_warning(
     assert warning(gearcam.build(asked.with_({"output.chord_tolerance_mm": finer}))) is not None
 
 
-@pytest.mark.parametrize("rows", [90, 180, 360])
-@pytest.mark.parametrize("noise", [4e-4, 1e-3, 5e-3])
+@pytest.mark.parametrize("rows", few([90, 180, 360]))
+@pytest.mark.parametrize("noise", few([4e-4, 1e-3, 5e-3]))
 def test_the_smoothing_that_is_named_brings_the_lift_nearer(rows: int, noise: float) -> None:
     """It is about as large as the scatter: a larger one would cut off more than the scatter."""
     asked, exact = (gearcam.build(design(rows, part, swings=False)) for part in (noise, 0.0))

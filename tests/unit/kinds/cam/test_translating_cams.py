@@ -13,6 +13,7 @@ from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.designs import loads
 from gearcam.results.advice import Search
 from helpers_files import DEEP, EDGE, PLATE, built, read, refused, sliding_of
+from helpers_sampling import few
 from helpers_step import read_step
 
 
@@ -212,11 +213,14 @@ def test_clearance_is_taken_off_the_wall_alone() -> None:
 
 @pytest.mark.parametrize(
     ("key", "value"),
-    [
-        ("blank.height_mm", 20),  # its bolts need room besides
-        ("blank.bolt_height_mm", 20),
-        ("blank.bolt_spacing_mm", 200),
-    ],
+    few(
+        [
+            ("blank.height_mm", 20),  # its bolts need room besides
+            ("blank.bolt_height_mm", 20),
+            ("blank.bolt_spacing_mm", 200),
+        ],
+        3,
+    ),
 )
 def test_what_the_plate_has_no_room_for_is_moved(key: str, value: float) -> None:
     result = gearcam.build(read(PLATE).with_({key: value}))
