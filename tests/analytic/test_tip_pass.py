@@ -3,20 +3,14 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
-import numpy as np
 import pytest
 
 from gearcam.base.tolerances import DEFAULT
-from gearcam.gears import tip_pass as room
 from gearcam.gears.outline import Outline, build_outline
 from gearcam.gears.pair import GearPair
-from gearcam.gears.polar import PolarCurve
-from gearcam.gears.tip_pass import Stays, TipPass, find_stays, rolls_of, tip_pass
+from gearcam.gears.tip_pass import TipPass, tip_pass
 from gearcam.kinds.gear_pair.build import GearPairResult
-from gearcam.numeric.arrays import Array, Plane
-from helpers_built import fresh
 from helpers_rings import driver, overlap, passed_on_circles, ring
 
 CONSTANT = {"type": "constant"}
@@ -201,44 +195,6 @@ def test_tips_of_the_wheel_stay_out_of_fillets_of_a_ring() -> None:
     assert 1e-4 < lost.max() < 0.05 * mate.cutter.reach
     assert overlap(result, outlines=(free, result.gear2.profile)) > 0.0
     assert overlap(result) == 0.0
-
-
-@pytest.mark.parametrize(
-    ("law", "teeth"),
-    [
-        (CONSTANT, (28, 29)),
-        ({"type": "fourier", "cosines": [0.3], "sines": [0.0, 0.1]}, (20, 40)),
-        (driver(0.05, 2, 5), (20, 50)),
-        (driver(0.01, 5, 6), (40, 48)),
-    ],
-)
-def test_corners_that_are_hardly_looked_at_stay_where_all_looks_see_them(
-    monkeypatch: pytest.MonkeyPatch, law: dict[str, Any], teeth: tuple[int, int]
-) -> None:
-    wheel, hole = full(fresh(ring(law, teeth)).pair)
-    own, mate = wheel.toothing, hole.toothing
-    edge = PolarCurve(mate, mate.cutter.addendum)
-    count, z = 60 * own.teeth, own.teeth
-    phi = own.track.angle(np.linspace(-0.5, 0.5, count + 1) * own.length)
-    points = own.flank_points(own.frames(wheel.flanks.tips.phi), *own.flanks)[[0, z // 3, -1]]
-    rolls = rolls_of(own, mate, phi)
-    looks: list[int] = []
-
-    def beyond(seen: PolarCurve, at: Plane) -> Array:
-        looks.append(at.size)
-        return told(seen, at)
-
-    def found(first: int) -> tuple[Stays, int]:
-        looks.clear()
-        monkeypatch.setattr(room, "_FIRST", first)
-        return find_stays(rolls, points, np.zeros(3, dtype=int), count, edge), sum(looks)
-
-    told = PolarCurve.beyond
-    monkeypatch.setattr(PolarCurve, "beyond", beyond)
-    (few, seldom), (every, often) = found(1), found(2 * count)
-    assert seldom < 0.2 * often
-    for one, other in zip(few, every, strict=True):
-        np.testing.assert_array_equal(one, other)
 
 
 @pytest.mark.parametrize(

@@ -199,13 +199,11 @@ class FlankPairs(Mounting):
         edges = np.sort(np.concatenate([[0.0], edges, [turn]]))
         edges = edges[np.append(np.diff(edges) > _ONE * turn, True)]
         edges[0] = 0.0
-        carrying = self._carrying(0.5 * (edges[:-1] + edges[1:]), start, end)
+        middle = 0.5 * (edges[:-1] + edges[1:])
+        carrying = np.searchsorted(np.sort(start), middle, side="right")
+        carrying -= np.searchsorted(np.sort(end), middle, side="left")
         first = np.flatnonzero(np.append(True, np.diff(carrying) != 0))
         return edges[first], np.append(edges[first[1:]], turn), carrying[first]
-
-    def _carrying(self, phi1: Array, start: Array, end: Array) -> Ints:
-        begun = np.searchsorted(np.sort(start), phi1, side="right")
-        return begun - np.searchsorted(np.sort(end), phi1, side="left")
 
     def carrying(self, phi1: ArrayLike) -> Ints:
         """Return the number of pairs in contact at phases `phi1`, rad."""

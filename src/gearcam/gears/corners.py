@@ -25,7 +25,6 @@ from numpy.typing import NDArray
 
 from gearcam.base.display import Brief
 from gearcam.gears.flank import Toothing
-from gearcam.gears.polar import PolarCurve
 from gearcam.gears.track import Frames
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 
@@ -53,6 +52,12 @@ _ABOUT = 0.8
 _FEW = 24.0
 """Teeth of a pinion cutter below which all corners are traced: it leaves large fillets in a root
 that has little space for tips."""
+
+_PLACES = 8
+"""Points per pitch; between them a curve is taken as straight."""
+
+_FEET = 2.0
+"""Pitches to either side of a first guess by polar angle within which a foot lies."""
 
 
 def highest_corners(
@@ -274,3 +279,43 @@ class _Paths(Brief):
     @cached_property
     def _centrode(self) -> PolarCurve:
         return PolarCurve(self.mate, 0.0)
+
+
+class PolarCurve:
+    """A parallel of a centrode in polar coordinates; its angle rises with the driver angle.
+
+    It is approximate: to sort points of ring pairs.
+
+    Parameters
+    ----------
+    toothing : Toothing
+        A driver or a ring.
+    height : float, mm
+        Its distance from the centrode, towards the tips.
+    """
+
+    def __init__(self, toothing: Toothing, height: float) -> None:
+        more = 0 if toothing.closed else 1  # pitches added at each end for the outer half teeth
+        count = _PLACES * (toothing.teeth + 2 * more)
+        s = toothing.pitch * (np.arange(count + 1) / _PLACES - more)
+        reach = _FEET * toothing.pitch
+        self._phi = toothing.track.angle(np.stack([s - reach, s + reach, s]))
+        base = toothing.frames(self._phi[2], curved=False)
+        points = base.p + height * toothing.turn * base.t
+        self._polar, self._radii = np.unwrap(np.angle(points)), np.abs(points)
+
+    def _places(self, points: Plane) -> Array:
+        first = self._polar[0]
+        return first + (np.angle(points) - first) % (2.0 * math.pi)
+
+    def feet(self, points: Plane) -> tuple[Array, Array, Array]:
+        """Return bounds and guesses of the feet of points near it, driver angles, rad."""
+        places = self._places(points)
+        low, high, guess = (np.interp(places, self._polar, phi) for phi in self._phi)
+        return low, high, guess
+
+    def beyond(self, points: Plane) -> Array:
+        """Return radii of points less those of the curve, mm; -inf beyond the last angle."""
+        return np.abs(points) - np.interp(
+            self._places(points), self._polar, self._radii, right=math.inf
+        )

@@ -19,7 +19,6 @@ from gearcam.gears.outline import Outline
 from gearcam.gears.pair import Gear, GearPair
 from gearcam.gears.rolling import EPS, FEW, Rolling, systematic_errors
 from gearcam.gears.subject import Subject
-from gearcam.gears.tip_pass import TipPass
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.bulges import as_complex
 from gearcam.numeric.sampling import MARGIN
@@ -51,7 +50,12 @@ def estimates(subject: Subject) -> Estimates:
     far, rounding = size_of(rolling)
     flank = flank_error(pair, far, rounding)
     reaches, thicknesses = zip(*(tip_errors(gear, rounding) for gear in gears), strict=True)
-    passed = subject.tip_pass
+    bends = [track.bends for track in rolling.tracks]
+    bent = "scatter near extremes, ratio and derivatives at knots, closure, size" + function
+    passing: Estimates = {}
+    if (passed := subject.tip_pass) is not None:
+        how = "position errors of both tip corners, projected on the centrode"
+        passing["tip_pass_margin_mm"] = ((1.0 + passed.slope) * (sum(reaches) + flank), how)
     return {
         "law": (
             law.error,
@@ -70,7 +74,8 @@ def estimates(subject: Subject) -> Estimates:
             rolling.arc_error,
             "comparison with Gauss-Legendre quadrature, and rounding" + function,
         ),
-        **_bend_errors(rolling, function),
+        "convex_radius_mm": (max(one.radius_error for one in bends), bent),
+        "concave_curvature_per_mm": (max(one.concave_error for one in bends), bent),
         "size": (rolling.size_error, "relative error of the arc length, module, centre distance"),
         "flank_mm": (
             flank,
@@ -88,7 +93,7 @@ def estimates(subject: Subject) -> Estimates:
             max(thicknesses),
             "errors of both flanks at the tip of the thinnest tooth",
         ),
-        **({} if passed is None else _pass_error(passed, sum(reaches) + flank)),
+        **passing,
         "backlash_mm": (FEW * EPS * pair.toothings[0].pitch, "rounding of the pitch"),
         "root_radius_mm": (
             max(root_radius_error(gear) for gear in gears) + flank,
@@ -98,22 +103,6 @@ def estimates(subject: Subject) -> Estimates:
             max(area_error(gear) for gear in gears),
             "chord lengths times chord errors",
         ),
-    }
-
-
-def _pass_error(passed: TipPass, corners: float) -> Estimates:
-    """Return the error of the tip-pass margin, mm, from the position errors of both corners."""
-    how = "position errors of both tip corners, projected on the centrode"
-    return {"tip_pass_margin_mm": ((1.0 + passed.slope) * corners, how)}
-
-
-def _bend_errors(rolling: Rolling, function: str) -> Estimates:
-    """Return the larger error of the two centrodes' least radii."""
-    bends = [track.bends for track in rolling.tracks]
-    how = "scatter near extremes, ratio and derivatives at knots, closure, size" + function
-    return {
-        "convex_radius_mm": (max(one.radius_error for one in bends), how),
-        "concave_curvature_per_mm": (max(one.concave_error for one in bends), how),
     }
 
 
@@ -252,7 +241,9 @@ def tip_errors(gear: Gear, rounding: float) -> tuple[float, float]:
         Sum over both flanks of the thinnest tooth.
     """
     flanks, toothing = gear.profile.flanks, gear.toothing
-    own = own_error(gear.pair, _in_lobe(gear, flanks.tips.phi), rounding)
+    law, phi = gear.pair.law, flanks.tips.phi
+    in_lobe = np.mod(phi, law.period) if law.closed else np.clip(phi, 0.0, law.period)
+    own = own_error(gear.pair, in_lobe, rounding)
     thinnest = gear.profile.tip_thickness.argmin()
     thickness = float(toothing.of_teeth(own)[:, thinnest].sum())
     high, low = np.split(flanks.tips.foot, 2)
@@ -260,12 +251,6 @@ def tip_errors(gear: Gear, rounding: float) -> tuple[float, float]:
     regular = toothing.regularity(toothing.frames(flanks.tips.phi), flanks.sf, flanks.sigma)
     run = np.where(crossed, np.maximum(regular, math.sqrt(EPS)), 1.0)
     return float((own / run)[toothing.whole_flanks].max()), thickness
-
-
-def _in_lobe(gear: Gear, phi: Array) -> Array:
-    """Return driver angles moved into the first lobe, or clipped to an open pair's travel."""
-    law = gear.pair.law
-    return np.mod(phi, law.period) if law.closed else np.clip(phi, 0.0, law.period)
 
 
 def root_radius_error(gear: Gear) -> float:

@@ -6,10 +6,6 @@ the arc length along the ring's centrode between the feet of both is the *tip-pa
 where tips collide. Corners are traced over half a turn of wheel 1 in both directions, so that those
 that enter the ring again elsewhere are found too. Rounded edges are taken as sharp.
 
-A corner is computed only near its entry, its exit and its deepest point: if its distance from the
-ring's tips at two rolls exceeds its largest movement between them, it neither enters nor leaves in
-between.
-
 On circles the margin is ``r2*(theta1*z1/z2 + inv(alpha_w) - inv(alpha_a2) - theta2)``.
 """
 
@@ -20,9 +16,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from gearcam.gears.corners import PolarCurve
 from gearcam.gears.flank import Toothing
 from gearcam.gears.outline import Outline
-from gearcam.gears.polar import PolarCurve
 from gearcam.gears.tips import feet
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.roots import bracketed_root
@@ -39,8 +35,8 @@ _NEAR = 1e-6
 _DIGITS = 9
 """Digits by which margins, in pitches, are compared: of equal ones the first is reported."""
 
-_FIRST = 16
-"""Intervals into which the rolls of a corner are divided at first."""
+_BLOCK = 1 << 17
+"""Positions of corners computed at once."""
 
 
 class TipPass(NamedTuple):
@@ -134,8 +130,11 @@ def _follow(own: Toothing, mate: Toothing, corners: _Corners, edge: PolarCurve) 
     rolls = np.arange(count + (each - 1) * _ROLLS) / _ROLLS - half
     s = float(own.tooth_places[own.whole][0]) + own.pitch * rolls
     phi = own.track.angle(s if own.closed else np.clip(s, 0.0, own.length))
+    here, there = own.frames(phi, curved=False), mate.frames(phi, curved=False)
+    turn = there.t * np.conj(here.t)
+    rolls = Rolls(phi, turn, there.p - turn * here.p)
     first = np.tile(_ROLLS * np.arange(each), 2)
-    return find_stays(rolls_of(own, mate, phi), corners.points, first, count, edge)
+    return find_stays(rolls, corners.points, first, count, edge)
 
 
 def _margins(
@@ -194,22 +193,13 @@ class Rolls(NamedTuple):
     ----------
     phi : array, rad
         Driver angles.
-    pitch_point : complex array, mm
-        In the wheel's frame.
     turn, shift : complex arrays, 1 and mm
         A point p of the wheel is at ``shift + turn*p`` in the ring's frame.
-    turned : array, rad
-        Total angle of the wheel in the ring's frame, reversals added.
-    way : array, mm
-        Path length of the pitch point.
     """
 
     phi: Array
-    pitch_point: Plane
     turn: Plane
     shift: Plane
-    turned: Array
-    way: Array
 
 
 class Stays(NamedTuple):
@@ -222,37 +212,6 @@ class Stays(NamedTuple):
     corner: Ints
     deep: Array
     edge: Array
-
-
-class _Seen(NamedTuple):
-    """Computed states of corners, by corner and roll, (n,) each.
-
-    `roll` is counted from the corner's first; `depth` is its depth inside the ring, mm, and
-    `clear` the least distance that it must move to enter or leave.
-    """
-
-    corner: Ints
-    roll: Ints
-    depth: Array
-    clear: Array
-
-    def before(self, index: Ints, more: _Seen) -> _Seen:
-        """Return these with `more`, inserted before the entries `index`."""
-        return _Seen(
-            np.insert(self.corner, index, more.corner),
-            np.insert(self.roll, index, more.roll),
-            np.insert(self.depth, index, more.depth),
-            np.insert(self.clear, index, more.clear),
-        )
-
-
-def rolls_of(own: Toothing, mate: Toothing, phi: Array) -> Rolls:
-    """Return the rolls of a wheel `own` and its `mate` at rising driver angles `phi`, rad."""
-    here, there = own.frames(phi, curved=False), mate.frames(phi, curved=False)
-    turn = there.t * np.conj(here.t)
-    steps = np.abs(np.angle(turn[1:] * np.conj(turn[:-1])))
-    turned = np.concatenate([[0.0], np.cumsum(steps)])
-    return Rolls(phi, here.p, turn, there.p - turn * here.p, turned, here.s)
 
 
 def find_stays(rolls: Rolls, points: Plane, first: Ints, count: int, edge: PolarCurve) -> Stays:
@@ -276,54 +235,21 @@ def find_stays(rolls: Rolls, points: Plane, first: Ints, count: int, edge: Polar
     Stays
         By corner, then in order.
     """
-
-    def look(corner: Ints, roll: Ints) -> _Seen:
-        k = first[corner] + roll
-        at = rolls.shift[k] + rolls.turn[k] * points[corner]
-        depth = edge.beyond(at)
-        return _Seen(corner, roll, depth, edge.clear(at, depth))
-
-    start = np.unique(np.linspace(0, count - 1, _FIRST + 1).astype(int))
-    seen = look(np.arange(len(points)).repeat(len(start)), np.tile(start, len(points)))
-    while True:
-        one, two = (first[seen.corner] + seen.roll)[:-1], (first[seen.corner] + seen.roll)[1:]
-        reach = np.abs(points[seen.corner[:-1]] - rolls.pitch_point[one])
-        moved = (rolls.turned[two] - rolls.turned[one]) * (reach + rolls.way[two] - rolls.way[one])
-        k = np.flatnonzero(_open(seen, moved))
-        if not k.size:
-            corner, deep, end = _ends(seen, count - 1)
-            return Stays(corner, rolls.phi[first[corner] + deep], rolls.phi[first[corner] + end])
-        seen = seen.before(k + 1, look(seen.corner[k], (seen.roll[k] + seen.roll[k + 1]) // 2))
-
-
-def _open(seen: _Seen, moved: Array) -> Mask:
-    """Return which intervals need to be divided.
-
-    Those in which a corner, which moves by `moved` at most, may enter or leave, and those next to
-    a largest depth, or to a smallest depth inside.
-    """
-    depth, same = seen.depth, np.diff(seen.corner) == 0
-    inside, rises = depth > 0.0, depth[1:] > depth[:-1]
-    on, up = np.pad(same, 1), np.pad(rises, 1)
-    turns = inside & ~(on[1:] & on[:-1] & (up[1:] == up[:-1]))
-    sure = (inside[1:] == inside[:-1]) & (moved < seen.clear[1:] + seen.clear[:-1])
-    return same & (np.diff(seen.roll) > 1) & (~sure | turns[1:] | turns[:-1])
-
-
-def _ends(seen: _Seen, last: int) -> tuple[Ints, Ints, Ints]:
-    """Return the corner, the deepest roll and the roll beyond the end, for all ends."""
-    inside, other = seen.depth > 0.0, np.pad(np.diff(seen.corner) != 0, 1, constant_values=True)
-    before, after = np.pad(inside, 1)[:-2], np.pad(inside, 1)[2:]
-    starts = np.flatnonzero(inside & (other[:-1] | ~before))
-    stops = np.flatnonzero(inside & (other[1:] | ~after))
     found: list[tuple[int, int, int]] = []
-    for start, stop in zip(starts.tolist(), stops.tolist(), strict=True):
-        depth, roll = seen.depth[start : stop + 1], seen.roll[start : stop + 1]
-        # one roll further out, since positions are approximate
-        ends = [max(int(roll[0]) - 2, 0)] if roll[0] > 0 else []
-        ends += [min(int(roll[-1]) + 2, last)] if roll[-1] < last else []
-        deep = int(roll[np.argmax(depth)])
-        ends = ends or [int(roll[np.argmin(depth)])]
-        found += [(int(seen.corner[start]), deep, end) for end in ends]
-    corner, deep, edge = np.array(found, dtype=int).reshape(-1, 3).T
-    return corner, deep, edge
+    size = max(1, _BLOCK // count)
+    for block in range(0, len(points), size):
+        some = slice(block, block + size)
+        k = first[some, None] + np.arange(count)
+        depth = edge.beyond(rolls.shift[k] + rolls.turn[k] * points[some, None])
+        changes = np.diff(np.pad(depth > 0.0, ((0, 0), (1, 1))).astype(np.int8), axis=1)
+        (row, start), (_, stop) = np.nonzero(changes > 0), np.nonzero(changes < 0)
+        for corner, low, high in zip(row.tolist(), start.tolist(), stop.tolist(), strict=True):
+            inside = depth[corner, low:high]
+            # one roll further out, since positions are approximate
+            ends = [max(low - 2, 0)] if low > 0 else []
+            ends += [min(high + 1, count - 1)] if high < count else []
+            ends = ends or [low + int(inside.argmin())]
+            deep = low + int(inside.argmax())
+            found += [(block + corner, deep, end) for end in ends]
+    corner, deep, end = np.array(found, dtype=int).reshape(-1, 3).T
+    return Stays(corner, rolls.phi[first[corner] + deep], rolls.phi[first[corner] + end])

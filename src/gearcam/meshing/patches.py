@@ -21,7 +21,7 @@ from gearcam.gears.normals import Normals, Pose, normals
 from gearcam.gears.track import WHEELS, Wheel
 from gearcam.meshing.contact import outermost, sought
 from gearcam.meshing.placed_flanks import PlacedFlanks
-from gearcam.numeric.arrays import Array, Ints, Mask, Plane
+from gearcam.numeric.arrays import Array, Ints, Mask
 from gearcam.numeric.roots import damped_newton, newton_in_bracket
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
@@ -113,16 +113,13 @@ class Graphs(PlacedFlanks):
         angles, y, slope = [], [], []
         rows = zip(WHEELS, self.center, self.along, self.rising, strict=True)
         for wheel, center, along, ends in rows:
-            angles.append(self.find(wheel, _along, x, ends, center + x / along, _ANGLE))
+            start = center + x / along
+            angles.append(self.find(wheel, lambda p, d: (p.real, d.real), x, ends, start, _ANGLE))
             point, direction = self.at(wheel, angles[-1], unit=True)
             y.append(self.pairs.side * point.imag)
             with np.errstate(divide="ignore", invalid="ignore"):  # a vertical tangent at an end
                 slope.append(self.pairs.side * direction.imag / direction.real)
         return y[0] - y[1], slope[0] - slope[1], np.stack(angles)
-
-
-def _along(points: Plane, directions: Plane) -> tuple[Array, Array]:
-    return points.real, directions.real
 
 
 def patches(
