@@ -16,8 +16,8 @@ import shapely
 from numpy.typing import NDArray
 
 from gearcam.export.cut_svg import cut_svg
-from gearcam.export.lettering import strokes, text_width
-from gearcam.export.nest import GAP, labelled, nested
+from gearcam.export.lettering import labelled, strokes, text_width
+from gearcam.export.nest import GAP, nested
 from gearcam.kinds.cam.build import CamResult
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.numeric.contour import Contour

@@ -155,7 +155,8 @@ def cut_files(drawings: Sequence[Drawing], title: str, kerf: float) -> Files:
         Contents by file name.
     """
     from gearcam.export.cut_svg import cut_svg
-    from gearcam.export.nest import labelled, nested
+    from gearcam.export.lettering import labelled
+    from gearcam.export.nest import nested
 
     files = {
         f"{one.name}_cut.svg": cut_svg([one], f"{title}, {one.name}", kerf) for one in drawings

@@ -1,17 +1,22 @@
-"""Single-stroke letters for engraving: laser programs ignore fonts.
+"""Names of parts for engraving, in single-stroke letters: laser programs ignore fonts.
 
-Capitals and digits on a grid of 4 by 6, as polylines.
+Capitals and digits on a grid of 4 by 6, as polylines. A name is placed where its part has most
+space, or below it.
 
-Depends on numpy only.
+Depends on drawings; shapely inside the functions.
 """
 
 from __future__ import annotations
 
-from typing import Final
+import math
+import re
+from dataclasses import replace
+from typing import Any, Final
 
 import numpy as np
 
 from gearcam.numeric.arrays import Array
+from gearcam.pictures.drawings import LABEL, MARK, OUTER, THROUGH, Drawing, Feature, Path, box
 
 _TALL: Final = 6
 _ADVANCE: Final = 6
@@ -40,6 +45,54 @@ _STROKES: Final = {
     "9": "44 33 13 04 05 16 36 45 41 30 10 01",
 }
 """Points of each stroke, x and y in steps of the grid."""
+
+_HIGHEST: Final = 5.0
+_LOWEST: Final = 1.5
+"""Heights of letters, mm: as the space allows, or below the part if that is too low."""
+
+_BELOW: Final = 3.0
+"""Distance of a name below its part, mm."""
+
+_FREE: Final = 1.0
+"""Least distance of a name from every edge, mm."""
+
+_COARSE: Final = 0.05
+"""Tolerance of the space for a name, mm."""
+
+_SAGITTA: Final = 0.01
+"""Chord error of openings, mm."""
+
+
+def labelled(drawing: Drawing) -> Drawing:
+    """Return the `drawing` of a part with its name in single strokes."""
+    words = re.sub(r"(\d+)", r" \1", drawing.name.replace("_", " ")).upper()
+    wide = text_width(words)
+    (x, y), room = _roomiest(drawing)
+    height = min(_HIGHEST, 2.0 * (room - _FREE) / math.hypot(wide, 1.0))
+    left, base = x - 0.5 * wide * height, y - 0.5 * height
+    if height < _LOWEST:
+        height = _LOWEST
+        low, high = box(drawing.features)
+        left, base = 0.5 * float(low[0] + high[0] - wide * height), float(low[1]) - _BELOW - height
+    lines = strokes(words, height, left, base)
+    names = (Feature(layer=LABEL, shape=Path(points=line, closed=False)) for line in lines)
+    return replace(drawing, features=(*drawing.features, *names))
+
+
+def _roomiest(drawing: Drawing) -> tuple[tuple[float, float], float]:
+    """Return the centre and the radius of the largest free circle."""
+    from shapely import Polygon, maximum_inscribed_circle
+
+    def points(feature: Feature) -> Array:
+        shape: Any = feature.shape
+        return shape.points(_SAGITTA)
+
+    (outer,) = (points(one) for one in drawing.features if one.kind in OUTER)
+    inner = [points(one) for one in drawing.features if one.kind in (*THROUGH, MARK)]
+    free: Any = Polygon(outer, inner).simplify(_COARSE)
+    spoke: Any = maximum_inscribed_circle(free, tolerance=_COARSE)
+    (x, y), _ = spoke.coords
+    return (x, y), float(spoke.length) - _COARSE
 
 
 def text_width(text: str) -> float:

@@ -1,17 +1,14 @@
-"""Nesting: parts side by side on a sheet, each with its name.
+"""Nesting: parts side by side on a sheet.
 
-A name is placed where a part has most space, or below it. Parts are placed in rows, the tallest
-first, with the row width that gives the sheet the shortest perimeter. Within a row each part is
-moved to the left until its hull is a gap away from its neighbours' hulls: then outlines are apart
-too. Parts are shifted, but not turned or mirrored.
+Parts are placed in rows, the tallest first, with the row width that gives the sheet the shortest
+perimeter. Within a row each part is moved to the left until its hull is a gap away from its
+neighbours' hulls: then outlines are apart too. Parts are shifted, but not turned or mirrored.
 
-Depends on drawings and lettering; shapely inside the functions.
+Depends on drawings; shapely inside the functions.
 """
 
 from __future__ import annotations
 
-import math
-import re
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import accumulate
@@ -20,17 +17,11 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from gearcam.base.numerals import NOISE
-from gearcam.export.lettering import strokes, text_width
 from gearcam.numeric.arrays import Array
 from gearcam.pictures.drawings import (
     LABEL,
-    MARK,
     OUTER,
-    THROUGH,
     Drawing,
-    Feature,
-    Path,
-    box,
     place,
     reach,
 )
@@ -42,53 +33,8 @@ if TYPE_CHECKING:
 GAP: Final = 3.0
 """Least distance between the cuts of two parts, mm."""
 
-_HIGHEST: Final = 5.0
-_LOWEST: Final = 1.5
-"""Heights of letters, mm: as the space allows, or below the part if that is too low."""
-
-_FREE: Final = 1.0
-"""Least distance of a name from every edge, mm."""
-
-_COARSE: Final = 0.05
-"""Tolerance of the space for a name, mm."""
-
 _NEAR: Final = 1e-3
 """Tolerance of the gap, mm."""
-
-_SAGITTA: Final = 0.01
-"""Chord error of openings, mm."""
-
-
-def labelled(drawing: Drawing) -> Drawing:
-    """Return the `drawing` of a part with its name in single strokes."""
-    words = re.sub(r"(\d+)", r" \1", drawing.name.replace("_", " ")).upper()
-    wide = text_width(words)
-    (x, y), room = _roomiest(drawing)
-    height = min(_HIGHEST, 2.0 * (room - _FREE) / math.hypot(wide, 1.0))
-    left, base = x - 0.5 * wide * height, y - 0.5 * height
-    if height < _LOWEST:
-        height = _LOWEST
-        low, high = box(drawing.features)
-        left, base = 0.5 * float(low[0] + high[0] - wide * height), float(low[1]) - GAP - height
-    lines = strokes(words, height, left, base)
-    names = (Feature(layer=LABEL, shape=Path(points=line, closed=False)) for line in lines)
-    return replace(drawing, features=(*drawing.features, *names))
-
-
-def _roomiest(drawing: Drawing) -> tuple[tuple[float, float], float]:
-    """Return the centre and the radius of the largest free circle."""
-    from shapely import Polygon, maximum_inscribed_circle
-
-    def points(feature: Feature) -> Array:
-        shape: Any = feature.shape
-        return shape.points(_SAGITTA)
-
-    (outer,) = (points(one) for one in drawing.features if one.kind in OUTER)
-    inner = [points(one) for one in drawing.features if one.kind in (*THROUGH, MARK)]
-    free: Any = Polygon(outer, inner).simplify(_COARSE)
-    spoke: Any = maximum_inscribed_circle(free, tolerance=_COARSE)
-    (x, y), _ = spoke.coords
-    return (x, y), float(spoke.length) - _COARSE
 
 
 def nested(drawings: Sequence[Drawing]) -> tuple[Drawing, ...]:
@@ -97,7 +43,9 @@ def nested(drawings: Sequence[Drawing]) -> tuple[Drawing, ...]:
     sizes = np.array([np.subtract(hull.bounds[2:], hull.bounds[:2]) for hull in hulls])
     order = np.argsort(-np.round(sizes[:, 1]), kind="stable").tolist()
     widths = accumulate(float(sizes[k, 0]) + GAP for k in order)
-    rows = min((_rows(order, sizes, width) for width in widths), key=lambda it: _around(it, sizes))
+    rows = min(
+        (_rows(order, sizes, width) for width in widths), key=lambda it: _half_perimeter(it, sizes)
+    )
     shifts: dict[int, tuple[float, float]] = {}
     base = 0.0
     for row in rows:
@@ -131,7 +79,7 @@ def _rows(order: Sequence[int], sizes: Array, width: float) -> list[list[int]]:
     return rows
 
 
-def _around(rows: Sequence[Sequence[int]], sizes: Array) -> float:
+def _half_perimeter(rows: Sequence[Sequence[int]], sizes: Array) -> float:
     """Return half the perimeter of the bounding box of rows, mm."""
     wide = max(float((sizes[row, 0] + GAP).sum()) for row in rows)
     return wide + sum(float(sizes[row, 1].max()) + GAP for row in rows)

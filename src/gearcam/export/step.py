@@ -170,16 +170,16 @@ def _fill(
         ((part, placement),) = items
         # a shape with a location would be written as an assembly: its points are moved instead
         moved = occt.BRepBuilderAPI_Transform(shapes[part], _motion(*placement), True).Shape()
-        _call(tool.AddShape(moved, False), names[part.name])
+        _set_name(tool.AddShape(moved, False), names[part.name])
         return
     root = tool.NewShape()
-    _call(root, name)
+    _set_name(root, name)
     labels = {part: tool.AddShape(shape, False) for part, shape in shapes.items()}
     for part, label in labels.items():
-        _call(label, names[part.name])
+        _set_name(label, names[part.name])
     for part, placement in items:
         place = occt.TopLoc_Location(_motion(*placement))
-        _call(tool.AddComponent(root, labels[part], place), names[part.name])
+        _set_name(tool.AddComponent(root, labels[part], place), names[part.name])
     tool.UpdateAssemblies()
 
 
@@ -190,7 +190,7 @@ def _motion(angle: float, offset: tuple[float, float], height: float) -> Any:
     return shift * turn
 
 
-def _call(label: Any, name: str) -> None:
+def _set_name(label: Any, name: str) -> None:
     occt.TDataStd_Name.Set_s(label, occt.TCollection_ExtendedString(name, True))  # True: UTF-8
 
 

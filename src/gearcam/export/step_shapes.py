@@ -238,7 +238,7 @@ def _outline(contour: Contour, tolerance: float) -> list[_Piece]:
     """Return a curve for each piece of a contour; each ends exactly where the next begins."""
     # a piece between two curves that meet has no length
     pieces = (piece for run in contour.runs for piece in run.pieces)
-    runs = [piece for piece in pieces if _length(piece) > RESOLUTION]
+    runs = [one for one in pieces if np.hypot(*np.diff(one.points, axis=0).T).sum() > RESOLUTION]
     starts = [complex(*run.points[0]) for run in runs]
     straight = [_is_straight(run, min(RESOLUTION, tolerance)) for run in runs]
     bent = [run for run, flat in zip(runs, straight, strict=True) if not flat]
@@ -247,10 +247,6 @@ def _outline(contour: Contour, tolerance: float) -> list[_Piece]:
         _line(start, end) if flat else _curve(next(splines), start, end)
         for flat, start, end in zip(straight, starts, [*starts[1:], starts[0]], strict=True)
     ]
-
-
-def _length(run: Run) -> float:
-    return float(np.hypot(*np.diff(run.points, axis=0).T).sum())
 
 
 def _is_straight(run: Run, allowed: float) -> bool:

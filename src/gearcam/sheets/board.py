@@ -204,9 +204,8 @@ class Board:
         bool
             False if there is no space: nothing is drawn, and the table must contain it.
         """
-        within = 2.0 * made.radius * self.scale - text_width(made.label)
         found: RoundDimension | None = made
-        if not (made.diameter and angles is None and within > TIGHT and self._free(made)):
+        if not (made.diameter and angles is None and self._fits_inside(made)):
             reaches = _REACHES if made.diameter else np.concatenate([_REACHES, -_REACHES])
             found = self._search(made, AROUND if angles is None else angles, reaches)
         if found is not None:
@@ -239,7 +238,10 @@ class Board:
         self.write(drawn.text)
         return True
 
-    def _free(self, made: RoundDimension) -> bool:
+    def _fits_inside(self, made: RoundDimension) -> bool:
+        """Return whether a diameter's text has space in the middle of its circle."""
+        if 2.0 * made.radius * self.scale - text_width(made.label) <= TIGHT:
+            return False
         low, high = text_box(as_drawn(made, self.unit).text, self.unit)
         return bool(self._empty(low[None, :], high[None, :])[0])
 
