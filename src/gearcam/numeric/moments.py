@@ -89,7 +89,7 @@ def arc_moments(vertices: Array, bulges: Array) -> Moments:
     start, chord, bends = bulge_pieces(vertices, bulges, closed=True)
     place, weight = _gauss(_ON_ARC)
     way, speed = on_arcs(chord, bends, place[:, None])
-    return _told(_swept(start + way, speed, weight).sum(axis=1))
+    return _moments(_swept(start + way, speed, weight).sum(axis=1))
 
 
 def curve_moments(points: Array, tangents: Array) -> Moments:
@@ -107,7 +107,7 @@ def curve_moments(points: Array, tangents: Array) -> Moments:
     Moments
         Only the sum over a closed chain is meaningful.
     """
-    return _told(_on_cubics(as_complex(points), as_complex(tangents)).sum(axis=1))
+    return _moments(_on_cubics(as_complex(points), as_complex(tangents)).sum(axis=1))
 
 
 def halving(points: Plane, tangents: Plane, middles: Plane, between: Plane) -> float:
@@ -151,7 +151,7 @@ def curve_errors(curves: Sequence[tuple[Array, Array]]) -> Moments:
     change = np.abs(half - all_of)
     before = np.abs(quarter - half)
     fall = np.clip(before / np.where(change > 0.0, change, 1.0), _LEAST_FALL, _FALL)
-    return _told((_SAFE * change / fall).sum(axis=1))
+    return _moments((_SAFE * change / fall).sum(axis=1))
 
 
 def _by_curve(curves: Sequence[tuple[Array, Array]], every: int) -> Plane:
@@ -195,6 +195,6 @@ def _swept(points: Plane, speed: Plane, weight: Array) -> Plane:
     )
 
 
-def _told(sums: Plane) -> Moments:
+def _moments(sums: Plane) -> Moments:
     area, first, polar = sums
     return Moments(area=float(area.real), first=complex(first), polar=float(polar.real))

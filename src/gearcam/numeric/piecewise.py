@@ -136,23 +136,16 @@ class Piecewise(Brief):
         -------
         (order + 1, n) array
         """
-        result = np.empty((order + 1, x.size))
-        for begin in range(0, x.size, _BLOCK):
-            part = slice(begin, begin + _BLOCK)
-            result[:, part] = self._some(index[part], x[part], order, moved)
-        return result
-
-    def _some(
-        self, index: Ints, x: Array, order: int, moved: Callable[[Array], Array] | None
-    ) -> Array:
-        """Return the result of `on_pieces`, without dividing the points into blocks."""
         numbers, functions = self._families
         result = np.empty((order + 1, x.size))
-        family = numbers.take(index)
         for number, (function, columns) in enumerate(functions):
-            here = np.flatnonzero(family == number) if len(functions) > 1 else slice(None)
-            which = index[here]
-            if which.size:
+            if len(functions) > 1:
+                own = np.flatnonzero(numbers.take(index) == number)
+                blocks = [own[k : k + _BLOCK] for k in range(0, own.size, _BLOCK)]
+            else:
+                blocks = [slice(k, k + _BLOCK) for k in range(0, x.size, _BLOCK)]
+            for here in blocks:
+                which = index[here]
                 given = columns.take(which, 1, mode="clip")
                 jet = function(Jet.variable(x[here], order), *(moved(given) if moved else given))
                 for k, values in enumerate((jet + self.offsets[which]).derivatives()):

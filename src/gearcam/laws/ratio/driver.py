@@ -72,7 +72,7 @@ def law_of_centrode(
     return make_law(lobes, knots, pieces, tolerances, {"center_distance_over_scale": center})
 
 
-def demand_positive(function: Callable[[Array], Array], name: str, lobes: Span) -> None:
+def demand_positive(function: Callable[[Array], Array], name: str, period: float) -> None:
     """Refuse a function that is not finite, not positive or out of range somewhere.
 
     Parameters
@@ -81,15 +81,15 @@ def demand_positive(function: Callable[[Array], Array], name: str, lobes: Span) 
         ``function(phi1) -> values``.
     name : str
         Name of the values, for messages.
-    lobes : Lobes or Travel
-        Lobes or travel, with the period.
+    period : float, rad
+        Largest driver angle.
 
     Raises
     ------
     InfeasibleError
         With the first such place.
     """
-    angles = np.linspace(0.0, lobes.period, PLACES)
+    angles = np.linspace(0.0, period, PLACES)
     demand_radii(name, angles, function(angles))
 
 

@@ -24,7 +24,7 @@ from gearcam.laws.formula import (
     values_of,
 )
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
-from gearcam.laws.ratio.driver import demand_positive, demand_radii, law_of_centrode
+from gearcam.laws.ratio.driver import demand_positive, law_of_centrode
 from gearcam.laws.ratio.span import (
     PLACES,
     RING,
@@ -94,7 +94,7 @@ class Formula(Brief):
         name = "ratio" if self.ratio is not None else "r1"
         axis = axis_of(name, span.n1 * span.period)
         function = function_of(getattr(self, name), axis, tolerances.expansion)
-        demand_positive(values_of(function), name, span)
+        demand_positive(values_of(function), name, span.period)
         _demand_repeats(function, name, span)
         if self.ratio is None:
             law = law_of_centrode([Piece(function)], [0.0, span.period], span, tolerances)
@@ -236,8 +236,7 @@ class RackLaw(Brief):
         piece = (
             Piece(derivative(function), function) if self.travel is not None else Piece(function)
         )
-        places = np.linspace(0.0, turn, PLACES)
-        demand_radii("r1", places, values_of(piece.function)(places))
+        demand_positive(values_of(piece.function), "r1", turn)
         with demand_smooth("r1"):
             advance = integrate([0.0, turn], [piece], tolerances.expansion).last
         law = make_law(RackTravel(turn, advance), [0.0, turn], [piece], tolerances)
