@@ -28,7 +28,7 @@ from gearcam.laws.ratio.span import angle_text
 from gearcam.numeric.arrays import Array, Ints, Mask
 from gearcam.numeric.bulges import as_pairs
 from gearcam.numeric.contour import Contour, Run
-from gearcam.numeric.sampling import MOST, Sampler
+from gearcam.numeric.sampling import Sampler
 
 _NO_MATE = 3.0
 """Reach in pitches beyond that of any flank."""
@@ -91,8 +91,6 @@ class Outline(Brief):
         Dense points per chord.
     ring : RingSpec, optional
         Outside of an open ring; by default that of `RingSpec()`.
-    most : float
-        Largest number of chords; more are refused.
     """
 
     toothing: Toothing
@@ -101,7 +99,6 @@ class Outline(Brief):
     tolerance: float
     oversampling: int
     ring: RingSpec | None = None
-    most: float = MOST
 
     @cached_property
     def sampler(self) -> Sampler:
@@ -110,7 +107,6 @@ class Outline(Brief):
             curves=WheelCurves(toothing=self.toothing, rows=self.rows),
             tolerance=self.tolerance,
             closed=self.toothing.closed,
-            most=self.most,
         )
 
     @cached_property

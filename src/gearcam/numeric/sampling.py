@@ -136,14 +136,11 @@ class Sampler(Brief):
         Largest chord error.
     closed : bool
         Whether the last curve ends where the first begins.
-    most : float
-        Largest number of chords; more are refused.
     """
 
     curves: Curves
     tolerance: float
     closed: bool = True
-    most: float = MOST
 
     @cached_property
     def probes(self) -> tuple[Plane, Plane]:
@@ -233,8 +230,8 @@ class Sampler(Brief):
 
     def _demand_few(self, count: float) -> None:
         """Refuse tolerances that need too many chords."""
-        if count > self.most:
-            limit = self.tolerance * (count / self.most) ** 2
+        if count > MOST:
+            limit = self.tolerance * (count / MOST) ** 2
             key = "output.chord_tolerance_mm"
             raise InfeasibleError(
                 f"the curve would need {shown(count, 2)} chords",
@@ -242,7 +239,7 @@ class Sampler(Brief):
                 value=self.tolerance,
                 limit=limit,
                 unit="mm",
-                nearest=f"at the limit there are about {self.most:.0f}",
+                nearest=f"at the limit there are about {MOST:.0f}",
                 ways=(Way(near={key: ABOVE * limit}),),
             )
 
