@@ -55,7 +55,7 @@ _ROUNDS = 3
 _MOST = 500
 """Largest number of undercut stretches: with more, each crosses hundreds of others."""
 
-_TINY = 1e-7
+_TINY = 2e-8
 """Length of a backward stretch, in sizes of the cam, below which its loop is not searched: without
 it less lift is lost than this times the angle of the stretch."""
 
