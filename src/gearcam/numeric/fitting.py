@@ -24,9 +24,6 @@ _SPREAD: Final = np.array([1.0, 0.8, 0.92, 0.97, 1.03, 1.1, 1.3])
 _FEW: Final = 8
 """Number of runs up to which that costs hardly more than one trial."""
 
-_FIRST: Final = 64
-"""Number of steps of the first trial of a run."""
-
 _GROWTH: Final = 10.0
 """Largest growth of a length per trial: very small errors are useless for prediction."""
 
@@ -222,7 +219,7 @@ def longest_pieces(
     """
     start, last = rows.first, rows.last
     found: list[tuple[Ints, Ints]] = []
-    low, high, trial = start + 1, last, np.minimum(start + _FIRST, last)
+    low, high, trial = start + 1, last, last
     while start.size:
         done = high - low <= near * (low - start)
         if done.any():
