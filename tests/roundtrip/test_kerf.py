@@ -16,8 +16,9 @@ from ezdxf.entities.circle import Circle as DxfCircle
 from ezdxf.entities.lwpolyline import LWPolyline
 
 import gearcam
-from gearcam.base.errors import InfeasibleError
-from gearcam.designs import load
+from gearcam.base.errors import DesignError, InfeasibleError
+from gearcam.base.quantities import LENGTH
+from gearcam.designs import load, loads
 from gearcam.export.dxf_read import DxfError, read_dxf, read_outline
 from gearcam.kinds.cam.build import CamResult
 from gearcam.kinds.gear_pair.build import GearPairResult
@@ -276,6 +277,15 @@ def test_a_kerf_that_leaves_nothing_of_an_opening_is_refused(
     words = caught.value.nearest.replace("a kerf below", "").replace("a kerf of", "").split()
     assert 0.98 * closed < float(words[0]) <= closed
     cut_drawing(drawing, 0.999999 * float(words[0]))
+
+
+@pytest.mark.parametrize("kerf", [7e-6, 0.99 * LENGTH.least])
+def test_a_kerf_is_none_or_that_of_a_machine(kerf: float) -> None:
+    text = (PROFILES / "ellipse.toml").read_text("utf-8")
+    for good in (0.0, LENGTH.least):
+        assert loads(text.replace("[output]", f"[output]\nkerf_mm = {good}")).output.kerf == good
+    with pytest.raises(DesignError, match=r"too small(.|\n)*0 or at least 0.001 mm"):
+        loads(text.replace("[output]", f"[output]\nkerf_mm = {kerf}"))
 
 
 def test_a_chamber_whose_mouth_the_kerf_closes_is_refused_with_a_kerf_that_does_not() -> None:

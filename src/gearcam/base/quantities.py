@@ -81,6 +81,8 @@ class Param:
         Unit and suffix.
     gt, ge, lt, le : float or None
         Bounds of each value, in the unit of files.
+    zero_is_none : bool
+        Whether 0 means that there is none; other values are then at least `least`.
     choices : tuple of str or None
         The allowed words, for text.
     min_length : int or None
@@ -106,6 +108,7 @@ class Param:
     ge: float | None = None
     lt: float | None = None
     le: float | None = None
+    zero_is_none: bool = False
     choices: tuple[str, ...] | None = None
     min_length: int | None = None
     doc: str = ""
@@ -118,8 +121,8 @@ class Param:
 
     @property
     def least(self) -> float:
-        """Least positive value, in the unit of the file; 0 if the value may be 0."""
-        return self.quantity.least if self.gt == 0.0 else 0.0
+        """Least positive value, in the unit of the file; 0 if there is no such limit."""
+        return self.quantity.least if self.gt == 0.0 or self.zero_is_none else 0.0
 
     def key(self, name: str) -> str:
         """Return the key in a design file, such as ``module_mm``."""

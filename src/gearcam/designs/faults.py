@@ -226,7 +226,8 @@ def value_fault(path: Path, value: Any, entry: Key, *, item: bool) -> Fault:
         return Fault(path, f"{show(value)} is not a finite number", value, rule)
     if isinstance(value, float) and 0.0 < value < entry.param.least:
         least = f"{shown(entry.param.least)} {entry.param.quantity.unit}"
-        return Fault(path, f"{show(value)} is too small", value, f"{rule}, at least {least}")
+        least = f"{'0 or ' if entry.param.zero_is_none else ''}at least {least}"
+        return Fault(path, f"{show(value)} is too small", value, f"{rule}, {least}")
     return Fault(path, f"{show(value)} is out of range", value, rule)
 
 

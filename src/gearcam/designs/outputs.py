@@ -59,6 +59,7 @@ class OutputSpec(Brief):
         default=0.0,
         ge=0,
         le=100,
+        zero_is_none=True,
         doc="width of the cut; cutting paths in dxf and cut-svg are offset from the part by half "
         "of it",
     )

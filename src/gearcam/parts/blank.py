@@ -7,8 +7,8 @@ as in shaft standards. A *D-shaped bore* has a flat. *Hubs* are raised on the fa
 a pin of the housing, which limits the travel of an open wheel. *Clearance* is taken off the outline
 all around, and if `clearance_bores` is set, off bores, bolt holes and slots too.
 
-Refused when a design is read: sizes that contradict each other, sizes without those that belong to
-them, and lengths that nobody makes.
+Refused when a design is read: sizes that contradict each other, and sizes without those that belong
+to them.
 
 Depends on quantities only.
 """
@@ -38,7 +38,7 @@ Problem = tuple[str, int | None, str, str]
 
 def _length(*, doc: str, le: float = LONGEST) -> Any:
     """Return a length; 0 means that there is nothing to measure."""
-    return param(LENGTH, default=0.0, ge=0, le=le, doc=doc)
+    return param(LENGTH, default=0.0, ge=0, le=le, zero_is_none=True, doc=doc)
 
 
 def _angle(*, doc: str) -> Any:
@@ -62,7 +62,12 @@ class WheelBlank(Brief):
     """
 
     bore_diameter: float | None = param(
-        LENGTH, default=None, ge=0, le=LONGEST, doc="diameter of the bore; no bore if left out"
+        LENGTH,
+        default=None,
+        ge=0,
+        le=LONGEST,
+        zero_is_none=True,
+        doc="diameter of the bore; no bore if left out",
     )
     keyway_width: float = _length(doc="width of the keyway")
     keyway_depth: float = _length(doc="depth of the keyway from the bore's circle, at its middle")
@@ -145,17 +150,8 @@ class WheelBlank(Brief):
 
     def problems(self) -> Iterator[Problem]:
         """Yield what is wrong by reading: field, None, message, allowed."""
-        for name, message, rule in (
-            *_small_lengths(self), *_bore_problems(self), *_other_problems(self)
-        ):  # fmt: skip
+        for name, message, rule in (*_bore_problems(self), *_other_problems(self)):
             yield name, None, message, rule
-
-
-def _small_lengths(one: WheelBlank) -> Iterator[tuple[str, str, str]]:
-    for name, made in params_of(type(one)).items():
-        may_be_zero = made.quantity is LENGTH and made.ge == 0
-        if may_be_zero and 0.0 < (getattr(one, name) or 0.0) < LENGTH.least:
-            yield name, "is too small", f"{shown(LENGTH.least)} mm or more; 0 for none"
 
 
 def _bore_problems(one: WheelBlank) -> Iterator[tuple[str, str, str]]:
