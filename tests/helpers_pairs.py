@@ -13,6 +13,7 @@ import shapely
 import gearcam
 from arch import rules
 from gearcam.gears.contact import DRIVE
+from gearcam.gears.pair import Gear
 from gearcam.gears.spec import PairSpec, Rack, RingSpec
 from gearcam.gears.track import Wheel
 from gearcam.kinds.gear_pair.build import GearPairResult
@@ -141,3 +142,41 @@ def moved(setup: Setup, tooth: int, by: float, wheel: Wheel = 1) -> Setup:
     pairs = {side: replace(found, flanks=tuple(wheels)) for side, found in setup.pairs.items()}
     made = replace(turning, **{name: replace(halves, points=points)})
     return replace(setup, pairs=pairs, turning=made)
+
+
+@cache
+def dense_flank(gear: Gear, tooth: int, sigma: int, points: int = 6001) -> np.ndarray:
+    """Points of a flank, root first, as complex numbers in the wheel's frame."""
+    flanks, toothing = gear.profile.flanks, gear.toothing
+    number = tooth - 1 + (0 if sigma > 0 else toothing.teeth)
+    reach = np.linspace(flanks.lowest[number], flanks.highest[number], points)
+    sf = flanks.sf[number]
+    frames = toothing.frames(toothing.track.angle(sf - sigma * reach))
+    return toothing.flank_points(frames, np.full(points, sf), np.full(points, float(sigma)))
+
+
+def dense_touch(
+    made: GearPairResult, side: int, phi1: float, phi2: float, distance: float, *, internal: bool
+) -> float:
+    """The driven wheel's turn at first touch, by dense points of all flanks near the pitch point.
+
+    Seen from the driven shaft; a ring turns as its wheel does, which is clockwise.
+    """
+    z, hand = made.pair.teeth, 1 if internal else -1
+    near = round(float(made.pair.rolling.tracks[0].arc_length(phi1)) / made.gear1.toothing.pitch)
+    ahead = []
+    for j in range(near - 2, near + 3):
+        k = j if side > 0 else j - 1
+        one = dense_flank(made.gear1, j % z[0] + 1, side) * np.exp(-1j * phi1) + hand * distance
+        two = dense_flank(made.gear2, k % z[1] + 1, -side) * np.exp(-1j * hand * phi2)
+        order = np.argsort(np.abs(two))
+        radius = np.abs(two)[order]
+        inside = (np.abs(one) >= radius[0]) & (np.abs(one) <= radius[-1])
+        if np.count_nonzero(inside) < 3:
+            continue
+        # angles about the middle of the mate, far from the cut of the angle
+        middle = np.exp(-1j * np.angle(two.mean()))
+        mate = np.interp(np.abs(one)[inside], radius, np.angle(two * middle)[order])
+        turn = np.angle(one[inside] * middle) - mate
+        ahead.append((hand * side * turn).max())
+    return -side * max(ahead)

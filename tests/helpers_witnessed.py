@@ -85,12 +85,6 @@ def outline(name: str, wheel: Wheel, tolerance: float = 1e-4) -> Outline:
 
 
 @cache
-def dense_points(name: str, wheel: Wheel) -> np.ndarray:
-    """Points on the true curve, (n, 2), mm."""
-    return np.concatenate([run.points for run in outline(name, wheel).contour.runs])
-
-
-@cache
 def kinematics(name: str) -> tuple[Rolling, Basic]:
     """The witness's own centrodes, and the rack at the module that they give."""
     case = CASES[name]

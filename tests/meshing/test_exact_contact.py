@@ -13,13 +13,12 @@ import shapely
 
 import gearcam
 from gearcam.gears.contact import COAST, DRIVE, FlankPairs, flank_pairs
-from gearcam.gears.pair import Gear
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.edges import touches
 from gearcam.meshing.patches import patches
-from helpers_pairs import job, profile
+from helpers_pairs import dense_touch, job, profile
 
 
 @cache
@@ -34,38 +33,11 @@ def samples() -> tuple[GearPairResult, ...]:
 NAMES = ["two phases", "three phases", "ellipse"]
 
 
-@cache
-def dense(gear: Gear, tooth: int, sigma: int, points: int) -> np.ndarray:
-    """Points of one flank, root first, as complex numbers in the wheel's frame."""
-    flanks, toothing = gear.profile.flanks, gear.toothing
-    number = tooth - 1 + (0 if sigma > 0 else toothing.teeth)
-    reach = np.linspace(flanks.lowest[number], flanks.highest[number], points)
-    sf = flanks.sf[number]
-    frames = toothing.frames(toothing.track.angle(sf - sigma * reach))
-    return toothing.flank_points(frames, np.full(points, sf), np.full(points, float(sigma)))
-
-
-def first_touch(made: GearPairResult, side: int, phi: float, distance: float) -> float:
-    """The driven wheel's turn at first touch: all flanks near the pitch point, dense points."""
-    gears, law = made.gears, made.law
-    z = made.pair.teeth[0]
-    near = round(float(made.pair.rolling.tracks[0].arc_length(phi)) / gears[0].toothing.pitch)
-    ahead = []
-    for j in range(near - 2, near + 3):
-        one = dense(gears[0], j % z + 1, side, 6001) * np.exp(-1j * phi) - distance
-        k = j if side > 0 else j - 1
-        two = dense(gears[1], k % z + 1, -side, 6001) * np.exp(1j * float(law.phi2(phi)))
-        order = np.argsort(np.abs(two))
-        radius = np.abs(two)[order]
-        inside = (np.abs(one) >= radius[0]) & (np.abs(one) <= radius[-1])
-        if np.count_nonzero(inside) < 3:
-            continue
-        # angles about the middle of the mate, far from the cut of the angle
-        middle = np.exp(-1j * np.angle(two.mean()))
-        mate = np.interp(np.abs(one)[inside], radius, np.angle(two * middle)[order])
-        turn = np.angle(one[inside] * middle) - mate
-        ahead.append((-side * turn).max())
-    return -side * max(ahead)
+def touched(made: GearPairResult, side: int, phi1: np.ndarray, distance: float) -> np.ndarray:
+    """The driven wheel's turn at first touch, by dense points."""
+    phi2 = made.law.phi2(phi1)
+    pairs = zip(phi1.tolist(), phi2.tolist(), strict=True)
+    return np.array([dense_touch(made, side, *both, distance, internal=False) for both in pairs])
 
 
 @pytest.mark.parametrize("made", samples(), ids=NAMES)
@@ -77,7 +49,7 @@ def test_first_touch_is_that_of_dense_points(made: GearPairResult, side: int, mo
     found = touches(flank_pairs(made.gears, side, distance), phases)
     outward = np.full(len(phases), -np.inf)
     np.maximum.at(outward, found.step, -side * found.turn)
-    expected = [first_touch(made, side, phi, distance) for phi in phases]
+    expected = touched(made, side, phases, distance)
     assert -side * outward == pytest.approx(expected, abs=1e-7)
     if more == 0.0:
         assert np.abs(outward).max() < 1e-9
@@ -180,7 +152,7 @@ def test_flanks_touch_across_a_jump_of_the_curvature(side: int) -> None:
     assert (count == pairs.carrying(phi1)).all()
     outward = np.full(len(phi1), -np.inf)
     np.maximum.at(outward, found.step, -side * found.lead)
-    expected = [-side * first_touch(made, side, phi, pairs.distance) for phi in phi1[::40]]
+    expected = -side * touched(made, side, phi1[::40], pairs.distance)
     assert outward[::40] == pytest.approx(expected, abs=1e-7)
 
 

@@ -8,14 +8,13 @@ import numpy as np
 import pytest
 
 from gearcam.gears.contact import COAST, DRIVE, flank_pairs
-from gearcam.gears.pair import Gear
 from gearcam.laws.ratio.constant import Constant
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.edges import first_touch, touches
 from gearcam.meshing.numbers import numbers
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.meshing.study import study
-from helpers_pairs import job
+from helpers_pairs import dense_touch, job
 from helpers_rings import (
     ALPHA,
     DEEP,
@@ -185,36 +184,6 @@ def test_backlash_as_made_is_taken_up() -> None:
     assert (found["min"], found["max"]) == pytest.approx((play.min(), play.max()), rel=0.01)
 
 
-def dense(gear: Gear, tooth: int, sigma: int) -> Plane:
-    """Points of a flank in the wheel's frame, root first."""
-    flanks, toothing = gear.profile.flanks, gear.toothing
-    number = tooth - 1 + (0 if sigma > 0 else toothing.teeth)
-    reach = np.linspace(flanks.lowest[number], flanks.highest[number], 6001)
-    sf = flanks.sf[number]
-    frames = toothing.frames(toothing.track.angle(sf - sigma * reach))
-    return toothing.flank_points(frames, np.full(6001, sf), np.full(6001, float(sigma)))
-
-
-def dense_touch(name: str, side: int, phi1: float, distance: float) -> float:
-    """The turn of the ring at first touch, by dense points of all flanks near the pitch point."""
-    gears, pair = made(name).gears, made(name).pair
-    near = round(float(pair.rolling.tracks[0].arc_length(phi1)) / gears[0].toothing.pitch)
-    driven = float(driven_angles(name, np.array([phi1]))[0])
-    ahead = []
-    for j in range(near - 2, near + 3):
-        one = dense(gears[0], j % pair.teeth[0] + 1, side) * np.exp(-1j * phi1) + distance
-        k = j if side > 0 else j - 1
-        two = dense(gears[1], k % pair.teeth[1] + 1, -side) * np.exp(-1j * driven)
-        order = np.argsort(np.abs(two))
-        radius = np.abs(two)[order]
-        inside = (np.abs(one) >= radius[0]) & (np.abs(one) <= radius[-1])
-        if np.count_nonzero(inside) < 3:
-            continue
-        gap = np.angle(one[inside]) - np.interp(np.abs(one)[inside], radius, np.angle(two)[order])
-        ahead.append((side * gap).max())  # forwards the ring turns clockwise
-    return -side * max(ahead)
-
-
 @pytest.mark.parametrize("name", ["one lobe", "asymmetric"])
 @pytest.mark.parametrize("side", [DRIVE, COAST])
 @pytest.mark.parametrize("more", [0.0, 0.1, -0.1])
@@ -226,7 +195,11 @@ def test_first_touch_is_that_of_dense_points(name: str, side: int, more: float, 
     found = touches(pairs, phi1)
     outward = np.full(len(phi1), -np.inf)
     np.maximum.at(outward, found.step, -side * found.turn)
-    expected = [dense_touch(name, side, angle, distance) for angle in phi1.tolist()]
+    driven = driven_angles(name, phi1)
+    expected = [
+        dense_touch(made(name), side, *angles, distance, internal=True)
+        for angles in zip(phi1.tolist(), driven.tolist(), strict=True)
+    ]
     assert -side * outward == pytest.approx(expected, abs=1e-7)
     assert first_touch(pairs, phi1, contacts(pairs, phi1))[0] == pytest.approx(expected, abs=1e-7)
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import json
 import math
 import re
+from collections.abc import Sequence
 from typing import Any
 
 import pytest
@@ -14,16 +14,15 @@ from gearcam.base.errors import DesignError, InfeasibleError, Problem
 from gearcam.base.tolerances import DEFAULT
 from gearcam.gears.pair import GearPair, lobes_of
 from gearcam.laws.ratio.span import RING, Lobes
+from random_designs.toml import toml
 
 ELLIPSE = {"type": "ellipse", "eccentricity": 0.1}
 
 
-def built(law: dict[str, Any], teeth: list[int], **tables: Any) -> GearPair:
+def built(law: dict[str, Any], teeth: Sequence[float], **tables: Any) -> GearPair:
     pair = {"type": "internal", "module_mm": 2, "teeth": teeth} | tables.pop("pair", {})
-    text = 'kind = "gear-pair"\nname = "ring"\n'
-    for title, table in {"law": law, "pair": pair, **tables}.items():
-        text += f"[{title}]\n" + "".join(f"{key} = {json.dumps(table[key])}\n" for key in table)
-    return gc.build(gc.loads(text)).pair
+    document = {"kind": "gear-pair", "name": "ring", "law": law, "pair": pair, **tables}
+    return gc.build(gc.loads(toml(document))).pair
 
 
 def only(caught: pytest.ExceptionInfo[DesignError]) -> Problem:
