@@ -246,8 +246,9 @@ class Series:
 FLAT_FILES: Final = ("csv", "dxf", "svg", "cut-svg", "drawing-svg", "drawing-dxf", "inspection")
 FILES: Final = (*FLAT_FILES, "stl", "3mf", "glb", "report")
 CAM_FILES: Final = (*FILES, "tool-path", "curvature")
-TEETH: Final = (40, 400, 4000)
+TEETH: Final = (30, 300, 3000)
 FEWER: Final = (20, 200, 2000)
+WHEEL_OF_RING: Final = (15, 150, 1500)
 TOLERANCES: Final = (1e-2, 1e-4, 1e-6)
 KNOTS: Final = (4, 40, 400)
 ROWS: Final = (200, 2000, 20000)
@@ -281,9 +282,9 @@ def _of_pairs() -> list[Series]:
         for name in ("ellipse", "log-spiral", "rack")
     ]
     made += [Series(f"teeth, {name}", TEETH, partial(pair, law=of_type(name))) for name in LAWS]
-    made.append(Series("teeth, ring", TEETH, partial(pair, law=of_type("ellipse"), more=RING)))
+    made.append(Series("teeth, ring", WHEEL_OF_RING, partial(pair, law=of_type("ellipse"), more=RING)))
     made += [
-        Series(f"teeth, {name}", (400, 2000, 10000), partial(pair, law=law))
+        Series(f"teeth, {name}", (300, 1000, 3000), partial(pair, law=law))
         for name, law in HARD.items()
     ]
     sizes: dict[str, tuple[tuple[int, ...], Callable[[int], str]]] = {
