@@ -248,7 +248,7 @@ FILES: Final = (*FLAT_FILES, "stl", "3mf", "glb", "report")
 CAM_FILES: Final = (*FILES, "tool-path", "curvature")
 TEETH: Final = (30, 300, 3000)
 FEWER: Final = (20, 200, 2000)
-WHEEL_OF_RING: Final = (15, 150, 1500)
+IN_RINGS: Final = (15, 150, 1500)
 TOLERANCES: Final = (1e-2, 1e-4, 1e-6)
 KNOTS: Final = (4, 40, 400)
 ROWS: Final = (200, 2000, 20000)
@@ -282,7 +282,7 @@ def _of_pairs() -> list[Series]:
         for name in ("ellipse", "log-spiral", "rack")
     ]
     made += [Series(f"teeth, {name}", TEETH, partial(pair, law=of_type(name))) for name in LAWS]
-    made.append(Series("teeth, ring", WHEEL_OF_RING, partial(pair, law=of_type("ellipse"), more=RING)))
+    made.append(Series("teeth, ring", IN_RINGS, partial(pair, law=of_type("ellipse"), more=RING)))
     made += [
         Series(f"teeth, {name}", (300, 1000, 3000), partial(pair, law=law))
         for name, law in HARD.items()

@@ -16,7 +16,7 @@ import numpy as np
 from gearcam.gears.flank import Curve, Rows, Toothing, WheelCurves
 from gearcam.gears.tips import ROUGH, TipEnds, near
 from gearcam.gears.undercut import Undercut
-from gearcam.numeric.arrays import Array, Ints, Plane
+from gearcam.numeric.arrays import Array, Ints
 from gearcam.numeric.crossings import (
     Branch,
     Chain,
@@ -171,9 +171,11 @@ def _chains(curves: WheelCurves, spaces: Ints, samples: int) -> list[Chain]:
     phi = start + span * share
     low, high = (one.reshape(len(spaces), -1) for one in (phi[..., :-1], phi[..., 1:]))
     curve = np.repeat(curve, share.shape[2] - 1, axis=1)
-    points = _points(
-        curves, curve[:, [*range(curve.shape[1]), -1]], np.append(low, high[:, -1:], 1)
-    )
+    along = curve[:, [*range(curve.shape[1]), -1]]
+    phi = np.append(low, high[:, -1:], 1)
+    points = curves.at(along.ravel(), phi.ravel())[0].reshape(phi.shape)
+    if curves.toothing.turn.imag > 0.0:  # mirrored, since the metal is to the right of rising s
+        points = np.conj(points)
     return [
         Chain(curve=number, low=begin, high=end, points=way)
         for number, begin, end, way in zip(curve, low, high, points, strict=True)
@@ -197,9 +199,3 @@ def _about_jumps(curves: WheelCurves, curve: Ints) -> Array:
     share = ((place - start[number]) / (end - start)[number])[:, None] + _WIDE * away**3
     about[number, order] = np.clip(share, 0.0, 1.0)
     return about.reshape(*curve.shape, about.shape[1] * about.shape[2])
-
-
-def _points(curves: WheelCurves, index: Ints, phi: Array) -> Plane:
-    """Return points of rows at driver angles, mirrored if the metal is to the right of rising s."""
-    points = curves.at(index.ravel(), phi.ravel())[0].reshape(phi.shape)
-    return np.conj(points) if curves.toothing.turn.imag > 0.0 else points
