@@ -26,7 +26,7 @@ from gearcam.laws.displacement import Deviation
 from gearcam.laws.entry import TYPED
 from gearcam.laws.phases_of_lift import TURN, PlacedPhase
 from gearcam.laws.program import Program
-from gearcam.laws.rises.pieces import from_both_ends
+from gearcam.laws.rises.pieces import from_both_ends, spline
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.least_jerk import coefficients, ring_slopes, smoothed_ring
 from gearcam.numeric.piecewise import Piecewise, extremes, piecewise
@@ -151,13 +151,12 @@ def _between(theta: Array, lift: Array, places: Array, order: int = 0) -> Array:
 def _curve(theta: Array, lift: Array) -> Piecewise:
     """Return the closed curve of quintics through rows, cut at the ends of the turn."""
     x, both = _quintics(theta, lift)
-    rows = zip(*(side.tolist() for side in both), x[:-1].tolist(), x[1:].tolist(), strict=True)
-    pieces = [from_both_ends(*row) for row in rows]
+    curve = spline(x, *both)
     if theta[0] == 0.0:
-        return piecewise(np.append(theta, TURN), pieces)
+        return curve
     left, right = (side[-1].tolist() for side in both)
     over = from_both_ends(left, right, float(x[-2]) - TURN, float(x[-1]) - TURN)
-    return piecewise(np.concatenate([[0.0], theta, [TURN]]), [over, *pieces])
+    return piecewise(np.concatenate([[0.0], theta, [TURN]]), [over, *curve.pieces])
 
 
 def _rough(knots: Array, theta: Array, lift: Array) -> Piecewise:
