@@ -20,7 +20,7 @@ from gearcam.base.errors import InfeasibleError
 from gearcam.base.facts import Facts
 from gearcam.base.numerals import shown
 from gearcam.numeric.arrays import Array
-from gearcam.pictures.drawings import Feature, Path
+from gearcam.pictures.drawings import Path
 from gearcam.sheets.board import Board
 from gearcam.sheets.sheet import FRAME, GLYPH, HEIGHT, Box, Sheet, Text
 
@@ -201,7 +201,7 @@ def finish(
 def _chain(board: Board, points: Sequence[tuple[float, float]], *, closed: bool = False) -> None:
     """Draw lines of the frame, mm of paper."""
     placed = board.corner + board.unit * np.array(points)
-    board.features.append(Feature(layer=FRAME, shape=Path(points=placed, closed=closed)))
+    board.draw(FRAME, Path(points=placed, closed=closed))
 
 
 def _write(
@@ -212,7 +212,7 @@ def _write(
     if text:
         height = min(height, wide / (GLYPH * len(text)))
         at = board.corner + board.unit * np.array(place)
-        board.texts.append(Text(text=text, place=at, height=height))
+        board.write(Text(text=text, place=at, height=height))
 
 
 def _table(board: Board, rows: Sequence[tuple[str, str]], corner: tuple[float, float]) -> None:
