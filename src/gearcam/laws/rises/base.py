@@ -24,7 +24,7 @@ from gearcam.laws.entry import LawEntry
 from gearcam.numeric.piecewise import Piecewise
 
 NARROWEST: Final = 1e-4
-"""Smallest share of the angle for a sector or a step of a table."""
+"""Smallest share of the angle for a sector."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

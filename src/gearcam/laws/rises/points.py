@@ -16,7 +16,7 @@ from gearcam.base.quantities import COUNT, NUMBER, TEXT, Row, param
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.columns import ColumnsError, FromFile
 from gearcam.laws.entry import TYPED, LawEntry
-from gearcam.laws.rises.base import NARROWEST, RISES, ClosedForm, Rise
+from gearcam.laws.rises.base import RISES, ClosedForm, Rise
 from gearcam.laws.rises.pieces import about, spline
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.least_jerk import chain_slopes, coefficients
@@ -32,6 +32,9 @@ _ROUNDING: Final = 24.0 * float(np.finfo(float).eps)
 
 _SHARES: Final = np.array([[0.0], [0.25], [0.5], [0.75]])
 """Places between rows at which the change is measured."""
+
+_CLOSEST: Final = 1e-6
+"""Smallest step of x in a table: a second of arc of a full turn."""
 
 _FEWEST: Final = 3
 _MOST: Final = 2000
@@ -185,8 +188,8 @@ def _point_problems(points: Array) -> Iterator[Problem]:
             if abs(value - corner) > TYPED:
                 message = f"the {place} {name} is {shown(value, 10)}, not {shown(corner)}"
                 yield name, row, message, "x and y from 0 to 1: shares of the angle and of the lift"
-    for row in np.flatnonzero(np.diff(points[:, 0]) < NARROWEST)[:1]:
-        rule = f"each x at least {shown(NARROWEST)} above the one before"
+    for row in np.flatnonzero(np.diff(points[:, 0]) < _CLOSEST)[:1]:
+        rule = f"each x at least {shown(_CLOSEST)} above the one before"
         yield "x", int(row) + 1, "x does not rise", rule
 
 
