@@ -319,12 +319,7 @@ def _way_problems(phases: Sequence[Phase]) -> Iterator[Problem]:
     ways = {k: phase.angle for k, phase in enumerate(phases) if phase.angle != "rest"}
     for number in range(len(phases)):
         if number not in ways:
-            yield (
-                number,
-                "angle",
-                "a cam that slides has no turn with a rest",
-                "a length above 0",
-            )
+            yield number, "angle", "a cam that slides has no turn with a rest", "a length above 0"
     whole = sum(ways.values())
     least = whole * _NARROWEST_SHARE
     for number, way in ways.items():
@@ -339,12 +334,8 @@ def _closure_problems(
     found = levels(phases)
     for number, phase in enumerate(phases):
         if isinstance(phase, ReturnPhase) and phase.lift is None and not found[number] > 0.0:
-            yield (
-                number,
-                "lift",
-                "the follower is at lift 0 or below: nothing to return from",
-                "a rise before it, or a given lift",
-            )
+            message = "the follower is at lift 0 or below: nothing to return from"
+            yield number, "lift", message, "a rise before it, or a given lift"
     largest = max(map(abs, found))
     if largest == 0.0:
         yield None, "", "the follower never moves", "at least one rise"

@@ -132,12 +132,8 @@ class Phases(Brief):
     def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
         """Yield what is wrong by reading: field, index, message, allowed."""
         if len(self.knots) != len(self.ratios):
-            yield (
-                "ratios",
-                None,
-                f"{len(self.ratios)} ratios for {len(self.knots)} knots",
-                "one ratio for each knot",
-            )
+            message = f"{len(self.ratios)} ratios for {len(self.knots)} knots"
+            yield "ratios", None, message, "one ratio for each knot"
             return
         yield from knot_problems(self.knots)
         open_places = [("knots", k) for k, value in enumerate(self.knots) if value == "solve"]
@@ -157,20 +153,12 @@ class Phases(Brief):
         first, last = self.ratios[0], self.ratios[-1]
         if first != last:
             given = last if first == "solve" else first
-            yield (
-                "ratios",
-                len(self.ratios) - 1,
-                "the last ratio differs from the first",
-                f"{given!r}",
-            )
+            message = "the last ratio differs from the first"
+            yield "ratios", len(self.ratios) - 1, message, f"{given!r}"
         if sum(value == "solve" for value in self.ratios[:-1]) > 1:
             second = [k for k, value in enumerate(self.ratios) if value == "solve"][1]
-            yield (
-                "ratios",
-                second,
-                'more than one "solve"',
-                'one "solve"; the knots of one lobe are enough',
-            )
+            message = 'more than one "solve"'
+            yield "ratios", second, message, 'one "solve"; the knots of one lobe are enough'
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         """Return the law for `lobes`, to `tolerances`.
