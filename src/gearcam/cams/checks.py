@@ -77,10 +77,6 @@ def _at(motion: PitchMotion, place: str) -> str:
     return f"{motion.called}, {place}" if motion.key else place
 
 
-def _deg(theta: float) -> str:
-    return f"{shown(math.degrees(theta))} deg"
-
-
 @check(
     "pressure-angle",
     kind=KIND,
@@ -146,10 +142,11 @@ def _steep(motion: PitchMotion, kinds: tuple[str, ...], largest: float) -> Itera
         if found is None or found.largest <= largest:
             continue
         worst = max(found.low, found.high, key=lambda end: abs(end.value))
+        angle = math.degrees(abs(worst.value))
         yield Remark(
-            f"The pressure angle on the {kind} reaches {_deg(abs(worst.value))}.",
+            f"The pressure angle on the {kind} reaches {shown(angle)} deg.",
             _at(motion, f"{kind}, at {motion.mechanism.driver.told(worst.theta)}"),
-            math.degrees(abs(worst.value)),
+            angle,
             limit=math.degrees(largest),
         )
 

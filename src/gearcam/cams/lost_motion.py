@@ -10,7 +10,7 @@ Depends on curve, lost, mechanism and numeric; numpy only.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -20,9 +20,8 @@ from gearcam.base.display import Brief
 from gearcam.cams.curve import ProfileSegments, segments, unit
 from gearcam.cams.lost import resting
 from gearcam.cams.measures import Extreme
-from gearcam.cams.mechanism import Mechanism
 from gearcam.cams.wall import Wall
-from gearcam.numeric.arrays import Array, Ints, Mask, Plane
+from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import places_between
 from gearcam.numeric.roots import bracketed_root, newton_in_bracket
@@ -57,10 +56,6 @@ class Rest(Brief):
 
     wall: Wall
     radius: float
-
-    @property
-    def _mechanism(self) -> Mechanism:
-        return replace(self.wall.mechanism, radius=self.radius)
 
     @cached_property
     def _centers(self) -> ProfileSegments:
@@ -128,15 +123,13 @@ class Rest(Brief):
     @cached_property
     def _corners(self) -> Sequence[tuple[tuple[float, float], complex]]:
         """Corners, with the angles between which the roller rests on them."""
-        found = []
+        found, centers = [], self._centers
         for corner in self.wall.corners:
             theta = np.array([corner.before, corner.after])
             s, ds = self.wall.program.derivatives(theta, 1)
-            before = self._centers.curve
-            inset = self._centers.inset
-            places = [before.trace(theta, s, ds, inset)[0]]
-            angles = self._standing(theta, places[0])[0]
-            found.append(((float(angles[0]), float(angles[1])), corner.point))
+            places = centers.curve.trace(theta, s, ds, centers.inset)[0]
+            before, after = self._standing(theta, places)[0].tolist()
+            found.append(((before, after), corner.point))
         return found
 
     @cached_property
@@ -176,14 +169,12 @@ class Rest(Brief):
         stands, lift, slope, rise = self._moving(index, places)
         rise = rise / slope
         lift = lift + rise * (aim - stands)  # remaining error of the search
-        for inside, point in self._on_corners(theta):
-            given = resting(self._mechanism, point, self.wall.side)
+        roller = replace(self.wall.mechanism, radius=self.radius)
+        for (before, after), point in self._corners:
+            inside = np.mod(theta - before, _TURN) <= np.mod(after - before, _TURN)
+            given = resting(roller, point, self.wall.side)
             lift[inside], rise[inside] = given(Jet.variable(theta[inside], 1)).derivatives()
         return lift, rise
-
-    def _on_corners(self, theta: Array) -> Iterator[tuple[Mask, complex]]:
-        for (before, after), point in self._corners:
-            yield np.mod(theta - before, _TURN) <= np.mod(after - before, _TURN), point
 
 
 def largest_lost_motion(inner: Rest, outer: Rest) -> Extreme:
