@@ -30,6 +30,10 @@ PYTHON ?=
 RUN    := run install
 TEST   := $(RUN) step plot test
 
+# Two processes with a thread each, as the command has; what was compiled is kept, as compiling the
+# tests anew takes 10 s.
+PYTEST := OPENBLAS_NUM_THREADS=1 PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -n 2
+
 .DELETE_ON_ERROR:
 .PHONY: demo test lint slow bench needs growth peers accuracy fuzz compare matrix docs notebooks lock clean help
 
@@ -41,7 +45,7 @@ demo: $(VENV)/.run
 
 test: $(VENV)/.test
 	tools/browser
-	$(BIN)/python -m pytest -n 2 -m "not slow"
+	$(PYTEST) -m "not slow"
 
 lint: $(VENV)/.lint
 	$(BIN)/ruff check .
@@ -51,7 +55,7 @@ lint: $(VENV)/.lint
 
 slow: $(VENV)/.test
 	tools/browser
-	$(BIN)/python -m pytest -n 2 -m slow
+	$(PYTEST) -m slow
 
 bench: $(VENV)/.bench
 	$(BIN)/python benchmarks/run.py

@@ -112,7 +112,7 @@ def in_mm(follower: Mechanism, found: Followed | Rest, lift: Array) -> float:
     return float(np.abs(mine - lift).max()) * arm
 
 
-@pytest.mark.parametrize("uneven", [False, True])
+@pytest.mark.parametrize("uneven", few([True, False]))
 @pytest.mark.parametrize("name", few(FOLLOWERS, 3))
 def test_a_smooth_circle_is_followed_to_rounding(name: str, uneven: bool) -> None:
     follower = FOLLOWERS[name]

@@ -186,7 +186,7 @@ def test_backlash_as_made_is_taken_up() -> None:
 
 @pytest.mark.parametrize("name", ["one lobe", "asymmetric"])
 @pytest.mark.parametrize("side", [DRIVE, COAST])
-@pytest.mark.parametrize("more", [0.0, 0.1, -0.1])
+@pytest.mark.parametrize("more", few([0.1, 0.0, -0.1]))
 @pytest.mark.parametrize("every", few([2, 1]))
 def test_first_touch_is_that_of_dense_points(name: str, side: int, more: float, every: int) -> None:
     phi1 = phases(5)[::every]

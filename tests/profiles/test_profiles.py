@@ -155,7 +155,13 @@ def kind_of(file: str) -> str:
     return ("drawing-" if path.stem.endswith("_drawing") else "") + path.suffix[1:]
 
 
-@pytest.mark.parametrize("name", sorted(ALL))
+LONG = {"nail_machine_three_phase", "ring_uneven", "nautilus"}
+"""Whose files take long, and are of the same kinds as those of other files of the gallery."""
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(one, marks=[pytest.mark.slow] * (one in LONG)) for one in sorted(ALL)]
+)
 def test_a_file_writes_what_it_lists(name: str, tmp_path: Path) -> None:
     made = profile(name) if name in EXPECTED else built(PROFILES / f"{name}.toml")
     try:

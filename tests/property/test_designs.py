@@ -26,7 +26,7 @@ from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.laws.ratio.formula import Formula
 from gearcam.laws.ratio.phases import Phases
 from helpers_pairs import Assembly, explained, job
-from helpers_sampling import QUICK, rounded
+from helpers_sampling import QUICK, few, rounded
 
 MODULE = 2.0
 """mm; the size is a matter of scale, which has a test of its own."""
@@ -215,9 +215,10 @@ DOUBTED: dict[str, dict[str, Any]] = {
 """What the meshing study once found in the outlines of designs, and these designs."""
 
 
-@pytest.mark.parametrize("document", DOUBTED.values(), ids=DOUBTED)
-def test_what_the_study_once_found(document: dict[str, Any]) -> None:
-    made = gearcam.build(gearcam.design({"kind": "gear-pair", "name": "doubted"} | document))
+@pytest.mark.parametrize("name", few(reversed(DOUBTED)))
+def test_what_the_study_once_found(name: str) -> None:
+    document = {"kind": "gear-pair", "name": "doubted"} | DOUBTED[name]
+    made = gearcam.build(gearcam.design(document))
     assert list(doubts(made)) == []
     for gears in made.steps:
         for gear in gears:

@@ -252,11 +252,13 @@ def test_rings_are_exact_step_solids() -> None:
     assert ring.bounds[1][0] == pytest.approx(35.0, abs=1e-6)
     one, two = read_step(found["pair.step"])
     assert [one.name, two.name] == ["gear1", "gear2"]
+    assert one.volume == pytest.approx(made.parts[0].volume, rel=1e-6)
     middle = 0.5 * (np.array(two.bounds[0]) + two.bounds[1])
     assert middle[:2] == pytest.approx([-made.pair.center_distance, 0.0], abs=1e-6)
 
 
 @pytest.mark.skipif(find_spec("OCP") is None, reason="needs the extra for STEP files")
+@pytest.mark.slow
 def test_a_ring_that_follows_its_roots_is_a_step_solid() -> None:
     from helpers_step import read_step
 

@@ -53,14 +53,10 @@ def test_the_pair_stands_assembled(job: GearPairResult, files: dict[str, bytes])
     assert one.bounds[1][0] <= reach + 1e-3
 
 
-@pytest.mark.parametrize(
-    ("name", "bore"),
-    [
-        ("formula", 8.0),
-        pytest.param("nail_machine_two_phase", 40.0, marks=pytest.mark.slow),
-    ],
-)
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "bore"), [("formula", 8.0), ("nail_machine_two_phase", 40.0)])
 def test_a_non_circular_wheel_keeps_its_volume(name: str, bore: float) -> None:
+    """Smaller wheels do so in the test of rings as STEP solids."""
     design = replace(
         profile(name).design,
         output=PairOutputSpec(files=("step",)),

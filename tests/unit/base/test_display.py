@@ -60,7 +60,10 @@ def _got(one: object, name: str) -> object:
 
 @pytest.mark.parametrize(
     "name",
-    ["shop_order", "stepped_ellipse", "feeder", "valve_lever", "undercut_cam", "groove_cam"],
+    [
+        *("shop_order", "feeder", "valve_lever", "undercut_cam", "groove_cam"),
+        pytest.param("stepped_ellipse", marks=pytest.mark.slow),
+    ],
 )
 def test_everything_that_is_reached_shows_itself_in_one_line(name: str) -> None:
     coarse = {"output.chord_tolerance_mm": 0.01}

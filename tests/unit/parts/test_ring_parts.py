@@ -22,6 +22,7 @@ from gearcam.parts.blank import Blank
 from gearcam.parts.shapes import Circle
 from helpers_pairs import job
 from helpers_rings import UNEVEN, WAIST, centrode, plain, ring_design, ring_job
+from helpers_sampling import few
 
 FOLLOW = RingSpec(outer="follow", rim=6.0)
 
@@ -212,7 +213,7 @@ def test_bolts_lie_in_the_rim() -> None:
 @pytest.mark.parametrize(
     ("circle", "diameter"), [(130.4, 5.6), (133.0, 3.0), (100.0, 3.0), (160.0, 3.0)]
 )
-@pytest.mark.parametrize("wall", [1.0, 0.5])
+@pytest.mark.parametrize("wall", few([1.0, 0.5]))
 def test_bolts_outside_the_rim_are_refused(circle: float, diameter: float, wall: float) -> None:
     design = ring_design(
         Constant(),
