@@ -498,7 +498,10 @@ def profile_points(
     InfeasibleError
         If the points are not a closed profile around the cam's axis.
     """
-    z = points if np.iscomplexobj(points) else as_complex(np.asarray(points, dtype=np.float64))
+    if np.iscomplexobj(points):
+        z = np.asarray(points, dtype=np.complex128)
+    else:
+        z = as_complex(np.asarray(points, dtype=np.float64))
     if not np.all(np.isfinite(z)):
         raise InfeasibleError(
             "the profile contains numbers that are not finite",
