@@ -6,8 +6,7 @@ import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, Final
 
-from gearcam.base.numerals import shown
-from gearcam.base.quantities import ANGLE, LENGTH, REQUIRED
+from gearcam.base.quantities import REQUIRED
 from gearcam.designs.faults import allowed, show
 from gearcam.designs.table import Key, Table
 from gearcam.designs.template import short
@@ -28,12 +27,11 @@ GROUPS: Final = {
 }
 """Headings of groups of checks, by what they examine."""
 
-KEYS_INTRO: Final = f"""\
+KEYS_INTRO: Final = """\
 A design file is TOML in UTF-8. Unknown keys, values of the wrong type and values out of range are
-refused. A number may be written as 2 or 2.0. Lengths that must be positive are at least
-{shown(LENGTH.least)} mm, angles at least {shown(ANGLE.least)} degrees. A dash under "default" means
-that there is no fixed default: the meaning says what holds without the key, or the key is optional,
-or another key takes its place.
+refused. A number may be written as 2 or 2.0. A dash under "default" means that there is no fixed
+default: the meaning says what holds without the key, or the key is optional, or another key takes
+its place.
 """
 
 COMMANDS_INTRO: Final = """\

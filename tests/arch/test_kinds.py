@@ -89,10 +89,10 @@ def test_another_kind_has_messages_schema_and_a_template() -> None:
         loads(GOOD.replace("width_mm", "widht_mm").replace("20", "200"))
     told = str(caught.value)
     assert "did you mean width_mm?" in told
-    assert "above 0 up to 100 mm" in told
+    assert "from 0.001 to 100 mm" in told
     made = schema()
     assert "spacer" in made["properties"]["kind"]["enum"]
-    assert made["$defs"]["spacer-ring"]["properties"]["bore_mm"]["exclusiveMinimum"] == 0
+    assert made["$defs"]["spacer-ring"]["properties"]["bore_mm"]["minimum"] == 0.001
     document = tomllib.loads(template("spacer", "mine"))
     assert document == {"kind": "spacer", "name": "mine", "ring": {"bore_mm": 20}}
 

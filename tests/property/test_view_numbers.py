@@ -162,7 +162,8 @@ def key_of(quantity: Quantity, base: type = float, **bounds: float) -> Key:
         (key_of(LENGTH, ge=0), 0, 0, 1),
         (key_of(ANGLE), 0, -10, 10),
         (key_of(LENGTH), -4, -8, -2),
-        (key_of(LENGTH, gt=0, le=1), 0.001, 0.0005, 0.002),
+        (key_of(LENGTH, gt=0, le=1), 0.001, 0.001, 0.002),
+        (key_of(LENGTH, ge=1e-9, le=1), 0.001, 0.0005, 0.002),
     ],
 )
 def test_ends_of_sliders(key: Key, value: float, low: float, high: float) -> None:

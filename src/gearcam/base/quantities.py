@@ -119,10 +119,15 @@ class Param:
     angular: Param | None = None
     sliding: Param | None = None
 
+    def __post_init__(self) -> None:
+        if self.gt == 0.0 and self.quantity.least:
+            object.__setattr__(self, "gt", None)
+            object.__setattr__(self, "ge", self.quantity.least)
+
     @property
     def least(self) -> float:
-        """Least positive value, in the unit of the file; 0 if there is no such limit."""
-        return self.quantity.least if self.gt == 0.0 or self.zero_is_none else 0.0
+        """Least value beside 0, in the unit of the file; 0 if there is no such limit."""
+        return self.quantity.least if self.zero_is_none else 0.0
 
     def key(self, name: str) -> str:
         """Return the key in a design file, such as ``module_mm``."""

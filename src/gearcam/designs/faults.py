@@ -226,8 +226,7 @@ def value_fault(path: Path, value: Any, entry: Key, *, item: bool) -> Fault:
         return Fault(path, f"{show(value)} is not a finite number", value, rule)
     if isinstance(value, float) and 0.0 < value < entry.param.least:
         least = f"{shown(entry.param.least)} {entry.param.quantity.unit}"
-        least = f"{'0 or ' if entry.param.zero_is_none else ''}at least {least}"
-        return Fault(path, f"{show(value)} is too small", value, f"{rule}, {least}")
+        return Fault(path, f"{show(value)} is too small", value, f"{rule}, 0 or at least {least}")
     return Fault(path, f"{show(value)} is out of range", value, rule)
 
 

@@ -143,7 +143,7 @@ def number(value: str) -> bytes:
 
 
 DEEP = "lists or tables are nested too deep"
-NUMBER = "allowed: a number above 0"
+NUMBER = "allowed: a number from 0.001"
 CONTENTS: dict[str, tuple[bytes, str]] = {
     "empty": (b"", ":1: kind: is missing"),
     "bytes": (bytes(range(256)) * 20, ":2: the byte 0x80 is not UTF-8"),
@@ -162,8 +162,8 @@ CONTENTS: dict[str, tuple[bytes, str]] = {
     "not a number": (number("nan"), "nan is not a finite number"),
     "infinite": (number("1e999"), "inf is not a finite number"),
     "nothing below zero": (number("-0.0"), "-0.0 is out of range"),
-    "nearly nothing": (number("1e-18"), "1e-18 is too small"),
-    "how near": (number("1e-18"), "allowed: a number above 0 up to 1000 mm, at least 0.001 mm"),
+    "nearly nothing": (number("1e-18"), "1e-18 is out of range"),
+    "how near": (number("1e-18"), "allowed: a number from 0.001 to 1000 mm"),
     "date": (number("2026-01-02"), "2026-01-02 is not a number"),
     "time": (number("07:30:00"), "07:30:00 is not a number"),
     "key twice": (number("2\nmodule_mm = 3"), "the key module_mm is given twice"),

@@ -44,15 +44,15 @@ SPIRAL: dict[str, Any] = {
 @pytest.mark.parametrize(
     ("document", "path", "allowed", "refused", "words"),
     [
-        (CAM, ("motion", 0, "lift_mm"), 1e-3, 0.9e-3, "at least 0.001 mm"),
-        (CAM, ("motion", 0, "lift_mm"), 1e5, 1.1e5, "up to 100000 mm"),
+        (CAM, ("motion", 0, "lift_mm"), 1e-3, 0.9e-3, "from 0.001 to"),
+        (CAM, ("motion", 0, "lift_mm"), 1e5, 1.1e5, "to 100000 mm"),
         (CAM, ("motion", 0, "angle_deg"), 0.01, 0.009, "from 0.01 to 360 deg"),
-        (CAM, ("follower", "roller_radius_mm"), 1e-3, 0.9e-3, "at least 0.001 mm"),
-        (CAM, ("cam", "prime_radius_mm"), 1e5, 1.1e5, "up to 100000 mm"),
+        (CAM, ("follower", "roller_radius_mm"), 1e-3, 0.9e-3, "from 0.001 to"),
+        (CAM, ("cam", "prime_radius_mm"), 1e5, 1.1e5, "to 100000 mm"),
         (CAM, ("output", "chord_tolerance_mm"), 1e-9, 0.9e-9, "from 1e-09 to 1 mm"),
         (SPEEDS, ("law", "transition_deg"), 0.01, 0.009, "from 0.01 to 360 deg"),
         (SPEEDS, ("law", "angles_deg", 1), 0.01, 0.009, "0, or at least 0.01 deg"),
-        (SPEEDS, ("pair", "module_mm"), 1e-3, 0.9e-3, "at least 0.001 mm"),
+        (SPEEDS, ("pair", "module_mm"), 1e-3, 0.9e-3, "from 0.001 to"),
         (SPIRAL, ("law", "ratios", 0), 1e-3, 0.9e-3, "from 0.001 to 1000"),
     ],
 )
