@@ -43,7 +43,7 @@ def searched(pairs: FlankPairs, phi1: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize("name", MADE)
-@pytest.mark.parametrize("more", MORE)
+@pytest.mark.parametrize("more", few(MORE))
 @pytest.mark.parametrize("side", SIDES)
 def test_common_normals_and_the_gap_agree(name: str, more: float, side: int) -> None:
     made = profile(name)

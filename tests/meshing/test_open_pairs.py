@@ -225,7 +225,7 @@ def dense_touch(name: str, side: int, phi: float, distance: float) -> float:
 
 @pytest.mark.parametrize("name", ["phases", "spiral", "ring", "feeder", "short rack"])
 @pytest.mark.parametrize("side", [DRIVE, COAST])
-@pytest.mark.parametrize("shift", [0.1, -0.1])
+@pytest.mark.parametrize("shift", few([0.1, -0.1]))
 def test_first_touch_is_that_of_dense_points(name: str, side: int, shift: float) -> None:
     angles = np.linspace(0.0, stop(name), 9)
     distance = made(name).pair.shift + shift

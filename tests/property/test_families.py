@@ -34,7 +34,7 @@ from gearcam.laws.ratio.table import TableLaw
 from gearcam.meshing.half_teeth import half_teeth
 from gearcam.meshing.overlap import Turning
 from helpers_pairs import explained, job
-from helpers_sampling import rounded
+from helpers_sampling import few, rounded
 
 MODULE = 2.0
 TURN = 2 * math.pi
@@ -306,7 +306,7 @@ def run(family: str, examples: int, most: int = 200) -> list[bool]:
     return built
 
 
-@pytest.mark.parametrize("family", FAMILIES)
+@pytest.mark.parametrize("family", few(FAMILIES))
 def test_a_few_designs_of_each_family(family: str) -> None:
     run(family, 2, most=FEW_TEETH)
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 import needs
+from helpers_sampling import few
 
 TABLE = needs.table(needs.PAGE.read_text(encoding="utf-8"))
 SLOW = ("mesh", "accuracy", "compare", "step", "glb", "drawing-dxf")
@@ -39,7 +40,7 @@ def test_the_packages_are_those_that_are_allowed() -> None:
     assert names - {"cadquery-ocp-novtk"} | {"OCP"} == set(needs.PACKAGES)
 
 
-@pytest.mark.parametrize("kind", needs.DESIGNS)
+@pytest.mark.parametrize("kind", few(needs.DESIGNS))
 def test_one_after_the_other_no_output_needs_more_than_is_told(kind: str) -> None:
     """In one process, so that what is loaded is what all rows so far tell of."""
     outputs = QUICK[kind]
