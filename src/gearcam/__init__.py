@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from gearcam.numeric.columns import Columns
     from gearcam.results.advice import Remedies
     from gearcam.results.result import Result
-    from gearcam.results.study import Study
+    from gearcam.results.study import StudyResult
 
     _R = TypeVar("_R", covariant=True)
 
@@ -50,7 +50,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Columns", "Design", "DesignError", "Facts", "Finding", "GearcamError", "InfeasibleError",
-    "MissingExtraError", "Result", "Study", "Tolerances", "WriteError", "__version__", "build",
+    "MissingExtraError", "Result", "StudyResult", "Tolerances", "WriteError", "__version__", "build",
     "design", "laws", "load", "loads", "remedies", "rises",
 ]  # fmt: skip
 
@@ -65,7 +65,7 @@ _HOMES = {
     "gearcam.laws.rises": ("rises",),
     "gearcam.numeric.columns": ("Columns",),
     "gearcam.results.result": ("Result",),
-    "gearcam.results.study": ("Study",),
+    "gearcam.results.study": ("StudyResult",),
     "gearcam.base.tolerances": ("Tolerances",),
 }  # fmt: skip
 """Names that are imported on demand, by their modules; kinds of design add theirs."""

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, Final, NoReturn
 from gearcam import build, remedies
 from gearcam.base.errors import DesignError, InfeasibleError, MissingExtraError, Problem, WriteError
 from gearcam.base.interrupts import interruptible
-from gearcam.commands import COMMANDS, Command, ResultCommand
+from gearcam.commands import Command, studied, study_arguments
 from gearcam.console import (
     DEBUG,
     all_lines,
@@ -38,10 +38,11 @@ from gearcam.designs import Design, load
 from gearcam.designs.faults import unknown_word
 from gearcam.designs.kind import all_formats
 from gearcam.designs.outputs import FORMATS
-from gearcam.results.kind import KINDS
+from gearcam.results.kind import KINDS, Kind
 
 if TYPE_CHECKING:
     from gearcam.results.result import Progress, Result
+    from gearcam.results.study import Study
     from gearcam.results.written import Written
 
 GOOD, FINDINGS, WRONG, IMPOSSIBLE, FAULT, INTERRUPTED = 0, 1, 2, 3, 4, 130
@@ -124,11 +125,12 @@ def _dispatch(words: list[str]) -> int:
 
 
 def _commands() -> Iterator[Command]:
-    """Yield the commands: general ones, those of kinds of design, then those for all kinds."""
+    """Yield the commands: general ones, then those of studies; those of one kind of design first."""
     yield from _COMMANDS
-    for kind in KINDS.values():
-        yield from map(_of_results, kind.commands())
-    yield from map(_of_results, COMMANDS)
+    found = {name: (study, kind) for kind in KINDS.values() for name, study in kind.studies.items()}
+    shared = [name for name in found if all(name in kind.studies for kind in KINDS.values())]
+    for name in (*(name for name in found if name not in shared), *shared):
+        yield _of_study(*found[name])
 
 
 def parsers() -> Iterator[argparse.ArgumentParser]:
@@ -178,26 +180,28 @@ def _help(docs: Mapping[str, str]) -> str:
     return "\n".join(["commands:", *commands, "", more, "", "exit codes:", *codes])
 
 
-def _of_results(command: ResultCommand) -> Command:
-    """Return the command that runs a `command` on the result of each design file."""
+def _of_study(study: Study, kind: Kind) -> Command:
+    """Return the command of a `study` of a `kind` of design."""
 
     def arguments(parser: argparse.ArgumentParser) -> None:
-        _add_files(parser, many=command.many)
-        command.arguments(parser)
+        number = "+" if study.many else None
+        parser.add_argument("designs", nargs=number, metavar="FILE", help="design file (TOML)")
+        _add_common(parser)
+        study_arguments(study, kind, parser)
 
     def run(given: Mapping[str, Any]) -> int:
-        options = dict(given)
-        files = options.pop("files") if command.many else [options.pop("file")]
-        output, debug = options.pop("output"), options.pop("debug")
+        settings = dict(given)
+        files = settings.pop("designs")
+        output, debug = settings.pop("output"), settings.pop("debug")
         return _each_result(
-            files,
-            command.done,
-            lambda result, progress: command.run(result, output, options, progress),
+            files if study.many else [files],
+            study.done,
+            lambda result, progress: result.study(study.name, progress).write(output),
             debug=debug,
-            adapt=lambda design: command.adapt(design, options),
+            adapt=lambda design: studied(study, design, settings),
         )
 
-    return Command(command.name, command.doc, run, arguments)
+    return Command(study.name, study.doc, run, arguments)
 
 
 def _build_arguments(parser: argparse.ArgumentParser) -> None:

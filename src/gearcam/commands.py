@@ -1,16 +1,19 @@
-"""Commands of the command line, as entries: those of kinds of design and studies too."""
+"""What a command is, and the commands of studies."""
 
 from __future__ import annotations
 
 import argparse
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
-from typing import Any, Final
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
+from gearcam.base.errors import DesignError, Problem
 from gearcam.designs.design import Design
-from gearcam.numeric.arguments import whole
-from gearcam.results.result import Progress
-from gearcam.results.written import Written
+from gearcam.results.kind import KINDS, Kind
+
+if TYPE_CHECKING:
+    from gearcam.results.study import Study
 
 
 @dataclass(frozen=True)
@@ -35,78 +38,66 @@ class Command:
     arguments: Callable[[argparse.ArgumentParser], None] = lambda _: None
 
 
-@dataclass(frozen=True, kw_only=True)
-class ResultCommand:
-    """A command that works on the result of each design file; the command line prints the outcome.
+def study_arguments(study: Study, kind: Kind, parser: argparse.ArgumentParser) -> None:
+    """Add the options of a study's command: one for each key of its settings, which it overrides.
 
     Parameters
     ----------
-    name, doc : str
-        As of a `Command`.
-    done : str
-        Past participle for messages, such as ``meshed``.
-    arguments : callable
-        ``arguments(parser)`` adds its own options to a parser.
-    adapt : callable
-        ``adapt(design, options)`` returns the design to work on; it raises `DesignError` for a
-        kind of design that the command does not support.
-    run : callable
-        ``run(result, output, options, progress)`` does the work and writes its files.
-    many : bool
-        Whether it takes several design files.
+    study : Study
+        The study.
+    kind : Kind
+        A kind of design that has it.
+    parser : ArgumentParser
+        Receives the options.
     """
-
-    name: str
-    doc: str
-    done: str
-    arguments: Callable[[argparse.ArgumentParser], None]
-    adapt: Callable[[Design, Mapping[str, Any]], Design]
-    run: Callable[[Any, str, Mapping[str, Any], Progress | None], Written]
-    many: bool = True
-
-
-def _accuracy_arguments(parser: argparse.ArgumentParser) -> None:
-    words = "stages to measure: law, centrode, flank, outline, solid, contact, cam (default: all)"
-    parser.add_argument("--stage", metavar="A,B,...", help=words)
-    words = "number of runs; the median time is reported (default: 5)"
-    parser.add_argument("--repeat", metavar="K", type=int, default=5, help=words)
+    for key, entry in kind.table(study.table).entries.items():
+        words: dict[str, Any] = {"help": entry.param.doc}
+        if key == study.argument:
+            parser.add_argument(key, metavar=study.metavar or key.upper(), **words)
+            continue
+        unit = entry.param.quantity.unit.upper()
+        if entry.length is not None:
+            example = "1,27,..." if entry.base is int else "A,B,..."
+            words |= {"type": partial(_list, entry.base), "metavar": example}
+        else:
+            words |= {"type": entry.base, "metavar": unit or ("N" if entry.base is int else "KEY")}
+        name = study.options.get(key, key.removesuffix("_deg"))
+        parser.add_argument(f"--{name}", dest=key, **words)
 
 
-def _stages(options: Mapping[str, Any]) -> list[str] | None:
-    given = options["stage"]
-    return None if given is None else [word.strip() for word in given.split(",") if word.strip()]
+def _list(base: type, text: str) -> list[Any]:
+    try:
+        return [base(word.strip()) for word in text.split(",") if word.strip()]
+    except ValueError:
+        raise argparse.ArgumentTypeError(f'"{text}" is not a list such as 1,27') from None
 
 
-def _accuracy_design(design: Design, options: Mapping[str, Any]) -> Design:
-    from gearcam.results.accuracy import stages_of
+def studied(study: Study, design: Design, options: Mapping[str, Any]) -> Design:
+    """Return the design of a study's command, with the given settings.
 
-    whole("--repeat", options["repeat"], 1)
-    stages_of(design, _stages(options))
-    return design
+    Parameters
+    ----------
+    study : Study
+        The study.
+    design : Design
+        The design read from a file.
+    options : mapping of str to value
+        Settings by key; None where not given.
 
+    Returns
+    -------
+    Design
 
-def _measure(
-    result: Any, output: str, options: Mapping[str, Any], progress: Progress | None
-) -> Written:
-    from gearcam.report.page import charts_page
-    from gearcam.results.accuracy import PAGE, TABLE, accuracy
-
-    found = accuracy(result, _stages(options), options["repeat"], progress)
-    lines = tuple(found.lines())
-    title = f"{result.design.name}, error against run time"
-    page = charts_page(title, found.charts, "\n".join(lines))
-    return replace(result.keep({TABLE: found.table, PAGE: page}, output, {}), table=lines)
-
-
-COMMANDS: Final = (
-    ResultCommand(
-        name="accuracy",
-        done="measured",
-        doc="Measure accuracy against run time; write DIR/NAME/accuracy.csv and accuracy.html.",
-        arguments=_accuracy_arguments,
-        adapt=_accuracy_design,
-        run=_measure,
-        many=False,
-    ),
-)
-"""The commands for designs of any kind."""
+    Raises
+    ------
+    DesignError
+        If designs of this kind have no such study, or a value is not allowed.
+    """
+    kinds = [kind.name for kind in KINDS.values() if study.name in kind.studies]
+    if design.kind not in kinds:
+        message = f"this command is for designs of kind {' or '.join(kinds)}"
+        raise DesignError([Problem(message, file=design.source, key="kind", value=design.kind)])
+    given = {f"{study.table}.{key}": one for key, one in options.items() if one is not None}
+    changed = design.with_(given) if given else design
+    study.demand(changed)
+    return changed

@@ -172,13 +172,20 @@ class Facts(Mapping[str, Any]):
     def _ipython_key_completions_(self) -> list[str]:
         return list(self)
 
-    def lines(self) -> Iterator[str]:
-        """Yield the headline, then an aligned table of the facts that are always shown."""
+    def lines(self, group: str = "") -> Iterator[str]:
+        """Yield the headline, then an aligned table of the facts that are always shown.
+
+        Parameters
+        ----------
+        group : str
+            Only the facts of this group; by default all.
+        """
         if self.headline:
             yield ", ".join(self.headline)
         rows = [
             (one.meaning, one.text, f"({one.limit})" if one.limit else "", one.place)
             for one in self.shown()
+            if one.name.startswith(group)
         ]
         yield from ("  " + row for row in lined_up(rows))
 

@@ -363,8 +363,8 @@ def hash_of(design: Design) -> str:
 
     It depends on the values of all keys, including defaults, and on the rows of CSV files, but not
     on comments, spaces, the order of keys, or the paths of CSV files; degrees are rounded to 13
-    digits. Values that do not change any file are excluded: ``[limits]``, the settings of studies
-    and the list of files. Python functions cannot be compared: a design with one shares its hash
+    digits. Values that do not change any file are excluded: ``[limits]``, the list of
+    files, and the settings of studies for which the design does not ask. Python functions cannot be compared: a design with one shares its hash
     only with its copies.
 
     Parameters
@@ -383,9 +383,13 @@ def hash_of(design: Design) -> str:
         If a CSV file of the design cannot be read any more.
     """
     document = document_of(design)
-    for title in ("limits", *KINDS[design.kind].studies):
-        document.pop(title, None)
-    del document["output"]["files"]
+    asked = design.output.studies
+    for name, title in KINDS[design.kind].study_tables.items():
+        if name not in asked:
+            document.pop(title, None)
+    for key in ("files", *(() if asked else ("studies",))):
+        del document["output"][key]
+    document.pop("limits", None)
     made = _with_rows(document, design)
     text = json.dumps(made, sort_keys=True, default=lambda _: design._token)
     return hashlib.sha256(text.encode()).hexdigest()[:HASH_DIGITS]

@@ -114,8 +114,8 @@ class DesignKind:
         Modules that register checks.
     check_groups : tuple of str
         Groups of those checks: what they look at.
-    studies : tuple of str
-        Titles of tables with settings of studies, on which no file of a build depends.
+    study_tables : mapping of str to str
+        Titles of the tables with the settings of studies, by the names of the studies.
     example : mapping
         A design that builds without a warning, by title, in the units of a file.
     notes : mapping of str to str
@@ -141,7 +141,7 @@ class DesignKind:
     formats: tuple[str, ...]
     check_modules: tuple[str, ...] = ()
     check_groups: tuple[str, ...] = ()
-    studies: tuple[str, ...] = ()
+    study_tables: Mapping[str, str] = field(default_factory=dict)
     example: Mapping[str, Any]
     notes: Mapping[str, str] = field(default_factory=dict)
     processes: Mapping[str, Mapping[str, Mapping[str, Any]]] = field(default_factory=dict)

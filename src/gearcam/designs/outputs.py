@@ -24,6 +24,12 @@ def files_param(formats: tuple[str, ...]) -> Any:
     return param(TEXT, default=("csv",), choices=formats, doc=_FILES)
 
 
+def studies_param(names: tuple[str, ...]) -> Any:
+    """Return the field of the studies to include, any of some `names`."""
+    doc = "studies to include in summary and report, by the names of their commands"
+    return param(TEXT, default=(), choices=names, doc=doc)
+
+
 def pose_param(word: str, doc: str) -> Any:
     """Return the field of the angle of the assembly drawing: the `word` of its key, its `doc`."""
     return param(ANGLE, default=0.0, ge=-36000, le=36000, word=word, doc=doc)
@@ -37,6 +43,8 @@ class OutputSpec(Brief):
     ----------
     files : tuple of str
         Kinds of files.
+    studies : tuple of str
+        Names of studies.
     chord_tolerance : float, mm
         Largest distance of an outline from the true curve.
     kerf : float, mm
@@ -46,6 +54,7 @@ class OutputSpec(Brief):
     """
 
     files: tuple[str, ...] = files_param(FORMATS)
+    studies: tuple[str, ...] = studies_param(())
     chord_tolerance: float | None = param(
         LENGTH,
         default=None,
@@ -87,9 +96,9 @@ def output_faults(raw: Any) -> Iterator[Fault]:
         yield Fault(
             ("output", "dxf_version"), '"R12": DXF R12 does not support splines', "R12", rule
         )
-    files = raw.get("files")
-    if isinstance(files, list):
-        for index, name in enumerate(files):
-            if isinstance(name, str) and name in files[:index]:
+    for key, what in (("files", "kind of file"), ("studies", "study")):
+        names = raw.get(key)
+        for index, name in enumerate(names if isinstance(names, list) else ()):
+            if isinstance(name, str) and name in names[:index]:
                 message = f"{show(name)} is listed twice"
-                yield Fault(("output", "files", index), message, name, "each kind of file once")
+                yield Fault(("output", key, index), message, name, f"each {what} once")

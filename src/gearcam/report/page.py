@@ -187,6 +187,7 @@ def _moving(result: Result, places: int | None = None) -> Scene:
 
 def draft(result: Result) -> dict[str, Any]:
     """Return the part of a document that follows a slider: without charts, remedies and files."""
+    result = result.plain
     made = _moving(result, DRAFT_PLACES)
     return {
         "title": result.design.name,

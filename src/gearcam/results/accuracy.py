@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import itertools
 import math
 import statistics
@@ -11,14 +9,14 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
 from gearcam.base.display import Brief
 from gearcam.base.errors import DesignError, GearcamError, Problem
-from gearcam.base.facts import lined_up
-from gearcam.base.numerals import exact, shown
+from gearcam.base.facts import Fact, lined_up
+from gearcam.base.numerals import shown
 from gearcam.designs.design import Design
 from gearcam.designs.faults import show
 from gearcam.designs.slips import did_you_mean
@@ -31,15 +29,7 @@ from gearcam.results.result import Progress, Result
 REPEATS: Final = 5
 """Default number of runs of each level."""
 
-TABLE: Final = "accuracy.csv"
-PAGE: Final = "accuracy.html"
 """Files of the command ``accuracy``."""
-
-COLUMNS: Final = (
-    "stage", "measured", "refined", "level", "own", "error", "unit", "rounding",
-    "order", "order_expected", "time_s", "points",
-)  # fmt: skip
-"""Columns of ``accuracy.csv``."""
 
 _FITTED: Final = 3
 """Number of rungs to which the order is fitted: the finest above rounding."""
@@ -142,22 +132,38 @@ class Accuracy(Brief):
                 yield f"{whose}: left out: {why}"
 
     @cached_property
-    def table(self) -> bytes:
-        """The content of ``accuracy.csv``: a row for each rung; no order is an empty cell."""
-        text = io.StringIO()
-        writer = csv.writer(text, lineterminator="\n")
-        writer.writerow(COLUMNS)
-        for rung in self.rungs:
-            ladder = self.ladders[rung.stage]
-            order = "" if rung.order is None else exact(rung.order)
-            writer.writerow(
-                (
-                    *(rung.stage, ladder.measured, ladder.refined, exact(rung.level)),
-                    *(int(rung.own), exact(rung.error), ladder.unit, exact(ladder.rounding)),
-                    *(order, exact(ladder.order), exact(rung.seconds), rung.points),
-                )
-            )
-        return text.getvalue().encode()
+    def columns(self) -> dict[str, Any]:
+        """The columns of ``accuracy.csv``: a row for each rung; no order is missing."""
+        rows = [(self.ladders[rung.stage], rung) for rung in self.rungs]
+        orders = [math.nan if rung.order is None else rung.order for _, rung in rows]
+        return {
+            "stage": [rung.stage for _, rung in rows],
+            "measured": [ladder.measured for ladder, _ in rows],
+            "refined": [ladder.refined for ladder, _ in rows],
+            "level": [rung.level for _, rung in rows],
+            "own": [int(rung.own) for _, rung in rows],
+            "error": [rung.error for _, rung in rows],
+            "unit": [ladder.unit for ladder, _ in rows],
+            "rounding": [ladder.rounding for ladder, _ in rows],
+            "order": np.ma.masked_invalid(orders),
+            "order_expected": [ladder.order for ladder, _ in rows],
+            "time_s": [rung.seconds for _, rung in rows],
+            "points": [rung.points for _, rung in rows],
+        }
+
+    @property
+    def facts(self) -> dict[str, Any]:
+        """Order, and error and time of the level in use, by stage."""
+        return {
+            stage: {
+                "order": self.order(stage),
+                "error": Fact(used.error, f"{stage}: error of {ladder.measured}", unit=ladder.unit),
+                "time_s": used.seconds,
+            }
+            for stage, ladder in self.ladders.items()
+            for used in self.of(stage)
+            if used.own
+        }
 
     @cached_property
     def charts(self) -> tuple[Chart, ...]:

@@ -161,12 +161,12 @@ def _sought(
     errors: list[Finding] = []
     if refusal is None:
         try:
-            errors = [finding for finding in result.findings if finding.severity == "error"]
+            errors = [finding for finding in result.checked if finding.severity == "error"]
         except InfeasibleError as error:
             refusal = error
     elif not refusal.ways and not refusal.more_teeth:
         with suppress(InfeasibleError):
-            _ = result.findings
+            _ = result.checked
             return Remedies()  # a study was refused, not the design
     if refusal is None and not errors:
         return Remedies()
@@ -298,7 +298,7 @@ class Search:
             other = self.changed(changes)
             if self.advice.hopeless(other):
                 return None
-            findings = other.findings
+            findings = other.checked
             demand_files(other)
         except InfeasibleError as error:
             if self.refusal is None or error.what != self.refusal.what:

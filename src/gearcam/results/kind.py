@@ -7,7 +7,7 @@ that a build imports only what it needs.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final, cast
 
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from gearcam.pictures.scenes import Scene
     from gearcam.results.advice import Advice
     from gearcam.results.ladders import Ladder
+    from gearcam.results.study import Study
 
 FileMaker = Callable[[Any, dict[str, Any]], dict[str, bytes]]
 """``maker(result, measured)`` returns contents by file name, and adds values measured on them to
@@ -59,8 +60,8 @@ class Kind(DesignKind):
         ``framed(result)`` returns the page for a notebook as HTML; empty: picture and facts.
     advice : callable
         ``advice()`` returns how remedies are searched for.
-    commands : callable
-        ``commands()`` returns its commands (see `gearcam.commands`).
+    studies : mapping of str to Study
+        Studies by name; each is a command, too.
     ladders : mapping of str to callable
         Stages at increasing resolution (see `gearcam.results.ladders`).
     public : mapping of str to type
@@ -74,7 +75,7 @@ class Kind(DesignKind):
     assembled: Callable[[Any], dict[str, Mesh]] = lambda _: {}
     framed: Callable[[Any], str] = lambda _: ""
     advice: Callable[[], Advice] = _plain_advice
-    commands: Callable[[], Sequence[Any]] = tuple
+    studies: Mapping[str, Study] = field(default_factory=dict)
     ladders: Mapping[str, Callable[[Any], Ladder]] = field(default_factory=dict)
     public: Mapping[str, type] = field(default_factory=dict)
 

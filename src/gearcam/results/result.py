@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final, Self
 from gearcam.base.display import Displayed, cut, renderer
 from gearcam.base.errors import GearcamError
 from gearcam.base.facts import Fact, Facts
-from gearcam.base.findings import Finding
+from gearcam.base.findings import Finding, in_order
 from gearcam.base.numerals import tree
 from gearcam.base.tolerances import DEFAULT, Tolerances
 from gearcam.designs.design import hash_of, summary_of
@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from gearcam.parts.solids import Mesh
     from gearcam.pictures.charts import Chart
     from gearcam.pictures.scenes import Scene
+    from gearcam.results.study import StudyResult
 
 FORMAT: Final = 1
 """Version of the layout of ``summary.json``."""
@@ -47,6 +48,10 @@ REPORT: Final = "report"
 
 Progress = Callable[[str, int, int], None]
 """Called with the name of the next stage, the number of stages done and their total."""
+
+
+_OF_STUDIES: Final = ("_studied", "facts", "findings", "design_hash", "sought", "sizes")
+"""What a result with other studies computes anew."""
 
 
 class Result(Displayed):
@@ -76,6 +81,7 @@ class Result(Displayed):
         self.tolerances = tolerances
         self.timings: dict[str, float] = {}
         self.sizes: dict[str, int] = {}  # bytes of the files built so far
+        self._studied: dict[str, StudyResult] = {}
         self.sought: dict[float, Any] = {}  # remedies found, by the patience of the search
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -111,8 +117,88 @@ class Result(Displayed):
 
     @cached_property
     @abstractmethod
+    def checked(self) -> tuple[Finding, ...]:
+        """The findings of the checks of the design, errors first."""
+
+    @cached_property
     def findings(self) -> tuple[Finding, ...]:
-        """The findings of all checks, errors first."""
+        """The findings of all checks, also of the studies that the design asks for, errors first."""
+        studies = self.studies.values()
+        repeated = {code for one in studies for code in one.study.repeats}
+        kept = (one for one in self.checked if one.code not in repeated)
+        return in_order((*kept, *(found for one in studies for found in one.found)))
+
+    @property
+    def studies(self) -> dict[str, StudyResult]:
+        """The outcomes of the studies that the design asks for, by name, computed once."""
+        return {name: self.study(name) for name in self.design.output.studies}
+
+    def study(self, name: str, progress: Progress | None = None) -> StudyResult:
+        """Return the outcome of a study with the settings of the design, computed once.
+
+        Parameters
+        ----------
+        name : str
+            The name of its command, such as ``mesh``.
+        progress : callable, optional
+            Called with a stage's name, the stages or steps done and their number.
+
+        Returns
+        -------
+        StudyResult
+
+        Raises
+        ------
+        DesignError
+            If designs of this kind have no such study.
+        InfeasibleError
+            If the design, or its study, is impossible.
+        """
+        entry = self.kind.studies[one_of("name", name, (*self.kind.studies,))]
+        found = self._studied.get(name)
+        if found is None or found.interrupted:
+            entry.demand(self.design)
+            found = self._studied[name] = entry.compute(self, progress)
+        return found
+
+    def with_settings(self, title: str, settings: Mapping[str, object]) -> Self:
+        """Return the result with other settings of a study; finished stages are kept.
+
+        Parameters
+        ----------
+        title : str
+            The table of the settings.
+        settings : mapping of str to value
+            New values by key, in the units of a file.
+
+        Returns
+        -------
+        Result
+
+        Raises
+        ------
+        DesignError
+            If a setting is unknown, or its value is not allowed.
+        """
+        if not settings:
+            return self
+        design = self.design.with_({f"{title}.{key}": value for key, value in settings.items()})
+        return self._shared(design)
+
+    @property
+    def plain(self) -> Self:
+        """The result without the studies that the design asks for; finished stages are kept."""
+        if not self.design.output.studies:
+            return self
+        output = replace(self.design.output, studies=())
+        return self._shared(replace(self.design, output=output, examined=True))
+
+    def _shared(self, design: Any) -> Self:
+        """Return the result of a design that differs in its studies only, with all stages done."""
+        made = type(self)(design, self.tolerances)
+        known = {name: one for name, one in vars(self).items() if name not in _OF_STUDIES}
+        vars(made).update(known | {"design": design, "timings": dict(self.timings)})
+        return made
 
     @cached_property
     def parts(self) -> tuple[Part, ...]:
@@ -167,7 +253,14 @@ class Result(Displayed):
         return self.facts_with({})
 
     def facts_with(self, measured: Mapping[str, Any]) -> Facts:
-        """Return the facts, extended by values `measured` on files or in studies, by group."""
+        """Return the facts with values `measured` on files, by group, and those of its studies."""
+        made = self.design_facts(measured)
+        for one in self.studies.values():
+            made = made.with_group(one.study.key, one.group)
+        return made
+
+    def design_facts(self, measured: Mapping[str, Any]) -> Facts:
+        """Return the facts without those of studies, with values `measured` on files, by group."""
         made = self.kind.facts(self, measured)
         columns = sys.modules.get("gearcam.laws.columns")  # loaded only if a design has read a file
         tables = columns.tables_in(self.design) if columns else ()
@@ -266,7 +359,16 @@ class Result(Displayed):
     @property
     def charts(self) -> tuple[str, ...]:
         """Names that `chart` and `plot` accept; `InfeasibleError` if it cannot be made."""
-        return tuple(name for name, make in self.kind.charts.items() if make(self) is not None)
+        own = (name for name, make in self.kind.charts.items() if make(self) is not None)
+        return (*own, *self._study_charts)
+
+    @property
+    def _study_charts(self) -> dict[str, Chart]:
+        """The charts of the studies that the design asks for, by the name of the study and their own."""
+        studies = self.studies.items()
+        return {
+            f"{name}.{chart}": one for name, study in studies for chart, one in study.charts.items()
+        }
 
     def chart(self, name: str) -> Chart:
         """Return a chart as data: lines and limits, with the labels of the axes.
@@ -287,8 +389,9 @@ class Result(Displayed):
         InfeasibleError
             If the design cannot be made.
         """
-        makers = self.kind.charts
-        made = makers[one_of("name", name, (*makers,))](self)
+        makers, more = self.kind.charts, self._study_charts
+        known = one_of("name", name, (*makers, *more))
+        made = more[known] if known in more else makers[known](self)
         if made is None:
             raise refused("there is no such chart here", "name", name, ", ".join(self.charts))
         return made
@@ -335,7 +438,11 @@ class Result(Displayed):
         """
         from gearcam.pictures.scenes import PLACES
 
-        return self.kind.scene(self, PLACES if places is None else places)
+        made = self.kind.scene(self, PLACES if places is None else places)
+        for name, one in self.studies.items() if made else ():
+            more = {f"{name}: {what}": points for what, points in one.overlay(made).items()}
+            made = replace(made, contacts={**made.contacts, **more})
+        return made
 
     def check(self, directory: str | Path = "output") -> Written:
         """Run the checks and write the summary only; the files of an earlier build are kept.
@@ -352,7 +459,7 @@ class Result(Displayed):
         Written
             With the summary as its only file.
         """
-        return self.keep({}, directory, {})
+        return self.keep({}, directory)
 
     def write(
         self,
@@ -386,10 +493,11 @@ class Result(Displayed):
             If a file cannot be written.
         """
         kinds = sorted(demand_formats(self.design, files), key=lambda kind: kind == REPORT)
-        steps = [*self.stages, *kinds, "writing"]
+        studies = self.design.output.studies
+        steps = [*self.stages, *studies, *kinds, "writing"]
 
-        def tell(step: str) -> None:
-            if progress is not None:
+        def tell(step: str, *_: int) -> None:
+            if progress is not None and step in steps:
                 progress(step, steps.index(step), len(steps))
 
         for step, attribute in self.stages.items():
@@ -397,19 +505,25 @@ class Result(Displayed):
             getattr(self, attribute)
         contents: dict[str, bytes] = {}
         measured: dict[str, Any] = {}
+        for name in studies:
+            tell(name)
+            found = self.study(name, tell)
+            if found.interrupted:
+                raise KeyboardInterrupt
+            contents |= found.files
         for kind in kinds:
             tell(kind)
             with self.stage(kind):
                 contents |= self.files(kind, measured)
             self.sizes = {name: len(content) for name, content in contents.items()}
         tell("writing")
-        return self._put(directory, contents, measured, self.findings)
+        return self._put(directory, contents, self.facts_with(measured), self.findings)
 
     def keep(
         self,
         contents: Mapping[str, bytes],
         directory: str | Path,
-        measured: Mapping[str, Any],
+        facts: Facts | None = None,
         findings: Sequence[Finding] | None = None,
     ) -> Written:
         """Write files and keep those of an earlier build.
@@ -420,23 +534,23 @@ class Result(Displayed):
             The files by name.
         directory : path
             Parent folder.
-        measured : mapping
-            Values measured on them, for the summary.
+        facts : Facts, optional
+            For the summary; by default those of the result.
         findings : sequence of Finding, optional
-            Default: those of the checks.
+            For the summary; by default those of the result.
 
         Returns
         -------
         Written
         """
         found = self.findings if findings is None else findings
-        return self._put(directory, contents, measured, found, keep=True)
+        return self._put(directory, contents, facts or self.facts, found, keep=True)
 
     def _put(
         self,
         directory: str | Path,
         contents: Mapping[str, bytes],
-        measured: Mapping[str, Any],
+        facts: Facts,
         findings: Sequence[Finding],
         *,
         keep: bool = False,
@@ -446,7 +560,6 @@ class Result(Displayed):
 
         from gearcam.export.write import SUMMARY, write_all
 
-        facts = self.facts_with(measured) if measured else self.facts
         made = self.design_hash
         summary: dict[str, Any] = {}
 

@@ -6,7 +6,7 @@ import math
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -34,11 +34,8 @@ if TYPE_CHECKING:
     from gearcam.parts.body import Part
     from gearcam.parts.checks import PartsSubject
     from gearcam.pictures.drawings import Drawing
-    from gearcam.results.study import Study
+    from gearcam.results.study import StudyResult
     from gearcam.sheets.sheet import Sheet
-
-FOLLOWED: Final = "followed.csv"
-"""The study of a given profile."""
 
 
 class CamResult(Result):
@@ -63,7 +60,7 @@ class CamResult(Result):
     design: CamDesign
     before_output = ("program",)
     stages = MappingProxyType(
-        {"program": "program", "cam": "cam", "profile": "profile", "checks": "findings"}
+        {"program": "program", "cam": "cam", "profile": "profile", "checks": "checked"}
     )
 
     @cached_property
@@ -219,7 +216,7 @@ class CamResult(Result):
 
         return sheets(self)
 
-    def _wall(self, key: str | None) -> Wall:
+    def wall(self, key: str | None) -> Wall:
         """Return the wall with a key; by default the first."""
         walls = {one.key: one for one in self.cam.walls}
         return walls[next(iter(walls)) if key is None else one_of("wall", key, tuple(walls))]
@@ -251,7 +248,7 @@ class CamResult(Result):
         InfeasibleError
             If the cam is impossible.
         """
-        left, points, normals = self._wall(wall).places_at(self._asked(theta))
+        left, points, normals = self.wall(wall).places_at(self._asked(theta))
         driver = self.mechanism.driver
         if self.form.slides:
             fixed = points + driver.scale * left
@@ -293,7 +290,7 @@ class CamResult(Result):
         )
 
     @cached_property
-    def findings(self) -> tuple[Finding, ...]:
+    def checked(self) -> tuple[Finding, ...]:
         """Findings of the checks, errors first."""
         cam = self.cam
         with self.stage("checks"):
@@ -320,7 +317,7 @@ class CamResult(Result):
         *,
         wall: str | None = None,
         progress: Progress | None = None,
-    ) -> Study:
+    ) -> StudyResult:
         """Return the motion of the design's follower on a given profile.
 
         Parameters
@@ -336,7 +333,7 @@ class CamResult(Result):
 
         Returns
         -------
-        Study
+        StudyResult
             Its columns are those of ``followed.csv`` (see docs/cams.md).
 
         Raises
@@ -346,25 +343,9 @@ class CamResult(Result):
         DesignError
             If it is not a profile, or the file cannot be read.
         """
-        from gearcam.kinds.cam.follow import followed, read_profile
-        from gearcam.results.study import Study
+        from gearcam.kinds.cam.studies import follow
 
-        chosen = self._wall(wall)
-        if progress is not None:
-            progress("profile", 0, 2)
-        vertices, bulges = read_profile(profile, chosen)
-        if progress is not None:
-            progress("follow", 1, 2)
-        with self.stage("follow"):
-            limits = self.design.limits
-            columns, facts, own = followed(chosen, vertices, bulges, self.angles, limits)
-        return Study(
-            result=self,
-            file=FOLLOWED,
-            table=columns,
-            measured={"followed": facts},
-            findings=in_order((*self.findings, *own)),
-        )
+        return follow(self, profile, wall, progress)
 
 
 def _ending(one: PitchMotion) -> str:

@@ -9,20 +9,29 @@ from dataclasses import dataclass, field
 from functools import lru_cache, partial
 from typing import TYPE_CHECKING, Any, Final
 
+from gearcam.base.display import Brief
 from gearcam.base.errors import DesignError, Problem
-from gearcam.base.quantities import ANGLE, COUNT, FINEST, LENGTH, LONGEST, param
+from gearcam.base.quantities import ANGLE, COUNT, FINEST, LENGTH, LONGEST, TEXT, param
 from gearcam.base.registry import classes_in, name_of
 from gearcam.cams.spec import POINTED, CamSpec, FollowerSpec, size_problems
 from gearcam.designs.design import Design, Wanted
 from gearcam.designs.examine import home_of
 from gearcam.designs.faults import Fault, quoted, show
 from gearcam.designs.kind import KINDS, Examined
-from gearcam.designs.outputs import FORMATS, OutputSpec, files_param, output_faults, pose_param
+from gearcam.designs.outputs import (
+    FORMATS,
+    OutputSpec,
+    files_param,
+    output_faults,
+    pose_param,
+    studies_param,
+)
 from gearcam.designs.table import Table, table_of
 from gearcam.designs.validate import told_faults
 from gearcam.kinds.cam.blank import CamBlank
 from gearcam.kinds.cam.forms.base import SLIDING, form_faults
 from gearcam.kinds.cam.motion import examine_motion, whole_turns
+from gearcam.kinds.shared import AccuracySpec
 from gearcam.laws.phases_of_lift import PHASES, RisePhase
 from gearcam.laws.rises.base import RISES
 from gearcam.parts.blank import WheelBlank
@@ -55,6 +64,33 @@ _BLANK_WORDS: Final = {
 
 
 @dataclass(frozen=True, kw_only=True)
+class FollowSpec(Brief):
+    """A given profile, of which the study ``follow`` computes the follower's motion.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.FollowSpec(file="measured.csv", wall="outer")
+    FollowSpec(file='measured.csv', wall='outer')
+    """
+
+    file: str | None = param(
+        TEXT,
+        default=None,
+        doc="cam profile: DXF with one closed outline, or CSV with columns x_mm and y_mm",
+        example="measured.csv",
+    )
+    wall: str | None = param(
+        TEXT,
+        default=None,
+        choices=("1", "2", "inner", "outer", "lower", "upper"),
+        doc="wall to follow: 1 or 2 (conjugate cams); inner, outer, lower or upper (groove); the "
+        "first if left out",
+        example="outer",
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
 class CamOutputSpec(OutputSpec):
     """Which files of a cam are written, and how exact (see `OutputSpec`).
 
@@ -73,6 +109,7 @@ class CamOutputSpec(OutputSpec):
     """
 
     files: tuple[str, ...] = files_param(CAM_FORMATS)
+    studies: tuple[str, ...] = studies_param(("follow", "accuracy"))
     chord_tolerance: float | None = param(
         LENGTH,
         default=None,
@@ -126,6 +163,10 @@ class CamDesign(Design):
         Bore, hub, holes, density.
     output : CamOutputSpec
         Files and their tolerance.
+    follow : FollowSpec
+        A given profile, for the study of the motion that it makes.
+    accuracy : AccuracySpec
+        Settings of the study of error against run time.
 
     Examples
     --------
@@ -148,6 +189,8 @@ class CamDesign(Design):
     cam: CamSpec
     blank: WheelBlank = field(default_factory=CamBlank)
     output: CamOutputSpec = field(default_factory=CamOutputSpec)
+    follow: FollowSpec = field(default_factory=FollowSpec)
+    accuracy: AccuracySpec = field(default_factory=AccuracySpec)
 
     def _settle(self) -> None:
         if isinstance(self.motion, Sequence) and not isinstance(self.motion, str):
@@ -214,6 +257,7 @@ def rules(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
     """Yield contradictions between the tables of a `document` of which parts are `found`."""
     output, follower = document.get("output"), document.get("follower")
     yield from output_faults(output)
+    yield from _follow_faults(output, document.get("follow"))
     yield from _tool_faults(output, follower)
     if "cam" in found.parts:
         owners = {
@@ -227,6 +271,14 @@ def rules(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
     if "follower" in found.parts and "cam" in found.parts and not slides:
         told = size_problems(found.parts["follower"], found.parts["cam"])
         yield from told_faults(told, table_of("cam", CamSpec), document["cam"], ("cam",))
+
+
+def _follow_faults(output: Any, follow: Any) -> Iterator[Fault]:
+    asked = output.get("studies") if isinstance(output, Mapping) else None
+    given = isinstance(follow, Mapping) and "file" in follow
+    if isinstance(asked, list) and "follow" in asked and not given:
+        message = 'is missing: output.studies lists "follow", which needs a profile'
+        yield Fault(("follow", "file"), message, allowed="a DXF or CSV file of a closed profile")
 
 
 def _tool_faults(output: Any, follower: Any) -> Iterator[Fault]:

@@ -36,7 +36,7 @@ def facts(result: CamResult, measured: Mapping[str, Any]) -> Facts:
     result : CamResult
         A built design.
     measured : mapping
-        What exporters and studies measured, by ``dxf``, ``solids``, ``curvature``, ``followed``.
+        What exporters measured, by ``dxf``, ``solids``, ``curvature``.
 
     Returns
     -------
@@ -49,7 +49,7 @@ def facts(result: CamResult, measured: Mapping[str, Any]) -> Facts:
         "cam": _cam(result),
         "part": _part(result) or None,
         "accuracy": _accuracy(result, measured),
-        **{name: measured.get(name) for name in ("solids", "curvature", "followed")},
+        **{name: measured.get(name) for name in ("solids", "curvature")},
     }
     follower = f"{design.follower.motion} {design.follower.type} follower"
     article = "an" if design.follower.oscillating else "a"

@@ -15,6 +15,7 @@ from gearcam.kinds.cam.design import (
     NAME,
     CamDesign,
     CamOutputSpec,
+    FollowSpec,
     blank_table,
     examine_motion_of,
     later,
@@ -22,6 +23,7 @@ from gearcam.kinds.cam.design import (
 )
 from gearcam.kinds.cam.forms.base import SLIDING, form_keys, form_schema
 from gearcam.kinds.cam.motion import TITLE, homes, motion_of
+from gearcam.kinds.shared import AccuracySpec
 from gearcam.parts.blank import KIND as PARTS
 from gearcam.results.kind import Kind
 
@@ -51,6 +53,8 @@ KIND: Final = Kind(
         "cam": partial(table_of, "cam", CamSpec),
         "blank": blank_table,
         "output": partial(table_of, "output", CamOutputSpec),
+        "follow": partial(table_of, "follow", FollowSpec),
+        "accuracy": partial(table_of, "accuracy", AccuracySpec),
     },
     required=("follower", "cam"),
     one_of={"cam": ("prime_radius_mm", "base_radius_mm", {"form": SLIDING})},
@@ -61,6 +65,7 @@ KIND: Final = Kind(
     formats=CAM_FORMATS,
     check_modules=("gearcam.cams.checks", "gearcam.parts.checks"),
     check_groups=(CAM, PARTS, FOLLOWED),
+    study_tables={"follow": "follow", "accuracy": "accuracy"},
     example={
         "motion": [
             {"type": "rise", "angle_deg": 120, "law": "cycloidal", "lift_mm": 10},
@@ -102,7 +107,7 @@ KIND: Final = Kind(
     assembled=deferred(f"{_HERE}.files:assembled"),
     framed=deferred("gearcam.report.file:framed"),
     advice=deferred(f"{_HERE}.advice:CamAdvice"),
-    commands=deferred(f"{_HERE}.commands:commands"),
+    studies=DeferredMapping(f"{_HERE}.studies:STUDIES"),
     ladders=DeferredMapping(f"{_HERE}.ladder:LADDERS"),
     public=DeferredMapping(f"{_HERE}.public:PUBLIC"),
 )

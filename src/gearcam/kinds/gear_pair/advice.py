@@ -182,6 +182,6 @@ def _of_errors(search: Search) -> Iterator[Way]:
             yield Way(far={"pair.x": 0.0})
         yield from _EDGES
     if "wide-kerf" in search.codes:
-        kerfs = [one for one in search.result.findings if one.code == "wide-kerf"]
+        kerfs = [one for one in search.result.checked if one.code == "wide-kerf"]
         widest = min(one.limit for one in kerfs if one.limit is not None)
         yield Way(near={"output.kerf_mm": widest}, far={"output.kerf_mm": 0.0})

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearcam.base.findings import in_order, run_checks
 from gearcam.kinds.gear_pair.columns import (
     centrode_columns,
     contact_ratio_columns,
@@ -26,19 +24,13 @@ from gearcam.results.result import Progress
 if TYPE_CHECKING:
     from gearcam.gears.contact import FlankPairs
     from gearcam.gears.estimates import Estimates
-    from gearcam.results.study import Study
-
-MESHING = "meshing.csv"
-"""The rows of a meshing study."""
+    from gearcam.results.study import StudyResult
 
 Side = Literal["drive", "coast"]
 """Flanks of the driver: the driving side and the coast side."""
 
 ROUNDING = 1e-12
 """Share of the travel by which an angle may exceed it: degrees are rounded."""
-
-_AS_MOUNTED = ("contact-ratio",)
-"""Checks of the pair as designed that a study repeats for the pair as mounted."""
 
 
 class GearPairResult(PairStages):
@@ -211,7 +203,7 @@ class GearPairResult(PairStages):
         end = self.law.period
         return angles("phi1", phi1, 0.0, end, ROUNDING * end)
 
-    def mesh(self, *, progress: Progress | None = None, **settings: object) -> Study:
+    def mesh(self, *, progress: Progress | None = None, **settings: object) -> StudyResult:
         """Return the meshing study: contact, interference and backlash, step by step, as mounted.
 
         Parameters
@@ -224,7 +216,7 @@ class GearPairResult(PairStages):
 
         Returns
         -------
-        Study
+        StudyResult
             Its columns are those of ``meshing.csv`` (see docs/summary.md); incomplete if it was
             interrupted.
 
@@ -237,40 +229,4 @@ class GearPairResult(PairStages):
         KeyboardInterrupt
             If it was interrupted before the first steps were done.
         """
-        from gearcam.meshing.checks import KIND as MESHING_KIND
-        from gearcam.meshing.numbers import numbers
-        from gearcam.meshing.study import study
-        from gearcam.results.study import Study
-
-        result = self._mounted(settings)
-        design = result.design
-        gears = result.steps[design.meshing.step - 1]
-        with result.stage("meshing"):
-            designed = result.subject.sides if gears is result.steps[0] else ()
-            meshing = study(gears, design.meshing, progress, designed)
-        if not meshing.blocks:
-            raise KeyboardInterrupt
-        with result.stage("checks"):
-            extra = run_checks(MESHING_KIND, meshing, design.limits)
-        # the study checks the drive as mounted
-        told = [finding for finding in result.findings if finding.code not in _AS_MOUNTED]
-        done = f"{len(meshing.phi1)} of {meshing.asked} steps"
-        return Study(
-            result=result,
-            file=MESHING,
-            table=meshing.columns,
-            measured={"meshing": numbers(meshing)},
-            findings=in_order((*told, *extra)),
-            interrupted="" if meshing.complete else done,
-        )
-
-    def _mounted(self, settings: Mapping[str, object]) -> GearPairResult:
-        """Return the result with other settings of its study; finished stages are kept."""
-        if not settings:
-            return self
-        design = self.design.with_({f"meshing.{key}": value for key, value in settings.items()})
-        _ = self.steps  # computed here, once for all studies
-        other = type(self)(design, self.tolerances)
-        own = {"design": design, "timings": dict(self.timings), "sought": {}}
-        vars(other).update(vars(self) | own)
-        return other
+        return self.with_settings("meshing", settings).study("mesh", progress)

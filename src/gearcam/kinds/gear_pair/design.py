@@ -14,11 +14,12 @@ from gearcam.designs.design import Design, Wanted
 from gearcam.designs.examine import chosen, home_of
 from gearcam.designs.faults import Fault, quoted, show
 from gearcam.designs.kind import KINDS, Examined
-from gearcam.designs.outputs import OutputSpec, output_faults, pose_param
+from gearcam.designs.outputs import OutputSpec, output_faults, pose_param, studies_param
 from gearcam.designs.slips import misspelt
 from gearcam.designs.table import Table, table_of
 from gearcam.designs.validate import faults_of, made_of
 from gearcam.gears.spec import PairSpec, Rack, RingSpec, StepsSpec
+from gearcam.kinds.shared import AccuracySpec
 from gearcam.laws.ratio.base import LAWS
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.parts.blank import Blank
@@ -55,6 +56,7 @@ class PairOutputSpec(OutputSpec):
     PairOutputSpec(files=('dxf', 'csv'), chord_tolerance=0.005)
     """
 
+    studies: tuple[str, ...] = studies_param(("mesh", "accuracy"))
     pose: float = pose_param("phi1", "driver angle of the assembly drawing")
     inspection_points: int = param(
         COUNT, default=9, ge=2, le=1000, doc="number of points on each flank in inspection.csv"
@@ -83,6 +85,8 @@ class GearPairDesign(Design):
         Files and their tolerance.
     meshing : MeshingSpec
         Phases and mounting of a meshing study.
+    accuracy : AccuracySpec
+        Settings of the study of error against run time.
 
     Examples
     --------
@@ -107,6 +111,7 @@ class GearPairDesign(Design):
     steps: StepsSpec = field(default_factory=StepsSpec)
     output: PairOutputSpec = field(default_factory=PairOutputSpec)
     meshing: MeshingSpec = field(default_factory=MeshingSpec)
+    accuracy: AccuracySpec = field(default_factory=AccuracySpec)
 
     @property
     def law_type(self) -> str:

@@ -36,7 +36,7 @@ def facts(result: GearPairResult, measured: Mapping[str, Any]) -> Facts:
     result : GearPairResult
         A built design.
     measured : mapping
-        What exporters measured, by ``dxf`` and ``solids``; numbers of a ``meshing`` study.
+        What exporters measured, by ``dxf`` and ``solids``.
 
     Returns
     -------
@@ -45,14 +45,12 @@ def facts(result: GearPairResult, measured: Mapping[str, Any]) -> Facts:
     kerf, leads = result.design.output.kerf, result.leads
     tree: Tree = {
         "pair": _pair(result),
-        # a study has the numbers of the mesh as mounted
-        "mesh": None if "meshing" in measured else _mesh(result),
+        "mesh": _mesh(result),
         "kerf_mm": kerf or None,
         "gears": [_gear(result, gear) for gear in result.gears],
         "accuracy": _accuracy(result, measured),
         "steps": {"count": len(leads), "moved_mm": list(leads)} if len(leads) > 1 else None,
         "solids": measured.get("solids"),
-        "meshing": _meshing(measured["meshing"]) if "meshing" in measured else None,
     }
     size = "travel_per_turn_mm" if result.pair.on_rack else "center_distance_mm"
     headline = [f"pair.{name}" for name in (size, "module_mm", "teeth")]
@@ -255,7 +253,7 @@ _SOLVED: Mapping[str, tuple[str, str]] = {
 """Labels and units of what was left to the program, by the names without places in lists."""
 
 
-def _meshing(numbers: Mapping[str, Any]) -> Tree:
+def meshing_facts(numbers: Mapping[str, Any]) -> Tree:
     """Return the numbers of a study as facts."""
     first = {name: numbers[name] for name in ("steps_done", *_STUDIED) if name in numbers}
     tree: Tree = {**first, **numbers}

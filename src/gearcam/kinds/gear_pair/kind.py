@@ -22,6 +22,7 @@ from gearcam.kinds.gear_pair.design import (
     planetary,
     rules,
 )
+from gearcam.kinds.shared import AccuracySpec
 from gearcam.meshing.settings import KIND as MESHING
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.parts.blank import KIND as PARTS
@@ -55,6 +56,7 @@ KIND: Final = Kind(
             "steps": StepsSpec,
             "output": PairOutputSpec,
             "meshing": MeshingSpec,
+            "accuracy": AccuracySpec,
         }.items()
     },
     required=("pair",),
@@ -64,7 +66,7 @@ KIND: Final = Kind(
     formats=FORMATS,
     check_modules=("gearcam.gears.checks", "gearcam.meshing.checks", "gearcam.parts.checks"),
     check_groups=(TEETH, MESHING, PARTS),
-    studies=("meshing",),
+    study_tables={"mesh": "meshing", "accuracy": "accuracy"},
     example={
         "law": {
             "type": "phases",
@@ -106,7 +108,7 @@ KIND: Final = Kind(
     assembled=deferred(f"{_HERE}.files:assembled"),
     framed=deferred("gearcam.report.file:framed"),
     advice=deferred(f"{_HERE}.advice:PairAdvice"),
-    commands=deferred(f"{_HERE}.commands:commands"),
+    studies=DeferredMapping(f"{_HERE}.studies:STUDIES"),
     ladders=DeferredMapping(f"{_HERE}.ladder:LADDERS"),
     public=DeferredMapping(f"{_HERE}.public:PUBLIC"),
 )

@@ -5,11 +5,12 @@ from __future__ import annotations
 from gearcam.gears.spec import PairSpec, Rack, RingSpec, StepsSpec
 from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.kinds.gear_pair.design import GearPairDesign, PairOutputSpec
+from gearcam.kinds.shared import AccuracySpec
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.parts.blank import Blank
 
 __all__ = [
-    "Blank", "GearPairDesign", "GearPairResult", "MeshingSpec", "PairOutputSpec", "PairSpec",
+    "AccuracySpec", "Blank", "GearPairDesign", "GearPairResult", "MeshingSpec", "PairOutputSpec", "PairSpec",
     "Rack", "RingSpec", "StepsSpec",
 ]  # fmt: skip
 

@@ -68,7 +68,7 @@ class PairStages(Result):
             "centrodes": "pair",
             "gear 1": "gear1",
             "gear 2": "gear2",
-            "checks": "findings",
+            "checks": "checked",
         }
     )
 
@@ -198,7 +198,7 @@ class PairStages(Result):
         return first or None, None if self.pair.on_rack else second or None
 
     @cached_property
-    def findings(self) -> tuple[Finding, ...]:
+    def checked(self) -> tuple[Finding, ...]:
         """Findings of the checks, errors first."""
         found = [*self._gear_findings(self.subject)]
         for number, gears in enumerate(self.steps[1:], start=2):

@@ -1,0 +1,69 @@
+"""Studies of cams: the motion of the follower on a given profile."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+from gearcam.base.errors import DesignError, Problem
+from gearcam.kinds.shared import accuracy_study
+from gearcam.results.study import Study, StudyResult
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import ArrayLike
+
+    from gearcam.kinds.cam.build import CamResult
+    from gearcam.results.result import Progress
+
+
+def follow(
+    result: CamResult,
+    profile: str | Path | ArrayLike,
+    wall: str | None = None,
+    progress: Progress | None = None,
+) -> StudyResult:
+    """Return the motion of a cam's follower on a given profile (see `CamResult.follow`)."""
+    from gearcam.kinds.cam.follow import followed, read_profile
+
+    chosen = result.wall(wall)
+    if progress is not None:
+        progress("profile", 0, 2)
+    vertices, bulges = read_profile(profile, chosen)
+    if progress is not None:
+        progress("follow", 1, 2)
+    with result.stage("follow"):
+        limits = result.design.limits
+        columns, facts, found = followed(chosen, vertices, bulges, result.angles, limits)
+    return StudyResult(
+        result=result, study=FOLLOW, file="followed.csv", table=columns, group=facts, found=found
+    )
+
+
+def _follow(result: CamResult, progress: Progress | None) -> StudyResult:
+    given = result.design.follow
+    return follow(result, given.file or "", given.wall, progress)
+
+
+def _demand(design: Any) -> None:
+    if design.follow.file is None:
+        rule = "a DXF or CSV file of a closed profile"
+        problem = Problem("is missing", file=design.source, key="follow.file", allowed=rule)
+        raise DesignError([problem])
+
+
+FOLLOW: Final = Study(
+    name="follow",
+    key="followed",
+    doc="Compute the follower motion on a given profile; write DIR/NAME/followed.csv.",
+    done="followed",
+    table="follow",
+    compute=_follow,
+    argument="file",
+    metavar="PROFILE",
+    demand=_demand,
+    many=False,
+)
+
+STUDIES: Final[dict[str, Study]] = {one.name: one for one in (FOLLOW, accuracy_study())}
+"""The studies by name."""

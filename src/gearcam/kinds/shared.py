@@ -1,0 +1,84 @@
+"""What several kinds of design have alike: the study of error against run time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+from gearcam.base.display import Brief
+from gearcam.base.quantities import COUNT, TEXT, param
+
+if TYPE_CHECKING:
+    from gearcam.designs.design import Design
+    from gearcam.results.result import Progress, Result
+    from gearcam.results.study import Study, StudyResult
+
+TABLE: Final = "accuracy.csv"
+PAGE: Final = "accuracy.html"
+
+
+@dataclass(frozen=True, kw_only=True)
+class AccuracySpec(Brief):
+    """Stages to measure, and the number of runs of each level.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> design = gc.load("profiles/ellipse.toml").with_({"accuracy.repeat": 1})
+    >>> design.accuracy == gc.AccuracySpec(repeat=1)
+    True
+    """
+
+    stage: tuple[str, ...] | None = param(
+        TEXT,
+        default=None,
+        min_length=1,
+        doc="stages to measure: law, centrode, flank, outline, solid, contact, cam; all by default",
+    )
+    repeat: int = param(
+        COUNT, default=5, ge=1, le=1000, doc="number of runs; the median time is reported"
+    )
+
+
+def accuracy_study() -> Study:
+    """Return the study of error against run time (see `gearcam.results.accuracy`)."""
+    from gearcam.results.study import Study
+
+    return Study(
+        name="accuracy",
+        key="convergence",
+        doc="Measure accuracy against run time; write DIR/NAME/accuracy.csv and accuracy.html.",
+        done="measured",
+        table="accuracy",
+        compute=_measure,
+        demand=_demand,
+        many=False,
+    )
+
+
+def _demand(design: Design) -> None:
+    from gearcam.results.accuracy import stages_of
+
+    stages_of(design, design.accuracy.stage)  # pyright: ignore[reportAttributeAccessIssue]
+
+
+def _measure(result: Result, progress: Progress | None) -> StudyResult:
+    from gearcam.report.page import charts_page
+    from gearcam.results.accuracy import accuracy
+    from gearcam.results.study import StudyResult
+
+    settings: AccuracySpec = result.design.accuracy
+    found = accuracy(result, settings.stage, settings.repeat, progress)
+    lines = tuple(found.lines())
+    title = f"{result.design.name}, error against run time"
+    charts = {chart.title: chart for chart in found.charts}
+    return StudyResult(
+        result=result,
+        study=accuracy_study(),
+        file=TABLE,
+        table=found.columns,
+        group=found.facts,
+        charts=charts,
+        pages={PAGE: charts_page(title, found.charts, "\n".join(lines))},
+        lines=lines,
+    )
