@@ -50,7 +50,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Columns", "Design", "DesignError", "Facts", "Finding", "GearcamError", "InfeasibleError",
-    "MissingExtraError", "Result", "StudyResult", "Tolerances", "WriteError", "__version__", "build",
+    "MissingExtraError", "Result", "StudyResult", "Tolerances", "WriteError", "__version__",
+    "build",
     "design", "laws", "load", "loads", "remedies", "rises",
 ]  # fmt: skip
 

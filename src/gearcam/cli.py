@@ -125,7 +125,7 @@ def _dispatch(words: list[str]) -> int:
 
 
 def _commands() -> Iterator[Command]:
-    """Yield the commands: general ones, then those of studies; those of one kind of design first."""
+    """Yield the commands: general ones, then those of studies; of one kind of design first."""
     yield from _COMMANDS
     found = {name: (study, kind) for kind in KINDS.values() for name, study in kind.studies.items()}
     shared = [name for name in found if all(name in kind.studies for kind in KINDS.values())]

@@ -69,7 +69,7 @@ def of_pairs(design: gc.GearPairDesign, ax: Axes) -> Floats:
     for part in result.parts:
         print(part.name, part.outline.shape)
     study = result.mesh(steps=36, center_distance_mm=40.1)
-    assert_type(study, gc.Study)
+    assert_type(study, gc.StudyResult)
     print(study.columns["lag_rad"], study.facts, study.findings, study.complete)
     print([mesh.volume for mesh in result.solids.values()], result.gear1.flanks.points)
     print(result.plot("ratio", ax).get_title(), result.charts, result.to_dict()["hash"])

@@ -364,8 +364,8 @@ def hash_of(design: Design) -> str:
     It depends on the values of all keys, including defaults, and on the rows of CSV files, but not
     on comments, spaces, the order of keys, or the paths of CSV files; degrees are rounded to 13
     digits. Values that do not change any file are excluded: ``[limits]``, the list of
-    files, and the settings of studies for which the design does not ask. Python functions cannot be compared: a design with one shares its hash
-    only with its copies.
+    files, and the settings of studies for which the design does not ask. Python functions cannot be
+    compared: a design with one shares its hash only with its copies.
 
     Parameters
     ----------

@@ -72,7 +72,7 @@ class Main:
     laws: Callable[[], tuple[str, list[Any]]]
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class DesignKind:
     """How designs of one kind are read and described.
 
@@ -145,6 +145,9 @@ class DesignKind:
     example: Mapping[str, Any]
     notes: Mapping[str, str] = field(default_factory=dict)
     processes: Mapping[str, Mapping[str, Mapping[str, Any]]] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        return f'<{type(self).__name__} "{self.name}">'
 
     @property
     def titles(self) -> tuple[str, ...]:

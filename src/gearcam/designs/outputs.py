@@ -97,8 +97,9 @@ def output_faults(raw: Any) -> Iterator[Fault]:
             ("output", "dxf_version"), '"R12": DXF R12 does not support splines', "R12", rule
         )
     for key, what in (("files", "kind of file"), ("studies", "study")):
-        names = raw.get(key)
-        for index, name in enumerate(names if isinstance(names, list) else ()):
+        given = raw.get(key)
+        names = given if isinstance(given, list) else []
+        for index, name in enumerate(names):
             if isinstance(name, str) and name in names[:index]:
                 message = f"{show(name)} is listed twice"
                 yield Fault(("output", key, index), message, name, f"each {what} once")

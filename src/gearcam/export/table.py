@@ -1,4 +1,4 @@
-r"""Tables: columns of numbers as CSV.
+r"""Tables: columns of numbers, and of texts, as CSV.
 
 Numbers are written as `numerals.exact` gives them, with the fewest digits that read back as the
 same double; an infinite number
@@ -9,7 +9,9 @@ need quotes.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import csv
+import io
+from collections.abc import Mapping, Sequence
 from typing import Final
 
 import numpy as np
@@ -29,12 +31,13 @@ def table_bytes(columns: Mapping[str, ArrayLike]) -> bytes:
     Parameters
     ----------
     columns : mapping of str to (n,) array
-        In order; the name carries the unit's suffix, such as ``x_mm``.
+        In order; the name carries the unit's suffix, such as ``x_mm``. Texts are written in quotes
+        if they need them.
 
     Returns
     -------
     bytes
-        The file, ASCII.
+        The file, ASCII but for texts, UTF-8.
 
     Raises
     ------
@@ -45,6 +48,9 @@ def table_bytes(columns: Mapping[str, ArrayLike]) -> bytes:
     bad = [name for name in columns if not name or set(name) & set(',"\r\n')]
     if bad:
         raise ValueError(f"not allowed as column names: {bad}")
+    texts = {name: one for name, one in columns.items() if np.asarray(one).dtype.kind == "U"}
+    if texts:
+        return _with_texts(columns, texts)
     arrays = {name: np.asarray(values, dtype=float).ravel() for name, values in columns.items()}
     lengths = {name: len(values) for name, values in arrays.items()}
     if len(set(lengths.values())) > 1:
@@ -65,6 +71,18 @@ def table_bytes(columns: Mapping[str, ArrayLike]) -> bytes:
     for mark, other in (("], ", ""), ("[", "\n"), ("]", ""), (", ", ","), ("nan", "")):
         rows = rows.replace(mark, other)
     return (",".join(arrays) + rows + "\n").encode("ascii")
+
+
+def _with_texts(columns: Mapping[str, ArrayLike], texts: Mapping[str, ArrayLike]) -> bytes:
+    """Write columns of which some are texts."""
+    numbers = {name: one for name, one in columns.items() if name not in texts}
+    head, *rows = (line.split(",") for line in table_bytes(numbers).decode().splitlines())
+    cells: dict[str, Sequence[str]] = dict(zip(head, zip(*rows, strict=True), strict=True))
+    cells |= {name: np.asarray(one).tolist() for name, one in texts.items()}
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerows([[*columns], *zip(*(cells[name] for name in columns), strict=True)])
+    return text.getvalue().encode()
 
 
 def _exact(values: Array) -> Array:

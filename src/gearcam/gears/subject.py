@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property, partial
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from gearcam.base.display import Brief
 from gearcam.base.findings import ROUNDING, check
@@ -76,19 +78,22 @@ class Subject(Brief):
 
         return extremes(slope, self.pair.rolling.cells(self.pair.law.knots), cells=True)
 
+    def pressure_at(self, slope: ArrayLike) -> dict[str, Any]:
+        """Return the pressure angles of both directions where the centrode has a `slope` psi, rad.
+
+        The rack's angle and the slope add up: on the flanks that drive forward the angle is
+        ``alpha - psi``, on the others ``alpha + psi``, ``tan(psi) = r1'/r1``.
+        """
+        alpha = self.pair.rack.pressure_angle
+        return {"forward": alpha - np.asarray(slope), "backward": alpha + np.asarray(slope)}
+
     @cached_property
     def pressure_angles(self) -> dict[str, tuple[float, float]]:
-        """Largest pressure angle of the flanks for each direction of driving: phi1 and angle, rad.
-
-        The rack's angle and the slope of the centrode add up: on the flanks that drive forward it
-        is ``alpha - psi``, on the others ``alpha + psi``, ``tan(psi) = r1'/r1``.
-        """
+        """Largest pressure angle of the flanks by direction of driving: phi1 and angle, rad."""
         places, slopes = self.slopes
-        alpha = self.pair.rack.pressure_angle
-        first, last = int(slopes.argmin()), int(slopes.argmax())
         return {
-            "forward": (float(places[first]), alpha - float(slopes[first])),
-            "backward": (float(places[last]), alpha + float(slopes[last])),
+            way: (float(places[found.argmax()]), float(found.max()))
+            for way, found in self.pressure_at(slopes).items()
         }
 
     @cached_property

@@ -39,6 +39,25 @@ _ANGLE = 1e-8
 """Step of Newton's method, rad, after which the next is below rounding."""
 
 
+def closed_area(depth: Array, curvature: Array) -> Array:
+    """Return the area of patches inside smooth flanks, mm^2: 003, figs. 2.34 to 2.38.
+
+    Parameters
+    ----------
+    depth : (n,) array, mm
+        Penetration of the flanks along their common normal.
+    curvature : (n,) array, 1/mm
+        Relative curvature of the flanks there; nan where it is not positive.
+
+    Returns
+    -------
+    (n,) array, mm^2
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        area = (4.0 / 3.0) * depth * np.sqrt(2.0 * depth / curvature)
+    return np.where(curvature > 0.0, area, np.nan)
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Patches:
     """Predicted contact patches, one entry each.
@@ -164,7 +183,7 @@ def patches(
         step=graphs.step,
         pair=graphs.pair,
         area=np.maximum(_below(graphs, 1, one) - _below(graphs, 2, two), 0.0),
-        closed=np.where(unlike, np.nan, (4.0 / 3.0) * graphs.penetration * half),
+        closed=np.where(unlike, np.nan, closed_area(graphs.penetration, graphs.curvature)),
         depth=np.where((best == 1) & ~clipped, graphs.penetration, deepest),
     )
 

@@ -39,7 +39,7 @@ def _plain_advice() -> Advice:
     return Advice()
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Kind(DesignKind):
     """A kind of design with all that it does (the other parameters are those of `DesignKind`).
 

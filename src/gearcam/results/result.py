@@ -122,7 +122,7 @@ class Result(Displayed):
 
     @cached_property
     def findings(self) -> tuple[Finding, ...]:
-        """The findings of all checks, also of the studies that the design asks for, errors first."""
+        """The findings of all checks and of the studies that the design asks for, errors first."""
         studies = self.studies.values()
         repeated = {code for one in studies for code in one.study.repeats}
         kept = (one for one in self.checked if one.code not in repeated)
@@ -364,7 +364,7 @@ class Result(Displayed):
 
     @property
     def _study_charts(self) -> dict[str, Chart]:
-        """The charts of the studies that the design asks for, by the name of the study and their own."""
+        """The charts of the studies that the design asks for, by ``study.chart``."""
         studies = self.studies.items()
         return {
             f"{name}.{chart}": one for name, study in studies for chart, one in study.charts.items()
@@ -438,11 +438,14 @@ class Result(Displayed):
         """
         from gearcam.pictures.scenes import PLACES
 
-        made = self.kind.scene(self, PLACES if places is None else places)
-        for name, one in self.studies.items() if made else ():
-            more = {f"{name}: {what}": points for what, points in one.overlay(made).items()}
-            made = replace(made, contacts={**made.contacts, **more})
-        return made
+        scene = self.kind.scene(self, PLACES if places is None else places)
+        if scene is None:
+            return None
+        more = [one.overlay(scene) for one in self.studies.values()]
+        contacts = {
+            name: points for found in (scene.contacts, *more) for name, points in found.items()
+        }
+        return replace(scene, contacts=contacts)
 
     def check(self, directory: str | Path = "output") -> Written:
         """Run the checks and write the summary only; the files of an earlier build are kept.

@@ -12,14 +12,15 @@ import numpy as np
 from gearcam.base.errors import InfeasibleError, Way
 from gearcam.base.facts import Fact, Facts
 from gearcam.base.findings import Finding
-from gearcam.base.quantities import LENGTH, param
-from gearcam.commands import ResultCommand
-from gearcam.designs.design import Design, demand_kind
-from gearcam.designs.outputs import OutputSpec, files_param
+from gearcam.base.quantities import LENGTH, NUMBER, param
+from gearcam.designs.design import Design
+from gearcam.designs.outputs import OutputSpec, files_param, studies_param
 from gearcam.designs.table import table_of
 from gearcam.export.table import outline_bytes
+from gearcam.pictures.charts import Chart, Line
 from gearcam.results.kind import Kind
 from gearcam.results.result import Result
+from gearcam.results.study import Study, StudyResult
 
 FORMATS = ("csv", "outline-txt")
 
@@ -31,8 +32,14 @@ class RingSpec:
 
 
 @dataclass(frozen=True, kw_only=True)
+class WeightSpec:
+    density: float = param(NUMBER, default=7.8, gt=0, le=30, doc="g/cm3")
+
+
+@dataclass(frozen=True, kw_only=True)
 class SpacerOutput(OutputSpec):
     files: tuple[str, ...] = files_param(FORMATS)
+    studies: tuple[str, ...] = studies_param(("weigh",))
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -41,10 +48,11 @@ class SpacerDesign(Design):
 
     ring: RingSpec
     output: SpacerOutput = field(default_factory=SpacerOutput)
+    weight: WeightSpec = field(default_factory=WeightSpec)
 
 
 class Spacer(Result):
-    stages = {"outline": "outline", "checks": "findings"}  # noqa: RUF012
+    stages = {"outline": "outline", "checks": "checked"}  # noqa: RUF012
 
     @cached_property
     def outline(self) -> np.ndarray[Any, Any]:
@@ -63,7 +71,7 @@ class Spacer(Result):
         return radius * np.column_stack([np.cos(angle), np.sin(angle)])
 
     @cached_property
-    def findings(self) -> tuple[Finding, ...]:
+    def checked(self) -> tuple[Finding, ...]:
         return ()
 
 
@@ -84,25 +92,31 @@ FILES = {
 }
 
 
-def _adapt(design: Any, _: Any) -> Any:
-    return demand_kind(design, "spacer")
+def _weigh(result: Any, _: Any) -> StudyResult:
+    ring = result.design.ring
+    area = 0.25 * np.pi * ((ring.bore + 2.0 * ring.width) ** 2 - ring.bore**2)
+    mass = float(1e-3 * area * result.design.weight.density)
+    return StudyResult(
+        result=result,
+        study=WEIGH,
+        file="weight.csv",
+        table={"mass_g_per_mm": [mass]},
+        group={"mass_g_per_mm": Fact(mass, "mass of a thickness of 1 mm", unit="g", shown=True)},
+        found=(Finding(code="light", severity="warning", message="It is light."),) * (mass < 0.1),
+        charts={
+            "mass": Chart(
+                title="Mass", x="x", y="g", lines=(Line(label="it", x=_ONE[0], y=_ONE[1]),)
+            )
+        },
+    )
 
 
-def _run(result: Any, output: str, options: Any, _: Any) -> Any:
-    return result.keep({"weight.txt": str(options["density"]).encode()}, output, {"weighed": True})
+_ONE = (np.array([0.0, 1.0]), np.array([0.0, 1.0]))
 
-
-def _arguments(parser: Any) -> None:
-    parser.add_argument("--density", type=float, default=7.8)
-
-
-def commands() -> Any:
-    return (
-    ResultCommand(
-        name="weigh", done="weighed", doc="Weigh a spacer.", arguments=_arguments, adapt=_adapt,
-        run=_run,
-    ),
-    )  # fmt: skip
+WEIGH = Study(
+    name="weigh", key="weight", doc="Weigh a spacer.", done="weighed", table="weight",
+    compute=_weigh,
+)  # fmt: skip
 
 
 KIND = Kind(
@@ -113,11 +127,13 @@ KIND = Kind(
     tables={
         "ring": partial(table_of, "ring", RingSpec),
         "output": partial(table_of, "output", SpacerOutput),
+        "weight": partial(table_of, "weight", WeightSpec),
     },
     required=("ring",),
     formats=FORMATS,
     example={"ring": {"bore_mm": 20}},
     facts=facts,
     files=FILES,
-    commands=commands,
+    studies={"weigh": WEIGH},
+    study_tables={"weigh": "weight"},
 )

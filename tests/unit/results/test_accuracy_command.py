@@ -16,7 +16,7 @@ import gearcam
 from gearcam.base.errors import DesignError, GearcamError
 from gearcam.cli import main
 from gearcam.kinds.cam import ladder as room
-from gearcam.results.accuracy import COLUMNS, accuracy, stages_of
+from gearcam.results.accuracy import accuracy, stages_of
 from gearcam.results.ladders import Ladder
 
 TEXT = """
@@ -73,7 +73,7 @@ def test_table_and_file_tell_the_same(design: str, capsys: pytest.CaptureFixture
     assert code == 0
     told = capsys.readouterr().out
     rows = pl.read_csv(folder / "accuracy.csv")
-    assert tuple(rows.columns) == COLUMNS
+    assert rows.columns[:5] == ["stage", "measured", "refined", "level", "own"]
     assert rows["stage"].unique(maintain_order=True).to_list() == ["outline", "cam"]
     lines = iter(told.splitlines())
     for row in rows.iter_rows(named=True):

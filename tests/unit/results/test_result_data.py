@@ -160,7 +160,7 @@ def test_a_study_is_data_that_may_be_written(pair: GearPairResult, tmp_path: Pat
     assert study.complete
     assert study.facts["meshing.steps"] == 6
     assert study.to_dict()["meshing"]["steps_done"] == 6
-    assert "mesh" not in study.facts.document
+    assert study.facts.document["mesh"] == pair.facts.document["mesh"]
     written = study.write(tmp_path)
     rows = table((written.directory / "meshing.csv").read_bytes())
     assert list(rows) == list(study.columns)

@@ -13,7 +13,8 @@ from gearcam.laws.phases_of_lift import DwellPhase, ReturnPhase, RisePhase, Segm
 from gearcam.parts.blank import WheelBlank
 
 __all__ = [
-    "AccuracySpec", "CamBlank", "CamDesign", "CamOutputSpec", "CamResult", "CamSpec", "DwellPhase", "FollowSpec",
+    "AccuracySpec", "CamBlank", "CamDesign", "CamOutputSpec", "CamResult", "CamSpec", "DwellPhase",
+    "FollowSpec",
     "FollowerSpec",
     "MotionFormula", "MotionTable", "ReturnPhase", "RisePhase", "SegmentPhase", "WheelBlank",
 ]  # fmt: skip

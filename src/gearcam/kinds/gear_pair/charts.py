@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Final
@@ -14,6 +15,8 @@ from gearcam.base.numerals import shown
 from gearcam.gears.checks import undercut_curvatures
 from gearcam.gears.contact import COAST, DRIVE
 from gearcam.gears.subject import KIND
+from gearcam.meshing.edges import first_touch
+from gearcam.meshing.patches import closed_area
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
 from gearcam.pictures.charts import Chart, Charts, Limit, Line, MarkedPlace, knot_marks
@@ -96,15 +99,15 @@ def _curvature(result: GearPairResult) -> Chart:
 def _pressure_angle(result: GearPairResult) -> Chart:
     phi1, pair = result.phases, result.pair
     r, slope = pair.rolling.radii(phi1 % result.law.period if result.law.lobes.closed else phi1, 1)
-    lean, alpha = np.arctan(slope / r), pair.rack.pressure_angle
+    angles = result.subject.pressure_at(np.arctan(slope / r))
     limit = limit_of(KIND, "pressure-angle", result.design.limits)
     return Chart(
         title="Pressure angle at the pitch point",
         x=DRIVER,
         y="pressure angle, deg",
         lines=tuple(
-            Line(label=f"driving {way}", x=np.degrees(phi1), y=np.degrees(alpha + sign * lean))
-            for way, sign in (("forward", -1.0), ("backward", 1.0))
+            Line(label=f"driving {way}", x=np.degrees(phi1), y=np.degrees(angle))
+            for way, angle in angles.items()
         ),
         limits=(Limit(label="limit", value=math.degrees(limit)),),
         marks=_knots(result),
@@ -157,9 +160,7 @@ def _contact_patch(result: GearPairResult) -> Chart:
     ahead = result.design.meshing.overclosure
     table = result.paths_of_contact["drive" if ahead > 0.0 else "coast"]
     lever = np.abs(table["x_mm"] * table["force_y"] - table["y_mm"] * table["force_x"])
-    bend, depth = table["relative_curvature_per_mm"], abs(ahead) * lever
-    with np.errstate(divide="ignore", invalid="ignore"):
-        area = np.where(bend > 0.0, (4.0 / 3.0) * depth * np.sqrt(2.0 * depth / bend), np.nan)
+    area = closed_area(abs(ahead) * lever, table["relative_curvature_per_mm"])
     x, phase = np.unique(table["phi1_deg"], return_inverse=True)
     # their sum; the mean of both sides of a knot, which may be one number in degrees
     total = np.bincount(phase, area * table["pairs"]) / np.bincount(phase)
@@ -173,18 +174,39 @@ def _contact_patch(result: GearPairResult) -> Chart:
 
 
 def _transmission_error(result: GearPairResult) -> Chart:
-    x, lines = np.unique(np.degrees(result.phases)), []
-    unit = result.pair.rolling.guide.unit
-    for side, table in result.paths_of_contact.items():
-        lag, phase = table[f"lag_{unit}"], np.searchsorted(x, table["phi1_deg"])
-        # the leading tooth pair is the one that pushes the driven element farthest
-        sign = 1.0 if side == "drive" else -1.0
-        least = np.full(len(x), np.inf)
-        np.minimum.at(least, phase, sign * np.where(np.abs(lag) > _NOISE, lag, 0.0))
-        y = sign * np.where(np.isfinite(least), least, np.nan)
-        lines.append(Line(label=_SIDES[side], x=x, y=y - np.nanmean(y)))
+    leads = {
+        _SIDES[side]: first_touch(result.flanks_of(side), result.phases, found)[0]
+        for side, found in result.touching.items()
+    }
+    return transmission_chart(result, "as designed", result.phases, leads)
+
+
+def transmission_chart(
+    result: GearPairResult, how: str, phi1: Array, leads: Mapping[str, Array]
+) -> Chart:
+    """Return the chart of the lag of the driven element, minus its mean.
+
+    Parameters
+    ----------
+    result : GearPairResult
+        The pair.
+    how : str
+        How it is mounted, in words.
+    phi1 : (n,) array, rad
+        Driver angles.
+    leads : mapping of str to (n,) array
+        Leads of the driven element at first contact by label, rad or mm; infinite without contact.
+
+    Returns
+    -------
+    Chart
+    """
+    unit, lines = result.pair.rolling.guide.unit, []
+    for label, lead in leads.items():
+        lag = np.where(np.isfinite(lead), -np.where(np.abs(lead) > _NOISE, lead, 0.0), np.nan)
+        lines.append(Line(label=label, x=np.degrees(phi1), y=lag - float(np.nanmean(lag))))
     return Chart(
-        title="Transmission error, as designed (lag minus its mean)",
+        title=f"Transmission error, {how} (lag minus its mean)",
         x=DRIVER,
         y=f"lag of the {'rack' if unit == 'mm' else 'driven wheel'}, {unit}",
         lines=tuple(lines),

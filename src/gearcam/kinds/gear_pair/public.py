@@ -10,7 +10,8 @@ from gearcam.meshing.settings import MeshingSpec
 from gearcam.parts.blank import Blank
 
 __all__ = [
-    "AccuracySpec", "Blank", "GearPairDesign", "GearPairResult", "MeshingSpec", "PairOutputSpec", "PairSpec",
+    "AccuracySpec", "Blank", "GearPairDesign", "GearPairResult", "MeshingSpec", "PairOutputSpec",
+    "PairSpec",
     "Rack", "RingSpec", "StepsSpec",
 ]  # fmt: skip
 

@@ -4,13 +4,21 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
+import numpy as np
+
 from gearcam.base.findings import run_checks
 from gearcam.kinds.shared import accuracy_study
 from gearcam.results.study import Study, StudyResult
 
 if TYPE_CHECKING:
     from gearcam.kinds.gear_pair.build import GearPairResult
+    from gearcam.meshing.study import Meshing
+    from gearcam.pictures.charts import Chart
+    from gearcam.pictures.scenes import ContactPoints, Scene
     from gearcam.results.result import Progress
+
+_CLOSE: Final = 1e-9
+"""Driver angles closer than this, degrees, are the same."""
 
 
 def _mesh(result: GearPairResult, progress: Progress | None) -> StudyResult:
@@ -37,8 +45,66 @@ def _mesh(result: GearPairResult, progress: Progress | None) -> StudyResult:
         table=meshing.columns,
         group=meshing_facts(numbers(meshing)),
         found=found,
+        charts=_charts(result, meshing),
+        overlay=lambda scene: _contacts(meshing, scene),
         interrupted="" if meshing.complete else done,
     )
+
+
+def _charts(result: GearPairResult, meshing: Meshing) -> dict[str, Chart]:
+    """Return transmission error and contact patches of the pair as mounted."""
+    from gearcam.gears.contact import COAST, DRIVE
+    from gearcam.kinds.gear_pair.charts import DRIVER, transmission_chart
+    from gearcam.pictures.charts import Chart, Line
+
+    lead, rows = meshing.every("lead"), meshing.columns
+    charts = {}
+    if np.isfinite(lead).any():
+        side = {COAST: "coast", DRIVE: "drive"}[meshing.setup.side]
+        leads = {f"{side} flanks": lead}
+        charts["transmission_error"] = transmission_chart(result, "as mounted", meshing.phi1, leads)
+    own = np.flatnonzero(meshing.on_side)
+    own = own[np.argsort(rows["phi1_deg"][own], kind="stable")]
+    table = {"area_mm2": "overlap of the outlines", "predicted_mm2": "from the exact flanks"}
+    charts["contact_patch"] = Chart(
+        title="Contact patches of pairs of teeth, as mounted",
+        x=DRIVER,
+        y="area of overlap, mm2",
+        lines=tuple(
+            Line(
+                label=label,
+                x=np.asarray(rows["phi1_deg"])[own],
+                y=np.ma.filled(rows[name], np.nan)[own],
+                dots=True,
+            )
+            for name, label in table.items()
+        ),
+    )
+    return charts
+
+
+def _contacts(meshing: Meshing, scene: Scene) -> dict[str, ContactPoints]:
+    """Return the points of contact of the pair as mounted, at the places of a scene."""
+    from gearcam.pictures.scenes import ContactPoints
+
+    phi1, found = np.degrees(meshing.phi1), [block.contacts for block in meshing.blocks]
+    turn = scene.places[-1] if scene.closed else np.inf
+    half = 0.5 * float(np.min(np.diff(phi1))) if len(phi1) > 1 else 0.0
+    apart = np.abs(scene.places[:, None] - phi1)
+    if scene.closed:
+        apart = np.minimum(apart % turn, turn - apart % turn)
+    nearest = apart.argmin(axis=1)
+    shown = apart[np.arange(len(nearest)), nearest] <= half + _CLOSE
+    step = np.concatenate([b.first + c.step for b, c in zip(meshing.blocks, found, strict=True)])
+    point, force = (
+        np.concatenate([getattr(c, name) for c in found]) for name in ("point", "force")
+    )
+    rows = [
+        np.flatnonzero(step == k) if on else step[:0] for k, on in zip(nearest, shown, strict=True)
+    ]
+    chosen = np.concatenate(rows).astype(int)
+    start = np.concatenate([[0], np.cumsum([len(one) for one in rows])])
+    return {"as mounted": ContactPoints(start=start, point=point[chosen], force=force[chosen])}
 
 
 MESH: Final = Study(

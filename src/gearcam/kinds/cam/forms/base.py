@@ -181,7 +181,9 @@ def form_keys(document: Mapping[str, Any], table: Table) -> list[str]:
 
 def _takes(form: Form, title: str, name: str) -> bool:
     """Whether a form may be given a field of a table."""
-    return name in form.takes[title] or (title == "output" and name not in OWN_OUTPUT)
+    if title == "output" and name not in OWN_OUTPUT:
+        return True
+    return title not in form.takes or name in form.takes[title]
 
 
 def form_faults(name: str, parts: Mapping[str, Any], owners: Mapping[str, type]) -> Iterator[Fault]:
