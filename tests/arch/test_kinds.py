@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 import tomllib
 from pathlib import Path
@@ -107,8 +108,9 @@ def test_another_kind_works_on_the_command_line(
     assert "outer diameter  30 mm" in out
     assert main(["weigh", "mine.toml", "--density", "2.7"]) == 0
     folder = toy / "output" / "mine"
-    assert (folder / "weight.txt").read_text() == "2.7"
-    assert json.loads((folder / "summary.json").read_text())["weighed"] is True
+    rows = (folder / "weight.csv").read_text().split()
+    assert float(rows[1]) == pytest.approx(2.7e-3 * 0.25 * math.pi * (30**2 - 20**2))
+    assert json.loads((folder / "summary.json").read_text())["weight"]["mass_g_per_mm"] > 1.0
     assert main(["--help"]) == 0
     assert "Weigh a spacer." in capsys.readouterr().out
     (toy / "wide.toml").write_text(GOOD.replace("width_mm = 2", "width_mm = 30"))

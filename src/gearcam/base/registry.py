@@ -92,6 +92,9 @@ class DeferredMapping(Mapping[str, Any]):
     def __init__(self, place: str) -> None:
         self._place = place
 
+    def __repr__(self) -> str:
+        return f"<{self._place}>"
+
     def __getitem__(self, name: str) -> Any:
         return _imported(self._place)[name]
 

@@ -38,7 +38,7 @@ class Examined:
     parts: dict[str, Any] = field(default_factory=dict)
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Main:
     """The part of a design whose keys depend on a registry.
 
@@ -70,6 +70,9 @@ class Main:
     schema: Callable[[], tuple[dict[str, Any], dict[str, Any]]]
     template: Callable[[Any, str], Iterable[str]]
     laws: Callable[[], tuple[str, list[Any]]]
+
+    def __repr__(self) -> str:
+        return f'<{type(self).__name__} "{self.title}">'
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)

@@ -33,6 +33,7 @@ class AccuracySpec(Brief):
         TEXT,
         default=None,
         min_length=1,
+        example=["outline"],
         doc="stages to measure: law, centrode, flank, outline, solid, contact, cam; all by default",
     )
     repeat: int = param(

@@ -214,7 +214,7 @@ def stages_of(design: Design, asked: Sequence[str] | None = None) -> tuple[str, 
             message = f"{show(name)} is not a stage{what}" if name else "no stage is listed"
             hint = "" if name in every else did_you_mean(name, known)
             allowed = ", ".join(known) or f"none of designs of kind {design.kind}"
-            problems.append(Problem(message, key="--stage", allowed=allowed, hint=hint))
+            problems.append(Problem(message, key="accuracy.stage", allowed=allowed, hint=hint))
     if problems:
         raise DesignError(problems)
     return tuple(name for name in known if name in (asked or ()))

@@ -28,7 +28,11 @@ if TYPE_CHECKING:
     from gearcam.pictures.scenes import ContactPoints, Scene
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+def _anything(_: Design) -> None:
+    """Allow all settings; a function of the module, so that studies can be pickled."""
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Study:
     """A study: an entry of a kind of design.
 
@@ -69,9 +73,16 @@ class Study:
     options: Mapping[str, str] = field(default_factory=dict)
     argument: str = ""
     metavar: str = ""
-    demand: Callable[[Design], None] = lambda _: None
+    demand: Callable[[Design], None] = _anything
     repeats: tuple[str, ...] = ()
     many: bool = True
+
+    def __repr__(self) -> str:
+        return f'<Study "{self.name}">'
+
+
+def _nothing(_: Scene) -> dict[str, ContactPoints]:
+    return {}
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -118,7 +129,7 @@ class StudyResult(Displayed):
     group: Mapping[str, Any]
     found: tuple[Finding, ...] = ()
     charts: Mapping[str, Chart] = field(default_factory=dict)
-    overlay: Callable[[Scene], Mapping[str, ContactPoints]] = lambda _: {}
+    overlay: Callable[[Scene], Mapping[str, ContactPoints]] = _nothing
     pages: Mapping[str, bytes] = field(default_factory=dict)
     lines: tuple[str, ...] = ()
     interrupted: str = ""

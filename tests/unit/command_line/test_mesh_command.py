@@ -12,11 +12,12 @@ import pytest
 import gearcam
 from gearcam.base.errors import DesignError
 from gearcam.cli import main
+from gearcam.commands import studied
 from gearcam.designs import loads
 from gearcam.gears.contact import FlankPairs
 from gearcam.kinds.gear_pair import build as gear_pair
-from gearcam.kinds.gear_pair.commands import with_meshing
 from gearcam.kinds.gear_pair.design import GearPairDesign
+from gearcam.kinds.gear_pair.studies import MESH
 from gearcam.meshing import study as room
 from gearcam.meshing.contact import Contacts
 from gearcam.numeric.arrays import Array
@@ -115,7 +116,7 @@ def test_a_close_mounting_ends_with_an_error(design: str) -> None:
         (["--from", "40"], "before it begins"),
         (["--teeth", "21"], "no tooth 21"),
         (["--teeth", "2,2"], "listed twice"),
-        (["--teeth", "two"], "not a list of teeth"),
+        (["--teeth", "two"], "is not a list such as"),
         (["--center", "-1"], "meshing.center_distance_mm"),
     ],
 )
@@ -194,12 +195,12 @@ def test_an_interruption_before_the_first_step_writes_nothing(
 
 
 def test_settings_from_python_meet_the_same_rules() -> None:
-    design = with_meshing(loads(TEXT), {"overclosure_deg": -0.5, "teeth": [3, 4]})
+    design = studied(MESH, loads(TEXT), {"overclosure_deg": -0.5, "teeth": [3, 4]})
     assert design.meshing.overclosure == pytest.approx(math.radians(-0.5))
     assert design.meshing.teeth == (3, 4)
     assert design.meshing.steps == 12
     with pytest.raises(DesignError, match=r"meshing\.overclosure_deg"):
-        with_meshing(design, {"overclosure_deg": 2})
+        studied(MESH, design, {"overclosure_deg": 2})
 
 
 def test_a_study_without_a_beginning_begins_at_zero() -> None:

@@ -114,7 +114,7 @@ def test_the_files_of_a_build_stay(design: str) -> None:
         (("--stage", "outlin"), ('"outlin" is not a stage', "did you mean outline?")),
         (("--stage", "centrode"), ('"centrode" is not a stage of designs of kind cam',)),
         (("--stage", "cam,law"), ('"law" is not a stage of designs of kind cam',)),
-        (("--stage", ","), ("no stage is listed",)),
+        (("--stage", ","), ("the list is empty",)),
     ],
 )
 def test_other_stages_are_refused(
@@ -124,7 +124,7 @@ def test_other_stages_are_refused(
     assert code == 2
     told = capsys.readouterr().err
     assert all(words in told for words in said)
-    assert "allowed: outline, solid, contact, cam" in told
+    assert "allowed: outline, solid, contact, cam" in told or "the list is empty" in told
     assert not folder.exists()
 
 
@@ -135,8 +135,8 @@ def test_no_repeats_are_refused(
     code, folder = run(design, "--repeat", count)
     assert code == 2
     told = capsys.readouterr().err
-    assert "--repeat" in told
-    assert "1 or more" in told
+    assert "accuracy.repeat" in told
+    assert "from 1 to 1000" in told
     assert not folder.exists()
 
 

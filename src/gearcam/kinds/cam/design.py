@@ -92,7 +92,7 @@ class FollowSpec(Brief):
 
 @dataclass(frozen=True, kw_only=True)
 class CamOutputSpec(OutputSpec):
-    """Which files of a cam are written, and how exact (see `OutputSpec`).
+    """Which files and studies of a cam are written, and how exact (see `OutputSpec`).
 
     Parameters
     ----------

@@ -42,7 +42,7 @@ _COARSEST: Final = 50
 
 @dataclass(frozen=True, kw_only=True)
 class PairOutputSpec(OutputSpec):
-    """Which files of a gear pair are written, and how exact (see `OutputSpec`).
+    """Which files and studies of a pair are written, and how exact (see `OutputSpec`).
 
     Parameters
     ----------

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -13,6 +15,7 @@ from gearcam.results.study import Study, StudyResult
 if TYPE_CHECKING:
     from gearcam.kinds.gear_pair.build import GearPairResult
     from gearcam.meshing.study import Meshing
+    from gearcam.numeric.arrays import Array, Ints, Plane
     from gearcam.pictures.charts import Chart
     from gearcam.pictures.scenes import ContactPoints, Scene
     from gearcam.results.result import Progress
@@ -46,7 +49,7 @@ def _mesh(result: GearPairResult, progress: Progress | None) -> StudyResult:
         group=meshing_facts(numbers(meshing)),
         found=found,
         charts=_charts(result, meshing),
-        overlay=lambda scene: _contacts(meshing, scene),
+        overlay=_contacts(meshing),
         interrupted="" if meshing.complete else done,
     )
 
@@ -83,27 +86,33 @@ def _charts(result: GearPairResult, meshing: Meshing) -> dict[str, Chart]:
     return charts
 
 
-def _contacts(meshing: Meshing, scene: Scene) -> dict[str, ContactPoints]:
-    """Return the points of contact of the pair as mounted, at the places of a scene."""
+def _contacts(meshing: Meshing) -> Callable[[Scene], dict[str, ContactPoints]]:
+    """Return the function that gives the points of contact as mounted at the places of a scene."""
+    found = [block.contacts for block in meshing.blocks]
+    step = [block.first + one.step for block, one in zip(meshing.blocks, found, strict=True)]
+    columns = (step, *([getattr(one, name) for one in found] for name in ("point", "force")))
+    return partial(_at_places, np.degrees(meshing.phi1), *map(np.concatenate, columns))
+
+
+def _at_places(
+    phi1: Array, step: Ints, point: Plane, force: Plane, scene: Scene
+) -> dict[str, ContactPoints]:
+    """Return for each place of a scene the points of the nearest phase, if there is one."""
     from gearcam.pictures.scenes import ContactPoints
 
-    phi1, found = np.degrees(meshing.phi1), [block.contacts for block in meshing.blocks]
-    turn = scene.places[-1] if scene.closed else np.inf
-    half = 0.5 * float(np.min(np.diff(phi1))) if len(phi1) > 1 else 0.0
     apart = np.abs(scene.places[:, None] - phi1)
     if scene.closed:
-        apart = np.minimum(apart % turn, turn - apart % turn)
+        apart %= scene.places[-1]
+        apart = np.minimum(apart, scene.places[-1] - apart)
     nearest = apart.argmin(axis=1)
-    shown = apart[np.arange(len(nearest)), nearest] <= half + _CLOSE
-    step = np.concatenate([b.first + c.step for b, c in zip(meshing.blocks, found, strict=True)])
-    point, force = (
-        np.concatenate([getattr(c, name) for c in found]) for name in ("point", "force")
-    )
+    half = 0.5 * float(np.diff(phi1).min(initial=0.0 if len(phi1) < 2 else np.inf))
+    near = apart[np.arange(len(nearest)), nearest] <= half + _CLOSE
     rows = [
-        np.flatnonzero(step == k) if on else step[:0] for k, on in zip(nearest, shown, strict=True)
+        np.flatnonzero(step == phase) if there else step[:0]
+        for phase, there in zip(nearest, near, strict=True)
     ]
     chosen = np.concatenate(rows).astype(int)
-    start = np.concatenate([[0], np.cumsum([len(one) for one in rows])])
+    start = np.cumsum([0, *map(len, rows)])
     return {"as mounted": ContactPoints(start=start, point=point[chosen], force=force[chosen])}
 
 

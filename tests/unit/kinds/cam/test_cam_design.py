@@ -14,6 +14,7 @@ import pytest
 from claims.of_rises import RISE_CLAIMS
 from gearcam.base.errors import DesignError
 from gearcam.cams.spec import CamSpec, FollowerSpec
+from gearcam.commands import studied
 from gearcam.designs import document_of, load, loads
 from gearcam.designs.kind import KINDS
 from gearcam.designs.template import template
@@ -21,7 +22,7 @@ from gearcam.designs.validate import faults_of
 from gearcam.kinds.cam.blank import CamBlank
 from gearcam.kinds.cam.design import CamDesign, CamOutputSpec
 from gearcam.kinds.cam.motion import phase_table, rise_table, turn_tables
-from gearcam.kinds.gear_pair.commands import with_meshing
+from gearcam.kinds.gear_pair.studies import MESH
 from gearcam.laws.phases_of_lift import (
     PHASES,
     DwellPhase,
@@ -192,7 +193,7 @@ def test_a_design_made_in_python_meets_the_same_rules() -> None:
     assert design.motion == good["motion"]
     assert not design.blank.timing_marks
     with pytest.raises(DesignError, match="for designs of kind gear-pair"):
-        with_meshing(design, {"steps": 3})
+        studied(MESH, design, {"steps": 3})
 
 
 @pytest.mark.parametrize("kind", list(KINDS))
