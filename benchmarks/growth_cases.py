@@ -312,7 +312,7 @@ def _of_cams() -> list[Series]:
     for name, (follower, form) in FOLLOWERS.items():
         if "yoke" in form:
             continue
-        lift = "lift_deg = 0.0001" if "oscillating" in follower else "lift_mm = 0.0001"
+        lift = "lift_deg = 0.001" if "oscillating" in follower else "lift_mm = 0.001"
         span = "way_mm" if "translating" in form else "angle_deg"
         told = partial(phases, lift=lift, span=span)
         made.append(Series(f"phases, {name}", KNOTS, partial(_moved, name, told)))

@@ -72,7 +72,7 @@ def _list(base: type, text: str) -> list[Any]:
         raise argparse.ArgumentTypeError(f'"{text}" is not a list such as 1,27') from None
 
 
-def studied(study: Study, design: Design, options: Mapping[str, Any]) -> Design:
+def studied(study: Study, design: Design, options: Mapping[str, Any]) -> Any:
     """Return the design of a study's command, with the given settings.
 
     Parameters
@@ -87,6 +87,7 @@ def studied(study: Study, design: Design, options: Mapping[str, Any]) -> Design:
     Returns
     -------
     Design
+        Of the same kind.
 
     Raises
     ------
