@@ -11,7 +11,7 @@ from typing import Any, Final
 
 from random_designs.blank import blank
 from random_designs.draw import Draw, short
-from random_designs.output import asked
+from random_designs.output import asked, studies
 
 Rise = dict[str, Any]
 
@@ -323,4 +323,7 @@ def design(d: Draw, index: int) -> dict[str, Any]:
         d.pick(phases)["angle_deg"] = "rest"
     _form(d, made, size, lift)
     made["output"] |= asked(d, _SHARES)
+    studies(d, made, "cam")
+    if d.chance(0.03):
+        made["follow"] = {"file": "measured.csv", "wall": d.pick(["1", "inner", "outer"])}
     return made

@@ -12,7 +12,7 @@ from typing import Any, Final
 
 from random_designs.blank import blank
 from random_designs.draw import Draw, short
-from random_designs.output import asked
+from random_designs.output import asked, studies
 
 Law = dict[str, Any]
 Counts = tuple[int, int]
@@ -361,4 +361,5 @@ def design(d: Draw, index: int) -> dict[str, Any]:
     if closed and not opened and z[1] > z[0] and d.chance(0.3):
         _ring(d, made, module)
     made["output"] |= asked(d, _SHARES, min(1.0, _AFFORDABLE / _vertices(made)))
+    studies(d, made, "law", "mesh")
     return made

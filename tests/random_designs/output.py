@@ -43,6 +43,28 @@ def asked(d: Draw, shares: Mapping[str, float], rarer: float = 1.0) -> dict[str,
     return output
 
 
+def studies(d: Draw, design: dict[str, Any], stage: str, name: str = "accuracy") -> None:
+    """Ask for a study in a few designs, and set that of accuracy to its cheapest.
+
+    Parameters
+    ----------
+    d : Draw
+        Random numbers of this design.
+    design : dict
+        The design, which is changed.
+    stage : str
+        The stage of which the accuracy is measured.
+    name : str
+        The study that some ask for.
+    """
+    if d.chance(0.05):
+        design["output"]["studies"] = [name]
+    if d.chance(0.05):
+        design["accuracy"] = {"stage": [stage], "repeat": 1}
+        if d.chance(0.2):
+            design["output"]["studies"] = ["accuracy"]
+
+
 def limits(d: Draw, document: Mapping[str, Any]) -> dict[str, Any]:
     """Return one or two limits of checks of a `document`, drawn by `d` near their defaults."""
     known = known_keys(known_keys(schema(), document)["limits"], {})

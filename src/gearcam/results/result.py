@@ -520,7 +520,8 @@ class Result(Displayed):
                 contents |= self.files(kind, measured)
             self.sizes = {name: len(content) for name, content in contents.items()}
         tell("writing")
-        return self._put(directory, contents, self.facts_with(measured), self.findings)
+        facts = self.facts_with(measured) if measured else self.facts
+        return self._put(directory, contents, facts, self.findings)
 
     def keep(
         self,
