@@ -16,8 +16,8 @@ from gearcam.gears.contact import DRIVE
 from gearcam.gears.pair import Gear
 from gearcam.gears.spec import PairSpec, Rack, RingSpec
 from gearcam.gears.track import Wheel
-from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.kinds.gear_pair.design import GearPairDesign, PairOutputSpec
+from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.meshing.study import Setup
 from gearcam.parts.blank import Blank
 from helpers_built import built

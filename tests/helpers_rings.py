@@ -18,8 +18,8 @@ from shapely.affinity import affine_transform
 import gearcam
 from gearcam.gears.outline import Outline
 from gearcam.gears.spec import PairSpec
-from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.kinds.gear_pair.design import GearPairDesign
+from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.laws.ratio.formula import Formula
 from gearcam.laws.ratio.phases import Phases
 from helpers_built import built

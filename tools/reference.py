@@ -10,7 +10,6 @@ import inspect
 import math
 import re
 from collections.abc import Callable, Iterator, Mapping
-from functools import partial
 from pathlib import Path
 from typing import Any, Final
 
@@ -311,7 +310,7 @@ def files() -> Iterator[str]:
 def format_words(kind: Kind, word: str) -> tuple[str, str]:
     """Return the names of the files of a word of ``files``, and what they hold."""
     made = kind.files[word]
-    doc = inspect.getdoc(made.func if isinstance(made, partial) else made) or ""
+    doc = inspect.getdoc(made) or ""
     _, listed, holds, *_ = doc.replace("{format}", word.removeprefix("drawing-")).split("\n\n")
     return names(listed.removeprefix("Files: ").rstrip(".")), names(holds)
 

@@ -10,7 +10,7 @@ import pytest
 
 import gearcam
 from gearcam.kinds.cam.build import CamResult
-from gearcam.kinds.gear_pair.build import GearPairResult, Side
+from gearcam.kinds.gear_pair.result import GearPairResult, Side
 from gearcam.laws.ratio.constant import Constant
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.numeric.columns import Columns

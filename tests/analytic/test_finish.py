@@ -18,7 +18,7 @@ from gearcam.base.tolerances import DEFAULT
 from gearcam.gears.flank import Curve
 from gearcam.gears.pair import Gear, make_gear, make_pair
 from gearcam.gears.spec import Finish, Rack
-from gearcam.kinds.gear_pair.build import GearPairResult
+from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.laws.ratio.composite import Multispeed
 from gearcam.parts.parallel import moved, rounded
 from helpers_pairs import job, profile

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from gearcam.gears.contact import COAST, DRIVE, flank_pairs
-from gearcam.kinds.gear_pair.build import GearPairResult
+from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.laws.ratio.constant import Constant
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.numbers import numbers

@@ -13,7 +13,7 @@ import mpmath
 import pytest
 
 from gearcam.base.errors import InfeasibleError
-from gearcam.kinds.gear_pair.build import GearPairResult
+from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.laws.ratio.formula import Formula
 from helpers_pairs import job
 

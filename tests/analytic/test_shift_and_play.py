@@ -11,7 +11,7 @@ import shapely
 
 from gearcam.base.errors import InfeasibleError
 from gearcam.gears.spec import Rack
-from gearcam.kinds.gear_pair.build import GearPairResult
+from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.laws.ratio.constant import Constant
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.laws.ratio.phases import Phases

@@ -10,7 +10,7 @@ from gearcam.base.tolerances import DEFAULT
 from gearcam.gears.outline import Outline, build_outline
 from gearcam.gears.pair import GearPair
 from gearcam.gears.tip_pass import TipPass, tip_pass
-from gearcam.kinds.gear_pair.build import GearPairResult
+from gearcam.kinds.gear_pair.result import GearPairResult
 from helpers_rings import driver, overlap, passed_on_circles, ring
 
 CONSTANT = {"type": "constant"}

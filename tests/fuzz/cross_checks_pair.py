@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Final
 
 from gearcam.base.findings import run_checks
-from gearcam.kinds.gear_pair.build import GearPairResult
+from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.meshing.checks import KIND
 from gearcam.meshing.numbers import numbers
 from gearcam.meshing.settings import MeshingSpec

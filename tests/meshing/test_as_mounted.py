@@ -10,7 +10,7 @@ import pytest
 
 from gearcam.base.errors import InfeasibleError
 from gearcam.gears.contact import COAST, DRIVE, FlankPairs, flank_pairs
-from gearcam.kinds.gear_pair.build import GearPairResult
+from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.edges import first_touch, non_contact, touches

@@ -13,7 +13,7 @@ import shapely
 
 import gearcam
 from gearcam.gears.contact import COAST, DRIVE, FlankPairs, flank_pairs
-from gearcam.kinds.gear_pair.build import GearPairResult
+from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.edges import touches

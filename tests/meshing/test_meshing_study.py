@@ -18,7 +18,7 @@ from gearcam.gears.contact import COAST, DRIVE, flank_pairs
 from gearcam.gears.outline import build_outline
 from gearcam.gears.subject import KIND as PAIR_KIND
 from gearcam.gears.subject import Subject
-from gearcam.kinds.gear_pair.build import GearPairResult
+from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.meshing.checks import KIND
 from gearcam.meshing.numbers import numbers, pairs_in_contact

@@ -18,7 +18,7 @@ from gearcam.base.errors import InfeasibleError
 from gearcam.cli import main
 from gearcam.gears.contact import COAST, DRIVE, flank_pairs
 from gearcam.gears.pair import Gear
-from gearcam.kinds.gear_pair.build import GearPairResult
+from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.laws.ratio.centrodes import LogSpiral
 from gearcam.laws.ratio.formula import Formula, RackLaw
 from gearcam.laws.ratio.span import RACK, RING, WHEEL

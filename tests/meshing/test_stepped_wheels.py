@@ -11,7 +11,7 @@ from gearcam.base.errors import InfeasibleError
 from gearcam.base.tolerances import DEFAULT
 from gearcam.gears.pair import Gear, leads, make_gear, stepped
 from gearcam.gears.spec import StepsSpec
-from gearcam.kinds.gear_pair.build import GearPairResult
+from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.meshing.numbers import numbers
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.meshing.study import study

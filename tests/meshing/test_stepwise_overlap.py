@@ -10,7 +10,7 @@ import pytest
 import shapely
 from numpy.typing import NDArray
 
-from gearcam.kinds.gear_pair.build import GearPairResult
+from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.meshing.half_teeth import HalfTeeth, half_teeth
 from gearcam.meshing.overlap import Turning

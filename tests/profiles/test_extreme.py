@@ -13,7 +13,7 @@ import shapely
 
 import gearcam
 from gearcam.kinds.cam.build import CamResult
-from gearcam.kinds.gear_pair.build import GearPairResult
+from gearcam.kinds.gear_pair.result import GearPairResult
 from helpers_extreme import EXTREME, misses, must_of, outcome, whole, with_nearest
 from helpers_pairs import Assembly, explained
 from helpers_rings import overlap

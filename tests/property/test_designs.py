@@ -20,7 +20,7 @@ from gearcam.base.errors import InfeasibleError
 from gearcam.gears.flank import trace
 from gearcam.gears.outline import Outline
 from gearcam.gears.spec import Rack
-from gearcam.kinds.gear_pair.build import GearPairResult
+from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.laws.ratio.constant import Constant
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.laws.ratio.formula import Formula

@@ -20,7 +20,7 @@ from hypothesis import strategies as st
 
 import gearcam
 from gearcam.base.errors import InfeasibleError
-from gearcam.kinds.gear_pair.build import GearPairResult
+from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.laws.ratio.centrodes import EccentricCircle, Limacon, Lobed, LogSpiral
 from gearcam.laws.ratio.composite import Fourier, Multispeed, ThreePhasePolynomial
 from gearcam.laws.ratio.constant import Constant

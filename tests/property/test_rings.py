@@ -9,7 +9,7 @@ import pytest
 
 import gearcam
 from gearcam.base.errors import InfeasibleError
-from gearcam.kinds.gear_pair.build import GearPairResult
+from gearcam.kinds.gear_pair.result import GearPairResult
 from helpers_rings import CHORDS, overlap, random_ring, ring
 
 PATIENCE = 60.0

@@ -19,7 +19,7 @@ from gearcam.export.cut_svg import cut_svg
 from gearcam.export.lettering import labelled, strokes, text_width
 from gearcam.export.nest import GAP, nested
 from gearcam.kinds.cam.build import CamResult
-from gearcam.kinds.gear_pair.build import GearPairResult
+from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import Blank, WheelBlank
 from gearcam.parts.body import Mark, Part

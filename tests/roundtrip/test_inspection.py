@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.kinds.gear_pair.design import PairOutputSpec
+from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.parts.blank import Blank
 from helpers_files import table
 from helpers_pairs import profile

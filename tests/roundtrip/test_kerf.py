@@ -21,8 +21,8 @@ from gearcam.base.quantities import LENGTH
 from gearcam.designs import load, loads
 from gearcam.export.dxf_read import DxfError, read_dxf, read_outline
 from gearcam.kinds.cam.build import CamResult
-from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.kinds.gear_pair.design import PairOutputSpec
+from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.parts.blank import Blank, WheelBlank
 from gearcam.parts.body import Part
 from gearcam.parts.make import make_part

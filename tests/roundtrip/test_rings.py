@@ -18,9 +18,9 @@ from ezdxf import path as ezpath
 
 from gearcam.export.step import step_bytes
 from gearcam.gears.spec import RingSpec, StepsSpec
-from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.kinds.gear_pair.design import PairOutputSpec
 from gearcam.kinds.gear_pair.files import FILES
+from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.parts.blank import Blank
 from gearcam.pictures.drawings import UNMOVED
 from helpers_rings import WAIST, ring_job, turned

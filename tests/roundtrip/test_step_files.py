@@ -7,8 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.kinds.gear_pair.design import PairOutputSpec
+from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.parts.blank import Blank
 from helpers_pairs import profile
 from helpers_step import read_step

@@ -9,7 +9,7 @@ const MOST_TICKS = 8; // of a logarithmic axis
 const SHORT = 2.5; // decades on an axis with ticks between powers of ten
 const LETTERS = 12; // height of a line of text in a chart, pixels
 const AT_ONCE = 3; // charts drawn per frame, so that the parts keep moving
-const LEADING = 3; // charts in sight; the others are folded
+const LEADING = 3; // charts in sight, with those of studies; the others are folded
 
 const brief = (value) => String(Number(value.toPrecision(5)));
 
@@ -303,6 +303,15 @@ class ChartView {
   }
 }
 
+// On paper: light colours, and folded sections open.
+function paper(on) {
+  for (const one of document.querySelectorAll(".printed")) {
+    if (on) one.dataset.open = one.open;
+    one.open = on || one.dataset.open === "true";
+  }
+  document.documentElement.classList.toggle("paper", on);
+}
+
 // All charts of a document. They are drawn once in sight, a few per frame.
 class Charts {
   constructor(home, page) {
@@ -324,11 +333,14 @@ class Charts {
     this.sight.disconnect();
     this.home.querySelectorAll("figure").forEach((figure) => figure.remove());
     const more = this.home.querySelector("details"); // on a page of charts none is folded
-    const place = (k) => (k < LEADING || !more ? this.home : more.querySelector("div"));
-    this.views = charts.map((chart, k) => new ChartView(chart, place(k), this.page));
+    // a design has asked for the charts of studies, whose names are study.chart
+    const folded = (chart, k) => more && k >= LEADING && !chart.name.includes(".");
+    const place = (...one) => (folded(...one) ? more.querySelector("div") : this.home);
+    this.views = charts.map((chart, k) => new ChartView(chart, place(chart, k), this.page));
     if (more) {
-      more.hidden = charts.length <= LEADING;
-      more.querySelector("summary").textContent = `${charts.length - LEADING} more charts`;
+      const count = charts.filter(folded).length;
+      more.hidden = !count;
+      more.querySelector("summary").textContent = `${count} more charts`;
       this.home.append(more);
     }
     for (const view of this.views) this.sight.observe(view.figure);

@@ -1,4 +1,4 @@
-// A page of charts without parts.
+// A page without moving parts.
 
 const { title, charts: shown } = JSON.parse(document.getElementById("document").textContent);
 const page = { title, colours: palette() };
@@ -10,7 +10,7 @@ function repaint() {
 }
 
 function print(on) {
-  document.documentElement.classList.toggle("paper", on);
+  paper(on);
   page.colours = palette();
   charts.print(on);
 }

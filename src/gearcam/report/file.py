@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.base.errors import GearcamError
+from gearcam.results.parts import Files, PartsResult
 
 if TYPE_CHECKING:
-    from gearcam.export.files import Files
     from gearcam.results.result import Result
 
 CHORDS: Final = 0.02
@@ -54,17 +54,19 @@ def solids_shown(result: Result) -> dict[str, str]:
     Returns
     -------
     dict
-        ``view``, a page of its own; or ``refusal``, why there is none.
+        ``view``, a page of its own; or ``refusal``, why there is none; empty without solids.
     """
     from gearcam.export.mesh import view_page
 
+    if not isinstance(result, PartsResult):
+        return {}
     refusal = ""
     # small teeth refuse the chords of the view: then those of the design are shown
     for chords in (CHORDS, 0.0):
         try:
             fine = (result.design.output.chord_tolerance or 0.0) < chords
             shown = result.with_chords(chords) if fine else result
-            return {"view": view_page(result.kind.assembled(shown))}
+            return {"view": view_page(shown.assembled)}
         except GearcamError as error:
             refusal = str(error)
     return {"refusal": refusal}

@@ -264,13 +264,9 @@ function unfold() {
   if (folded) folded.open = true;
 }
 
-// On paper: another width, light colours, and folded sections open.
+// On paper: another width as well.
 function print(on) {
-  for (const one of document.querySelectorAll(".printed")) {
-    if (on) one.dataset.open = one.open;
-    one.open = on || one.dataset.open === "true";
-  }
-  document.documentElement.classList.toggle("paper", on);
+  paper(on);
   page.colours = { ...palette(), print: on };
   if (parts.fitted) parts.fit();
   draw();

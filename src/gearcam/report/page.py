@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Final, cast
+from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.base.numerals import shown, size_of
 from gearcam.report.data import chart_data, scene_data
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from gearcam.base.facts import Facts
     from gearcam.base.findings import Finding
     from gearcam.pictures.charts import Chart
-    from gearcam.pictures.scenes import Scene
     from gearcam.results.result import Result
 
 PAGE: Final = "report.html"
@@ -39,19 +38,14 @@ DRAFTED: Final = ("verdict", "remedies", "findings", "facts")
 DRAFT_PLACES: Final = 120
 """Steps of the driver in the scene of a draft: 3 degrees of a turn, interpolated linearly."""
 
-UPLOT: Final = "uPlot/uPlot.iife.min.js"
-"""The library that draws axes."""
+_CHARTS: Final = ("uPlot/uPlot.iife.min.js", "parts.js", "saves.js", "charts.js")
+"""Parts of the script that draw charts, each after those that it needs."""
 
-SCRIPTS: Final = (
-    UPLOT,
-    "scene.js",
-    "parts.js",
-    "saves.js",
-    "charts.js",
-    "page.js",
-    "solids.js",
-)
-"""Parts of the page's script, each after those that it needs."""
+SCRIPTS: Final = ("scene.js", *_CHARTS, "page.js", "solids.js")
+"""Parts of the script of a page with moving parts."""
+
+STILL: Final = (*_CHARTS, "charts_page.js", "solids.js")
+"""Parts of the script of a page without moving parts."""
 
 _ERRORS: Final = {
     "law": ("driven angle", "rad"),
@@ -108,7 +102,7 @@ def page(
             solids=solids or {},
             view=_embedded((solids or {}).get("view", "")),
             style=_own("uPlot/uPlot.min.css", "page.css", "solids.css"),
-            script=_own(*SCRIPTS),
+            script=_own(*(SCRIPTS if document["scene"] else STILL)),
             live_style=_own("live.css") if live else "",
             live_script=_own("live.js") if live else "",
             licence=_own("uPlot/LICENSE"),
@@ -140,7 +134,7 @@ def charts_page(title: str, charts: Sequence[Chart], text: str) -> bytes:
         "text": text,
         "data": _embedded({"title": title, "charts": data}),
         "style": _own("uPlot/uPlot.min.css", "page.css"),
-        "script": _own(UPLOT, "parts.js", "saves.js", "charts.js", "charts_page.js"),
+        "script": _own(*_CHARTS, "charts_page.js"),
         "licence": _own("uPlot/LICENSE"),
     }
     return rendered("charts.html", told).encode()
@@ -163,36 +157,32 @@ def document(
     Returns
     -------
     dict
-        ``title``, ``kind``, ``blocks``, ``scene``, ``charts``.
+        ``title``, ``kind``, ``blocks``, ``scene`` (None without moving parts), ``charts``.
 
     Raises
     ------
     InfeasibleError
         If the design cannot be made.
     """
-    scene = _moving(result)
+    scene = result.scene()
+    driver = scene.driver if scene else ""
     return {
         "title": result.design.name,
         "kind": result.design.kind,
-        "scene": scene_data(scene),
-        "charts": [chart_data(name, result.chart(name), scene.driver) for name in result.charts],
+        "scene": scene_data(scene) if scene else None,
+        "charts": [chart_data(name, result.chart(name), driver) for name in result.charts],
         "blocks": blocks(result, measured, seek=seek),
     }
-
-
-def _moving(result: Result, places: int | None = None) -> Scene:
-    """Return the moving parts of a result; every kind with a report has them."""
-    return cast("Scene", result.scene(places))
 
 
 def draft(result: Result) -> dict[str, Any]:
     """Return the part of a document that follows a slider: without charts, remedies and files."""
     result = result.plain
-    made = _moving(result, DRAFT_PLACES)
+    scene = result.scene(DRAFT_PLACES)
     return {
         "title": result.design.name,
         "kind": result.design.kind,
-        "scene": scene_data(made),
+        "scene": scene_data(scene) if scene else None,
         "blocks": blocks(result, names=DRAFTED, seek=False),
     }
 

@@ -17,7 +17,6 @@ from gearcam.designs.kind import DesignKind
 
 if TYPE_CHECKING:
     from gearcam.designs.design import Design
-    from gearcam.parts.solids import Mesh
     from gearcam.pictures.charts import Chart
     from gearcam.pictures.scenes import Scene
     from gearcam.results.advice import Advice
@@ -52,12 +51,7 @@ class Kind(DesignKind):
     charts : mapping of str to ChartMaker
         Charts by name; the report leads with the first three.
     scene : callable
-        ``scene(result, places)`` returns the moving parts at so many positions of the driver;
-        needed for a report.
-    assembled : callable
-        ``assembled(result)`` returns the solids in their places; needed for a report.
-    framed : callable
-        ``framed(result)`` returns the page for a notebook as HTML; empty: picture and facts.
+        ``scene(result, places)`` returns the moving parts at so many positions of the driver.
     advice : callable
         ``advice()`` returns how remedies are searched for.
     studies : mapping of str to Study
@@ -72,8 +66,6 @@ class Kind(DesignKind):
     files: Mapping[str, FileMaker] = field(default_factory=dict)
     charts: Mapping[str, ChartMaker] = field(default_factory=dict)
     scene: Callable[[Any, int], Scene | None] = lambda *_: None
-    assembled: Callable[[Any], dict[str, Mesh]] = lambda _: {}
-    framed: Callable[[Any], str] = lambda _: ""
     advice: Callable[[], Advice] = _plain_advice
     studies: Mapping[str, Study] = field(default_factory=dict)
     ladders: Mapping[str, Callable[[Any], Ladder]] = field(default_factory=dict)

@@ -22,6 +22,7 @@ from gearcam.base.errors import GearcamError
 from gearcam.base.facts import Fact, Facts
 from gearcam.base.findings import Finding, in_order
 from gearcam.base.numerals import tree
+from gearcam.base.registry import deferred
 from gearcam.base.tolerances import DEFAULT, Tolerances
 from gearcam.designs.design import hash_of, summary_of
 from gearcam.numeric.arguments import one_of, refused
@@ -30,10 +31,7 @@ from gearcam.results.written import Written, demand_formats, versions
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from trimesh import Trimesh
 
-    from gearcam.parts.body import Part
-    from gearcam.parts.solids import Mesh
     from gearcam.pictures.charts import Chart
     from gearcam.pictures.scenes import Scene
     from gearcam.results.study import StudyResult
@@ -49,6 +47,10 @@ REPORT: Final = "report"
 Progress = Callable[[str, int, int], None]
 """Called with the name of the next stage, the number of stages done and their total."""
 
+
+_framed = deferred("gearcam.report.file:framed")
+"""Returns the page of a result for a notebook; named like the renderer of `gearcam.base.display`,
+since the report is made from results."""
 
 _OF_STUDIES: Final = ("_studied", "facts", "findings", "design_hash", "sought", "sizes")
 """What a result with other studies computes anew."""
@@ -200,28 +202,6 @@ class Result(Displayed):
         vars(made).update(known | {"design": design, "timings": dict(self.timings)})
         return made
 
-    @cached_property
-    def parts(self) -> tuple[Part, ...]:
-        """The parts to be made, with bores, hubs and openings; empty for kinds without parts."""
-        return ()
-
-    @cached_property
-    def solids(self) -> dict[str, Trimesh]:
-        """The parts as closed `trimesh.Trimesh` objects by name, mm, each in its own frame.
-
-        They extend from z = 0 to the width, hubs beyond it; `InfeasibleError` if impossible.
-        """
-        from gearcam.export.mesh import trimeshes
-
-        return trimeshes(self.meshes)
-
-    @cached_property
-    def meshes(self) -> dict[str, Mesh]:
-        """The parts as closed meshes of plain arrays by name, mm, as used for files."""
-        from gearcam.parts.solids import solid
-
-        return {part.name: solid(part) for part in self.parts}
-
     def picture(self) -> str:
         """Return the picture of the file kind ``svg``, or why there is none, as SVG text."""
         if PICTURE not in self.kind.formats:
@@ -236,7 +216,7 @@ class Result(Displayed):
         try:
             facts, findings = self.facts, self.findings
             if REPORT in self.kind.formats:
-                return self.kind.framed(self)
+                return _framed(self)
         except GearcamError as error:
             return renderer().refusal(self.design.name, error)
         told = [f"{one.severity}, {one.code}: {one.message} {one.where}" for one in findings]

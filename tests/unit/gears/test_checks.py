@@ -15,7 +15,7 @@ from gearcam.base.findings import CHECKS, Finding
 from gearcam.gears.checks import remote_cutter, undercut
 from gearcam.gears.spec import Rack, RingSpec
 from gearcam.gears.subject import KIND, Subject
-from gearcam.kinds.gear_pair.build import GearPairResult
+from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.laws.ratio.composite import Fourier
 from gearcam.laws.ratio.constant import Constant
 from gearcam.laws.ratio.ellipse import Ellipse

@@ -11,7 +11,7 @@ import shapely
 
 import gearcam as gc
 from gearcam.base.errors import InfeasibleError
-from gearcam.kinds.gear_pair.build import GearPairResult
+from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank
 from gearcam.parts.body import Opening, Part

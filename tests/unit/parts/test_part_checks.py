@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from gearcam.base.findings import Finding
-from gearcam.kinds.gear_pair.build import GearPairResult
+from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.parts.blank import Blank
 from helpers_pairs import profile
 

@@ -13,8 +13,8 @@ import shapely
 import gearcam
 from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.gears.spec import Rack, RingSpec, StepsSpec
-from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.kinds.gear_pair.design import PairOutputSpec
+from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.laws.ratio.constant import Constant
 from gearcam.laws.ratio.formula import Formula
 from gearcam.numeric.contour import Contour

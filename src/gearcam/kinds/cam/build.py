@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
@@ -24,7 +26,7 @@ from gearcam.numeric.columns import Columns
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.parts.blank import KIND as PARTS_KIND
-from gearcam.results.result import Progress, Result
+from gearcam.results.parts import PartsResult
 
 if TYPE_CHECKING:
     from gearcam.cams.cam import Cam
@@ -34,11 +36,11 @@ if TYPE_CHECKING:
     from gearcam.parts.body import Part
     from gearcam.parts.checks import PartsSubject
     from gearcam.pictures.drawings import Drawing
+    from gearcam.results.result import Progress
     from gearcam.results.study import StudyResult
-    from gearcam.sheets.sheet import Sheet
 
 
-class CamResult(Result):
+class CamResult(PartsResult):
     """Result of the design of a cam, computed on demand.
 
     Parameters
@@ -189,13 +191,43 @@ class CamResult(Result):
         """The cam as a part, or its first part, with bore, hub, holes and clearance."""
         return self.parts[0]
 
-    @cached_property
-    def to_cut(self) -> tuple[Drawing, ...]:
-        """Cutting paths: the parts, or paths offset by the kerf."""
-        from gearcam.pictures.drawings import cut_drawing
+    @property
+    def plates(self) -> tuple[Drawing, ...]:
+        """A drawing of each part with its curves, in its own frame."""
+        return tuple(self.form.drawings(self))
 
-        kerf = self.design.output.kerf
-        return tuple(cut_drawing(one, kerf) for one in self.form.drawings(self))
+    @property
+    def references(self) -> tuple[Drawing, ...]:
+        """The parts with their curves, beside cutting paths that are offset by the kerf."""
+        if not self.design.output.kerf:
+            return ()
+        return tuple(replace(one, name=f"{one.name}_reference") for one in self.plates)
+
+    @property
+    def assembly(self) -> str:
+        """Stem of the files of the assembled cams; empty for a single part."""
+        return self.form.assembly
+
+    @property
+    def heights(self) -> tuple[float, ...]:
+        """Height of each cam on the shaft, mm."""
+        return self.form.heights(self)
+
+    @property
+    def profile_tolerance(self) -> float:
+        """Chord tolerance of the profile, mm."""
+        return self.profile.tolerance
+
+    @property
+    def chord_error(self) -> float:
+        """Largest chord error of the finished walls, mm."""
+        return max(one.chord_error for one in self.contours)
+
+    def rows_of(self, number: int) -> Sequence[str]:
+        """Return the names of the facts in the table of a part's drawing, by its `number`."""
+        from gearcam.kinds.cam.drawn import rows_of
+
+        return rows_of(self, number)
 
     @cached_property
     def error_rows(self) -> Rows:
@@ -208,13 +240,6 @@ class CamResult(Result):
     def drawing(self) -> Drawing:
         """The assembled cam with its follower, at the angle of the design."""
         return self.form.picture(self)
-
-    @cached_property
-    def sheets(self) -> tuple[Sheet, ...]:
-        """The workshop drawings of the parts."""
-        from gearcam.kinds.cam.drawn import sheets
-
-        return sheets(self)
 
     def wall(self, key: str | None) -> Wall:
         """Return the wall with a key; by default the first."""

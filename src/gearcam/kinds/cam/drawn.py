@@ -34,7 +34,6 @@ from gearcam.pictures.drawings import (
 
 if TYPE_CHECKING:
     from gearcam.kinds.cam.build import CamResult
-    from gearcam.sheets.sheet import Sheet
 
 _ROWS: Final = (
     "cam.follower", "cam.roller_radius_mm", "cam.dome_radius_mm", "cam.pivot_distance_mm",
@@ -199,16 +198,7 @@ def grooved(
     return replace(drawing, features=(replace(blank, shape=edge), *others))
 
 
-def sheets(result: CamResult) -> tuple[Sheet, ...]:
-    """Return the workshop drawings of the parts of a `result`."""
-    from gearcam.sheets import wheel_sheet
-    from gearcam.sheets.paper import sheet_rows
-
-    facts, title = result.facts, result.design.name
+def rows_of(result: CamResult, number: int) -> list[str]:
+    """Return the names of the facts in the table of the drawing of part `number` of a `result`."""
     other = f"{'prime' if result.mechanism.flat else 'base'}_radius_mm"
-    made = []
-    for number, part in enumerate(result.parts):
-        names = result.form.rows_of(number, _ROWS)
-        rows = sheet_rows(facts, [one for one in names if not one.endswith(other)])
-        made.append(wheel_sheet(part, rows, title))
-    return tuple(made)
+    return [one for one in result.form.rows_of(number, _ROWS) if not one.endswith(other)]

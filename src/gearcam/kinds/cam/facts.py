@@ -10,7 +10,6 @@ from gearcam.base.facts import Fact, Facts, extent
 from gearcam.base.findings import limit_of
 from gearcam.base.numerals import shown
 from gearcam.cams.checks import KIND, pressure_limit
-from gearcam.export.files import accuracy
 from gearcam.kinds.cam.wall_facts import ends_of
 from gearcam.parts.facts import part_facts
 
@@ -48,7 +47,7 @@ def facts(result: CamResult, measured: Mapping[str, Any]) -> Facts:
         "motion": _motion(result),
         "cam": _cam(result),
         "part": _part(result) or None,
-        "accuracy": _accuracy(result, measured),
+        "accuracy": result.accuracy(measured),
         **{name: measured.get(name) for name in ("solids", "curvature")},
     }
     follower = f"{design.follower.motion} {design.follower.type} follower"
@@ -169,9 +168,3 @@ def _part(result: CamResult) -> Tree | list[Tree]:
         )
     ]
     return told if several else told[0]
-
-
-def _accuracy(result: CamResult, measured: Mapping[str, Any]) -> Tree:
-    """Return the error estimates, and how each was made."""
-    chord, kerf = max(one.chord_error for one in result.contours), result.design.output.kerf
-    return accuracy(result.error_rows, chord, kerf, measured)

@@ -3,86 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
-from functools import partial
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
-from gearcam.export.files import (
-    Files,
-    cut_files,
-    drawn,
-    dxf_style,
-    mesh_files,
-    sheet_files,
-    step_files,
-)
 from gearcam.report.file import report_files
+from gearcam.results.parts import MESHES, Files, Measured, drawn, part_files
 
 if TYPE_CHECKING:
     from gearcam.cams.wall import Wall
     from gearcam.kinds.cam.build import CamResult
     from gearcam.numeric.arrays import Array
     from gearcam.numeric.contour import Contour
-    from gearcam.parts.solids import Mesh
-
-Measured = dict[str, Any]
 
 _SHORT: Final = {"lift": "s", "velocity": "ds", "acceleration": "d2s", "jerk": "d3s"}
 """What the file calls the lift and its derivatives, by the first words of their columns."""
 
 _STUDY: Final = (90, 180, 360, 720, 1440, 2880, 5760)
 """Points of a turn whose three-point curvature is held against the exact one."""
-
-
-def _dxf(result: CamResult, measured: Measured) -> Files:
-    """Return the outlines as DXF.
-
-    Files: cam.dxf; of conjugate cams cam1.dxf, cam2.dxf; with `kerf_mm` also cam_reference.dxf, or
-    cam1_reference.dxf, cam2_reference.dxf.
-
-    Outlines in mm in the cam's frame: layers PROFILE, PITCH, PRIME, BORE, HOLE and CENTER; of a
-    groove BLANK, OUTER and INNER, or GROOVE, instead of PROFILE. With `kerf_mm` cutting paths only,
-    on layers that end in _KERF, and the part with its curves as the reference.
-    """
-    drawings = list(result.to_cut)
-    if result.design.output.kerf:
-        drawings += [
-            replace(one, name=f"{one.name}_reference") for one in result.form.drawings(result)
-        ]
-    return drawn(drawings, _style(result), measured)
-
-
-def _cut_svg(result: CamResult, _: Measured) -> Files:
-    """Return the outlines for laser programs.
-
-    Files: cam_cut.svg; of conjugate cams cam1_cut.svg, cam2_cut.svg; cut.svg.
-
-    For laser programs, 1:1 in mm: inner edges, then outlines in red; one file for each part, and
-    cut.svg with all parts side by side and labelled.
-    """
-    return cut_files(result.to_cut, result.design.name, result.design.output.kerf)
-
-
-def _mesh(kind: str, result: CamResult, measured: Measured) -> Files:
-    """Return the solids in one of the formats of meshes.
-
-    Files: cam.{format}; of conjugate cams cam1.{format}, cam2.{format}, cams.{format}.
-
-    Closed solids in mm, of conjugate cams also both as they stand on the shaft.
-    """
-    stem = result.form.assembly
-    together = {stem: assembled(result)} if stem else {}
-    return mesh_files(result.parts, result.meshes, together, kind, measured)
-
-
-def assembled(result: CamResult) -> dict[str, Mesh]:
-    """Return the solids in their places on the shaft."""
-    from gearcam.pictures.drawings import UNMOVED
-
-    if not result.form.assembly:
-        return result.meshes
-    heights = zip(result.meshes.items(), result.form.heights(result), strict=True)
-    return {name: mesh.placed(*UNMOVED, height) for (name, mesh), height in heights}
 
 
 def _tables(result: CamResult, _: Measured) -> Files:
@@ -110,44 +46,6 @@ def _tables(result: CamResult, _: Measured) -> Files:
 def _named(stem: str, wall: Wall) -> str:
     """Return the name of a table of a wall."""
     return f"{stem}_{wall.key}.csv" if wall.key else f"{stem}.csv"
-
-
-def _style(result: CamResult) -> Any:
-    return dxf_style(result.design.output, result.profile.tolerance)
-
-
-def _picture(result: CamResult, _: Measured) -> Files:
-    """Return the picture of the cam.
-
-    Files: cam.svg; of conjugate cams cams.svg.
-
-    A picture of the cam below its follower, not for cutting.
-    """
-    from gearcam.export.svg import svg_bytes
-
-    notes, drawing = result.facts.headline, result.drawing
-    return {f"{drawing.name}.svg": svg_bytes(drawing, title=result.design.name, notes=notes)}
-
-
-def _step(result: CamResult, _: Measured) -> Files:
-    """Return the solids as STEP.
-
-    Files: cam.step; of conjugate cams cam1.step, cam2.step, cams.step.
-
-    Exact solids for CAD. Needs `pip install "gearcam[step]"`.
-    """
-    form, tolerance = result.form, result.profile.tolerance
-    return step_files(result.parts, tolerance, form.assembly, heights=form.heights(result))
-
-
-def _sheet(ending: str, result: CamResult, _: Measured) -> Files:
-    """Return the workshop drawings.
-
-    Files: cam_drawing.{format}; of conjugate cams cam1_drawing.{format}, cam2_drawing.{format}.
-
-    Workshop drawings with dimensions and a table of data.
-    """
-    return sheet_files(result.sheets, _style(result), ending)
 
 
 def _inspection(result: CamResult, _: Measured) -> Files:
@@ -208,7 +106,7 @@ def _tool_path(result: CamResult, measured: Measured) -> Files:
         Drawing(name=name, features=(Feature(layer=TOOL, shape=path),))
         for name, path in paths.items()
     ]
-    return tables | drawn(drawings, _style(result), measured)
+    return tables | drawn(drawings, result.dxf_style, measured)
 
 
 def _curvature(result: CamResult, measured: Measured) -> Files:
@@ -226,15 +124,45 @@ def _curvature(result: CamResult, measured: Measured) -> Files:
     return {"curvature.csv": table_bytes(columns)}
 
 
+_SOLIDS: Final = """
+    Files: cam.{format}; of conjugate cams cam1.{format}, cam2.{format}, cams.{format}.
+
+    Closed solids in mm, of conjugate cams also both as they stand on the shaft."""
+
+_SHEETS: Final = """
+    Files: cam_drawing.{format}; of conjugate cams cam1_drawing.{format}, cam2_drawing.{format}.
+
+    Workshop drawings with dimensions and a table of data."""
+
+_OF_PARTS: Final = {
+    "dxf": """
+    Files: cam.dxf; of conjugate cams cam1.dxf, cam2.dxf; with `kerf_mm` also cam_reference.dxf, or
+    cam1_reference.dxf, cam2_reference.dxf.
+
+    Outlines in mm in the cam's frame: layers PROFILE, PITCH, PRIME, BORE, HOLE and CENTER; of a
+    groove BLANK, OUTER and INNER, or GROOVE, instead of PROFILE. With `kerf_mm` cutting paths only,
+    on layers that end in _KERF, and the part with its curves as the reference.""",
+    "cut-svg": """
+    Files: cam_cut.svg; of conjugate cams cam1_cut.svg, cam2_cut.svg; cut.svg.
+
+    For laser programs, 1:1 in mm: inner edges, then outlines in red; one file for each part, and
+    cut.svg with all parts side by side and labelled.""",
+    "svg": """
+    Files: cam.svg; of conjugate cams cams.svg.
+
+    A picture of the cam below its follower, not for cutting.""",
+    **dict.fromkeys(MESHES, _SOLIDS),
+    "step": """
+    Files: cam.step; of conjugate cams cam1.step, cam2.step, cams.step.
+
+    Exact solids for CAD. Needs `pip install "gearcam[step]"`.""",
+    "drawing-dxf": _SHEETS,
+    "drawing-svg": _SHEETS,
+}
+
 FILES: Final[Mapping[str, Callable[..., Files]]] = {
     "csv": _tables,
-    "dxf": _dxf,
-    "cut-svg": _cut_svg,
-    "svg": _picture,
-    **{kind: partial(_mesh, kind) for kind in ("stl", "3mf", "glb")},
-    "step": _step,
-    "drawing-dxf": partial(_sheet, "dxf"),
-    "drawing-svg": partial(_sheet, "svg"),
+    **part_files(_OF_PARTS),
     "inspection": _inspection,
     "report": report_files,
     "tool-path": _tool_path,

@@ -13,7 +13,7 @@ from gearcam.parts.tools import tool_errors
 
 if TYPE_CHECKING:
     from gearcam.gears.pair import Gear
-    from gearcam.kinds.gear_pair.build import GearPairResult
+    from gearcam.kinds.gear_pair.result import GearPairResult
     from gearcam.parts.body import Part
 
 _FINER: Final = 16.0

@@ -22,7 +22,7 @@ from gearcam.numeric.columns import Columns
 from gearcam.pictures.charts import Chart, Charts, Limit, Line, MarkedPlace, knot_marks
 
 if TYPE_CHECKING:
-    from gearcam.kinds.gear_pair.build import GearPairResult
+    from gearcam.kinds.gear_pair.result import GearPairResult
 
 DRIVER: Final = "driver angle phi1, deg"
 """Axis label of charts and scenes."""

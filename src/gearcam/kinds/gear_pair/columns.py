@@ -1,6 +1,6 @@
 """Tables of a gear pair over driver angles, as columns for files and data.
 
-`gearcam.kinds.gear_pair.build` documents the columns.
+`gearcam.kinds.gear_pair.result` documents the columns.
 """
 
 from __future__ import annotations
@@ -15,13 +15,13 @@ from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
 
 if TYPE_CHECKING:
-    from gearcam.kinds.gear_pair.stages import PairStages
+    from gearcam.kinds.gear_pair.result import GearPairResult
 
 POINTS: Final = ("x1_mm", "y1_mm", "x2_mm", "y2_mm")
 """Columns of points, which are not in the file of the centrodes."""
 
 
-def centrode_columns(result: PairStages, phi1: Array) -> Columns:
+def centrode_columns(result: GearPairResult, phi1: Array) -> Columns:
     """Return both centrodes of a `result` at driver angles `phi1`, rad."""
     phi2, ratio = result.law.derivatives(phi1, 1)
     one, two = (track.frames(phi1) for track in result.pair.rolling.tracks)
@@ -51,7 +51,7 @@ def _radii(curvature: Array) -> Array:
         return np.where(curvature == 0.0, np.inf, 1.0 / curvature)
 
 
-def motion_columns(result: PairStages, phi1: Array) -> Columns:
+def motion_columns(result: GearPairResult, phi1: Array) -> Columns:
     """Return the motion of the driven element of a `result` at driver angles `phi1`, rad."""
     place, *slopes = result.law.derivatives(phi1, 3)
     names = ("ratio", "acceleration_per_rad", "jerk_per_rad2")
@@ -64,7 +64,9 @@ def motion_columns(result: PairStages, phi1: Array) -> Columns:
     return Columns(columns)
 
 
-def contact_rows(result: PairStages, pairs: FlankPairs, phi1: Array, found: Contacts) -> Columns:
+def contact_rows(
+    result: GearPairResult, pairs: FlankPairs, phi1: Array, found: Contacts
+) -> Columns:
     """Return the table of contacts `found` for flanks `pairs` of a `result` at `phi1`, rad."""
     guide = result.pair.rolling.guide
     moved = np.degrees(guide.nominal(phi1)) if guide.turns else guide.nominal(phi1)

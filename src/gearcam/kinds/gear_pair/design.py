@@ -25,7 +25,7 @@ from gearcam.meshing.settings import MeshingSpec
 from gearcam.parts.blank import Blank
 
 if TYPE_CHECKING:
-    from gearcam.kinds.gear_pair.build import GearPairResult
+    from gearcam.kinds.gear_pair.result import GearPairResult
 
 NAME: Final = "gear-pair"
 """As in a file."""

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from gearcam.base.numerals import shown
-from gearcam.kinds.gear_pair.files import placements
 from gearcam.parts.body import Part
 from gearcam.pictures.drawings import (
     CENTER,
@@ -24,7 +23,7 @@ from gearcam.pictures.drawings import (
 )
 
 if TYPE_CHECKING:
-    from gearcam.kinds.gear_pair.stages import PairStages
+    from gearcam.kinds.gear_pair.result import GearPairResult
     from gearcam.sheets.sheet import Sheet
 
 _PAIR_ROWS: Final = ("pair.module_mm", "pair.teeth", "pair.ratio", "pair.travel_per_turn_mm")
@@ -39,7 +38,7 @@ _GEAR_ROWS: Final = (
 """Facts in the tables of drawings."""
 
 
-def centrode_paths(result: PairStages) -> tuple[Path, Path]:
+def centrode_paths(result: GearPairResult) -> tuple[Path, Path]:
     """Return the centrodes of a `result` as chains, each in its wheel's own frame, driver first."""
     lobes = result.law.lobes
     ends = [lobes.n1 * lobes.period, lobes.n2 * lobes.period]
@@ -103,27 +102,28 @@ def pair_drawing(
     return Drawing(name="pair", features=tuple(features))
 
 
-def assembled(result: PairStages) -> Drawing:
+def assembled(result: GearPairResult) -> Drawing:
     """Return the drawing of the assembled pair of a `result`, with its centrodes."""
     return pair_drawing(
-        result.parts, result.pair.shift, result.centrode_paths, placements=placements(result)
+        result.parts, result.pair.shift, result.centrode_paths, placements=result.placements
     )
 
 
-def sheets(result: PairStages) -> tuple[Sheet, ...]:
-    """Return the workshop drawings of both wheels of a `result` and of the pair."""
+def rows_of(number: int) -> tuple[str, ...]:
+    """Return the names of the facts in the table of a wheel's drawing, by its `number`."""
+    own = [f"gears.{number}.{name}" for name in _GEAR_ROWS]
+    return (f"gears.{number}.teeth", "pair.module_mm", *_RACK_ROWS, *own)
+
+
+def sheet_of(result: GearPairResult) -> Sheet:
+    """Return the workshop drawing of the assembled pair of a `result`."""
     from gearcam.kinds.gear_pair.sheet import pair_sheet
-    from gearcam.sheets import wheel_sheet
     from gearcam.sheets.paper import sheet_rows
 
-    facts, title, pose = result.facts, result.design.name, result.design.output.pose
+    pose = result.design.output.pose
     radius = float(abs(result.pair.rolling.tracks[0].frames(np.array([pose])).p[0]))
-    made = []
-    for number, part in enumerate(result.parts):
-        own = [f"gears.{number}.{name}" for name in _GEAR_ROWS]
-        names = (f"gears.{number}.teeth", "pair.module_mm", *_RACK_ROWS, *own)
-        made.append(wheel_sheet(part, sheet_rows(facts, names), title))
-    rows = {"law": result.design.law_type} | sheet_rows(facts, (*_PAIR_ROWS, *_RACK_ROWS))
+    rows = {"law": result.design.law_type}
+    rows |= sheet_rows(result.facts, (*_PAIR_ROWS, *_RACK_ROWS))
     rows["drawn at phi1"] = f"{shown(np.degrees(pose))} deg"
-    pair = pair_sheet(result.drawing, result.pair.shift, rows, title, pitch_radius=radius)
-    return *made, pair
+    title = result.design.name
+    return pair_sheet(result.drawing, result.pair.shift, rows, title, pitch_radius=radius)

@@ -12,18 +12,16 @@ import numpy as np
 from gearcam.base.facts import Fact, Facts, extent
 from gearcam.base.findings import limit_of
 from gearcam.base.numerals import shown
-from gearcam.export.files import accuracy
 from gearcam.gears.pair import gear_tree
 from gearcam.gears.subject import KIND, Subject
 from gearcam.laws.ratio.span import angle_text
 from gearcam.meshing.drive_checks import side_name
-from gearcam.numeric.sampling import MARGIN
 from gearcam.parts.facts import part_facts, size_fact
 
 if TYPE_CHECKING:
     from gearcam.gears.contact import FlankPairs
     from gearcam.gears.pair import Gear
-    from gearcam.kinds.gear_pair.build import GearPairResult
+    from gearcam.kinds.gear_pair.result import GearPairResult
 
 Tree = dict[str, Any]
 
@@ -48,7 +46,7 @@ def facts(result: GearPairResult, measured: Mapping[str, Any]) -> Facts:
         "mesh": _mesh(result),
         "kerf_mm": kerf or None,
         "gears": [_gear(result, gear) for gear in result.gears],
-        "accuracy": _accuracy(result, measured),
+        "accuracy": result.accuracy(measured),
         "steps": {"count": len(leads), "moved_mm": list(leads)} if len(leads) > 1 else None,
         "solids": measured.get("solids"),
     }
@@ -304,10 +302,3 @@ def _part(result: GearPairResult, gear: Gear) -> Tree:
     density = result.design.blank.wheel(gear.wheel).density
     area = {"part": {"area_mm2": part.steps[0].moments.area}}
     return area | part_facts(part, name, tools, density)
-
-
-def _accuracy(result: GearPairResult, measured: Mapping[str, Any]) -> Tree:
-    """Return the error estimates, and how each was made."""
-    # the largest distance from a chord may lie between the places where it is measured
-    chord = max(gear.profile.chord_error for gear in result.gears) / MARGIN
-    return accuracy(result.error_rows, chord, result.design.output.kerf, measured)

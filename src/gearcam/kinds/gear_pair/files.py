@@ -3,34 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from functools import partial
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
-import numpy as np
-
-from gearcam.export.files import (
-    Files,
-    cut_files,
-    drawn,
-    dxf_style,
-    mesh_files,
-    sheet_files,
-    step_files,
-)
 from gearcam.kinds.gear_pair.columns import POINTS
 from gearcam.report.file import report_files
+from gearcam.results.parts import MESHES, Files, Measured, part_files
 
 if TYPE_CHECKING:
-    from gearcam.export.dxf import DxfStyle
-    from gearcam.kinds.gear_pair.build import GearPairResult
-    from gearcam.kinds.gear_pair.stages import PairStages
-    from gearcam.parts.solids import Mesh
-    from gearcam.pictures.drawings import Placement
-
-Measured = dict[str, Any]
-
-PAIR: Final = "pair"
-"""Stem of the files of the assembled pair."""
+    from gearcam.kinds.gear_pair.result import GearPairResult
 
 
 def _tables(result: GearPairResult, _: Measured) -> Files:
@@ -49,56 +29,6 @@ def _tables(result: GearPairResult, _: Measured) -> Files:
     return files | {"centrodes.csv": table_bytes(centrodes)}
 
 
-def placements(result: PairStages) -> tuple[Placement, Placement]:
-    """Return the placements of the assembled wheels of a `result`: wheel 1 turned by -phi1."""
-    phi1, guide = result.design.output.pose, result.pair.rolling.guide
-    moved = float(guide.nominal(np.array(phi1)))
-    if result.pair.on_rack:
-        return (-phi1, (0.0, 0.0)), (0.0, (0.0, -moved))
-    return (-phi1, (0.0, 0.0)), (guide.turns * moved, (guide.place, 0.0))
-
-
-def _style(result: GearPairResult) -> DxfStyle:
-    return dxf_style(result.design.output, result.gear1.profile.tolerance)
-
-
-def _dxf(result: GearPairResult, measured: Measured) -> Files:
-    """Return the outlines as DXF.
-
-    Files: gear1.dxf, gear2.dxf, pair.dxf; of stepped wheels gear1_step1.dxf and so on.
-
-    Outlines in mm. A wheel lies in its own frame, on the layers OUTLINE, BORE, HOLE, SLOT and MARK;
-    the assembled pair has the same layers with GEAR1_ or GEAR2_ before their names, CENTRODE and
-    CENTER. With `kerf_mm` the files of the wheels hold paths of the cutter, on layers whose names
-    end in _KERF.
-    """
-    return drawn([*result.to_cut, result.drawing], _style(result), measured)
-
-
-def _cut(result: GearPairResult, _: Measured) -> Files:
-    """Return the outlines for laser programs.
-
-    Files: gear1_cut.svg, gear2_cut.svg, cut.svg; of stepped wheels gear1_step1_cut.svg and so on.
-
-    For laser programs, 1:1 in mm: marks to engrave in blue, then inner edges, then outlines in red;
-    one file for each part, and cut.svg with all parts side by side and labelled.
-    """
-    return cut_files(result.to_cut, result.design.name, result.design.output.kerf)
-
-
-def _picture(result: GearPairResult, _: Measured) -> Files:
-    """Return the picture of the pair.
-
-    Files: pair.svg.
-
-    A picture of the assembled pair, not for cutting.
-    """
-    from gearcam.export.svg import svg_bytes
-
-    notes = result.facts.headline
-    return {"pair.svg": svg_bytes(result.drawing, title=result.design.name, notes=notes)}
-
-
 def _inspection(result: GearPairResult, _: Measured) -> Files:
     """Return the points for inspection.
 
@@ -113,53 +43,46 @@ def _inspection(result: GearPairResult, _: Measured) -> Files:
     return {"inspection.csv": table_bytes(rows)}
 
 
-def _steps(result: GearPairResult, _: Measured) -> Files:
-    """Return the solids as STEP.
+_SOLIDS: Final = """
+    Files: gear1.{format}, gear2.{format}, pair.{format}.
 
+    Closed solids in mm: each wheel, and the assembled pair as two bodies, named except in STL."""
+
+_SHEETS: Final = """
+    Files: gear1_drawing.{format}, gear2_drawing.{format}, pair_drawing.{format}.
+
+    Workshop drawings with views, dimensions and a table of data."""
+
+_OF_PARTS: Final = {
+    "dxf": """
+    Files: gear1.dxf, gear2.dxf, pair.dxf; of stepped wheels gear1_step1.dxf and so on.
+
+    Outlines in mm. A wheel lies in its own frame, on the layers OUTLINE, BORE, HOLE, SLOT and MARK;
+    the assembled pair has the same layers with GEAR1_ or GEAR2_ before their names, CENTRODE and
+    CENTER. With `kerf_mm` the files of the wheels hold paths of the cutter, on layers whose names
+    end in _KERF.""",
+    "cut-svg": """
+    Files: gear1_cut.svg, gear2_cut.svg, cut.svg; of stepped wheels gear1_step1_cut.svg and so on.
+
+    For laser programs, 1:1 in mm: marks to engrave in blue, then inner edges, then outlines in red;
+    one file for each part, and cut.svg with all parts side by side and labelled.""",
+    "svg": """
+    Files: pair.svg.
+
+    A picture of the assembled pair, not for cutting.""",
+    **dict.fromkeys(MESHES, _SOLIDS),
+    "step": """
     Files: gear1.step, gear2.step, pair.step.
 
     Exact solids for CAD: one spline face for each flank, fillet, land and tip, planes and cylinders
-    elsewhere. Needs `pip install "gearcam[step]"`.
-    """
-    parts, tolerance = result.parts, result.gear1.profile.tolerance
-    return step_files(parts, tolerance, PAIR, placements(result))
-
-
-def _meshes(kind: str, result: GearPairResult, measured: Measured) -> Files:
-    """Return the solids in one of the formats of meshes.
-
-    Files: gear1.{format}, gear2.{format}, pair.{format}.
-
-    Closed solids in mm: each wheel, and the assembled pair as two bodies, named except in STL.
-    """
-    return mesh_files(result.parts, result.meshes, {PAIR: assembled(result)}, kind, measured)
-
-
-def assembled(result: GearPairResult) -> dict[str, Mesh]:
-    """Return the solids of both wheels in the assembly."""
-    placed = zip(result.meshes.items(), placements(result), strict=True)
-    return {name: mesh.placed(*pose) for (name, mesh), pose in placed}
-
-
-def _sheets(ending: str, result: GearPairResult, _: Measured) -> Files:
-    """Return the workshop drawings.
-
-    Files: gear1_drawing.{format}, gear2_drawing.{format}, pair_drawing.{format}.
-
-    Workshop drawings with views, dimensions and a table of data.
-    """
-    return sheet_files(result.sheets, _style(result), ending)
-
+    elsewhere. Needs `pip install "gearcam[step]"`.""",
+    "drawing-dxf": _SHEETS,
+    "drawing-svg": _SHEETS,
+}
 
 FILES: Final[Mapping[str, Callable[..., Files]]] = {
-    "dxf": _dxf,
-    "cut-svg": _cut,
-    "svg": _picture,
-    **{kind: partial(_meshes, kind) for kind in ("stl", "3mf", "glb")},
-    "step": _steps,
+    **part_files(_OF_PARTS),
     "csv": _tables,
-    "drawing-dxf": partial(_sheets, "dxf"),
-    "drawing-svg": partial(_sheets, "svg"),
     "inspection": _inspection,
     "report": report_files,
 }

@@ -24,7 +24,7 @@ from gearcam.results.ladders import (
 )
 
 if TYPE_CHECKING:
-    from gearcam.kinds.gear_pair.build import GearPairResult
+    from gearcam.kinds.gear_pair.result import GearPairResult
 
 _FLANKS: Final = (2, 3, 5, 9, FLANK_POINTS, 33, 65, 129)
 """Points on a flank: each number includes the points of the one before."""

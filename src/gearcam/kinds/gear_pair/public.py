@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from gearcam.gears.spec import PairSpec, Rack, RingSpec, StepsSpec
-from gearcam.kinds.gear_pair.build import GearPairResult
 from gearcam.kinds.gear_pair.design import GearPairDesign, PairOutputSpec
+from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.kinds.shared import AccuracySpec
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.parts.blank import Blank

@@ -6,16 +6,15 @@ from typing import TYPE_CHECKING, get_args
 
 import numpy as np
 
-from gearcam.kinds.gear_pair.build import Side
 from gearcam.kinds.gear_pair.charts import DRIVER
-from gearcam.kinds.gear_pair.stages import CENTRODE_POINTS
+from gearcam.kinds.gear_pair.result import CENTRODE_POINTS, Side
 from gearcam.meshing.contact import contacts
 from gearcam.pictures.drawings import CENTER, CENTRODE, CROSS_SIZE, Cross, Feature, part_features
 from gearcam.pictures.scenes import PLACES, ContactPoints, MovingBody, Scene, still
 
 if TYPE_CHECKING:
     from gearcam.gears.pair import Gear
-    from gearcam.kinds.gear_pair.build import GearPairResult
+    from gearcam.kinds.gear_pair.result import GearPairResult
     from gearcam.numeric.arrays import Array, Plane
     from gearcam.parts.body import Part
     from gearcam.pictures.drawings import Path

@@ -13,7 +13,7 @@ from gearcam.kinds.shared import accuracy_study
 from gearcam.results.study import Study, StudyResult
 
 if TYPE_CHECKING:
-    from gearcam.kinds.gear_pair.build import GearPairResult
+    from gearcam.kinds.gear_pair.result import GearPairResult
     from gearcam.meshing.study import Meshing
     from gearcam.numeric.arrays import Array, Ints, Plane
     from gearcam.pictures.charts import Chart

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from gearcam.kinds.gear_pair.build import GearPairResult
+from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.laws.ratio.ellipse import Ellipse
 from helpers_pairs import job
 

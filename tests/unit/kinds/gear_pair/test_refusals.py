@@ -15,7 +15,7 @@ import gearcam
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.tolerances import DEFAULT
 from gearcam.gears.spec import Rack
-from gearcam.kinds.gear_pair.build import GearPairResult
+from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.laws.ratio.composite import Fourier, Multispeed, ThreePhasePolynomial
 from gearcam.laws.ratio.constant import Constant
 from gearcam.laws.ratio.phases import Phases

@@ -8,7 +8,7 @@ import pytest
 
 import gearcam
 from gearcam.base.findings import Finding
-from gearcam.kinds.gear_pair.build import GearPairResult
+from gearcam.kinds.gear_pair.result import GearPairResult
 from helpers_pairs import profile
 from helpers_rings import highest_on_circles, overlap, ring
 

@@ -1,15 +1,17 @@
-"""Stages from the design of a gear pair to law, centrodes, wheels, checks and parts."""
+"""The result of a gear pair: its stages, parts, and tables over driver angles."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal, get_args
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from gearcam.base.errors import InfeasibleError, Way
 from gearcam.base.findings import Finding, in_order, limit_of, run_checks
@@ -20,21 +22,41 @@ from gearcam.gears.pair import Gear, GearPair, leads, lobes_of, make_gear, make_
 from gearcam.gears.spec import Finish
 from gearcam.gears.subject import KIND, Subject
 from gearcam.gears.track import Wheel
+from gearcam.kinds.gear_pair.columns import (
+    centrode_columns,
+    contact_ratio_columns,
+    contact_rows,
+    motion_columns,
+)
 from gearcam.kinds.gear_pair.design import GearPairDesign
 from gearcam.laws.ratio.base import RatioLaw
 from gearcam.laws.ratio.span import angle_text
 from gearcam.meshing import drive_checks  # noqa: F401  (its checks register themselves)
+from gearcam.meshing.contact import Contacts, contacts
+from gearcam.numeric.arguments import angles, one_of, whole
 from gearcam.numeric.arrays import Array
+from gearcam.numeric.columns import Columns
 from gearcam.numeric.piecewise import with_both_sides
+from gearcam.numeric.sampling import MARGIN
 from gearcam.parts.blank import KIND as PARTS_KIND
 from gearcam.parts.blank import Blank
-from gearcam.results.result import Result
+from gearcam.results.parts import PartsResult
+from gearcam.results.result import Progress
 
 if TYPE_CHECKING:
+    from gearcam.gears.contact import FlankPairs
+    from gearcam.gears.estimates import Estimates
     from gearcam.parts.body import Part
     from gearcam.parts.checks import PartsSubject
-    from gearcam.pictures.drawings import Drawing, Path
+    from gearcam.pictures.drawings import Drawing, Path, Placement
+    from gearcam.results.study import StudyResult
     from gearcam.sheets.sheet import Sheet
+
+Side = Literal["drive", "coast"]
+"""Flanks of the driver: the driving side and the coast side."""
+
+ROUNDING = 1e-12
+"""Share of the travel by which an angle may exceed it: degrees are rounded."""
 
 _OF_TEETH = ("contact-ratio", "undercut", "thin-tip", "short-flank", "tips-collide")
 """Checks whose findings can differ between the steps of stepped wheels."""
@@ -49,8 +71,8 @@ CENTRODE_POINTS = 720
 """Intervals of phi1 over which centrodes are tabulated: half degrees for a full turn."""
 
 
-class PairStages(Result):
-    """The stages of a gear pair, computed on demand.
+class GearPairResult(PartsResult):
+    """Result of the design of a gear pair, computed on demand.
 
     Parameters
     ----------
@@ -58,6 +80,14 @@ class PairStages(Result):
         The design.
     tolerances : Tolerances
         Internal accuracy.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> result = gc.build(gc.load("profiles/ellipse.toml"))
+    >>> x, y = result.gear1.outline.T  # mm
+    >>> result.motion([0.0, 6.283185307179586])["phi2_deg"].round(6)
+    array([  0., 360.])
     """
 
     design: GearPairDesign
@@ -254,16 +284,44 @@ class PairStages(Result):
         with self.stage("parts"):
             return make_parts(self.steps, self.design)
 
-    @cached_property
-    def to_cut(self) -> tuple[Drawing, ...]:
-        """Cutting paths of both wheels, step by step: parts, or paths offset by the kerf."""
-        from gearcam.pictures.drawings import cut_drawing, wheel_drawing
+    @property
+    def plates(self) -> tuple[Drawing, ...]:
+        """A drawing of each step of both wheels, in its own frame."""
+        from gearcam.pictures.drawings import wheel_drawing
 
         return tuple(
-            cut_drawing(wheel_drawing(part, step), self.design.output.kerf)
-            for part in self.parts
-            for step in range(len(part.contours))
+            wheel_drawing(part, step) for part in self.parts for step in range(len(part.contours))
         )
+
+    @property
+    def references(self) -> tuple[Drawing, ...]:
+        """The assembled pair, beside the cutting paths."""
+        return (self.drawing,)
+
+    @property
+    def assembly(self) -> str:
+        """Stem of the files of the assembled pair."""
+        return "pair"
+
+    @property
+    def placements(self) -> tuple[Placement, Placement]:
+        """Placements of the assembled wheels: wheel 1 turned by -phi1."""
+        phi1, guide = self.design.output.pose, self.pair.rolling.guide
+        moved = float(guide.nominal(np.array(phi1)))
+        if self.pair.on_rack:
+            return (-phi1, (0.0, 0.0)), (0.0, (0.0, -moved))
+        return (-phi1, (0.0, 0.0)), (guide.turns * moved, (guide.place, 0.0))
+
+    @property
+    def profile_tolerance(self) -> float:
+        """Chord tolerance of the outlines, mm."""
+        return self.gear1.profile.tolerance
+
+    @property
+    def chord_error(self) -> float:
+        """Largest chord error of the outlines, mm."""
+        # the largest distance from a chord may lie between the places where it is measured
+        return max(gear.profile.chord_error for gear in self.gears) / MARGIN
 
     @cached_property
     def centrode_paths(self) -> tuple[Path, Path]:
@@ -282,9 +340,15 @@ class PairStages(Result):
     @cached_property
     def sheets(self) -> tuple[Sheet, ...]:
         """The workshop drawings of both wheels and of the pair."""
-        from gearcam.kinds.gear_pair.drawn import sheets
+        from gearcam.kinds.gear_pair.drawn import sheet_of
 
-        return sheets(self)
+        return *super().sheets, sheet_of(self)
+
+    def rows_of(self, number: int) -> Sequence[str]:
+        """Return the names of the facts in the table of a part's drawing, by its `number`."""
+        from gearcam.kinds.gear_pair.drawn import rows_of
+
+        return rows_of(number)
 
     def centrode_angles(self, count: int | None = None) -> Array:
         """Return driver angles, rad, until both wheels close, or over the travel, both ends.
@@ -322,6 +386,185 @@ class PairStages(Result):
         period, knots = self.law.period, np.asarray(self.law.knots, dtype=float)
         lobes = math.ceil(self.centrode_angles(2)[-1] / period * (1.0 - _WHOLE))
         return np.concatenate([knots[:1], *(knots[1:] + lobe * period for lobe in range(lobes))])
+
+    def centrodes(self, n: int | None = None) -> Columns:
+        """Return both centrodes: until both wheels close, or over the travel of an open pair.
+
+        Parameters
+        ----------
+        n : int, optional
+            Number of points, both ends included, 2 or more. The default is that of
+            ``centrodes.csv``: one per half degree of a closed pair, or 721 over the travel.
+
+        Returns
+        -------
+        Columns
+            ``phi1_deg``, ``phi2_deg``; ``ratio`` i21; ``r1_mm`` and ``r2_mm``, distances of the
+            pitch point from both shafts; ``s_mm``, arc length of both; ``rho1_mm``, ``rho2_mm``,
+            radii of curvature, negative where concave towards the tips (as on a round ring),
+            infinite where straight; ``x1_mm``, ``y1_mm``, ``x2_mm``, ``y2_mm``, points in each
+            wheel's own frame. A rack has ``travel_mm`` instead of phi2, ratio and r2. At a knot
+            the values after it are returned.
+
+        Raises
+        ------
+        DesignError
+            If `n` is not a whole number, or less than 2.
+        InfeasibleError
+            If the centrodes cannot be made.
+        """
+        if n is None:
+            return self.whole_centrodes
+        return centrode_columns(self, self.centrode_angles(whole("n", n, 2)))
+
+    @cached_property
+    def whole_centrodes(self) -> Columns:
+        """The default table of `centrodes`."""
+        return centrode_columns(self, self.centrode_angles())
+
+    def motion(self, phi1: ArrayLike | None = None) -> Columns:
+        """Return the exact motion of the driven element.
+
+        Parameters
+        ----------
+        phi1 : float or (n,) array, rad, optional
+            Driver angles, for open pairs within the travel; by default those of `centrodes`.
+
+        Returns
+        -------
+        Columns
+            ``phi1_deg``; ``phi2_deg``, counted from phi1 = 0 over all turns; ``ratio`` i21; its
+            derivatives by phi1 ``acceleration_per_rad`` and ``jerk_per_rad2``. A rack has
+            ``travel_mm``, ``velocity_mm_per_rad``, ``acceleration_mm_per_rad2`` and
+            ``jerk_mm_per_rad3``. At a knot the values after it are returned.
+
+        Raises
+        ------
+        DesignError
+            If `phi1` is not an array of finite numbers, or beyond the travel.
+        InfeasibleError
+            If the law is impossible.
+        """
+        return motion_columns(self, self._phases(phi1))
+
+    def contact(self, phi1: ArrayLike | None = None, side: Side = "drive") -> Columns:
+        """Return all points of contact of the finished flanks at the design centre distance.
+
+        Parameters
+        ----------
+        phi1 : float or (n,) array, rad, optional
+            Driver angles, for open pairs within the travel; by default those of `centrodes`.
+        side : {"drive", "coast"}
+            Flanks of the driver: the driving side or the coast side.
+
+        Returns
+        -------
+        Columns
+            A row for each phase and pair of teeth in contact. The rows of one pair are its path of
+            contact. ``phi1_deg`` and ``phi2_deg`` (for a rack ``travel_mm``), nominal; ``tooth1``,
+            ``tooth2`` from 1; ``side`` of the driver's tooth, -1 drives; ``pairs``, number of pairs
+            in contact in this phase; ``x_mm``, ``y_mm``, the point in the fixed frame (driver's
+            shaft at 0, driven shaft at the centre distance on x, for a ring at its negative);
+            ``force_x``, ``force_y``, unit direction of the driver's force;
+            ``contact_radius1_mm``, ``contact_radius2_mm`` from both shafts;
+            ``pressure_angle_deg`` of the force to the perpendicular to the line of centres;
+            ``sliding_mm_per_rad``, sliding speed along the driver's flank, towards its tip, over
+            the driver's speed; ``specific_sliding1``, ``specific_sliding2``;
+            ``relative_curvature_per_mm``; ``lag_rad`` (for a rack ``lag_mm``), lag of the driven
+            element behind its nominal position when this pair touches.
+
+        Raises
+        ------
+        DesignError
+            If `phi1` is not an array of finite numbers, or beyond the travel, or `side` is unknown.
+        InfeasibleError
+            If the wheels are impossible.
+        """
+        pairs, phases = self.flanks_of(side), self._phases(phi1)
+        return contact_rows(self, pairs, phases, contacts(pairs, phases))
+
+    def flanks_of(self, side: Side) -> FlankPairs:
+        """Return the pairs of flanks of a `side`; DesignError if it is unknown."""
+        coast, drive = self.subject.sides
+        return drive if one_of("side", side, get_args(Side)) == "drive" else coast
+
+    @cached_property
+    def touching(self) -> dict[Side, Contacts]:
+        """Contacts of both sides over `phases`."""
+        return {side: contacts(self.flanks_of(side), self.phases) for side in get_args(Side)}
+
+    @cached_property
+    def centrodes_of_phases(self) -> Columns:
+        """The table of `centrodes` over `phases`."""
+        same = np.array_equal(self.phases, self.centrode_angles())  # no knots, and one turn
+        return self.whole_centrodes if same else centrode_columns(self, self.phases)
+
+    @cached_property
+    def paths_of_contact(self) -> dict[Side, Columns]:
+        """The tables of `contact` of both sides, over `phases`."""
+        return {
+            side: contact_rows(self, self.flanks_of(side), self.phases, found)
+            for side, found in self.touching.items()
+        }
+
+    @cached_property
+    def error_rows(self) -> Estimates:
+        """Error estimates and their methods by name, without those of chords and files."""
+        from gearcam.kinds.gear_pair.accuracy import error_rows
+
+        return error_rows(self)
+
+    @cached_property
+    def contact_ratio(self) -> float:
+        """Smallest contact ratio of all pairs of flanks, for both directions, as designed."""
+        return self.subject.contact_ratio
+
+    @cached_property
+    def contact_ratios(self) -> Columns:
+        """Contact ratio of every pair of finished flanks, at the design centre distance.
+
+        ``tooth1``, ``tooth2`` from 1; ``side`` of the driver's tooth, first -1 (driving), then +1
+        (coast); ``contact_ratio``; ``from_deg``, ``to_deg``, driver angles at start and end of
+        contact, nan without contact.
+        """
+        return contact_ratio_columns(self.subject.sides)
+
+    def _phases(self, phi1: ArrayLike | None) -> Array:
+        """Return given driver angles, or by default those of the centrodes."""
+        if phi1 is None:
+            return self.centrode_angles()
+        if self.law.lobes.closed:
+            return angles("phi1", phi1)
+        end = self.law.period
+        return angles("phi1", phi1, 0.0, end, ROUNDING * end)
+
+    def mesh(self, *, progress: Progress | None = None, **settings: object) -> StudyResult:
+        """Return the meshing study: contact, interference and backlash, step by step, as mounted.
+
+        Parameters
+        ----------
+        progress : callable, optional
+            Called with a stage's name, the stages or steps done and their number.
+        **settings : value
+            Keys of the table ``[meshing]``, such as ``steps`` and ``center_distance_mm``, in the
+            units of a file; they override those of the design.
+
+        Returns
+        -------
+        StudyResult
+            Its columns are those of ``meshing.csv`` (see docs/summary.md); incomplete if it was
+            interrupted.
+
+        Raises
+        ------
+        DesignError
+            If a setting is unknown, or its value is not allowed.
+        InfeasibleError
+            If the design, or its study, is impossible.
+        KeyboardInterrupt
+            If it was interrupted before the first steps were done.
+        """
+        return self.with_settings("meshing", settings).study("mesh", progress)
 
 
 def _room(gear: Gear) -> str:

@@ -1,0 +1,322 @@
+"""Results of designs of which parts are made: drawings, solids, their places, and their files."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property, partial
+from typing import TYPE_CHECKING, Any, Final
+
+from gearcam.results.result import Result
+
+if TYPE_CHECKING:
+    from trimesh import Trimesh
+
+    from gearcam.export.dxf import DxfStyle
+    from gearcam.parts.body import Part
+    from gearcam.parts.solids import Mesh
+    from gearcam.pictures.drawings import Drawing, Placement
+    from gearcam.sheets.sheet import Sheet
+
+Files = dict[str, bytes]
+"""Contents by file name."""
+
+Measured = dict[str, Any]
+"""Values measured on files, by group of facts."""
+
+MESHES: Final = ("stl", "3mf", "glb")
+"""Formats of meshes."""
+
+_STEP_PART: Final = 2e-3
+"""Tolerance of STEP surfaces over that of the outlines: their volumes are then good to 1e-6."""
+
+_CHORD_HOW: Final = (
+    "largest distance of the curve from a chord: measured at 13 places, or, "
+    "where the curvature hardly changes, from the tangents at its ends"
+)
+"""Method of a sampler's chord error."""
+
+
+class PartsResult(Result):
+    """The result of a design of which parts are made.
+
+    The output of its designs has ``chord_tolerance``, ``kerf``, ``dxf_curves`` and ``dxf_version``.
+
+    Parameters
+    ----------
+    design : Design
+        The design to build.
+    tolerances : Tolerances
+        Accuracy of the internal computations.
+    """
+
+    @property
+    @abstractmethod
+    def parts(self) -> tuple[Part, ...]:
+        """The parts to be made, with bores, hubs and openings."""
+
+    @property
+    @abstractmethod
+    def plates(self) -> tuple[Drawing, ...]:
+        """A drawing of each plate that is cut, in its own frame."""
+
+    @property
+    @abstractmethod
+    def drawing(self) -> Drawing:
+        """The parts assembled."""
+
+    @property
+    @abstractmethod
+    def profile_tolerance(self) -> float:
+        """Chord tolerance of the outlines, mm."""
+
+    @property
+    @abstractmethod
+    def chord_error(self) -> float:
+        """Largest chord error of the outlines, mm."""
+
+    @property
+    @abstractmethod
+    def error_rows(self) -> Mapping[str, tuple[float, str]]:
+        """Error estimates and their methods by name, without those of chords and files."""
+
+    @abstractmethod
+    def rows_of(self, number: int) -> Sequence[str]:
+        """Return the names of the facts in the table of a part's drawing, by its `number`."""
+
+    @property
+    def assembly(self) -> str:
+        """Stem of the files of the assembled parts; empty for a single part."""
+        return ""
+
+    @property
+    def placements(self) -> tuple[Placement, ...]:
+        """Rotation, rad, and shift, mm, of each part in the assembly."""
+        from gearcam.pictures.drawings import UNMOVED
+
+        return (UNMOVED,) * len(self.parts)
+
+    @property
+    def heights(self) -> tuple[float, ...]:
+        """Height of each part in the assembly, mm."""
+        return (0.0,) * len(self.parts)
+
+    @cached_property
+    def to_cut(self) -> tuple[Drawing, ...]:
+        """Cutting paths of the plates, in mm: outlines, or paths offset by half the kerf."""
+        from gearcam.pictures.drawings import cut_drawing
+
+        return tuple(cut_drawing(one, self.design.output.kerf) for one in self.plates)
+
+    @property
+    def references(self) -> tuple[Drawing, ...]:
+        """Drawings beside the cutting paths in the format ``dxf``."""
+        return ()
+
+    @cached_property
+    def sheets(self) -> tuple[Sheet, ...]:
+        """The workshop drawings."""
+        from gearcam.sheets import wheel_sheet
+        from gearcam.sheets.paper import sheet_rows
+
+        facts, title = self.facts, self.design.name
+        return tuple(
+            wheel_sheet(part, sheet_rows(facts, self.rows_of(number)), title)
+            for number, part in enumerate(self.parts)
+        )
+
+    @cached_property
+    def solids(self) -> dict[str, Trimesh]:
+        """The parts as closed `trimesh.Trimesh` objects by name, mm, each in its own frame.
+
+        They extend from z = 0 to the width, hubs beyond it; `InfeasibleError` if impossible.
+        """
+        from gearcam.export.mesh import trimeshes
+
+        return trimeshes(self.meshes)
+
+    @cached_property
+    def meshes(self) -> dict[str, Mesh]:
+        """The parts as closed meshes of plain arrays by name, mm, as used for files."""
+        from gearcam.parts.solids import solid
+
+        return {part.name: solid(part) for part in self.parts}
+
+    @property
+    def assembled(self) -> dict[str, Mesh]:
+        """The meshes in their places in the assembly, by name."""
+        places = zip(self.meshes.items(), self.placements, self.heights, strict=True)
+        return {name: mesh.placed(*place, height) for (name, mesh), place, height in places}
+
+    @property
+    def dxf_style(self) -> DxfStyle:
+        """The options of DXF."""
+        from gearcam.export.dxf import DxfStyle
+
+        output = self.design.output
+        version = output.dxf_version or ("R12" if output.dxf_curves == "lines" else "R2010")
+        tolerance = self.profile_tolerance
+        return DxfStyle(tolerance=tolerance, curves=output.dxf_curves, version=version)
+
+    def accuracy(self, measured: Mapping[str, Any]) -> dict[str, Any]:
+        """Return the error estimates as facts, with ``how`` for each.
+
+        Parameters
+        ----------
+        measured : mapping
+            Measurements of exporters: ``dxf``.
+        """
+        rows = {**self.error_rows, "chord_mm": (self.chord_error, _CHORD_HOW)}
+        made: dict[str, Any] = {name: float(value) for name, (value, _) in rows.items()}
+        how = {name: words for name, (_, words) in rows.items()}
+        dxf = measured.get("dxf")
+        if dxf is not None:
+            made["dxf_mm"] = dxf["error_mm"]
+            kerf = self.design.output.kerf
+            what = "the edge, or its parallel at half the kerf" if kerf else "the curve"
+            how["dxf_mm"] = f"files read back ({dxf['curves']}), against {what}, both ways"
+        return {**made, "how": how}
+
+
+def part_files(texts: Mapping[str, str]) -> dict[str, Callable[..., Files]]:
+    """Return what makes the files of parts, for the ``files`` of a kind.
+
+    Parameters
+    ----------
+    texts : mapping of str to str
+        By format, two paragraphs for the reference: ``Files: ...`` with the names of the files, and
+        what they hold.
+
+    Returns
+    -------
+    dict of str to FileMaker
+        By format, each with the text in its docstring.
+    """
+    made = {}
+    for name, text in texts.items():
+        made[name] = partial(_MAKERS[name])
+        made[name].__doc__ = f"Return the files {name}.\n{text}"
+    return made
+
+
+def drawn(drawings: Sequence[Drawing], style: DxfStyle, measured: Measured) -> Files:
+    """Return drawings as DXF files, each read back and measured.
+
+    Parameters
+    ----------
+    drawings : sequence of Drawing
+        Each becomes a file of its name.
+    style : DxfStyle
+        Options of DXF.
+    measured : dict
+        Receives the measured errors.
+
+    Returns
+    -------
+    dict of str to bytes
+        Contents by file name.
+    """
+    from gearcam.export.dxf import dxf_bytes
+    from gearcam.export.dxf_read import Known, measure_dxf
+
+    files: Files = {}
+    outlines: Known = {}
+    known = measured.setdefault(
+        "dxf", {"curves": style.curves, "version": style.version, "error_mm": {}}
+    )
+    for drawing in drawings:
+        name = f"{drawing.name}.dxf"
+        files[name] = dxf_bytes(drawing, style)
+        if drawing.contours:
+            known["error_mm"][name] = measure_dxf(files[name], drawing.contours, outlines)
+    return files
+
+
+def _dxf(result: PartsResult, measured: Measured) -> Files:
+    """Return the cutting paths and their references as DXF."""
+    return drawn([*result.to_cut, *result.references], result.dxf_style, measured)
+
+
+def _cut_svg(result: PartsResult, _: Measured) -> Files:
+    """Return files for a laser: one for each plate, and a sheet with all of them, labelled."""
+    from gearcam.export.cut_svg import cut_svg
+    from gearcam.export.lettering import labelled
+    from gearcam.export.nest import nested
+
+    title, kerf = result.design.name, result.design.output.kerf
+    files = {
+        f"{one.name}_cut.svg": cut_svg([one], f"{title}, {one.name}", kerf) for one in result.to_cut
+    }
+    sheet = nested([labelled(one) for one in result.to_cut])
+    return files | {"cut.svg": cut_svg(sheet, title, kerf)}
+
+
+def _svg(result: PartsResult, _: Measured) -> Files:
+    """Return the picture of the assembled parts."""
+    from gearcam.export.svg import svg_bytes
+
+    notes, drawing = result.facts.headline, result.drawing
+    return {f"{drawing.name}.svg": svg_bytes(drawing, title=result.design.name, notes=notes)}
+
+
+def _mesh(kind: str, result: PartsResult, measured: Measured) -> Files:
+    """Return the meshes of the parts, and of the assembly, in a format."""
+    from gearcam.export.mesh import glb_bytes, stl_bytes, threemf_bytes
+    from gearcam.parts.solids import volume_error
+
+    meshes = result.meshes
+    measured["solids"] = {
+        part.name: {
+            "volume_mm3": meshes[part.name].volume,
+            "volume_error_mm3": volume_error(part),
+            "triangles": len(meshes[part.name].triangles),
+        }
+        for part in result.parts
+    }
+    to_bytes = {"stl": stl_bytes, "3mf": threemf_bytes, "glb": glb_bytes}[kind]
+    scenes = {name: {name: mesh} for name, mesh in meshes.items()}
+    if result.assembly:
+        scenes[result.assembly] = result.assembled
+    return {f"{stem}.{kind}": to_bytes(scene, stem) for stem, scene in scenes.items()}
+
+
+def _step(result: PartsResult, _: Measured) -> Files:
+    """Return the parts, and their assembly, as STEP files."""
+    from gearcam.export.step import step_bytes
+    from gearcam.pictures.drawings import UNMOVED
+
+    parts, assembly, close = result.parts, result.assembly, _STEP_PART * result.profile_tolerance
+    made: dict[Part, Any] = {}
+    files = {
+        f"{part.name}.step": step_bytes([(part, UNMOVED)], part.name, close, made) for part in parts
+    }
+    if assembly:
+        placed = list(zip(parts, result.placements, strict=True))
+        files[f"{assembly}.step"] = step_bytes(placed, assembly, close, made, result.heights)
+    return files
+
+
+def _sheet_svg(result: PartsResult, _: Measured) -> Files:
+    """Return the workshop drawings as SVG."""
+    from gearcam.export.sheet_svg import sheet_svg
+
+    return {f"{one.name}_drawing.svg": sheet_svg(one) for one in result.sheets}
+
+
+def _sheet_dxf(result: PartsResult, _: Measured) -> Files:
+    """Return the workshop drawings as DXF."""
+    from gearcam.export.sheet_dxf import sheet_dxf
+
+    return {f"{one.name}_drawing.dxf": sheet_dxf(one, result.dxf_style) for one in result.sheets}
+
+
+_MAKERS: Final[Mapping[str, Callable[..., Files]]] = {
+    "dxf": _dxf,
+    "cut-svg": _cut_svg,
+    "svg": _svg,
+    **{kind: partial(_mesh, kind) for kind in MESHES},
+    "step": _step,
+    "drawing-dxf": _sheet_dxf,
+    "drawing-svg": _sheet_svg,
+}
+"""What makes each format of files of parts."""
