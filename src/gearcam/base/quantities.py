@@ -101,6 +101,8 @@ class Param:
         The parameter if lifts are angles, which has another key.
     sliding : Param or None
         The parameter if the cam slides, which has another key.
+    constant_at : float or None
+        Value at which the ratio of a law is constant: the search for remedies moves towards it.
     """
 
     quantity: Quantity = NUMBER
@@ -118,6 +120,7 @@ class Param:
     function: bool = False
     angular: Param | None = None
     sliding: Param | None = None
+    constant_at: float | None = None
 
     def __post_init__(self) -> None:
         if self.gt == 0.0 and self.quantity.least:

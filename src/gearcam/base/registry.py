@@ -143,7 +143,12 @@ def lazy_names(
     """
     modules = {name: module for module, names in homes.items() for name in names}
 
+    def names() -> list[str]:
+        return sorted({*modules, *classes()})
+
     def find(name: str) -> Any:
+        if name == "__all__":
+            return names()
         if name in modules:
             module = importlib.import_module(modules[name])
             return getattr(module, name, module)
@@ -154,4 +159,4 @@ def lazy_names(
 
         return described(known[name])
 
-    return find, lambda: sorted({*modules, *classes()})
+    return find, names

@@ -19,21 +19,7 @@ from typing import TYPE_CHECKING
 from gearcam.base.registry import classes_in, lazy_names
 
 if TYPE_CHECKING:
-    from gearcam.laws.ratio.centrodes import EccentricCircle, Limacon, Lobed, LogSpiral
-    from gearcam.laws.ratio.composite import Fourier, Multispeed, ThreePhasePolynomial
-    from gearcam.laws.ratio.constant import Constant
-    from gearcam.laws.ratio.ellipse import Ellipse
-    from gearcam.laws.ratio.formula import Formula, RackLaw
-    from gearcam.laws.ratio.phases import Phases
-    from gearcam.laws.ratio.position import MotionLaw
-    from gearcam.laws.ratio.shapes import BSplineLaw, RoundedPolygon
-    from gearcam.laws.ratio.table import TableLaw
-
-__all__ = [
-    "BSplineLaw", "Constant", "EccentricCircle", "Ellipse", "Formula", "Fourier", "Limacon",
-    "Lobed", "LogSpiral", "MotionLaw", "Multispeed", "Phases", "RackLaw", "RoundedPolygon",
-    "TableLaw", "ThreePhasePolynomial",
-]  # fmt: skip
+    from gearcam.laws.ratio import *  # noqa: F403
 
 
 def _classes() -> dict[str, type]:

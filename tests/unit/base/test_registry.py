@@ -91,6 +91,6 @@ def test_names_of_a_package_load_what_they_need() -> None:
             find(wrong)
     assert loaded == []
     assert find("Size") is Size
-    assert names() == ["Size", "json", "loads"]
+    assert names() == find("__all__") == ["Size", "json", "loads"]
     with pytest.raises(AttributeError, match="there is no size Sise;"):
         find("Sise")

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 from gearcam.base.errors import InfeasibleError, Way
 from gearcam.designs.design import value_at
 from gearcam.kinds.gear_pair.shorter import lower, shorter
+from gearcam.laws.ratio.base import milder
 from gearcam.results.advice import Advice, kerf_paths
 
 if TYPE_CHECKING:
@@ -31,9 +32,6 @@ _USUAL: Final = 1.5
 
 _TIMES: Final = (1, 2, 4)
 """Multiples of the wheel's teeth that are tried with a larger ring."""
-
-_EVEN: Final = 0.05
-"""Power of the ratios of a closed spiral that is the mildest one tried: 1 itself is no spiral."""
 
 _EDGES: Final = (Way(far={"blank.tip_rounding_mm": 0.0}), Way(far={"blank.clearance_mm": 0.0}))
 """Ways to edges without rounding and clearance."""
@@ -117,7 +115,8 @@ def _others(search: Search, refusal: InfeasibleError | None, factor: float) -> I
         yield from _other_ratios(search)
         yield from _EDGES
     if factor or search.result.design.pair.type == "internal":
-        yield from _milder(search)
+        z1, z2 = search.result.design.pair.teeth
+        yield from milder(search.result.design.law, z1 / z2)
 
 
 def _larger_ring(search: Search) -> Iterator[Way]:
@@ -140,27 +139,6 @@ def _usual_cutter(search: Search) -> Iterator[Way]:
         cutter = type(result)(free, result.tolerances).pair.toothings[1].cutter
         if cutter.kc:
             yield Way(near={"ring.cutter_teeth": round(cutter.teeth, 3)})
-
-
-def _milder(search: Search) -> Iterator[Way]:
-    """Yield ways to a law whose ratio swings less."""
-    law, teeth = search.document["law"], search.result.design.pair.teeth
-    mean = teeth[0] / teeth[1]
-    far: dict[str, object] = {}
-    for key in ("eccentricity", "cosines", "sines"):
-        if key in law:
-            far[f"law.{key}"] = 0.0
-    if "return_deg" in law:  # a spiral: its ratios are k and 1/k
-        first, last = law["ratios"]
-        near = 1.0 / last if first == "solve" else first
-        even = {"law.ratios": [near**_EVEN, "solve"]}
-        yield Way(near={"law.ratios": [near, "solve"]}, far=even)
-        yield Way(far={"law.return_deg": 180.0})
-    elif "ratios" in law and "driven_travel_deg" not in law:
-        # a mixture of two laws that close, one of them constant, closes
-        far["law.ratios"] = mean
-    if far:
-        yield Way(far=far)
 
 
 def _other_ratios(search: Search) -> Iterator[Way]:

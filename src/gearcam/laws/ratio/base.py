@@ -9,10 +9,10 @@ dataclass with the method ``build(lobes, tolerances)``; ``LAWS.register`` adds i
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,10 +20,12 @@ from numpy.typing import ArrayLike
 from gearcam.base.display import Brief
 from gearcam.base.errors import InfeasibleError, Way
 from gearcam.base.numerals import shown
+from gearcam.base.quantities import params_of
 from gearcam.base.registry import Registry
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.displacement import Displacement, Jump
 from gearcam.laws.entry import LawEntry
+from gearcam.laws.ratio import HOMES
 from gearcam.laws.ratio.span import (
     RING,
     Span,
@@ -232,22 +234,38 @@ class RatioLaw(Brief, Displacement):
         return measured + solved + self.function_error + rounding
 
 
-_HOMES: Final = {
-    "phases": ("phases",),
-    "composite": ("three-phase-polynomial", "multispeed", "fourier"),
-    "constant": ("constant",),
-    "ellipse": ("ellipse",),
-    "centrodes": ("eccentric-circle", "limacon", "lobed", "log-spiral"),
-    "shapes": ("bspline", "rounded-polygon"),
-    "formula": ("formula", "rack"),
-    "table": ("table",),
-    "position": ("motion",),
-}
-
 LAWS: Final[Registry[LawEntry]] = Registry(
-    "law", {f"gearcam.laws.ratio.{home}": names for home, names in _HOMES.items()}
+    "law", {f"gearcam.laws.ratio.{home}": names for home, names in HOMES.items()}
 )
 """Ratio laws by name."""
+
+
+def milder(parameters: Any, mean: float) -> Iterator[Way]:
+    """Yield ways to a law whose ratio swings less.
+
+    A law says it in its own method ``milder(mean)``, or parameters by their value of `constant_at`.
+
+    Parameters
+    ----------
+    parameters : dataclass
+        Parameters of a ratio law.
+    mean : float
+        Its mean ratio.
+
+    Yields
+    ------
+    Way
+        A change of the law's keys.
+    """
+    if hasattr(parameters, "milder"):
+        yield from parameters.milder(mean)
+    far = {
+        f"law.{given.key(name)}": given.constant_at
+        for name, given in params_of(type(parameters)).items()
+        if given.constant_at is not None
+    }
+    if far:
+        yield Way(far=far)
 
 
 def make_law(

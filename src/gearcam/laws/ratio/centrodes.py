@@ -36,6 +36,9 @@ from gearcam.numeric.roots import newton_in_bracket
 _ROUNDING: Final = 1e-15
 """Accuracy of places on a return, rad."""
 
+_EVEN: Final = 0.05
+"""Power of the ratios of a closed spiral that is the mildest one tried: 1 itself is no spiral."""
+
 T = TypeVar("T", Array, Jet)
 
 
@@ -47,7 +50,7 @@ class EccentricCircle:
     """
 
     eccentricity: float = param(
-        NUMBER, ge=0, lt=1, doc="distance of shaft and circle centre, in radii"
+        NUMBER, ge=0, lt=1, constant_at=0, doc="distance of shaft and circle centre, in radii"
     )
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
@@ -72,7 +75,9 @@ class EccentricCircle:
 class Limacon:
     """Pascal's limacon, ``r1 = 1 + e*cos(phi1)``."""
 
-    eccentricity: float = param(NUMBER, ge=0, lt=1, doc="amplitude of the radius over its mean")
+    eccentricity: float = param(
+        NUMBER, ge=0, lt=1, constant_at=0, doc="amplitude of the radius over its mean"
+    )
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         """Return the law for `lobes`, to `tolerances`.
@@ -90,7 +95,9 @@ class Limacon:
 class Lobed:
     """``r1 = 1 + e*cos(n1*phi1)`` with n1 lobes."""
 
-    eccentricity: float = param(NUMBER, ge=0, lt=1, doc="amplitude of the radius over its mean")
+    eccentricity: float = param(
+        NUMBER, ge=0, lt=1, constant_at=0, doc="amplitude of the radius over its mean"
+    )
     lobes: tuple[int, int] | None = param(COUNT, default=None, ge=1, le=100, doc=LOBES)
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
@@ -181,6 +188,15 @@ class LogSpiral(Brief):
             if ratio == "solve" and (not closed or (index and self.ratios[0] == "solve")):
                 rule = "a number; one of the two ratios of a closed pair is solved at most"
                 yield "ratios", index, '"solve" is not possible here', rule
+
+    def milder(self, mean: float) -> Iterator[Way]:  # noqa: ARG002  (same signature for all)
+        """Yield ways to a closed spiral with a smaller swing; it has no constant ratio."""
+        if self.return_angle is not None:
+            first, last = self.ratios
+            start = 1.0 / float(last) if first == "solve" else first
+            far = {"law.ratios": [start**_EVEN, "solve"]}
+            yield Way(near={"law.ratios": [start, "solve"]}, far=far)
+            yield Way(far={"law.return_deg": 180.0})
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         """Return the law for `lobes`, to `tolerances`.

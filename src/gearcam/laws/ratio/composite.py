@@ -69,6 +69,11 @@ class Multispeed(Brief):
         if len(unknown) > 1:
             yield "ratios", unknown[1], 'more than one "solve"', 'one "solve"'
 
+    def milder(self, mean: float) -> Iterator[Way]:
+        """Yield a way towards the ratio `mean` of a closed law (see `Phases.milder`)."""
+        if self.driven_travel is None:
+            yield Way(far={"law.ratios": mean})
+
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         """Return the law for `lobes`, to `tolerances`.
 
@@ -173,10 +178,13 @@ class Fourier(Brief):
     cosines: Row = param(
         NUMBER,
         default=(),
+        constant_at=0,
         doc="cosine coefficients of the harmonics 1, 2, ... of a lobe: shares of the mean ratio, "
         "or degrees of phi2 at mean ratio 1",
     )
-    sines: Row = param(NUMBER, default=(), doc="sine coefficients, in the same units")
+    sines: Row = param(
+        NUMBER, default=(), constant_at=0, doc="sine coefficients, in the same units"
+    )
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         """Return the law for `lobes`, to `tolerances`.

@@ -25,7 +25,9 @@ class Ellipse:
     ``A = 2*a``: two equal ellipses.
     """
 
-    eccentricity: float = param(NUMBER, ge=0, lt=1, doc="eccentricity of the ellipse")
+    eccentricity: float = param(
+        NUMBER, ge=0, lt=1, constant_at=0, doc="eccentricity of the ellipse"
+    )
     lobes: tuple[int, int] | None = param(COUNT, default=None, ge=1, le=100, doc=LOBES)
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:

@@ -143,6 +143,11 @@ class Phases(Brief):
         elif len(open_places) > 1:
             yield (*open_places[1], 'more than one "solve"', 'one "solve" among knots and ratios')
 
+    def milder(self, mean: float) -> Iterator[Way]:
+        """Yield a way towards the ratio `mean`: a mixture of two laws that close closes too."""
+        if self.driven_travel is None:
+            yield Way(far={"law.ratios": mean})
+
     def _closed_problems(self) -> Iterator[tuple[str, int | None, str, str]]:
         for index, value in enumerate(self.knots):
             if value == "solve":

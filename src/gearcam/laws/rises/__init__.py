@@ -11,38 +11,47 @@ Cycloidal()
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from gearcam.base.registry import classes_in, lazy_names
 
 if TYPE_CHECKING:
-    from gearcam.laws.rises.formula import FormulaRise
-    from gearcam.laws.rises.points import BSplineRise, TableRise
-    from gearcam.laws.rises.polynomials import (
-        Polynomial,
-        Polynomial23,
-        Polynomial345,
-        Polynomial3456,
-        Polynomial4567,
-        Polynomial56789,
-    )
-    from gearcam.laws.rises.scca import ModifiedSine, ModifiedTrapezoid, Scca
-    from gearcam.laws.rises.simple import (
-        ConstantAcceleration,
-        ConstantVelocity,
-        Cycloidal,
-        Harmonic,
-        SineTrapezoidalVelocity,
-        TrapezoidalAcceleration,
-        TrapezoidalVelocity,
-    )
+    from gearcam.laws.rises.formula import FormulaRise as FormulaRise
+    from gearcam.laws.rises.points import BSplineRise as BSplineRise
+    from gearcam.laws.rises.points import TableRise as TableRise
+    from gearcam.laws.rises.polynomials import Polynomial as Polynomial
+    from gearcam.laws.rises.polynomials import Polynomial23 as Polynomial23
+    from gearcam.laws.rises.polynomials import Polynomial345 as Polynomial345
+    from gearcam.laws.rises.polynomials import Polynomial3456 as Polynomial3456
+    from gearcam.laws.rises.polynomials import Polynomial4567 as Polynomial4567
+    from gearcam.laws.rises.polynomials import Polynomial56789 as Polynomial56789
+    from gearcam.laws.rises.scca import ModifiedSine as ModifiedSine
+    from gearcam.laws.rises.scca import ModifiedTrapezoid as ModifiedTrapezoid
+    from gearcam.laws.rises.scca import Scca as Scca
+    from gearcam.laws.rises.simple import ConstantAcceleration as ConstantAcceleration
+    from gearcam.laws.rises.simple import ConstantVelocity as ConstantVelocity
+    from gearcam.laws.rises.simple import Cycloidal as Cycloidal
+    from gearcam.laws.rises.simple import Harmonic as Harmonic
+    from gearcam.laws.rises.simple import SineTrapezoidalVelocity as SineTrapezoidalVelocity
+    from gearcam.laws.rises.simple import TrapezoidalAcceleration as TrapezoidalAcceleration
+    from gearcam.laws.rises.simple import TrapezoidalVelocity as TrapezoidalVelocity
 
-__all__ = [
-    "BSplineRise", "ConstantAcceleration", "ConstantVelocity", "Cycloidal", "FormulaRise",
-    "Harmonic", "ModifiedSine", "ModifiedTrapezoid", "Polynomial", "Polynomial23",
-    "Polynomial345", "Polynomial3456", "Polynomial4567", "Polynomial56789", "Scca",
-    "SineTrapezoidalVelocity", "TableRise", "TrapezoidalAcceleration", "TrapezoidalVelocity",
-]  # fmt: skip
+HOMES: Final = {
+    "simple": (
+        "constant-velocity",
+        "constant-acceleration",
+        "harmonic",
+        "cycloidal",
+        "trapezoidal-velocity",
+        "sine-trapezoidal-velocity",
+        "trapezoidal-acceleration",
+    ),
+    "polynomials": ("2-3", "3-4-5", "4-5-6-7", "5-6-7-8-9", "3-4-5-6", "polynomial"),
+    "scca": ("modified-trapezoid", "modified-sine", "scca"),
+    "points": ("b-spline", "table"),
+    "formula": ("formula",),
+}
+"""The motion laws of each module, by their names in design files."""
 
 
 def _classes() -> dict[str, type]:
