@@ -9,7 +9,7 @@ where it is undercut. For a cam that slides it is open and ends with the travel.
 Curves are complex points, mm, in the cam's frame; for a cam that turns clockwise they are mirrored
 at the y axis.
 
-Depends on contact, mechanism, laws and numeric; numpy only.
+Depends on followers, mechanism, laws and numeric; numpy only.
 """
 
 from __future__ import annotations
@@ -21,7 +21,8 @@ from itertools import pairwise
 import numpy as np
 
 from gearcam.base.display import Brief
-from gearcam.cams.contact import Contact, contact
+from gearcam.cams.contact import Contact
+from gearcam.cams.followers import Round
 from gearcam.cams.mechanism import Mechanism
 from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
@@ -33,13 +34,6 @@ _SHARP = 0.5
 
 _GRAIN = 2.0
 """Least length of a sweep, in roundings of an angle."""
-
-
-def unit(angle: Array) -> Plane:
-    """Return unit vectors at angles (n,), rad."""
-    result = np.empty(np.shape(angle), dtype=np.complex128)
-    result.real, result.imag = np.cos(angle), np.sin(angle)
-    return result
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -82,19 +76,28 @@ class CamCurve(Brief):
         order : int
             Of the jets, at most 2.
         """
-        factors = (1.0, 1.0, 0.5)[: order + 1]
-        s, ds, d2s = (Jet([f * found[k + j] for j, f in enumerate(factors)]) for k in range(3))
-        return contact(self.mechanism, s, ds, d2s)
+        factors = (1.0, 1.0, 0.5, 1.0 / 6.0)[: order + 2]
+        s, ds = (Jet([f * found[k + j] for j, f in enumerate(factors)]) for k in range(2))
+        m = self.mechanism
+        return m.follower.contact(m.carrier, s + m.start, ds, m.radius)
 
     def pitch(self, theta: Array, s: Array) -> Plane:
-        """Return centres of a round follower in the cam's frame, not mirrored: ``theta, s``."""
+        """Return centres of a round follower in the cam's frame, not mirrored.
+
+        Parameters
+        ----------
+        theta, s : (n,) arrays
+            Cam angles, rad, and lift, mm or rad.
+
+        Raises
+        ------
+        TypeError
+            If the follower is flat.
+        """
         m = self.mechanism
-        position = m.start + s
-        if m.slide:
-            return m.sliding_centre(position) + m.slide * theta
-        if m.oscillating:
-            return m.pivot * unit(-theta) - m.arm * unit(-theta - position)
-        return (m.offset + 1j * position) * unit(-theta)
+        if not isinstance(m.follower, Round):
+            raise TypeError("a flat face has no pitch curve")
+        return m.carrier.under(theta, m.follower.centre(m.start + s))
 
     def trace(self, theta: Array, s: Array, ds: Array, inset: float) -> tuple[Plane, Plane]:
         """Return points and unit tangents of the curve at a depth below a round follower's centre.
@@ -113,74 +116,10 @@ class CamCurve(Brief):
             Clockwise, or mirrored.
         """
         m = self.mechanism
-        if m.flat:
-            points, tangents = self._flat(theta, s, ds)
-        else:
-            a, b, beta = self.velocity(theta, s, ds)
-            tangents = (a + 1j * b) / np.hypot(a, b) * unit(-beta)
-            points = self.pitch(theta, s) - 1j * inset * tangents
+        points, tangents = m.follower.trace(m.carrier, theta, m.start + s, ds, inset)
         if self.mirrored:
             return -np.conj(points), -np.conj(tangents)
         return points, tangents
-
-    def velocity(self, theta: Array, s: Array, ds: Array) -> tuple[Array, Array, Array]:
-        """Return A, B and beta of a round follower (see `gearcam.cams.contact`)."""
-        m = self.mechanism
-        position = m.start + s
-        if m.slide:
-            angle = position if m.oscillating else m.tilt + np.zeros_like(s)
-            return m.slide * np.cos(angle), m.lever * ds - m.slide * np.sin(angle), -angle
-        if m.oscillating:
-            a = m.pivot * np.sin(position)
-            return a, m.arm * (1.0 + ds) - m.pivot * np.cos(position), theta + position
-        return position, ds - m.offset, theta
-
-    def jump_of(self, theta: Array, s: Array, ds: Array) -> Array:
-        """Return the even parameter of a jump for given velocities.
-
-        The direction of a round follower's centre, or the position of the contact along a swinging
-        face; it rises with the velocity.
-
-        Parameters
-        ----------
-        theta, s, ds : (n,) arrays
-            Cam angles, rad, lift and velocity there.
-
-        Returns
-        -------
-        (n,) array
-            In rad, or in distances of the pivot; for a translating face the velocity itself.
-        """
-        m = self.mechanism
-        if m.flat:
-            return ds / (1.0 + ds) if m.oscillating else ds
-        a, b, _ = self.velocity(theta, s, ds)
-        return np.arctan(b / np.abs(a))
-
-    def velocity_of(self, theta: Array, s: Array, jump: Array) -> Array:
-        """Return the velocities of a jump.
-
-        Parameters
-        ----------
-        theta, s, jump : (n,) arrays
-            Cam angles, rad, lift there, and the parameter of the jump (see `jump_of`).
-        """
-        m = self.mechanism
-        if m.flat:
-            return jump / (1.0 - jump) if m.oscillating else jump
-        a, b, _ = self.velocity(theta, s, np.zeros_like(s))
-        return (np.abs(a) * np.tan(jump) - b) / m.lever
-
-    def _flat(self, theta: Array, s: Array, ds: Array) -> tuple[Plane, Plane]:
-        m = self.mechanism
-        position = m.start + s
-        if m.oscillating:
-            height = m.pivot * np.sin(position) - m.face_offset
-            along, turn = m.pivot * np.cos(position) * ds / (1.0 + ds), theta + position
-        else:
-            height, along, turn = position, ds, theta
-        tangents = unit(-turn)
-        return (along + 1j * height) * tangents, tangents
 
 
 @dataclass(frozen=True, eq=False)
@@ -196,7 +135,7 @@ class ProfileSegments(Brief):
     piece : (n,) array of int
         Smooth piece of the lift that a sweep belongs to, or that begins at a jump.
     start, end : (n,) arrays
-        theta of a sweep, rad; the even parameter of a jump (see `CamCurve.jump_of`).
+        theta of a sweep, rad; the even parameter of a jump (see `Follower.jump`).
     jump : (n,) array of bool
         Mask of the jumps.
     corner : (n,) array of bool
@@ -289,7 +228,8 @@ class ProfileSegments(Brief):
         theta = np.where(jump, program.knots[self.piece[index]], parameter)
         s, ds, *more = program.lift.on_pieces(self.piece[index], theta, order)
         if jump.any():
-            ds[jump] = self.curve.velocity_of(theta[jump], s[jump], parameter[jump])
+            m = self.curve.mechanism
+            ds[jump] = m.follower.velocity(m.carrier, m.start + s[jump], parameter[jump])
         return theta, s, ds, *more
 
     def at(self, index: Ints, parameter: Array) -> tuple[Plane, Plane]:
@@ -321,19 +261,12 @@ class ProfileSegments(Brief):
             Opposite to the tangent where the curve runs backwards.
         """
         theta, s, ds, d2s = self.states(index, parameter, 2)
-        found = contact(self.curve.mechanism, Jet([s]), Jet([ds]), Jet([d2s]))
+        m = self.curve.mechanism
+        found = self.curve.contact_of((s, ds, d2s), 0)
         speed = found.speed if self.inset else found.pitch_speed
         points, tangents = self.curve.trace(theta, s, ds, self.inset)
-        return points, np.where(
-            self.jump[index], self._rolling(theta, s, ds), speed.c[0]
-        ) * tangents
-
-    def _rolling(self, theta: Array, s: Array, ds: Array) -> Array:
-        """Return the speed of a jump's curve: around a roller's centre, or along a flat face."""
-        m = self.curve.mechanism
-        if m.flat:
-            return m.pivot * np.cos(m.start + s) if m.oscillating else np.ones_like(s)
-        return self.inset * np.sign(self.curve.velocity(theta, s, ds)[0])
+        rolling = m.follower.jump_speed(m.carrier, m.start + s, self.inset)
+        return points, np.where(self.jump[index], rolling, speed.c[0]) * tangents
 
 
 def segments(curve: CamCurve, inset: float) -> ProfileSegments:
@@ -358,8 +291,9 @@ def segments(curve: CamCurve, inset: float) -> ProfileSegments:
     for piece, (low, high) in enumerate(pairwise(program.knots.tolist())):
         jump = hard.get(low)
         if jump and drawn:
-            theta, lift = np.array([low, low]), program.lift.side(piece, 1, 0)[0] + np.zeros(2)
-            ends = curve.jump_of(theta, lift, np.array([jump.before, jump.after])).tolist()
+            m, lift = curve.mechanism, program.lift.side(piece, 1, 0)[0] + np.zeros(2)
+            speeds = np.array([jump.before, jump.after])
+            ends = m.follower.jump(m.carrier, m.start + lift, speeds).tolist()
             rows.append((piece, *ends, True, False))
         rows.append((piece, low, high, False, jump is not None and not drawn))
     return ProfileSegments(curve, inset, *map(np.array, zip(*rows, strict=True)))

@@ -17,7 +17,8 @@ from functools import cached_property
 import numpy as np
 
 from gearcam.base.display import Brief
-from gearcam.cams.curve import ProfileSegments, segments, unit
+from gearcam.cams.carriers import unit
+from gearcam.cams.curve import ProfileSegments, segments
 from gearcam.cams.lost import resting
 from gearcam.cams.measures import Extreme
 from gearcam.cams.wall import Wall

@@ -35,12 +35,15 @@ from __future__ import annotations
 import cmath
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from gearcam.base.display import Brief
 from gearcam.base.errors import InfeasibleError, Way
 from gearcam.base.numerals import shown
+from gearcam.cams.carriers import Carrier, Rotating, Sliding
+from gearcam.cams.followers import Arm, FlatArm, FlatStem, Follower, Stem
 from gearcam.cams.spec import CamSpec, FollowerSpec
 from gearcam.numeric.arrays import Array, Plane
 
@@ -140,6 +143,24 @@ class Mechanism(Brief):
         return Driver(
             symbol="u", unit="mm", per="mm", called="travel", scale=self.slide, rate=self.slide
         )
+
+    @cached_property
+    def follower(self) -> Follower:
+        """The follower itself."""
+        if self.flat:
+            if self.oscillating:
+                return FlatArm(start=self.start, pivot=self.pivot, offset=self.face_offset)
+            return FlatStem(start=self.start, offset=self.offset)
+        start, radius = self.start, abs(self.radius)
+        if not self.oscillating:
+            return Stem(start=start, radius=radius, offset=self.offset, tilt=self.tilt)
+        pivot, hand = (complex(-self.pivot, self.height), -1) if self.slide else (self.pivot, 1)
+        return Arm(start=start, radius=radius, arm=self.arm, pivot=complex(pivot), hand=hand)
+
+    @cached_property
+    def carrier(self) -> Carrier:
+        """What the cam does beneath it."""
+        return Sliding(self.slide) if self.slide else Rotating()
 
     def sliding_centre(self, position: Array) -> Plane:
         """Return centres of a round follower over a cam that slides, in the fixed frame."""

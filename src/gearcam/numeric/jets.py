@@ -60,6 +60,14 @@ class Jet:
         scaled = [v * math.factorial(k) if k > 1 else v for k, v in enumerate(self.c)]
         return [v if isinstance(v, np.ndarray) else np.full(shape, v) for v in scaled]
 
+    def differentiated(self) -> Jet:
+        """Return the derivative, of one order less."""
+        return Jet([k * value for k, value in enumerate(self.c[1:], 1)])
+
+    def shortened(self) -> Jet:
+        """Return the same function, of one order less."""
+        return Jet(self.c[:-1])
+
     def _constant(self, value: Value) -> Jet:
         return Jet([np.full_like(self.c[0], value), *[0.0] * self.order])
 

@@ -1,0 +1,472 @@
+"""The followers of cams: position, velocity and contact of each, once for every carrier.
+
+Points of the plane are complex numbers, mm, in the fixed frame. The *position* p of a follower is
+its lift added to its position at zero lift, mm or rad. A round follower has a centre ``C(p)``;
+its path has the unit tangent t, the follower's direction, and the length ``lever`` per unit of p:
+
+==================== ======================================= ========= ==========
+follower             centre                                  lever     direction t
+==================== ======================================= ========= ==========
+stem                 ``exp(i*tilt)*(offset + i*p)``          1         ``i*exp(i*tilt)``
+arm                  ``pivot - hand*arm*exp(-i*hand*p)``     ``arm``   ``i*exp(-i*hand*p)``
+==================== ======================================= ========= ==========
+
+With U, the velocity of a point at rest seen from the cam, the centre moves in the cam's frame by
+``A + i*B = i*lever*s' + i*conj(t)*U``: A across the follower's direction, B against it.
+``alpha = arctan(B/A)`` is the pressure angle, ``w = hypot(A, B)`` the speed of the centre and
+``turning = rate - spin*s' - alpha'`` the angular rate of the normal; the pitch curve's curvature is
+``turning/w`` (positive for a convex curve), and the profile, a roller's radius r inside it, is
+traced at the speed ``w - r*turning``. Where that is negative the profile is undercut.
+
+A flat face is a support line at the distance h from the cam's axis, which turns by ``-beta`` in the
+cam's frame: it touches ``g = h'/beta'`` along itself, and the profile is traced at the speed
+``h*beta' + g'``. The curves run clockwise.
+
+Sources: 000 eqs. (3.17), (3.21), (3.26), (3.30), (3.33), section 3.4.4; derived anew.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from gearcam.base.display import Brief
+from gearcam.cams.carriers import Carrier, Pair, unit
+from gearcam.cams.contact import Contact
+from gearcam.numeric.arrays import Array, Plane
+from gearcam.numeric.jets import Jet, cos, sin, sqrt
+
+
+@dataclass(frozen=True, kw_only=True)
+class Follower(Brief, ABC):
+    """A follower in the fixed frame.
+
+    Parameters
+    ----------
+    start : float, mm or rad
+        Position at zero lift.
+    """
+
+    start: float
+
+    angular: ClassVar[bool]
+    """Whether positions and lifts are angles."""
+
+    @property
+    @abstractmethod
+    def lever(self) -> float:
+        """Millimetres per unit of lift."""
+
+    @abstractmethod
+    def contact(self, carrier: Carrier, p: Jet, ds: Jet, inset: float) -> Contact:
+        """Return the contact with the cam.
+
+        Parameters
+        ----------
+        carrier : Carrier
+            Motion of the cam.
+        p, ds : Jet
+            Position and velocity, each with one derivative more than the contact.
+        inset : float, mm
+            Depth of the profile below a round follower's centre; of no meaning for faces.
+        """
+
+    @abstractmethod
+    def trace(
+        self, carrier: Carrier, x: Array, p: Array, ds: Array, inset: float
+    ) -> tuple[Plane, Plane]:
+        """Return points, mm, and unit tangents, clockwise, of a curve in the cam's frame.
+
+        Parameters
+        ----------
+        carrier : Carrier
+            Motion of the cam.
+        x, p, ds : (n,) arrays
+            Driver positions, positions and velocities of the follower.
+        inset : float, mm
+            Depth below a round follower's centre, 0 for the pitch curve; of no meaning for faces,
+            whose profile is the only curve.
+        """
+
+    @abstractmethod
+    def jump(self, carrier: Carrier, p: Array, ds: Array) -> Array:
+        """Return the even parameter of a jump of the velocity, which rises with it.
+
+        The pressure angle of a round follower, rad; of a swinging face the position of the contact
+        in distances of the pivot; of a translating one the velocity itself.
+
+        Parameters
+        ----------
+        carrier : Carrier
+            Motion of the cam.
+        p, ds : (n,) arrays
+            Positions and velocities of the follower.
+        """
+
+    @abstractmethod
+    def velocity(self, carrier: Carrier, p: Array, jump: Array) -> Array:
+        """Return the velocities in a jump.
+
+        Parameters
+        ----------
+        carrier : Carrier
+            Motion of the cam.
+        p, jump : (n,) arrays
+            Positions of the follower, and the parameter of the jump (see `jump`).
+        """
+
+    @abstractmethod
+    def jump_speed(self, carrier: Carrier, p: Array, inset: float) -> Array:
+        """Return the speed of a curve, mm per unit of the parameter, during a jump.
+
+        Parameters
+        ----------
+        carrier : Carrier
+            Motion of the cam.
+        p : (n,) array
+            Positions of the follower.
+        inset : float, mm
+            Depth below a round follower's centre.
+        """
+
+
+@dataclass(frozen=True, kw_only=True)
+class Round(Follower):
+    """A follower with a round end: a roller, a dome, or a point.
+
+    Parameters
+    ----------
+    radius : float, mm
+        Of the end; 0 for a point.
+    """
+
+    radius: float = 0.0
+
+    @property
+    @abstractmethod
+    def spin(self) -> float:
+        """Rotating of its direction per unit of position, rad."""
+
+    @abstractmethod
+    def centre(self, p: Array) -> Plane:
+        """Return the centre, mm, at positions (n,)."""
+
+    @abstractmethod
+    def lean(self, p: Array) -> Array | float:
+        """Return the angle of its direction at positions (n,), rad, from that of the y axis."""
+
+    @abstractmethod
+    def axes(self, p: Jet) -> tuple[Pair, Pair]:
+        """Return ``i*conj(t)`` and ``conj(t)*C`` for the centre C and the direction t."""
+
+    def _moving(self, carrier: Carrier, p: Jet, ds: Jet) -> tuple[Jet, Jet]:
+        """Return A and B (see the module)."""
+        a, b = carrier.seen(*self.axes(p))
+        return a if isinstance(a, Jet) else 0.0 * p + a, b + self.lever * ds
+
+    def contact(self, carrier: Carrier, p: Jet, ds: Jet, inset: float) -> Contact:
+        """Return the contact (see `Follower.contact`)."""
+        across, against = self._moving(carrier, p, ds)
+        a, b, a_slope, b_slope = (
+            across.shortened(),
+            against.shortened(),
+            across.differentiated(),
+            against.differentiated(),
+        )
+        square = a * a + b * b
+        turning = (carrier.rate - self.spin * ds.shortened()) - (a * b_slope - b * a_slope) / square
+        speed = sqrt(square)
+        return Contact(
+            across=b,
+            along=a,
+            turning=turning,
+            pitch_speed=speed,
+            speed=speed - inset * turning,
+            place=0.0 * a,
+        )
+
+    def trace(
+        self, carrier: Carrier, x: Array, p: Array, ds: Array, inset: float
+    ) -> tuple[Plane, Plane]:
+        """Return points and tangents (see `Follower.trace`)."""
+        a, b = (jet.c[0] for jet in self._moving(carrier, Jet([p]), Jet([ds])))
+        tangents = (a + 1j * b) / np.hypot(a, b) * unit(self.lean(p) - carrier.rate * x)
+        return carrier.under(x, self.centre(p)) - 1j * inset * tangents, tangents
+
+    def jump(self, carrier: Carrier, p: Array, ds: Array) -> Array:
+        """Return the parameter of a jump (see `Follower.jump`)."""
+        a, b = (jet.c[0] for jet in self._moving(carrier, Jet([p]), Jet([ds])))
+        return np.arctan(b / np.abs(a))
+
+    def velocity(self, carrier: Carrier, p: Array, jump: Array) -> Array:
+        """Return the velocities in a jump (see `Follower.velocity`)."""
+        a, b = (jet.c[0] for jet in self._moving(carrier, Jet([p]), Jet([np.zeros_like(p)])))
+        return (np.abs(a) * np.tan(jump) - b) / self.lever
+
+    def jump_speed(self, carrier: Carrier, p: Array, inset: float) -> Array:
+        """Return the speed around the centre (see `Follower.jump_speed`)."""
+        return inset * np.sign(self._moving(carrier, Jet([p]), Jet([np.zeros_like(p)]))[0].c[0])
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stem(Round):
+    """A round end on a stem that is guided straight.
+
+    Parameters
+    ----------
+    offset : float, mm
+        Distance of the guide from the origin, to the right.
+    tilt : float, rad
+        Angle of the guide from the y axis, counter-clockwise.
+    """
+
+    offset: float = 0.0
+    tilt: float = 0.0
+
+    angular = False
+
+    @property
+    def spin(self) -> float:
+        """Rotating of its direction per unit of position, rad."""
+        return 0.0
+
+    @property
+    def lever(self) -> float:
+        """Millimetres per unit of lift."""
+        return 1.0
+
+    def centre(self, p: Array) -> Plane:
+        """Return the centre, mm."""
+        return np.asarray(cmath.exp(1j * self.tilt) * (self.offset + 1j * p), dtype=np.complex128)
+
+    def lean(self, p: Array) -> float:  # noqa: ARG002
+        """Return the tilt."""
+        return self.tilt
+
+    def axes(self, p: Jet) -> tuple[Pair, Pair]:
+        """Return ``exp(-i*tilt)`` and ``p - i*offset``."""
+        return (math.cos(self.tilt), -math.sin(self.tilt)), (p, -self.offset)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Arm(Round):
+    """A round end on an arm, which points from its pivot to the left or to the right.
+
+    Parameters
+    ----------
+    arm : float, mm
+        From the pivot to the centre.
+    pivot : complex, mm
+        The pivot.
+    hand : {1, -1}
+        Whether the arm points along ``-x`` or ``+x`` at position 0; it rises with the position.
+    """
+
+    arm: float
+    pivot: complex
+    hand: int = 1
+
+    angular = True
+
+    @property
+    def lever(self) -> float:
+        """Millimetres per unit of lift."""
+        return self.arm
+
+    @property
+    def spin(self) -> float:
+        """Rotating of its direction per unit of position, rad."""
+        return -float(self.hand)
+
+    def centre(self, p: Array) -> Plane:
+        """Return the centre, mm."""
+        return self.pivot - (self.hand * self.arm) * unit(-self.hand * p)
+
+    def lean(self, p: Array) -> Array:
+        """Return the angle of its direction from the y axis, rad."""
+        return -self.hand * p
+
+    def axes(self, p: Jet) -> tuple[Pair, Pair]:
+        """Return ``exp(i*hand*p)``, and ``i*hand*arm - i*exp(i*hand*p)*pivot``.
+
+        Of the angle itself: the centre's coordinates would lose the digits of the first part, whose
+        sign says on which side of the axis the centre is.
+        """
+        c, s, x, y = cos(p), self.hand * sin(p), self.pivot.real, self.pivot.imag
+        across, against = x * s, -x * c
+        if y:
+            across, against = across + y * c, against + y * s
+        return (c, s), (across, against + self.hand * self.arm)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Face(Follower):
+    """A follower with a flat face."""
+
+    @abstractmethod
+    def line(self, p: Jet, ds: Jet) -> tuple[Jet, Jet, Jet]:
+        """Return the face as a line in the fixed frame.
+
+        Parameters
+        ----------
+        p, ds : Jet
+            Position and velocity of the follower.
+
+        Returns
+        -------
+        height, rise, turning : Jet
+            Distance from the origin, mm, its derivative, and the angular rate clockwise, rad per
+            unit of x.
+        """
+
+    @abstractmethod
+    def guided(self, p: Jet, turning: Jet, along: Jet) -> tuple[Jet, Jet, Jet]:
+        """Return the velocities of the pressure angle, and the place of contact on the face.
+
+        Parameters
+        ----------
+        p, turning : Jet
+            Position, and angular rate of the face seen from the cam.
+        along : Jet, mm
+            Distance of the contact from the foot of the origin on the face.
+
+        Returns
+        -------
+        across, along, place : Jet
+            See `gearcam.cams.contact.Contact`.
+        """
+
+    def contact(self, carrier: Carrier, p: Jet, ds: Jet, inset: float) -> Contact:  # noqa: ARG002
+        """Return the contact (see `Follower.contact`)."""
+        height, rise, clockwise = self.line(p, ds)
+        turning = carrier.rate + clockwise
+        reach = rise / turning
+        turning = turning.shortened()
+        across, along, place = self.guided(p.shortened(), turning, reach.shortened())
+        speed = height.shortened() * turning + reach.differentiated()
+        return Contact(
+            across=across,
+            along=along,
+            turning=turning,
+            pitch_speed=speed,
+            speed=speed,
+            place=place,
+        )
+
+    def trace(
+        self,
+        carrier: Carrier,
+        x: Array,
+        p: Array,
+        ds: Array,
+        inset: float,  # noqa: ARG002
+    ) -> tuple[Plane, Plane]:
+        """Return points and tangents (see `Follower.trace`)."""
+        height, rise, clockwise = (jet.c[0] for jet in self.line(Jet([p]), Jet([ds])))
+        tangents = unit(self.lean(p) - carrier.rate * x)
+        return (rise / (carrier.rate + clockwise) + 1j * height) * tangents, tangents
+
+    @abstractmethod
+    def lean(self, p: Array) -> Array | float:
+        """Return the angle of the face at positions (n,), rad, from that of the x axis."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class FlatStem(Face):
+    """A flat face square to a stem that is guided along the y axis.
+
+    Parameters
+    ----------
+    offset : float, mm
+        Distance of the guide from the origin; without influence on the cam.
+    """
+
+    offset: float = 0.0
+
+    angular = False
+
+    @property
+    def lever(self) -> float:
+        """Millimetres per unit of lift."""
+        return 1.0
+
+    def lean(self, p: Array) -> float:  # noqa: ARG002
+        """Return 0: the face is level."""
+        return 0.0
+
+    def line(self, p: Jet, ds: Jet) -> tuple[Jet, Jet, Jet]:
+        """Return the face as a line (see `Face.line`)."""
+        return p, ds, 0.0 * ds
+
+    def guided(self, p: Jet, turning: Jet, along: Jet) -> tuple[Jet, Jet, Jet]:
+        """Return no pressure angle, and the contact where it is (see `Face.guided`)."""
+        return 0.0 * p, 0.0 * turning + 1.0, along
+
+    def jump(self, carrier: Carrier, p: Array, ds: Array) -> Array:  # noqa: ARG002
+        """Return the velocity itself (see `Follower.jump`)."""
+        return ds
+
+    def velocity(self, carrier: Carrier, p: Array, jump: Array) -> Array:  # noqa: ARG002
+        """Return the parameter itself (see `Follower.velocity`)."""
+        return jump
+
+    def jump_speed(self, carrier: Carrier, p: Array, inset: float) -> Array:  # noqa: ARG002
+        """Return 1, as the velocity is the place (see `Follower.jump_speed`)."""
+        return np.ones_like(p)
+
+
+@dataclass(frozen=True, kw_only=True)
+class FlatArm(Face):
+    """A flat face that swings about a pivot on the x axis.
+
+    Parameters
+    ----------
+    pivot : float, mm
+        Distance of the pivot from the cam's axis.
+    offset : float, mm
+        Distance of the face from the pivot, towards the cam.
+    """
+
+    pivot: float
+    offset: float = 0.0
+
+    angular = True
+
+    @property
+    def lever(self) -> float:
+        """Millimetres per unit of lift, at the cam's axis."""
+        return self.pivot
+
+    def lean(self, p: Array) -> Array:
+        """Return the angle of the face, rad."""
+        return -p
+
+    def line(self, p: Jet, ds: Jet) -> tuple[Jet, Jet, Jet]:
+        """Return the face as a line (see `Face.line`)."""
+        return self.pivot * sin(p) - self.offset, self.pivot * cos(p) * ds, ds
+
+    def guided(self, p: Jet, turning: Jet, along: Jet) -> tuple[Jet, Jet, Jet]:  # noqa: ARG002
+        """Return the distance of the contact from the pivot's foot (see `Face.guided`).
+
+        That is ``d*cos(p) - along``, in a form that keeps all digits if the face falls nearly as
+        fast as the cam turns.
+        """
+        place = self.pivot * cos(p) / turning
+        return 0.0 * place - self.offset, place, place
+
+    def jump(self, carrier: Carrier, p: Array, ds: Array) -> Array:  # noqa: ARG002
+        """Return the place of contact over its distance at rest (see `Follower.jump`)."""
+        return ds / (carrier.rate + ds)
+
+    def velocity(self, carrier: Carrier, p: Array, jump: Array) -> Array:  # noqa: ARG002
+        """Return the velocities in a jump (see `Follower.velocity`)."""
+        return carrier.rate * jump / (1.0 - jump)
+
+    def jump_speed(self, carrier: Carrier, p: Array, inset: float) -> Array:  # noqa: ARG002
+        """Return the length of the face to the pivot's foot (see `Follower.jump_speed`)."""
+        return self.pivot * np.cos(p)

@@ -1,0 +1,191 @@
+"""Every follower over every carrier, against the moving plane written out in fifty digits."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+
+from gearcam.cams.carriers import Carrier, Rotating, Sliding
+from gearcam.cams.followers import Arm, Face, FlatArm, FlatStem, Follower, Stem
+from gearcam.numeric.arrays import Array
+from gearcam.numeric.jets import Jet
+from witness.cam_numbers import Touch
+
+mp: Any = mpmath.mp
+
+
+@dataclass(frozen=True)
+class Case:
+    """A follower, its carrier, the witness of both, and the size of its lift."""
+
+    follower: Follower
+    carrier: Carrier
+    touch: Touch
+    lift: float
+
+
+def turning(follower: Follower, lift: float, **sizes: Any) -> Case:
+    return Case(follower, Rotating(), Touch(start=follower.start, **sizes), lift)
+
+
+CASES = {
+    "stem": turning(Stem(start=35.0, offset=8.0, radius=6.0), 10.0, offset=8.0, radius=6.0),
+    "stem below the axis": turning(
+        Stem(start=-60.0, offset=8.0, radius=6.0), 10.0, offset=8.0, radius=6.0
+    ),
+    "arm": turning(
+        Arm(start=0.55, arm=70.0, pivot=80.0 + 0j, radius=6.0),
+        0.3,
+        swings=True,
+        arm=70.0,
+        pivot=80.0,
+        radius=6.0,
+    ),
+    "arm below the axis": turning(
+        Arm(start=-0.9, arm=60.0, pivot=80.0 + 0j, radius=6.0),
+        0.3,
+        swings=True,
+        arm=60.0,
+        pivot=80.0,
+        radius=6.0,
+    ),
+    "face": turning(FlatStem(start=30.0, offset=3.0), 10.0, flat=True, offset=3.0),
+    "swinging face": turning(
+        FlatArm(start=0.5, pivot=80.0, offset=7.0),
+        0.2,
+        flat=True,
+        swings=True,
+        pivot=80.0,
+        face=7.0,
+    ),
+    "stem over a plate": Case(
+        Stem(start=0.0, tilt=0.3, radius=6.0),
+        Sliding(15.0),
+        Touch(radius=6.0, slide=15.0, tilt=0.3),
+        10.0,
+    ),
+    "arm over a plate": Case(
+        Arm(start=-0.1, arm=60.0, pivot=-70.0 + 6.0j, hand=-1, radius=6.0),
+        Sliding(15.0),
+        Touch(start=-0.1, swings=True, arm=60.0, pivot=70.0, height=6.0, radius=6.0, slide=15.0),
+        0.2,
+    ),
+}
+
+PLACES = np.linspace(0.1, 6.1, 7)
+
+
+@pytest.fixture(params=CASES.values(), ids=list(CASES))
+def case(request: pytest.FixtureRequest) -> Case:
+    return request.param
+
+
+def lifts(case: Case) -> list[Array]:
+    """Return a cosine lift at the places, and three derivatives."""
+    wave = [-np.cos(PLACES), np.sin(PLACES), np.cos(PLACES), -np.sin(PLACES)]
+    return [0.5 * case.lift * (part + (k == 0)) for k, part in enumerate(wave)]
+
+
+def jets(case: Case) -> tuple[Jet, Jet]:
+    s, ds, d2s, d3s = lifts(case)
+    return Jet([case.follower.start + s, ds, 0.5 * d2s]), Jet([ds, d2s, 0.5 * d3s])
+
+
+def true(case: Case, function: Callable[[Any, list[Any]], Any]) -> list[complex]:
+    with mpmath.workdps(50):
+        return [
+            complex(function(mp.mpf(x), [mp.mpf(float(part)) for part in found]))
+            for x, *found in zip(PLACES, *lifts(case), strict=True)
+        ]
+
+
+def radius(case: Case) -> float:
+    return float(case.touch.radius)
+
+
+def test_points_are_those_of_the_moving_plane(case: Case) -> None:
+    s, ds, *_ = lifts(case)
+    points, tangents = case.follower.trace(
+        case.carrier, PLACES, case.follower.start + s, ds, radius(case)
+    )
+    assert points == pytest.approx(np.array(true(case, case.touch.contact)), abs=1e-13)
+    assert np.abs(tangents) == pytest.approx(1.0, abs=1e-15)
+
+
+def test_pressure_angle_and_its_slope(case: Case) -> None:
+    found = case.follower.contact(case.carrier, *jets(case), radius(case)).pressure.derivatives()
+    exact = np.real(true(case, lambda _, state: case.touch.pressure(state)))
+    assert found[0] == pytest.approx(exact, abs=1e-15)
+
+    def at(x: Any) -> Any:
+        half = mp.mpf(case.lift) / 2
+        state = [half * (1 - mp.cos(x)), half * mp.sin(x), half * mp.cos(x), -half * mp.sin(x)]
+        return case.touch.pressure(state)
+
+    with mpmath.workdps(50):
+        slopes = [float(mp.diff(at, mp.mpf(float(x)))) for x in PLACES]
+    assert found[1] == pytest.approx(slopes, abs=1e-14)
+
+
+def test_speed_and_turning_are_derivatives_of_the_points(case: Case) -> None:
+    """The speed is along the tangent, which turns clockwise."""
+    contact = case.follower.contact(case.carrier, *jets(case), radius(case))
+
+    def point(x: Any) -> Any:
+        half = mp.mpf(case.lift) / 2
+        state = [half * (1 - mp.cos(x)), half * mp.sin(x), half * mp.cos(x), -half * mp.sin(x)]
+        return case.touch.contact(x, state)
+
+    s, ds, *_ = lifts(case)
+    _, tangents = case.follower.trace(
+        case.carrier, PLACES, case.follower.start + s, ds, radius(case)
+    )
+    with mpmath.workdps(50):
+        moves = [[complex(mp.diff(point, float(x), n)) for n in (1, 2)] for x in PLACES]
+    first, second = np.array(moves).T
+    assert np.conj(tangents) * first == pytest.approx(contact.speed.c[0] + 0j, abs=1e-12)
+    turned = -contact.turning.c[0] * contact.speed.c[0]
+    assert (np.conj(tangents) * second).imag == pytest.approx(turned, abs=1e-11)
+    assert (np.conj(tangents) * second).real == pytest.approx(contact.speed.c[1], abs=1e-11)
+
+
+def test_curvature_of_the_pitch_curve(case: Case) -> None:
+    if isinstance(case.follower, Face):
+        pytest.skip("a face has none")
+    contact = case.follower.contact(case.carrier, *jets(case), radius(case))
+    exact = np.real(true(case, case.touch.curvature))
+    assert (contact.turning / contact.pitch_speed).c[0] == pytest.approx(exact, rel=1e-12)
+
+
+def test_a_jump_is_even_in_its_parameter(case: Case) -> None:
+    """Velocities come back from their parameter, which rises; its curve moves at the speed."""
+    carrier, follower = case.carrier, case.follower
+    p = np.full(5, follower.start + 0.3 * case.lift)
+    speeds = np.linspace(-0.9, 0.9, 5) * case.lift
+    places = follower.jump(carrier, p, speeds)
+    assert np.all(np.diff(places) > 0.0)
+    assert follower.velocity(carrier, p, places) == pytest.approx(speeds, abs=1e-13 * case.lift)
+    step = 1e-5
+    ends = [
+        follower.trace(
+            carrier, 0.0 * p, p, follower.velocity(carrier, p, places + off), radius(case)
+        )
+        for off in (-step, 0.0, step)
+    ]
+    moved = (ends[2][0] - ends[0][0]) / (2.0 * step) * np.conj(ends[1][1])
+    speed = follower.jump_speed(carrier, p, radius(case))
+    assert moved == pytest.approx(speed + 0j, abs=1e-6)
+
+
+@pytest.mark.parametrize("off", [1e-6, -1e-6])
+def test_an_arm_over_the_axis_knows_its_side(off: float) -> None:
+    """The first velocity is ``d*sin(p)`` to all digits, though the centre has only some."""
+    arm = Arm(start=0.0, arm=80.0, pivot=80.0 + 0j)
+    found = arm.contact(Rotating(), Jet([np.array([off]), 0.0]), Jet([np.array([0.0]), 0.0]), 0.0)
+    assert found.along.c[0] == pytest.approx(80.0 * math.sin(off), rel=1e-15)
