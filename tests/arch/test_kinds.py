@@ -98,6 +98,18 @@ def test_another_kind_has_messages_schema_and_a_template() -> None:
     assert document == {"kind": "spacer", "name": "mine", "ring": {"bore_mm": 20}}
 
 
+@pytest.mark.usefixtures("toy")
+@pytest.mark.parametrize("studies", ["", '[output]\nstudies = ["weigh"]\n'])
+def test_a_report_needs_no_scene_no_solids_and_no_charts(studies: str) -> None:
+    result = gearcam.build(loads(GOOD + studies))
+    html = result.files("report")["report.html"].decode()
+    for part in ('id="parts"', 'href="#motion"', 'id="solids"', 'href="#accuracy"', "const CYCLE"):
+        assert part not in html
+    assert ('href="#charts"' in html) == bool(studies)
+    assert "outer diameter" in html
+    assert result._repr_html_().startswith('<iframe title="thin"')
+
+
 def test_another_kind_works_on_the_command_line(
     toy: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

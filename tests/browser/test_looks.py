@@ -12,9 +12,11 @@ import pytest
 from selenium.webdriver import ActionChains, Chrome, Keys
 from selenium.webdriver.common.by import By
 
-from gearcam.report.page import page
+import gearcam
+from gearcam.report.page import document, page
 from gearcam.results.advice import remedies
 from helpers_browser import LAPTOP, PHONE, complaints, go, open_page, settle, unfold, until
+from helpers_pairs import PROFILES
 
 NAIL = "nail_machine_two_phase"
 TEXT, SHAPE = 4.5, 3.0
@@ -123,6 +125,45 @@ def test_the_page_leads_with_what_decides_and_the_rest_is_folded(
     assert not any(one.get_attribute("open") for one in folded)
     browser.find_element(By.CSS_SELECTOR, "nav [href='#facts']").click()
     until(lambda: browser.find_element(By.CSS_SELECTOR, "#facts table").is_displayed())
+
+
+def test_charts_of_studies_that_a_design_asks_for_are_in_sight(
+    browser: Chrome, tmp_path: Path
+) -> None:
+    keys = {"output.studies": ["mesh"], "meshing.steps": 24}
+    result = gearcam.build(gearcam.load(PROFILES / "ellipse.toml").with_(keys))
+    path = tmp_path / "studied.html"
+    path.write_bytes(page(document(result)))
+    charts = open_page(browser, path)["charts"]
+    studied = [one["title"] for one in charts if one["name"].startswith("mesh.")]
+    assert studied
+    figures = browser.find_elements(By.CSS_SELECTOR, "#charts > figure")
+    titles = [one.find_element(By.TAG_NAME, "h3").text for one in figures]
+    assert titles == [*(one["title"] for one in charts[:3]), *studied]
+    for figure in figures:
+        browser.execute_script("arguments[0].scrollIntoView()", figure)
+        until(lambda figure=figure: figure.find_elements(By.TAG_NAME, "canvas"))
+    folded = browser.find_element(By.CSS_SELECTOR, "#charts details")
+    assert len(folded.find_elements(By.TAG_NAME, "figure")) == len(charts) - len(titles)
+    assert folded.text == f"{len(charts) - len(titles)} more charts"
+    assert complaints(browser) == []
+
+
+def test_a_page_without_moving_parts_shows_its_charts(browser: Chrome, page_of: Written) -> None:
+    source = page_of(NAIL)
+    data = open_page(browser, source)
+    still = source.with_name("still.html")
+    still.write_bytes(page(data | {"scene": None}))
+    charts = open_page(browser, still)["charts"]
+    figures = browser.find_elements(By.CSS_SELECTOR, "#charts > figure")
+    assert len(figures) == 3
+    for figure in figures:
+        browser.execute_script("arguments[0].scrollIntoView()", figure)
+        until(lambda figure=figure: figure.find_elements(By.TAG_NAME, "canvas"))
+    assert not browser.find_elements(By.ID, "motion")
+    browser.execute_cdp_cmd("Page.printToPDF", {})
+    until(lambda: len(browser.find_elements(By.CLASS_NAME, "uplot")) == len(charts))
+    assert complaints(browser) == []
 
 
 def test_paper_shows_all_charts_facts_and_errors(browser: Chrome, page_of: Written) -> None:

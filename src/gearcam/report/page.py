@@ -47,19 +47,6 @@ SCRIPTS: Final = ("scene.js", *_CHARTS, "page.js", "solids.js")
 STILL: Final = (*_CHARTS, "charts_page.js", "solids.js")
 """Parts of the script of a page without moving parts."""
 
-_ERRORS: Final = {
-    "law": ("driven angle", "rad"),
-    "arc length": ("rack travel", ""),
-    "lift": ("lift of the follower", ""),
-    "flank": ("points of the flanks", ""),
-    "profile": ("points of the profile", ""),
-    "chord": ("outlines, between their points", ""),
-    "contact ratio": ("contact ratio", ""),
-    "area": ("area", ""),
-    "volume": ("volume (mass in the same proportion)", ""),
-}
-"""Errors that users act on: label, and the unit if the name does not contain it."""
-
 _HOME: Final = Path(__file__).parent
 
 _VERDICTS: Final = {
@@ -219,7 +206,7 @@ def blocks(
         "verdict": verdict(result.findings),
         "remedies": remedies(result) if seek else Remedies(),
         "files": {name: size_of(size) for name, size in result.sizes.items()},
-        "errors": _errors(facts),
+        "errors": [*_errors(result, facts)],
     }
     return {name: rendered(f"{name}.html", told) for name in names}
 
@@ -236,19 +223,12 @@ def verdict(findings: tuple[Finding, ...]) -> tuple[str, str]:
     return worst, _VERDICTS[worst]
 
 
-def _errors(facts: Facts) -> Iterator[tuple[str, str]]:
-    """Yield label and error of each quantity that users act on: the largest of all parts."""
-    rows = [one for one in facts.quantities() if one.name.count(".") == 1]
-    rows = [one for one in rows if one.name.startswith("accuracy.")]
-    rack = "pair.travel_per_turn_mm" in facts
-    weighed = "accuracy.volume_mm3" in facts
-    skipped = {"law" if rack else "arc length", *(() if weighed else ("area",))}
-    for what, (label, unit) in _ERRORS.items():
-        # quantities of one of several walls begin with its name
-        found = [one for one in rows if one.meaning in (what, f"{one.meaning.split()[0]} {what}")]
-        if found and what not in skipped:
-            largest = max(found, key=lambda one: one.value)
-            yield label, f"{shown(largest.value, 2)} {unit or largest.unit}".rstrip()
+def _errors(result: Result, facts: Facts) -> Iterator[tuple[str, str]]:
+    """Yield label and value of each error that users act on: the largest of all parts."""
+    for label, names, unit in result.main_errors:
+        rows = (facts.quantity(f"accuracy.{name}") for name in names)
+        largest = max(rows, key=lambda one: one.value)
+        yield label, f"{shown(largest.value, 2)} {unit or largest.unit}".rstrip()
 
 
 @cache

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, Final
 
@@ -29,6 +29,9 @@ MESHES: Final = ("stl", "3mf", "glb")
 
 _STEP_PART: Final = 2e-3
 """Tolerance of STEP surfaces over that of the outlines: their volumes are then good to 1e-6."""
+
+CHORDS: Final = ("outlines, between their points", ["chord_mm"], "")
+"""The chord error among the `main_errors`."""
 
 _CHORD_HOW: Final = (
     "largest distance of the curve from a chord: measured at 13 places, or, "
@@ -157,6 +160,14 @@ class PartsResult(Result):
         version = output.dxf_version or ("R12" if output.dxf_curves == "lines" else "R2010")
         tolerance = self.profile_tolerance
         return DxfStyle(tolerance=tolerance, curves=output.dxf_curves, version=version)
+
+    def errors_of_parts(self) -> Iterator[tuple[str, Sequence[str], str]]:
+        """Yield the `main_errors` of area and volume, if they are estimated for a mass."""
+        rows = self.error_rows
+        areas = [name for name in rows if name.endswith("area_mm2")]
+        if "volume_mm3" in rows:
+            yield from [("area", areas, "")] if areas else []
+            yield "volume (mass in the same proportion)", ["volume_mm3"], ""
 
     def accuracy(self, measured: Mapping[str, Any]) -> dict[str, Any]:
         """Return the error estimates as facts, with ``how`` for each.

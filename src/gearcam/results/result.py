@@ -247,6 +247,14 @@ class Result(Displayed):
         notes = [Fact(rows.note, Path(rows.file).name, shown=True) for rows in tables]
         return made.with_group("tables", [{"note": one} for one in notes if one.value])
 
+    @property
+    def main_errors(self) -> Sequence[tuple[str, Sequence[str], str]]:
+        """Errors that users act on: label, names of facts of ``accuracy``, unit if no name has it.
+
+        Of several facts the largest counts.
+        """
+        return ()
+
     def record(self) -> dict[str, float | str]:
         """Return the result as one flat row of a table: plain numbers and texts, no lists, no None.
 

@@ -26,7 +26,7 @@ from gearcam.numeric.columns import Columns
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.parts.blank import KIND as PARTS_KIND
-from gearcam.results.parts import PartsResult
+from gearcam.results.parts import CHORDS, PartsResult
 
 if TYPE_CHECKING:
     from gearcam.cams.cam import Cam
@@ -235,6 +235,17 @@ class CamResult(PartsResult):
         from gearcam.kinds.cam.accuracy import error_rows
 
         return error_rows(self)
+
+    @property
+    def main_errors(self) -> Sequence[tuple[str, Sequence[str], str]]:
+        """Errors that users act on (see `Result`)."""
+        lift = next(iter(self.mechanism.motion_scales))
+        return (
+            ("lift of the follower", [lift], ""),
+            ("points of the profile", ["profile_mm"], ""),
+            CHORDS,
+            *self.errors_of_parts(),
+        )
 
     @cached_property
     def drawing(self) -> Drawing:

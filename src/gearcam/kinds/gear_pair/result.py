@@ -40,7 +40,7 @@ from gearcam.numeric.piecewise import with_both_sides
 from gearcam.numeric.sampling import MARGIN
 from gearcam.parts.blank import KIND as PARTS_KIND
 from gearcam.parts.blank import Blank
-from gearcam.results.parts import PartsResult
+from gearcam.results.parts import CHORDS, PartsResult
 from gearcam.results.result import Progress
 
 if TYPE_CHECKING:
@@ -513,6 +513,19 @@ class GearPairResult(PartsResult):
         from gearcam.kinds.gear_pair.accuracy import error_rows
 
         return error_rows(self)
+
+    @property
+    def main_errors(self) -> Sequence[tuple[str, Sequence[str], str]]:
+        """Errors that users act on (see `Result`)."""
+        return (
+            ("rack travel", ["arc_length_mm"], "")
+            if self.pair.on_rack
+            else ("driven angle", ["law"], "rad"),
+            ("points of the flanks", ["flank_mm"], ""),
+            CHORDS,
+            ("contact ratio", ["contact_ratio"], ""),
+            *self.errors_of_parts(),
+        )
 
     @cached_property
     def contact_ratio(self) -> float:
