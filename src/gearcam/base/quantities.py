@@ -97,6 +97,8 @@ class Param:
         Whether a single value may be given for both wheels.
     function : bool
         Whether Python functions may be given instead of a text.
+    nested : tuple of str
+        Kinds of design, if the value is a design: that of a file, or given in its place.
     angular : Param or None
         The parameter if lifts are angles, which has another key.
     sliding : Param or None
@@ -118,6 +120,7 @@ class Param:
     word: str = ""
     both: bool = False
     function: bool = False
+    nested: tuple[str, ...] = ()
     angular: Param | None = None
     sliding: Param | None = None
     constant_at: float | None = None
@@ -140,6 +143,11 @@ class Param:
 def param(quantity: Quantity = NUMBER, *, default: Any = REQUIRED, **rest: Any) -> Any:
     """Return a dataclass field of a `quantity` with a `default`; `rest` goes to `Param`."""
     return dataclasses.field(default=default, metadata={"param": Param(quantity, **rest)})
+
+
+def nested(*kinds: str, default: Any = REQUIRED, **rest: Any) -> Any:
+    """Return a dataclass field that holds a design of one of some `kinds` (see `param`)."""
+    return param(TEXT, default=default, nested=kinds, **rest)
 
 
 def params_of(owner: type) -> dict[str, Param]:

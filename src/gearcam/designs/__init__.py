@@ -13,6 +13,6 @@ from __future__ import annotations
 
 from gearcam.designs.design import Design, demand_kind, design, document_of, hash_of
 from gearcam.designs.kind import KINDS
-from gearcam.designs.reader import load, loads
+from gearcam.designs.loading import load, loads
 
 __all__ = ["KINDS", "Design", "demand_kind", "design", "document_of", "hash_of", "load", "loads"]

@@ -129,6 +129,10 @@ class Design:
             _ = self._token  # the copy keeps it
         return vars(self)
 
+    def _document(self) -> dict[str, Any]:
+        """Return its document, with which it is written where it is nested."""
+        return document_of(self)
+
     @cached_property
     def _value(self) -> tuple[str, list[Callable[..., Any]]]:
         """The values to compare, with rows of CSV files instead of their names, and functions."""
@@ -234,7 +238,12 @@ def demand_kind(design: Design, kind: str) -> Any:
 def _demand_types(design: Design) -> None:
     kind = KINDS[design.kind]
     owners = ((title, kind.table(title).owner) for title in kind.tables)
-    tables = [(title, getattr(design, title), (owner,)) for title, owner in owners if owner]
+    tables = [
+        (at, part, (owner,))
+        for title, owner in owners
+        if owner
+        for at, part in _parts(design, title)
+    ]
     wanted = (("limits", design.limits, (Mapping,)), *tables, *design._wanted())
     problems = [
         Problem(
@@ -248,6 +257,25 @@ def _demand_types(design: Design) -> None:
     ]
     if problems:
         raise DesignError(problems)
+
+
+def _parts(design: Design, title: str) -> Iterator[tuple[str, Any]]:
+    """Yield the keys and the contents of the tables of a `title`."""
+    part = getattr(design, title)
+    if title in KINDS[design.kind].several and isinstance(part, tuple):
+        yield from ((f"{title}[{number}]", one) for number, one in enumerate(part))
+    else:
+        yield title, part
+
+
+def nested_designs(design: Design) -> Iterator[tuple[Path, Design]]:
+    """Yield the path and the design of each design nested in a `design`."""
+    kind = KINDS[design.kind]
+    for title in kind.tables:
+        for at, part in _parts(design, title):
+            for key, entry in kind.table(title).entries.items():
+                if entry.param.nested and (inner := getattr(part, entry.name)) is not None:
+                    yield (*path_of(at), key), inner
 
 
 def document_of(design: Design) -> dict[str, Any]:
@@ -268,7 +296,9 @@ def document_of(design: Design) -> dict[str, Any]:
     if kind.main:
         document[kind.main.title] = kind.main.document(design)
     for title in kind.tables:
-        document[title] = kind.table(title).document(getattr(design, title))
+        known, made = kind.table(title), getattr(design, title)
+        several = title in kind.several
+        document[title] = [known.document(one) for one in made] if several else known.document(made)
     if design.limits:
         known = {entry.name: entry for entry in kind.table("limits").entries.values()}
         document["limits"] = {
@@ -361,7 +391,8 @@ def _plain(value: Any) -> Any:
 def hash_of(design: Design) -> str:
     """Return the hash of a design: designs with the same hash produce the same files.
 
-    It depends on the values of all keys, including defaults, and on the rows of CSV files, but not
+    It depends on the values of all keys, including defaults, on the rows of CSV files, and on the
+    hashes of nested designs, but not
     on comments, spaces, the order of keys, or the paths of CSV files; degrees are rounded to 13
     digits. Values that do not change any file are excluded: ``[limits]``, the list of
     files, and the settings of studies for which the design does not ask. Python functions cannot be
@@ -390,6 +421,11 @@ def hash_of(design: Design) -> str:
     for key in ("files", *(() if asked else ("studies",))):
         del document["output"][key]
     document.pop("limits", None)
+    for path, inner in nested_designs(design):
+        place: Any = document
+        for step in path[:-1]:
+            place = place[step]
+        place[path[-1]] = hash_of(inner)
     made = _with_rows(document, design)
     text = json.dumps(made, sort_keys=True, default=lambda _: design._token)
     return hashlib.sha256(text.encode()).hexdigest()[:HASH_DIGITS]

@@ -7,15 +7,22 @@ rad.
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 from functools import partial
+from pathlib import Path as FilePath
 from typing import Any, Final
 
-from gearcam.designs.faults import MISSING, TOO_DEEP, Fault, is_deep, quoted, show
+from gearcam.base.errors import DesignError
+from gearcam.base.reading import UnreadableError, read
+from gearcam.designs.faults import MISSING, TOO_DEEP, Fault, dotted, is_deep, quoted, show
 from gearcam.designs.kind import KINDS, DesignKind, Examined
-from gearcam.designs.lines import Path
+from gearcam.designs.lines import Path, line_at, lines_of
+from gearcam.designs.reader import LARGEST, decoded, document_in, find_tables
 from gearcam.designs.slips import STRONG, SURE, did_you_mean, hinted, key_hint, nearest
+from gearcam.designs.table import Key, Table
 from gearcam.designs.validate import faults_of, own_faults
 
 _NAME = re.compile(r"\w[\w.-]*")
@@ -27,9 +34,31 @@ _LONGEST_NAME: Final = 100
 _LONGEST_ENCODED: Final = 200
 """Largest length of a name in UTF-8, bytes; file systems allow 255."""
 
+MOST_NESTED: Final = 4
+"""Largest number of files of which each nests the next."""
 
-def examine(document: Mapping[str, Any], *, stem: str = "") -> Examined:
-    """Validate a document.
+
+@dataclass(frozen=True, kw_only=True)
+class Place:
+    """Where a document comes from.
+
+    Parameters
+    ----------
+    file : str
+        Name of its file, or of the file around it, for messages; empty without one.
+    folder : str
+        Folder to which the names of nested files are relative.
+    outer : tuple of str
+        Real paths of the file and of those that nest it.
+    """
+
+    file: str = ""
+    folder: str = ""
+    outer: tuple[str, ...] = ()
+
+
+def examine(document: Mapping[str, Any], *, stem: str = "", place: Place | None = None) -> Examined:
+    """Validate a document, and the designs that are nested in it.
 
     Parameters
     ----------
@@ -37,6 +66,8 @@ def examine(document: Mapping[str, Any], *, stem: str = "") -> Examined:
         As read from TOML.
     stem : str
         Name of the file without its extension: the default name of the design.
+    place : Place, optional
+        Where the document comes from.
 
     Returns
     -------
@@ -61,10 +92,10 @@ def examine(document: Mapping[str, Any], *, stem: str = "") -> Examined:
     if kind.main:
         kind.main.examine(document, found)
     for title in kind.tables:
-        _examine_table(document, kind, title, found)
+        _examine_table(document, kind, title, found, place or Place())
     found.parts["limits"] = {}
     if "limits" in document:  # the table loads the checks
-        _examine_table(document, kind, "limits", found)
+        _examine_table(document, kind, "limits", found, place or Place())
     found.faults += kind.rules(document, found)
     return found
 
@@ -186,22 +217,129 @@ def name_fault(name: Any) -> str:
 
 
 def _examine_table(
-    document: Mapping[str, Any], kind: DesignKind, title: str, found: Examined
+    document: Mapping[str, Any], kind: DesignKind, title: str, found: Examined, place: Place
 ) -> None:
-    known, raw = kind.table(title), document.get(title, {})
+    known, several = kind.table(title), title in kind.several
     listed = tuple(kind.listed(document, known) if known.owner else known.entries)
     if title not in document and title in kind.required:
-        rule = ", ".join(listed)
-        found.faults.append(Fault((title,), f"the table [{title}] is missing", allowed=rule))
+        brackets = f"[[{title}]]" if several else f"[{title}]"
+        message, rule = f"the table {brackets} is missing", ", ".join(listed)
+        found.faults.append(Fault((title,), message, allowed=rule))
+        return
+    raw = document.get(title, [] if several else {})
+    if several and not isinstance(raw, list):
+        hint = f"write it in double brackets, once for each: [[{title}]]"
+        found.faults.append(Fault((title,), f"{show(raw)} is not a list of tables", raw, "", hint))
         return
     home = partial(_elsewhere, kind)
-    faults = list(faults_of(known, raw, home=home, far=_other_home, listed=listed))
-    found.faults += faults
-    if not faults:
-        values = known.inward(raw)
-        made = known.owner(**values) if known.owner else values
-        found.faults += own_faults(made, known, raw, (title,))
-        found.parts[title] = made
+    made: list[Any] = []
+    items: list[tuple[Path, Any]] = [((title,), raw)]
+    if several:
+        items = [((title, number), one) for number, one in enumerate(raw)]
+    for at, given in items:
+        one, below = _with_designs(known, given, at, place)
+        faults = [*below, *faults_of(known, one, home=home, far=_other_home, at=at, listed=listed)]
+        found.faults += faults
+        if not faults:
+            values = known.inward(one)
+            made.append(known.owner(**values) if known.owner else values)
+            found.faults += own_faults(made[-1], known, one, at)
+    if several and len(made) == len(raw):
+        found.parts[title] = tuple(made)
+    elif not several and made:
+        found.parts[title] = made[0]
+
+
+def _with_designs(known: Table, raw: Any, at: Path, place: Place) -> tuple[Any, list[Fault]]:
+    """Return a table with its nested designs in place of documents and files, and their faults."""
+    made, faults = raw, list[Fault]()
+    for name, key in known.entries.items():
+        value = raw.get(name) if key.param.nested and isinstance(raw, Mapping) else None
+        if isinstance(value, str):
+            design, more = _from_file(key, value, (*at, name), place)
+        elif isinstance(value, Mapping):
+            design, more = _in_place(key, value, (*at, name), place)
+        else:
+            continue
+        faults += more
+        if not more:
+            made = {**made, name: design}
+    return made, faults
+
+
+def _in_place(
+    key: Key, value: Mapping[str, Any], at: Path, place: Place
+) -> tuple[Any, list[Fault]]:
+    """Return the design that is written in a table at a path, and its faults."""
+    kinds, name = key.param.nested, value.get("kind", MISSING)
+    name = kinds[0] if name is MISSING and len(kinds) == 1 else name
+    if name not in kinds:
+        message = "is missing" if name is MISSING else f"{show(name)} does not belong here"
+        return None, [Fault((*at, "kind"), message, name, quoted(kinds), did_you_mean(name, kinds))]
+    found = examine({"kind": name, **value}, stem=str(at[-1]), place=place)
+    if found.faults:
+        return None, [_outward(fault, at, KINDS[name].titles) for fault in found.faults]
+    return KINDS[name].design(source=place.file, examined=True, **found.parts), []
+
+
+def _outward(fault: Fault, at: Path, titles: tuple[str, ...]) -> Fault:
+    """Return a fault of a design that is written at a path as one of the design around it."""
+    if fault.file:
+        return fault
+    brackets = re.compile(rf"\[({'|'.join(titles)})\]")
+    words = {
+        name: brackets.sub(rf"[{dotted(at)}.\1]", getattr(fault, name))
+        for name in ("message", "allowed", "hint")
+    }
+    return replace(fault, path=(*at, *fault.path), **words)
+
+
+def _from_file(key: Key, value: str, at: Path, place: Place) -> tuple[Any, list[Fault]]:
+    """Return the design in a file that is named at a path, and its faults."""
+    file = os.fspath(FilePath(place.folder) / value)
+    rule = f"a file of kind {quoted(key.param.nested)}"
+
+    def refused(message: str) -> tuple[None, list[Fault]]:
+        return None, [Fault(at, f"{show(value)}: {message}", value, rule)]
+
+    try:
+        content = read(file if value else "", LARGEST)
+    except UnreadableError as error:
+        return refused(str(error))
+    real = os.path.realpath(file)
+    if real in place.outer:
+        return refused("this file would contain itself")
+    if len(place.outer) > MOST_NESTED:
+        return refused(f"more than {MOST_NESTED} files are nested in each other")
+    try:
+        text = decoded(content, file)
+        document = document_in(text, file)
+    except DesignError as error:
+        return None, [
+            Fault((), p.message, MISSING, p.allowed, p.hint, file, p.line) for p in error.problems
+        ]
+    name, folder = document.get("kind"), FilePath(file).parent
+    if isinstance(name, str) and name in KINDS and name not in key.param.nested:
+        return refused(f"its design is of kind {show(name)}")
+    find_tables(document, folder)
+    inside = Place(file=file, folder=os.fspath(folder), outer=(*place.outer, real))
+    found = examine(document, stem=FilePath(file).stem, place=inside)
+    if found.faults:
+        lines = lines_of(text)
+        return None, [
+            one if one.file else replace(one, file=file, line=line_at(lines, one.path))
+            for one in found.faults
+        ]
+    return KINDS[document["kind"]].design(source=file, examined=True, **found.parts), []
+
+
+def nested_in(document: Mapping[str, Any]) -> Iterator[tuple[Path, Key, Any]]:
+    """Yield the path, the key and the value of each nested design in a `document`, as written."""
+    kind = _meant_kind(document)
+    for at, known, raw in kind.tables_in(document) if kind else ():
+        for name, key in known.entries.items():
+            if key.param.nested and isinstance(raw, Mapping) and name in raw:
+                yield (*at, name), key, raw[name]
 
 
 def chosen(

@@ -31,7 +31,7 @@ DEEPEST: Final = 50
 
 @dataclass(frozen=True)
 class Fault:
-    """A mistake at a path of the document, without file and line.
+    """A mistake at a path of the document, without its file and line unless it is nested.
 
     Parameters
     ----------
@@ -41,6 +41,8 @@ class Fault:
         As in `gearcam.base.errors.Problem`.
     value : object
         The rejected value, or `MISSING`.
+    file, line
+        Of a mistake in the file of a nested design, to which the path belongs; else empty.
     """
 
     path: Path
@@ -48,11 +50,14 @@ class Fault:
     value: Any = MISSING
     allowed: str = ""
     hint: str = ""
+    file: str = ""
+    line: int | None = None
 
     def problem(self, file: str, line: int | None = None) -> Problem:
         """Return the problem for a `file`, at a `line` if known."""
         value = None if self.value is MISSING else self.value
         value = show(value) if functions_of(value) else value  # a problem must be picklable
+        file, line = (self.file, self.line) if self.file else (file, line)
         return Problem(self.message, file, line, dotted(self.path), value, self.allowed, self.hint)
 
 
@@ -145,6 +150,8 @@ def allowed(entry: Key, *, item: bool = False) -> str:
 
 
 def _single(entry: Key) -> str:
+    if entry.param.nested:
+        return f"the file of a design of kind {quoted(entry.param.nested)}, or a table of its own"
     if entry.param.choices:
         return quoted(entry.param.choices)
     if entry.base in (str, bool):
@@ -240,6 +247,8 @@ def _count(value: list[Any]) -> str:
 def _a_kind(entry: Key) -> str:
     if entry.param.choices:
         return "one of the words allowed"
+    if entry.param.nested:
+        return "a design"
     kind = _KINDS[entry.base]
     return kind if entry.base in (str, bool) else f"a {kind}"
 

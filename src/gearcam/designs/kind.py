@@ -99,6 +99,8 @@ class DesignKind:
         Functions that return the tables with fixed keys, by title, which is also the field name.
     required : tuple of str
         Titles of tables that a file must have.
+    several : tuple of str
+        Titles of tables that a file gives once or more, in double brackets; a tuple in the design.
     one_of : mapping of str to tuple
         Alternatives of which a table has exactly one, by its title: keys, or values of a key.
     conditions : mapping of str to callable
@@ -134,6 +136,7 @@ class DesignKind:
     main: Main | None = None
     tables: Mapping[str, Callable[[], Table]]
     required: tuple[str, ...]
+    several: tuple[str, ...] = ()
     one_of: Mapping[str, tuple[str | Mapping[str, Sequence[str]], ...]] = field(
         default_factory=dict
     )
@@ -161,6 +164,18 @@ class DesignKind:
     def table(self, title: str) -> Table:
         """Return a table by its title: one of `tables`, or ``limits``."""
         return self._limits() if title == "limits" else self.tables[title]()
+
+    def tables_in(
+        self, document: Mapping[str, Any]
+    ) -> Iterator[tuple[tuple[str | int, ...], Table, Any]]:
+        """Yield the path, the keys and the content of each table in a `document`, without main."""
+        for title in (*self.tables, "limits"):
+            if title in document:
+                raw, known = document[title], self.table(title)
+                if title in self.several and isinstance(raw, list):
+                    yield from (((title, number), known, one) for number, one in enumerate(raw))
+                else:
+                    yield (title,), known, raw
 
     def load_checks(self) -> None:
         """Import the modules that register checks."""

@@ -1,4 +1,4 @@
-"""Reading design files: TOML becomes a design, or one error that lists all mistakes."""
+"""The text of a design file: TOML becomes a document, with the lines of its mistakes."""
 
 from __future__ import annotations
 
@@ -13,8 +13,6 @@ from typing import Any, Final
 
 from gearcam.base.errors import DesignError, Problem
 from gearcam.base.reading import UnreadableError, read
-from gearcam.designs.design import Design
-from gearcam.designs.examine import examine
 from gearcam.designs.faults import DEEPEST, TOO_DEEP, Fault, is_deep
 from gearcam.designs.kind import KINDS
 from gearcam.designs.lines import line_at, lines_of
@@ -58,28 +56,6 @@ _PLAIN: Final = {
     "Expected ']' at the end of a table declaration": "the closing ] of the table name is missing",
     "Illegal character '\\n'": "the closing quote of the text is missing on this line",
 }
-
-
-def load(path: str | os.PathLike[str]) -> Design:
-    """Read a design file.
-
-    Parameters
-    ----------
-    path : path
-        A TOML file in UTF-8.
-
-    Returns
-    -------
-    Design
-        In mm and rad; its class depends on the kind.
-
-    Raises
-    ------
-    DesignError
-        If the file cannot be read, or with all mistakes in it, each with its line.
-    """
-    file = os.fspath(path)
-    return loads(decoded(content_of(file), file), file=file)
 
 
 def content_of(file: str) -> bytes:
@@ -129,39 +105,11 @@ def decoded(content: bytes, file: str) -> str:
         raise DesignError([problem]) from error
 
 
-def loads(text: str, *, file: str = "") -> Design:
-    """Read the text of a design file.
-
-    Parameters
-    ----------
-    text : str
-        TOML.
-    file : str
-        Name of the file, for messages; its stem is the default name of the design.
-
-    Returns
-    -------
-    Design
-        In mm and rad; its class depends on the kind.
-
-    Raises
-    ------
-    DesignError
-        With all mistakes, each with its line.
-    """
-    document = document_in(text, file)
-    _find_tables(document, Path(file).parent)
-    found = examine(document, stem=Path(file).stem)
-    if found.faults:
-        raise DesignError(problems_of(found.faults, text, file))
-    return KINDS[document["kind"]].design(source=file, examined=True, **found.parts)
-
-
-def _find_tables(value: Any, folder: Path) -> None:
-    """Make the paths of CSV files in a document relative to the `folder` of its file."""
+def find_tables(value: Any, folder: Path) -> None:
+    """Make the paths of CSV files in a document, `value`, relative to the `folder` of its file."""
     for item in value.values() if isinstance(value, dict) else value:
         if isinstance(item, dict | list):
-            _find_tables(item, folder)
+            find_tables(item, folder)
     if isinstance(value, dict) and isinstance(value.get("file"), str) and value["file"]:
         value["file"] = os.fspath(folder / value["file"])
 
@@ -170,7 +118,8 @@ def problems_of(faults: Iterable[Fault], text: str, file: str) -> list[Problem]:
     """Return the `faults` in the `text` of a `file` as problems, sorted by line."""
     lines = lines_of(text)
     placed = [fault.problem(file, line_at(lines, fault.path)) for fault in faults]
-    return sorted(placed, key=lambda problem: problem.line or 0)
+    # those of nested files follow
+    return sorted(placed, key=lambda one: (one.file != file, one.file, one.line or 0))
 
 
 def document_in(text: str, file: str) -> dict[str, Any]:

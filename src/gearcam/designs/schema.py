@@ -122,7 +122,8 @@ def _branch(kind: DesignKind, main: Schema) -> Schema:
         "type": "object",
         "description": kind.doc,
         "additionalProperties": False,
-        "required": ["kind", *([kind.main.title] if kind.main else []), *kind.required],
+        # the schema of all designs requires the kind; where one is nested its key says it
+        "required": [*([kind.main.title] if kind.main else []), *kind.required],
         "properties": {
             "kind": {"const": kind.name, "description": kind.doc},
             "name": {
@@ -145,6 +146,8 @@ def _titled(kind: DesignKind, title: str) -> Schema:
         made |= kind.conditions[title]()
     if title == "output":
         made["properties"]["files"]["uniqueItems"] = True
+    if title in kind.several:
+        made = {"type": "array", "items": made}
     return made
 
 
@@ -170,6 +173,9 @@ def _property(key: Key) -> Schema:
 
 def _single(key: Key) -> Schema:
     made = key.param
+    if made.nested:
+        designs = ({"$ref": f"#/$defs/{name}"} for name in made.nested)
+        return {"anyOf": [{"type": "string"}, *designs]}
     if made.choices:
         single: Schema = {"enum": list(made.choices)}
     else:

@@ -87,6 +87,8 @@ class Key:
         return self._outward(value)
 
     def _outward(self, value: Any) -> Any:
+        if self.param.nested:
+            return value._document() if hasattr(value, "_document") else value
         value = value.item() if hasattr(value, "item") else value
         factor = self.param.quantity.factor
         if factor == 1.0 or isinstance(value, bool) or not isinstance(value, int | float):

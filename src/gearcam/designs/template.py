@@ -53,16 +53,43 @@ def _lines(kind: DesignKind, name: str, process: str) -> Iterator[str]:
         title = kind.main.title
         yield from kind.main.template(kind.example[title], kind.notes.get(title, ""))
     for title in (*kind.tables, "limits"):
-        given = {**kind.example.get(title, {}), **more.get(title, {})}
-        yield from _table(title, kind.table(title), given, kind.notes.get(title, ""))
+        head = f"[[{title}]]" if title in kind.several else f"[{title}]"
+        known, note, added = kind.table(title), kind.notes.get(title, ""), more.get(title, {})
+        examples = kind.example.get(title, {})
+        for given in examples if isinstance(examples, list) else [examples]:
+            yield from _table(head, known, {**given, **added}, note)
 
 
-def _table(title: str, known: Table, given: Mapping[str, Any], note: str) -> Iterator[str]:
+def _table(head: str, known: Table, given: Mapping[str, Any], note: str) -> Iterator[str]:
     if known.entries:
         yield ""
-        head = f"[{title}]"
         yield (beside(head, note) if note else head) if given else f"# {head}"
-        yield from entry_lines(known, given)
+        designs = {key: one for key, one in given.items() if isinstance(one, Mapping)}
+        rest = {key: entry for key, entry in known.entries.items() if key not in designs}
+        yield from entry_lines(Table(known.title, known.owner, rest), given)
+        for key, design in designs.items():
+            yield from _nested(f"{head.strip('[]')}.{key}", design, description(known.entries[key]))
+
+
+def _nested(path: str, design: Mapping[str, Any], words: str = "") -> Iterator[str]:
+    """Yield the lines of a nested design, without comments on its keys."""
+    plain = {key: one for key, one in design.items() if not _is_table(one)}
+    if plain or words:
+        yield ""
+        yield beside(f"[{path}]", words) if words else f"[{path}]"
+        yield from (f"{key} = {show(one)}" for key, one in plain.items())
+    for key, one in design.items():
+        if isinstance(one, Mapping):
+            yield from _nested(f"{path}.{key}", one)
+        elif _is_table(one):
+            for item in one:
+                yield from ("", f"[[{path}.{key}]]")
+                yield from (f"{name} = {show(value)}" for name, value in item.items())
+
+
+def _is_table(value: Any) -> bool:
+    tables = value if isinstance(value, list) else [value]
+    return bool(tables) and all(isinstance(one, Mapping) for one in tables)
 
 
 def entry_lines(known: Table, given: Mapping[str, Any]) -> Iterator[str]:

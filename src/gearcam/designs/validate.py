@@ -71,6 +71,8 @@ def faults_of(
 
 
 def _of_value(key: Key, value: Any, path: Path) -> Iterator[Fault]:
+    if key.param.nested and isinstance(value, Mapping | str):
+        return  # it is no design: its faults have been found
     if key.length is None or (key.param.both and not isinstance(value, list)):
         if not _fits(key, value):
             yield value_fault(path, value, key, item=key.length is not None)
@@ -88,6 +90,8 @@ def _fits(key: Key, value: Any) -> bool:
     """Return whether its key allows a single value."""
     if (key.literal and value == key.literal) or (key.param.function and functions_of(value)):
         return True
+    if key.param.nested:
+        return isinstance(value, key.base) and getattr(value, "kind", "") in key.param.nested
     if not is_of(value, key.base) or (key.param.choices and value not in key.param.choices):
         return False
     if key.base not in (int, float):

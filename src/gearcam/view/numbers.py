@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any, Final
 
 from gearcam.designs.design import path_of
+from gearcam.designs.examine import nested_in
 from gearcam.designs.faults import dotted
 from gearcam.designs.kind import KINDS
 from gearcam.designs.lines import Path, spans_of
@@ -187,6 +188,9 @@ def _written(value: float, before: str) -> str:
 
 def _entry(document: Mapping[str, Any], path: Path) -> Key | None:
     """Return the key of a number; None if its table has no such key."""
+    for at, key, inner in nested_in(document):
+        if path[: len(at)] == at and isinstance(inner, Mapping):
+            return _entry({"kind": key.param.nested[0], **inner}, path[len(at) :])
     kind, (title, *rest) = KINDS[document["kind"]], path
     if kind.main and title == kind.main.title:
         raw = document[kind.main.title]
@@ -195,6 +199,7 @@ def _entry(document: Mapping[str, Any], path: Path) -> Key | None:
         known = kind.main.table(raw)
     elif title in (*kind.tables, "limits"):
         known = kind.table(str(title))
+        rest = rest[1:] if title in kind.several else rest
     else:
         return None
     return known.entries.get(str(rest[0])) if rest else None

@@ -1,4 +1,4 @@
-"""The watch: detects that a design file, or a table that it reads, was saved."""
+"""The watch: detects that a design file, or a file that it reads, was saved."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from typing import Final
 from gearcam.base.errors import DesignError
 from gearcam.base.reading import UnreadableError, read
 from gearcam.designs import reader
+from gearcam.designs.examine import MOST_NESTED, nested_in
 from gearcam.designs.reader import decoded, document_in
 from gearcam.laws import columns
 from gearcam.view.numbers import leaves
@@ -83,8 +84,8 @@ class Watch:
         return found.st_mtime_ns, found.st_size, held
 
 
-def tables(content: bytes, file: str, before: list[str]) -> list[str]:
-    """Return the CSV files that a design file names.
+def tables(content: bytes, file: str, before: list[str], outer: tuple[str, ...] = ()) -> list[str]:
+    """Return the CSV files and the nested designs that a design file names, with their files.
 
     Parameters
     ----------
@@ -94,6 +95,8 @@ def tables(content: bytes, file: str, before: list[str]) -> list[str]:
         Its name.
     before : list of str
         Returned if the content cannot be read.
+    outer : tuple of str
+        The files that nest it.
 
     Returns
     -------
@@ -104,7 +107,15 @@ def tables(content: bytes, file: str, before: list[str]) -> list[str]:
     except DesignError:
         return before
     named = [value for path, value in leaves(document) if path[-1] == "file"]
-    return [os.fspath(Path(file).parent / one) for one in named if isinstance(one, str) and one]
+    found = [os.fspath(Path(file).parent / one) for one in named if isinstance(one, str) and one]
+    around = (*outer, file)
+    inner = (value for _, _, value in nested_in(document) if isinstance(value, str) and value)
+    for name in (os.fspath(Path(file).parent / one) for one in inner):
+        found.append(name)
+        below = _content(name, reader.LARGEST) if len(around) <= MOST_NESTED else None
+        if below and name not in around:
+            found += tables(below, name, [], around)
+    return list(dict.fromkeys(found))
 
 
 def _content(name: str, most: int) -> bytes | None:

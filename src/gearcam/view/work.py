@@ -19,7 +19,8 @@ from gearcam.base.errors import DesignError, GearcamError, InfeasibleError
 from gearcam.base.interrupts import SIGNALS
 from gearcam.console import fault_text, quieten, refusal_text, remedy_lines
 from gearcam.designs.design import Design
-from gearcam.designs.reader import content_of, decoded, loads
+from gearcam.designs.loading import loads
+from gearcam.designs.reader import content_of, decoded
 from gearcam.numeric.arrays import keep_freed_memory
 from gearcam.report.page import document, draft
 from gearcam.view.numbers import Values, equals, numbers, replaced, sliders, tidy

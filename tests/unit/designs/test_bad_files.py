@@ -16,7 +16,7 @@ import gearcam
 from gearcam.base.errors import DesignError
 from gearcam.base.reading import UnreadableError, read
 from gearcam.cli import main
-from gearcam.designs import reader
+from gearcam.designs import loads, reader
 from gearcam.designs.slips import MOST_LISTED
 from gearcam.laws import columns
 from helpers_interrupts import PAIR
@@ -198,7 +198,7 @@ def test_what_was_meant_is_sought_for_no_more_keys_than_are_told(at: str) -> Non
     """A search takes longer than all else that is done with an unknown key."""
     keys = "".join(f"teeth{k} = 1\n" for k in range(MOST_LISTED + 5))
     with pytest.raises(DesignError) as caught:
-        reader.loads(GOOD.replace(at, keys + at))
+        loads(GOOD.replace(at, keys + at))
     hints = [bool(one.hint) for one in caught.value.problems]
     assert hints == [True] * MOST_LISTED + [False] * 5
 
@@ -206,7 +206,7 @@ def test_what_was_meant_is_sought_for_no_more_keys_than_are_told(at: str) -> Non
 @pytest.mark.parametrize("sign", [1, -1])
 def test_numbers_too_long_to_be_written_are_refused(sign: int) -> None:
     with pytest.raises(DesignError, match="a very large number"):
-        reader.loads(GOOD).with_({"pair.module_mm": sign * 10**5000})
+        loads(GOOD).with_({"pair.module_mm": sign * 10**5000})
 
 
 @pytest.mark.usefixtures("desk")

@@ -17,8 +17,8 @@ from claims.of_laws import LAW_CLAIMS
 from claims.of_rises import RISE_CLAIMS
 from gearcam.designs import load
 from gearcam.designs.design import functions_in
+from gearcam.designs.examine import examine
 from gearcam.designs.kind import KINDS
-from gearcam.designs.reader import examine
 from gearcam.designs.schema import schema
 from gearcam.designs.template import template
 from gearcam.kinds.cam.motion import WITH_LAW, phase_table, rise_table, turn_tables

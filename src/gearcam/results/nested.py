@@ -1,0 +1,54 @@
+"""Nested designs in the result of the design around them: their refusals and findings.
+
+A kind of design that uses another takes its result by `gearcam.build` and what is public of it. The
+places in refusals and findings, and the keys of remedies, are those of the nested design: here they
+become those of the design around it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import replace
+
+from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.findings import Finding
+
+
+@contextmanager
+def within(key: str) -> Iterator[None]:
+    """Raise refusals inside the context as those of the design around the one at a `key`.
+
+    Raises
+    ------
+    InfeasibleError
+        With the key in its place and in the keys of its ways.
+    """
+    try:
+        yield
+    except InfeasibleError as error:
+        raise InfeasibleError(
+            error.what,
+            where=_placed(key, error.where),
+            value=error.value,
+            limit=error.limit,
+            unit=error.unit,
+            nearest=error.nearest,
+            ways=[
+                Way(near=_keyed(key, way.near), far=_keyed(key, way.far), doubling=way.doubling)
+                for way in error.ways
+            ],
+        ) from error
+
+
+def placed(key: str, findings: Iterable[Finding]) -> tuple[Finding, ...]:
+    """Return the `findings` of the design at a `key` with the key in their places."""
+    return tuple(replace(one, where=_placed(key, one.where)) for one in findings)
+
+
+def _placed(key: str, where: str) -> str:
+    return f"{key}: {where}" if where else key
+
+
+def _keyed(key: str, changes: Mapping[str, object]) -> dict[str, object]:
+    return {f"{key}.{name}": value for name, value in changes.items()}

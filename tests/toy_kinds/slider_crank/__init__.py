@@ -1,0 +1,1 @@
+"""A kind of design that only a test knows: slider-cranks."""
