@@ -12,6 +12,7 @@ All derive from `GearcamError` and from the matching builtin:
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
@@ -181,6 +182,73 @@ class InfeasibleError(GearcamError, ValueError):
     def __reduce__(self) -> tuple[Any, ...]:
         names = ("where", "value", "limit", "unit", "nearest", "ways", "more_teeth")
         return partial(type(self), self.what, **{name: getattr(self, name) for name in names}), ()
+
+
+_UNIT = re.compile(r"_(mm|deg)(?:\[\d+\])?$")
+"""Ends of keys that are units."""
+
+
+def beyond_limit(
+    what: str,
+    where: str,
+    value: float | None,
+    limit: float | None,
+    note: str = "",
+    *,
+    near: object = None,
+    far: object = None,
+    ways: Sequence[Way] = (),
+    unit: str | None = None,
+    more_teeth: float = 0.0,
+) -> InfeasibleError:
+    """Return the refusal of a value beyond its limit, with the change of its key that may help.
+
+    Parameters
+    ----------
+    what : str
+        The reason, as a sentence without its full stop.
+    where : str
+        The key of the value, after the place if there is one: ``wheel 2, ring.rim_mm``.
+    value, limit : float or None
+        The value and the limit that it violates.
+    note : str
+        What the numbers mean, or the rule.
+    near, far : object
+        The smallest and the largest change of the key that may help; with `far` alone the smallest
+        is the limit. Without both there is none.
+    ways : sequence of Way
+        Other changes that may help, tried after that of the key.
+    unit : str, optional
+        Unit of value and limit; by default that in which the key ends.
+    more_teeth : float
+        Factor on the number of teeth that may help (see `InfeasibleError`).
+
+    Returns
+    -------
+    InfeasibleError
+    """
+    key = where.rpartition(", ")[2]
+    if far is not None:
+        near = limit if near is None else near
+        ways = (Way(near={key: near}, far={key: far}), *ways)
+    elif near is not None:
+        ways = (Way(near={key: near}), *ways)
+    return InfeasibleError(
+        what,
+        where=where,
+        value=value,
+        limit=limit,
+        unit=_unit_of(where) if unit is None else unit,
+        nearest=note,
+        ways=ways,
+        more_teeth=more_teeth,
+    )
+
+
+def _unit_of(where: str) -> str:
+    """Return the unit in which a key ends; empty without one."""
+    ending = _UNIT.search(where)
+    return ending[1] if ending else ""
 
 
 class MissingExtraError(GearcamError, ImportError):

@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 
 from gearcam.base.display import Brief
-from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.errors import beyond_limit
 from gearcam.gears.spec import BasicRack
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.roots import largest_fitting
@@ -248,14 +248,11 @@ def ring_pinions(
         return max(least, mate_curvature), least
     most = 2.0 / (module * concave_curvature)
     if not teeth < most:
-        raise InfeasibleError(
-            "the pinion cutter is too large for the ring where the ring is narrowest",
-            where="ring.cutter_teeth",
-            value=teeth,
-            limit=most,
-            nearest="the limit is the number of teeth that just fits",
-            ways=(Way(near={"ring.cutter_teeth": most / _CONCAVE_MARGIN}),),
-            more_teeth=teeth / most,
+        what = "the pinion cutter is too large for the ring where the ring is narrowest"
+        where = "ring.cutter_teeth"
+        note = "the limit is the number of teeth that just fits"
+        raise beyond_limit(
+            what, where, teeth, most, note, near=most / _CONCAVE_MARGIN, more_teeth=teeth / most
         )
     return (2.0 / (module * teeth),)
 

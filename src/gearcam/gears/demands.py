@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.errors import Way, beyond_limit
 from gearcam.base.numerals import rounded_down, shown
 from gearcam.gears.flank import Toothing
 from gearcam.gears.spec import BasicRack, Finish, PairSpec, Rack, RingSpec
@@ -111,38 +111,24 @@ def _demand_rack(rack: BasicRack, largest: float) -> None:
     depth = rack.dedendum
     angle = f"a pressure angle of {shown(math.degrees(rack.pressure_angle))} deg"
     if depth < rack.addendum:
-        raise InfeasibleError(
-            "the dedendum is less than the addendum: teeth would hit the mate's roots",
-            where="rack.dedendum",
-            value=depth,
-            limit=rack.addendum,
-            nearest="the limit is the addendum",
-            ways=(
-                Way(near={"rack.dedendum": _short(rack.addendum / _SHALLOW)}),
-                Way(near={"rack.addendum": _short(_SHALLOW * depth)}),
-            ),
-        )
+        what = "the dedendum is less than the addendum: teeth would hit the mate's roots"
+        note = "the limit is the addendum"
+        near = _short(rack.addendum / _SHALLOW)
+        ways = (Way(near={"rack.addendum": _short(_SHALLOW * depth)}),)
+        raise beyond_limit(what, "rack.dedendum", depth, rack.addendum, note, near=near, ways=ways)
     if _largest_tip(rack) < 0.0:
         deepest = _deepest(rack.pressure_angle, 0.0)
-        raise InfeasibleError(
-            "the rack's tooth becomes pointed before it reaches the dedendum",
-            where="rack.dedendum",
-            value=depth,
-            limit=deepest,
-            nearest=f"the limit is the depth where its flanks meet, at {angle}",
-            ways=(
-                Way(near={"rack.dedendum": _short(0.9 * deepest)}),
-                Way(near={"rack.addendum": _short(0.7 * deepest)}),
-            ),
+        what = "the rack's tooth becomes pointed before it reaches the dedendum"
+        note = f"the limit is the depth where its flanks meet, at {angle}"
+        ways = (Way(near={"rack.addendum": _short(0.7 * deepest)}),)
+        raise beyond_limit(
+            what, "rack.dedendum", depth, deepest, note, near=_short(0.9 * deepest), ways=ways
         )
     if rack.tip_radius > largest * (1.0 + _ROUNDING):
-        raise InfeasibleError(
-            "the tip radius is too large: it leaves the rack's teeth no land",
-            where="rack.tip_radius",
-            value=rack.tip_radius,
-            limit=largest,
-            nearest=f"the limit is for {angle}",
-            ways=(Way(near={"rack.tip_radius": 0.99 * largest}),),
+        what = "the tip radius is too large: it leaves the rack's teeth no land"
+        note = f"the limit is for {angle}"
+        raise beyond_limit(
+            what, "rack.tip_radius", rack.tip_radius, largest, note, near=0.99 * largest
         )
 
 
@@ -165,26 +151,15 @@ def demand_shift(rack: BasicRack, spec: PairSpec, module: float) -> None:
     """
     largest = min(rack.dedendum - rack.tip_radius / _TIP_PART, rack.addendum - _LEAST_ADDENDUM)
     if abs(spec.x) > largest + _ROUNDING:
-        raise InfeasibleError(
-            "the profile shift leaves one wheel no root or no addendum",
-            where="pair.x",
-            value=spec.x,
-            limit=math.copysign(largest, spec.x),
-            nearest="the limit is that of this rack",
-            ways=(Way(near={"pair.x": math.copysign(largest, spec.x)}, far={"pair.x": 0.0}),),
-        )
+        what = "the profile shift leaves one wheel no root or no addendum"
+        note = "the limit is that of this rack"
+        raise beyond_limit(what, "pair.x", spec.x, math.copysign(largest, spec.x), note, far=0.0)
     thinnest = 0.25 * math.pi - abs(spec.x) * math.tan(rack.pressure_angle)
     most = _MOST_BACKLASH * thinnest * module
     if spec.backlash > most:
-        raise InfeasibleError(
-            "the backlash is too large: it leaves no teeth",
-            where="pair.backlash_mm",
-            value=spec.backlash,
-            limit=most,
-            unit="mm",
-            nearest=f"the limit is for a module of {shown(module)} mm",
-            ways=(Way(near={"pair.backlash_mm": most}, far={"pair.backlash_mm": 0.0}),),
-        )
+        what = "the backlash is too large: it leaves no teeth"
+        note = f"the limit is for a module of {shown(module)} mm"
+        raise beyond_limit(what, "pair.backlash_mm", spec.backlash, most, note, far=0.0)
 
 
 def demand_clearance(
@@ -215,19 +190,10 @@ def demand_clearance(
         height = max(0.0, rack.addendum + shift - _LEAST_ADDENDUM) * module
         most = min(0.5 * half * math.cos(alpha), height)
         if wheel.clearance > most:
-            raise InfeasibleError(
-                "the clearance is too large: it leaves no teeth",
-                where=f"blank.clearance_mm[{number}]",
-                value=wheel.clearance,
-                limit=most,
-                unit="mm",
-                nearest=f"the limit is for a module of {shown(module)} mm",
-                ways=(
-                    Way(
-                        near={f"blank.clearance_mm[{number}]": most},
-                        far={f"blank.clearance_mm[{number}]": 0.0},
-                    ),
-                ),
+            what = "the clearance is too large: it leaves no teeth"
+            note = f"the limit is for a module of {shown(module)} mm"
+            raise beyond_limit(
+                what, f"blank.clearance_mm[{number}]", wheel.clearance, most, note, far=0.0
             )
 
 
@@ -256,14 +222,8 @@ def demand_ring(spec: PairSpec) -> None:
             f"the ring must be wheel 2: use teeth = {counts} with the inverse law, ratio 1/i as "
             "a function of phi2"
         )
-    raise InfeasibleError(
-        what,
-        where="pair.teeth[1]",
-        value=float(z2),
-        limit=float(z1),
-        nearest=nearest,
-        ways=(Way(near={"pair.teeth": counts}), Way(near={"pair.type": "external"})),
-    )
+    ways = (Way(near={"pair.teeth": counts}), Way(near={"pair.type": "external"}))
+    raise beyond_limit(what, "pair.teeth[1]", float(z2), float(z1), nearest, ways=ways)
 
 
 def demand_rim(ring: RingSpec, roots: float, module: float, limit: float) -> None:
@@ -286,15 +246,14 @@ def demand_rim(ring: RingSpec, roots: float, module: float, limit: float) -> Non
         With the diameter that keeps the limit.
     """
     if ring.least_rim(roots, module) <= 0.0:
-        raise InfeasibleError(
-            "the outer diameter of the ring does not clear the roots of its teeth",
-            where="wheel 2, ring.outer_diameter_mm",
-            value=ring.outer_diameter,
-            limit=2.0 * roots,
-            unit="mm",
-            nearest="the limit is the circle through the deepest root; "
-            f"{shown(2.0 * (roots + limit))} mm leave a rim of {shown(limit)} mm",
-            ways=(Way(near={"ring.outer_diameter_mm": 2.0 * (roots + limit)}),),
+        what = "the outer diameter of the ring does not clear the roots of its teeth"
+        where = "wheel 2, ring.outer_diameter_mm"
+        note = (
+            "the limit is the circle through the deepest root; "
+            f"{shown(2.0 * (roots + limit))} mm leave a rim of {shown(limit)} mm"
+        )
+        raise beyond_limit(
+            what, where, ring.outer_diameter, 2.0 * roots, note, near=2.0 * (roots + limit)
         )
 
 
@@ -347,19 +306,22 @@ def demand_cutters(first: Toothing, second: Toothing) -> None:
         radius = toothing.track.concave.radius
         least, bound = cutter.least_concave_radius, contact_bound(first, second)
         drives = bound >= 1.0
-        raise InfeasibleError(
+        what = (
             "a concave part of the centrode is too tight for this module: a pinion cutter small "
             "enough to fit would have pointed teeth"
-            + ("" if drives else ", and each flank is in contact for less than one pitch"),
-            where=f"wheel {toothing.wheel}",
-            value=radius if drives else bound,
-            limit=least if drives else 1.0,
-            unit="mm" if drives else "",
-            nearest="the value is the smallest concave radius, the limit the least for this "
+            + ("" if drives else ", and each flank is in contact for less than one pitch")
+        )
+        where = f"wheel {toothing.wheel}"
+        value = radius if drives else bound
+        limit = least if drives else 1.0
+        note = (
+            "the value is the smallest concave radius, the limit the least for this "
             f"module; the flanks allow a contact ratio of at most {shown(bound, 4)}"
             if drives
-            else "the value is the largest contact ratio that any cutter could give",
-            more_teeth=least / radius,
+            else "the value is the largest contact ratio that any cutter could give"
+        )
+        raise beyond_limit(
+            what, where, value, limit, note, unit="mm" if drives else "", more_teeth=least / radius
         )
 
 

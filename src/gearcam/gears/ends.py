@@ -14,7 +14,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.errors import InfeasibleError, Way, beyond_limit
 from gearcam.gears.flank import Curve, Rows, Toothing
 from gearcam.gears.spec import RingSpec
 from gearcam.gears.tips import TipEnds
@@ -155,15 +155,12 @@ def body_runs(
         out = [Way(near={key: limit / _MORE}, far={key: 0.8 * limit})]
         if toothing.wheel == 1:  # a spiral, or a knot that is solved, follows the driven wheel
             out.append(Way(far={"law.driven_travel_deg": 0.8 * limit}))
-        raise InfeasibleError(
-            f"the ends of the {name} meet behind its shaft",
-            where=f"wheel {toothing.wheel}",
-            value=travel,
-            limit=limit,
-            unit="deg",
-            nearest=f"the value is the travel of the {name}; its end teeth need the rest",
-            ways=out,
-            more_teeth=travel / limit if travel < _WHOLE else 0.0,
+        what = f"the ends of the {name} meet behind its shaft"
+        where = f"wheel {toothing.wheel}"
+        note = f"the value is the travel of the {name}; its end teeth need the rest"
+        more_teeth = travel / limit if travel < _WHOLE else 0.0
+        raise beyond_limit(
+            what, where, travel, limit, note, ways=out, unit="deg", more_teeth=more_teeth
         )
     hub = radius * inner / np.abs(inner)
     chords = max(2, math.ceil(sweep / math.sqrt(8.0 * tolerance / radius)))
@@ -185,11 +182,10 @@ def _outside(ring: RingSpec, roots: float, faces: float, module: float) -> float
     An outside that is not round, or leaves no metal for the end faces, is refused.
     """
     if ring.outer != "round":
+        what = "the outside can follow the roots of a closed ring only"
+        note = 'use outer = "round" for an open ring'
         raise InfeasibleError(
-            "the outside can follow the roots of a closed ring only",
-            where="ring.outer",
-            nearest='use outer = "round" for an open ring',
-            ways=(Way(near={"ring.outer": "round"}),),
+            what, where="ring.outer", nearest=note, ways=(Way(near={"ring.outer": "round"}),)
         )
     rim, least = ring.least_rim(roots, module), max(_BELOW * module, faces - roots)
     if rim >= least:
@@ -197,15 +193,9 @@ def _outside(ring: RingSpec, roots: float, faces: float, module: float) -> float
     key, value, limit = "ring.rim_mm", rim, least
     if ring.outer_diameter is not None:
         key, value, limit = "ring.outer_diameter_mm", ring.outer_diameter, 2.0 * (roots + least)
-    raise InfeasibleError(
-        "the outside of the open ring leaves its end faces, a module deep, no metal",
-        where=f"wheel 2, {key}",
-        value=value,
-        limit=limit,
-        unit="mm",
-        nearest="the limit is the size that the end faces just reach",
-        ways=(Way(near={key: _MORE * limit}),),
-    )
+    what = "the outside of the open ring leaves its end faces, a module deep, no metal"
+    note = "the limit is the size that the end faces just reach"
+    raise beyond_limit(what, f"wheel 2, {key}", value, limit, note, near=_MORE * limit)
 
 
 def _line(start: complex, end: complex) -> Run:

@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from gearcam.base.display import Brief
-from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.errors import InfeasibleError, Way, beyond_limit
 from gearcam.base.numerals import shown
 from gearcam.base.tolerances import Tolerances
 from gearcam.gears.corners import highest_corners
@@ -348,14 +348,12 @@ def _demand_simple(outline: Outline) -> None:
     toothing = outline.toothing
     radius = toothing.track.convex.radius
     largest = np.sin(toothing.cutter.alpha) ** 2 * radius if np.isfinite(radius) else 0.0
-    raise InfeasibleError(
-        f"wheel {toothing.wheel} is not in one piece: undercut cuts teeth off",
-        where=_crossing(is_valid_reason(Polygon(outline.points)), float(np.ptp(outline.points))),
-        value=toothing.pitch / np.pi,
-        limit=largest,
-        unit="mm",
-        nearest="the value is the module, the limit the largest without undercut at this size",
-        more_teeth=toothing.pitch / (np.pi * largest) if largest else 2.0,
+    what = f"wheel {toothing.wheel} is not in one piece: undercut cuts teeth off"
+    where = _crossing(is_valid_reason(Polygon(outline.points)), float(np.ptp(outline.points)))
+    note = "the value is the module, the limit the largest without undercut at this size"
+    more_teeth = toothing.pitch / (np.pi * largest) if largest else 2.0
+    raise beyond_limit(
+        what, where, toothing.pitch / np.pi, largest, note, unit="mm", more_teeth=more_teeth
     )
 
 
@@ -381,16 +379,13 @@ def _demand_shaft(outline: Outline) -> None:
     radius = float(radii.min())
     module = toothing.pitch / np.pi
     largest = module * radius / toothing.cutter.dedendum
-    raise InfeasibleError(
-        f"the roots of wheel {toothing.wheel} reach past its own shaft",
-        where=angle_text(float(around[radii.argmin()])),
-        value=module,
-        limit=largest,
-        unit="mm",
-        nearest="the value is the module; at the limit the roots reach the shaft, where the "
-        f"centrode comes within {shown(radius)} mm of it",
-        more_teeth=module / largest,
+    what = f"the roots of wheel {toothing.wheel} reach past its own shaft"
+    where = angle_text(float(around[radii.argmin()]))
+    note = (
+        "the value is the module; at the limit the roots reach the shaft, where the "
+        f"centrode comes within {shown(radius)} mm of it"
     )
+    raise beyond_limit(what, where, module, largest, note, unit="mm", more_teeth=module / largest)
 
 
 def outside(ring: Outline, rim: float) -> Contour:
@@ -455,12 +450,6 @@ def _refusal(why: str, rim: float, most: float) -> InfeasibleError:
     bent = 0.0 < most < math.inf
     if bent:
         ways.insert(0, Way(near={"ring.rim_mm": 0.99 * most}, far={"ring.rim_mm": 0.1 * most}))
-    return InfeasibleError(
-        f"the outside of the ring cannot follow its roots: {why}",
-        where="ring.rim_mm",
-        value=rim,
-        limit=most if bent else None,
-        unit="mm",
-        nearest="at the limit the outside gets a corner" if bent else "",
-        ways=ways,
-    )
+    what = f"the outside of the ring cannot follow its roots: {why}"
+    note = "at the limit the outside gets a corner" if bent else ""
+    return beyond_limit(what, "ring.rim_mm", rim, most if bent else None, note, ways=ways)

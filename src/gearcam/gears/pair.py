@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from gearcam.base.display import Brief, Displayed, renderer
-from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.errors import InfeasibleError, beyond_limit
 from gearcam.base.facts import Fact, Facts
 from gearcam.base.numerals import shown
 from gearcam.base.tolerances import Tolerances
@@ -115,14 +115,11 @@ class GearPair(Brief):
         if not low <= asked <= high:
             fine = asked < low
             limit = low if fine else high
-            raise InfeasibleError(
-                f"the chord tolerance is too {'fine' if fine else 'coarse'} for this module",
-                where="output.chord_tolerance_mm",
-                value=asked,
-                limit=limit,
-                unit="mm",
-                nearest=f"the limit is for the module {shown(self.module)} mm",
-                ways=(Way(near={"output.chord_tolerance_mm": (1.001 if fine else 0.999) * limit}),),
+            what = f"the chord tolerance is too {'fine' if fine else 'coarse'} for this module"
+            where = "output.chord_tolerance_mm"
+            note = f"the limit is for the module {shown(self.module)} mm"
+            raise beyond_limit(
+                what, where, asked, limit, note, near=(1.001 if fine else 0.999) * limit
             )
         return asked
 
@@ -317,12 +314,11 @@ def make_pair(
         tolerances=tolerances,
     )
     if rolling.mate == RACK and spec.center_distance is not None:
+        what = "a rack has no shaft, and so no centre distance"
+        where = "pair.center_distance_mm"
+        note = "give module_mm instead: with the tooth count it sets the size of the wheel"
         raise InfeasibleError(
-            "a rack has no shaft, and so no centre distance",
-            where="pair.center_distance_mm",
-            value=spec.center_distance,
-            unit="mm",
-            nearest="give module_mm instead: with the tooth count it sets the size of the wheel",
+            what, where=where, value=spec.center_distance, unit="mm", nearest=note
         )
     module = spec.module or rolling.tracks[0].length / (math.pi * spec.teeth[0])
     rack = settle_rack(asked, spec.x)
@@ -454,14 +450,8 @@ def leads(pair: GearPair, spec: StepsSpec) -> tuple[float, ...]:
         If the wheels are open.
     """
     if spec.count > 1 and not pair.closed:
-        raise InfeasibleError(
-            "open wheels and racks cannot be stepped: their end teeth would leave the blank",
-            where="steps.count",
-            value=spec.count,
-            limit=1,
-            nearest="open wheels have one step",
-            ways=(Way(near={"steps.count": 1}),),
-        )
+        what = "open wheels and racks cannot be stepped: their end teeth would leave the blank"
+        raise beyond_limit(what, "steps.count", spec.count, 1, "open wheels have one step", near=1)
     pitch = pair.toothings[0].pitch
     offset = pitch / spec.count if spec.offset is None else spec.offset
     return tuple(number * offset % pitch for number in range(spec.count))

@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gearcam.base.errors import InfeasibleError
+from gearcam.base.errors import beyond_limit
 from gearcam.base.numerals import shown
 from gearcam.gears.flank import Curve, Rows, Toothing
 from gearcam.gears.tips import ROUGH, TipEnds, cross, flank_at, flank_crossings, near
@@ -84,13 +84,10 @@ def round_tips(toothing: Toothing, rows: Rows, tips: TipEnds) -> tuple[Rows, Arr
             _HALVINGS,
         )
         largest = float(f"{largest * (1.0 - _INSIDE):.6g}")
-        raise InfeasibleError(
-            "the tip rounding is too large: it leaves no flank above the pitch curve",
-            where=f"wheel {toothing.wheel}, blank.tip_rounding_mm",
-            value=toothing.rounding,
-            limit=largest,
-            unit="mm",
-            nearest=f"use a radius up to {shown(largest)} mm",
+        what = "the tip rounding is too large: it leaves no flank above the pitch curve"
+        note = f"use a radius up to {shown(largest)} mm"
+        raise beyond_limit(
+            what, f"wheel {toothing.wheel}, blank.tip_rounding_mm", toothing.rounding, largest, note
         )
     return found
 
