@@ -121,18 +121,14 @@ def _demand_within(hub: Hub, contours: Sequence[Contour | Circle], work: Workpie
 
     room = 2.0 * solid_of(contours, (), work).boundary.distance(Point(0.0, 0.0))
     if hub.diameter >= room:
+        key = work.key("hub_diameter_mm")
         raise work.refusal(
             f"the hub reaches {work.within if work.wheel is None else 'the roots of the teeth'}",
             "blank.hub_diameter_mm",
             value=hub.diameter,
             limit=room,
             nearest="at the limit they touch",
-            ways=(
-                Way(
-                    near={work.key("hub_diameter_mm"): room},
-                    far={work.key("hub_diameter_mm"): 0.5 * room},
-                ),
-            ),
+            ways=(Way(near={key: room}, far={key: 0.5 * room}),),
         )
 
 

@@ -11,7 +11,7 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.errors import Way, beyond_limit
 from gearcam.base.numerals import shown
 from gearcam.parts.body import Mark
 
@@ -90,29 +90,21 @@ def timing_mark(
         root = pitch_radius + way * dedendum_mm / lean
         told = "outside" if way > 0.0 else "circle around bore, keyway and hub"
         nearest = f"the value is the {told}, the limit the root there"
-        raise InfeasibleError(
-            f"no room for a timing mark between {between}",
-            where=f"direction {shown(math.degrees(direction))} deg",
-            value=2 * end if root > 0.0 else None,
-            limit=2 * root if root > 0.0 else None,
-            unit="mm",
-            nearest=nearest if root > 0.0 else "the roots of the teeth reach the axis there",
-            ways=(Way(near={"blank.timing_marks": False}),),
+        what = f"no room for a timing mark between {between}"
+        where = f"direction {shown(math.degrees(direction))} deg"
+        limit = 2 * root if root > 0.0 else None
+        note = nearest if root > 0.0 else "the roots of the teeth reach the axis there"
+        ways = (Way(near={"blank.timing_marks": False}),)
+        raise beyond_limit(
+            what, where, 2 * end if root > 0.0 else None, limit, note, ways=ways, unit="mm"
         )
     largest = RIM_PART * rim
     if diameter is not None and diameter > largest:
-        raise InfeasibleError(
-            f"the timing mark is too large for the rim between {between}",
-            where=f"direction {shown(math.degrees(direction))} deg, blank.mark_diameter_mm",
-            value=diameter,
-            limit=largest,
-            unit="mm",
-            nearest="the limit is a third of the rim",
-            ways=(
-                Way(near={"blank.mark_diameter_mm": 0.99 * largest}),
-                Way(near={"blank.timing_marks": False}),
-            ),
-        )
+        what = f"the timing mark is too large for the rim between {between}"
+        where = f"direction {shown(math.degrees(direction))} deg, blank.mark_diameter_mm"
+        note = "the limit is a third of the rim"
+        ways = (Way(near={"blank.timing_marks": False}),)
+        raise beyond_limit(what, where, diameter, largest, note, near=0.99 * largest, ways=ways)
     diameter = diameter or min(MARK_DIAMETER * module, largest)
     gap = min(MARK_GAP * module, RIM_PART * rim)
     radius = pitch_radius + way * (dedendum_mm + gap + 0.5 * diameter) / lean

@@ -173,13 +173,11 @@ def sized(make: Callable[[float], Contour], size: float, where: str, what: str) 
             else:
                 low = tried
         key = where.rpartition(", ")[2]
+        note = f"a {what} of {shown(low, 3)} mm leaves one" if low else "leave it out"
+        ways = (Way(near={key: low} if low else {}, far={key: 0.0}),)
+        what = f"this {what} leaves no simple outline"
         raise InfeasibleError(
-            f"this {what} leaves no simple outline",
-            where=where,
-            value=size,
-            unit="mm",
-            nearest=f"a {what} of {shown(low, 3)} mm leaves one" if low else "leave it out",
-            ways=(Way(near={key: low} if low else {}, far={key: 0.0}),),
+            what, where=where, value=size, unit="mm", nearest=note, ways=ways
         ) from None
 
 

@@ -263,9 +263,6 @@ def _densified(run: Run, radius: float, tolerance: float) -> Run:
 def too_far(contour: Contour, radius: float) -> InfeasibleError:
     """Return the refusal of a disc of `radius`, mm, on a `contour`."""
     side = "outside" if radius > 0 else "inside"
-    return InfeasibleError(
-        f"a disc of this radius that rolls {side} leaves no simple outline",
-        where=f"an outline of {shown(np.ptp(contour.vertices[:, 0]))} mm",
-        value=abs(radius),
-        unit="mm",
-    )
+    what = f"a disc of this radius that rolls {side} leaves no simple outline"
+    where = f"an outline of {shown(np.ptp(contour.vertices[:, 0]))} mm"
+    return InfeasibleError(what, where=where, value=abs(radius), unit="mm")
