@@ -188,11 +188,9 @@ def demand_smooth(
     for place, column in zip(ends.tolist(), found.T, strict=True):
         if not np.isfinite(column).all():
             order = int(np.argmin(np.isfinite(column)))
-            raise InfeasibleError(
-                f"{(*names, 'the derivative of its jerk')[order]} cannot be computed",
-                where=axis.place(place),
-                nearest="roots of zero and powers of zero that are not whole have no derivatives",
-            )
+            what = f"{(*names, 'the derivative of its jerk')[order]} cannot be computed"
+            note = "roots of zero and powers of zero that are not whole have no derivatives"
+            raise InfeasibleError(what, where=axis.place(place), nearest=note)
     return cuts
 
 

@@ -13,7 +13,7 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.base.errors import InfeasibleError
+from gearcam.base.errors import InfeasibleError, beyond_limit
 from gearcam.base.numerals import shown
 from gearcam.base.quantities import LONGEST, TEXT, param
 from gearcam.base.tolerances import Tolerances
@@ -102,12 +102,10 @@ class MotionFormula:
         first = values_of(function)(theta)
         largest, far = (math.pi if oscillating else LONGEST), int(np.abs(first).argmax())
         if np.isfinite(first).all() and abs(first[far]) > largest:
-            raise InfeasibleError(
-                "the lift is too large",
-                where=_AXIS.place(float(theta[far])),
-                value=scale * float(first[far]),
-                limit=scale * math.copysign(largest, first[far]),
-                unit=unit,
+            what = "the lift is too large"
+            limit = scale * math.copysign(largest, first[far])
+            raise beyond_limit(
+                what, _AXIS.place(float(theta[far])), scale * float(first[far]), limit, unit=unit
             )
         cuts = demand_smooth(function, self.lift, _AXIS, _NAMES, tolerances)
         count = max(_PLACES, _PER_CUT * len(cuts))
@@ -118,13 +116,10 @@ class MotionFormula:
             raise InfeasibleError("the follower never moves", where=_WHERE)
         miss = float(values[-1] - values[0])
         if abs(miss) > TYPED * extent:
-            raise InfeasibleError(
-                "the lift does not repeat after the turn",
-                where=_WHERE,
-                value=scale * float(values[-1]),
-                limit=scale * float(values[0]),
-                unit=unit,
-                nearest="the limit is the lift at the start",
+            what = "the lift does not repeat after the turn"
+            note = "the limit is the lift at the start"
+            raise beyond_limit(
+                what, _WHERE, scale * float(values[-1]), scale * float(values[0]), note, unit=unit
             )
         lift = piecewise([0.0, TURN], [Piece(lambda x: function(x) - (miss / TURN) * x)])
         rows = theta[:-1], values[:-1], TYPED * extent, 0.5 * count

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.base.display import Brief
-from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.errors import InfeasibleError, Way, beyond_limit
 from gearcam.base.numerals import shown
 from gearcam.base.quantities import params_of
 from gearcam.base.registry import Registry
@@ -318,16 +318,17 @@ def make_law(
     if abs(law.closure_error) > tolerances.refusal:
         asks = "the tooth counts ask" if lobes.closed else "driven_travel_deg asks"
         travelled = math.degrees(law.travelled)
+        what = (
+            "the law does not close" if lobes.closed else "the law misses the driven wheel's travel"
+        )
+        limit = math.degrees(lobes.advance)
+        note = (
+            f"over {shown(math.degrees(lobes.period), 10)} deg of the driver the driven "
+            f"wheel turns by the value; {asks} for the limit"
+        )
+        ways = () if lobes.closed else (Way(near={"law.driven_travel_deg": travelled}),)
         raise InfeasibleError(
-            "the law does not close"
-            if lobes.closed
-            else "the law misses the driven wheel's travel",
-            value=travelled,
-            limit=math.degrees(lobes.advance),
-            unit="deg",
-            nearest=f"over {shown(math.degrees(lobes.period), 10)} deg of the driver the driven "
-            f"wheel turns by the value; {asks} for the limit",
-            ways=() if lobes.closed else (Way(near={"law.driven_travel_deg": travelled}),),
+            what, value=travelled, limit=limit, unit="deg", nearest=note, ways=ways
         )
     return law
 
@@ -335,20 +336,12 @@ def make_law(
 def _demand_positive(ratio: Piecewise, cells: Array) -> None:
     (place, smallest), (top, largest) = ratio.extremes_over(cells)
     if not smallest > 0.0:
-        raise InfeasibleError(
-            "the ratio must stay positive: the driven wheel would stand still or turn back",
-            where=angle_text(place),
-            value=smallest,
-            limit=0.0,
-        )
+        what = "the ratio must stay positive: the driven wheel would stand still or turn back"
+        raise beyond_limit(what, angle_text(place), smallest, 0.0)
     if not largest <= _SWING * smallest:
-        raise InfeasibleError(
-            f"the ratio swings between {shown(smallest)} and {shown(largest)}",
-            where=angle_text(top),
-            value=largest / smallest,
-            limit=_SWING,
-            nearest="the largest is at most a million times the smallest",
-        )
+        what = f"the ratio swings between {shown(smallest)} and {shown(largest)}"
+        note = "the largest is at most a million times the smallest"
+        raise beyond_limit(what, angle_text(top), largest / smallest, _SWING, note)
 
 
 def _demand_c1(law: RatioLaw) -> None:
@@ -359,8 +352,8 @@ def _demand_c1(law: RatioLaw) -> None:
             place = angle_text(jump.theta or law.period)
             if not math.isfinite(jump.before + jump.after):
                 raise InfeasibleError(f"the {name} has no value", where=place)
-            raise InfeasibleError(
+            what = (
                 f"the {name} {'is not periodic' if ends else 'jumps'}: it is {shown(jump.before)} "
-                f"before {place} and {shown(jump.after)} {'at 0 deg' if ends else 'after it'}",
-                where=place,
+                f"before {place} and {shown(jump.after)} {'at 0 deg' if ends else 'after it'}"
             )
+            raise InfeasibleError(what, where=place)

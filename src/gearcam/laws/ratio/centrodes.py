@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Final, TypeVar
 
 from gearcam.base.display import Brief
-from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.errors import Way, beyond_limit
 from gearcam.base.quantities import ANGLE, COUNT, NUMBER, Solve, param
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import TYPED, LawEntry
@@ -211,12 +211,9 @@ class LogSpiral(Brief):
         start = 1.0 / float(last) if first == "solve" else first
         end = 1.0 / start if last == "solve" else last
         if start == end:
-            raise InfeasibleError(
-                "the ratio of a spiral changes from start to end",
-                where="law.ratios",
-                value=end,
-                limit=start,
-                nearest='a constant ratio is the law "constant"',
+            what = "the ratio of a spiral changes from start to end"
+            raise beyond_limit(
+                what, "law.ratios", end, start, 'a constant ratio is the law "constant"'
             )
         if self.return_angle is not None:
             return _closed(start, end, self.return_angle, lobes, tolerances)
@@ -242,24 +239,18 @@ def _closed(
 ) -> RatioLaw:
     """Return the law of two equal centrodes; `turn` is the driver angle of the return, rad."""
     if lobes != ONE_LOBE:
-        raise InfeasibleError(
-            "a closed spiral needs an external pair with equal tooth counts",
-            where="pair.teeth",
-            value=lobes.n1 / lobes.n2,
-            limit=1.0,
-            nearest="this is the ratio of the tooth counts",
+        what = "a closed spiral needs an external pair with equal tooth counts"
+        raise beyond_limit(
+            what, "pair.teeth", lobes.n1 / lobes.n2, 1.0, "this is the ratio of the tooth counts"
         )
     if abs(start * end - 1.0) > TYPED:
-        raise InfeasibleError(
-            "a closed spiral has equal centrodes: its ratios are k and 1/k",
-            where="law.ratios",
-            value=start * end,
-            limit=1.0,
-            nearest="this is the product of both ratios",
-            ways=[
-                Way(near={"law.ratios[0]": 1.0 / end}),
-                Way(near={"law.ratios[1]": 1.0 / start}),
-            ],
+        what = "a closed spiral has equal centrodes: its ratios are k and 1/k"
+        ways = [
+            Way(near={"law.ratios[0]": 1.0 / end}),
+            Way(near={"law.ratios[1]": 1.0 / start}),
+        ]
+        raise beyond_limit(
+            what, "law.ratios", start * end, 1.0, "this is the product of both ratios", ways=ways
         )
     half, joint = 0.5 * turn, 2.0 * math.pi - turn
     k = math.sqrt(end / start)
@@ -308,13 +299,8 @@ def _return(k: float, growth: float, half: float) -> Piece:
 
 def _demand_one_lobe(lobes: Lobes, name: str) -> None:
     if lobes.n1 != 1:
-        raise InfeasibleError(
-            f"{name} has one lobe",
-            where="pair.teeth",
-            value=float(lobes.n1),
-            limit=1.0,
-            nearest="the driven wheel needs the tooth count of the driver or a multiple of it",
-        )
+        note = "the driven wheel needs the tooth count of the driver or a multiple of it"
+        raise beyond_limit(f"{name} has one lobe", "pair.teeth", float(lobes.n1), 1.0, note)
 
 
 LAWS.register(

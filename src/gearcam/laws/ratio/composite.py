@@ -10,7 +10,7 @@ from itertools import zip_longest
 import numpy as np
 
 from gearcam.base.display import Brief
-from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.errors import Way, beyond_limit
 from gearcam.base.numerals import shown
 from gearcam.base.quantities import (
     ANGLE,
@@ -129,14 +129,11 @@ class ThreePhasePolynomial(Brief):
             If the knots do not span a lobe, or the lowest ratio is not below the mean.
         """
         if abs(self.knots[3] - lobes.period) > SAME:
-            raise InfeasibleError(
-                f"the knots must span {shown(360 / lobes.n1)} deg for these tooth counts",
-                where="law.knots_deg[3]",
-                value=math.degrees(self.knots[3]),
-                limit=360 / lobes.n1,
-                unit="deg",
-                nearest="the limit is one lobe",
-                ways=(Way(near={"law.knots_deg[3]": 360.0 / lobes.n1}),),
+            what = f"the knots must span {shown(360 / lobes.n1)} deg for these tooth counts"
+            value = math.degrees(self.knots[3])
+            note = "the limit is one lobe"
+            raise beyond_limit(
+                what, "law.knots_deg[3]", value, 360 / lobes.n1, note, near=360.0 / lobes.n1
             )
         first, second, third = (float(width) for width in np.diff(self.knots))
         a, mean = self.lowest, lobes.advance / lobes.period
@@ -145,13 +142,9 @@ class ThreePhasePolynomial(Brief):
         weight = 0.5 * rise * first + second**2 / 6.0 + rise * third - third**2 / 6.0
         p = (lobes.advance - a * lobes.period) / weight
         if not p > 0.0:
-            raise InfeasibleError(
-                "the lowest ratio is not below the mean ratio",
-                where="law.lowest",
-                value=a,
-                limit=mean,
-                nearest="the limit is the mean ratio",
-                ways=(Way(near={"law.lowest": mean}, far={"law.lowest": 0.5 * mean}),),
+            what = "the lowest ratio is not below the mean ratio"
+            raise beyond_limit(
+                what, "law.lowest", a, mean, "the limit is the mean ratio", far=0.5 * mean
             )
         b = a + p * rise
 
@@ -207,14 +200,10 @@ class Fourier(Brief):
         (place, smallest), _ = piecewise(knots, pieces).extremes
         if not smallest > 0.0:
             share = mean / (mean - smallest)
-            raise InfeasibleError(
-                "the ratio must stay positive: the driven wheel would stand still or turn back",
-                where=angle_text(place),
-                value=smallest,
-                limit=0.0,
-                nearest=f"with all coefficients times {shown(share)} it would just be 0",
-                ways=(Way(far={"law.cosines": 0.0, "law.sines": 0.0}),),
-            )
+            what = "the ratio must stay positive: the driven wheel would stand still or turn back"
+            note = f"with all coefficients times {shown(share)} it would just be 0"
+            ways = (Way(far={"law.cosines": 0.0, "law.sines": 0.0}),)
+            raise beyond_limit(what, angle_text(place), smallest, 0.0, note, ways=ways)
         return make_law(lobes, knots, pieces, tolerances)
 
     def _harmonics(self) -> list[tuple[int, float, float]]:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.errors import InfeasibleError, Way, beyond_limit
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.ratio.base import RatioLaw, make_law
 from gearcam.laws.ratio.span import PLACES, WHEEL, Lobes, Span, angle_text, demand_smooth
@@ -205,13 +205,13 @@ def demand_lobes(given: tuple[int, int] | None, lobes: Lobes) -> int:
         counts = [[lobes.n1, lobes.n2]]
         if given[1] * lobes.n2 == given[0] * lobes.n1 and [*given[::-1]] not in counts:
             counts.insert(0, [*given[::-1]])
-        raise InfeasibleError(
-            "the lobes are not in the ratio of the tooth counts",
-            where="law.lobes",
-            value=given[0] / given[1],
-            limit=lobes.n1 / lobes.n2,
-            nearest=f"they are {given[0]}/{given[1]} and {lobes.n1}/{lobes.n2}; the tooth counts "
-            f"need [{lobes.n1}, {lobes.n2}] or a multiple",
-            ways=[Way(near={"law.lobes": both}) for both in counts],
+        what = "the lobes are not in the ratio of the tooth counts"
+        note = (
+            f"they are {given[0]}/{given[1]} and {lobes.n1}/{lobes.n2}; the tooth counts "
+            f"need [{lobes.n1}, {lobes.n2}] or a multiple"
+        )
+        ways = [Way(near={"law.lobes": both}) for both in counts]
+        raise beyond_limit(
+            what, "law.lobes", given[0] / given[1], lobes.n1 / lobes.n2, note, ways=ways
         )
     return given[0]

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearcam.base.display import Brief
-from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.errors import InfeasibleError, Way, beyond_limit
 from gearcam.base.numerals import shown
 from gearcam.base.quantities import TEXT, param
 from gearcam.base.tolerances import Tolerances
@@ -133,14 +133,12 @@ def _demand_repeats(function: Callable[[Jet], Jet], name: str, lobes: Span) -> N
         bad = ~(np.abs(other - first) <= TYPED * np.abs(first).max())
         if bad.any():
             place, wrong, right = (float(v[bad][0]) for v in (x, other, first))
-            raise InfeasibleError(
+            what = (
                 f"{name} is not periodic: it must repeat every "
-                f"{shown(math.degrees(lobes.period))} deg for these tooth counts",
-                where=angle_text(place + lobe * lobes.period),
-                value=wrong,
-                limit=right,
-                nearest=f"the limit is the value one lobe before; use functions of {lobes.n1}*phi1",
+                f"{shown(math.degrees(lobes.period))} deg for these tooth counts"
             )
+            note = f"the limit is the value one lobe before; use functions of {lobes.n1}*phi1"
+            raise beyond_limit(what, angle_text(place + lobe * lobes.period), wrong, right, note)
 
 
 def from_phi2(
@@ -179,13 +177,9 @@ def from_phi2(
         raise InfeasibleError("phi2 is not finite", where=angle_text(x[bad][0]))
     if (slopes <= 0).any():
         place = int(np.argmax(slopes <= 0))
-        raise InfeasibleError(
-            "phi2 is not monotonic: the driven wheel would stand still or turn back",
-            where=angle_text(x[place]),
-            value=float(slopes[place]),
-            limit=0.0,
-            nearest="this is the ratio, which must be positive",
-        )
+        what = "phi2 is not monotonic: the driven wheel would stand still or turn back"
+        note = "this is the ratio, which must be positive"
+        raise beyond_limit(what, angle_text(x[place]), float(slopes[place]), 0.0, note)
     with demand_smooth("phi2"):
         expand(values_of(ratio), [0.0, lobes.period], tolerances.expansion)
     return make_law(lobes, [0.0, lobes.period], [Piece(ratio, phi2)], tolerances, solved)

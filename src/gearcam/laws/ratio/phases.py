@@ -16,7 +16,7 @@ from typing import Final
 import numpy as np
 
 from gearcam.base.display import Brief
-from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.errors import Way, beyond_limit
 from gearcam.base.numerals import shown
 from gearcam.base.quantities import (
     ANGLE,
@@ -231,17 +231,10 @@ def one_lobe(
     spans = (
         "360" if lobes.n1 == 1 else f"360 (repeating {lobes.n1} times) or {shown(360 / lobes.n1)}"
     )
-    raise InfeasibleError(
-        f"the knots must span {spans} deg for these tooth counts",
-        where=where,
-        value=math.degrees(knots[-1]),
-        limit=360 / lobes.n1,
-        unit="deg",
-        nearest="the limit is one lobe",
-        ways=(
-            Way(near={"law.knots_deg": [360.0 / lobes.n1 * float(k / knots[-1]) for k in knots]}),
-        ),
-    )
+    what = f"the knots must span {spans} deg for these tooth counts"
+    ways = (Way(near={"law.knots_deg": [360.0 / lobes.n1 * float(k / knots[-1]) for k in knots]}),)
+    span, note = math.degrees(knots[-1]), "the limit is one lobe"
+    raise beyond_limit(what, where, span, 360 / lobes.n1, note, unit="deg", ways=ways)
 
 
 def arcs_law(
@@ -318,25 +311,21 @@ def _close(
                 for k, place in enumerate(places)
                 if not unknown[k % len(given)]
             }
-            raise InfeasibleError(
-                "no positive ratio closes the law",
-                where=f"law.{name}",
-                value=closing,
-                limit=0.0,
-                nearest="closure needs this value; it is positive with the other ratios multiplied "
-                f"by less than {shown(share)}",
-                ways=(Way(near=least, far=dict.fromkeys(least, lobes.advance / lobes.period)),),
+            note = (
+                "closure needs this value; it is positive with the other ratios multiplied "
+                f"by less than {shown(share)}"
+            )
+            ways = (Way(near=least, far=dict.fromkeys(least, lobes.advance / lobes.period)),)
+            raise beyond_limit(
+                "no positive ratio closes the law", f"law.{name}", closing, 0.0, note, ways=ways
             )
     elif abs(rest) > tolerances.refusal:
         nearest, ways = _closing_values(given, weights, rest, places)
-        raise InfeasibleError(
-            "the phases do not close: they turn the driven wheel by the value, not by the limit",
-            where="law.ratios",
-            value=math.degrees(lobes.advance - rest),
-            limit=math.degrees(lobes.advance),
-            unit="deg",
-            nearest=nearest,
-            ways=tuple(ways),
+        what = "the phases do not close: they turn the driven wheel by the value, not by the limit"
+        where = "law.ratios"
+        value = math.degrees(lobes.advance - rest)
+        raise beyond_limit(
+            what, where, value, math.degrees(lobes.advance), nearest, ways=tuple(ways), unit="deg"
         )
     values = given.tolist()
     return [*values, values[0]] if lobes.closed else values, solved
@@ -390,16 +379,11 @@ def _solve_knot(
     if not low < place <= high or place == high < 2.0 * math.pi:
         ways = sorted(math.degrees(driven(edge)) for edge in (low, high))
         key, nearest = "law.driven_travel_deg", ways[0 if math.degrees(travel) < ways[0] else 1]
-        raise InfeasibleError(
-            "no knot between its neighbours gives the driven wheel its travel",
-            where=f"law.knots_deg[{index}]",
-            value=math.degrees(travel),
-            limit=nearest,
-            unit="deg",
-            nearest="the knots allow "
-            f"{shown(ways[0], 10)} to {shown(ways[1], 10)} deg, both excluded",
-            ways=(Way(near={key: nearest}, far={key: 0.5 * (ways[0] + ways[1])}),),
-        )
+        what = "no knot between its neighbours gives the driven wheel its travel"
+        note = f"the knots allow {shown(ways[0], 10)} to {shown(ways[1], 10)} deg, both excluded"
+        where, change = f"law.knots_deg[{index}]", {key: 0.5 * (ways[0] + ways[1])}
+        way = Way(near={key: nearest}, far=change)
+        raise beyond_limit(what, where, math.degrees(travel), nearest, note, ways=(way,))
     return filled(place), {f"knots_deg[{index}]": math.degrees(place)}
 
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearcam.base.display import Brief
-from gearcam.base.errors import InfeasibleError
+from gearcam.base.errors import InfeasibleError, beyond_limit
 from gearcam.base.numerals import shown
 from gearcam.base.quantities import NUMBER, TEXT, param
 from gearcam.base.tolerances import Tolerances
@@ -95,11 +95,8 @@ class MotionLaw(Brief):
         ends = values_of(shape)(np.array([start, end]))
         rise = float(ends[1] - ends[0])
         if not math.isfinite(rise) or rise == 0.0:
-            raise InfeasibleError(
-                "y is not finite" if rise else "y is the same at both ends",
-                where="law.y",
-                value=rise,
-            )
+            what = "y is not finite" if rise else "y is the same at both ends"
+            raise InfeasibleError(what, where="law.y", value=rise)
         scale = span.advance / rise
         solved = {
             "k1_deg_per_x": math.degrees(1.0 / per_angle),
@@ -113,14 +110,12 @@ class MotionLaw(Brief):
 
     def _from_slide(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         if lobes.n2 != 1:
-            raise InfeasibleError(
-                "a crank turns once for each motion of its slide",
-                where="pair.teeth",
-                value=float(lobes.n2),
-                limit=1.0,
-                nearest="the driver needs the tooth count of the driven wheel or a multiple "
-                "of it, and the pair is external",
+            what = "a crank turns once for each motion of its slide"
+            note = (
+                "the driver needs the tooth count of the driven wheel or a multiple "
+                "of it, and the pair is external"
             )
+            raise beyond_limit(what, "pair.teeth", float(lobes.n2), 1.0, note)
         axis = replace(axis_of("slide", lobes.period), series=True)
         shape = function_of(self.slide or "", axis, tolerances.expansion)
         slide, radius = make_slide(shape, float(self.rod or 0.0), lobes.period)

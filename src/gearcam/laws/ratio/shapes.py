@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearcam.base.display import Brief
-from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.errors import beyond_limit
 from gearcam.base.quantities import COUNT, NUMBER, Row, param
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import LawEntry
@@ -80,30 +80,18 @@ class RoundedPolygon(Brief):
             If the corners do not fit the lobes of the tooth counts, or are too round.
         """
         if self.corners % lobes.n1:
-            raise InfeasibleError(
-                "the corners do not fit the tooth counts",
-                where="law.corners",
-                value=float(self.corners),
-                limit=float(lobes.n1),
-                nearest=f"the tooth counts need a multiple of {lobes.n1}",
-                ways=(
-                    Way(near={"law.corners": max(1, round(self.corners / lobes.n1)) * lobes.n1}),
-                ),
+            what = "the corners do not fit the tooth counts"
+            note = f"the tooth counts need a multiple of {lobes.n1}"
+            near = max(1, round(self.corners / lobes.n1)) * lobes.n1
+            raise beyond_limit(
+                what, "law.corners", float(self.corners), float(lobes.n1), note, near=near
             )
         largest = lobes.n1 / (lobes.n2 + lobes.mate * lobes.n1)
         if not self.corner_radius < largest:
-            raise InfeasibleError(
-                "the corner radius is larger than that of a circular wheel",
-                where="law.corner_radius",
-                value=self.corner_radius,
-                limit=largest,
-                nearest="the limit is the radius of a circular wheel over the centre distance",
-                ways=(
-                    Way(
-                        near={"law.corner_radius": largest},
-                        far={"law.corner_radius": 0.2 * largest},
-                    ),
-                ),
+            what = "the corner radius is larger than that of a circular wheel"
+            note = "the limit is the radius of a circular wheel over the centre distance"
+            raise beyond_limit(
+                what, "law.corner_radius", self.corner_radius, largest, note, far=0.2 * largest
             )
         height = self._side(lobes, largest)
         knots, pieces = self._pieces(height, lobes.mate)

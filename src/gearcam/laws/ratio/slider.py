@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gearcam.base.errors import InfeasibleError
+from gearcam.base.errors import beyond_limit
 from gearcam.laws.formula import derivative
 from gearcam.laws.ratio.span import SAME, angle_text
 from gearcam.numeric.arrays import Array
@@ -103,13 +103,9 @@ def make_slide(shape: Function, rod: float, period: float) -> tuple[Slide, float
     places, values = extremes(function, [0.0, period])
     turns = _dead_centres(places, values, period, function)
     if len(turns) != 2:
-        raise InfeasibleError(
-            "the slide must go forward and back once: a crank has two dead centres",
-            where="law.slide",
-            value=float(len(turns)),
-            limit=2.0,
-            nearest="this is the number of reversals over one lobe of the driver",
-        )
+        what = "the slide must go forward and back once: a crank has two dead centres"
+        note = "this is the number of reversals over one lobe of the driver"
+        raise beyond_limit(what, "law.slide", float(len(turns)), 2.0, note)
     (outer, low), (inner, high) = sorted(turns, key=lambda turn: turn[1])
     radius = 0.5 * (high - low)
 
@@ -204,12 +200,10 @@ def _series(slide: Slide, place: float, sign: float) -> tuple[float, list[float]
     jet = slide.position(Jet.variable(np.array([place]), _ORDER))
     c = np.array([float(np.ravel(value)[0]) for value in jet.c]) * sign
     if not c[2] > _STILL:
-        raise InfeasibleError(
-            "the slide rests at its dead centre: the crank would stand still",
-            where=f"law.slide, {angle_text(place)}",
-            value=2.0 * float(c[2]),
-            limit=2.0 * _STILL,
-            nearest="this is the second derivative of the position of the slide, in crank radii",
+        what = "the slide rests at its dead centre: the crank would stand still"
+        note = "this is the second derivative of the position of the slide, in crank radii"
+        raise beyond_limit(
+            what, f"law.slide, {angle_text(place)}", 2.0 * float(c[2]), 2.0 * _STILL, note
         )
     over, small = Jet(c[2:].tolist()), Jet([0.0, 0.0, *c[2:-2].tolist()])
     s = small if sign > 0.0 else 2.0 - small
@@ -222,11 +216,7 @@ def _series(slide: Slide, place: float, sign: float) -> tuple[float, list[float]
         reach = float(min(_WIDEST, ((_BELOW * rates[0] / sizes) ** (1.0 / k)).min()))
     reach = min(reach, 0.2 * abs(((slide.inner - slide.outer) % slide.period) or math.inf))
     if reach < NARROWEST:
-        raise InfeasibleError(
-            "the motion of the slide bends too sharply at its dead centre",
-            where=f"law.slide, {angle_text(place)}",
-            value=math.degrees(reach),
-            limit=math.degrees(NARROWEST),
-            unit="deg",
-        )
+        what = "the motion of the slide bends too sharply at its dead centre"
+        where = f"law.slide, {angle_text(place)}"
+        raise beyond_limit(what, where, math.degrees(reach), math.degrees(NARROWEST), unit="deg")
     return reach, powers.tolist()

@@ -15,7 +15,7 @@ from typing import Any, ClassVar, Final
 
 import numpy as np
 
-from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.errors import InfeasibleError, Way, beyond_limit
 from gearcam.base.numerals import shown
 from gearcam.base.quantities import ANGLE, param
 from gearcam.laws.entry import NO_JUMPS
@@ -136,12 +136,9 @@ def demand_equal(lobes: Lobes) -> None:
         If the tooth counts are unequal.
     """
     if replace(lobes, mate=WHEEL) != ONE_LOBE:
-        raise InfeasibleError(
-            "an open pair needs equal tooth counts: its centrodes are equally long",
-            where="pair.teeth",
-            value=lobes.n1 / lobes.n2,
-            limit=1.0,
-            nearest="this is the ratio of the tooth counts",
+        what = "an open pair needs equal tooth counts: its centrodes are equally long"
+        raise beyond_limit(
+            what, "pair.teeth", lobes.n1 / lobes.n2, 1.0, "this is the ratio of the tooth counts"
         )
 
 
@@ -161,25 +158,19 @@ def demand_travels(span: Span) -> None:
     key, mean = "law.driven_travel_deg", span.advance / span.period
     if not (span.closed or span.mate == RACK or 1.0 / _LARGEST <= mean <= _LARGEST):
         limit = math.degrees(span.period) * (1.0 / _LARGEST if mean < 1.0 else _LARGEST)
-        raise InfeasibleError(
-            "one wheel turns so little compared with the other that it would be a rack",
-            where=key,
-            value=math.degrees(span.advance),
-            limit=limit,
-            unit="deg",
-            nearest=f"one turns at most {shown(_LARGEST)} times as far as the other",
-            ways=(Way(near={key: limit}, far={key: math.degrees(span.period)}),),
+        what = "one wheel turns so little compared with the other that it would be a rack"
+        note = f"one turns at most {shown(_LARGEST)} times as far as the other"
+        raise beyond_limit(
+            what, key, math.degrees(span.advance), limit, note, far=math.degrees(span.period)
         )
     if span.mate == RING and not span.advance < span.period:
         most = math.degrees(span.period)
-        raise InfeasibleError(
-            "a ring must turn less than its wheel",
-            where="pair.teeth" if span.closed else key,
-            value=math.degrees(span.advance),
-            limit=most,
-            unit="deg",
-            nearest="the limit is the travel of the driver",
-            ways=() if span.closed else (Way(near={key: most}, far={key: 0.1 * most}),),
+        what = "a ring must turn less than its wheel"
+        where = "pair.teeth" if span.closed else key
+        note = "the limit is the travel of the driver"
+        ways = () if span.closed else (Way(near={key: most}, far={key: 0.1 * most}),)
+        raise beyond_limit(
+            what, where, math.degrees(span.advance), most, note, ways=ways, unit="deg"
         )
 
 
@@ -212,14 +203,8 @@ def demand_below_one(
                 f"; about the mean of {shown(mean)}, which closure needs, the ratio may swing "
                 f"by less than {share} times as much"
             )
-        raise InfeasibleError(
-            "the ratio of an internal pair must stay below 1",
-            where=where,
-            value=largest,
-            limit=1.0,
-            nearest=nearest,
-            ways=ways,
-        )
+        what = "the ratio of an internal pair must stay below 1"
+        raise beyond_limit(what, where, largest, 1.0, nearest, ways=ways)
 
 
 def span_of(lobes: Lobes, driver_travel: float | None, driven_travel: float | None) -> Span:

@@ -11,7 +11,7 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.errors import InfeasibleError, Way, beyond_limit
 from gearcam.base.quantities import ANGLE, NUMBER, TEXT, Row, param
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.columns import MOST_ROWS, ColumnsError, CsvRows, FromFile, close_angles
@@ -166,9 +166,7 @@ class TableLaw(FromFile):
         else:
             where = f"{place}[{row % len(self.points[1])}]"
             ways = (Way(near={where: limit}),)
-        return InfeasibleError(
-            what, where=where, value=value, limit=limit, unit=unit, nearest=nearest, ways=ways
-        )
+        return beyond_limit(what, where, value, limit, nearest, ways=ways, unit=unit)
 
 
 def _points(rows: CsvRows) -> tuple[str, Array, Array]:

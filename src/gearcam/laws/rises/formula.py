@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from gearcam.base.display import Brief
-from gearcam.base.errors import InfeasibleError
+from gearcam.base.errors import beyond_limit
 from gearcam.base.numerals import shown
 from gearcam.base.quantities import TEXT, param
 from gearcam.base.tolerances import Tolerances
@@ -64,12 +64,9 @@ class FormulaRise(Brief):
         start, end = (float(v) for v in shape(Jet.variable([0.0, 1.0], 0)).derivatives()[0])
         for place, value in ((0.0, start), (1.0, end)):
             if not abs(value - place) <= TYPED:
-                raise InfeasibleError(
-                    f"the formula must give {shown(place)} at x = {shown(place)}",
-                    where=_WHERE,
-                    value=value,
-                    limit=place,
-                    nearest=_from_corner_to_corner(self.formula, start, end),
+                what = f"the formula must give {shown(place)} at x = {shown(place)}"
+                raise beyond_limit(
+                    what, _WHERE, value, place, _from_corner_to_corner(self.formula, start, end)
                 )
         scale = 1.0 / (end - start)
         piece = Piece(lambda x: (shape(x) - start) * scale)
