@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from gearcam.base.errors import ABOVE, InfeasibleError
+from gearcam.base.errors import ABOVE, InfeasibleError, beyond_limit
 from gearcam.base.numerals import shown
 from gearcam.gears.contact import COAST, DRIVE, FlankPairs, flank_pairs
 from gearcam.gears.outline import Outline
@@ -221,11 +221,10 @@ def mount(
     both = [half_teeth(outline) for outline in _outlines(gears, spec, penetration)]
     for gear, wheel in zip(gears, both, strict=True):
         if not wheel.sound:
+            what = "the teeth are too few and too deep to be divided into half-teeth"
+            note = "use more teeth or a smaller x; build and check do accept such wheels"
             raise InfeasibleError(
-                "the teeth are too few and too deep to be divided into half-teeth",
-                where=f"wheel {gear.wheel}",
-                value=float(gear.toothing.teeth),
-                nearest="use more teeth or a smaller x; build and check do accept such wheels",
+                what, where=f"wheel {gear.wheel}", value=float(gear.toothing.teeth), nearest=note
             )
     turning = Turning(
         rolling=pair.rolling,
@@ -286,11 +285,9 @@ def phases(spec: MeshingSpec, pairs: FlankPairs) -> Array:
     """
     first, last = stretch(spec, pairs)
     if not last > first:
-        raise InfeasibleError(
-            f"the study ends at {shown(np.degrees(last))} deg before it begins",
-            where="meshing.from_deg",
-            nearest=f"give a start below {shown(np.degrees(last))} deg",
-        )
+        what = f"the study ends at {shown(np.degrees(last))} deg before it begins"
+        note = f"give a start below {shown(np.degrees(last))} deg"
+        raise InfeasibleError(what, where="meshing.from_deg", nearest=note)
     phi1 = np.linspace(first, last, spec.steps, endpoint=not pairs.closed)
     if not pairs.closed:
         _demand_travel(first, last, pairs.travel)
@@ -307,12 +304,13 @@ def phases(spec: MeshingSpec, pairs: FlankPairs) -> Array:
     chosen = phi1[inside.any(axis=1)]
     if not chosen.size:
         angles = np.degrees(track.angle(0.5 * (start + end)))
-        raise InfeasibleError(
-            "these teeth are in contact in none of the phases",
-            where="meshing.teeth",
-            nearest="they are in contact near phi1 = "
+        note = (
+            "they are in contact near phi1 = "
             + ", ".join(f"{shown(angle, 4)}" for angle in angles)
-            + " deg; use more steps or another range",
+            + " deg; use more steps or another range"
+        )
+        raise InfeasibleError(
+            "these teeth are in contact in none of the phases", where="meshing.teeth", nearest=note
         )
     return chosen
 
@@ -321,14 +319,11 @@ def _demand_travel(first: float, last: float, travel: float) -> None:
     """Refuse phases beyond the ends of travel of open wheels and racks."""
     early = first < -_STOP * travel
     if early or last > (1.0 + _STOP) * travel:
-        raise InfeasibleError(
-            "the study leaves the travel of the pair",
-            where=f"meshing.{'from' if early else 'to'}_deg",
-            value=float(np.degrees(first if early else last)),
-            limit=0.0 if early else float(np.degrees(travel)),
-            unit="deg",
-            nearest=f"the travel lies between 0 and {shown(np.degrees(travel), 8)} deg",
-        )
+        what = "the study leaves the travel of the pair"
+        where = f"meshing.{'from' if early else 'to'}_deg"
+        limit = 0.0 if early else float(np.degrees(travel))
+        note = f"the travel lies between 0 and {shown(np.degrees(travel), 8)} deg"
+        raise beyond_limit(what, where, float(np.degrees(first if early else last)), limit, note)
 
 
 def _outlines(
@@ -342,14 +337,13 @@ def _outlines(
     if tolerance == usual or chords <= MOST:
         return one, two
     least = float(np.degrees(spec.overclosure)) * (chords / MOST) ** 2
-    raise InfeasibleError(
+    what = (
         "the overclosure is too small: outlines that resolve the overlap would need "
-        f"{shown(chords, 2)} chords",
-        where="meshing.overclosure_deg",
-        value=float(np.degrees(spec.overclosure)),
-        limit=least,
-        unit="deg",
-        nearest=f"{shown(ABOVE * least, 3)} deg is enough",
+        f"{shown(chords, 2)} chords"
+    )
+    note = f"{shown(ABOVE * least, 3)} deg is enough"
+    raise beyond_limit(
+        what, "meshing.overclosure_deg", float(np.degrees(spec.overclosure)), least, note
     )
 
 
@@ -358,25 +352,22 @@ def _distance(pair: GearPair, spec: MeshingSpec) -> float:
     if spec.center_distance is None:
         return pair.shift
     if pair.on_rack:
+        what = "a rack has no shaft, and so no centre distance"
+        where = "meshing.center_distance_mm"
+        note = "leave it out: the rack is in its design position"
         raise InfeasibleError(
-            "a rack has no shaft, and so no centre distance",
-            where="meshing.center_distance_mm",
-            value=spec.center_distance,
-            unit="mm",
-            nearest="leave it out: the rack is in its design position",
+            what, where=where, value=spec.center_distance, unit="mm", nearest=note
         )
     depth = 2.0 * pair.rack.addendum * pair.module
     least, most = max(0.0, pair.center_distance - depth), pair.center_distance + depth
     if not least < spec.center_distance < most:
-        raise InfeasibleError(
+        what = (
             "the mounted centre distance is so far from the design distance that the teeth do not "
-            "mesh",
-            where="meshing.center_distance_mm",
-            value=spec.center_distance,
-            limit=least if spec.center_distance <= least else most,
-            unit="mm",
-            nearest=f"use a distance between {shown(least)} and {shown(most)} mm",
+            "mesh"
         )
+        limit = least if spec.center_distance <= least else most
+        note = f"use a distance between {shown(least)} and {shown(most)} mm"
+        raise beyond_limit(what, "meshing.center_distance_mm", spec.center_distance, limit, note)
     return math.copysign(spec.center_distance, pair.shift)
 
 

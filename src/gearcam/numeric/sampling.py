@@ -18,7 +18,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from gearcam.base.display import Brief
-from gearcam.base.errors import ABOVE, InfeasibleError, Way
+from gearcam.base.errors import ABOVE, beyond_limit
 from gearcam.base.numerals import shown
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.bulges import as_pairs
@@ -233,15 +233,9 @@ class Sampler(Brief):
         if count > MOST:
             limit = self.tolerance * (count / MOST) ** 2
             key = "output.chord_tolerance_mm"
-            raise InfeasibleError(
-                f"the curve would need {shown(count, 2)} chords",
-                where=key,
-                value=self.tolerance,
-                limit=limit,
-                unit="mm",
-                nearest=f"at the limit there are about {MOST:.0f}",
-                ways=(Way(near={key: ABOVE * limit}),),
-            )
+            what = f"the curve would need {shown(count, 2)} chords"
+            note = f"at the limit there are about {MOST:.0f}"
+            raise beyond_limit(what, key, self.tolerance, limit, note, near=ABOVE * limit)
 
     def _spread(
         self, ends: Array, effort: Array, places: Array, least: Ints | None = None

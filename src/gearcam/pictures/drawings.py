@@ -25,7 +25,7 @@ from typing import Final
 import numpy as np
 
 from gearcam.base.display import Brief
-from gearcam.base.errors import InfeasibleError
+from gearcam.base.errors import beyond_limit
 from gearcam.base.numerals import shown
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.contour import Contour
@@ -269,15 +269,12 @@ def _path(feature: Feature, kerf: float, tolerance: float, where: str) -> Shape:
             return replace(circle, diameter=diameter - kerf)
         case Circle(center=center, diameter=diameter):
             x, y = center.tolist()
-            raise InfeasibleError(
+            what = (
                 f"the {feature.kind.lower()} at x = {shown(x)}, y = {shown(y)} mm is not wider "
-                "than the kerf",
-                where=where,
-                value=kerf,
-                limit=diameter,
-                unit="mm",
-                nearest=f"a kerf below {shown(diameter)} mm, or a larger {feature.kind.lower()}",
+                "than the kerf"
             )
+            note = f"a kerf below {shown(diameter)} mm, or a larger {feature.kind.lower()}"
+            raise beyond_limit(what, where, kerf, diameter, note)
         case Loop() as loop:
             inner = loop.contour(tolerance)
             there = f"{feature.kind.lower()} of {where}"

@@ -102,11 +102,9 @@ def choose(size: ArrayLike, room: ArrayLike, rows: int) -> tuple[str, float]:
         if fits and not (long and paper == "A4"):
             found.append((paper, fits[0]))
     if not found:
-        raise InfeasibleError(
-            f"views of {shown(size[0])} x {shown(size[1])} mm do not fit on a sheet",
-            where="output.files",
-            nearest=f"the smallest scale is 1 : {shown(1.0 / min(SCALES))}",
-        )
+        what = f"views of {shown(size[0])} x {shown(size[1])} mm do not fit on a sheet"
+        note = f"the smallest scale is 1 : {shown(1.0 / min(SCALES))}"
+        raise InfeasibleError(what, where="output.files", nearest=note)
     return max(found, key=lambda one: min(one[1], 1.0))
 
 

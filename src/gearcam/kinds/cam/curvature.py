@@ -40,11 +40,9 @@ def curvature_columns(
     """
     curve, flat = motion.curve, motion.mechanism.flat
     if flat and undercut(curve):
-        raise InfeasibleError(
-            "the profile is undercut and has cusps, where there is no curvature to study",
-            where="output.files",
-            nearest="leave out the curvature study, or remove the undercut",
-        )
+        what = "the profile is undercut and has cusps, where there is no curvature to study"
+        note = "leave out the curvature study, or remove the undercut"
+        raise InfeasibleError(what, where="output.files", nearest=note)
 
     def points(theta: Array) -> Plane:
         s, ds = motion.program.derivatives(theta, 1)

@@ -70,10 +70,9 @@ def cutter_way(edge: Contour, radius: float, *, side: int = 1) -> Contour:
         If there is no radius, or it leaves no simple path.
     """
     if not radius:
+        note = "the default is the radius of a round follower; this follower has none"
         raise InfeasibleError(
-            "the path of a cutter needs the cutter's radius",
-            where=TOOL_RADIUS,
-            nearest="the default is the radius of a round follower; this follower has none",
+            "the path of a cutter needs the cutter's radius", where=TOOL_RADIUS, nearest=note
         )
     return sized(lambda by: moved(edge, side * by), radius, TOOL_RADIUS, "radius of the cutter")
 

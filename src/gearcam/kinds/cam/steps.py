@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from gearcam.base.errors import ABOVE, InfeasibleError, Way
+from gearcam.base.errors import ABOVE, beyond_limit
 from gearcam.numeric.arrays import Array
 
 if TYPE_CHECKING:
@@ -54,14 +54,10 @@ def even_angles(output: CamOutputSpec, driver: Driver, slides: bool) -> Array:
     if step < turn / _MOST:
         key = f"output.{'way_step' if slides else 'motion_step'}_{driver.unit}"
         least = turn / _MOST * driver.scale
-        raise InfeasibleError(
-            f"tables would have more than {_MOST:.0f} rows",
-            where=key,
-            value=step * driver.scale,
-            limit=least,
-            unit=driver.unit,
-            nearest="the limit is the smallest step",
-            ways=(Way(near={key: ABOVE * least}),),
+        what = f"tables would have more than {_MOST:.0f} rows"
+        note = "the limit is the smallest step"
+        raise beyond_limit(
+            what, key, step * driver.scale, least, note, near=ABOVE * least, unit=driver.unit
         )
     made = step * np.arange(math.floor(turn / step + WHOLE) + 1.0)
     if slides:  # its end does not coincide with its beginning

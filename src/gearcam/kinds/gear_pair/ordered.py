@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.errors import InfeasibleError, Way, beyond_limit
 from gearcam.base.findings import limit_of
 from gearcam.base.numerals import shown
 from gearcam.gears.outline import outside
@@ -117,14 +117,10 @@ def _ring(gears: list[Gear], design: GearPairDesign) -> Part:
 def _crossing_chords(rim: float, tolerance: float, larger: dict[str, object]) -> InfeasibleError:
     """Return the error for a rim, mm, that is too thin for the chord tolerance."""
     key = "output.chord_tolerance_mm"
-    return InfeasibleError(
-        f"the rim of the ring, {shown(rim)} mm, is too thin for the chord tolerance of its edges",
-        where=key,
-        value=tolerance,
-        limit=rim / _CHORDS,
-        unit="mm",
-        nearest="the limit is a quarter of the rim",
-        ways=(Way(near={key: rim / _CHORDS}), Way(near=larger)),
+    what = f"the rim of the ring, {shown(rim)} mm, is too thin for the chord tolerance of its edges"
+    note = "the limit is a quarter of the rim"
+    return beyond_limit(
+        what, key, tolerance, rim / _CHORDS, note, near=rim / _CHORDS, ways=(Way(near=larger),)
     )
 
 

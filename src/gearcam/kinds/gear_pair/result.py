@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Literal, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.errors import InfeasibleError, Way, beyond_limit
 from gearcam.base.findings import Finding, in_order, limit_of, run_checks
 from gearcam.base.numerals import shown
 from gearcam.gears import checks  # noqa: F401  (its checks register themselves)
@@ -200,20 +200,14 @@ class GearPairResult(PartsResult):
                 names, near, limits = [key], [min(near)], [limits[worst]]
         if own != bores:
             nearest.append("limits hold for the circle around bore and keyway")
-        return InfeasibleError(
-            "the bore reaches the root of the teeth",
-            where=where,
-            value=bores[worst],
-            limit=min(limits),
-            unit="mm",
-            nearest="; ".join(nearest),
-            ways=(
-                Way(
-                    near=dict(zip(names, near, strict=True)),
-                    far={name: 0.1 * limit for name, limit in zip(names, limits, strict=True)},
-                ),
+        what = "the bore reaches the root of the teeth"
+        ways = (
+            Way(
+                near=dict(zip(names, near, strict=True)),
+                far={name: 0.1 * limit for name, limit in zip(names, limits, strict=True)},
             ),
         )
+        return beyond_limit(what, where, bores[worst], min(limits), "; ".join(nearest), ways=ways)
 
     @property
     def gears(self) -> tuple[Gear, Gear]:
@@ -598,12 +592,8 @@ def _demand_reached(pose: float, law: RatioLaw) -> None:
     if law.lobes.closed or 0.0 <= pose <= (1.0 + _WHOLE) * law.period:
         return
     key, limit = "output.phi1_deg", math.degrees(min(max(pose, 0.0), law.period))
-    raise InfeasibleError(
-        "the drawing angle lies outside the driver's travel",
-        where=key,
-        value=math.degrees(pose),
-        limit=limit,
-        unit="deg",
-        nearest=f"the driver turns from 0 to {shown(math.degrees(law.period))} deg",
-        ways=(Way(near={key: limit}, far={key: 0.5 * math.degrees(law.period)}),),
+    what = "the drawing angle lies outside the driver's travel"
+    note = f"the driver turns from 0 to {shown(math.degrees(law.period))} deg"
+    raise beyond_limit(
+        what, key, math.degrees(pose), limit, note, far=0.5 * math.degrees(law.period)
     )
