@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import ast
 import json
 import math
 import re
 import tomllib
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import gearcam
 from arch import rules
 from gearcam import kinds
-from gearcam.base.errors import DesignError
+from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.cli import main
 from gearcam.designs import KINDS, loads
 from gearcam.designs.schema import schema
@@ -48,11 +51,68 @@ def test_no_kind_is_named_outside_its_folder() -> None:
     assert named == []
 
 
-def test_kinds_do_not_know_each_other() -> None:
-    for name in NAMES:
-        others = "|".join(other for other in NAMES if other != name)
-        for path in rules.python_files(HOME / name):
-            assert not re.search(rf"\bkinds\.(?:{others})\b", path.read_text("utf-8")), path
+def uses(folder: Path, others: Iterable[str]) -> tuple[set[str], list[str]]:
+    """The other kinds that a kind imports or nests, and its imports of what is not public."""
+    used, wrong, known = set(), [], tuple(others)
+    for path in rules.python_files(folder):
+        for node in ast.walk(rules.parse(path)):
+            if isinstance(node, ast.ImportFrom):
+                names = [f"{node.module}.{one.name}" for one in node.names]
+            elif isinstance(node, ast.Import):
+                names = [one.name for one in node.names]
+            else:
+                names = []
+            for name in names:
+                other, _, part = name.removeprefix("gearcam.kinds.").partition(".")
+                if name.startswith("gearcam.kinds.") and other in known:
+                    used.add(other)
+                    wrong += [name] if not part.startswith("public.") else []
+            if isinstance(node, ast.Call) and ast.unparse(node.func).endswith("nested"):
+                named = {one.value for one in node.args if isinstance(one, ast.Constant)}
+                used |= {one.replace("-", "_") for one in named} & set(known)
+    return used, wrong
+
+
+def in_circles(used: Mapping[str, set[str]]) -> set[str]:
+    """The kinds that use each other in a circle, and those that use one of them."""
+    left = dict(used)
+    while free := [name for name, below in left.items() if not below & left.keys()]:
+        for name in free:
+            del left[name]
+    return set(left)
+
+
+def test_kinds_use_the_public_parts_of_others_in_one_direction() -> None:
+    homes = {name: HOME / name for name in NAMES}
+    homes |= {folder.name: folder for folder in TOY.iterdir() if (folder / "kind.py").exists()}
+    found = {name: uses(home, homes.keys() - {name}) for name, home in homes.items()}
+    assert {name: wrong for name, (_, wrong) in found.items() if wrong} == {}
+    assert in_circles({name: used for name, (used, _) in found.items()}) == set()
+    assert found["slider_crank"][0] == {"gear_pair", "cam"}
+
+
+@pytest.mark.parametrize(
+    ("line", "used", "wrong"),
+    [
+        ("from gearcam.kinds.cam.public import CamDesign", {"cam"}, 0),
+        ("from gearcam.kinds.cam.build import CamResult", {"cam"}, 1),
+        ("from gearcam.kinds.cam import forms", {"cam"}, 1),
+        ("import gearcam.kinds.cam.facts", {"cam"}, 1),
+        ("from gearcam.kinds.shared import AccuracySpec", set(), 0),
+        ('x = quantities.nested("cam", doc="a cam")', {"cam"}, 0),
+    ],
+)
+def test_the_use_of_another_kind_is_seen(
+    tmp_path: Path, line: str, used: set[str], wrong: int
+) -> None:
+    (tmp_path / "kind.py").write_text(line + "\n")
+    found = uses(tmp_path, NAMES)
+    assert (found[0], len(found[1])) == (used, wrong)
+
+
+def test_a_circle_of_kinds_is_seen() -> None:
+    assert in_circles({"a": {"b"}, "b": {"c"}, "c": set()}) == set()
+    assert in_circles({"a": {"b"}, "b": {"c"}, "c": {"b"}, "d": set()}) == {"a", "b", "c"}
 
 
 @pytest.mark.parametrize(
@@ -130,3 +190,101 @@ def test_another_kind_works_on_the_command_line(
     assert "ring.width_mm = 20" in capsys.readouterr().err
     (toy / "pair.toml").write_text(template("gear-pair"))
     assert main(["weigh", "pair.toml"]) == 2
+
+
+def slider_crank(drive: str, crank: float = 20, rod: float = 70, more: str = "") -> str:
+    """The text of a slider-crank behind the file of a drive."""
+    key = "pair" if "ellipse" in drive else "cam"
+    return (
+        f'kind = "slider-crank"\nname = "machine"\n[drive]\n{key} = "{drive}"\n'
+        f"[crank]\nlength_mm = {crank}\n[rod]\nlength_mm = {rod}\n{more}"
+    )
+
+
+PROFILES = rules.ROOT / "profiles"
+
+
+@pytest.mark.usefixtures("toy")
+def test_a_kind_uses_another_and_its_slider_moves_as_by_hand() -> None:
+    ellipse = PROFILES / "ellipse.toml"
+    result = gearcam.build(loads(slider_crank(str(ellipse))))
+    phi1 = np.linspace(0.0, 2.0 * np.pi, 37)
+    along, rate, angle, _ = result.slide(np.degrees(phi1))
+    turned = np.radians(gearcam.build(gearcam.load(ellipse)).motion(phi1)["phi2_deg"])
+    expected = 20 * np.cos(turned) + np.sqrt(70**2 - (20 * np.sin(turned)) ** 2)
+    assert along == pytest.approx(expected, abs=1e-9)
+    assert 70 * np.sin(angle) == pytest.approx(-20 * np.sin(turned), abs=1e-9)
+    step = 1e-5
+    ahead, behind = (result.slide(np.degrees(phi1[1:-1] + s * step))[0] for s in (1, -1))
+    assert rate[1:-1] == pytest.approx((ahead - behind) / (2 * step), abs=1e-6)
+    assert result.facts["slider.stroke_mm"] == pytest.approx(40.0, abs=1e-3)
+
+
+@pytest.mark.parametrize(
+    "drive",
+    [
+        "ellipse.toml", "ring_ellipse.toml", "plate_cam_oscillating.toml", "eccentric_cam.toml",
+        "translating_cam.toml", "groove_cam.toml",
+    ],
+)  # fmt: skip
+@pytest.mark.usefixtures("toy")
+def test_a_slider_crank_runs_behind_any_drive(drive: str) -> None:
+    result = gearcam.build(loads(slider_crank(str(PROFILES / drive), 10, 200)))
+    scene = result.scene(24)
+    bodies = {body.name: body for body in scene.bodies}
+    unit = np.radians(1.0) if scene.driver.endswith("deg") else 1.0
+    step = 1e-4
+    inner = scene.places[1:-1] + 1e-3 * np.ptp(scene.places)  # not at a knot
+    ahead, behind = (result.slide(inner + s * step)[0] for s in (1, -1))
+    expected = (ahead - behind) / (2 * step * unit)
+    assert result.slide(inner)[1] == pytest.approx(expected, rel=1e-4, abs=1e-4)
+    rod, slider = bodies["rod"], bodies["slider"]
+    pin, end = rod.shift, rod.shift + 200 * np.exp(1j * rod.turn)
+    assert end == pytest.approx(slider.shift, abs=1e-9)  # the rod joins the pin and the slider
+    assert np.ptp(slider.shift.imag) == 0.0
+    carried = bodies["gear2" if "gear2" in bodies else "follower"]
+    fixed = (pin - carried.shift) * np.exp(-1j * carried.turn)
+    assert fixed == pytest.approx(np.full(25, fixed[0]), abs=1e-9)  # the pin moves with its carrier
+
+
+def test_a_slider_crank_is_built_studied_and_refused_on_the_command_line(
+    toy: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (toy / "ellipse.toml").write_bytes((PROFILES / "ellipse.toml").read_bytes())
+    more = '[output]\nfiles = ["csv", "report"]\nstudies = ["slide"]\n'
+    (toy / "machine.toml").write_text(slider_crank("ellipse.toml", more=more))
+    assert main(["build", "machine.toml"]) == 0
+    out = capsys.readouterr().out
+    assert "slider-crank, stroke 40 mm" in out
+    assert "drive.pair: pair" in out  # the finding of the nested design
+    folder = toy / "output" / "machine"
+    summary = json.loads((folder / "summary.json").read_text())
+    assert summary["design"]["drive"]["pair"]["kind"] == "gear-pair"
+    assert summary["stroke"]["rows"] == 361
+    assert len((folder / "slider.csv").read_text().splitlines()) == 362
+    page = (folder / "report.html").read_text()
+    assert all(word in page for word in ('"crank"', '"rod"', '"slider"', "Rate of the slider"))
+    assert main(["slide", "machine.toml", "--step", "10"]) == 0
+    assert len((folder / "slider.csv").read_text().splitlines()) == 38
+    capsys.readouterr()
+    (toy / "short.toml").write_text(slider_crank("ellipse.toml", rod=15))
+    assert main(["build", "short.toml"]) == 3
+    told = capsys.readouterr().err
+    assert "the rod is too short to reach the guide" in told
+    assert "rod.length_mm = 20.2" in told
+    wrong = (toy / "ellipse.toml").read_text().replace("eccentricity = 0.3", "eccentricity = 4")
+    (toy / "ellipse.toml").write_text(wrong)
+    assert main(["build", "machine.toml"]) == 2
+    assert "ellipse.toml:6: law.eccentricity: 4 is out of range" in capsys.readouterr().err
+
+
+@pytest.mark.usefixtures("toy")
+def test_a_refusal_of_a_nested_design_has_its_place() -> None:
+    design = loads(slider_crank(str(PROFILES / "ellipse.toml")))
+    broken = design.with_(
+        {"drive.pair.pair.teeth": [5, 5], "drive.pair.blank.bore_diameter_mm": 60}
+    )
+    with pytest.raises(InfeasibleError) as caught:
+        _ = gearcam.build(broken).checked
+    assert caught.value.where.startswith("drive.pair")
+    assert all(key.startswith("drive.pair.") for way in caught.value.ways for key in way.near)

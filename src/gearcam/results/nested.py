@@ -17,7 +17,7 @@ from gearcam.base.findings import Finding
 
 @contextmanager
 def within(key: str) -> Iterator[None]:
-    """Raise refusals inside the context as those of the design around the one at a `key`.
+    """Return a context whose refusals become those of the design around the one at a `key`.
 
     Raises
     ------

@@ -308,7 +308,6 @@ KIND = Kind(
     },
     charts={"motion": motion_chart},
     scene=scene,
-    assembled=lambda result: result.driven.kind.assembled(result.driven),
     studies={"slide": SLIDE},
     study_tables={"slide": "stroke"},
 )
