@@ -37,7 +37,7 @@ ELSEWHERE = {
     ),
     "feeds?": ("simple.py",),
     "idle": ("numerals.py", "paper.py"),
-    "halves": ("lost.py", "sampling.py", "openings.py"),
+    "halves": ("sampling.py", "openings.py"),
 }
 """Files in which a word is the field's own, or plain English: strokes of a pen or a slide, machine
 feeds, idle zeros of a number, halves of an interval."""

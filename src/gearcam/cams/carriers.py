@@ -10,24 +10,42 @@ Depends on numeric; numpy only.
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
 from gearcam.base.display import Brief
 from gearcam.numeric.arrays import Array, Plane
-from gearcam.numeric.jets import Jet
+from gearcam.numeric.jets import Jet, cos, sin
 
 Pair = tuple[Jet | float, Jet | float]
 """Real and imaginary part of a vector."""
 
 
-def unit(angle: Array) -> Plane:
+def unit(angle: Array | float) -> Plane:
     """Return unit vectors at angles (n,), rad."""
     result = np.empty(np.shape(angle), dtype=np.complex128)
     result.real, result.imag = np.cos(angle), np.sin(angle)
     return result
+
+
+class Centred(Protocol):
+    """A round follower, as far as a carrier must know it."""
+
+    def centre(self, p: Array) -> Plane:
+        """Return the centre, mm, at positions (n,)."""
+        ...
+
+    def on_circle(self, radius: Array) -> Array:
+        """Return positions (n,) with the centre on circles about the origin, mm."""
+        ...
+
+    def on_level(self, height: Array) -> Array:
+        """Return positions (n,) with the centre at heights, mm."""
+        ...
 
 
 class Carrier(ABC, Brief):
@@ -55,6 +73,37 @@ class Carrier(ABC, Brief):
     def under(self, x: Array, z: Plane) -> Plane:
         """Return points z, mm, of the fixed frame in the cam's frame at driver positions x."""
 
+    @abstractmethod
+    def frame(self, x: Array) -> tuple[Plane, Plane]:
+        """Return the pose of the cam at driver positions x: a rotation, then a shift, mm."""
+
+    @abstractmethod
+    def placed(self, x: Jet, z: complex) -> tuple[Jet, Jet]:
+        """Return coordinates, mm, in the fixed frame of a point z of the cam, at x."""
+
+    @abstractmethod
+    def passing(self, z: Plane) -> Plane:
+        """Return velocities of points z of the cam in the fixed frame, mm per unit of x."""
+
+    @abstractmethod
+    def stand(self, follower: Centred, z: Plane, near: Array) -> tuple[Array, Array]:
+        """Return where a follower has its centre on given points of the cam's frame.
+
+        Parameters
+        ----------
+        follower : Centred
+            The follower.
+        z : (n,) complex array, mm
+            The points.
+        near : (n,) array
+            Driver positions nearby: less than half a turn away.
+
+        Returns
+        -------
+        x, p : (n,) arrays
+            Driver positions, and positions of the follower.
+        """
+
 
 @dataclass(frozen=True)
 class Rotating(Carrier):
@@ -69,6 +118,24 @@ class Rotating(Carrier):
     def under(self, x: Array, z: Plane) -> Plane:
         """Return the points turned back (see `Carrier.under`)."""
         return z * unit(-x)
+
+    def frame(self, x: Array) -> tuple[Plane, Plane]:
+        """Return a rotation (see `Carrier.frame`)."""
+        return unit(x), np.zeros(np.shape(x), dtype=np.complex128)
+
+    def placed(self, x: Jet, z: complex) -> tuple[Jet, Jet]:
+        """Return the point turned by x (see `Carrier.placed`)."""
+        radius, angle = abs(z), math.atan2(z.imag, z.real)
+        return radius * cos(x + angle), radius * sin(x + angle)
+
+    def passing(self, z: Plane) -> Plane:
+        """Return velocities around the origin (see `Carrier.passing`)."""
+        return 1j * z
+
+    def stand(self, follower: Centred, z: Plane, near: Array) -> tuple[Array, Array]:
+        """Return where the centres are on the points (see `Carrier.stand`)."""
+        p = follower.on_circle(np.abs(z))
+        return near + np.angle(follower.centre(p) * np.conj(z) * unit(-near)), p
 
 
 @dataclass(frozen=True)
@@ -92,3 +159,22 @@ class Sliding(Carrier):
     def under(self, x: Array, z: Plane) -> Plane:
         """Return the points moved on (see `Carrier.under`)."""
         return z + self.scale * x
+
+    def frame(self, x: Array) -> tuple[Plane, Plane]:
+        """Return a shift (see `Carrier.frame`)."""
+        return np.ones(np.shape(x), dtype=np.complex128), np.asarray(
+            -self.scale * x, dtype=np.complex128
+        )
+
+    def placed(self, x: Jet, z: complex) -> tuple[Jet, Jet]:
+        """Return the point moved by x (see `Carrier.placed`)."""
+        return z.real - self.scale * x, z.imag + 0.0 * x
+
+    def passing(self, z: Plane) -> Plane:
+        """Return the velocity of all points."""
+        return np.full(np.shape(z), -self.scale, dtype=np.complex128)
+
+    def stand(self, follower: Centred, z: Plane, near: Array) -> tuple[Array, Array]:  # noqa: ARG002
+        """Return where the centres are on the points (see `Carrier.stand`)."""
+        p = follower.on_level(z.imag)
+        return (z - follower.centre(p)).real / self.scale, p

@@ -30,7 +30,8 @@ from gearcam.base.facts import Facts
 from gearcam.base.numerals import shown
 from gearcam.cams.cam import Cam
 from gearcam.cams.disc import demand_standing
-from gearcam.cams.mechanism import Mechanism, swing
+from gearcam.cams.followers import swing
+from gearcam.cams.mechanism import Mechanism
 from gearcam.cams.wall import CHORD_TOLERANCE, Wall
 from gearcam.laws.program import Program
 
@@ -196,12 +197,12 @@ def _swinging(mechanism: Mechanism, roller: SecondRoller, lowest: float, highest
     near = max(abs(pivot - arm), roller.radius)
     if near >= pivot + arm:
         raise _out_of_place("follower.roller2_radius_mm", roller.radius, 0.0, pivot + arm, "mm")
-    low, high = swing(pivot, arm, near), math.pi - (highest - lowest)
+    low, high = float(swing(pivot, arm, near)), math.pi - (highest - lowest)
     if roller.prime is not None:
         far = replace(mechanism, arm=arm, start=max(high, low)).least
         if not near < roller.prime < far:
             raise _out_of_place(_PRIME2, roller.prime, near, far, "mm")
-        return swing(pivot, arm, roller.prime)
+        return float(swing(pivot, arm, roller.prime))
     below = (roller.apart or 0.0) + roller.squeeze - highest
     if not low < below < high:
         shift = highest - roller.squeeze

@@ -22,7 +22,6 @@ import numpy as np
 
 from gearcam.base.display import Brief
 from gearcam.cams.contact import Contact
-from gearcam.cams.followers import Round
 from gearcam.cams.mechanism import Mechanism
 from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
@@ -88,16 +87,9 @@ class CamCurve(Brief):
         ----------
         theta, s : (n,) arrays
             Cam angles, rad, and lift, mm or rad.
-
-        Raises
-        ------
-        TypeError
-            If the follower is flat.
         """
         m = self.mechanism
-        if not isinstance(m.follower, Round):
-            raise TypeError("a flat face has no pitch curve")
-        return m.carrier.under(theta, m.follower.centre(m.start + s))
+        return m.carrier.under(theta, m.centred.centre(m.start + s))
 
     def trace(self, theta: Array, s: Array, ds: Array, inset: float) -> tuple[Plane, Plane]:
         """Return points and unit tangents of the curve at a depth below a round follower's centre.

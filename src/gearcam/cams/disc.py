@@ -21,7 +21,8 @@ from gearcam.base.errors import InfeasibleError
 from gearcam.base.facts import Facts
 from gearcam.base.numerals import rounded_down
 from gearcam.cams.cam import Cam
-from gearcam.cams.mechanism import Mechanism, swing
+from gearcam.cams.followers import swing
+from gearcam.cams.mechanism import Mechanism
 from gearcam.cams.wall import CHORD_TOLERANCE, Wall
 from gearcam.laws.program import Program
 
@@ -186,7 +187,7 @@ def _on_axis(mechanism: Mechanism) -> float:
         return math.sqrt(max((m.radius - m.offset) * (m.radius + m.offset), 0.0))
     if m.flat:
         return math.asin(max(m.face_offset / m.pivot, -1.0))
-    return swing(m.pivot, m.arm, max(m.radius, abs(m.pivot - m.arm)))
+    return float(swing(m.pivot, m.arm, max(m.radius, abs(m.pivot - m.arm))))
 
 
 def _demand_swing(program: Program, mechanism: Mechanism, low: float, high: float) -> None:

@@ -39,7 +39,7 @@ from gearcam.base.display import Brief
 from gearcam.cams.carriers import Carrier, Pair, unit
 from gearcam.cams.contact import Contact
 from gearcam.numeric.arrays import Array, Plane
-from gearcam.numeric.jets import Jet, cos, sin, sqrt
+from gearcam.numeric.jets import Jet, asin, atan, cos, sin, sqrt
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,6 +91,28 @@ class Follower(Brief, ABC):
         inset : float, mm
             Depth below a round follower's centre, 0 for the pitch curve; of no meaning for faces,
             whose profile is the only curve.
+        """
+
+    @abstractmethod
+    def rest(self, x: Jet, y: Jet, grow: Array | float = 0.0, side: int = 1) -> tuple[Jet, Array]:
+        """Return the position at which it rests on discs.
+
+        Parameters
+        ----------
+        x, y : Jet, mm
+            Centres of the discs in the fixed frame.
+        grow : float or array, mm
+            Radii of the discs.
+        side : {1, -1}
+            Whether a round follower is above the disc or pressed against it from below.
+
+        Returns
+        -------
+        position : Jet, mm or rad
+            Infinite where the follower always overlaps the disc. Out of reach it is that of the
+            nearest point in reach, so that searches may pass there.
+        room : array
+            Negative out of reach; mm^2 for a round follower.
         """
 
     @abstractmethod
@@ -159,6 +181,14 @@ class Round(Follower):
     @abstractmethod
     def lean(self, p: Array) -> Array | float:
         """Return the angle of its direction at positions (n,), rad, from that of the y axis."""
+
+    @abstractmethod
+    def on_circle(self, radius: Array) -> Array:
+        """Return positions (n,) with the centre on circles about the origin, mm."""
+
+    @abstractmethod
+    def on_level(self, height: Array) -> Array:
+        """Return positions (n,) with the centre at heights, mm."""
 
     @abstractmethod
     def axes(self, p: Jet) -> tuple[Pair, Pair]:
@@ -252,6 +282,22 @@ class Stem(Round):
         """Return ``exp(-i*tilt)`` and ``p - i*offset``."""
         return (math.cos(self.tilt), -math.sin(self.tilt)), (p, -self.offset)
 
+    def on_circle(self, radius: Array) -> Array:
+        """Return positions above the origin."""
+        return np.sqrt((radius - self.offset) * (radius + self.offset))
+
+    def on_level(self, height: Array) -> Array:
+        """Return positions at heights of a stem through the origin."""
+        return height / math.cos(self.tilt)
+
+    def rest(self, x: Jet, y: Jet, grow: Array | float = 0.0, side: int = 1) -> tuple[Jet, Array]:
+        """Return the position on discs (see `Follower.rest`)."""
+        c, s = math.cos(self.tilt), math.sin(self.tilt)
+        aside, along = c * x + s * y - self.offset, c * y - s * x
+        reach = self.radius + grow
+        room = (reach - aside) * (reach + aside)
+        return along + side * sqrt(_at_least_0(room)), np.asarray(room.c[0])
+
 
 @dataclass(frozen=True, kw_only=True)
 class Arm(Round):
@@ -302,6 +348,27 @@ class Arm(Round):
         if y:
             across, against = across + y * c, against + y * s
         return (c, s), (across, against + self.hand * self.arm)
+
+    def on_circle(self, radius: Array) -> Array:
+        """Return positions above the origin, of a pivot on the x axis."""
+        return swing(self.pivot.real, self.arm, radius)
+
+    def on_level(self, height: Array) -> Array:
+        """Return positions on this side of the perpendicular to the x axis."""
+        return np.arcsin((height - self.pivot.imag) / self.arm)
+
+    def rest(self, x: Jet, y: Jet, grow: Array | float = 0.0, side: int = 1) -> tuple[Jet, Array]:
+        """Return the position on discs (see `Follower.rest`)."""
+        seen, far = _seen(self.hand * (self.pivot.real - x), y - self.pivot.imag)
+        reach = self.radius + grow
+        # half the angle from the three sides: a round end may be tiny compared to the arm
+        room = (reach - (far - self.arm)) * (reach + (far - self.arm))
+        beyond = (far + self.arm - reach) * (far + self.arm + reach)
+        overlaps = reach >= far.c[0] + self.arm
+        beyond = Jet([np.where(overlaps, 1.0, beyond.c[0]), *beyond.c[1:]])
+        turn = 2.0 * atan(sqrt(_at_least_0(room) / beyond))
+        turn = Jet([np.where(overlaps, np.inf, turn.c[0]), *turn.c[1:]])
+        return seen + side * turn, np.asarray(room.c[0])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -399,6 +466,16 @@ class FlatStem(Face):
         """Return 0: the face is level."""
         return 0.0
 
+    def rest(
+        self,
+        x: Jet,  # noqa: ARG002
+        y: Jet,
+        grow: Array | float = 0.0,
+        side: int = 1,  # noqa: ARG002
+    ) -> tuple[Jet, Array]:
+        """Return the position on discs (see `Follower.rest`)."""
+        return y + grow, np.ones(np.shape(y.c[0]))
+
     def line(self, p: Jet, ds: Jet) -> tuple[Jet, Jet, Jet]:
         """Return the face as a line (see `Face.line`)."""
         return p, ds, 0.0 * ds
@@ -446,6 +523,20 @@ class FlatArm(Face):
         """Return the angle of the face, rad."""
         return -p
 
+    def rest(
+        self,
+        x: Jet,
+        y: Jet,
+        grow: Array | float = 0.0,
+        side: int = 1,  # noqa: ARG002
+    ) -> tuple[Jet, Array]:
+        """Return the position on discs (see `Follower.rest`)."""
+        seen, far = _seen(self.pivot - x, y)
+        face = self.offset + grow
+        turn = asin(_within_1(face / far))
+        turn = Jet([np.where(face > far.c[0], np.inf, turn.c[0]), *turn.c[1:]])
+        return seen + turn, np.asarray(far.c[0] + face)
+
     def line(self, p: Jet, ds: Jet) -> tuple[Jet, Jet, Jet]:
         """Return the face as a line (see `Face.line`)."""
         return self.pivot * sin(p) - self.offset, self.pivot * cos(p) * ds, ds
@@ -470,3 +561,39 @@ class FlatArm(Face):
     def jump_speed(self, carrier: Carrier, p: Array, inset: float) -> Array:  # noqa: ARG002
         """Return the length of the face to the pivot's foot (see `Follower.jump_speed`)."""
         return self.pivot * np.cos(p)
+
+
+def swing(pivot: float, arm: float, size: Array | float) -> Array:
+    """Return Psi, rad, of an arm with its end at given distances from the cam's axis.
+
+    Parameters
+    ----------
+    pivot, arm : float, mm
+        Axis to pivot; arm.
+    size : (n,) array, mm
+        Arm's end to axis.
+    """
+    # half the angle from the sides, with parentheses (after Kahan) that keep all digits if the
+    # triangle is nearly flat
+    small, large = sorted([pivot, arm])
+    apart = large - small
+    half = np.arctan2(
+        np.sqrt((size - apart) * (size + apart)),
+        np.sqrt((small - (size - large)) * (small + (size + large))),
+    )
+    return 2.0 * half
+
+
+def _seen(across: Jet, y: Jet) -> tuple[Jet, Jet]:
+    """Return the angle of points seen from a pivot, rad, and their distance, mm."""
+    far = sqrt(across * across + y * y)
+    # an arctangent of half the angle stays finite at the height of the pivot
+    return 2.0 * atan(y / (far + across)), far
+
+
+def _at_least_0(x: Jet) -> Jet:
+    return Jet([np.maximum(x.c[0], 0.0), *x.c[1:]])
+
+
+def _within_1(x: Jet) -> Jet:
+    return Jet([np.clip(x.c[0], -1.0, 1.0), *x.c[1:]])

@@ -19,7 +19,7 @@ from gearcam.cams.mechanism import Mechanism
 from gearcam.cams.trim import Corner
 from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array
-from gearcam.numeric.jets import Jet, asin, atan, cos, sin, sqrt
+from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import extremes
 
 _TURN = 2.0 * math.pi
@@ -44,41 +44,16 @@ def resting(mechanism: Mechanism, point: complex, side: int = 1) -> Callable[[Je
     callable
         ``lift(theta) -> Jet``, mm or rad; nan where the point cannot be touched.
     """
-    m, radius, angle = mechanism, abs(point), math.atan2(point.imag, point.real)
+    follower, carrier = mechanism.follower, mechanism.carrier
 
-    def place(theta: Jet) -> tuple[Jet, Jet]:
-        """Return the point, relative to the follower's direction, or with its pivot at +d."""
-        if not m.slide:
-            return radius * cos(theta + angle), radius * sin(theta + angle)
-        x, y = point.real - m.slide * theta, point.imag + 0.0 * theta
-        if m.oscillating:
-            return -1.0 * x, y - m.height
-        c, s = math.cos(m.tilt), math.sin(m.tilt)
-        return c * x + s * y, c * y - s * x
+    def lift(theta: Jet) -> Jet:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            position, room = follower.rest(*carrier.placed(theta, point), side=side)
+        missed = (room < 0.0) | ~np.isfinite(position.c[0])
+        s = position - follower.start
+        return Jet([np.where(missed, np.nan, value) for value in s.c])
 
-    def sliding(theta: Jet) -> Jet:
-        x, y = place(theta)
-        if m.flat:
-            return y - m.start
-        aside = x - m.offset
-        return y + side * sqrt(m.radius**2 - aside * aside) - m.start
-
-    def swinging(theta: Jet) -> Jet:
-        x, y = place(theta)
-        # the point relative to the pivot: its angle from the line to the axis, its distance
-        across = m.pivot - x
-        square = across * across + y * y
-        # an arctangent of two halves stays finite at the height of the pivot
-        seen = 2.0 * atan(y / (sqrt(square) + across))
-        if m.flat:
-            return seen + asin(m.face_offset / sqrt(square)) - m.start
-        # by two halves too: a round follower may be tiny compared to the arm
-        away, more = sqrt(square) - m.arm, sqrt(square) + m.arm
-        within = (m.radius - away) * (m.radius + away)
-        beyond = (more - m.radius) * (more + m.radius)
-        return seen + side * 2.0 * atan(sqrt(within / beyond)) - m.start
-
-    return swinging if m.oscillating else sliding
+    return lift
 
 
 def lost_lift(program: Program, mechanism: Mechanism, corner: Corner, side: int = 1) -> Extreme:
@@ -112,8 +87,7 @@ def lost_lift(program: Program, mechanism: Mechanism, corner: Corner, side: int 
         return Extreme(theta=start, value=0.0)
 
     def missing(theta: Array) -> list[Array]:
-        with np.errstate(invalid="ignore"):
-            given = rest(Jet.variable(theta, 1)).derivatives()
+        given = rest(Jet.variable(theta, 1)).derivatives()
         return list(side * np.subtract(program.derivatives(theta, 1), given))
 
     places, values = extremes(missing, program.cuts_between(start, end))

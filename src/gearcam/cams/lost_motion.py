@@ -22,7 +22,7 @@ from gearcam.cams.curve import ProfileSegments, segments
 from gearcam.cams.lost import resting
 from gearcam.cams.measures import Extreme
 from gearcam.cams.wall import Wall
-from gearcam.numeric.arrays import Array, Ints, Plane
+from gearcam.numeric.arrays import Array, Ints
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import places_between
 from gearcam.numeric.roots import bracketed_root, newton_in_bracket
@@ -65,30 +65,6 @@ class Rest(Brief):
         inset = self.wall.side * (self.wall.mechanism.radius - self.radius)
         return segments(replace(curve, mechanism=replace(curve.mechanism, radius=inset)), inset)
 
-    def _standing(self, theta: Array, centers: Plane) -> tuple[Array, Array, Plane]:
-        """Return cam angles, lifts, and fixed-frame positions of centres in the cam's frame."""
-        m, square = self.wall.mechanism, np.abs(centers) ** 2
-        if m.slide:
-            return self._sliding(centers)
-        if m.oscillating:
-            swing = np.arccos((m.pivot**2 + m.arm**2 - square) / (2.0 * m.pivot * m.arm))
-            fixed, lift = m.pivot - m.arm * unit(-swing), swing - m.start
-        else:
-            height = np.sqrt(square - m.offset**2)
-            fixed, lift = m.offset + 1j * height, height - m.start
-        turn = np.angle(fixed * np.conj(centers) * unit(-theta))
-        return theta + turn, lift, fixed
-
-    def _sliding(self, centers: Plane) -> tuple[Array, Array, Plane]:
-        """Return the same for a cam that slides: the height of a centre gives the lift."""
-        m = self.wall.mechanism
-        if m.oscillating:
-            position = np.arcsin((centers.imag - m.height) / m.arm)
-        else:
-            position = centers.imag / math.cos(m.tilt)
-        fixed = m.sliding_centre(position)
-        return (centers - fixed).real / m.slide, position - m.start, fixed
-
     def _moving(self, index: Ints, parameter: Array) -> tuple[Array, Array, Array, Array]:
         """Return angles and lifts at points of the curve of centres, with their derivatives."""
         m = self.wall.mechanism
@@ -96,17 +72,15 @@ class Rest(Brief):
         knots = self._centers.curve.program.knots[self._centers.piece[index]]
         theta = np.where(jumps, knots, parameter)
         centers, velocities = self._centers.moving(index, parameter)
-        stands, lift, fixed = self._standing(theta, centers)
+        follower, carrier = m.centred, m.carrier
+        stands, position = carrier.stand(follower, centers, theta)
         # components along the follower's direction and across it
-        if m.slide:
-            across = unit(m.start + lift) if m.oscillating else unit(m.tilt + 0.0 * lift)
-            drawn, turned = np.conj(across) * velocities, np.conj(across) * -m.slide
-        else:
-            across = unit(-(m.start + lift)) if m.oscillating else np.ones_like(fixed)
-            drawn = np.conj(across) * velocities * unit(stands)
-            turned = np.conj(across) * 1j * fixed
+        across = np.conj(unit(follower.lean(position)))
+        drawn = across * velocities * carrier.frame(stands)[0]
+        turned = across * carrier.passing(follower.centre(position))
         slope = -drawn.real / turned.real
-        rise = (drawn.imag + turned.imag * slope) / (m.arm if m.oscillating else 1.0)
+        rise = (drawn.imag + turned.imag * slope) / follower.lever
+        lift = position - follower.start
         return stands, lift, slope, rise
 
     @cached_property
@@ -124,12 +98,12 @@ class Rest(Brief):
     @cached_property
     def _corners(self) -> Sequence[tuple[tuple[float, float], complex]]:
         """Corners, with the angles between which the roller rests on them."""
-        found, centers = [], self._centers
+        found, centers, m = [], self._centers, self.wall.mechanism
         for corner in self.wall.corners:
             theta = np.array([corner.before, corner.after])
             s, ds = self.wall.program.derivatives(theta, 1)
             places = centers.curve.trace(theta, s, ds, centers.inset)[0]
-            before, after = self._standing(theta, places)[0].tolist()
+            before, after = m.carrier.stand(m.centred, places, theta)[0].tolist()
             found.append(((before, after), corner.point))
         return found
 

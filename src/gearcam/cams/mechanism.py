@@ -43,7 +43,7 @@ from gearcam.base.display import Brief
 from gearcam.base.errors import InfeasibleError, Way
 from gearcam.base.numerals import shown
 from gearcam.cams.carriers import Carrier, Rotating, Sliding
-from gearcam.cams.followers import Arm, FlatArm, FlatStem, Follower, Stem
+from gearcam.cams.followers import Arm, FlatArm, FlatStem, Follower, Round, Stem, swing
 from gearcam.cams.spec import CamSpec, FollowerSpec
 from gearcam.numeric.arrays import Array, Plane
 
@@ -156,6 +156,19 @@ class Mechanism(Brief):
             return Stem(start=start, radius=radius, offset=self.offset, tilt=self.tilt)
         pivot, hand = (complex(-self.pivot, self.height), -1) if self.slide else (self.pivot, 1)
         return Arm(start=start, radius=radius, arm=self.arm, pivot=complex(pivot), hand=hand)
+
+    @property
+    def centred(self) -> Round:
+        """The follower, if it has a centre.
+
+        Raises
+        ------
+        TypeError
+            If it is flat.
+        """
+        if not isinstance(self.follower, Round):
+            raise TypeError("a flat face has no centre")
+        return self.follower
 
     @cached_property
     def carrier(self) -> Carrier:
@@ -274,7 +287,7 @@ def make_mechanism(follower: FollowerSpec, cam: CamSpec) -> Mechanism:
         near = least if pivot <= least else arm + size
         way = Way(near={key: near}, far={key: max(arm, size)})
         raise _out_of_reach(what, "cam.prime_radius_mm", parts, size, low, high, way)
-    return Mechanism(start=swing(pivot, arm, size), arm=arm, pivot=pivot, **kind)
+    return Mechanism(start=float(swing(pivot, arm, size)), arm=arm, pivot=pivot, **kind)
 
 
 def position_at(mechanism: Mechanism, size: float) -> float:
@@ -295,26 +308,11 @@ def position_at(mechanism: Mechanism, size: float) -> float:
     m = mechanism
     if not m.oscillating:
         return size if m.flat else math.sqrt((size - m.offset) * (size + m.offset))
-    return math.asin((size + m.face_offset) / m.pivot) if m.flat else swing(m.pivot, m.arm, size)
-
-
-def swing(pivot: float, arm: float, size: float) -> float:
-    """Return Psi, rad, of an arm with its end at a given distance from the cam's axis.
-
-    Parameters
-    ----------
-    pivot, arm, size : float, mm
-        Sides of the triangle axis, pivot, arm's end: axis to pivot, arm, arm's end to axis.
-    """
-    # half the angle from the sides, with parentheses (after Kahan) that keep all digits if the
-    # triangle is nearly flat
-    small, large = sorted([pivot, arm])
-    apart = large - small
-    half = math.atan2(
-        math.sqrt((size - apart) * (size + apart)),
-        math.sqrt((small - (size - large)) * (small + (size + large))),
+    return (
+        math.asin((size + m.face_offset) / m.pivot)
+        if m.flat
+        else float(swing(m.pivot, m.arm, size))
     )
-    return 2.0 * half
 
 
 def make_sliding_mechanism(follower: FollowerSpec, way: float) -> Mechanism:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import mpmath
@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from gearcam.cams.carriers import Carrier, Rotating, Sliding
-from gearcam.cams.followers import Arm, Face, FlatArm, FlatStem, Follower, Stem
+from gearcam.cams.followers import Arm, Face, FlatArm, FlatStem, Follower, Round, Stem
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet
 from witness.cam_numbers import Touch
@@ -189,3 +189,56 @@ def test_an_arm_over_the_axis_knows_its_side(off: float) -> None:
     arm = Arm(start=0.0, arm=80.0, pivot=80.0 + 0j)
     found = arm.contact(Rotating(), Jet([np.array([off]), 0.0]), Jet([np.array([0.0]), 0.0]), 0.0)
     assert found.along.c[0] == pytest.approx(80.0 * math.sin(off), rel=1e-15)
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_follower_rests_on_a_point(case: Case, side: int) -> None:
+    """At a point of its own end, and at the lift that the witness finds there."""
+    if side < 0 and isinstance(case.follower, Face):
+        pytest.skip("a face rests on one side")
+    s, _, *_ = lifts(case)
+    touch = replace(case.touch, radius=side * case.touch.radius)
+    if touch.away != side:
+        pytest.skip("the witness sees this one from the other side")
+    end, _ = case.follower.trace(case.carrier, PLACES, case.follower.start + s, 0.0 * s, 5.0 * side)
+    for x, z in zip(PLACES, end, strict=True):
+        where = case.carrier.placed(Jet.variable(x, 1), complex(z))
+        position, room = case.follower.rest(*where, side=side)
+        with mpmath.workdps(50):
+            exact, slope = (
+                float(mp.diff(lambda t, z=z: touch.rested(t, mp.mpc(complex(z))), mp.mpf(x), n))
+                for n in (0, 1)
+            )
+        assert room > 0.0
+        assert position.c[0] - case.follower.start == pytest.approx(exact, abs=3e-14)
+        assert position.c[1] == pytest.approx(slope, abs=1e-11)
+
+
+def test_a_centre_stands_where_it_came_from(case: Case) -> None:
+    """The pose of the cam brings a point of the pitch curve there; velocities are its changes."""
+    follower, carrier = case.follower, case.carrier
+    if not isinstance(follower, Round) or follower.start < -0.5:
+        pytest.skip("no centre, or below the axis")
+    p = follower.start + lifts(case)[0]
+    z = carrier.under(PLACES, follower.centre(p))
+    x, found = carrier.stand(follower, z, PLACES + 0.3)
+    assert x == pytest.approx(PLACES, abs=1e-13)
+    assert found == pytest.approx(p, abs=1e-13)
+    turn, shift = carrier.frame(PLACES)
+    assert turn * z + shift == pytest.approx(follower.centre(p), abs=1e-13)
+    ends = [carrier.frame(PLACES + step) for step in (-1e-6, 1e-6)]
+    before, after = (turned * z + moved for turned, moved in ends)
+    speed = (after - before) / 2e-6
+    assert carrier.passing(turn * z + shift) == pytest.approx(speed, abs=1e-7)
+
+
+def test_discs_out_of_reach_have_no_room() -> None:
+    """A disc aside of a roller, and one around the whole arm: it always overlaps."""
+    here = Jet([np.array([50.0, 0.0])]), Jet([np.array([0.0, 0.0])])
+    assert (CASES["stem"].follower.rest(*here)[1] > 0.0).tolist() == [False, False]
+    assert (CASES["stem"].follower.rest(*here, grow=np.array([0.0, 3.0]))[1] > 0.0).tolist() == [
+        False,
+        True,
+    ]
+    position, _ = CASES["arm"].follower.rest(*here, grow=np.array([0.0, 150.0]))
+    assert np.isinf(position.c[0]).tolist() == [False, True]
