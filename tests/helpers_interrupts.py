@@ -69,7 +69,7 @@ CASES: dict[str, tuple[tuple[str, ...], str, int, str]] = {
     "law": (BUILD, "gearcam.kinds.gear_pair.result.make_pair", 1, BEFORE),
     "outline": (BUILD, "gearcam.kinds.gear_pair.result.make_gear", 2, BEFORE),
     "checks": (BUILD, "gearcam.kinds.gear_pair.result.run_checks", 1, BEFORE),
-    "parts": (BUILD, "gearcam.kinds.gear_pair.ordered.make_part", 2, BEFORE),
+    "parts": (BUILD, "gearcam.kinds.gear_pair.parts.make_part", 2, BEFORE),
     "files": (BUILD, "gearcam.export.table.table_bytes", 1, BEFORE),
     "first write": (BUILD, WRITE, 1, BEFORE),
     "last write": (BUILD, WRITE, 4, BEFORE),

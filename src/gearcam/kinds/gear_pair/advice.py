@@ -10,8 +10,9 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.findings import limit_of
 from gearcam.designs.design import value_at
-from gearcam.kinds.gear_pair.shorter import lower, shorter
+from gearcam.gears.subject import KIND
 from gearcam.laws.ratio.base import milder
 from gearcam.results.advice import Advice, kerf_paths
 
@@ -36,6 +37,21 @@ _TIMES: Final = (1, 2, 4)
 _EDGES: Final = (Way(far={"blank.tip_rounding_mm": 0.0}), Way(far={"blank.clearance_mm": 0.0}))
 """Ways to edges without rounding and clearance."""
 
+_LOW: Final = 0.3
+"""Lowest addendum to try, in modules: lower ones do not mesh."""
+
+_FINE: Final = 0.005
+"""Tolerance of the largest addendum at the given tooth counts, in modules."""
+
+_STUB: Final = 0.8
+"""Addendum tried with more teeth, in modules: that of stub teeth."""
+
+_STEEP: Final = 25.0
+"""Pressure angle, deg, also tried if it is larger than the given one: tips are then narrower."""
+
+_FIRST: Final = 4
+"""Factor of teeth at which stub teeth are tried first, if more teeth alone are not enough."""
+
 
 class PairAdvice(Advice):
     """Remedies of pairs: tooth numbers, changes that a refusal names, a milder law."""
@@ -47,11 +63,11 @@ class PairAdvice(Advice):
         factor = refusal.more_teeth if refusal else _LIKELY * bool(search.codes & _OF_TEETH)
         collide = "tips-collide" in search.codes
         if collide:
-            search.follow(lower(search))
+            search.follow(_lower(search))
         lowered = bool(search.found)
         times = _more_teeth(search, factor) if factor else None
         if collide and not lowered and (times is None or times > _USUAL):
-            shorter(search, times)
+            _shorter(search, times)
             search.found.sort(key=_count)
         search.follow([*(refusal.ways if refusal else ()), *_others(search, refusal, factor)])
         if all(key.startswith("law.") for remedy in search.found for key in remedy.changes):
@@ -117,6 +133,56 @@ def _others(search: Search, refusal: InfeasibleError | None, factor: float) -> I
     if factor or search.result.design.pair.type == "internal":
         z1, z2 = search.result.design.pair.teeth
         yield from milder(search.result.design.law, z1 / z2)
+
+
+def _lower(search: Search) -> Iterator[Way]:
+    """Yield the largest addendum with which tips clear each other at the given tooth counts."""
+    result: Any = search.result
+    limit = limit_of(KIND, "tips-collide", result.design.limits)
+
+    def passes(addendum: float) -> bool:
+        try:
+            found = search.changed({"rack.addendum": addendum}).subject.tip_pass
+        except InfeasibleError:
+            return False
+        return found is None or found.margin >= limit
+
+    low, high = round(_LOW / _FINE), math.floor(result.pair.rack.addendum / _FINE)
+    if low >= high or not passes(_LOW):
+        return
+    while high - low > 1 and not search.over():
+        middle = (low + high) // 2
+        low, high = (middle, high) if passes(middle * _FINE) else (low, middle)
+    yield Way(near={"rack.addendum": low * _FINE})
+
+
+def _shorter(search: Search, times: float | None) -> None:
+    """Find the fewest stub teeth, also with a larger pressure angle.
+
+    Enough with the given addendum are `times` as many teeth; None if no number is.
+    """
+    result: Any = search.result
+    given: tuple[int, int] = result.design.pair.teeth
+    rack, common = result.pair.rack, math.gcd(*given)
+    if rack.addendum <= _STUB:
+        return
+    angles: list[Changes] = [{}]
+    if math.degrees(rack.pressure_angle) < _STEEP:
+        angles.append({"rack.pressure_angle_deg": _STEEP})
+    for angle in angles:
+        # without another angle no addendum suffices at the given tooth counts
+        low, high = common - bool(angle), round((times or _FIRST) * common)
+
+        def stub(k: int, angle: Changes = angle) -> Changes:
+            counts = {"pair.teeth": [count // common * k for count in given]} if k > common else {}
+            return {**counts, "rack.addendum": _STUB, **angle}
+
+        if not search.cures(stub(high)):
+            continue
+        while high - low > 1 and not search.over():
+            middle = (low + high) // 2
+            low, high = (low, middle) if search.cures(stub(middle)) else (middle, high)
+        search.keep(stub(high), stub(low) if low >= common else None)
 
 
 def _larger_ring(search: Search) -> Iterator[Way]:

@@ -178,9 +178,14 @@ def planetary(document: Mapping[str, Any]) -> Fault | None:
     teeth = given.get("teeth")
     if given.get("type") != "planetary" and not (isinstance(teeth, list) and len(teeth) == 3):
         return None
-    from gearcam.kinds.gear_pair.planetary import planetary_fault  # no other design needs it
-
-    return planetary_fault(teeth)
+    three = isinstance(teeth, list) and len(teeth) == 3
+    return Fault(
+        ("pair", "teeth") if three else ("pair",),
+        "a planet between sun and ring on a carrier is not available",
+        teeth if three else None,
+        allowed="two tooth counts, driver first; design each pair of wheels separately",
+        hint="only round wheels mesh in a ring of sun + 2*planet teeth, none in a smaller one",
+    )
 
 
 def rules(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:

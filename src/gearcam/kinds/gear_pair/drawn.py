@@ -1,13 +1,12 @@
-"""Drawings of a gear pair: its centrodes, the assembled pair, the workshop drawings."""
+"""Drawings of a gear pair: its centrodes, and the assembled pair."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from gearcam.base.numerals import shown
 from gearcam.parts.body import Part
 from gearcam.pictures.drawings import (
     CENTER,
@@ -24,18 +23,6 @@ from gearcam.pictures.drawings import (
 
 if TYPE_CHECKING:
     from gearcam.kinds.gear_pair.result import GearPairResult
-    from gearcam.sheets.sheet import Sheet
-
-_PAIR_ROWS: Final = ("pair.module_mm", "pair.teeth", "pair.ratio", "pair.travel_per_turn_mm")
-_RACK_ROWS: Final = (
-    "pair.rack.pressure_angle_deg", "pair.rack.addendum", "pair.rack.dedendum",
-    "pair.backlash_mm", "pair.face_width_mm", "steps.count",
-)  # fmt: skip
-_GEAR_ROWS: Final = (
-    "profile_shift", "centrode.length_mm", "cutter", "clearance_mm", "tip_rounding_mm",
-    "density_kg_m3", "mass.mass_kg", "mass.centroid_mm", "mass.unbalance_g_mm",
-)  # fmt: skip
-"""Facts in the tables of drawings."""
 
 
 def centrode_paths(result: GearPairResult) -> tuple[Path, Path]:
@@ -107,23 +94,3 @@ def assembled(result: GearPairResult) -> Drawing:
     return pair_drawing(
         result.parts, result.pair.shift, result.centrode_paths, placements=result.placements
     )
-
-
-def rows_of(number: int) -> tuple[str, ...]:
-    """Return the names of the facts in the table of a wheel's drawing, by its `number`."""
-    own = [f"gears.{number}.{name}" for name in _GEAR_ROWS]
-    return (f"gears.{number}.teeth", "pair.module_mm", *_RACK_ROWS, *own)
-
-
-def sheet_of(result: GearPairResult) -> Sheet:
-    """Return the workshop drawing of the assembled pair of a `result`."""
-    from gearcam.kinds.gear_pair.sheet import pair_sheet
-    from gearcam.sheets.paper import sheet_rows
-
-    pose = result.design.output.pose
-    radius = float(abs(result.pair.rolling.tracks[0].frames(np.array([pose])).p[0]))
-    rows = {"law": result.design.law_type}
-    rows |= sheet_rows(result.facts, (*_PAIR_ROWS, *_RACK_ROWS))
-    rows["drawn at phi1"] = f"{shown(np.degrees(pose))} deg"
-    title = result.design.name
-    return pair_sheet(result.drawing, result.pair.shift, rows, title, pitch_radius=radius)

@@ -37,7 +37,7 @@ def _inspection(result: GearPairResult, _: Measured) -> Files:
     Points on every flank with their normals, for a measuring machine.
     """
     from gearcam.export.table import table_bytes
-    from gearcam.kinds.gear_pair.ordered import inspection_rows
+    from gearcam.kinds.gear_pair.parts import inspection_rows
 
     rows = inspection_rows(result.steps, result.design.output.inspection_points)
     return {"inspection.csv": table_bytes(rows)}

@@ -255,7 +255,7 @@ class GearPairResult(PartsResult):
     @cached_property
     def parts_subject(self) -> PartsSubject:
         """Input of the checks of parts."""
-        from gearcam.kinds.gear_pair.ordered import parts_subject
+        from gearcam.kinds.gear_pair.parts import parts_subject
 
         return parts_subject(self.parts, self.gears, self.design.output.kerf)
 
@@ -272,7 +272,7 @@ class GearPairResult(PartsResult):
     @cached_property
     def parts(self) -> tuple[Part, Part]:
         """Both wheels as parts, with openings, hubs, marks, clearance and rounded edges."""
-        from gearcam.kinds.gear_pair.ordered import make_parts
+        from gearcam.kinds.gear_pair.parts import make_parts
 
         _ = self.steps  # timed separately
         with self.stage("parts"):
@@ -334,13 +334,13 @@ class GearPairResult(PartsResult):
     @cached_property
     def sheets(self) -> tuple[Sheet, ...]:
         """The workshop drawings of both wheels and of the pair."""
-        from gearcam.kinds.gear_pair.drawn import sheet_of
+        from gearcam.kinds.gear_pair.sheet import sheet_of
 
         return *super().sheets, sheet_of(self)
 
     def rows_of(self, number: int) -> Sequence[str]:
         """Return the names of the facts in the table of a part's drawing, by its `number`."""
-        from gearcam.kinds.gear_pair.drawn import rows_of
+        from gearcam.kinds.gear_pair.sheet import rows_of
 
         return rows_of(number)
 

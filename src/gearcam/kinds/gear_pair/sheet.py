@@ -1,7 +1,7 @@
-"""The sheet of a pair: both wheels assembled, their centrodes and the pitch point.
+"""Workshop drawings of a pair: tables of the wheels, and the sheet of both wheels assembled.
 
-The pair is shown at the driver angle of the drawing from which it is made. The *pitch point* is
-where the driver's centrode crosses the line of centres.
+The sheet shows the pair, its centrodes and the pitch point at the driver angle of the drawing from
+which it is made. The *pitch point* is where the driver's centrode crosses the line of centres.
 
 Depends on drawings and sheets.
 """
@@ -9,17 +9,21 @@ Depends on drawings and sheets.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from gearcam.base.numerals import shown
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.contour import Contour
 from gearcam.pictures.drawings import CENTER, OUTLINE, Circle, Drawing, reach
 from gearcam.sheets.board import FIRST_LEVEL, LEVEL, OVERHANG, Board
 from gearcam.sheets.extent import true_points
-from gearcam.sheets.paper import begin, finish
+from gearcam.sheets.paper import begin, finish, sheet_rows
 from gearcam.sheets.sheet import CENTERLINE, Sheet, fine
+
+if TYPE_CHECKING:
+    from gearcam.kinds.gear_pair.result import GearPairResult
 
 LEFT: Final = 24.0
 RIGHT: Final = 20.0
@@ -31,6 +35,34 @@ POINT: Final = 2.0
 
 LEVELS: Final = 3
 """Linear dimensions below the wheels."""
+
+_PAIR_ROWS: Final = ("pair.module_mm", "pair.teeth", "pair.ratio", "pair.travel_per_turn_mm")
+_RACK_ROWS: Final = (
+    "pair.rack.pressure_angle_deg", "pair.rack.addendum", "pair.rack.dedendum",
+    "pair.backlash_mm", "pair.face_width_mm", "steps.count",
+)  # fmt: skip
+_GEAR_ROWS: Final = (
+    "profile_shift", "centrode.length_mm", "cutter", "clearance_mm", "tip_rounding_mm",
+    "density_kg_m3", "mass.mass_kg", "mass.centroid_mm", "mass.unbalance_g_mm",
+)  # fmt: skip
+"""Facts in the tables of drawings."""
+
+
+def rows_of(number: int) -> tuple[str, ...]:
+    """Return the names of the facts in the table of a wheel's drawing, by its `number`."""
+    own = [f"gears.{number}.{name}" for name in _GEAR_ROWS]
+    return (f"gears.{number}.teeth", "pair.module_mm", *_RACK_ROWS, *own)
+
+
+def sheet_of(result: GearPairResult) -> Sheet:
+    """Return the workshop drawing of the assembled pair of a `result`."""
+    pose = result.design.output.pose
+    radius = float(abs(result.pair.rolling.tracks[0].frames(np.array([pose])).p[0]))
+    rows = {"law": result.design.law_type}
+    rows |= sheet_rows(result.facts, (*_PAIR_ROWS, *_RACK_ROWS))
+    rows["drawn at phi1"] = f"{shown(np.degrees(pose))} deg"
+    title = result.design.name
+    return pair_sheet(result.drawing, result.pair.shift, rows, title, pitch_radius=radius)
 
 
 def pair_sheet(
