@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.base.errors import GearcamError
-from gearcam.results.parts import Files, PartsResult
+from gearcam.results.parts import Files
 
 if TYPE_CHECKING:
     from gearcam.results.result import Result
@@ -58,15 +58,12 @@ def solids_shown(result: Result) -> dict[str, str]:
     """
     from gearcam.export.mesh import view_page
 
-    if not isinstance(result, PartsResult):
-        return {}
     refusal = ""
     # small teeth refuse the chords of the view: then those of the design are shown
     for chords in (CHORDS, 0.0):
         try:
-            fine = (result.design.output.chord_tolerance or 0.0) < chords
-            shown = result.with_chords(chords) if fine else result
-            return {"view": view_page(shown.assembled)}
+            solids = result.assembled(chords)
+            return {"view": view_page(solids)} if solids else {}
         except GearcamError as error:
             refusal = str(error)
     return {"refusal": refusal}

@@ -145,9 +145,10 @@ class PartsResult(Result):
 
         return {part.name: solid(part) for part in self.parts}
 
-    @property
-    def assembled(self) -> dict[str, Mesh]:
-        """The meshes in their places in the assembly, by name."""
+    def assembled(self, chords: float = 0.0) -> dict[str, Mesh]:
+        """Return the meshes in their places in the assembly (see `Result`)."""
+        if (self.design.output.chord_tolerance or 0.0) < chords:
+            return self.with_chords(chords).assembled()
         places = zip(self.meshes.items(), self.placements, self.heights, strict=True)
         return {name: mesh.placed(*place, height) for (name, mesh), place, height in places}
 
@@ -287,7 +288,7 @@ def _mesh(kind: str, result: PartsResult, measured: Measured) -> Files:
     to_bytes = {"stl": stl_bytes, "3mf": threemf_bytes, "glb": glb_bytes}[kind]
     scenes = {name: {name: mesh} for name, mesh in meshes.items()}
     if result.assembly:
-        scenes[result.assembly] = result.assembled
+        scenes[result.assembly] = result.assembled()
     return {f"{stem}.{kind}": to_bytes(scene, stem) for stem, scene in scenes.items()}
 
 

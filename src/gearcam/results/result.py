@@ -32,6 +32,7 @@ from gearcam.results.written import Written, demand_formats, versions
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from gearcam.parts.solids import Mesh
     from gearcam.pictures.charts import Chart
     from gearcam.pictures.scenes import Scene
     from gearcam.results.study import StudyResult
@@ -246,6 +247,16 @@ class Result(Displayed):
         tables = columns.tables_in(self.design) if columns else ()
         notes = [Fact(rows.note, Path(rows.file).name, shown=True) for rows in tables]
         return made.with_group("tables", [{"note": one} for one in notes if one.value])
+
+    def assembled(self, chords: float = 0.0) -> dict[str, Mesh]:  # noqa: ARG002
+        """Return the parts in their places as meshes, by name; empty without solids.
+
+        Parameters
+        ----------
+        chords : float, mm
+            Chord error of the outlines, if that of the design is smaller.
+        """
+        return {}
 
     @property
     def main_errors(self) -> Sequence[tuple[str, Sequence[str], str]]:
