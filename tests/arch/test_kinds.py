@@ -263,6 +263,7 @@ def test_a_slider_crank_is_built_studied_and_refused_on_the_command_line(
     assert summary["stroke"]["rows"] == 361
     assert len((folder / "slider.csv").read_text().splitlines()) == 362
     page = (folder / "report.html").read_text()
+    assert 'id="solids-view"' in page
     assert all(word in page for word in ('"crank"', '"rod"', '"slider"', "Rate of the slider"))
     assert main(["slide", "machine.toml", "--step", "10"]) == 0
     assert len((folder / "slider.csv").read_text().splitlines()) == 38
