@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import pickle
+import sys
 import tomllib
 from pathlib import Path
 
@@ -235,3 +236,102 @@ def test_schema_and_template_know_nested_designs() -> None:
     assert not list(checker.iter_errors(tomllib.loads(BY_FILE)))
     document["drive"]["pair"]["pair"]["teeth"] = [32, 0]
     assert list(checker.iter_errors(document))
+
+
+TRAIN = '''"""A kind of design with several drives, each of any kind."""
+
+from dataclasses import dataclass, field
+from functools import partial
+
+from gearcam.base.quantities import NUMBER, nested, param
+from gearcam.designs.design import Design
+from gearcam.designs.outputs import OutputSpec
+from gearcam.designs.table import table_of
+from gearcam.results.kind import Kind
+from gearcam.results.result import Result
+
+
+@dataclass(frozen=True, kw_only=True)
+class Drive:
+    of: Design = nested("gear-pair", "cam", doc="what turns")
+    turns: float = param(NUMBER, default=1.0, gt=0, le=9, doc="of the driver")
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class TrainDesign(Design):
+    kind = "train"
+
+    drive: tuple[Drive, ...] = ()
+    output: OutputSpec = field(default_factory=OutputSpec)
+
+
+PAIR = {"kind": "gear-pair", "law": {"type": "ellipse", "eccentricity": 0.1}}
+PAIR["pair"] = {"teeth": [32, 32], "module_mm": 2}
+KIND = Kind(
+    name="train",
+    doc="a train",
+    design=TrainDesign,
+    result=Result,
+    tables={
+        "drive": partial(table_of, "drive", Drive),
+        "output": partial(table_of, "output", OutputSpec),
+    },
+    required=("drive",),
+    several=("drive",),
+    formats=("csv",),
+    example={"drive": [{"of": PAIR}, {"of": PAIR, "turns": 2}]},
+)
+'''
+DRIVE = '[[drive]]\nof = "sub/pair.toml"\n'
+
+
+@pytest.fixture
+def train(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The folder while there is a kind with several drives, too."""
+    place = folder / "kinds" / "train"
+    place.mkdir(parents=True)
+    (place / "__init__.py").touch()
+    (place / "kind.py").write_text(TRAIN)
+    monkeypatch.setattr(kinds, "__path__", [*kinds.__path__, str(folder / "kinds")])
+    monkeypatch.delitem(sys.modules, "gearcam.kinds.train", raising=False)
+    monkeypatch.delitem(sys.modules, "gearcam.kinds.train.kind", raising=False)
+    return folder
+
+
+@pytest.mark.usefixtures("train")
+def test_several_tables_each_hold_a_design_of_several_kinds() -> None:
+    text = f'kind = "train"\nname = "t"\n{DRIVE}{DRIVE}turns = 2\n'
+    design = loads(text, file="in/t.toml")
+    assert [one.turns for one in design.drive] == [1.0, 2.0]
+    pair = gc.load("in/sub/pair.toml")
+    assert [one.of for one in design.drive] == [pair, pair]
+    assert gc.design(design.to_dict()) == design
+    other = design.with_({"drive[1].of.law.eccentricity": 0.2})
+    assert [one.of.law.eccentricity for one in other.drive] == [0.3, 0.2]
+    assert gc.designs.hash_of(other) != gc.designs.hash_of(design)
+    keys = {one["key"] for one in sliders(template("train", "t"), lambda _: True)}
+    assert {"drive[1].turns", "drive[1].of.law.eccentricity"} <= keys
+    assert loads(template("train", "t")).drive[1].turns == 2.0
+
+
+@pytest.mark.usefixtures("train")
+def test_several_tables_are_refused_each_with_its_place() -> None:
+    head = 'kind = "train"\nname = "t"\n'
+    assert problems(head) == ["in/outer.toml:1: drive: the table [[drive]] is missing"]
+    assert problems(f"{head}{DRIVE.replace('[[drive]]', '[drive]')}") == [
+        "in/outer.toml:3: drive: a table is not a list of tables"
+    ]
+    assert problems(f"{head}{DRIVE}{DRIVE}turns = 0\n") == [
+        "in/outer.toml:7: drive[1].turns: 0 is out of range"
+    ]
+    assert problems(f"{head}drive = [3]\n") == ["in/outer.toml:3: drive[0]: 3 is not a table"]
+    nested = f"{head}[[drive]]\n[drive.of]\n[drive.of.pair]\nteeth = [5, 5]\n"
+    assert problems(nested) == ["in/outer.toml:4: drive[0].of.kind: is missing"]
+    nested = nested.replace("[drive.of]\n", '[drive.of]\nkind = "gear-pear"\n')
+    assert problems(nested) == [
+        'in/outer.toml:5: drive[0].of.kind: "gear-pear" does not belong here'
+    ]
+    with pytest.raises(DesignError, match=r"drive\[0\]: is a GearPairDesign"):
+        type(loads(f"{head}{DRIVE}", file="in/t.toml"))(
+            name="t", drive=(gc.load("in/sub/pair.toml"),)
+        )
