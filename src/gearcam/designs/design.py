@@ -236,6 +236,7 @@ def demand_kind(design: Design, kind: str) -> Any:
 
 
 def _demand_types(design: Design) -> None:
+    """Raise `DesignError` if a table, or what is nested in one, is not of its type."""
     kind = KINDS[design.kind]
     owners = ((title, kind.table(title).owner) for title in kind.tables)
     tables = [
@@ -244,7 +245,12 @@ def _demand_types(design: Design) -> None:
         if owner
         for at, part in _parts(design, title)
     ]
-    wanted = (("limits", design.limits, (Mapping,)), *tables, *design._wanted())
+    _demand_instances(design, (("limits", design.limits, (Mapping,)), *tables, *design._wanted()))
+    inner = ((dotted(at), one, (Design,)) for at, one in nested_designs(design))
+    _demand_instances(design, inner)
+
+
+def _demand_instances(design: Design, wanted: Iterable[Wanted]) -> None:
     problems = [
         Problem(
             f"is a {type(part).__name__}",
@@ -391,12 +397,11 @@ def _plain(value: Any) -> Any:
 def hash_of(design: Design) -> str:
     """Return the hash of a design: designs with the same hash produce the same files.
 
-    It depends on the values of all keys, including defaults, on the rows of CSV files, and on the
-    hashes of nested designs, but not
-    on comments, spaces, the order of keys, or the paths of CSV files; degrees are rounded to 13
-    digits. Values that do not change any file are excluded: ``[limits]``, the list of
-    files, and the settings of studies for which the design does not ask. Python functions cannot be
-    compared: a design with one shares its hash only with its copies.
+    It depends on the values of all keys, including defaults, on the rows of CSV files and on the
+    hashes of nested designs, but not on comments, spaces, the order of keys, or the paths of files;
+    degrees are rounded to 13 digits. Values that do not change any file are excluded: ``[limits]``,
+    the list of files, and the settings of studies for which the design does not ask. Python
+    functions cannot be compared: a design with one shares its hash only with its copies.
 
     Parameters
     ----------

@@ -216,6 +216,10 @@ def value_fault(path: Path, value: Any, entry: Key, *, item: bool) -> Fault:
         Whether the value is an item of a list.
     """
     rule = allowed(entry, item=item)
+    if entry.param.nested:
+        kind = getattr(value, "kind", "")
+        what = f"is of kind {show(kind)}" if kind else "is not a design"
+        return Fault(path, f"{show(value)} {what}", value, rule)
     as_list = entry.length is not None and not item
     if as_list:
         if isinstance(value, list):
@@ -247,8 +251,6 @@ def _count(value: list[Any]) -> str:
 def _a_kind(entry: Key) -> str:
     if entry.param.choices:
         return "one of the words allowed"
-    if entry.param.nested:
-        return "a design"
     kind = _KINDS[entry.base]
     return kind if entry.base in (str, bool) else f"a {kind}"
 

@@ -97,6 +97,20 @@ def test_the_hash_leaves_out_what_changes_no_file() -> None:
     assert gc.designs.hash_of(same) == gc.designs.hash_of(design)
 
 
+def test_a_nested_design_has_the_type_and_the_kind_of_its_field() -> None:
+    design = loads(INLINE)
+    spec, crank, rod = type(design.drive), design.crank, design.rod
+    made = type(design)(name="outer", drive=spec(pair=design.drive.pair), crank=crank, rod=rod)
+    assert made == design
+    cam = gc.load(TOYS.parents[1] / "profiles" / "eccentric_cam.toml")
+    with pytest.raises(DesignError, match=r'drive\.pair: <CamDesign .*> is of kind "cam"'):
+        design.with_({"drive.pair": cam})
+    with pytest.raises(DesignError, match=r'drive\.pair\.kind: "cam" does not belong here'):
+        type(design)(name="outer", drive=spec(pair=cam), crank=crank, rod=rod)
+    with pytest.raises(DesignError, match=r"drive\.pair: is a str\n.*an instance of Design"):
+        type(design)(name="outer", drive=spec(pair="in/sub/pair.toml"), crank=crank, rod=rod)
+
+
 def test_a_function_in_a_nested_design_is_kept() -> None:
     law = gc.laws.Formula(ratio=_ratio)
     pair = gc.GearPairDesign(name="f", law=law, pair=gc.PairSpec(teeth=(32, 32), module=2.0))
