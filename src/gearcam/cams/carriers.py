@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 import numpy as np
 
@@ -51,8 +51,11 @@ class Centred(Protocol):
 class Carrier(ABC, Brief):
     """The motion of a cam, by a driver position x: rad of a turn, or a share of a travel."""
 
-    rate: float
+    rate: ClassVar[float]
     """Rotating of the fixed frame seen from the cam's, backwards, rad per unit of x."""
+
+    around: ClassVar[bool]
+    """Whether profiles go around the origin."""
 
     @abstractmethod
     def seen(self, ahead: Pair, at: Pair) -> Pair:
@@ -109,7 +112,7 @@ class Carrier(ABC, Brief):
 class Rotating(Carrier):
     """A cam that turns counter-clockwise about the origin."""
 
-    rate = 1.0
+    rate, around = 1.0, True
 
     def seen(self, ahead: Pair, at: Pair) -> Pair:  # noqa: ARG002
         """Return ``conj(t)*C``, as ``U = -i*C`` (see `Carrier.seen`)."""
@@ -150,7 +153,7 @@ class Sliding(Carrier):
 
     scale: float
 
-    rate = 0.0
+    rate, around = 0.0, False
 
     def seen(self, ahead: Pair, at: Pair) -> Pair:  # noqa: ARG002
         """Return ``k*i*conj(t)``, as ``U = k`` everywhere (see `Carrier.seen`)."""

@@ -10,8 +10,7 @@ oscillating round    ``Psi = Psi_z + arccos((l^2 + D^2 - r^2)/(2*l*D))``
 oscillating flat     ``Psi = Psi_z + arcsin(f/D)``
 ==================== ==================================================================
 
-where ``z = d - D*exp(-i*Psi_z)``. A cam that slides is moved along ``+x`` by its travel instead,
-with the follower's direction, or the height of its pivot, as reference.
+where ``z = d - D*exp(-i*Psi_z)`` (see `Follower.rest`).
 
 Inside a wall that lies outside the pitch curve, which has a negative radius, and below the axis,
 the mirror image is used: the lowest position becomes the highest.
@@ -22,12 +21,11 @@ z, and so a bound for all points within: blocks of points that cannot be the hig
 Refused: profiles of too few points, or that do not go around the cam's axis once; profiles that
 the follower misses at some angle, or that reach past its pivot.
 
-Source: derived anew; conventions as in `mechanism`.
+Source: derived anew; conventions as in `followers`.
 """
 
 from __future__ import annotations
 
-import cmath
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -37,9 +35,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.base.errors import InfeasibleError
+from gearcam.cams.carriers import Carrier
+from gearcam.cams.followers import Follower
 from gearcam.cams.mechanism import Mechanism
-from gearcam.numeric.arrays import Array, Ints, Mask, Plane
+from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.bulges import as_complex
+from gearcam.numeric.jets import Jet
 from gearcam.numeric.sampling import FEWEST
 
 _ROUNDING: Final = 1e-12
@@ -97,7 +98,8 @@ def follow(
     ----------
     points : (n,) complex array or (n, 2) array, mm
         A closed profile in the cam's frame, in order, in either sense. For a polyline with bulges
-        use `gearcam.numeric.bulges.flatten_bulges`, whose points lie on its arcs.
+        use `gearcam.numeric.bulges.flatten_bulges`, whose points lie on its arcs. Of a cam that
+        slides the mirror image in the y axis, as in output.
     mechanism : Mechanism
         The follower; the cam turns counter-clockwise by theta, or slides. On a wall outside the
         pitch curve its radius is negative.
@@ -115,45 +117,47 @@ def follow(
     InfeasibleError
         If the points are not a closed profile around the axis, or the follower cannot rest on it.
     """
-    profile = profile_points(points, around=not mechanism.slide, missed=missed)
+    follower, carrier = mechanism.follower, mechanism.carrier
+    profile = profile_points(points, around=carrier.around, missed=missed)
+    if not carrier.around:  # given as the mirror image, like all output of a cam that slides
+        profile = replace(profile, points=-np.conj(profile.points[::-1]))
     angles = np.atleast_1d(np.asarray(theta, dtype=float))
     if mechanism.away > 0:
-        _demand_clear_pivot(profile, mechanism)
-        return _rested(profile, mechanism, angles)
-    # mirrored, the cam turns the other way
-    m, sense = mechanism, 1.0 if mechanism.slide else -1.0
-    other = replace(m, start=-m.start, radius=abs(m.radius), tilt=-m.tilt, height=-m.height)
-    points = np.conj(profile.points)
-    within = m.radius < 0.0 and not m.slide  # the metal lies to the right of its edge
-    if not within:
-        points = points[::-1].copy()
-    seen = _rested(replace(profile, points=points), other, sense * angles)
-    return replace(seen, theta=angles, lift=-seen.lift, contact=np.conj(seen.contact))
+        _demand_clear_pivot(profile, follower, carrier)
+        found = _rested(profile, follower, carrier, angles)
+    else:
+        # mirrored, a cam that turns does so the other way
+        sense = -1.0 if carrier.around else 1.0
+        within = mechanism.radius < 0.0 and carrier.around  # metal to the right of its edge
+        other = np.conj(profile.points)
+        other = replace(profile, points=other if within else other[::-1].copy())
+        seen = _rested(other, follower.mirrored(), carrier, sense * angles)
+        found = replace(seen, theta=angles, lift=-seen.lift, contact=np.conj(seen.contact))
+    return found if carrier.around else replace(found, contact=-np.conj(found.contact))
 
 
-def _rested(profile: ProfilePoints, mechanism: Mechanism, angles: Array) -> Followed:
+def _rested(
+    profile: ProfilePoints, follower: Follower, carrier: Carrier, angles: Array
+) -> Followed:
     """Return the motion of a follower that rests on a profile, or inside it below the axis."""
-    noise = _NOISE * (1.0 if mechanism.oscillating else profile.size + mechanism.radius)
+    noise = _NOISE * (1.0 if follower.angular else profile.size + follower.radius)
     parts = []
     for first in range(0, max(len(angles), 1), _TOGETHER):
         some = angles[first : first + _TOGETHER]
-        parts.append(_highest(profile, mechanism, some))
+        parts.append(_highest(profile, follower, carrier.frame(some), some))
     position, error, contact = (np.concatenate(column) for column in zip(*parts, strict=True))
     return Followed(
         theta=angles,
-        lift=position - mechanism.start,
+        lift=position - follower.start,
         error=np.maximum(error, noise),
         contact=contact,
     )
 
 
-def _demand_clear_pivot(profile: ProfilePoints, mechanism: Mechanism) -> None:
+def _demand_clear_pivot(profile: ProfilePoints, follower: Follower, carrier: Carrier) -> None:
     """Refuse a profile that reaches past the pivot of a swinging follower."""
-    if not mechanism.oscillating or mechanism.slide:
-        return
-    swing = -mechanism.face_offset if mechanism.flat else mechanism.arm - mechanism.radius
-    limit = mechanism.pivot + swing
-    if profile.size >= limit:
+    limit = follower.clear
+    if carrier.around and profile.size >= limit:
         raise InfeasibleError(
             "the profile reaches past the follower's pivot",
             where="its largest radius",
@@ -165,7 +169,7 @@ def _demand_clear_pivot(profile: ProfilePoints, mechanism: Mechanism) -> None:
 
 
 def _highest(
-    profile: ProfilePoints, mechanism: Mechanism, angles: Array
+    profile: ProfilePoints, follower: Follower, pose: tuple[Plane, Plane], angles: Array
 ) -> tuple[Array, Array, Plane]:
     """Return position, error and contact at each angle.
 
@@ -174,11 +178,11 @@ def _highest(
     InfeasibleError
         If nothing is touched at one of them.
     """
-    (turn, shift), tolerance = _stand(mechanism, angles), _ROUNDING * profile.size
-    (number, chord, upper), lower = _candidates(profile, mechanism, (turn, shift), tolerance)
+    (turn, shift), tolerance = pose, _ROUNDING * profile.size
+    (number, chord, upper), lower = _candidates(profile, follower, (turn, shift), tolerance)
     start, step = profile.points[chord], profile.chords[chord]
     z, way = turn[number] * start + shift[number], turn[number] * step
-    found, part = _on_chord(mechanism, z, way, 0.0, tolerance)
+    found, part = _on_chord(follower, z, way, 0.0, tolerance)
     upper = np.maximum(upper, found)
     # even if a chord is not touched its curve may be: on a steep plate that of the next chord
     highest = np.full(len(angles), -np.inf)
@@ -197,11 +201,11 @@ def _highest(
         )
     best = order[last - 1]
     rest = position[best]
-    np.maximum.at(lower, number, _certain(mechanism, z, way, profile.hollow[chord], tolerance))
+    np.maximum.at(lower, number, _certain(follower, z, way, profile.hollow[chord], tolerance))
     free = np.isneginf(lower)
-    np.logical_or.at(free, number, mechanism.radius < profile.hollow[chord])
+    np.logical_or.at(free, number, follower.radius < profile.hollow[chord])
     if free.any():
-        below = _left(mechanism, z, way, profile.hollow[chord], tolerance)
+        below = _left(follower, z, way, profile.hollow[chord], tolerance)
         lower[free] = np.maximum(lower, _passed(rest, number, upper, below))[free]
     return rest, np.maximum(highest - rest, rest - lower), point[best]
 
@@ -220,138 +224,70 @@ def _passed(rest: Array, number: Ints, upper: Array, below: Array) -> Array:
     return lowest
 
 
-def _stand(mechanism: Mechanism, angles: Array) -> tuple[Plane, Plane]:
-    """Return the pose of the cam at each angle: a rotation, then a shift, mm."""
-    m = mechanism
-    if not m.slide:
-        turn: Plane = np.exp(1j * angles, dtype=np.complex128)
-        return turn, np.zeros(angles.shape, dtype=np.complex128)
-    turn = np.full(angles.shape, cmath.exp(1j * m.tilt), dtype=np.complex128)
-    return turn, turn * (m.slide * angles) - 1j * m.height
-
-
 # --- one place ---------------------------------------------------------------------------------
 
 
-def _rest(mechanism: Mechanism, z: Plane, grow: Array | float = 0.0) -> tuple[Array, Array]:
-    """Return the position at which a follower touches discs, and its margin of reach.
-
-    Parameters
-    ----------
-    mechanism : Mechanism
-        The follower.
-    z : complex array, mm
-        Centres in the fixed frame.
-    grow : float or array, mm
-        Radii.
-
-    Returns
-    -------
-    position : array, mm or rad
-        Infinite where the follower always overlaps the disc. Out of reach it is that of the
-        nearest point in reach, so that searches may pass there.
-    room : array
-        Negative out of reach; mm^2 for a round follower.
-    """
-    if not mechanism.oscillating:
-        if mechanism.flat:
-            return z.imag + grow, np.ones(z.shape)
-        aside, reach = z.real - mechanism.offset, mechanism.radius + grow
-        room = (reach - aside) * (reach + aside)
-        rest = z.imag + np.sqrt(np.maximum(room, 0.0))
-        return rest, np.where(_on_other_side(mechanism, z, grow), -np.inf, room)
-    toward = mechanism.pivot - z
-    own, far = -np.angle(toward), np.abs(toward)
-    if mechanism.flat:
-        face = mechanism.face_offset + grow
-        turn = np.arcsin(np.clip(face / far, -1.0, 1.0))
-        return np.where(face > far, np.inf, own + turn), far + face
-    arm, reach = mechanism.arm, mechanism.radius + grow
-    room = (reach - far + arm) * (reach + far - arm)
-    # half the angle from the three sides: accurate for a small roller too
-    rest = np.maximum((far + arm - reach) * (far + arm + reach), 0.0)
-    turn = 2.0 * np.arctan2(np.sqrt(np.maximum(room, 0.0)), np.sqrt(rest))
-    room = np.where(_on_other_side(mechanism, z, grow), -np.inf, room)
-    return np.where(reach > far + arm, np.inf, own + turn), room
-
-
-def _on_other_side(mechanism: Mechanism, z: Plane, grow: Array | float) -> Mask:
-    """Return which discs lie where a round follower cannot be.
-
-    Inside a profile that is beyond the axis; over a cam that slides, beyond the pivot, where the
-    arm of a disc cam's follower may be.
-    """
-    if mechanism.slide and mechanism.oscillating:
-        return mechanism.pivot - z.real + mechanism.radius + grow < 0.0
-    return np.full(z.shape, mechanism.below) & (z.imag - grow > 0.0)
-
-
 def _reached(
-    mechanism: Mechanism, z: Plane, grow: Array | float = 0.0, tolerance: float = 0.0
+    follower: Follower, z: Plane, grow: Array | float = 0.0, tolerance: float = 0.0
 ) -> Array:
-    """Return the positions of `_rest`; -inf if out of reach by more than the tolerance."""
-    position, room = _rest(mechanism, z, grow)
-    return np.where(room >= -(tolerance**2), position, -np.inf)
+    """Return the positions on discs; -inf if out of reach by more than the tolerance."""
+    position, room = _rest(follower, z, grow)
+    met = (room >= -(tolerance**2)) & ~follower.behind(z, grow)
+    return np.where(met, position, -np.inf)
+
+
+def _rest(follower: Follower, z: Plane, grow: Array | float) -> tuple[Array, Array]:
+    """Return the positions on discs around `z`, and the room left (see `Follower.rest`)."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        position, room = follower.rest(Jet([z.real]), Jet([z.imag]), grow)
+    # straight beyond a pivot there is no angle: no bound either
+    return np.nan_to_num(np.asarray(position.c[0]), nan=np.inf, posinf=np.inf, neginf=-np.inf), room
 
 
 # --- one chord ---------------------------------------------------------------------------------
 
 
 def _on_chord(
-    mechanism: Mechanism, z: Plane, chord: Plane, grow: Array | float, tolerance: float
+    follower: Follower, z: Plane, chord: Plane, grow: Array | float, tolerance: float
 ) -> tuple[Array, Array]:
     """Return the position on chords from `z`, and the contact: 0 at the start, 1 at the end.
 
     A flat face rests on the ends. A round follower may touch between them: its centre is then where
     its path leaves the chord's parallel.
     """
-    ends = [_reached(mechanism, place, grow, tolerance) for place in (z, z + chord)]
+    ends = [_reached(follower, place, grow, tolerance) for place in (z, z + chord)]
     position, part = np.maximum(*ends), np.where(ends[0] >= ends[1], 0.0, 1.0)
-    if mechanism.flat:
-        return position, part
-    reach, length = mechanism.radius + grow, np.abs(chord)
-    unit = chord / length
-    if mechanism.oscillating:
-        from_pivot = (z - mechanism.pivot) * np.conj(unit)
-        beside = reach - from_pivot.imag
-        room = (mechanism.arm - beside) * (mechanism.arm + beside)
-        way = (np.sqrt(np.maximum(room, 0.0)) - from_pivot.real) / length
-        between = room >= 0.0
-    else:
-        between = unit.real < 0.0
-        aside = mechanism.offset - z.real - reach * unit.imag
-        way = np.divide(aside, chord.real, out=np.zeros_like(length), where=between)
-    between &= (way >= 0.0) & (way <= 1.0)
-    place = z + way * chord
-    between &= ~_on_other_side(mechanism, place, grow)
+    way = follower.on_chord(z, chord, grow)
+    between = (way >= 0.0) & (way <= 1.0)
+    place = z + np.where(between, way, 0.0) * chord
+    between &= ~follower.behind(place, grow)
     grown = np.broadcast_to(grow, z.shape)[between]
-    position[between] = _rest(mechanism, place[between], grown)[0]
+    position[between] = _rest(follower, place[between], grown)[0]
     part[between] = way[between]
     return position, part
 
 
-def _certain(mechanism: Mechanism, z: Plane, chord: Plane, depth: Array, tolerance: float) -> Array:
+def _certain(follower: Follower, z: Plane, chord: Plane, depth: Array, tolerance: float) -> Array:
     """Return the positions at which curves below their chords, by a depth at most, stop it.
 
     -inf if the follower is smaller than the depth.
     """
     found = np.full(z.shape, -np.inf)
-    wide = mechanism.radius >= depth
-    found[wide] = _on_chord(mechanism, z[wide], chord[wide], -depth[wide], tolerance)[0]
+    wide = follower.radius >= depth
+    found[wide] = _on_chord(follower, z[wide], chord[wide], -depth[wide], tolerance)[0]
     return found
 
 
-def _left(mechanism: Mechanism, z: Plane, chord: Plane, depth: Array, tolerance: float) -> Array:
+def _left(follower: Follower, z: Plane, chord: Plane, depth: Array, tolerance: float) -> Array:
     """Return the positions at which it leaves bands around chords; infinite without a band.
 
     In the mirror image it enters them.
     """
-    mirrored = replace(mechanism, start=-mechanism.start)
-    return -_on_chord(mirrored, np.conj(z), np.conj(chord), depth, tolerance)[0]
+    return -_on_chord(follower.mirrored(), np.conj(z), np.conj(chord), depth, tolerance)[0]
 
 
 def _candidates(
-    profile: ProfilePoints, mechanism: Mechanism, stand: tuple[Plane, Plane], tolerance: float
+    profile: ProfilePoints, follower: Follower, stand: tuple[Plane, Plane], tolerance: float
 ) -> tuple[tuple[Ints, Ints, Array], Array]:
     """Return the chords that may contain the contact: index of angle and chord, and upper bound.
 
@@ -362,16 +298,16 @@ def _candidates(
     """
     index, middle, radius = profile.blocks
     turn, shift = stand
-    upper = _reached(mechanism, turn[:, None] * middle + shift[:, None], radius, tolerance)
+    upper = _reached(follower, turn[:, None] * middle + shift[:, None], radius, tolerance)
     top = index[np.argmax(upper, axis=1)]
     tops = turn[:, None] * profile.points[top] + shift[:, None]
-    lower = _reached(mechanism, tops, 0.0, tolerance).max(axis=1)
+    lower = _reached(follower, tops, 0.0, tolerance).max(axis=1)
     angle, block = np.nonzero((upper >= lower[:, None] - tolerance) & (upper > -np.inf))
     angle, chord = np.repeat(angle, index.shape[1]), index[block].ravel()
     z = turn[angle] * profile.points[chord] + shift[angle]
-    np.maximum.at(lower, angle, _reached(mechanism, z, 0.0, tolerance))
+    np.maximum.at(lower, angle, _reached(follower, z, 0.0, tolerance))
     height = profile.sagitta[chord]
-    upper = _on_chord(mechanism, z, turn[angle] * profile.chords[chord], height, tolerance)[0]
+    upper = _on_chord(follower, z, turn[angle] * profile.chords[chord], height, tolerance)[0]
     keep = (upper >= lower[angle] - tolerance) & (upper > -np.inf)
     return (angle[keep], chord[keep], upper[keep]), lower
 

@@ -30,15 +30,15 @@ from __future__ import annotations
 import cmath
 import math
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
-from typing import ClassVar
+from dataclasses import dataclass, replace
+from typing import ClassVar, Self
 
 import numpy as np
 
 from gearcam.base.display import Brief
 from gearcam.cams.carriers import Carrier, Pair, unit
 from gearcam.cams.contact import Contact
-from gearcam.numeric.arrays import Array, Plane
+from gearcam.numeric.arrays import Array, Mask, Plane
 from gearcam.numeric.jets import Jet, asin, atan, cos, sin, sqrt
 
 
@@ -50,9 +50,12 @@ class Follower(Brief, ABC):
     ----------
     start : float, mm or rad
         Position at zero lift.
+    radius : float, mm
+        Of a round end; 0 for a point or a flat face.
     """
 
     start: float
+    radius: float = 0.0
 
     angular: ClassVar[bool]
     """Whether positions and lifts are angles."""
@@ -115,6 +118,49 @@ class Follower(Brief, ABC):
             Negative out of reach; mm^2 for a round follower.
         """
 
+    @property
+    def clear(self) -> float:
+        """Largest radius of a cam about the origin that does not reach past its pivot, mm."""
+        return math.inf
+
+    def behind(self, z: Plane, grow: Array | float) -> Mask:  # noqa: ARG002
+        """Return which discs lie where the follower cannot be.
+
+        Inside a profile that is beyond the axis; over a cam that slides, beyond the pivot, where
+        the arm of a disc cam's follower may be.
+
+        Parameters
+        ----------
+        z : complex array, mm
+            Centres of the discs in the fixed frame.
+        grow : float or array, mm
+            Their radii.
+        """
+        return np.zeros(z.shape, dtype=np.bool_)
+
+    def on_chord(self, z: Plane, chord: Plane, grow: Array | float) -> Array:  # noqa: ARG002
+        """Return where between its ends it rests on a chord: 0 at the start, 1 at the end.
+
+        The centre of a round follower is there where its path leaves the chord's parallel.
+
+        Parameters
+        ----------
+        z, chord : (n,) complex arrays, mm
+            Starts of chords in the fixed frame, with the metal to the left, and chords.
+        grow : float or array, mm
+            Growth of the metal.
+
+        Returns
+        -------
+        (n,) array
+            On the line of the chord, also beyond its ends; nan if it rests at the ends only.
+        """
+        return np.full(z.shape, np.nan)
+
+    @abstractmethod
+    def mirrored(self) -> Self:
+        """Return its mirror image in the x axis."""
+
     @abstractmethod
     def jump(self, carrier: Carrier, p: Array, ds: Array) -> Array:
         """Return the even parameter of a jump of the velocity, which rises with it.
@@ -159,15 +205,7 @@ class Follower(Brief, ABC):
 
 @dataclass(frozen=True, kw_only=True)
 class Round(Follower):
-    """A follower with a round end: a roller, a dome, or a point.
-
-    Parameters
-    ----------
-    radius : float, mm
-        Of the end; 0 for a point.
-    """
-
-    radius: float = 0.0
+    """A follower with a round end: a roller, a dome, or a point."""
 
     @property
     @abstractmethod
@@ -286,6 +324,23 @@ class Stem(Round):
         """Return positions above the origin."""
         return np.sqrt((radius - self.offset) * (radius + self.offset))
 
+    def behind(self, z: Plane, grow: Array | float) -> Mask:
+        """Return which discs lie above one below the axis (see `Follower.behind`)."""
+        return np.full(z.shape, self.start < 0.0) & (z.imag - grow > 0.0)
+
+    def on_chord(self, z: Plane, chord: Plane, grow: Array | float) -> Array:
+        """Return the place between the ends (see `Follower.on_chord`)."""
+        turn = cmath.exp(-1j * self.tilt)
+        z, chord = turn * z, turn * chord
+        reach, length = self.radius + grow, np.abs(chord)
+        aside = self.offset - z.real - reach * (chord.imag / length)
+        none = np.full(z.shape, np.nan)
+        return np.divide(aside, chord.real, out=none, where=chord.real < 0.0)
+
+    def mirrored(self) -> Self:
+        """Return its mirror image in the x axis."""
+        return replace(self, start=-self.start, tilt=-self.tilt)
+
     def on_level(self, height: Array) -> Array:
         """Return positions at heights of a stem through the origin."""
         return height / math.cos(self.tilt)
@@ -352,6 +407,30 @@ class Arm(Round):
     def on_circle(self, radius: Array) -> Array:
         """Return positions above the origin, of a pivot on the x axis."""
         return swing(self.pivot.real, self.arm, radius)
+
+    @property
+    def clear(self) -> float:
+        """Largest radius of a cam about the origin that does not reach past its pivot, mm."""
+        return self.pivot.real + self.arm - self.radius
+
+    def behind(self, z: Plane, grow: Array | float) -> Mask:
+        """Return which discs lie beyond the pivot, or above the axis (see `Follower.behind`)."""
+        if self.hand < 0:
+            return z.real - self.pivot.real + self.radius + grow < 0.0
+        return np.full(z.shape, self.start < 0.0) & (z.imag - grow > 0.0)
+
+    def on_chord(self, z: Plane, chord: Plane, grow: Array | float) -> Array:
+        """Return the place between the ends (see `Follower.on_chord`)."""
+        length = np.abs(chord)
+        from_pivot = (z - self.pivot) * np.conj(chord / length)
+        beside = self.radius + grow - from_pivot.imag
+        room = (self.arm - beside) * (self.arm + beside)
+        way = (self.hand * np.sqrt(np.maximum(room, 0.0)) - from_pivot.real) / length
+        return np.where(room >= 0.0, way, np.nan)
+
+    def mirrored(self) -> Self:
+        """Return its mirror image in the x axis."""
+        return replace(self, start=-self.start, pivot=self.pivot.conjugate())
 
     def on_level(self, height: Array) -> Array:
         """Return positions on this side of the perpendicular to the x axis."""
@@ -462,6 +541,10 @@ class FlatStem(Face):
         """Millimetres per unit of lift."""
         return 1.0
 
+    def mirrored(self) -> Self:
+        """Return its mirror image in the x axis."""
+        return replace(self, start=-self.start)
+
     def lean(self, p: Array) -> float:  # noqa: ARG002
         """Return 0: the face is level."""
         return 0.0
@@ -518,6 +601,15 @@ class FlatArm(Face):
     def lever(self) -> float:
         """Millimetres per unit of lift, at the cam's axis."""
         return self.pivot
+
+    @property
+    def clear(self) -> float:
+        """Largest radius of a cam about the origin that does not reach past its pivot, mm."""
+        return self.pivot - self.offset
+
+    def mirrored(self) -> Self:
+        """Return its mirror image in the x axis."""
+        return replace(self, start=-self.start, offset=-self.offset)
 
     def lean(self, p: Array) -> Array:
         """Return the angle of the face, rad."""

@@ -242,3 +242,36 @@ def test_discs_out_of_reach_have_no_room() -> None:
     ]
     position, _ = CASES["arm"].follower.rest(*here, grow=np.array([0.0, 150.0]))
     assert np.isinf(position.c[0]).tolist() == [False, True]
+
+
+def resting_place(case: Case) -> complex:
+    """Return a point below a follower's end, off its middle."""
+    p = np.array([case.follower.start + 0.5 * case.lift])
+    touched, _ = case.follower.trace(case.carrier, 0.0 * p, p, 0.0 * p, radius(case))
+    return complex(touched[0])
+
+
+def test_the_mirror_image_rests_where_the_follower_is_pressed_from_below(case: Case) -> None:
+    point = resting_place(case)
+    x, y = Jet([np.array([point.real])]), Jet([np.array([point.imag])])
+    below = case.follower.rest(x, y, side=-1)[0].c[0]
+    other = case.follower.mirrored()
+    assert other.rest(x, -y)[0].c[0] == pytest.approx(-below, abs=1e-13)
+    assert other.mirrored() == case.follower
+
+
+@pytest.mark.parametrize("angle", [-2.9, 2.5, math.pi])
+def test_a_round_follower_rests_highest_on_a_chord_at_its_own_place(
+    case: Case, angle: float
+) -> None:
+    """Positions on points of a chord, metal to its left, are lower on both sides of that place."""
+    if isinstance(case.follower, Face):
+        pytest.skip("a face rests on the ends of chords")
+    chord = np.array([3.0 * np.exp(1j * angle)])
+    z = np.array([resting_place(case)]) - 0.4 * chord
+    share = case.follower.on_chord(z, chord, 0.5)
+    places = z + (share + np.array([-1e-3, 0.0, 1e-3])) * chord
+    rests, room = case.follower.rest(Jet([places.real]), Jet([places.imag]), 0.5)
+    assert np.all(room > 0.0)
+    assert rests.c[0][1] > max(rests.c[0][0], rests.c[0][2])
+    assert rests.c[0][0] == pytest.approx(rests.c[0][2], abs=1e-8 * case.lift)
