@@ -21,6 +21,7 @@ from gearcam.cli import main
 from gearcam.designs import KINDS, loads
 from gearcam.designs.schema import schema
 from gearcam.designs.template import template
+from gearcam.report.file import framed, report_files
 
 TOY = Path(__file__).parents[1] / "toy_kinds"
 HOME = rules.SOURCE / "kinds"
@@ -162,12 +163,12 @@ def test_another_kind_has_messages_schema_and_a_template() -> None:
 @pytest.mark.parametrize("studies", ["", '[output]\nstudies = ["weigh"]\n'])
 def test_a_report_needs_no_scene_no_solids_and_no_charts(studies: str) -> None:
     result = gearcam.build(loads(GOOD + studies))
-    html = result.files("report")["report.html"].decode()
+    html = report_files(result, {})["report.html"].decode()
     for part in ('id="parts"', 'href="#motion"', 'id="solids"', 'href="#accuracy"', "const CYCLE"):
         assert part not in html
     assert ('href="#charts"' in html) == bool(studies)
     assert "outer diameter" in html
-    assert result._repr_html_().startswith('<iframe title="thin"')
+    assert framed(result).startswith('<iframe title="thin"')
 
 
 def test_another_kind_works_on_the_command_line(

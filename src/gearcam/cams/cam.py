@@ -14,10 +14,12 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 
 from gearcam.base.display import Displayed, renderer
+from gearcam.base.facts import Fact, Facts
 from gearcam.cams.measures import Extreme
 from gearcam.cams.wall import PitchMotion, Wall
 from gearcam.numeric.arrays import Array
@@ -25,6 +27,9 @@ from gearcam.numeric.arrays import Array
 
 class Cam(Displayed):
     """A cam made from a lift program and a follower; each form adds its own properties."""
+
+    title: ClassVar[str]
+    """The form in words."""
 
     @property
     @abstractmethod
@@ -55,6 +60,21 @@ class Cam(Displayed):
     def outline(self) -> Array:
         """Vertices of the first wall, (n, 2), mm, counter-clockwise, in the cam's frame."""
         return self.walls[0].outline
+
+    @cached_property
+    def facts(self) -> Facts:
+        """Facts of the cam: lift, walls, lost motion; its result has more."""
+        motion, lost, sizes = self.motions[0], self.lost_motion, {}
+        for wall in self.walls:
+            prefix = f"{wall.key}_" if wall.key else ""
+            sizes[f"{prefix}perimeter_mm"] = wall.size.perimeter
+            sizes[f"{prefix}area_mm2"] = wall.size.area if wall.program.closed else None
+        scale, unit = motion.mechanism.outward
+        play = None if lost is None else Fact(scale * lost.value, "lost motion", unit=unit)
+        chord = max(wall.contour.chord_error for wall in self.walls)
+        tree = {"total_lift": motion.total_lift, **sizes, "lost_motion": play}
+        tree |= {"vertices": len(self.outline), "chord_error_mm": chord}
+        return Facts(tree, ("total_lift",), self.title)
 
     def picture(self) -> str:
         """Return a drawing of the walls and their pitch curves, SVG, in the cam's frame."""

@@ -26,7 +26,6 @@ from functools import cached_property
 
 from gearcam.base.display import Brief
 from gearcam.base.errors import InfeasibleError, Way
-from gearcam.base.facts import Facts
 from gearcam.base.numerals import shown
 from gearcam.cams.cam import Cam
 from gearcam.cams.disc import demand_standing
@@ -84,6 +83,8 @@ class ConjugateCam(Brief, Cam):
         As given.
     """
 
+    title = "conjugate cams"
+
     first: Wall
     second: Wall
     roller: SecondRoller
@@ -103,20 +104,6 @@ class ConjugateCam(Brief, Cam):
         """From the axis to the second roller's centre at the highest lift, mm."""
         m = self.second.mechanism
         return replace(m, start=m.start + self.second.program.range[1]).least
-
-    @cached_property
-    def facts(self) -> Facts:
-        """Facts of the cams; the facts of their result contain more."""
-        tree = {
-            "total_lift": self.first.total_lift,
-            "prime_radius_mm": self.first.mechanism.least,
-            "prime_radius2_mm": self.prime2,
-            **{
-                f"cam{wall.key}": {"perimeter_mm": wall.size.perimeter, "area_mm2": wall.size.area}
-                for wall in self.walls
-            },
-        }
-        return Facts(tree, ("total_lift",), "conjugate cams")
 
 
 def make_conjugate(

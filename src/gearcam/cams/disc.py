@@ -15,10 +15,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 from gearcam.base.errors import InfeasibleError
-from gearcam.base.facts import Facts
 from gearcam.base.numerals import rounded_down
 from gearcam.cams.cam import Cam
 from gearcam.cams.followers import swing
@@ -35,6 +33,8 @@ million pivot distances away, or stays at one point."""
 class DiscCam(Wall, Cam):
     """A disc cam, which is also its only wall (see `gearcam.cams.wall.PitchMotion`)."""
 
+    title = "disc cam"
+
     @property
     def walls(self) -> tuple[Wall, ...]:
         """The walls to be cut: the disc cam itself, its only profile."""
@@ -47,23 +47,6 @@ class DiscCam(Wall, Cam):
         if radius is None or self.mechanism.oscillating or any(back):
             return None
         return self.mechanism.start - radius.low.value
-
-    @cached_property
-    def facts(self) -> Facts:
-        """Facts of the cam; the facts of its result contain more."""
-        convex, concave = self.profile_radius
-        tree = {
-            "total_lift": self.total_lift,
-            "prime_radius_mm": self.mechanism.least,
-            "base_radius_mm": self.mechanism.least - self.mechanism.radius,
-            "perimeter_mm": self.size.perimeter,
-            "area_mm2": self.size.area,
-            "profile_convex_min_mm": convex if convex < math.inf else None,
-            "profile_concave_min_mm": concave if concave < math.inf else None,
-            "vertices": len(self.outline),
-            "chord_error_mm": self.contour.chord_error,
-        }
-        return Facts(tree, ("total_lift",), "disc cam")
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -20,7 +20,6 @@ from functools import cached_property
 
 from gearcam.base.display import Brief
 from gearcam.base.errors import InfeasibleError, Way
-from gearcam.base.facts import Fact, Facts
 from gearcam.cams.cam import Cam
 from gearcam.cams.disc import clears_axis, demand_standing
 from gearcam.cams.lost_motion import Rest, largest_lost_motion
@@ -45,6 +44,8 @@ class GrooveCam(Brief, Cam):
     relief : Wall or None
         Wall set back at the height of the larger of two rollers, which must not touch it.
     """
+
+    title = "groove cam"
 
     motion: PitchMotion
     inner: Wall
@@ -81,22 +82,6 @@ class GrooveCam(Brief, Cam):
             Rest(wall=self.inner, radius=self.motion.mechanism.radius),
             Rest(wall=self.outer, radius=self.radius2),
         )
-
-    @cached_property
-    def facts(self) -> Facts:
-        """Facts of the cam; the facts of its result contain more."""
-        lost, (scale, unit) = self.lost_motion, self.motion.mechanism.outward
-        tree = {
-            "total_lift": self.motion.total_lift,
-            "prime_radius_mm": self.motion.mechanism.least,
-            "width_mm": self.width,
-            "lost_motion": Fact(scale * lost.value, "lost motion", unit=unit),
-            **{
-                wall.key: {"perimeter_mm": wall.size.perimeter, "area_mm2": wall.size.area}
-                for wall in self.walls
-            },
-        }
-        return Facts(tree, ("total_lift",), "groove cam")
 
 
 def _farthest(motion: PitchMotion) -> float:

@@ -23,7 +23,6 @@ import numpy as np
 
 from gearcam.base.display import Brief, renderer
 from gearcam.base.errors import InfeasibleError, Way
-from gearcam.base.facts import Fact, Facts
 from gearcam.cams.cam import Cam
 from gearcam.cams.lost_motion import Rest, largest_lost_motion
 from gearcam.cams.measures import Extreme
@@ -54,6 +53,8 @@ class SlidingCam(Brief, Cam):
     upper : SlidingWall or None
         For a groove: the wall above it.
     """
+
+    title = "translating cam"
 
     motion: PitchMotion
     lower: SlidingWall
@@ -123,16 +124,6 @@ class SlidingCam(Brief, Cam):
         groove = [] if self.groove is None else [self.groove.vertices]
         pitch = [self.lower.pitch_line]
         return renderer().outlines(self.facts.headline, [self.edge.vertices, *groove], pitch)
-
-    @cached_property
-    def facts(self) -> Facts:
-        """Facts of the cam; the facts of its result contain more."""
-        tree = {
-            "total_lift": self.motion.total_lift,
-            "way_mm": Fact(self.way, "travel"),
-            "area_mm2": self.edge.moments.area,
-        }
-        return Facts(tree, ("total_lift", "way_mm"), "translating cam")
 
 
 def make_sliding(

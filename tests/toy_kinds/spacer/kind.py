@@ -18,12 +18,11 @@ from gearcam.designs.outputs import OutputSpec, files_param, studies_param
 from gearcam.designs.table import table_of
 from gearcam.export.table import outline_bytes
 from gearcam.pictures.charts import Chart, Line
-from gearcam.report.file import report_files
 from gearcam.results.kind import Kind
 from gearcam.results.result import Result
 from gearcam.results.study import Study, StudyResult
 
-FORMATS = ("csv", "outline-txt", "report")
+FORMATS = ("csv", "outline-txt")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,7 +89,6 @@ def _text(result: Any, _: dict[str, Any]) -> dict[str, bytes]:
 FILES = {
     "csv": lambda result, _: {"spacer.csv": outline_bytes(result.outline)},
     "outline-txt": _text,
-    "report": report_files,
 }
 
 

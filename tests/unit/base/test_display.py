@@ -312,4 +312,4 @@ def test_what_has_no_picture_shows_facts(monkeypatch: pytest.MonkeyPatch) -> Non
     page = Page(result._repr_html_())
     assert page.images == []
     assert "24" in " ".join(page.texts)
-    assert result.solids == {}
+    assert result.assembled() == {}
