@@ -70,9 +70,9 @@ class Cam(Displayed):
             sizes[f"{prefix}perimeter_mm"] = wall.size.perimeter
             sizes[f"{prefix}area_mm2"] = wall.size.area if wall.program.closed else None
         scale, unit = motion.mechanism.outward
-        play = None if lost is None else Fact(scale * lost.value, "lost motion", unit=unit)
+        motion_lost = None if lost is None else Fact(scale * lost.value, "lost motion", unit=unit)
         chord = max(wall.contour.chord_error for wall in self.walls)
-        tree = {"total_lift": motion.total_lift, **sizes, "lost_motion": play}
+        tree = {"total_lift": motion.total_lift, **sizes, "lost_motion": motion_lost}
         tree |= {"vertices": len(self.outline), "chord_error_mm": chord}
         return Facts(tree, ("total_lift",), self.title)
 
