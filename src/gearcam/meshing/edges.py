@@ -42,6 +42,12 @@ _EXTREME = 1e-10
 _ROUNDING = 1e-12
 """Rounding of the driver angle at the end of a lobe, as a share of it."""
 
+_ROUNDINGS = 8.0
+"""Rounding of a lead over that of one operation: four times the most found in any design."""
+
+_LEAST_LEVER = 1e-3
+"""Least lever arm of a normal over that of the pitch line, where the rounding is estimated."""
+
 _BETWEEN = np.linspace(0.02, 0.98, 9)
 """Positions in a stretch, as shares of it, at which edge contact is tested."""
 
@@ -184,7 +190,8 @@ def first_touch(pairs: FlankPairs, phi1: Array, found: Contacts) -> tuple[Array,
     Returns
     -------
     lead : (n,) array, rad
-        Turn from the nominal position (for a rack mm); infinite where nothing touches.
+        Turn from the nominal position (for a rack mm); infinite where nothing touches, 0 where it
+        is less than what it is known to.
     edge : (n,) bool array
         Whether an end of a flank touches first.
 
@@ -200,7 +207,8 @@ def first_touch(pairs: FlankPairs, phi1: Array, found: Contacts) -> tuple[Array,
         some = touches(pairs, phi1[searched])
         step, turn = searched[some.step[some.edge]], some.turn[some.edge]
         ends = of_leading_pair(pairs.side, len(phi1), step, turn)
-    return -pairs.side * np.maximum(outward, ends), ends > outward
+    lead = -pairs.side * np.maximum(outward, ends)
+    return np.where(np.abs(lead) <= known_to(pairs, phi1), 0.0, lead), ends > outward
 
 
 def of_leading_pair(side: int, count: int, step: Ints, turn: Array) -> Array:
@@ -245,6 +253,36 @@ def to_pitch_line(pairs: FlankPairs, phi1: Array) -> Array:
     guide, one = pairs.guide, pairs.toothings[0].frames(phi1, curved=False)
     pitch_point = (np.abs(one.p) - guide.place).astype(complex)
     return -guide.lever(pitch_point, one.t * np.exp(-1j * phi1))
+
+
+def known_to(pairs: FlankPairs, phi1: Array) -> Array:
+    """Return to how much the driven wheel's lead is known at phases: the rounding of its flanks.
+
+    Parameters
+    ----------
+    pairs : FlankPairs
+        The side.
+    phi1 : (n,) array, rad
+        Phases.
+
+    Returns
+    -------
+    (n,) array, rad (for a rack mm)
+        Flanks are exact but for rounding: that of their coordinates, as large as the driver's
+        centrode is long and the shafts are apart, and that of driver angles. It moves a flank along
+        its normal, and so turns the driven wheel by as much over the lever arm of the normal.
+    """
+    guide, one = pairs.guide, pairs.toothings[0]
+    frames = one.frames(phi1, curved=False)
+    size = pairs.track.length + abs(pairs.distance)
+    turn = np.maximum(np.abs(phi1), 2.0 * np.pi)
+    moved = _ROUNDINGS * np.finfo(float).eps * (size + turn * frames.speed)
+    tangent = frames.t * np.exp(-1j * phi1)
+    pitch_point = (np.abs(frames.p) - guide.place).astype(complex)
+    normal = tangent * np.exp(-1j * pairs.side * one.cutter.alpha)
+    lever = np.abs(guide.lever(pitch_point, normal))
+    # at a pressure angle of 90 deg the lever is 0
+    return moved / np.maximum(lever, _LEAST_LEVER * np.abs(guide.lever(pitch_point, tangent)))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -9,6 +9,7 @@ import numpy as np
 from gearcam.base.facts import extent
 from gearcam.base.numerals import shown
 from gearcam.gears.contact import DRIVE
+from gearcam.meshing.edges import known_to
 from gearcam.meshing.study import Meshing
 from gearcam.numeric.arrays import Array, Ints, Mask
 
@@ -83,25 +84,28 @@ def transmission(meshing: Meshing) -> dict[str, Any]:
     Returns
     -------
     dict
-        ``lag_mm``, the mean lag behind the nominal position along the pitch curve with the
-        backlash taken up; ``transmission_error``, the deviation from that mean.
+        ``lag_mm``, the lag behind the nominal position along the pitch curve with the backlash
+        taken up; ``transmission_error``, the deviation from its mean; what is at most its
+        ``known_to``, the rounding, is 0.
     """
     lead, along = meshing.every("lead"), meshing.every("along")
     touching = np.isfinite(lead)
     if not touching.any():
         return {}
     unit = meshing.setup.turning.rolling.guide.unit
+    least = rounding(meshing)
     error: dict[str, Any] = {
         "unit": unit,
-        "mean_lag": float(-lead[touching].mean()),
-        "peak_to_peak": float(np.ptp(lead[touching])),
+        "known_to": least,
+        "mean_lag": _without_noise(-lead[touching].mean(), least),
+        "peak_to_peak": _without_noise(np.ptp(lead[touching]), least),
     }
     reason = without_harmonics(meshing, touching)
     if reason:
         error["no_harmonics"] = reason
     else:
         error["harmonics"] = harmonics(meshing, lead)
-    return {"lag_mm": _extent((-lead * along)[touching]), "transmission_error": error}
+    return {"lag_mm": _extent((0.0 - lead * along)[touching]), "transmission_error": error}
 
 
 def without_harmonics(meshing: Meshing, touching: Mask) -> str:
@@ -152,17 +156,28 @@ def harmonics(meshing: Meshing, lead: Array) -> list[dict[str, float]]:
     -------
     list of dict
         ``order``, ``amplitude`` in the unit of `lead`, ``phase_deg``: the lead is its mean and the
-        sum of ``amplitude*cos(order*phi1 + phase)``.
+        sum of ``amplitude*cos(order*phi1 + phase)``. Those that are rounding are left out.
     """
     start, end = meshing.setup.stretch
-    turns = round((end - start) / (2.0 * np.pi))
+    turns, least = round((end - start) / (2.0 * np.pi)), rounding(meshing)
     teeth = meshing.setup.pairs[DRIVE].toothings[0].teeth
     orders = np.arange(1, MOST_ORDERS * teeth + 1)
     parts = 2.0 / len(lead) * np.fft.rfft(lead)[orders * turns] * np.exp(-1j * orders * start)
     return [
         {"order": int(order), "amplitude": float(abs(part)), "phase_deg": float(np.degrees(angle))}
         for order, part, angle in zip(orders, parts, np.angle(parts), strict=True)
+        if abs(part) > least
     ]
+
+
+def rounding(meshing: Meshing) -> float:
+    """Return to how much the lead of a study is known at all phases, rad (for a rack mm)."""
+    setup = meshing.setup
+    return float(known_to(setup.pairs[setup.side], meshing.phi1).max())
+
+
+def _without_noise(value: float, least: float) -> float:
+    return 0.0 if abs(value) <= least else float(value)
 
 
 def _extent(values: Array | Ints) -> dict[str, float]:

@@ -140,7 +140,7 @@ def _columns(block: Block, turning: Turning, side: int) -> dict[str, Array]:
             name: column(1, values)
             for name, values in contact_columns(exact, turning.distance).items()
         },
-        f"lag_{turning.rolling.guide.unit}": np.ma.masked_invalid(-block.lead[step]),
+        f"lag_{turning.rolling.guide.unit}": np.ma.masked_invalid(0.0 - block.lead[step]),
         "backlash_mm": np.ma.masked_invalid(block.backlash[step]),
         "held_back_gap_mm": block.held_back_gap[step],
     }

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Final
@@ -13,9 +13,9 @@ import numpy as np
 from gearcam.base.findings import limit_of
 from gearcam.base.numerals import shown
 from gearcam.gears.checks import undercut_curvatures
-from gearcam.gears.contact import COAST, DRIVE
+from gearcam.gears.contact import COAST, DRIVE, FlankPairs
 from gearcam.gears.subject import KIND
-from gearcam.meshing.edges import first_touch
+from gearcam.meshing.edges import first_touch, known_to
 from gearcam.meshing.patches import closed_area
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
@@ -34,8 +34,7 @@ _SIDES: Final = {"drive": "driving flanks", "coast": "coast flanks"}
 
 
 _NOISE: Final = 1e-12
-"""Lag, rad or mm, below which a pair of teeth touches in its nominal position, and share of a turn
-by which a knot may lie before its end: rounding."""
+"""Share of a turn by which a knot may lie before its end: rounding."""
 
 
 def _knots(result: GearPairResult) -> tuple[MarkedPlace, ...]:
@@ -174,15 +173,18 @@ def _contact_patch(result: GearPairResult) -> Chart:
 
 
 def _transmission_error(result: GearPairResult) -> Chart:
-    leads = {
-        _SIDES[side]: first_touch(result.flanks_of(side), result.phases, found)[0]
-        for side, found in result.touching.items()
-    }
+    leads = []
+    for side, found in result.touching.items():
+        pairs = result.flanks_of(side)
+        leads.append((pairs, first_touch(pairs, result.phases, found)[0]))
     return transmission_chart(result, "as designed", result.phases, leads)
 
 
 def transmission_chart(
-    result: GearPairResult, how: str, phi1: Array, leads: Mapping[str, Array]
+    result: GearPairResult,
+    how: str,
+    phi1: Array,
+    leads: Sequence[tuple[FlankPairs, Array]],
 ) -> Chart:
     """Return the chart of the lag of the driven element, minus its mean.
 
@@ -194,17 +196,21 @@ def transmission_chart(
         How it is mounted, in words.
     phi1 : (n,) array, rad
         Driver angles.
-    leads : mapping of str to (n,) array
-        Leads of the driven element at first contact by label, rad or mm; infinite without contact.
+    leads : sequence of (FlankPairs, (n,) array)
+        Sides as mounted, with leads of the driven element at first contact, rad or mm; infinite
+        without contact.
 
     Returns
     -------
     Chart
     """
     unit, lines = result.pair.rolling.guide.unit, []
-    for label, lead in leads.items():
-        lag = np.where(np.isfinite(lead), -np.where(np.abs(lead) > _NOISE, lead, 0.0), np.nan)
-        lines.append(Line(label=label, x=np.degrees(phi1), y=lag - float(np.nanmean(lag))))
+    for pairs, lead in leads:
+        label = _SIDES["drive" if pairs.side == DRIVE else "coast"]
+        lag = np.where(np.isfinite(lead), -lead, np.nan)
+        error = lag - float(np.nanmean(lag))
+        error[np.abs(error) <= known_to(pairs, phi1)] = 0.0
+        lines.append(Line(label=label, x=np.degrees(phi1), y=error))
     return Chart(
         title=f"Transmission error, {how} (lag minus its mean)",
         x=DRIVER,

@@ -263,15 +263,21 @@ def meshing_facts(numbers: Mapping[str, Any]) -> Tree:
             tree[name] = Fact(numbers[name], meaning, shown=True, noise=_ROUNDING)
     error = numbers.get("transmission_error")
     if error is not None:
-        peak = Fact(error["peak_to_peak"], "transmission error, peak to peak", shown=True)
-        tree["transmission_error"] = error | {"peak_to_peak": replace(peak, unit=error["unit"])}
+        unit, least = error["unit"], error["known_to"]
+        peak = Fact(
+            error["peak_to_peak"], "transmission error, peak to peak", unit=unit, shown=True
+        )
+        if not peak.value:
+            peak = replace(peak, place=f"known to {shown(least, 1)} {unit}")
+        known = Fact(least, "transmission error, known to", unit=unit)
+        tree["transmission_error"] = error | {"known_to": known, "peak_to_peak": peak}
         if "no_harmonics" in error:
             missing = Fact(error["no_harmonics"], "no harmonics, because of", shown=True)
             tree["transmission_error"]["no_harmonics"] = missing
-        else:
+        elif error["harmonics"]:
             largest = max(error["harmonics"], key=lambda one: one["amplitude"])
             words = f"largest harmonic, {largest['order']} per turn"
-            found = Fact(largest["amplitude"], words, unit=error["unit"], shown=True)
+            found = Fact(largest["amplitude"], words, unit=unit, shown=True)
             tree["transmission_error"]["largest_harmonic"] = found
     return tree
 

@@ -56,16 +56,16 @@ def _mesh(result: GearPairResult, progress: Progress | None) -> StudyResult:
 
 def _charts(result: GearPairResult, meshing: Meshing) -> dict[str, Chart]:
     """Return transmission error and contact patches of the pair as mounted."""
-    from gearcam.gears.contact import COAST, DRIVE
     from gearcam.kinds.gear_pair.charts import DRIVER, transmission_chart
     from gearcam.pictures.charts import Chart, Line
 
     lead, rows = meshing.every("lead"), meshing.columns
     charts = {}
     if np.isfinite(lead).any():
-        side = {COAST: "coast", DRIVE: "drive"}[meshing.setup.side]
-        leads = {f"{side} flanks": lead}
-        charts["transmission_error"] = transmission_chart(result, "as mounted", meshing.phi1, leads)
+        setup = meshing.setup
+        charts["transmission_error"] = transmission_chart(
+            result, "as mounted", meshing.phi1, [(setup.pairs[setup.side], lead)]
+        )
     own = np.flatnonzero(meshing.on_side)
     own = own[np.argsort(rows["phi1_deg"][own], kind="stable")]
     table = {"area_mm2": "overlap of the outlines", "predicted_mm2": "from the exact flanks"}
