@@ -162,6 +162,30 @@ class Follower(Brief, ABC):
         """Return its mirror image in the x axis."""
 
     @abstractmethod
+    def moved(self, rise: Array) -> tuple[Array, Plane]:
+        """Return the rigid motion of the follower over rises (n,), mm or rad.
+
+        Returns
+        -------
+        turn, shift : (n,) arrays, rad and complex mm
+            A rotation about the origin, then a shift.
+        """
+
+    @abstractmethod
+    def symbol(self, p: float, reach: float, wide: float) -> list[tuple[complex, ...]]:
+        """Return lines that show the follower, mm; a round end is shown besides.
+
+        Parameters
+        ----------
+        p : float, mm or rad
+            Position.
+        reach : float, mm
+            Size of the cam.
+        wide : float, mm
+            Half the width of a face on a stem.
+        """
+
+    @abstractmethod
     def jump(self, carrier: Carrier, p: Array, ds: Array) -> Array:
         """Return the even parameter of a jump of the velocity, which rises with it.
 
@@ -341,6 +365,18 @@ class Stem(Round):
         """Return its mirror image in the x axis."""
         return replace(self, start=-self.start, tilt=-self.tilt)
 
+    def moved(self, rise: Array) -> tuple[Array, Plane]:
+        """Return the shift along the guide (see `Follower.moved`)."""
+        return np.zeros_like(rise), np.asarray(
+            1j * cmath.exp(1j * self.tilt) * rise, dtype=np.complex128
+        )
+
+    def symbol(self, p: float, reach: float, wide: float) -> list[tuple[complex, ...]]:  # noqa: ARG002
+        """Return the stem (see `Follower.symbol`)."""
+        centre = complex(self.centre(np.array(p)))
+        up = math.copysign(0.5 * reach, self.start) * 1j * cmath.exp(1j * self.tilt)
+        return [(centre, centre + up)]
+
     def on_level(self, height: Array) -> Array:
         """Return positions at heights of a stem through the origin."""
         return height / math.cos(self.tilt)
@@ -431,6 +467,15 @@ class Arm(Round):
     def mirrored(self) -> Self:
         """Return its mirror image in the x axis."""
         return replace(self, start=-self.start, pivot=self.pivot.conjugate())
+
+    def moved(self, rise: Array) -> tuple[Array, Plane]:
+        """Return the rotation about the pivot (see `Follower.moved`)."""
+        turn = -self.hand * rise
+        return turn, self.pivot * (1.0 - unit(turn))
+
+    def symbol(self, p: float, reach: float, wide: float) -> list[tuple[complex, ...]]:  # noqa: ARG002
+        """Return the arm (see `Follower.symbol`)."""
+        return [(self.pivot, complex(self.centre(np.array(p))))]
 
     def on_level(self, height: Array) -> Array:
         """Return positions on this side of the perpendicular to the x axis."""
@@ -545,6 +590,15 @@ class FlatStem(Face):
         """Return its mirror image in the x axis."""
         return replace(self, start=-self.start)
 
+    def moved(self, rise: Array) -> tuple[Array, Plane]:
+        """Return the shift along the guide (see `Follower.moved`)."""
+        return np.zeros_like(rise), np.asarray(1j * rise, dtype=np.complex128)
+
+    def symbol(self, p: float, reach: float, wide: float) -> list[tuple[complex, ...]]:
+        """Return face and stem (see `Follower.symbol`)."""
+        foot = complex(self.offset, p)
+        return [(complex(-wide, p), complex(wide, p)), (foot, foot + 0.5j * reach)]
+
     def lean(self, p: Array) -> float:  # noqa: ARG002
         """Return 0: the face is level."""
         return 0.0
@@ -610,6 +664,16 @@ class FlatArm(Face):
     def mirrored(self) -> Self:
         """Return its mirror image in the x axis."""
         return replace(self, start=-self.start, offset=-self.offset)
+
+    def moved(self, rise: Array) -> tuple[Array, Plane]:
+        """Return the rotation about the pivot (see `Follower.moved`)."""
+        return -rise, self.pivot * (1.0 - unit(-rise))
+
+    def symbol(self, p: float, reach: float, wide: float) -> list[tuple[complex, ...]]:  # noqa: ARG002
+        """Return the face, and its distance from the pivot (see `Follower.symbol`)."""
+        along = cmath.exp(-1j * p)
+        foot = self.pivot - self.offset * 1j * along
+        return [(complex(self.pivot), foot, foot - along * (self.pivot + 0.4 * reach))]
 
     def lean(self, p: Array) -> Array:
         """Return the angle of the face, rad."""

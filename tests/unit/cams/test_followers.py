@@ -275,3 +275,22 @@ def test_a_round_follower_rests_highest_on_a_chord_at_its_own_place(
     assert np.all(room > 0.0)
     assert rests.c[0][1] > max(rests.c[0][0], rests.c[0][2])
     assert rests.c[0][0] == pytest.approx(rests.c[0][2], abs=1e-8 * case.lift)
+
+
+def test_a_follower_moves_as_a_rigid_body(case: Case) -> None:
+    """Lines and centre of its symbol at one position are those at another, moved."""
+    follower, rise = case.follower, 0.4 * case.lift
+    (turn,), (shift,) = follower.moved(np.array([rise]))
+    here, there = (follower.symbol(follower.start + s, 50.0, 9.0) for s in (0.0, rise))
+    for before, after in zip(here, there, strict=True):
+        moved = np.array(before) * np.exp(1j * turn) + shift
+        assert moved == pytest.approx(np.array(after), abs=1e-13)
+    p = np.array([follower.start, follower.start + rise])
+    touched, _ = follower.trace(case.carrier, 0.0 * p, p, 0.0 * p, 0.0)
+    lines = [np.array(line) for line in there]
+    # the centre, or the point touched, is on its lines
+    ways = [(one[-1] - one[-2]) / abs(one[-1] - one[-2]) for one in lines]
+    off = [
+        (np.conj(way) * (touched[1] - one[-1])).imag for way, one in zip(ways, lines, strict=True)
+    ]
+    assert np.abs(off).min() < 1e-12

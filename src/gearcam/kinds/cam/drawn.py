@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
@@ -158,31 +157,14 @@ def follower(motion: PitchMotion, theta: float, reach: float) -> list[Shape]:
     def path(*points: complex) -> Path:
         return Path(points=np.array([[side * z.real, z.imag] for z in points]), closed=False)
 
-    if m.flat and m.oscillating:
-        along = np.exp(-1j * position)
-        foot = m.pivot - m.face_offset * 1j * along
-        return [
-            path(complex(m.pivot), complex(foot), complex(foot - along * (m.pivot + 0.4 * reach)))
-        ]
-    if m.flat:
-        found = motion.contact_place
-        wide = 0.2 * reach + (found.largest if found is not None else 0.0)
-        stem = complex(m.offset, position), complex(m.offset, position + 0.5 * reach)
-        return [path(complex(-wide, position), complex(wide, position)), path(*stem)]
-    if m.slide:
-        center = complex(m.sliding_centre(np.array(position)))
-        up = center + 0.5j * reach * complex(np.exp(1j * m.tilt))
-        line = path(complex(-m.pivot, m.height) if m.oscillating else up, center)
-    elif m.oscillating:
-        center = complex(m.pivot - m.arm * np.exp(-1j * position))
-        line = path(complex(m.pivot), center)
-    else:
-        center = complex(m.offset, position)
-        line = path(center, center + math.copysign(0.5, position) * 1j * reach)
-    if m.radius == 0.0:
-        return [line]
+    found = motion.contact_place
+    wide = 0.2 * reach + (found.largest if found is not None else 0.0)
+    lines: list[Shape] = [path(*line) for line in m.follower.symbol(position, reach, wide)]
+    if m.follower.radius == 0.0:
+        return lines
+    center = complex(m.centred.centre(np.array(position)))
     middle = np.array([side * center.real, center.imag])
-    return [Circle(center=middle, diameter=2.0 * m.radius), line]
+    return [Circle(center=middle, diameter=2.0 * m.follower.radius), *lines]
 
 
 def grooved(

@@ -32,15 +32,13 @@ def scene(result: CamResult, places: int = PLACES) -> Scene:
         As designed, before clearance; without contact where the follower rests on a corner.
     """
     motion = result.cam.motions[0]
-    driver, slide = motion.mechanism.driver, motion.mechanism.slide
+    driver, carrier = motion.mechanism.driver, motion.mechanism.carrier
     output = result.design.output
-    pose = (output.place or 0.0) / driver.scale if slide else output.pose
+    pose = output.pose if carrier.around else (output.place or 0.0) / driver.scale
     theta = np.linspace(0.0, 2.0 * math.pi, places + 1)
-    side = -1.0 if motion.clockwise else 1.0
-    # a cam that slides is computed as its mirror image
-    turn = np.zeros_like(theta) if slide else side * theta
-    shift = np.asarray(slide * theta, dtype=np.complex128)
-    back = (0.0, (-slide * pose, 0.0)) if slide else (-side * pose, (0.0, 0.0))
+    turn, shift = _pose(motion, theta)
+    (turned,), (shifted,) = _pose(motion, np.array([pose]))
+    back = -float(turned), (-float(shifted.real), -float(shifted.imag))
     shown = result.drawing.features
     plates = [one for one in shown if one.kind not in (CENTER, FOLLOWER)]
     angle, way = _carried(motion, theta, pose)
@@ -68,7 +66,7 @@ def scene(result: CamResult, places: int = PLACES) -> Scene:
         driver=f"{driver.called} {driver.symbol}, {driver.unit}",
         places=driver.scale * theta,
         closed=not result.program.open,
-        start=driver.scale * (pose if slide else pose % (2.0 * math.pi)),
+        start=driver.scale * (pose % (2.0 * math.pi) if carrier.around else pose),
         bodies=(*cams, follower, fixed),
         contacts=_contacts(result, theta, turn, shift),
     )
@@ -79,18 +77,18 @@ def _of_part(features: list[Feature], name: str) -> list[Feature]:
     return [one for one in features if one.layer.startswith(name.upper())]
 
 
+def _pose(motion: PitchMotion, theta: Array) -> tuple[Array, Plane]:
+    """Return the rotation, rad, and shift, mm, of the cam."""
+    carrier = motion.mechanism.carrier
+    turn, (_, shift) = carrier.rate * theta, carrier.frame(theta)
+    return (-turn, -np.conj(shift)) if motion.clockwise else (turn, shift)
+
+
 def _carried(motion: PitchMotion, theta: Array, pose: float) -> tuple[Array, Plane]:
     """Return the rigid motion of a follower that is drawn at the cam angle `pose`."""
-    m = motion.mechanism
     lift = motion.program.derivatives(theta, 0)[0] - float(motion.program.derivatives(pose, 0)[0])
-    if m.oscillating:
-        turn, pivot = (lift, complex(-m.pivot, m.height)) if m.slide else (-lift, complex(m.pivot))
-        way = pivot * (1.0 - np.exp(1j * turn))
-    else:
-        turn, way = np.zeros_like(theta), 1j * np.exp(1j * m.tilt) * lift
-    if motion.clockwise:
-        turn, way = -turn, -np.conj(way)
-    return turn, np.asarray(way, dtype=np.complex128)
+    turn, way = motion.mechanism.follower.moved(lift)
+    return (-turn, -np.conj(way)) if motion.clockwise else (turn, way)
 
 
 def _contacts(
