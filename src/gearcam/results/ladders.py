@@ -23,7 +23,7 @@ from gearcam.numeric.sampling import Sampler
 
 if TYPE_CHECKING:
     from gearcam.parts.solids import Mesh
-    from gearcam.results.result import Result
+    from gearcam.results.parts import PartsResult
 
 INTERVALS: Final = (1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, float(FIRST_CUTS), 2.0 * FIRST_CUTS)
 """Numbers of intervals of expansions; the program starts with the last but one."""
@@ -223,12 +223,12 @@ def limit_ladder(
     )
 
 
-def solid_ladder(result: Result, own: float, levels: Sequence[float]) -> Ladder:
+def solid_ladder(result: PartsResult, own: float, levels: Sequence[float]) -> Ladder:
     """Return the ladder of the volumes of a design's solids.
 
     Parameters
     ----------
-    result : Result
+    result : PartsResult
         The result of a design with the key ``output.chord_tolerance_mm``.
     own : float, mm
         The chord tolerance that the program uses.

@@ -53,7 +53,7 @@ class PartsResult(Result):
         Accuracy of the internal computations.
     """
 
-    @property
+    @cached_property
     @abstractmethod
     def parts(self) -> tuple[Part, ...]:
         """The parts to be made, with bores, hubs and openings."""
@@ -63,7 +63,7 @@ class PartsResult(Result):
     def plates(self) -> tuple[Drawing, ...]:
         """A drawing of each plate that is cut, in its own frame."""
 
-    @property
+    @cached_property
     @abstractmethod
     def drawing(self) -> Drawing:
         """The parts assembled."""
@@ -78,7 +78,7 @@ class PartsResult(Result):
     def chord_error(self) -> float:
         """Largest chord error of the outlines, mm."""
 
-    @property
+    @cached_property
     @abstractmethod
     def error_rows(self) -> Mapping[str, tuple[float, str]]:
         """Error estimates and their methods by name, without those of chords and files."""
