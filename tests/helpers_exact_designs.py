@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from claims.laws import LAW_CLAIMS
 from gearcam.laws.ratio.centrodes import EccentricCircle, Limacon, Lobed, LogSpiral
 from gearcam.laws.ratio.composite import Fourier, Multispeed, ThreePhasePolynomial
 from gearcam.laws.ratio.constant import Constant
@@ -56,7 +58,32 @@ def cases() -> list[Case]:
 
     for group in (_centrodes, _phases, _speeds, _shapes):
         group(add)
-    return [*made, *_formulas(), *_motions(), *_tables()]
+    return [*made, *_formulas(), *_motions(), *_tables(), *_claimed()]
+
+
+def _claimed() -> Iterator[Case]:
+    """Yield the examples of laws whose claims have their mathematics once more, if closed."""
+    for name, claims in LAW_CLAIMS.items():
+        for number, claim in enumerate(claims.values if claims.ratio else ()):
+            lobes = claim.lobes
+            each = math.ceil(40 / min(lobes.n1, lobes.n2))
+            teeth = each * lobes.n1, each * lobes.n2
+            law = _in_30_digits(claim.parameters)
+            ex = lambda _, f=claims.ratio, p=law, n=lobes: Exact(  # noqa: E731
+                whole(lambda x: f(p, n, x, exact), turn_of(n.n1)), n.mate
+            )
+            yield Case(f"{name}-claim-{number}", claim.parameters, teeth, ex, lobes.mate)
+
+
+def _in_30_digits(parameters: Any) -> Any:
+    """Return parameters whose floats are exact numbers of 30 digits."""
+
+    def exactly(value: Any) -> Any:
+        if isinstance(value, tuple):
+            return tuple(map(exactly, value))
+        return mp.mpf(value) if isinstance(value, float) else value
+
+    return replace(parameters, **{key: exactly(value) for key, value in vars(parameters).items()})
 
 
 def _centrodes(add: Add) -> None:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import Any, Protocol
 
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.ratio.base import RatioLaw
 from gearcam.laws.ratio.span import ONE_LOBE, Lobes
 from gearcam.laws.rises.base import RiseParameters
+from random_designs.law_draw import Counts, Law, LawDraw
 
 
 class LawParameters(Protocol):
@@ -43,6 +44,31 @@ class LawClaim:
     ratio: Mapping[float, float]
     driven: Mapping[float, float]
     continuity: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class LawClaims:
+    """All that is claimed of a ratio law, and how random ones are drawn.
+
+    Parameters
+    ----------
+    values : tuple of LawClaim
+        Examples with their values; one with a ring as mate at least, unless the mate is a rack.
+    ratio : callable or None
+        The mathematics of the law once more: ``ratio(parameters, lobes, x, m)`` returns the ratio
+        at driver angles x by functions of ``m``, which is numpy or `witness.exact`. None if
+        `helpers_exact` has it.
+    usual : mapping of str to (float, float)
+        Ranges of parameters, in the units of files, within which most random ones can be built.
+        Others are drawn from their lower bound to the value in the law's example.
+    draw : callable or None
+        ``draw(d)`` returns the table of a random law and tooth counts, if ranges do not say it.
+    """
+
+    values: tuple[LawClaim, ...]
+    ratio: Callable[[Any, Lobes, Any, Any], Any] | None = None
+    usual: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    draw: Callable[[LawDraw], tuple[Law, Counts]] | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

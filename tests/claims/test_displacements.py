@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from claims.of_laws import LAW_CLAIMS
+from claims.laws import LAW_CLAIMS
 from claims.of_rises import RISE_CLAIMS
 from gearcam.base.tolerances import DEFAULT
 from gearcam.laws.displacement import Displacement
@@ -49,7 +49,7 @@ MOVING = [
     *(
         pytest.param(claim.parameters.build(claim.lobes, DEFAULT), id=f"law {name}-{number}")
         for name, claims in LAW_CLAIMS.items()
-        for number, claim in enumerate(claims)
+        for number, claim in enumerate(claims.values)
     ),
     *(
         pytest.param(program(claim.parameters), id=f"program {name}-{number}")

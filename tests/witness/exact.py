@@ -69,27 +69,27 @@ class Slope:
         return Slope(power * self.v, exponent * power * self.d)
 
 
-def sin(x: Slope) -> Slope:
-    return Slope(mp.sin(x.v), mp.cos(x.v) * x.d)
+def sin(x: Any) -> Any:
+    return Slope(mp.sin(x.v), mp.cos(x.v) * x.d) if isinstance(x, Slope) else mp.sin(x)
 
 
-def cos(x: Slope) -> Slope:
-    return Slope(mp.cos(x.v), -mp.sin(x.v) * x.d)
+def cos(x: Any) -> Any:
+    return Slope(mp.cos(x.v), -mp.sin(x.v) * x.d) if isinstance(x, Slope) else mp.cos(x)
 
 
-def exp(x: Slope) -> Slope:
-    value = mp.exp(x.v)
-    return Slope(value, value * x.d)
+def exp(x: Any) -> Any:
+    value = mp.exp(x.v if isinstance(x, Slope) else x)
+    return Slope(value, value * x.d) if isinstance(x, Slope) else value
 
 
-def sqrt(x: Slope) -> Slope:
-    root = mp.sqrt(x.v)
-    return Slope(root, x.d / (2 * root))
+def sqrt(x: Any) -> Any:
+    root = mp.sqrt(x.v if isinstance(x, Slope) else x)
+    return Slope(root, x.d / (2 * root)) if isinstance(x, Slope) else root
 
 
-def tanh(x: Slope) -> Slope:
-    value = mp.tanh(x.v)
-    return Slope(value, (1 - value * value) * x.d)
+def tanh(x: Any) -> Any:
+    value = mp.tanh(x.v if isinstance(x, Slope) else x)
+    return Slope(value, (1 - value * value) * x.d) if isinstance(x, Slope) else value
 
 
 Function = Callable[[Slope], Slope]

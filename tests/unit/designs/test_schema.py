@@ -13,7 +13,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from claims.of_laws import LAW_CLAIMS
+from claims.laws import LAW_CLAIMS
 from claims.of_rises import RISE_CLAIMS
 from gearcam.designs import load
 from gearcam.designs.design import functions_in
@@ -114,7 +114,7 @@ def test_what_the_design_decides_has_no_default(
 def test_every_law_has_a_branch_that_takes_its_examples(
     validator: jsonschema.Draft202012Validator, name: str
 ) -> None:
-    for claim in LAW_CLAIMS[name]:
+    for claim in LAW_CLAIMS[name].values:
         values = vars(claim.parameters)
         law = {"type": name} | law_table(name).outward(values)
         if any(functions_in(law)):

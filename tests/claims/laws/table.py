@@ -1,0 +1,98 @@
+"""What the ratio law of `gearcam.laws.ratio.table` must give, and random ones."""
+
+from __future__ import annotations
+
+import math
+
+from claims.claim import LawClaim, LawClaims
+from gearcam.laws.ratio.span import RING, Lobes
+from gearcam.laws.ratio.table import TableLaw
+from random_designs.draw import short
+from random_designs.law_draw import Counts, Law, LawDraw, period
+
+TURN = 2 * math.pi
+DOUBLE = Lobes(1, 2, RING)
+SECTOR = Lobes(1, 1, RING)
+
+
+def table() -> tuple[LawClaim, ...]:
+    turn = 2 * math.pi
+    angles = tuple(turn * k / 8 for k in range(9))
+    # points on a straight line give a line; values at the points are kept
+    waves = tuple(a - 0.1 * math.sin(a) for a in angles)
+    return (
+        LawClaim(
+            parameters=TableLaw(phi1=angles, ratio=(3.0,) * 9),
+            lobes=Lobes(1, 2),
+            ratio={0.0: 0.5, 1.0: 0.5, 5.0: 0.5},
+            driven={1.0: 0.5, turn: math.pi},
+            continuity=3,
+        ),
+        LawClaim(
+            parameters=TableLaw(phi1=angles, phi2=waves),
+            ratio={},
+            driven=dict(zip(angles, waves, strict=True)),
+            continuity=1,
+        ),
+        LawClaim(
+            parameters=TableLaw(phi1=angles, r1=tuple(2.0 + 0.2 * math.cos(a) for a in angles)),
+            ratio={},
+            driven={turn: turn, math.pi: math.pi},
+            continuity=2,
+        ),
+    )
+
+
+def table_in_rings() -> tuple[LawClaim, ...]:
+    angles = tuple(TURN * k / 8 for k in range(9))
+    waves = tuple(0.5 * a - 0.1 * math.sin(a) for a in angles)
+    return (
+        LawClaim(
+            parameters=TableLaw(phi1=angles, phi2=waves),
+            lobes=DOUBLE,
+            ratio={},
+            driven=dict(zip(angles, waves, strict=True)),
+            continuity=1,
+        ),
+        LawClaim(
+            parameters=TableLaw(phi1=angles, r1=(2.0,) * 9),
+            lobes=DOUBLE,
+            ratio={0.0: 0.5, 1.0: 0.5},
+            driven={1.0: 0.5, TURN: math.pi},
+            continuity=3,
+        ),
+        LawClaim(
+            # over a sector, from a ratio told at another scale
+            parameters=TableLaw(
+                phi1=tuple(0.25 * k for k in range(9)), ratio=(3.0,) * 9, driven_travel=1.2
+            ),
+            lobes=SECTOR,
+            ratio={0.0: 0.6, 1.9: 0.6},
+            driven={1.0: 0.6, 2.0: 1.2},
+            continuity=3,
+        ),
+    )
+
+
+def any_table(d: LawDraw) -> tuple[Law, Counts]:
+    z, count, kind = d.lobed(16), d.whole(12, 48), d.pick(["ratio", "phi2_deg", "r1"])
+    a, shift, mean = d.sign() * d.log(1e-2, 0.3), d.even(0, 6), z[0] / z[1]
+    turns = [2 * math.pi * k / count for k in range(count + 1)]
+    angles = [period(z) * k / count for k in range(count + 1)]
+    wave = [math.cos(t + shift) for t in turns[:-1]]
+    wave.append(wave[0])
+    if kind == "phi2_deg":
+        unit = period(z) / (2 * math.pi)
+        rise = [math.sin(t + shift) - math.sin(shift) for t in turns[:-1]] + [0.0]
+        values = [mean * (x + a * unit * w) for x, w in zip(angles, rise, strict=True)]
+    else:
+        values = [(1 + (a if kind == "ratio" else 0.5 * a) * w) for w in wave]
+    if z[0] == z[1] and kind != "phi2_deg" and d.chance(0.3):
+        angles = [short(0.8 * x) for x in angles]
+        return {"phi1_deg": angles, kind: values, "driven_travel_deg": d.even(240, 300)}, z
+    return {"phi1_deg": angles, kind: values}, z
+
+
+CLAIMS = {
+    "table": LawClaims(values=table() + table_in_rings(), draw=any_table),
+}
