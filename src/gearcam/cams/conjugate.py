@@ -103,7 +103,7 @@ class ConjugateCam(Brief, Cam):
     def prime2(self) -> float:
         """From the axis to the second roller's centre at the highest lift, mm."""
         m = self.second.mechanism
-        return replace(m, start=m.start + self.second.program.range[1]).least
+        return m.follower.distance(m.start + self.second.program.range[1])
 
 
 def make_conjugate(
@@ -186,7 +186,7 @@ def _swinging(mechanism: Mechanism, roller: SecondRoller, lowest: float, highest
         raise _out_of_place("follower.roller2_radius_mm", roller.radius, 0.0, pivot + arm, "mm")
     low, high = float(swing(pivot, arm, near)), math.pi - (highest - lowest)
     if roller.prime is not None:
-        far = replace(mechanism, arm=arm, start=max(high, low)).least
+        far = replace(mechanism, arm=arm).follower.distance(max(high, low))
         if not near < roller.prime < far:
             raise _out_of_place(_PRIME2, roller.prime, near, far, "mm")
         return float(swing(pivot, arm, roller.prime))

@@ -14,7 +14,7 @@ Depends on cam, wall and mechanism.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.numerals import rounded_down
@@ -159,7 +159,7 @@ def clears_axis(program: Program, mechanism: Mechanism) -> bool:
         The follower.
     """
     low = mechanism.start + program.range[0]
-    clear = replace(mechanism, start=low).least > mechanism.radius
+    clear = mechanism.follower.distance(low) > mechanism.radius
     return clear and (mechanism.oscillating or low > 0.0)
 
 

@@ -118,6 +118,10 @@ class Follower(Brief, ABC):
             Negative out of reach; mm^2 for a round follower.
         """
 
+    @abstractmethod
+    def distance(self, p: float) -> float:
+        """Return the distance from the origin to its centre or face, mm, at a position."""
+
     @property
     def clear(self) -> float:
         """Largest radius of a cam about the origin that does not reach past its pivot, mm."""
@@ -348,6 +352,10 @@ class Stem(Round):
         """Return positions above the origin."""
         return np.sqrt((radius - self.offset) * (radius + self.offset))
 
+    def distance(self, p: float) -> float:
+        """Return the distance of its centre from the origin, mm."""
+        return math.hypot(self.offset, p)
+
     def behind(self, z: Plane, grow: Array | float) -> Mask:
         """Return which discs lie above one below the axis (see `Follower.behind`)."""
         return np.full(z.shape, self.start < 0.0) & (z.imag - grow > 0.0)
@@ -448,6 +456,13 @@ class Arm(Round):
     def clear(self) -> float:
         """Largest radius of a cam about the origin that does not reach past its pivot, mm."""
         return self.pivot.real + self.arm - self.radius
+
+    def distance(self, p: float) -> float:
+        """Return the distance of its centre from the origin, mm, of a pivot on the x axis."""
+        # law of cosines by half the angle: with a long arm, short pivot it cannot round below 0
+        pivot = self.pivot.real
+        half = math.sqrt(pivot * self.arm) * math.sin(0.5 * p)
+        return math.hypot(pivot - self.arm, 2.0 * half)
 
     def behind(self, z: Plane, grow: Array | float) -> Mask:
         """Return which discs lie beyond the pivot, or above the axis (see `Follower.behind`)."""
@@ -586,6 +601,10 @@ class FlatStem(Face):
         """Millimetres per unit of lift."""
         return 1.0
 
+    def distance(self, p: float) -> float:
+        """Return the height of the face, mm."""
+        return p
+
     def mirrored(self) -> Self:
         """Return its mirror image in the x axis."""
         return replace(self, start=-self.start)
@@ -660,6 +679,10 @@ class FlatArm(Face):
     def clear(self) -> float:
         """Largest radius of a cam about the origin that does not reach past its pivot, mm."""
         return self.pivot - self.offset
+
+    def distance(self, p: float) -> float:
+        """Return the distance of the face from the origin, mm."""
+        return self.pivot * math.sin(p) - self.offset
 
     def mirrored(self) -> Self:
         """Return its mirror image in the x axis."""

@@ -87,7 +87,7 @@ class GrooveCam(Brief, Cam):
 def _farthest(motion: PitchMotion) -> float:
     """Return the largest distance of the roller's centre from the axis, mm."""
     m = motion.mechanism
-    return replace(m, start=m.start + motion.program.range[1]).least
+    return m.follower.distance(m.start + motion.program.range[1])
 
 
 def make_groove(
@@ -174,7 +174,7 @@ def make_groove(
 
 def _too_wide(program: Program, deepest: Mechanism) -> InfeasibleError:
     """Return the error for a groove that contains the axis."""
-    nearest = replace(deepest, start=deepest.start + program.range[0]).least
+    nearest = deepest.follower.distance(deepest.start + program.range[0])
     return InfeasibleError(
         "the groove is so wide that it reaches the cam's axis",
         where="[cam]",

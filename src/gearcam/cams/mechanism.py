@@ -32,12 +32,9 @@ Sources: 000 section 3.4.2 (3.14), (3.15); section 3.4.3 (3.28).
 
 from __future__ import annotations
 
-import cmath
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
-
-import numpy as np
 
 from gearcam.base.display import Brief
 from gearcam.base.errors import InfeasibleError, Way
@@ -45,7 +42,6 @@ from gearcam.base.numerals import shown
 from gearcam.cams.carriers import Carrier, Rotating, Sliding
 from gearcam.cams.followers import Arm, FlatArm, FlatStem, Follower, Round, Stem, swing
 from gearcam.cams.spec import CamSpec, FollowerSpec
-from gearcam.numeric.arrays import Array, Plane
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -175,13 +171,6 @@ class Mechanism(Brief):
         """What the cam does beneath it."""
         return Sliding(self.slide) if self.slide else Rotating()
 
-    def sliding_centre(self, position: Array) -> Plane:
-        """Return centres of a round follower over a cam that slides, in the fixed frame."""
-        if not self.oscillating:
-            return np.asarray(1j * cmath.exp(1j * self.tilt) * position, dtype=np.complex128)
-        arm = self.arm * np.exp(1j * position)
-        return np.asarray(complex(-self.pivot, self.height) + arm, dtype=np.complex128)
-
     @property
     def lever(self) -> float:
         """Factor from lift to millimetres: 1, or the arm (for a flat face the pivot distance)."""
@@ -224,13 +213,7 @@ class Mechanism(Brief):
 
         For a cam that turns.
         """
-        if not self.oscillating:
-            return self.start if self.flat else math.hypot(self.offset, self.start)
-        if self.flat:
-            return self.pivot * math.sin(self.start) - self.face_offset
-        # law of cosines by half the angle: with a long arm, short pivot it cannot round below 0
-        half = math.sqrt(self.pivot * self.arm) * math.sin(0.5 * self.start)
-        return math.hypot(self.pivot - self.arm, 2.0 * half)
+        return self.follower.distance(self.start)
 
 
 def make_mechanism(follower: FollowerSpec, cam: CamSpec) -> Mechanism:

@@ -219,7 +219,7 @@ def _plate(
             raise _too_small("length_mm", "long", length, bare)
         left, right = (0.5 * (left + right + way) for way in (-length, length))
     positions = np.array(program.range) + mechanism.start
-    bottom, top = mechanism.sliding_centre(positions).imag.tolist()
+    bottom, top = mechanism.centred.centre(positions).imag.tolist()
     least = top - bottom + (2.0 * radius if groove else 0.0)
     if not height > least:
         raise _too_small("height_mm", "high", height, least)

@@ -294,3 +294,19 @@ def test_a_follower_moves_as_a_rigid_body(case: Case) -> None:
         (np.conj(way) * (touched[1] - one[-1])).imag for way, one in zip(ways, lines, strict=True)
     ]
     assert np.abs(off).min() < 1e-12
+
+
+@pytest.mark.parametrize("off", [0.0, 1e-9, 0.3])
+def test_the_distance_from_the_axis_keeps_its_digits(off: float) -> None:
+    """Of an arm as long as the pivot distance it goes to zero with the position."""
+    arm = Arm(start=0.5, arm=80.0, pivot=80.0 + 0j)
+    assert arm.distance(off) == pytest.approx(160.0 * math.sin(0.5 * off), rel=1e-15)
+
+
+def test_the_distance_from_the_axis_is_that_of_the_curve(case: Case) -> None:
+    if not case.carrier.around:
+        pytest.skip("a plate has no axis")
+    p = np.array([case.follower.start + 0.2 * case.lift])
+    point, tangent = case.follower.trace(case.carrier, 0.0 * p, p, 0.0 * p, 0.0)
+    far = (np.conj(tangent) * point).imag if isinstance(case.follower, Face) else np.abs(point)
+    assert case.follower.distance(float(p[0])) == pytest.approx(float(far[0]), rel=1e-14)

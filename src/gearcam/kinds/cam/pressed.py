@@ -217,5 +217,5 @@ def _least(result: CamResult, motion: PitchMotion, code: str, limit: float) -> f
         most = float((np.minimum(turn + limit, 2.0 * math.pi - turn - limit) - lift).min())
     else:
         least = max(least, float((np.abs(speed - m.offset) / math.tan(limit) - lift).max()))
-    found = replace(m, start=least).least
+    found = m.follower.distance(least)
     return found if least <= most and found <= _MOST * _need(motion) else None
