@@ -15,8 +15,8 @@ from gearcam.cli import main
 from gearcam.commands import studied
 from gearcam.designs import loads
 from gearcam.gears.contact import FlankPairs
-from gearcam.kinds.gear_pair import build as gear_pair
 from gearcam.kinds.gear_pair.design import GearPairDesign
+from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.kinds.gear_pair.studies import MESH
 from gearcam.meshing import study as room
 from gearcam.meshing.contact import Contacts
@@ -214,6 +214,6 @@ def test_a_study_without_a_beginning_begins_at_zero() -> None:
 
 def test_progress_is_told(design: str) -> None:
     calls: list[tuple[str, int, int]] = []
-    job = gear_pair.GearPairResult(gearcam.load(design))
+    job = GearPairResult(gearcam.load(design))
     job.mesh(progress=lambda *call: calls.append(call))
     assert calls[0] == ("meshing", 0, 12)
