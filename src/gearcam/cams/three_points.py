@@ -72,10 +72,8 @@ def three_point_curvature(points: Plane, closed: bool = True) -> Array:
     before, after = step[:-1], step[1:]
     sides = np.abs(before) * np.abs(after) * np.abs(before + after)
     if not np.all(sides > 0.0):
-        raise InfeasibleError(
-            "a point and its neighbours are not three different points",
-            where=f"point {int(np.argmin(sides > 0.0)) + int(not closed)}",
-        )
+        what = "a point and its neighbours are not three different points"
+        raise InfeasibleError(what, where=f"point {int(np.argmin(sides > 0.0)) + int(not closed)}")
     # before x after = before x (after - before): the product of similar steps loses no digits
     return 2.0 * (np.conj(before) * (after - before)).imag / sides
 

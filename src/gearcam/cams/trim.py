@@ -19,7 +19,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearcam.base.display import Brief
-from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.errors import InfeasibleError, Way, beyond_limit
 from gearcam.cams.curve import ProfileSegments
 from gearcam.cams.measures import over_the_end
 from gearcam.numeric.arrays import Array, Plane
@@ -194,12 +194,9 @@ def trimmed(
         If the crossings cannot be separated, or are too many.
     """
     if len(undercut) > _MOST:
-        raise InfeasibleError(
-            "the profile is undercut in too many places to be trimmed",
-            where="[cam]",
-            value=len(undercut),
-            limit=_MOST,
-            nearest="use a lift with fewer waves or less noise",
+        what = "the profile is undercut in too many places to be trimmed"
+        raise beyond_limit(
+            what, "[cam]", len(undercut), _MOST, "use a lift with fewer waves or less noise"
         )
     for number in range(_ROUNDS):
         chain = _chain(segments, undercut, tolerance * 0.25**number)
@@ -213,17 +210,13 @@ def trimmed(
                 return made
     if segments.curve.program.open:
         run, runs = _RUNS * abs(segments.inset), ("cam.run_in_mm", "cam.run_out_mm")
+        what = "the wall is undercut at the beginning or end of its travel and cannot be trimmed"
+        ways = (Way(near=dict.fromkeys(runs, 0.0), far=dict.fromkeys(runs, run)),)
         raise InfeasibleError(
-            "the wall is undercut at the beginning or end of its travel and cannot be trimmed",
-            where="[cam]",
-            nearest="use longer run_in_mm and run_out_mm",
-            ways=(Way(near=dict.fromkeys(runs, 0.0), far=dict.fromkeys(runs, run)),),
+            what, where="[cam]", nearest="use longer run_in_mm and run_out_mm", ways=ways
         )
-    raise InfeasibleError(
-        "the profile has too many self-intersections: the trimmed profile cannot be determined",
-        where="[cam]",
-        nearest="its pieces do not join to one closed line",
-    )
+    what = "the profile has too many self-intersections: the trimmed profile cannot be determined"
+    raise InfeasibleError(what, where="[cam]", nearest="its pieces do not join to one closed line")
 
 
 def _backwards(segments: ProfileSegments, undercut: Sequence[tuple[float, float]]) -> bool:
@@ -317,20 +310,13 @@ def crossing_chords(
         finer = replace(sampler, tolerance=sampler.tolerance * 0.25**number)
         if contour(finer).polygon.is_valid:
             key = "output.chord_tolerance_mm"
-            return InfeasibleError(
-                f"the {called} has a part so narrow that its chords cross",
-                where=key,
-                value=sampler.tolerance,
-                limit=finer.tolerance,
-                unit="mm",
-                nearest="at the limit they do not cross",
-                ways=(Way(near={key: finer.tolerance}),),
+            what = f"the {called} has a part so narrow that its chords cross"
+            note = "at the limit they do not cross"
+            return beyond_limit(
+                what, key, sampler.tolerance, finer.tolerance, note, near=finer.tolerance
             )
-    return InfeasibleError(
-        f"the {called} crosses itself, or has a part much narrower than its chord tolerance",
-        where="[cam]",
-        nearest="its chords do not form one closed line",
-    )
+    what = f"the {called} crosses itself, or has a part much narrower than its chord tolerance"
+    return InfeasibleError(what, where="[cam]", nearest="its chords do not form one closed line")
 
 
 def cut_out(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.errors import beyond_limit
 from gearcam.base.facts import Fact
 from gearcam.base.numerals import shown
 from gearcam.cams.disc import CHORD_TOLERANCE
@@ -132,15 +132,9 @@ class Groove(Form):
         cam = _cam(result)
         widest = 0.5 * cam.width
         if radius is not None and radius > widest:
-            raise InfeasibleError(
-                "the cutter is wider than the groove",
-                where=TOOL_RADIUS,
-                value=radius,
-                limit=widest,
-                unit="mm",
-                nearest="the limit is half the groove's width, included",
-                ways=(Way(near={TOOL_RADIUS: widest}),),
-            )
+            what = "the cutter is wider than the groove"
+            note = "the limit is half the groove's width, included"
+            raise beyond_limit(what, TOOL_RADIUS, radius, widest, note, near=widest)
         if cam.relief is None and radius in (None, widest):
             return {TOOL_PATH: cam.inner.pitch_contour}
         tool = widest if radius is None else radius

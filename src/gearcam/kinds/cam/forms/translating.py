@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.errors import beyond_limit
 from gearcam.base.facts import Fact
 from gearcam.base.numerals import shown
 from gearcam.cams.mechanism import make_sliding_mechanism
@@ -338,14 +338,9 @@ def _drawing(result: CamResult, follower: Sequence[Shape] = (), way: float = 0.0
 def _demand_reached(place: float, way: float) -> None:
     """Refuse a place of the assembly drawing, mm, beyond the travel of the cam."""
     if place > way:
-        raise InfeasibleError(
-            "the assembly drawing is beyond the travel of the cam",
-            where="output.u_mm",
-            value=place,
-            limit=way,
-            unit="mm",
-            nearest="the limit is its whole travel, included",
-            ways=(Way(near={"output.u_mm": way}),),
+        what = "the assembly drawing is beyond the travel of the cam"
+        raise beyond_limit(
+            what, "output.u_mm", place, way, "the limit is its whole travel, included", near=way
         )
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 import numpy as np
 
-from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.errors import Way, beyond_limit
 from gearcam.base.facts import Fact
 from gearcam.base.numerals import shown
 from gearcam.cams.disc import YokeCam, make_yoke
@@ -112,15 +112,9 @@ def _demand_opposite(program: Program, motion: Motion) -> None:
         told = ", ".join(f"{one['type']} {shown(one['angle_deg'])} deg" for one in phases)
         rule += f", and these agree best with the first half: {told}"
         ways = (Way(near={"motion": phases}),)
-    raise InfeasibleError(
-        "the two half turns of a yoke's lift are not opposite to each other",
-        where=f"motion, at {shown(math.degrees(off.theta))} deg",
-        value=off.value,
-        limit=_MISS,
-        unit="mm",
-        nearest=rule,
-        ways=ways,
-    )
+    what = "the two half turns of a yoke's lift are not opposite to each other"
+    where = f"motion, at {shown(math.degrees(off.theta))} deg"
+    raise beyond_limit(what, where, off.value, _MISS, rule, ways=ways, unit="mm")
 
 
 FORMS.register(Yoke())
