@@ -18,8 +18,6 @@ import picture
 from arch import rules
 from gearcam.designs import document_of, loads
 from gearcam.kinds.gear_pair.design import GearPairDesign
-from gearcam.laws.ratio.base import LAWS
-from gearcam.laws.rises.base import RISES
 from gearcam.parts.mass import mass_properties
 
 ROOT = rules.ROOT
@@ -135,12 +133,6 @@ def test_the_readme_is_short_and_in_order() -> None:
     assert len(README.encode()) <= 9000
     titles = re.findall(r"^## (.+)$", README, re.MULTILINE)
     assert titles == ["Start", "A pair of gears", "In Python", "A cam", "What works", "Read on"]
-
-
-def test_the_numbers_of_laws_are_those_of_the_registries() -> None:
-    words = {16: "sixteen", 17: "seventeen", 19: "nineteen", 20: "twenty"}
-    assert f"{words[len(LAWS)]} ratio laws" in README
-    assert f"{words[len(RISES)]} motion laws" in README
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
