@@ -39,7 +39,7 @@ from gearcam.base.display import Brief
 from gearcam.cams.carriers import Carrier, Pair, unit
 from gearcam.cams.contact import Contact
 from gearcam.numeric.arrays import Array, Mask, Plane
-from gearcam.numeric.jets import Jet, asin, atan, cos, sin, sqrt
+from gearcam.numeric.jets import Jet, asin, atan, cos, sin_cos, sqrt
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -442,7 +442,8 @@ class Arm(Round):
         Of the angle itself: the centre's coordinates would lose the digits of the first part, whose
         sign says on which side of the axis the centre is.
         """
-        c, s, x, y = cos(p), self.hand * sin(p), self.pivot.real, self.pivot.imag
+        (s, c), x, y = sin_cos(p), self.pivot.real, self.pivot.imag
+        s = self.hand * s
         across, against = x * s, -x * c
         if y:
             across, against = across + y * c, against + y * s
@@ -718,7 +719,8 @@ class FlatArm(Face):
 
     def line(self, p: Jet, ds: Jet) -> tuple[Jet, Jet, Jet]:
         """Return the face as a line (see `Face.line`)."""
-        return self.pivot * sin(p) - self.offset, self.pivot * cos(p) * ds, ds
+        s, c = sin_cos(p)
+        return self.pivot * s - self.offset, self.pivot * c * ds, ds
 
     def guided(self, p: Jet, turning: Jet, along: Jet) -> tuple[Jet, Jet, Jet]:  # noqa: ARG002
         """Return the distance of the contact from the pivot's foot (see `Face.guided`).

@@ -227,6 +227,17 @@ def cos(x: Jet) -> Jet:
     return _oscillate(x, sine=False)
 
 
+def sin_cos(x: Jet) -> tuple[Jet, Jet]:
+    """Sine and cosine of a jet, in half the time of both."""
+    f: list[Value] = [np.sin(x.c[0])]
+    g: list[Value] = [np.cos(x.c[0])]
+    for k in range(1, x.order + 1):
+        weights = _weights(x, k)
+        f.append(_total([w * g[j] for w, j in weights]))
+        g.append(-_total([w * f[j] for w, j in weights]))
+    return Jet(f), Jet(g)
+
+
 def tan(x: Jet) -> Jet:
     """Tangent of a jet."""
     return sin(x) / cos(x)

@@ -316,3 +316,17 @@ def test_bracketed_roots_reach_rounding_in_few_steps() -> None:
     found = bracketed_root(cubic, [0.0], [1.0], 1e-15)
     assert found[0] == pytest.approx(float(mpmath.findroot(lambda t: mpmath.cos(t) - t**3, 0.8)))
     assert calls < 16
+
+
+def test_sine_and_cosine_together_are_those_alone() -> None:
+    x = Jet([np.linspace(-2.0, 2.0, 5), 0.7, np.linspace(0.1, 0.3, 5), -0.2])
+    for both, alone in zip(jets.sin_cos(x), (jets.sin(x), jets.cos(x)), strict=True):
+        for found, given in zip(both.derivatives(), alone.derivatives(), strict=True):
+            assert found == pytest.approx(given, rel=1e-15)
+
+
+def test_the_derivative_of_a_jet_and_the_jet_without_its_last() -> None:
+    """Of ``x**4`` at 2: 32, 48, 48 after the value 16."""
+    power = Jet.variable(np.array([2.0]), 3) ** 4
+    assert [float(value[0]) for value in power.differentiated().derivatives()] == [32.0, 48.0, 48.0]
+    assert [float(value[0]) for value in power.shortened().derivatives()] == [16.0, 32.0, 48.0]
