@@ -71,6 +71,6 @@ def ratio(law: Ellipse, lobes: Lobes, x: Any, m: Any) -> Any:
 
 CLAIMS = {
     "ellipse": LawClaims(
-        values=ellipse() + ellipse_in_rings(), ratio=ratio, usual={"eccentricity": (1e-3, 0.9)}
+        values=ellipse() + ellipse_in_rings(), ratio=ratio, usual={"eccentricity": (1e-3, 0.8)}
     ),
 }

@@ -12,6 +12,7 @@ from collections.abc import Collection, Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import gearcam
@@ -156,12 +157,14 @@ def test_every_key_of_studies_is_described(tmp_path: Path) -> None:
 def joint(monkeypatch: pytest.MonkeyPatch) -> Any:
     """The law that docs/contributing.md adds, as a module that registers nothing."""
     page = (rules.ROOT / "docs" / "contributing.md").read_text("utf-8")
-    (block,) = re.findall(r"^```python\n(.*?)^```$", page, re.DOTALL | re.MULTILINE)
-    module = types.ModuleType("joint")
-    monkeypatch.setitem(sys.modules, "joint", module)
+    block, claims = re.findall(r"^```python\n(.*?)^```$", page, re.DOTALL | re.MULTILINE)
+    name = "gearcam.laws.ratio.joint"
+    module = types.ModuleType(name)
+    monkeypatch.setitem(sys.modules, name, module)
     kept = block.replace("LAWS.register(", "ENTRY = (")
     exec(compile(kept, "joint.py", "exec"), vars(module))
     assert module.ENTRY.name == "universal-joint"
+    exec(compile(claims, "claims.py", "exec"), vars(module))
     return module
 
 
@@ -176,6 +179,19 @@ def test_the_law_of_the_contributing_page_is_that_of_the_joint(joint: Any) -> No
         )
     (_, low), (_, high) = law.ratio_range
     assert (low, high) == pytest.approx((2 * c / 3, 2 / (3 * c)), rel=1e-13)
+
+
+def test_the_claims_of_the_contributing_page_hold(joint: Any) -> None:
+    claims = joint.CLAIMS[joint.ENTRY.name]
+    for claim in claims.values:
+        law = claim.parameters.build(claim.lobes, DEFAULT)
+        for phi, ratio in claim.ratio.items():
+            assert float(law.ratio(phi)) == pytest.approx(ratio, abs=1e-14)
+        for phi, driven in claim.driven.items():
+            assert float(law.phi2(phi)) == pytest.approx(driven, abs=2e-14)
+        phi = np.linspace(0.0, law.period, 9)
+        expected = claims.ratio(claim.parameters, claim.lobes, phi, np)
+        np.testing.assert_allclose(law.ratio(phi), expected, rtol=1e-13)
 
 
 def test_the_pair_of_the_contributing_page_has_the_size_shown() -> None:
