@@ -89,7 +89,7 @@ class Carrier(ABC, Brief):
         """Return velocities of points z of the cam in the fixed frame, mm per unit of x."""
 
     @abstractmethod
-    def stand(self, follower: Centred, z: Plane, near: Array) -> tuple[Array, Array]:
+    def stand(self, follower: Centred, z: Plane, near: Array) -> tuple[Array, Array, Plane]:
         """Return where a follower has its centre on given points of the cam's frame.
 
         Parameters
@@ -103,8 +103,8 @@ class Carrier(ABC, Brief):
 
         Returns
         -------
-        x, p : (n,) arrays
-            Driver positions, and positions of the follower.
+        x, p, centre : (n,) arrays
+            Driver positions, positions of the follower, and its centres in the fixed frame, mm.
         """
 
 
@@ -135,10 +135,11 @@ class Rotating(Carrier):
         """Return velocities around the origin (see `Carrier.passing`)."""
         return 1j * z
 
-    def stand(self, follower: Centred, z: Plane, near: Array) -> tuple[Array, Array]:
+    def stand(self, follower: Centred, z: Plane, near: Array) -> tuple[Array, Array, Plane]:
         """Return where the centres are on the points (see `Carrier.stand`)."""
         p = follower.on_circle(np.abs(z))
-        return near + np.angle(follower.centre(p) * np.conj(z) * unit(-near)), p
+        centre = follower.centre(p)
+        return near + np.angle(centre * np.conj(z) * unit(-near)), p, centre
 
 
 @dataclass(frozen=True)
@@ -177,7 +178,8 @@ class Sliding(Carrier):
         """Return the velocity of all points."""
         return np.full(np.shape(z), -self.scale, dtype=np.complex128)
 
-    def stand(self, follower: Centred, z: Plane, near: Array) -> tuple[Array, Array]:  # noqa: ARG002
+    def stand(self, follower: Centred, z: Plane, near: Array) -> tuple[Array, Array, Plane]:  # noqa: ARG002
         """Return where the centres are on the points (see `Carrier.stand`)."""
         p = follower.on_level(z.imag)
-        return (z - follower.centre(p)).real / self.scale, p
+        centre = follower.centre(p)
+        return (z - centre).real / self.scale, p, centre

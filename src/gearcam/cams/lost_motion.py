@@ -73,11 +73,11 @@ class Rest(Brief):
         theta = np.where(jumps, knots, parameter)
         centers, velocities = self._centers.moving(index, parameter)
         follower, carrier = m.centred, m.carrier
-        stands, position = carrier.stand(follower, centers, theta)
+        stands, position, fixed = carrier.stand(follower, centers, theta)
         # components along the follower's direction and across it
         across = np.conj(unit(follower.lean(position)))
         drawn = across * velocities * carrier.frame(stands)[0]
-        turned = across * carrier.passing(follower.centre(position))
+        turned = across * carrier.passing(fixed)
         slope = -drawn.real / turned.real
         rise = (drawn.imag + turned.imag * slope) / follower.lever
         lift = position - follower.start

@@ -221,7 +221,8 @@ def test_a_centre_stands_where_it_came_from(case: Case) -> None:
         pytest.skip("no centre, or below the axis")
     p = follower.start + lifts(case)[0]
     z = carrier.under(PLACES, follower.centre(p))
-    x, found = carrier.stand(follower, z, PLACES + 0.3)
+    x, found, centre = carrier.stand(follower, z, PLACES + 0.3)
+    assert centre == pytest.approx(follower.centre(p), abs=1e-13)
     assert x == pytest.approx(PLACES, abs=1e-13)
     assert found == pytest.approx(p, abs=1e-13)
     turn, shift = carrier.frame(PLACES)
