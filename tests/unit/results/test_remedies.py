@@ -406,7 +406,7 @@ def test_a_larger_cam_is_no_remedy_for_chords_that_are_too_fine(tmp_path: Path) 
     """Whether its profile can be drawn is asked where any file is, not when it is written."""
     follower = {"type": "domed", "dome_radius_mm": 500.0}
     document = cam(follower, {"base_radius_mm": 2000.0}, 400)
-    document["output"]["chord_tolerance_mm"] = 1e-12
+    document["output"]["chord_tolerance_mm"] = 1e-9
     made = job_of(document, tmp_path)
     with pytest.raises(InfeasibleError, match="chords") as refused:
         made.write(tmp_path / "out")
