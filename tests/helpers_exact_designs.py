@@ -69,6 +69,7 @@ def _claimed() -> Iterator[Case]:
             each = math.ceil(40 / min(lobes.n1, lobes.n2))
             teeth = each * lobes.n1, each * lobes.n2
             law = _in_30_digits(claim.parameters)
+            assert claims.ratio is not None
             ex = lambda _, f=claims.ratio, p=law, n=lobes: Exact(  # noqa: E731
                 whole(lambda x: f(p, n, x, exact), turn_of(n.n1)), n.mate
             )

@@ -69,7 +69,7 @@ def uses(folder: Path, others: Iterable[str]) -> tuple[set[str], list[str]]:
                     used.add(other)
                     wrong += [name] if not part.startswith("public.") else []
             if isinstance(node, ast.Call) and ast.unparse(node.func).endswith("nested"):
-                named = {one.value for one in node.args if isinstance(one, ast.Constant)}
+                named = {str(one.value) for one in node.args if isinstance(one, ast.Constant)}
                 used |= {one.replace("-", "_") for one in named} & set(known)
     return used, wrong
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import pytest
 
 from gearcam.base.errors import Way, beyond_limit
@@ -41,6 +43,6 @@ def test_the_text_has_the_place_the_numbers_and_the_note() -> None:
         ({"near": 0.9, "far": 0.1}, Way(near={"ring.rim_mm": 0.9}, far={"ring.rim_mm": 0.1})),
     ],
 )
-def test_the_change_is_that_of_the_key_and_comes_first(changes: dict[str, float], way: Way) -> None:
+def test_the_change_is_that_of_the_key_and_comes_first(changes: dict[str, Any], way: Way) -> None:
     error = beyond_limit("too large", "wheel 2, ring.rim_mm", 2.0, 1.0, ways=(OTHER,), **changes)
     assert error.ways == (way, OTHER)

@@ -268,14 +268,15 @@ def test_a_round_follower_rests_highest_on_a_chord_at_its_own_place(
     """Positions on points of a chord, metal to its left, are lower on both sides of that place."""
     if isinstance(case.follower, Face):
         pytest.skip("a face rests on the ends of chords")
-    chord = np.array([3.0 * np.exp(1j * angle)])
-    z = np.array([resting_place(case)]) - 0.4 * chord
+    chord = np.array([3.0 * np.exp(1j * angle)], dtype=np.complex128)
+    z = np.asarray([resting_place(case)], dtype=np.complex128) - 0.4 * chord
     share = case.follower.on_chord(z, chord, 0.5)
     places = z + (share + np.array([-1e-3, 0.0, 1e-3])) * chord
     rests, room = case.follower.rest(Jet([places.real]), Jet([places.imag]), 0.5)
     assert np.all(room > 0.0)
-    assert rests.c[0][1] > max(rests.c[0][0], rests.c[0][2])
-    assert rests.c[0][0] == pytest.approx(rests.c[0][2], abs=1e-8 * case.lift)
+    before, at, after = np.asarray(rests.c[0])
+    assert at > max(before, after)
+    assert before == pytest.approx(after, abs=1e-8 * case.lift)
 
 
 def test_a_follower_moves_as_a_rigid_body(case: Case) -> None:
