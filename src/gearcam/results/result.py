@@ -53,7 +53,7 @@ _framed = deferred("gearcam.report.file:framed")
 """Returns the page of a result for a notebook; named like the renderer of `gearcam.base.display`,
 since the report is made from results."""
 
-_OF_STUDIES: Final = ("_studied", "facts", "findings", "design_hash", "sought", "sizes")
+_OF_STUDIES: Final = ("_studied", "_running", "facts", "findings", "design_hash", "sought", "sizes")
 """What a result with other studies computes anew."""
 
 
@@ -85,6 +85,7 @@ class Result(Displayed):
         self.timings: dict[str, float] = {}
         self.sizes: dict[str, int] = {}  # bytes of the files built so far
         self._studied: dict[str, StudyResult] = {}
+        self._running: set[str] = set()  # studies that are being computed
         self.sought: dict[float, Any] = {}  # remedies found, by the patience of the search
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -133,8 +134,12 @@ class Result(Displayed):
 
     @property
     def studies(self) -> dict[str, StudyResult]:
-        """The outcomes of the studies that the design asks for, by name, computed once."""
-        return {name: self.study(name) for name in self.design.output.studies}
+        """The outcomes of the studies that the design asks for, by name, computed once.
+
+        Without one that is being computed: it may use scene, charts and facts of the design.
+        """
+        asked = (name for name in self.design.output.studies if name not in self._running)
+        return {name: self.study(name) for name in asked}
 
     def study(self, name: str, progress: Progress | None = None) -> StudyResult:
         """Return the outcome of a study with the settings of the design, computed once.
@@ -161,7 +166,11 @@ class Result(Displayed):
         found = self._studied.get(name)
         if found is None or found.interrupted:
             entry.demand(self.design)
-            found = self._studied[name] = entry.compute(self, progress)
+            self._running.add(name)
+            try:
+                found = self._studied[name] = entry.compute(self, progress)
+            finally:
+                self._running.discard(name)
         return found
 
     def with_settings(self, title: str, settings: Mapping[str, object]) -> Self:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -139,6 +140,22 @@ def test_a_search_for_remedies_does_without_it(asked: Any, monkeypatch: pytest.M
     monkeypatch.setattr(type(MESH), "compute", property(lambda _: never), raising=False)
     wide = asked.design.with_({"blank.bore_diameter_mm": 60})
     assert gearcam.remedies(gearcam.build(wide), patience=3.0).builds > 0
+
+
+def test_a_study_may_use_the_scene_of_its_design(
+    asked: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Without itself in it."""
+    from gearcam.kinds.gear_pair import studies
+
+    def compute(result: Any, _: Any) -> Any:
+        assert "as mounted" not in result.scene(12).contacts
+        return asked.study("mesh")
+
+    monkeypatch.setitem(studies.STUDIES, "mesh", replace(studies.MESH, compute=compute))
+    result = gearcam.build(asked.design)
+    assert result.study("mesh") is asked.study("mesh")
+    assert "as mounted" in result.scene(12).contacts
 
 
 def test_follow_is_asked_for_with_a_profile(tmp_path: Path) -> None:
