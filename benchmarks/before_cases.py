@@ -24,7 +24,10 @@ CHILD = """
 import sys, tempfile, time
 import numpy as np
 import gearcam
-from gearcam.numeric.arrays import keep_freed_memory
+try:
+    from gearcam.numeric.arrays import keep_freed_memory
+except ImportError:  # its place in older commits
+    from gearcam.numeric.memory import keep_freed_memory
 keep_freed_memory()
 nail, cam = (gearcam.load(path) for path in sys.argv[1:3])
 
@@ -195,7 +198,10 @@ def _ratio(
 GROWING = """
 import sys, time
 import gearcam
-from gearcam.numeric.arrays import keep_freed_memory
+try:
+    from gearcam.numeric.arrays import keep_freed_memory
+except ImportError:  # its place in older commits
+    from gearcam.numeric.memory import keep_freed_memory
 keep_freed_memory()
 design = gearcam.load(sys.argv[1])
 for _ in sys.stdin:

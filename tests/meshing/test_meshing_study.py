@@ -24,7 +24,6 @@ from gearcam.meshing.checks import KIND
 from gearcam.meshing.numbers import numbers, pairs_in_contact
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.meshing.study import Meshing, mount, run, study
-from gearcam.numeric import sampling
 from helpers_pairs import OVERCLOSURE, job, moved, profile
 from helpers_sampling import few
 
@@ -233,13 +232,13 @@ def test_teeth_that_cannot_be_told_apart_are_refused() -> None:
         study(made.gears, MeshingSpec())
 
 
+@pytest.mark.parametrize(("most", "words"), [(1e7, "lost in rounding"), (1e5, "chords")])
 def test_an_overclosure_too_small_to_be_shown_is_refused_with_one_that_is_not(
-    monkeypatch: pytest.MonkeyPatch,
+    most: float, words: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for room in (study_room, sampling):
-        monkeypatch.setattr(room, "MOST", 1e5)
+    monkeypatch.setattr(study_room, "_MOST", most)
     made = job(Ellipse(eccentricity=0.281), (20, 20), module=2.0)
-    with pytest.raises(InfeasibleError, match="chords") as refused:
+    with pytest.raises(InfeasibleError, match=words) as refused:
         mount(made.gears, MeshingSpec(overclosure=-1e-11))
     told = refused.value.nearest
     assert told is not None

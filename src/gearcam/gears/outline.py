@@ -28,7 +28,7 @@ from gearcam.laws.ratio.span import angle_text
 from gearcam.numeric.arrays import Array, Ints, Mask
 from gearcam.numeric.bulges import as_pairs
 from gearcam.numeric.contour import Contour, Run
-from gearcam.numeric.sampling import Sampler
+from gearcam.numeric.sampling import MOST, Sampler
 
 _NO_MATE = 3.0
 """Reach in pitches beyond that of any flank."""
@@ -91,6 +91,8 @@ class Outline(Brief):
         Dense points per chord.
     ring : RingSpec, optional
         Outside of an open ring; by default that of `RingSpec()`.
+    most : float
+        Largest number of chords; more are refused.
     """
 
     toothing: Toothing
@@ -99,6 +101,7 @@ class Outline(Brief):
     tolerance: float
     oversampling: int
     ring: RingSpec | None = None
+    most: float = MOST
 
     @cached_property
     def sampler(self) -> Sampler:
@@ -107,6 +110,7 @@ class Outline(Brief):
             curves=WheelCurves(toothing=self.toothing, rows=self.rows),
             tolerance=self.tolerance,
             closed=self.toothing.closed,
+            most=self.most,
         )
 
     @cached_property

@@ -21,7 +21,7 @@ from gearcam.base.errors import ABOVE, InfeasibleError, beyond_limit
 from gearcam.base.numerals import shown
 from gearcam.gears.contact import COAST, DRIVE, FlankPairs, flank_pairs
 from gearcam.gears.outline import Outline
-from gearcam.gears.pair import Gear, GearPair
+from gearcam.gears.pair import FINEST, Gear, GearPair
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.edges import first_touch, to_pitch_line
 from gearcam.meshing.half_teeth import half_teeth
@@ -30,12 +30,14 @@ from gearcam.meshing.patches import patches
 from gearcam.meshing.rows import Block, columns_of, on_side
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.numeric.arrays import Array, Mask
-from gearcam.numeric.sampling import MOST
 
 Progress = Callable[[str, int, int], None]
 
 SHARE = 1.0 / 200.0
 """Chord error of each outline over the penetration: a hundredth for both together."""
+
+_MOST = 1e7
+"""Largest number of chords of a studied outline: more half-teeth would not fit into memory."""
 
 BLOCK = 120
 """Phases studied at once: few enough to report progress, many enough to be fast."""
@@ -330,18 +332,25 @@ def _outlines(
     gears: tuple[Gear, Gear], spec: MeshingSpec, penetration: float
 ) -> tuple[Outline, Outline]:
     """Return outlines that resolve a penetration, mm; refuse an overclosure too small for that."""
-    usual = gears[0].pair.chord_tolerance(None)
-    tolerance = min(SHARE * penetration, usual)
-    one, two = (replace(gear.profile, tolerance=tolerance) for gear in gears)
-    chords = max(one.sampler.least, two.sampler.least)
-    if tolerance == usual or chords <= MOST:
+    pair = gears[0].pair
+    tolerance = min(SHARE * penetration, pair.chord_tolerance(None))
+    one, two = (replace(gear.profile, tolerance=tolerance, most=_MOST) for gear in gears)
+    if tolerance == pair.chord_tolerance(None):
         return one, two
-    least = float(np.degrees(spec.overclosure)) * (chords / MOST) ** 2
-    what = (
-        "the overclosure is too small: outlines that resolve the overlap would need "
-        f"{shown(chords, 2)} chords"
+    chords = max(one.sampler.least, two.sampler.least)
+    lost, many = FINEST * pair.module / tolerance, (chords / _MOST) ** 2
+    if max(lost, many) <= 1.0:
+        return one, two
+    reason = (
+        "the overlap would be lost in rounding"
+        if lost > many
+        else f"outlines that resolve the overlap would need {shown(chords, 2)} chords"
     )
-    note = f"{shown(ABOVE * least, 3)} deg is enough"
+    least = float(np.degrees(spec.overclosure)) * max(lost, many)
+    what, note = (
+        f"the overclosure is too small: {reason}",
+        f"{shown(ABOVE * least, 3)} deg is enough",
+    )
     raise beyond_limit(
         what, "meshing.overclosure_deg", float(np.degrees(spec.overclosure)), least, note
     )

@@ -136,11 +136,14 @@ class Sampler(Brief):
         Largest chord error.
     closed : bool
         Whether the last curve ends where the first begins.
+    most : float
+        Largest number of chords; more are refused.
     """
 
     curves: Curves
     tolerance: float
     closed: bool = True
+    most: float = MOST
 
     @cached_property
     def probes(self) -> tuple[Plane, Plane]:
@@ -230,11 +233,11 @@ class Sampler(Brief):
 
     def _demand_few(self, count: float) -> None:
         """Refuse tolerances that need too many chords."""
-        if count > MOST:
-            limit = self.tolerance * (count / MOST) ** 2
+        if count > self.most:
+            limit = self.tolerance * (count / self.most) ** 2
             key = "output.chord_tolerance_mm"
             what = f"the curve would need {shown(count, 2)} chords"
-            note = f"at the limit there are about {MOST:.0f}"
+            note = f"at the limit there are about {self.most:.0f}"
             raise beyond_limit(what, key, self.tolerance, limit, note, near=ABOVE * limit)
 
     def _spread(
