@@ -78,6 +78,8 @@ class Result(Displayed):
     """Attributes that a build computes before its files, by the names of the stages."""
     before_output: ClassVar[Sequence[str]] = ()
     """The stages that do not depend on the table ``[output]`` of a design."""
+    before_studies: ClassVar[Sequence[str]] = ()
+    """The stages that studies need, computed once for all settings of a study."""
 
     def __init__(self, design: Any, tolerances: Tolerances = DEFAULT) -> None:
         self.design = design
@@ -195,6 +197,8 @@ class Result(Displayed):
         if not settings:
             return self
         design = self.design.with_({f"{title}.{key}": value for key, value in settings.items()})
+        for name in self.before_studies:
+            getattr(self, name)
         return self._shared(design)
 
     @property

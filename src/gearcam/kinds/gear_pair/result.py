@@ -92,6 +92,7 @@ class GearPairResult(PartsResult):
 
     design: GearPairDesign
     before_output = ("law", "pair")
+    before_studies = ("steps",)
     stages = MappingProxyType(
         {
             "law": "law",
