@@ -158,11 +158,8 @@ def _parser(command: Command) -> argparse.ArgumentParser:
     return parser
 
 
-def _add_files(parser: argparse.ArgumentParser, *, many: bool = True) -> None:
-    if many:
-        parser.add_argument("files", nargs="+", metavar="FILE", help="design files (TOML)")
-    else:
-        parser.add_argument("file", metavar="FILE", help="design file (TOML)")
+def _add_files(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("files", nargs="+", metavar="FILE", help="design files (TOML)")
     _add_common(parser)
 
 

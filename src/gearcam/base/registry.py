@@ -131,7 +131,7 @@ def lazy_names(
     Parameters
     ----------
     lacks : str
-        Beginning of the message for other names, such as ``there is no law``.
+        First words of the message for an unknown name: ``there is no law``.
     classes : callable
         Returns classes by name; called only for names with a capital letter.
     homes : mapping of str to tuple of str

@@ -209,32 +209,6 @@ class Design:
         return ()
 
 
-def demand_kind(design: Design, kind: str) -> Any:
-    """Return a design if it is of a certain kind.
-
-    Parameters
-    ----------
-    design : Design
-        A design of any kind.
-    kind : str
-        The required kind.
-
-    Returns
-    -------
-    Design
-        The same design.
-
-    Raises
-    ------
-    DesignError
-        If it is of another kind.
-    """
-    if design.kind != kind:
-        message = f"this command is for designs of kind {kind}"
-        raise DesignError([Problem(message, file=design.source, key="kind", value=design.kind)])
-    return design
-
-
 def _demand_types(design: Design) -> None:
     """Raise `DesignError` if a table, or what is nested in one, is not of its type."""
     kind = KINDS[design.kind]

@@ -100,6 +100,29 @@ def examine(document: Mapping[str, Any], *, stem: str = "", place: Place | None 
     return found
 
 
+def examine_file(document: dict[str, Any], file: str, outer: tuple[str, ...] = ()) -> Examined:
+    """Validate the document of a file; the files that it names are relative to its folder.
+
+    Parameters
+    ----------
+    document : dict
+        As read; names of CSV files in it are changed in place.
+    file : str
+        Name of the file; its stem is the default name of the design. Empty without one.
+    outer : tuple of str
+        Real paths of the files that nest it.
+
+    Returns
+    -------
+    Examined
+    """
+    folder = FilePath(file).parent
+    find_tables(document, folder)
+    here = (os.path.realpath(file),) if file else ()
+    place = Place(file=file, folder=os.fspath(folder), outer=(*outer, *here))
+    return examine(document, stem=FilePath(file).stem, place=place)
+
+
 def _meant_kind(document: Mapping[str, Any]) -> DesignKind | None:
     """Return the kind of a document; if it is missing or misspelt the likeliest one, or None."""
     name = document.get("kind")
@@ -318,12 +341,10 @@ def _from_file(key: Key, value: str, at: Path, place: Place) -> tuple[Any, list[
         return None, [
             Fault((), p.message, MISSING, p.allowed, p.hint, file, p.line) for p in error.problems
         ]
-    name, folder = document.get("kind"), FilePath(file).parent
+    name = document.get("kind")
     if isinstance(name, str) and name in KINDS and name not in key.param.nested:
         return refused(f"its design is of kind {show(name)}")
-    find_tables(document, folder)
-    inside = Place(file=file, folder=os.fspath(folder), outer=(*place.outer, real))
-    found = examine(document, stem=FilePath(file).stem, place=inside)
+    found = examine_file(document, file, place.outer)
     if found.faults:
         lines = lines_of(text)
         return None, [

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import os
-from pathlib import Path
 
 from gearcam.base.errors import DesignError
 from gearcam.designs.design import Design
-from gearcam.designs.examine import Place, examine
+from gearcam.designs.examine import examine_file
 from gearcam.designs.kind import KINDS
-from gearcam.designs.reader import content_of, decoded, document_in, find_tables, problems_of
+from gearcam.designs.reader import content_of, decoded, document_in, problems_of
 
 
 def load(path: str | os.PathLike[str]) -> Design:
@@ -55,11 +54,7 @@ def loads(text: str, *, file: str = "") -> Design:
         With all mistakes, each with its line.
     """
     document = document_in(text, file)
-    folder = Path(file).parent
-    find_tables(document, folder)
-    outer = (os.path.realpath(file),) if file else ()
-    place = Place(file=file, folder=os.fspath(folder), outer=outer)
-    found = examine(document, stem=Path(file).stem, place=place)
+    found = examine_file(document, file)
     if found.faults:
         raise DesignError(problems_of(found.faults, text, file))
     return KINDS[document["kind"]].design(source=file, examined=True, **found.parts)

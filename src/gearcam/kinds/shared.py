@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from typing import TYPE_CHECKING, Final
 
 from gearcam.base.display import Brief
@@ -41,6 +42,7 @@ class AccuracySpec(Brief):
     )
 
 
+@cache
 def accuracy_study() -> Study:
     """Return the study of error against run time (see `gearcam.results.accuracy`)."""
     from gearcam.results.study import Study

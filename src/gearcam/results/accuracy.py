@@ -23,7 +23,7 @@ from gearcam.designs.slips import did_you_mean
 from gearcam.numeric.arguments import whole
 from gearcam.pictures.charts import Chart, Line
 from gearcam.results.kind import KINDS
-from gearcam.results.ladders import Ladder, Ladders
+from gearcam.results.ladders import Ladder
 from gearcam.results.result import Progress, Result
 
 REPEATS: Final = 5
@@ -203,11 +203,11 @@ def stages_of(design: Design, asked: Sequence[str] | None = None) -> tuple[str, 
     DesignError
         If the kind has no such stage; the message lists those that it has.
     """
-    known = tuple(_ladders(design.kind))
+    known = tuple(KINDS[design.kind].ladders)
     if asked is None and known:
         return known
     problems = []
-    every = {name for kind in KINDS for name in _ladders(kind)}
+    every = {name for kind in KINDS.values() for name in kind.ladders}
     for name in dict.fromkeys(asked or ("",)):
         if name not in known:
             what = f" of designs of kind {design.kind}" if name in every else ""
@@ -260,7 +260,7 @@ def accuracy(
     2.0
     """
     count, names = whole("repeat", repeat, 1), stages_of(result.design, stages)
-    made = _ladders(result.design.kind)
+    made = result.kind.ladders
     first: dict[tuple[str, float], tuple[float, int]] = {}
     refused: dict[tuple[str, float], str] = {}
     ladders: dict[str, Ladder] = {}
@@ -335,11 +335,6 @@ def _rungs(
             seconds=statistics.median(samples[name, level]),
             points=points,
         )
-
-
-def _ladders(kind: str) -> Ladders:
-    """Return the ladders of a kind of design; empty if it defines none."""
-    return KINDS[kind].ladders
 
 
 def _right(rows: Sequence[tuple[str, ...]]) -> list[tuple[str, ...]]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import sys
 import time
 from abc import abstractmethod
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import cached_property
@@ -129,7 +129,10 @@ class Result(Displayed):
     @cached_property
     def findings(self) -> tuple[Finding, ...]:
         """The findings of all checks and of the studies that the design asks for, errors first."""
-        studies = self.studies.values()
+        return self.findings_with(self.studies.values())
+
+    def findings_with(self, studies: Collection[StudyResult]) -> tuple[Finding, ...]:
+        """Return the findings of `studies`, and of the design what they do not repeat, in order."""
         repeated = {code for one in studies for code in one.study.repeats}
         kept = (one for one in self.checked if one.code not in repeated)
         return in_order((*kept, *(found for one in studies for found in one.found)))

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from gearcam.base.display import Displayed, cut
 from gearcam.base.facts import Facts
-from gearcam.base.findings import Finding, in_order
+from gearcam.base.findings import Finding
 from gearcam.numeric.columns import Columns
 from gearcam.results.result import Progress, Result
 from gearcam.results.written import Written
@@ -159,8 +159,7 @@ class StudyResult(Displayed):
     @cached_property
     def findings(self) -> tuple[Finding, ...]:
         """Findings of the study, and those of the design that it does not repeat; errors first."""
-        kept = (one for one in self.result.checked if one.code not in self.study.repeats)
-        return in_order((*kept, *self.found))
+        return self.result.findings_with((self,))
 
     def picture(self) -> str:
         """Return an empty text: a study has no picture."""

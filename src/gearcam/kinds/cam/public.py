@@ -14,9 +14,8 @@ from gearcam.parts.blank import WheelBlank
 
 __all__ = [
     "AccuracySpec", "CamBlank", "CamDesign", "CamOutputSpec", "CamResult", "CamSpec", "DwellPhase",
-    "FollowSpec",
-    "FollowerSpec",
-    "MotionFormula", "MotionTable", "ReturnPhase", "RisePhase", "SegmentPhase", "WheelBlank",
+    "FollowSpec", "FollowerSpec", "MotionFormula", "MotionTable", "ReturnPhase", "RisePhase",
+    "SegmentPhase", "WheelBlank",
 ]  # fmt: skip
 
 PUBLIC = {name: globals()[name] for name in __all__}

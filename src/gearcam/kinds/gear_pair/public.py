@@ -11,8 +11,7 @@ from gearcam.parts.blank import Blank
 
 __all__ = [
     "AccuracySpec", "Blank", "GearPairDesign", "GearPairResult", "MeshingSpec", "PairOutputSpec",
-    "PairSpec",
-    "Rack", "RingSpec", "StepsSpec",
+    "PairSpec", "Rack", "RingSpec", "StepsSpec",
 ]  # fmt: skip
 
 PUBLIC = {name: globals()[name] for name in __all__}

@@ -100,17 +100,24 @@ def _at_places(
     """Return for each place of a scene the points of the nearest phase, if there is one."""
     from gearcam.pictures.scenes import ContactPoints
 
-    apart = np.abs(scene.places[:, None] - phi1)
-    if scene.closed:
-        apart %= scene.places[-1]
-        apart = np.minimum(apart, scene.places[-1] - apart)
-    nearest = apart.argmin(axis=1)
+    places, order = scene.places, np.arange(len(phi1))
+    at = phi1
+    if scene.closed:  # the last phase comes before the first of the next turn
+        turn = places[-1]
+        at, places = phi1 % turn, places % turn
+        order = np.argsort(at)
+        order = np.concatenate([order[-1:], order, order[:1]])
+        at = at[order]
+        at[0] -= turn
+        at[-1] += turn
+    right = np.searchsorted(at, places).clip(0, len(at) - 1)
+    left = np.maximum(right - 1, 0)
+    nearest = np.where(np.abs(places - at[left]) <= np.abs(at[right] - places), left, right)
     half = 0.5 * float(np.diff(phi1).min(initial=0.0 if len(phi1) < 2 else np.inf))
-    near = apart[np.arange(len(nearest)), nearest] <= half + _CLOSE
-    rows = [
-        np.flatnonzero(step == phase) if there else step[:0]
-        for phase, there in zip(nearest, near, strict=True)
-    ]
+    near = np.abs(places - at[nearest]) <= half + _CLOSE
+    phase = order[nearest]
+    first, end = (np.searchsorted(step, phase, side) for side in ("left", "right"))
+    rows = [np.arange(a, b if there else a) for a, b, there in zip(first, end, near, strict=True)]
     chosen = np.concatenate(rows).astype(int)
     start = np.cumsum([0, *map(len, rows)])
     return {"as mounted": ContactPoints(start=start, point=point[chosen], force=force[chosen])}
