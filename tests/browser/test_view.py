@@ -17,7 +17,10 @@ from selenium.webdriver import Chrome
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 
+from gearcam import kinds
+from helpers_browser import complaints
 from helpers_pairs import PROFILES
+from helpers_view import served
 
 NAIL = PROFILES / "nail_machine_two_phase.toml"
 SECONDS = 60.0
@@ -259,3 +262,53 @@ def test_every_slider_has_a_name_and_is_reached_by_the_keyboard(page: Chrome) ->
         "return [...document.querySelectorAll('[id]')].map((one) => one.id)"
     )
     assert len(names) == len(set(names))
+
+
+SPACER = """kind = "spacer"
+name = "ring"
+[ring]
+bore_mm = 20
+[output]
+studies = ["weigh"]
+"""
+
+
+def text_of(page: Chrome, name: str) -> str:
+    """The text of a block, folded or not."""
+    return page.execute_script("return document.getElementById(arguments[0]).textContent", name)
+
+
+def test_the_page_of_a_kind_without_moving_parts_follows_file_and_sliders(
+    browser: Chrome, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    toys = Path(__file__).parents[1] / "toy_kinds"
+    monkeypatch.setattr(kinds, "__path__", [*kinds.__path__, str(toys)])
+    file = tmp_path / "ring.toml"
+    file.write_text(SPACER)
+    with served(file) as (server, view):
+        browser.get_log("browser")
+        browser.get(server.address)
+        until(lambda: browser.execute_script("return !!window.gearcam"))
+        (figure,) = browser.find_elements(By.CLASS_NAME, "chart")
+        assert figure.find_element(By.TAG_NAME, "h3").text == "Mass"
+        assert "30 mm" in text_of(browser, "facts")
+        file.write_text(SPACER.replace("20", "24"))
+        view.refresh()
+        until(lambda: "34 mm" in text_of(browser, "facts"))
+        bore = field(browser, "ring.bore_mm")
+        until(lambda: bore.get_attribute("value") == "24")
+        bore.clear()
+        bore.send_keys("30", Keys.ENTER)
+        until(lambda: "40 mm" in text_of(browser, "facts"))
+        browser.execute_script(
+            "arguments[0].value = 25; arguments[0].dispatchEvent(new Event('input'))",
+            slider(browser, "ring.bore_mm"),
+        )
+        until(lambda: "35 mm" in text_of(browser, "facts"))
+        bore.clear()
+        bore.send_keys("400", Keys.ENTER)
+        assert "400 is out of range" in until(lambda: error(browser))
+        assert verdict(browser) == ("Cannot be made", RED)
+        wrong = complaints(browser)
+        browser.get("about:blank")  # the page would ask for a server that has ended
+    assert wrong == []

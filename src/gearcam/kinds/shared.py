@@ -74,14 +74,13 @@ def _measure(result: Result, progress: Progress | None) -> StudyResult:
     found = accuracy(result, settings.stage, settings.repeat, progress)
     lines = tuple(found.lines())
     title = f"{result.design.name}, error against run time"
-    charts = {chart.title: chart for chart in found.charts}
     return StudyResult(
         result=result,
         study=accuracy_study(),
         file=TABLE,
         table=found.columns,
         group=found.facts,
-        charts=charts,
+        drawn=lambda: {chart.title: chart for chart in found.charts},
         pages={PAGE: charts_page(title, found.charts, "\n".join(lines))},
         lines=lines,
     )

@@ -1,7 +1,10 @@
 // A page without moving parts.
 
-const { title, charts: shown } = JSON.parse(document.getElementById("document").textContent);
-const page = { title, colours: palette() };
+const page = {
+  shown: JSON.parse(document.getElementById("document").textContent),
+  colours: palette(),
+  get title() { return this.shown.title; },
+};
 const charts = new Charts(document.getElementById("charts"), page);
 
 function repaint() {
@@ -15,7 +18,14 @@ function print(on) {
   charts.print(on);
 }
 
+function show(next) {
+  page.shown = replaced(page.shown, next);
+  if (next.charts) charts.show(next.charts);
+}
+
+window.gearcam = { show };
+
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", repaint);
 window.addEventListener("beforeprint", () => print(true));
 window.addEventListener("afterprint", () => print(false));
-charts.show(shown);
+charts.show(page.shown.charts);

@@ -31,8 +31,8 @@
     remedies.replaceChildren();
     document.body.classList.toggle("refused", refused);
     document.querySelector("#refusal h1").textContent = document.title;
-    const heading = document.getElementById("moving");
-    heading.textContent = refused ? "Last valid design" : "Parts in motion";
+    const heading = document.getElementById("moving"); // absent without moving parts
+    if (heading) heading.textContent = refused ? "Last valid design" : "Parts in motion";
   }
 
   // Search for changes with which the refused design can be made, and offer them.

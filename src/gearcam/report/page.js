@@ -275,28 +275,14 @@ function print(on) {
 
 // --- documents -----------------------------------------------------------------------------------
 
-// Replace the content of a block; sections that are open stay open.
-function block(name, html) {
-  const home = element(name);
-  const open = [...home.querySelectorAll("details")].map((one) => one.open);
-  home.innerHTML = html;
-  home.querySelectorAll("details").forEach((one, k) => (one.open = open[k] ?? false));
-}
-
-// Show another document or a draft, which lacks charts, contacts and some blocks: what is missing
-// stays unchanged, as do place, view and choices.
+// Show another document or a draft; the place, the view and the choices stay as they are.
 function show(next) {
-  const blocks = { ...page.shown.blocks, ...next.blocks };
-  for (const [name, html] of Object.entries(blocks)) {
-    if (html !== page.shown.blocks[name]) block(name, html);
-  }
-  page.shown = { ...page.shown, ...next, blocks };
+  page.shown = replaced(page.shown, next);
   present(Boolean(next.charts));
 }
 
 function present(whole) {
   const { scene } = page;
-  document.title = page.title;
   parts.scene = scene;
   if (whole) offer();
   element("place").max = scene.places.length - 1;

@@ -41,10 +41,10 @@ DRAFT_PLACES: Final = 120
 _CHARTS: Final = ("uPlot/uPlot.iife.min.js", "parts.js", "saves.js", "charts.js")
 """Parts of the script that draw charts, each after those that it needs."""
 
-SCRIPTS: Final = ("scene.js", *_CHARTS, "page.js", "solids.js")
+SCRIPTS: Final = ("scene.js", *_CHARTS, "blocks.js", "page.js", "solids.js")
 """Parts of the script of a page with moving parts."""
 
-STILL: Final = (*_CHARTS, "charts_page.js", "solids.js")
+STILL: Final = (*_CHARTS, "blocks.js", "charts_page.js", "solids.js")
 """Parts of the script of a page without moving parts."""
 
 _HOME: Final = Path(__file__).parent
@@ -121,7 +121,7 @@ def charts_page(title: str, charts: Sequence[Chart], text: str) -> bytes:
         "text": text,
         "data": _embedded({"title": title, "charts": data}),
         "style": _own("uPlot/uPlot.min.css", "page.css"),
-        "script": _own(*_CHARTS, "charts_page.js"),
+        "script": _own(*_CHARTS, "blocks.js", "charts_page.js"),
         "licence": _own("uPlot/LICENSE"),
     }
     return rendered("charts.html", told).encode()

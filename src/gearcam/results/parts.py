@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, ClassVar, Final, Self
 
 from gearcam.results.result import Result
 
@@ -52,6 +53,21 @@ class PartsResult(Result):
     tolerances : Tolerances
         Accuracy of the internal computations.
     """
+
+    before_output: ClassVar[Sequence[str]] = ()
+    """The stages that do not depend on the table ``[output]`` of a design."""
+
+    def with_chords(self, tolerance: float) -> Self:
+        """Return the result with another chord tolerance, mm; it keeps what does not depend on it.
+
+        For the program's own use: the tolerance is not examined, as `Design.with_` does. Raises
+        `InfeasibleError` if a stage that it keeps cannot be made.
+        """
+        known = {name: getattr(self, name) for name in self.before_output}
+        output = replace(self.design.output, chord_tolerance=tolerance)
+        result = type(self)(replace(self.design, output=output, examined=True), self.tolerances)
+        vars(result).update(known)
+        return result
 
     @cached_property
     @abstractmethod

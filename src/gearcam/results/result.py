@@ -76,8 +76,6 @@ class Result(Displayed):
 
     stages: ClassVar[Mapping[str, str]]
     """Attributes that a build computes before its files, by the names of the stages."""
-    before_output: ClassVar[Sequence[str]] = ()
-    """The stages that do not depend on the table ``[output]`` of a design."""
     before_studies: ClassVar[Sequence[str]] = ()
     """The stages that studies need, computed once for all settings of a study."""
 
@@ -97,17 +95,9 @@ class Result(Displayed):
         done = ", ".join(self.timings) or "nothing"
         return cut(f'<{type(self).__name__} of "{self.design.name}", computed: {done}>')
 
-    def with_chords(self, tolerance: float) -> Self:
-        """Return the result with another chord tolerance, mm; it keeps what does not depend on it.
-
-        For the program's own use: the tolerance is not examined, as `Design.with_` does. Raises
-        `InfeasibleError` if a stage that it keeps cannot be made.
-        """
-        known = {name: getattr(self, name) for name in self.before_output}
-        output = replace(self.design.output, chord_tolerance=tolerance)
-        made = type(self)(replace(self.design, output=output, examined=True), self.tolerances)
-        vars(made).update(known)
-        return made
+    def with_chords(self, tolerance: float) -> Self:  # noqa: ARG002
+        """Return the result with another chord `tolerance`, mm; the same without outlines."""
+        return self
 
     @property
     def kind(self) -> Kind:

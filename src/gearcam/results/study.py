@@ -103,8 +103,8 @@ class StudyResult(Displayed):
         Its facts.
     found : tuple of Finding
         Its findings.
-    charts : mapping of str to Chart
-        Its charts by name.
+    drawn : callable
+        ``drawn()`` returns its `charts`; called when they are first read.
     overlay : callable
         ``overlay(scene)`` returns points of contact for the moving picture, by name.
     pages : mapping of str to bytes
@@ -128,7 +128,7 @@ class StudyResult(Displayed):
     table: Mapping[str, ArrayLike]
     group: Mapping[str, Any]
     found: tuple[Finding, ...] = ()
-    charts: Mapping[str, Chart] = field(default_factory=dict)
+    drawn: Callable[[], Mapping[str, Chart]] = dict
     overlay: Callable[[Scene], Mapping[str, ContactPoints]] = _nothing
     pages: Mapping[str, bytes] = field(default_factory=dict)
     lines: tuple[str, ...] = ()
@@ -145,6 +145,15 @@ class StudyResult(Displayed):
         return cut(
             f'<StudyResult{state}: {rows} rows, as in {self.file}, of "{self.result.design.name}">'
         )
+
+    @cached_property
+    def charts(self) -> Mapping[str, Chart]:
+        """Its charts by name."""
+        return self.drawn()
+
+    def __getstate__(self) -> dict[str, Any]:
+        # what charts are drawn from need not be picklable
+        return {**vars(self), "charts": self.charts, "drawn": dict}
 
     @cached_property
     def columns(self) -> Columns:

@@ -264,7 +264,7 @@ def _stroke(result: Any, _: Any) -> StudyResult:
         file="slider.csv",
         table={name: asked, "slider_mm": along, "rate": rate, "rod_deg": np.degrees(angle)},
         group={"rows": count, "fastest": fast},
-        charts={
+        drawn=lambda: {
             "rate": Chart(
                 title="Rate of the slider", x=result.driven.scene(4).driver, y="dx, mm per driver",
                 lines=(Line(label="slider", x=asked, y=rate),),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import pickle
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -66,6 +67,28 @@ def test_its_charts_are_charts_of_the_result(asked: Any, plain: Any) -> None:
     assert np.ptp(designed.y) < 1e-9
     with pytest.raises(DesignError):
         gearcam.build(plain).chart("mesh.transmission_error")
+
+
+def test_its_charts_are_drawn_when_they_are_read(
+    plain: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from gearcam.kinds.gear_pair import studies
+
+    drawn, draw = [], studies._charts
+
+    def counted(*given: Any) -> Any:
+        drawn.append(given)
+        return draw(*given)
+
+    monkeypatch.setattr(studies, "_charts", counted)
+    study = gearcam.build(plain).mesh(steps=12)
+    assert study.to_dict()["meshing"]
+    assert drawn == []
+    copy = pickle.loads(pickle.dumps(study))
+    assert [*copy.charts] == [*study.charts] == ["transmission_error", "contact_patch"]
+    assert len(drawn) == 1
+    line, same = (one.charts["contact_patch"].lines[0] for one in (study, copy))
+    assert np.array_equal(line.y, same.y, equal_nan=True)
 
 
 def test_the_patches_that_are_shown_are_those_of_the_outlines(asked: Any) -> None:

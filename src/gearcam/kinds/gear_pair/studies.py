@@ -48,7 +48,7 @@ def _mesh(result: GearPairResult, progress: Progress | None) -> StudyResult:
         table=meshing.columns,
         group=meshing_facts(numbers(meshing)),
         found=found,
-        charts=_charts(result, meshing),
+        drawn=partial(_charts, result, meshing),
         overlay=_contacts(meshing),
         interrupted="" if meshing.complete else done,
     )
