@@ -10,6 +10,7 @@ from gearcam.base.tolerances import Tolerances
 from gearcam.laws.ratio.base import RatioLaw
 from gearcam.laws.ratio.span import ONE_LOBE, Lobes
 from gearcam.laws.rises.base import RiseParameters
+from random_designs.draw import Draw
 from random_designs.law_draw import Counts, Law, LawDraw
 
 
@@ -72,8 +73,8 @@ class LawClaims:
 
 
 @dataclass(frozen=True, kw_only=True)
-class RiseClaim:
-    """Values of a rise.
+class MotionClaim:
+    """Values of a motion law.
 
     Parameters
     ----------
@@ -94,3 +95,20 @@ class RiseClaim:
     peak_acceleration: float
     peak_jerk: float
     continuity: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class MotionClaims:
+    """All that is claimed of a motion law, and how random ones are drawn.
+
+    Parameters
+    ----------
+    values : tuple of MotionClaim
+        Examples with their values.
+    usual, draw :
+        As for `LawClaims`; ``draw(d)`` returns the parameters in the units of files.
+    """
+
+    values: tuple[MotionClaim, ...]
+    usual: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    draw: Callable[[Draw], Law] | None = None

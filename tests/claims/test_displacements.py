@@ -11,7 +11,7 @@ import pytest
 from numpy.typing import NDArray
 
 from claims.laws import LAW_CLAIMS
-from claims.of_rises import RISE_CLAIMS
+from claims.motion import MOTION_CLAIMS
 from gearcam.base.tolerances import DEFAULT
 from gearcam.laws.displacement import Displacement
 from gearcam.laws.motion_formula import MotionFormula
@@ -53,8 +53,8 @@ MOVING = [
     ),
     *(
         pytest.param(program(claim.parameters), id=f"program {name}-{number}")
-        for name, claims in RISE_CLAIMS.items()
-        for number, claim in enumerate(claims)
+        for name, claims in MOTION_CLAIMS.items()
+        for number, claim in enumerate(claims.values)
     ),
 ]
 

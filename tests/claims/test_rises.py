@@ -11,19 +11,35 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from claims.claim import RiseClaim
-from claims.of_rises import RISE_CLAIMS
+from claims.claim import MotionClaim
+from claims.motion import MOTION_CLAIMS
 from claims.shown_rise import ShownRise, shown
 from gearcam.base.quantities import params_of
-from gearcam.laws.rises.base import RISES, Rise
+from gearcam.base.tolerances import DEFAULT
+from gearcam.laws.rises.base import RISES, Rise, RiseParameters
+from random_designs.draw import Draw
+from random_designs.laws import parameters, random_motion_law
 
 Array = NDArray[np.float64]
 
 CLAIMS = [
     pytest.param(claim, id=f"{name}-{number}")
-    for name, claims in RISE_CLAIMS.items()
-    for number, claim in enumerate(claims)
+    for name, claims in MOTION_CLAIMS.items()
+    for number, claim in enumerate(claims.values)
 ]
+
+MEMBERS = [
+    *(pytest.param(param.values[0].parameters, id=param.id) for param in CLAIMS),
+    *(
+        pytest.param(
+            parameters(random_motion_law(Draw(f"claims {name} {number}"), name)),
+            id=f"{name}-random-{number}",
+        )
+        for name in MOTION_CLAIMS
+        for number in range(6)
+    ),
+]
+"""All examples, and random members of every law."""
 
 TAKEN = {"type", "law", "angle", "lift", "to", "end_velocity", "end_acceleration"}
 """Words that a design file needs beside the parameters of a rise."""
@@ -48,7 +64,7 @@ REFERENCE: dict[str, tuple[float | None, float, float | None]] = {
 }
 
 
-def built(claim: RiseClaim) -> ShownRise:
+def built(claim: MotionClaim) -> ShownRise:
     return shown(claim.parameters)
 
 
@@ -64,9 +80,9 @@ def inside(rise: Rise, count: int) -> list[Array]:
 
 
 def test_the_registry_holds_exactly_the_rises_that_are_claimed() -> None:
-    assert {entry.name for entry in RISES.values()} == set(RISE_CLAIMS) == set(RISES)
+    assert {entry.name for entry in RISES.values()} == set(MOTION_CLAIMS) == set(RISES)
     for entry in RISES.values():
-        assert len(RISE_CLAIMS[entry.name]) >= 1
+        assert len(MOTION_CLAIMS[entry.name].values) >= 1
         assert entry.source
         assert entry.continuity
         assert 20 <= len(entry.doc) <= 100
@@ -82,7 +98,7 @@ def test_a_name_is_given_once() -> None:
 
 
 @pytest.mark.parametrize("claim", CLAIMS)
-def test_values_are_those_of_the_closed_form(claim: RiseClaim) -> None:
+def test_values_are_those_of_the_closed_form(claim: MotionClaim) -> None:
     rise = built(claim)
     for phi, value in claim.values.items():
         assert float(rise.function(phi)) == pytest.approx(value, abs=1e-14)
@@ -91,9 +107,9 @@ def test_values_are_those_of_the_closed_form(claim: RiseClaim) -> None:
         assert float(found) == pytest.approx(velocity, rel=1e-13, abs=1e-13)
 
 
-@pytest.mark.parametrize("claim", CLAIMS)
-def test_it_goes_from_corner_to_corner(claim: RiseClaim) -> None:
-    rise = built(claim)
+@pytest.mark.parametrize("law", MEMBERS)
+def test_it_goes_from_corner_to_corner(law: RiseParameters) -> None:
+    rise = law.build(DEFAULT)
     assert rise.function.knots[0] == 0.0
     assert rise.function.knots[-1] == 1.0
     assert (np.diff(rise.function.knots) > 0.0).all()
@@ -101,10 +117,10 @@ def test_it_goes_from_corner_to_corner(claim: RiseClaim) -> None:
     assert float(rise.function(1.0)) == pytest.approx(1.0, abs=3e-16)
 
 
-@pytest.mark.parametrize("claim", CLAIMS)
-def test_each_derivative_is_that_of_the_one_below(claim: RiseClaim) -> None:
+@pytest.mark.parametrize("law", MEMBERS)
+def test_each_derivative_is_that_of_the_one_below(law: RiseParameters) -> None:
     """Gauss-Legendre integrals of S', S'' and S''' over each piece against differences."""
-    rise = built(claim)
+    rise = law.build(DEFAULT)
     nodes, weights = np.polynomial.legendre.leggauss(20)
     knots = rise.function.knots
     for number, (low, high) in enumerate(pairwise(knots)):
@@ -121,8 +137,16 @@ def test_each_derivative_is_that_of_the_one_below(claim: RiseClaim) -> None:
             assert integral == pytest.approx(expected, abs=1e-13 * scale)
 
 
+@pytest.mark.parametrize("law", MEMBERS)
+def test_lift_and_velocity_do_not_jump_inside(law: RiseParameters) -> None:
+    function = law.build(DEFAULT).function
+    for knot in range(1, len(function.knots) - 1):
+        before, after = function.side(knot, -1, 1), function.side(knot, 1, 1)
+        assert before == pytest.approx(after, rel=1e-12, abs=1e-13)
+
+
 @pytest.mark.parametrize("claim", CLAIMS)
-def test_continuity_is_as_claimed_and_seen_from_both_sides(claim: RiseClaim) -> None:
+def test_continuity_is_as_claimed_and_seen_from_both_sides(claim: MotionClaim) -> None:
     rise = built(claim)
     assert rise.continuity == claim.continuity
     h = 1e-9
@@ -140,7 +164,7 @@ def test_continuity_is_as_claimed_and_seen_from_both_sides(claim: RiseClaim) -> 
 
 
 @pytest.mark.parametrize("claim", CLAIMS)
-def test_ends_are_those_of_the_first_and_the_last_piece(claim: RiseClaim) -> None:
+def test_ends_are_those_of_the_first_and_the_last_piece(claim: MotionClaim) -> None:
     rise = built(claim)
     h = 1e-12
     found = rise.function.derivatives([h, 1.0 - h], 4)
@@ -151,7 +175,7 @@ def test_ends_are_those_of_the_first_and_the_last_piece(claim: RiseClaim) -> Non
 
 
 @pytest.mark.parametrize("claim", CLAIMS)
-def test_peaks_are_those_of_the_closed_form_and_of_dense_sampling(claim: RiseClaim) -> None:
+def test_peaks_are_those_of_the_closed_form_and_of_dense_sampling(claim: MotionClaim) -> None:
     rise = built(claim)
     assert peaks(rise) == pytest.approx(peaks(claim), rel=1e-12)
     dense = [np.array(rise.function.derivatives(part, 3)) for part in inside(rise, 6001)]
@@ -190,4 +214,4 @@ def test_the_rise_return_of_the_textbook_is_told_against_a_dwell_and_against_its
 
 
 def _mirrored(name: str) -> bool:
-    return any(built(claim).mirrored for claim in RISE_CLAIMS[name])
+    return any(built(claim).mirrored for claim in MOTION_CLAIMS[name].values)

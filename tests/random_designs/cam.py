@@ -6,14 +6,13 @@ Lifts and sizes are drawn in radii of the cam, so that the radius is arbitrary.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from typing import Any, Final
 
+from gearcam.laws.rises.base import RISES
 from random_designs.blank import blank
 from random_designs.draw import Draw, short
+from random_designs.laws import random_motion_law
 from random_designs.output import asked, studies
-
-Rise = dict[str, Any]
 
 FOLLOWERS: Final = ("knife-edge", "roller", "flat", "domed", "point", "roller", "flat", "domed")
 """Followers, which take turns; a point is a knife edge."""
@@ -29,77 +28,8 @@ _SHARES: Final = {
 """Share of cams with each kind of file, by its cost."""
 
 
-def _derivatives(d: Draw) -> Rise:
-    ends = [[0.0] * d.whole(1, 4), [0.0] * d.whole(1, 4)]
-    if d.chance(0.3):
-        ends[d.pick([0, 1])][0] = d.even(0, 2)
-    return {"start": ends[0], "end": ends[1]}
-
-
-def _sectors(d: Draw) -> Rise:
-    b, c, _ = d.shares(3, 0.05)
-    b, c = short(b), short(c)
-    return {"b": b, "c": c, "d": 1.0 - b - c}
-
-
-def _control(d: Draw) -> Rise:
-    degree, flat = d.whole(3, 5), d.whole(1, 3)
-    inner = sorted(d.even(0, 1) for _ in range(d.whole(2, 6)))
-    control = [0.0] * flat + inner + [1.0] * flat
-    return {"degree": min(degree, len(control) - 1), "control": control}
-
-
-def _points(d: Draw) -> Rise:
-    grid = [0.0]
-    for share in d.shares(d.whole(4, 16), 0.5):
-        grid.append(short(grid[-1] + share))
-    grid[-1] = 1.0
-    values = [short(x - math.sin(2 * math.pi * x) / (2 * math.pi)) for x in grid]
-    rise: Rise = {"x": grid, "y": [*values[:-1], 1.0]}
-    if d.chance(0.3):
-        rise["start"] = [d.even(0, 0.5), d.even(-1, 1)]
-    return rise
-
-
-def _formula(d: Draw) -> Rise:
-    a = d.log(1e-3, 0.15)
-    wave = f"x - {a}*sin(2*pi*x)"
-    return {"formula": d.pick([wave, "x**3*(10 - 15*x + 6*x**2)", "sin(pi*x/2)**2"])}
-
-
-def _nothing(d: Draw) -> Rise:  # noqa: ARG001
-    return {}
-
-
-def _share(most: float) -> Callable[[Draw], Rise]:
-    return lambda d: {"q": d.log(0.02, most)} if d.chance(0.7) else {}
-
-
-RISES: Final[dict[str, Callable[[Draw], Rise]]] = {
-    "constant-velocity": _nothing,
-    "constant-acceleration": _share(0.9),
-    "harmonic": _nothing,
-    "cycloidal": _nothing,
-    "2-3": _nothing,
-    "3-4-5": _nothing,
-    "4-5-6-7": _nothing,
-    "5-6-7-8-9": _nothing,
-    "3-4-5-6": _nothing,
-    "polynomial": _derivatives,
-    "trapezoidal-velocity": _share(0.5),
-    "sine-trapezoidal-velocity": _share(0.5),
-    "trapezoidal-acceleration": _share(0.25),
-    "modified-trapezoid": _nothing,
-    "modified-sine": _nothing,
-    "scca": _sectors,
-    "b-spline": _control,
-    "table": _points,
-    "formula": _formula,
-}
-
-
 def _moved(d: Draw, kind: str, law: str) -> dict[str, Any]:
-    return {"type": kind, "law": law, **RISES[law](d)}
+    return {"type": kind, **random_motion_law(d, law)}
 
 
 def _program(d: Draw, law: str, lift: float, unit: str) -> list[dict[str, Any]]:

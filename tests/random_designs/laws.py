@@ -1,8 +1,8 @@
-"""Random ratio laws, one generator for all: random designs, claims and property tests use it.
+"""Random ratio laws and motion laws, one generator for all: random designs, claims, property tests.
 
 By default the parameters follow from their ranges and the law's example, and the tooth counts from
-what the law can close. The claims of a law (`claims.laws`) may narrow the ranges (`usual`) or draw
-the law themselves (`draw`).
+what the law can close. The claims of a law (`claims.laws`, `claims.motion`) may narrow the ranges
+(`usual`) or draw the law themselves (`draw`).
 """
 
 from __future__ import annotations
@@ -12,15 +12,19 @@ import math
 from collections.abc import Mapping
 from typing import Any, Final
 
-from claims.claim import LawClaims
+from claims.claim import LawClaims, MotionClaims
 from claims.laws import LAW_CLAIMS
+from claims.motion import MOTION_CLAIMS
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.quantities import REQUIRED, Param, params_of
 from gearcam.base.tolerances import DEFAULT
+from gearcam.designs.table import Table
+from gearcam.kinds.cam.motion import rise_table
 from gearcam.kinds.gear_pair.design import law_table
 from gearcam.laws.ratio.base import LAWS
 from gearcam.laws.ratio.span import Lobes
-from random_designs.draw import short
+from gearcam.laws.rises.base import RISES
+from random_designs.draw import Draw, short
 from random_designs.law_draw import LOBES, Counts, Law, LawDraw
 
 _TEETH: Final = 8
@@ -29,33 +33,41 @@ _TEETH: Final = 8
 _NEAR: Final = 1e-3
 """Smallest share of a range that begins at 0: small swings have their own numerical errors."""
 
-_NO_CLAIMS: Final = LawClaims(values=())
+_LEFT_OUT: Final = 0.3
+"""How often an optional parameter is left out."""
 
 
 def random_law(d: LawDraw, name: str) -> tuple[Law, Counts]:
-    """Return the table of a random law of this `name`, and tooth counts that it can close."""
-    claims = LAW_CLAIMS.get(name, _NO_CLAIMS)
-    law, z = claims.draw(d) if claims.draw else _by_ranges(d, name, claims.usual)
+    """Return the table of a random ratio law of this `name`, and tooth counts that it can close."""
+    claims = LAW_CLAIMS.get(name, LawClaims(values=()))
+    law, z = claims.draw(d) if claims.draw else _with_counts(d, name, claims.usual)
     return {"type": name, **law}, z
 
 
+def random_motion_law(d: Draw, name: str) -> Law:
+    """Return the keys of a random motion law of this `name`, for a phase."""
+    claims = MOTION_CLAIMS.get(name, MotionClaims(values=()))
+    if claims.draw:
+        law = claims.draw(d)
+    else:
+        law = _by_ranges(d, RISES[name].example, rise_table(name), claims.usual)
+    return {"law": name, **law}
+
+
 def parameters(law: Mapping[str, Any]) -> Any:
-    """Return the parameters of a law for its table."""
-    entry = LAWS[law["type"]]
-    given = {key: value for key, value in law.items() if key != "type"}
-    return entry.parameters(**law_table(entry.name).inward(given))
+    """Return the parameters of a law, or of a motion law, for its keys."""
+    given = dict(law)
+    if name := given.pop("type", ""):
+        return LAWS[name].parameters(**law_table(name).inward(given))
+    name = given.pop("law")
+    return RISES[name].parameters(**rise_table(name).inward(given))
 
 
-def _by_ranges(
+def _with_counts(
     d: LawDraw, name: str, usual: Mapping[str, tuple[float, float]]
 ) -> tuple[Law, Counts]:
-    example, table = LAWS[name].example, law_table(name)
-    shown = table.outward(vars(example))
-    law: Law = {}
-    for field, param in params_of(type(example)).items():
-        key = param.key(field)
-        if field in usual or _required(type(example), field) or param.choices:
-            law[key] = _value(d, param, shown.get(key), usual.get(field))
+    table = law_table(name)
+    law = _by_ranges(d, LAWS[name].example, table, usual)
     for lobes in sorted(LOBES, key=lambda _: d.random.random()):
         z = d.of_lobes(lobes, _TEETH)
         more = law
@@ -66,6 +78,20 @@ def _by_ranges(
         if _closes({"type": name, **more}, z):
             return more, z
     return law, d.equal(_TEETH)
+
+
+def _by_ranges(
+    d: Draw, example: Any, table: Table, usual: Mapping[str, tuple[float, float]]
+) -> Law:
+    """Return the keys of a law: all that are required or have a usual range or choices."""
+    shown = table.outward(vars(example))
+    law: Law = {}
+    for field, param in params_of(type(example)).items():
+        required, key = _required(type(example), field), param.key(field)
+        if not required and ((field not in usual and not param.choices) or d.chance(_LEFT_OUT)):
+            continue
+        law[key] = _value(d, param, shown.get(key), usual.get(field))
+    return law
 
 
 def _required(owner: Any, field: str) -> bool:

@@ -14,7 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from claims.laws import LAW_CLAIMS
-from claims.of_rises import RISE_CLAIMS
+from claims.motion import MOTION_CLAIMS
 from gearcam.designs import load
 from gearcam.designs.design import functions_in
 from gearcam.designs.examine import examine
@@ -129,8 +129,8 @@ def test_every_rise_has_branches_that_take_its_examples(
     validator: jsonschema.Draft202012Validator, phase: str
 ) -> None:
     number = [item["type"] for item in CAM["motion"]].index(phase)
-    for law, claims in RISE_CLAIMS.items():
-        for claim in claims:
+    for law, claims in MOTION_CLAIMS.items():
+        for claim in claims.values:
             own = rise_table(law).document(claim.parameters)
             if any(functions_in(own)):
                 continue

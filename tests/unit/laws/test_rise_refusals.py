@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from claims.of_rises import RISE_CLAIMS
+from claims.motion import MOTION_CLAIMS
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.tolerances import DEFAULT
 from gearcam.designs.table import table_of
@@ -54,7 +54,7 @@ def test_numbers_out_of_range_are_told(law: str, key: str, value: float, allowed
 def test_every_rise_can_be_read_from_a_file() -> None:
     for entry in RISES.values():
         known = table_of("motion", entry.parameters)
-        for claim in RISE_CLAIMS[entry.name]:
+        for claim in MOTION_CLAIMS[entry.name].values:
             written = known.outward(vars(claim.parameters))
             assert list(faults_of(known, written, home=lambda _: "")) == []
             again = entry.parameters(**known.inward(written))

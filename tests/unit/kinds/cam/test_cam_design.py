@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from claims.of_rises import RISE_CLAIMS
+from claims.motion import MOTION_CLAIMS
 from gearcam.base.errors import DesignError
 from gearcam.cams.spec import CamSpec, FollowerSpec
 from gearcam.commands import studied
@@ -99,10 +99,10 @@ def test_a_segment_carries_its_end_in_the_units_of_the_lift() -> None:
 
 @pytest.mark.parametrize("name", ["rise", "return"])
 def test_every_law_is_read_with_its_parameters(name: str) -> None:
-    for law, claims in RISE_CLAIMS.items():
+    for law, claims in MOTION_CLAIMS.items():
         assert not set(phase_table(name).entries) & set(rise_table(law).entries), law
         assert not {"type", "law"} & set(rise_table(law).entries), law
-        for claim in claims:
+        for claim in claims.values:
             document = tomllib.loads(ROLLER)
             number = 0 if name == "rise" else 2
             own = rise_table(law).document(claim.parameters)
