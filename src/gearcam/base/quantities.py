@@ -34,6 +34,12 @@ else:
 REQUIRED: Final = dataclasses.MISSING
 """Default of required parameters."""
 
+OPPOSITES: Final = {
+    "translating": "oscillating", "oscillating": "translating",
+    "turning": "sliding", "sliding": "turning",
+}  # fmt: skip
+"""Circumstances on which units depend: the motion of a cam's follower, and that of the cam."""
+
 
 @dataclass(frozen=True)
 class Quantity:
@@ -99,10 +105,10 @@ class Param:
         Whether Python functions may be given instead of a text.
     nested : tuple of str
         Kinds of design, if the value is a design: that of a file, or given in its place.
-    angular : Param or None
-        The parameter if lifts are angles, which has another key.
-    sliding : Param or None
-        The parameter if the cam slides, which has another key.
+    when : tuple of str
+        Circumstances in which the parameter has this key, of `OPPOSITES`; always if empty.
+    other : Param or None
+        The parameter in the opposite of the first circumstance: it has another unit and key.
     constant_at : float or None
         Value at which the ratio of a law is constant: the search for remedies moves towards it.
     """
@@ -121,8 +127,8 @@ class Param:
     both: bool = False
     function: bool = False
     nested: tuple[str, ...] = ()
-    angular: Param | None = None
-    sliding: Param | None = None
+    when: tuple[str, ...] = ()
+    other: Param | None = None
     constant_at: float | None = None
 
     def __post_init__(self) -> None:
@@ -202,8 +208,7 @@ def _type_of(field: dataclasses.Field[Any]) -> str:
     words = [kind.__name__ if isinstance(kind, type) else str(kind)]
     for alias, text in _ALIASES.items():
         words = [re.sub(alias, text, word) for word in words]
-    others = (other.quantity for other in (made.angular, made.sliding) if other)
-    quantities = (made.quantity, *others)
+    quantities = (made.quantity, *((made.other.quantity,) if made.other else ()))
     words += [" or ".join(one.unit.replace("deg", "rad") for one in quantities if one.unit)]
     if field.default is not REQUIRED:
         words.append("optional" if field.default is None else f"default {field.default!r}")

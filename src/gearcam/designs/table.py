@@ -11,12 +11,12 @@ import math
 import operator
 import types
 import typing
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
-from gearcam.base.quantities import REQUIRED, Param, params_of
+from gearcam.base.quantities import OPPOSITES, REQUIRED, Param, params_of
 
 
 @dataclass(frozen=True)
@@ -39,10 +39,6 @@ class Key:
         A word allowed instead of a number, such as ``solve``; empty for none.
     default : object
         In mm or rad; `REQUIRED` if the file must have the key, None if the program finds a value.
-    swings : bool or None
-        For lifts: whether this key is for lifts that are angles; None for other keys.
-    slides : bool or None
-        For spans: whether this key is for translating cams; None for other keys.
     """
 
     name: str
@@ -52,13 +48,11 @@ class Key:
     length: int | None
     literal: str
     default: Any
-    swings: bool | None = None
-    slides: bool | None = None
 
     @property
     def required(self) -> bool:
         """Whether the file must have this key, without an alternative."""
-        return self.default is REQUIRED and self.slides is None
+        return self.default is REQUIRED and not self.param.when
 
     def takes(self, count: int) -> bool:
         """Return whether its list may have `count` values."""
@@ -116,20 +110,13 @@ class Table:
     owner: type | None
     entries: Mapping[str, Key]
 
-    def of_lifts(self, *, oscillating: bool) -> Table:
-        """Return the table with keys for lifts that are angles, if `oscillating`, or lengths."""
-        kept = {
-            k: entry for k, entry in self.entries.items() if entry.swings in (None, oscillating)
-        }
-        return Table(self.title, self.owner, kept)
-
-    def of_cams(self, *, sliding: bool) -> Table:
-        """Return the table with keys for translating cams, if `sliding`, or rotating ones."""
-        kept = {
-            k: replace(entry, slides=None)
-            for k, entry in self.entries.items()
-            if entry.slides in (None, sliding)
-        }
+    def bound(self, circumstances: Collection[str]) -> Table:
+        """Return the table with the keys for some `circumstances` (see `Param.when`)."""
+        kept = {}
+        for key, entry in self.entries.items():
+            if not any(OPPOSITES[word] in circumstances for word in entry.param.when):
+                undecided = tuple(word for word in entry.param.when if word not in circumstances)
+                kept[key] = replace(entry, param=replace(entry.param, when=undecided))
         return Table(self.title, self.owner, kept)
 
     def inward(self, raw: Mapping[str, Any]) -> dict[str, Any]:
@@ -167,7 +154,7 @@ def table_of(title: str, owner: type) -> Table:
     Returns
     -------
     Table
-        With an entry for each field, in order, and two for a lift or span.
+        With an entry for each field, in order, and two where the unit depends on circumstances.
     """
     hints = typing.get_type_hints(owner)
     defaults = {field.name: field.default for field in dataclasses.fields(owner)}
@@ -181,16 +168,11 @@ def table_of(title: str, owner: type) -> Table:
 
 def _entries(name: str, made_of: Param, hint: Any, default: Any) -> Iterator[Key]:
     entry = _entry(name, made_of, hint, default)
-    if made_of.sliding is not None:
-        slid = made_of.sliding
-        yield replace(entry, slides=False)
-        yield replace(entry, slides=True, key=slid.key(name), param=slid, literal="")
-    elif made_of.angular is None:
-        yield entry
-    else:
-        angular = made_of.angular
-        yield replace(entry, swings=False)
-        yield replace(entry, swings=True, key=angular.key(name), param=angular)
+    yield entry
+    if made_of.other:
+        first, *rest = made_of.when
+        other = replace(made_of.other, when=(OPPOSITES[first], *rest))
+        yield replace(entry, key=other.key(name), param=other, literal="")
 
 
 def _entry(name: str, made_of: Param, hint: Any, default: Any) -> Key:

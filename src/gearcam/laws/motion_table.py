@@ -73,7 +73,8 @@ class MotionTable(FromFile):
         le=LONGEST,
         min_length=_FEWEST,
         doc="lifts at theta (translating follower)",
-        angular=Param(
+        when=("translating",),
+        other=Param(
             ANGLE, gt=-180, lt=180, min_length=_FEWEST, doc="lifts at theta (oscillating follower)"
         ),
     )
@@ -83,7 +84,8 @@ class MotionTable(FromFile):
         ge=FINEST,
         example=0.01,
         doc="largest distance from a row; 0 if left out (translating follower)",
-        angular=Param(ANGLE, gt=0, doc="largest distance from a row (oscillating follower)"),
+        when=("translating",),
+        other=Param(ANGLE, gt=0, doc="largest distance from a row (oscillating follower)"),
     )
 
     def problems(self) -> Iterator[Problem]:

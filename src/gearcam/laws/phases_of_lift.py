@@ -62,7 +62,8 @@ _SPAN: Final[dict[str, Any]] = {
     "le": 360,
     "example": 60,
     "doc": "cam angle of the phase, or the rest of the turn",
-    "sliding": _WAY,
+    "when": ("turning",),
+    "other": _WAY,
 }
 """Parameter for the angle, or the travel, of a phase."""
 
@@ -110,7 +111,8 @@ class RisePhase(Brief):
         le=LONGEST,
         example=10,
         doc="lift of the phase (translating follower)",
-        angular=Param(
+        when=("translating",),
+        other=Param(
             ANGLE, gt=0, lt=180, example=20, doc="lift of the phase (oscillating follower)"
         ),
     )
@@ -132,8 +134,9 @@ def _rate(
     length: Quantity, angle: Quantity, word: str, sign: str, examples: tuple[float, float]
 ) -> Any:
     said: Any = {"word": f"end_{word}", "doc": f"{sign} at its end; 0 if left out"}
-    angular = Param(angle, example=examples[1], **said)
-    return param(length, default=None, example=examples[0], angular=angular, **said)
+    # segments of a cam that slides end at rest
+    angular, when = Param(angle, example=examples[1], **said), ("translating", "turning")
+    return param(length, default=None, example=examples[0], when=when, other=angular, **said)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -157,7 +160,8 @@ class SegmentPhase(Brief):
         le=LONGEST,
         example=4,
         doc="lift at its end (translating follower)",
-        angular=Param(
+        when=("translating",),
+        other=Param(
             ANGLE, gt=-180, lt=180, example=8, doc="lift at its end (oscillating follower)"
         ),
     )

@@ -17,7 +17,6 @@ from gearcam.kinds.cam.motion import (
     rise_table,
     summary,
     turn_tables,
-    twins,
 )
 from gearcam.laws.phases_of_lift import PHASES
 from gearcam.laws.rises.base import RISES
@@ -56,10 +55,19 @@ def schema() -> tuple[dict[str, Any], dict[str, Any]]:
     return main, made
 
 
+def _variants(known: Table) -> dict[str, list[str]]:
+    """Return the keys of each field that has one of two units."""
+    keys: dict[str, list[str]] = {}
+    for key, entry in known.entries.items():
+        if entry.param.when:
+            keys.setdefault(entry.name, []).append(key)
+    return keys
+
+
 def _rows_schema() -> dict[str, Any]:
     known, _ = turn_tables()
     made = table_schema(known, "rows of cam angle and lift over the turn")
-    inline = [{"required": ["theta_deg", key]} for key in twins(known)["lift"]]
+    inline = [{"required": ["theta_deg", key]} for key in _variants(known)["lift"]]
     return made | {"oneOf": [{"required": ["file"]}, *inline]}
 
 
@@ -74,8 +82,8 @@ def _phase_schema(name: str, law: str = "") -> dict[str, Any]:
     either = [
         {"oneOf": [{"required": [key]} for key in keys]}
         if word in (LIFT.get(name), SPAN)
-        else {"not": {"required": list(keys)}}
-        for word, keys in twins(known).items()
+        else {"not": {"required": keys}}
+        for word, keys in _variants(known).items()
     ]
     return made | {"allOf": either} if either else made
 

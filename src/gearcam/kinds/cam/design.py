@@ -30,7 +30,7 @@ from gearcam.designs.table import Table, table_of
 from gearcam.designs.validate import told_faults
 from gearcam.kinds.cam.blank import CamBlank
 from gearcam.kinds.cam.forms.base import SLIDING, form_faults
-from gearcam.kinds.cam.motion import examine_motion, whole_turns
+from gearcam.kinds.cam.motion import examine_motion, motion_of, whole_turns
 from gearcam.kinds.shared import AccuracySpec
 from gearcam.laws.phases_of_lift import PHASES, RisePhase
 from gearcam.laws.rises.base import RISES
@@ -240,6 +240,12 @@ def blank_table() -> Table:
 def examine_motion_of(document: Mapping[str, Any], found: Examined) -> None:
     """Validate the motion of a `document`; add its faults and the motion to `found`."""
     examine_motion(document, found, partial(home_of, KINDS[NAME]))
+
+
+def motion_document(design: CamDesign) -> list[dict[str, Any]] | dict[str, Any]:
+    """Return the motion of a `design` as in a file."""
+    sliding = "sliding" if design.cam.form in SLIDING else "turning"
+    return motion_of(design.motion, (design.follower.motion, sliding))
 
 
 def later(document: Mapping[str, Any]) -> Fault | None:

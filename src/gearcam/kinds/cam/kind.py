@@ -19,10 +19,11 @@ from gearcam.kinds.cam.design import (
     blank_table,
     examine_motion_of,
     later,
+    motion_document,
     rules,
 )
 from gearcam.kinds.cam.forms.base import SLIDING, form_keys, form_schema
-from gearcam.kinds.cam.motion import TITLE, homes, motion_of
+from gearcam.kinds.cam.motion import TITLE, homes
 from gearcam.kinds.shared import AccuracySpec
 from gearcam.parts.blank import KIND as PARTS
 from gearcam.results.kind import Kind
@@ -37,11 +38,7 @@ KIND: Final = Kind(
     main=Main(
         title=TITLE,
         examine=examine_motion_of,
-        document=lambda design: motion_of(
-            design.motion,
-            oscillating=design.follower.oscillating,
-            sliding=design.cam.form in SLIDING,
-        ),
+        document=motion_document,
         table=deferred(f"{_HERE}.describe:known"),
         homes=homes,
         schema=deferred(f"{_HERE}.describe:schema"),

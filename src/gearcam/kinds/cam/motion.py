@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache, partial
 from typing import TYPE_CHECKING, Any, Final
 
+from gearcam.base.quantities import OPPOSITES
 from gearcam.base.registry import name_of
 from gearcam.designs.examine import chosen
 from gearcam.designs.faults import Fault, quoted, show
@@ -19,7 +20,7 @@ from gearcam.designs.lines import Path
 from gearcam.designs.slips import misspelt
 from gearcam.designs.table import Table, table_of
 from gearcam.designs.validate import faults_of, made_of, told_faults
-from gearcam.kinds.cam.forms.base import SLIDING, form_of
+from gearcam.kinds.cam.forms.base import form_of
 from gearcam.laws.phases_of_lift import PHASES, Phase, RisePhase, fill_half, program_problems
 from gearcam.laws.rises.base import RISES
 
@@ -39,6 +40,17 @@ LIFT: Final = {"rise": "lift", "segment": "to"}
 
 SPAN: Final = "angle"
 """Key of every phase: an angle, or a travel if the cam slides."""
+
+Circumstances = tuple[str, ...]
+"""Some of `gearcam.base.quantities.OPPOSITES`: the motion of the follower, and that of the cam."""
+
+_WRONG: Final = {
+    "translating": "wrong unit for the lift of a translating follower",
+    "oscillating": "wrong unit for the lift of an oscillating follower",
+    "turning": "the cam turns",
+    "sliding": "the cam slides",
+}
+"""Why a key does not suit the circumstances."""
 
 _UNREADABLE: Final = RisePhase(angle=1.0, law=None)
 """Replaces a phase that cannot be read; as its lift is missing, sums are not checked."""
@@ -68,14 +80,6 @@ def rise_table(law: str) -> Table:
     return table_of(TITLE, RISES[law].parameters)
 
 
-def twins(known: Table) -> dict[str, tuple[str, ...]]:
-    """Return the keys of each field that can be a length or an angle."""
-    words: dict[str, list[str]] = {}
-    for key, entry in known.entries.items():
-        words.setdefault(entry.name, []).append(key)
-    return {word: tuple(keys) for word, keys in words.items() if len(keys) > 1}
-
-
 def summary(phase: type) -> str:
     """Return a short description of a phase."""
     first = (phase.__doc__ or "").partition("\n")[0].rstrip(".")
@@ -96,43 +100,36 @@ def examine_motion(
     home : callable
         Gives the words that say where a key of another place belongs.
     """
-    raw = document.get(TITLE)
+    raw, given = document.get(TITLE), circumstances(document)
     types = quoted(PHASES)
     rule = f"[[{TITLE}]] for each phase, with type = {types}; or one [{TITLE}] with rows or lift"
-    oscillating = _oscillating(document.get("follower", {}))
-    sliding = _sliding(document.get("cam", {}))
     if TITLE not in document:
         found.faults.append(Fault((TITLE,), "is missing", allowed=rule))
     elif isinstance(raw, Mapping) and "type" in raw:
         hint = f"write phases with double brackets: [[{TITLE}]]"
         found.faults.append(Fault((TITLE,), "is a single table", raw, rule, hint))
-    elif isinstance(raw, Mapping) and sliding:
+    elif isinstance(raw, Mapping) and "sliding" in given:
         message = "is given over a turn, but the cam slides"
         found.faults.append(Fault((TITLE,), message, raw, f"[[{TITLE}]] with way_mm"))
     elif isinstance(raw, Mapping):
-        _examine_turn(raw, oscillating, found, home)
+        _examine_turn(raw, given, found, home)
     elif not isinstance(raw, list) or not raw:
         message = "the list is empty" if raw == [] else f"{show(raw)} is not a list of tables"
         found.faults.append(Fault((TITLE,), message, raw, rule))
     else:
         before = len(found.faults)
-        kind = (oscillating, sliding)
-        phases = [_phase((TITLE, k), item, kind, found, home) for k, item in enumerate(raw)]
-        _examine_program(phases, raw, kind, found, half=form_of(document).half_turns)
+        phases = [_phase((TITLE, k), item, given, found, home) for k, item in enumerate(raw)]
+        _examine_program(phases, raw, given, found, half=form_of(document).half_turns)
         if len(found.faults) == before:
             found.parts[TITLE] = tuple(phases)
 
 
-def _oscillating(follower: Any) -> bool | None:
-    """Return whether a follower oscillates; None if its table does not say."""
+def circumstances(document: Mapping[str, Any]) -> tuple[str, ...]:
+    """Return what units of the motion depend on: the motions of cam and follower, if known."""
+    follower = document.get("follower", {})
     motion = follower.get("motion", "translating") if isinstance(follower, Mapping) else None
-    return motion == "oscillating" if motion in ("translating", "oscillating") else None
-
-
-def _sliding(cam: Any) -> bool:
-    """Return whether a cam slides; False for unknown forms."""
-    form = cam.get("form") if isinstance(cam, Mapping) else None
-    return form in SLIDING
+    known = (motion,) if motion in ("translating", "oscillating") else ()
+    return (*known, "sliding" if form_of(document).slides else "turning")
 
 
 def _by_rows() -> type[MotionTable]:
@@ -159,36 +156,28 @@ def turn_tables() -> tuple[Table, Table]:
 
 
 def _examine_turn(
-    raw: Mapping[str, Any], oscillating: bool | None, found: Examined, home: Callable[[str], str]
+    raw: Mapping[str, Any], given: Circumstances, found: Examined, home: Callable[[str], str]
 ) -> None:
     owner = _by_formula() if "lift" in raw else _by_rows()
     known = table_of(TITLE, owner)
-    faults = list(faults_of(known, raw, home=home))
-    other = list(_wrong_kind(known, raw, (TITLE,), oscillating))
-    found.faults += [*faults, *other]
-    if other or oscillating is None:
+    wrong = list(_wrong_units(known, raw, (TITLE,), given))
+    known, rest = known.bound(given), _without(raw, wrong)
+    faults = list(faults_of(known, rest, home=home))
+    found.faults += [*faults, *wrong]
+    if wrong or not _follower_known(given):
         return
-    known = known.of_lifts(oscillating=oscillating)
     made, problems = made_of(known, owner, raw, faults, (TITLE,))
     if not faults and not problems:
-        told = made.turn_problems(oscillating=oscillating)
+        told = made.turn_problems(oscillating="oscillating" in given)
         problems = list(told_faults(told, known, raw, (TITLE,)))
         found.parts[TITLE] = made
     found.faults += problems
 
 
 def _phase(
-    at: Path,
-    raw: Any,
-    kind: tuple[bool | None, bool],
-    found: Examined,
-    home: Callable[[str], str],
+    at: Path, raw: Any, given: Circumstances, found: Examined, home: Callable[[str], str]
 ) -> Phase | None:
-    """Examine one phase and return what can be read of it, to check the program.
-
-    `kind` is whether the follower oscillates and whether the cam slides.
-    """
-    oscillating, sliding = kind
+    """Examine one phase and return what can be read of it, to check the program."""
     if not isinstance(raw, Mapping):
         rule = f"a table with type = {quoted(PHASES)}"
         found.faults.append(Fault(at, f"{show(raw)} is not a table", raw, rule))
@@ -196,66 +185,58 @@ def _phase(
     name, right = chosen(at, raw, "type", "a phase", PHASES, found)
     if not name:
         return None
-    rest = {key: value for key, value in raw.items() if key != "type"}
-    spans = list(_wrong_span(phase_table(name), rest, at, sliding))
-    rest = {key: value for key, value in rest.items() if all(key != one.path[-1] for one in spans)}
-    own, make, problems = phase_table(name).of_cams(sliding=sliding), PHASES[name], []
-    if name not in WITH_LAW:
-        faults = list(faults_of(own, rest, home=home, at=at, listed=_told(own, oscillating)))
-    else:
-        chose, _ = chosen(at, raw, "law", "a law of rises and returns", RISES, found)
-        rest.pop("law", None)
-        if not chose:  # it may be a key of any law
-            rest = {k: value for k, value in rest.items() if k in own.entries or not _asked(k)}
-        known = phase_table(name, chose).of_cams(sliding=sliding)
-        told = _told(known, oscillating, "law")
-        faults = list(faults_of(known, rest, home=home, at=at, listed=told))
-        law = None
-        if chose:
-            law, problems = made_of(rise_table(chose), RISES[chose].parameters, rest, faults, at)
-        make = partial(make, law=law)
-    if spans:  # in place of what is missing
-        faults = [one for one in faults if one.path[-1] not in ("way_mm", "angle_deg")] + spans
-    other = list(_wrong_kind(own, rest, at, oscillating))
-    own = own.of_lifts(oscillating=bool(oscillating))
-    phase, own_problems = made_of(own, make, rest, faults, at)
-    told = [*faults, *problems, *own_problems, *other]
-    found.faults += [one for one in told if right or one.path[len(at)] in raw]
-    return None if other or spans or not right else phase
-
-
-def _told(known: Table, oscillating: bool | None, *chosen: str) -> list[str]:
-    """Return the keys of a phase for messages: lifts for its kind of follower only."""
-    of_kind = [
-        key
-        for key, entry in known.entries.items()
-        if oscillating is None or entry.swings is not (not oscillating)
+    choices, law, make = ["type"], "", PHASES[name]
+    if name in WITH_LAW:
+        choices.append("law")
+        law, _ = chosen(at, raw, "law", "a law of rises and returns", RISES, found)
+    rest = {key: value for key, value in raw.items() if key not in choices}
+    own, known = phase_table(name), phase_table(name, law)
+    wrong = list(_wrong_units(known, rest, at, given))
+    own, known, rest = own.bound(given), known.bound(given), _without(rest, wrong)
+    if name in WITH_LAW and not law:  # it may be a key of any law
+        rest = {k: value for k, value in rest.items() if k in own.entries or not _asked(k)}
+    replaced = {one.allowed for one in wrong}  # these are not missing besides
+    faults = [
+        one
+        for one in faults_of(known, rest, home=home, at=at, listed=[*choices, *known.entries])
+        if one.path[-1] not in replaced
     ]
-    return ["type", *chosen, *of_kind]
+    phase, problems = None, list[Fault]()
+    if law:
+        parameters, problems = made_of(rise_table(law), RISES[law].parameters, rest, faults, at)
+        make = partial(make, law=parameters)
+    elif name in WITH_LAW:
+        make = partial(make, law=None)
+    if not wrong:
+        phase, more = made_of(own, make, rest, faults, at)
+        problems += more
+    told = [*faults, *problems, *wrong]
+    found.faults += [one for one in told if right or one.path[len(at)] in raw]
+    return phase if right else None
 
 
-def _wrong_span(known: Table, raw: Mapping[str, Any], at: Path, sliding: bool) -> Iterator[Fault]:
-    """Yield the faults of angles if the cam slides, and of travels if it turns."""
-    for key, entry in known.entries.items():
-        if key not in raw:
-            continue
-        if entry.slides is (not sliding):
-            message, rule = ("turns", "angle_deg") if entry.slides else ("slides", "way_mm")
-            yield Fault((*at, key), f"{show(raw[key])}: the cam {message}", raw[key], rule)
-        elif sliding and "_per_rad" in key:
-            message = f"{show(raw[key])}: segments of a cam that slides end at rest"
-            yield Fault((*at, key), message, raw[key], "leave it out")
-
-
-def _wrong_kind(
-    known: Table, raw: Mapping[str, Any], at: Path, oscillating: bool | None
+def _wrong_units(
+    known: Table, raw: Mapping[str, Any], at: Path, given: Circumstances
 ) -> Iterator[Fault]:
-    """Yield the faults of lengths for an oscillating follower, and of angles for a translating."""
-    kind, unit = ("an oscillating", "_deg") if oscillating else ("a translating", "_mm")
+    """Yield the faults of keys for other circumstances, each with the right key."""
+    right = {entry.name: key for key, entry in known.bound(given).entries.items()}
     for key, entry in known.entries.items():
-        if key in raw and oscillating is not None and entry.swings is (not oscillating):
-            message = f"{show(raw[key])}: wrong unit for the lift of {kind} follower"
-            yield Fault((*at, key), message, raw[key], f"the key that ends in {unit}")
+        if key in raw and (
+            against := [OPPOSITES[one] for one in entry.param.when if OPPOSITES[one] in given]
+        ):
+            words, rule = _WRONG[against[0]], right.get(entry.name, "leave it out")
+            if entry.name not in right:
+                words = "segments of a cam that slides end at rest"
+            yield Fault((*at, key), f"{show(raw[key])}: {words}", raw[key], rule)
+
+
+def _without(raw: Mapping[str, Any], faults: Sequence[Fault]) -> dict[str, Any]:
+    wrong = {one.path[-1] for one in faults}
+    return {key: value for key, value in raw.items() if key not in wrong}
+
+
+def _follower_known(given: Circumstances) -> bool:
+    return "oscillating" in given or "translating" in given
 
 
 def _asked(key: str) -> bool:
@@ -265,52 +246,46 @@ def _asked(key: str) -> bool:
 def _examine_program(
     phases: Sequence[Phase | None],
     raw: Sequence[Any],
-    kind: tuple[bool | None, bool],
+    given: Circumstances,
     found: Examined,
     *,
     half: bool,
 ) -> None:
-    oscillating, sliding = kind
-    if oscillating is None:
+    if not _follower_known(given):
         return
     readable = [_UNREADABLE if phase is None else phase for phase in phases]
     told = program_problems(
         readable,
-        oscillating=oscillating,
-        closed=not sliding,
+        oscillating="oscillating" in given,
+        closed="turning" in given,
         half=half and fill_half(readable),
     )
     for number, name, message, rule in told:
         if number is None:
             found.faults.append(Fault((TITLE,), message, allowed=rule))
         elif phases[number] is not None:
-            known = phase_table(raw[number]["type"]).of_cams(sliding=sliding)
-            known = known.of_lifts(oscillating=oscillating)
+            known = phase_table(raw[number]["type"]).bound(given)
             faults = told_faults([(name, None, message, rule)], known, raw[number], (TITLE, number))
             meant = misspelt(raw[number], known.entries)  # the unknown key is reported instead
             found.faults += [one for one in faults if one.path[2] not in meant]
 
 
-def motion_of(
-    motion: Motion, *, oscillating: bool, sliding: bool = False
-) -> list[dict[str, Any]] | dict[str, Any]:
+def motion_of(motion: Motion, given: Circumstances) -> list[dict[str, Any]] | dict[str, Any]:
     """Return what a file would hold of a motion: a table for each phase, or one for the turn.
 
     Parameters
     ----------
     motion : tuple of Phase, MotionTable or MotionFormula
         As a design has it.
-    oscillating : bool
-        Whether lifts are angles.
-    sliding : bool
-        Whether the cam slides.
+    given : tuple of str
+        See `circumstances`.
 
     Returns
     -------
     list of dict, or dict
     """
     if not isinstance(motion, Sequence):
-        return table_of(TITLE, type(motion)).of_lifts(oscillating=oscillating).document(motion)
+        return table_of(TITLE, type(motion)).bound(given).document(motion)
     names = {owner: name for name, owner in PHASES.items()}
     tables = []
     for phase in motion:
@@ -319,8 +294,7 @@ def motion_of(
         law = name_of(RISES, phase.law) if isinstance(phase, RisePhase) else ""
         if law:
             table |= {"law": law}
-        known = phase_table(name).of_cams(sliding=sliding).of_lifts(oscillating=oscillating)
-        table |= known.document(phase)
+        table |= phase_table(name).bound(given).document(phase)
         if isinstance(phase, RisePhase) and law:
             table |= rise_table(law).document(phase.law)
         tables.append(table)

@@ -120,7 +120,7 @@ def test_lifts_are_of_the_followers_kind() -> None:
     found = problems(changed("lift_mm = 10", "lift_deg = 10"))
     assert [(one.line, one.key) for one in found] == [(8, "motion[0].lift_deg")]
     assert "10: wrong unit for the lift of a translating follower" in found[0].message
-    assert (found[0].value, found[0].allowed) == (10, "the key that ends in _mm")
+    assert (found[0].value, found[0].allowed) == (10, "lift_mm")
     found = problems(changed("lift_deg", "lift_mm", SWINGING))
     assert "wrong unit for the lift of an oscillating follower" in found[-1].message
 

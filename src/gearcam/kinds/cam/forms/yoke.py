@@ -108,7 +108,7 @@ def _demand_opposite(program: Program, motion: Motion) -> None:
     if half:
         from gearcam.kinds.cam.motion import motion_of
 
-        phases: Any = motion_of(half, oscillating=False)
+        phases: Any = motion_of(half, ("translating", "turning"))
         told = ", ".join(f"{one['type']} {shown(one['angle_deg'])} deg" for one in phases)
         rule += f", and these agree best with the first half: {told}"
         ways = (Way(near={"motion": phases}),)
