@@ -240,11 +240,11 @@ def test_a_slider_crank_runs_behind_any_drive(drive: str) -> None:
     expected = (ahead - behind) / (2 * step * unit)
     assert result.slide(inner)[1] == pytest.approx(expected, rel=1e-4, abs=1e-4)
     rod, slider = bodies["rod"], bodies["slider"]
-    pin, end = rod.shift, rod.shift + 200 * np.exp(1j * rod.turn)
-    assert end == pytest.approx(slider.shift, abs=1e-9)  # the rod joins the pin and the slider
-    assert np.ptp(slider.shift.imag) == 0.0
+    pin, end = rod.pose.shift, rod.pose.shift + 200 * np.exp(1j * rod.pose.turn)
+    assert end == pytest.approx(slider.pose.shift, abs=1e-9)  # the rod joins the pin and the slider
+    assert np.ptp(slider.pose.shift.imag) == 0.0
     carried = bodies["gear2" if "gear2" in bodies else "follower"]
-    fixed = (pin - carried.shift) * np.exp(-1j * carried.turn)
+    fixed = (pin - carried.pose.shift) * np.exp(-1j * carried.pose.turn)
     assert fixed == pytest.approx(np.full(25, fixed[0]), abs=1e-9)  # the pin moves with its carrier
 
 

@@ -15,6 +15,7 @@ import gearcam
 from gearcam.export.dxf import DxfStyle, dxf_bytes
 from gearcam.export.dxf_read import DxfError, measure_dxf, read_dxf
 from gearcam.kinds.gear_pair.drawn import pair_drawing
+from gearcam.numeric.pose import Pose
 from gearcam.parts.body import Part
 from gearcam.parts.marks import timing_mark
 from gearcam.pictures.drawings import Drawing, wheel_drawing
@@ -251,6 +252,6 @@ def test_a_turned_wheel_is_measured_too(part: Part) -> None:
     from gearcam.pictures.drawings import place
 
     turned = replace(
-        wheel_drawing(part), features=place(wheel_drawing(part).features, 0.7, (3.0, 4.0))
+        wheel_drawing(part), features=place(wheel_drawing(part).features, Pose(0.7, 3.0 + 4.0j))
     )
     assert measure_dxf(dxf_bytes(turned, style()), turned.contours) <= TOLERANCE

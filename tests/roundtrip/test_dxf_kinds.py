@@ -18,6 +18,7 @@ from gearcam.kinds.gear_pair.drawn import pair_drawing
 from gearcam.numeric import splines
 from gearcam.numeric.arcs import fit_closed
 from gearcam.numeric.contour import Contour, Run
+from gearcam.numeric.pose import Pose
 from gearcam.parts.blank import WheelBlank
 from gearcam.parts.body import Opening, Part
 from gearcam.parts.openings import bore as bore_of
@@ -153,7 +154,7 @@ def test_a_chain_with_a_gap_is_refused() -> None:
 @pytest.mark.slow
 def test_a_pair_of_splines_is_measured_wheel_by_wheel() -> None:
     part = wheel(12)
-    drawing = pair_drawing([part, part], 95.0, placements=((-0.4, (0.0, 0.0)), (0.3, (95.0, 0.0))))
+    drawing = pair_drawing([part, part], 95.0, poses=(Pose(-0.4), Pose(0.3, 95.0)))
     data = dxf_bytes(drawing, DxfStyle(tolerance=TOLERANCE, curves="splines"))
     assert measure_dxf(data, drawing.contours) <= TOLERANCE
     assert measure_dxf(data, drawing.contours[::-1]) > 10
@@ -193,12 +194,12 @@ def test_a_keyed_bore_is_one_closed_line_of_exact_arcs() -> None:
 def test_turning_moves_loops_and_joints_along() -> None:
     part = wheel()
     loop = part.openings[0].shape
-    moved = placed(loop, math.pi / 2, (1.0, 2.0))
+    moved = placed(loop, Pose(math.pi / 2, 1.0 + 2.0j))
     assert isinstance(moved, Loop)
     x, y = loop.vertices.T  # type: ignore[union-attr]
     assert moved.vertices == pytest.approx(np.column_stack([1.0 - y, 2.0 + x]), abs=1e-12)
     assert moved.moments.area == pytest.approx(loop.moments.area, rel=1e-12)
-    turned = placed(part.contour, 0.3, (0.0, 0.0))
+    turned = placed(part.contour, Pose(0.3))
     assert isinstance(turned, Contour)
     assert [run.joints for run in turned.runs] == [run.joints for run in part.contour.runs]
 

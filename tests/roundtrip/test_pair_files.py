@@ -18,6 +18,7 @@ from ezdxf.filemanagement import read as read_dxf
 
 from gearcam.kinds.gear_pair.design import PairOutputSpec
 from gearcam.kinds.gear_pair.result import GearPairResult
+from gearcam.numeric.pose import Pose
 from gearcam.parts.blank import Blank
 from gearcam.parts.mass import mass_properties
 from helpers_pairs import profile
@@ -127,7 +128,7 @@ def test_both_bodies_stand_where_they_belong(kind: str) -> None:
 def test_a_pair_that_is_not_turned_stands_elsewhere() -> None:
     """Control: the wheels' own frames are not the assembly."""
     plain = replace(job().design, output=replace(job().design.output, pose=0.0))
-    assert GearPairResult(plain).placements == ((-0.0, (0.0, 0.0)), (0.0, (job().pair.shift, 0.0)))
+    assert GearPairResult(plain).poses == (Pose(), Pose(shift=job().pair.shift))
     _, place = centroid(bodies("stl")["gear1"])
     own = mass_properties(job().parts[0], 1.0).centroid
     assert math.dist(place, own) > 1.0

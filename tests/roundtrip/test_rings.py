@@ -21,8 +21,8 @@ from gearcam.gears.spec import RingSpec, StepsSpec
 from gearcam.kinds.gear_pair.design import PairOutputSpec
 from gearcam.kinds.gear_pair.files import FILES
 from gearcam.kinds.gear_pair.result import GearPairResult
+from gearcam.numeric.pose import UNMOVED
 from gearcam.parts.blank import Blank
-from gearcam.pictures.drawings import UNMOVED
 from helpers_rings import WAIST, ring_job, turned
 
 BOLTS: dict[str, Any] = {

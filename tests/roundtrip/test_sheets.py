@@ -21,6 +21,7 @@ from gearcam.export.sheet_dxf import sheet_dxf
 from gearcam.export.sheet_svg import sheet_svg
 from gearcam.kinds.gear_pair.drawn import pair_drawing
 from gearcam.kinds.gear_pair.sheet import pair_sheet
+from gearcam.numeric.pose import Pose
 from gearcam.parts.blank import WheelBlank
 from gearcam.parts.body import Hub, Mark, Opening, Part
 from gearcam.parts.make import make_part
@@ -150,8 +151,8 @@ def pair(phi: float = 0.3) -> Drawing:
     angle = np.linspace(0.0, 2 * np.pi, 400, endpoint=False)
     ring = Chain(points=23.9 * np.column_stack([np.cos(angle), np.sin(angle)]))
     part = plain()
-    placements = ((-phi, (0.0, 0.0)), (phi, (47.8, 0.0)))
-    return pair_drawing([part, part], 47.8, [ring, ring], placements=placements)
+    poses = Pose(-phi), Pose(phi, 47.8)
+    return pair_drawing([part, part], 47.8, [ring, ring], poses=poses)
 
 
 @pytest.fixture(scope="module")

@@ -22,11 +22,11 @@ from gearcam.base.errors import GearcamError, MissingExtraError
 from gearcam.export import step, step_shapes
 from gearcam.export.step import step_bytes
 from gearcam.numeric.contour import Run
+from gearcam.numeric.pose import UNMOVED, Pose
 from gearcam.numeric.splines import Spline, fit_splines
 from gearcam.parts.body import Hub, Mark, Opening, Part
 from gearcam.parts.shapes import Circle
 from gearcam.parts.solids import SolidError
-from gearcam.pictures.drawings import UNMOVED
 from helpers_contour import bore, disc_contour, gear_contour, square_contour
 from helpers_step import (
     KEYED,
@@ -239,7 +239,7 @@ def test_an_assembly_puts_parts_where_they_belong() -> None:
     one, two = plate(disc_contour(20.0)), plate(square_contour(40.0), openings=(hole,))
     two = replace(two, name="gear2")
     angle, offset = 0.7, (80.0, -3.0)
-    data = step_bytes([(one, UNMOVED), (two, (angle, offset))], "pair", TOLERANCE)
+    data = step_bytes([(one, UNMOVED), (two, Pose(angle, complex(*offset)))], "pair", TOLERANCE)
     still, turned = read_step(data)
     assert (still.name, turned.name) == ("gear1", "gear2")
     products = [each.split(",")[0] for each in entities(data)["PRODUCT"]]
@@ -254,17 +254,17 @@ def test_an_assembly_puts_parts_where_they_belong() -> None:
     assert turned.bounds - [*offset, 3.0] == pytest.approx(box, abs=1e-6)
     assert turned.volume == pytest.approx(two.volume, rel=1e-12)
     # one part for itself is moved just so, without an assembly
-    alone = step_bytes([(two, (angle, offset))], "gear2", TOLERANCE)
+    alone = step_bytes([(two, Pose(angle, complex(*offset)))], "gear2", TOLERANCE)
     assert "NEXT_ASSEMBLY_USAGE_OCCURRENCE" not in entities(alone)
     assert read_step(alone)[0].center == pytest.approx(turned.center, abs=1e-10)
     # the control: turned the other way it is elsewhere
-    wrong = step_bytes([(two, (-angle, offset))], "gear2", TOLERANCE)
+    wrong = step_bytes([(two, Pose(-angle, complex(*offset)))], "gear2", TOLERANCE)
     assert read_step(wrong)[0].center != pytest.approx(turned.center, abs=0.1)
 
 
 def test_a_part_that_comes_twice_is_one_product() -> None:
     part = plate(square_contour(40.0))
-    data = step_bytes([(part, UNMOVED), (part, (0.0, (50.0, 0.0)))], "row", 1e-5)
+    data = step_bytes([(part, UNMOVED), (part, Pose(shift=50.0))], "row", 1e-5)
     assert len(entities(data)["MANIFOLD_SOLID_BREP"]) == 1
     assert len(entities(data)["PRODUCT"]) == 2
     assert [solid.center[0] for solid in read_step(data)] == pytest.approx([0.0, 50.0], abs=1e-9)
@@ -293,20 +293,20 @@ def test_the_same_parts_give_the_same_bytes() -> None:
     )
     assert written(steps) == written(steps)
     square = plate(square_contour(30.0))
-    items = [(square, UNMOVED), (square, (0.0, (50.0, 0.0)))]
+    items = [(square, UNMOVED), (square, Pose(shift=50.0))]
     first = step_bytes(items, "pair", TOLERANCE)
     # the kernel counts assemblies through the process: past nine a number gets longer
     assert all(step_bytes(items, "pair", TOLERANCE) == first for _ in range(50))
     uses = entities(first)["NEXT_ASSEMBLY_USAGE_OCCURRENCE"]
     assert [use.split(",")[0] for use in uses] == ["'1'", "'2'"]
     # the control: what changes is seen
-    assert step_bytes([items[0], (square, (1e-6, (50.0, 0.0)))], "pair", TOLERANCE) != first
+    assert step_bytes([items[0], (square, Pose(1e-6, 50.0))], "pair", TOLERANCE) != first
 
 
 def test_without_numbering_the_bytes_would_change(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(step, "_USE", re.compile("nothing of the kind"))
     part = plate(square_contour(40.0))
-    items = [(part, UNMOVED), (part, (0.0, (50.0, 0.0)))]
+    items = [(part, UNMOVED), (part, Pose(shift=50.0))]
     assert step_bytes(items, "pair", TOLERANCE) != step_bytes(items, "pair", TOLERANCE)
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from gearcam.compare.table import rows
 from gearcam.compare.variants import Variant
+from gearcam.numeric.pose import Pose
 from gearcam.pictures import drawings
 from gearcam.pictures.charts import Chart, Limit, MarkedPlace
 from gearcam.pictures.scenes import PLACES, MovingBody, Scene
@@ -125,8 +126,9 @@ def _over(scene: Scene, places: np.ndarray) -> Scene:
     within = places - cycles * (last - first)  # interp keeps the value at the end
 
     def moved(body: MovingBody) -> MovingBody:
-        turn = np.interp(within, scene.places, body.turn) + cycles * (body.turn[-1] - body.turn[0])
-        return replace(body, turn=turn, shift=np.interp(within, scene.places, body.shift))
+        turn, shift = body.pose.turn, body.pose.shift
+        turn = np.interp(within, scene.places, turn) + cycles * (turn[-1] - turn[0])
+        return replace(body, pose=Pose(turn, np.interp(within, scene.places, shift)))
 
     bodies = tuple(moved(body) for body in scene.bodies)
     return replace(scene, places=places, closed=False, bodies=bodies, contacts={}, pitch=None)

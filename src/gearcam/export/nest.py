@@ -18,6 +18,7 @@ import numpy as np
 
 from gearcam.base.numerals import NOISE
 from gearcam.numeric.arrays import Array
+from gearcam.numeric.pose import Pose
 from gearcam.pictures.drawings import (
     LABEL,
     OUTER,
@@ -46,13 +47,13 @@ def nested(drawings: Sequence[Drawing]) -> tuple[Drawing, ...]:
     rows = min(
         (_rows(order, sizes, width) for width in widths), key=lambda it: _half_perimeter(it, sizes)
     )
-    shifts: dict[int, tuple[float, float]] = {}
+    poses: dict[int, Pose] = {}
     base = 0.0
     for row in rows:
-        shifts |= _pushed(row, hulls, base)
+        poses |= _pushed(row, hulls, base)
         base -= max(float(sizes[k, 1]) for k in row) + GAP
     return tuple(
-        replace(one, features=place(one.features, 0.0, shifts[k])) for k, one in enumerate(drawings)
+        replace(one, features=place(one.features, poses[k])) for k, one in enumerate(drawings)
     )
 
 
@@ -85,26 +86,24 @@ def _half_perimeter(rows: Sequence[Sequence[int]], sizes: Array) -> float:
     return wide + sum(float(sizes[row, 1].max()) + GAP for row in rows)
 
 
-def _pushed(
-    row: Sequence[int], hulls: Sequence[Any], base: float
-) -> dict[int, tuple[float, float]]:
-    """Return shifts of hulls onto a line below y = `base`, each as far left as gaps allow."""
+def _pushed(row: Sequence[int], hulls: Sequence[Any], base: float) -> dict[int, Pose]:
+    """Return the poses of hulls on a line below y = `base`, each as far left as gaps allow."""
     from shapely import distance
     from shapely.affinity import translate
 
     foot = base - max(hulls[k].bounds[3] - hulls[k].bounds[1] for k in row)
-    stand: list[Any] = []
-    shifts: dict[int, tuple[float, float]] = {}
+    pushed: list[Any] = []
+    poses: dict[int, Pose] = {}
     for k in row:
         left, low, _, _ = hulls[k].bounds
-        x = max((one.bounds[2] + GAP for one in stand), default=0.0)
-        while x > 0.0 and stand:
+        x = max((one.bounds[2] + GAP for one in pushed), default=0.0)
+        while x > 0.0 and pushed:
             # distances decrease by at most the movement
             there = translate(hulls[k], x - left, foot - low)
-            free = float(distance(there, np.array(stand, dtype=object)).min()) - GAP
+            free = float(distance(there, np.array(pushed, dtype=object)).min()) - GAP
             if free < _NEAR:
                 break
             x = max(0.0, x - free)
-        shifts[k] = (x - left, foot - low)
-        stand.append(translate(hulls[k], *shifts[k]))
-    return shifts
+        poses[k] = Pose(shift=complex(x - left, foot - low))
+        pushed.append(translate(hulls[k], x - left, foot - low))
+    return poses

@@ -21,9 +21,9 @@ from typing import Any, Final
 
 from gearcam.base.errors import MissingExtraError
 from gearcam.export.step_shapes import occt, solids_of
+from gearcam.numeric.pose import Pose
 from gearcam.parts.body import Part
 from gearcam.parts.solids import SolidError
-from gearcam.pictures.drawings import Placement
 
 DATE: Final = "1970-01-01T00:00:00"
 """The date in a file: the same for all."""
@@ -49,17 +49,16 @@ _TOKEN: Final = re.compile(r"'(gearcam-\d+)'")
 
 
 def step_bytes(
-    items: Sequence[tuple[Part, Placement]],
+    items: Sequence[tuple[Part, Pose]],
     name: str,
     tolerance: float,
     made: dict[Part, Any] | None = None,
-    heights: Sequence[float] = (),
 ) -> bytes:
     """Return parts as a STEP file.
 
     Parameters
     ----------
-    items : sequence of (Part, Placement)
+    items : sequence of (Part, Pose)
         One part, or those of an assembly with their places; a repeated part is one product.
     name : str
         Name of the assembly, and of the file without its ending.
@@ -67,8 +66,6 @@ def step_bytes(
         Largest distance of the faces from the dense points of the outlines.
     made : dict, optional
         Cache of the parts' solids to that tolerance; new ones are added.
-    heights : sequence of float, mm
-        Shifts of the items along z; none by default.
 
     Returns
     -------
@@ -93,11 +90,7 @@ def step_bytes(
     with _silent(), _document() as document:
         made = {} if made is None else made
         made |= {p: _joined(solids_of(p, tolerance)) for p in parts if p not in made}
-        lifted = [
-            (part, (*place, height))
-            for (part, place), height in zip(items, heights or [0.0] * len(items), strict=True)
-        ]
-        _fill(document, lifted, {part: made[part] for part in parts}, tokens[name], tokens)
+        _fill(document, items, {part: made[part] for part in parts}, tokens[name], tokens)
         written = _write(document, tokens[f"{name}.step"])
     return _normal(written.decode("ascii"), tokens).encode("ascii")
 
@@ -159,7 +152,7 @@ def _joined(solids: Sequence[Any]) -> Any:
 
 def _fill(
     document: Any,
-    items: Sequence[tuple[Part, tuple[float, tuple[float, float], float]]],
+    items: Sequence[tuple[Part, Pose]],
     shapes: Mapping[Part, Any],
     name: str,
     names: Mapping[str, str],
@@ -167,9 +160,9 @@ def _fill(
     """Add the shapes to the document: one in its place, several as an assembly."""
     tool = occt.XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
     if len(items) == 1:
-        ((part, placement),) = items
+        ((part, pose),) = items
         # a shape with a location would be written as an assembly: its points are moved instead
-        moved = occt.BRepBuilderAPI_Transform(shapes[part], _motion(*placement), True).Shape()
+        moved = occt.BRepBuilderAPI_Transform(shapes[part], _motion(pose), True).Shape()
         _set_name(tool.AddShape(moved, False), names[part.name])
         return
     root = tool.NewShape()
@@ -177,16 +170,18 @@ def _fill(
     labels = {part: tool.AddShape(shape, False) for part, shape in shapes.items()}
     for part, label in labels.items():
         _set_name(label, names[part.name])
-    for part, placement in items:
-        place = occt.TopLoc_Location(_motion(*placement))
+    for part, pose in items:
+        place = occt.TopLoc_Location(_motion(pose))
         _set_name(tool.AddComponent(root, labels[part], place), names[part.name])
     tool.UpdateAssemblies()
 
 
-def _motion(angle: float, offset: tuple[float, float], height: float) -> Any:
+def _motion(pose: Pose) -> Any:
     turn, shift = occt.gp_Trsf(), occt.gp_Trsf()
-    turn.SetRotation(occt.gp_Ax1(occt.gp_Pnt(0.0, 0.0, 0.0), occt.gp_Dir(0.0, 0.0, 1.0)), angle)
-    shift.SetTranslation(occt.gp_Vec(*offset, height))
+    axis = occt.gp_Ax1(occt.gp_Pnt(0.0, 0.0, 0.0), occt.gp_Dir(0.0, 0.0, 1.0))
+    turn.SetRotation(axis, float(pose.turn))
+    place = complex(pose.shift)
+    shift.SetTranslation(occt.gp_Vec(place.real, place.imag, pose.height))
     return shift * turn
 
 

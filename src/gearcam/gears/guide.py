@@ -17,6 +17,7 @@ import numpy as np
 from gearcam.base.display import Brief
 from gearcam.laws.ratio.base import RatioLaw
 from gearcam.numeric.arrays import Array, Plane
+from gearcam.numeric.pose import Pose
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,18 +52,13 @@ class Guide(Brief, ABC):
         return self.scale * np.stack(self.law.derivatives(phi1, 1))
 
     @abstractmethod
-    def stand(self, moved: Array) -> tuple[Plane, Plane]:
-        """Return the rotation and shift that move its points to a position.
+    def pose(self, moved: Array) -> Pose:
+        """Return the poses of the driven element, relative to its guide.
 
         Parameters
         ----------
         moved : (n,) array, rad, of a rack mm
             Turn from phi1 = 0: `nominal` plus any lead.
-
-        Returns
-        -------
-        turn, shift : (n,) complex arrays, 1 and mm
-            A point p moves to ``turn*p + shift``.
         """
 
     @abstractmethod
@@ -95,10 +91,9 @@ class Shaft(Guide):
     unit = "rad"
     turns = 1.0
 
-    def stand(self, moved: Array) -> tuple[Plane, Plane]:
-        """Return the rotation and shift (see `Guide.stand`)."""
-        turn = np.exp(1j * self.turns * moved)
-        return turn, np.zeros_like(turn)
+    def pose(self, moved: Array) -> Pose:
+        """Return the poses of the driven element (see `Guide.pose`)."""
+        return Pose(self.turns * moved, np.zeros(moved.shape, dtype=np.complex128))
 
     def carried(self, points: Plane) -> Plane:
         """Return the velocity of points per turn (see `Guide.carried`)."""
@@ -131,10 +126,9 @@ class Slideway(Guide):
     unit = "mm"
     turns = 0.0
 
-    def stand(self, moved: Array) -> tuple[Plane, Plane]:
-        """Return the rotation and shift (see `Guide.stand`)."""
-        shift = np.asarray(-1j * moved, dtype=np.complex128)
-        return np.ones(shift.shape, dtype=np.complex128), shift
+    def pose(self, moved: Array) -> Pose:
+        """Return the poses of the driven element (see `Guide.pose`)."""
+        return Pose(np.zeros(moved.shape), -1j * moved)
 
     def carried(self, points: Plane) -> Plane:
         """Return the velocity of points per turn (see `Guide.carried`)."""

@@ -76,7 +76,7 @@ class Mounting(Brief):
         return self.side if wheel == 1 else -self.side
 
 
-class Pose(NamedTuple):
+class FlankPositions(NamedTuple):
     """Positions of pairs of flanks: arrays of one shape.
 
     Parameters
@@ -94,9 +94,9 @@ class Pose(NamedTuple):
     two: Array
     lead: Array
 
-    def take(self, index: Ints | Mask) -> Pose:
+    def take(self, index: Ints | Mask) -> FlankPositions:
         """Return some of them, by `index`."""
-        return Pose(*(values[index] for values in self))
+        return FlankPositions(*(values[index] for values in self))
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -142,7 +142,7 @@ class Normals(Brief):
 
 
 def normals(
-    mounting: Mounting, pose: Pose, separation: Array, motion: Array | None = None
+    mounting: Mounting, positions: FlankPositions, separation: Array, motion: Array | None = None
 ) -> Normals:
     """Return normals of both wheels' flanks, and the residuals of the equations of contact.
 
@@ -150,7 +150,7 @@ def normals(
     ----------
     mounting : Mounting
         The wheels and the side.
-    pose : Pose
+    positions : FlankPositions
         Positions of n pairs.
     separation : (n,) array, mm
         sf2 - sf1.
@@ -167,7 +167,7 @@ def normals(
     parallel and ``conj(n)*(P2 - P1) + (s1 - s2 + sf2 - sf1)*cos(alpha) = 0``. Derivatives by s
     from ``dn/ds = +-1j*kappa*n`` (+ on wheel 1) and ``dP/ds = T``.
     """
-    phi1, one, two, lead = pose
+    phi1, one, two, lead = positions
     first, second = (
         toothing.frames(angle)
         for toothing, angle in zip(mounting.toothings, (one, two), strict=True)
@@ -179,9 +179,10 @@ def normals(
         for toothing, frames in zip(mounting.toothings, (first, second), strict=True)
     )
     nominal, ratio = guide.motion(phi1) if motion is None else motion
-    back, shift = guide.stand(nominal + lead)
+    stand = guide.pose(nominal + lead)
+    back = stand.rotation
     foot1, n1 = first.p * turned, n1 * turned
-    foot2, n2, tangent2 = second.p * back + shift, n2 * back, second.t * back
+    foot2, n2, tangent2 = second.p * back + stand.shift, n2 * back, second.t * back
     carried, turns = guide.carried(foot2), guide.turns
     foot2 = foot2 + mounting.distance
     across = np.conj(n1) * (foot2 - foot1)
@@ -214,7 +215,7 @@ def touch(
     separation: Array,
     known: Ints | int = 0,
     limits: tuple[Array, Array] | None = None,
-) -> tuple[Pose, Normals, Mask]:
+) -> tuple[FlankPositions, Normals, Mask]:
     """Find where flanks touch.
 
     Parameters
@@ -233,7 +234,7 @@ def touch(
 
     Returns
     -------
-    pose : Pose
+    positions : FlankPositions
         Solutions by Newton's method, with steps of half a pitch at most.
     at : Normals
         The normals there.
@@ -248,11 +249,11 @@ def touch(
     def evaluate(x: Array, some: Ints) -> tuple[Normals, Array, Array]:
         every[free[:, some], some] = x
         given = motion if motion is None else motion[:, some]
-        at = normals(mounting, Pose(*every[:, some]), separation[some], given)
+        at = normals(mounting, FlankPositions(*every[:, some]), separation[some], given)
         return at, at.equations, at.slopes[:, free[:, some], np.arange(some.size)]
 
     _, at = damped_newton(evaluate, every[free, rows], scale, _SMALL, limits)
     found = np.abs(at.equations[0]) <= _MISS
     found &= np.abs(at.equations[1:]).max(axis=0) <= _MISS * mounting.pitch
     found &= np.abs(every[:3] - start).max(axis=0) * scale <= _FAR
-    return Pose(*every), at, found
+    return FlankPositions(*every), at, found

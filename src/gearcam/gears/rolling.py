@@ -28,6 +28,7 @@ from gearcam.laws.ratio.span import RACK, RING, WHEEL, demand_smooth
 from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.chebyshev import expand, missed
 from gearcam.numeric.piecewise import extremes_of_each
+from gearcam.numeric.pose import Pose
 
 _MARGIN = 2.0
 """Pitches beyond an open pair's ends over which its last teeth and fillets are formed."""
@@ -113,6 +114,12 @@ class Rolling(Brief):
             return Slideway(law=self.law, place=0.0, scale=size)
         shaft = Shaft if self.mate == WHEEL else RingShaft
         return shaft(law=self.law, place=self.mate * size, scale=1.0)
+
+    def poses(self, phi1: Array | float) -> tuple[Pose, Pose]:
+        """Return the poses of driver and driven element at driver angles, rad, as designed."""
+        phi1 = np.asarray(phi1)
+        driver = Pose(-phi1, np.zeros(phi1.shape, dtype=np.complex128))
+        return driver, Pose(shift=self.guide.place) @ self.guide.pose(self.guide.nominal(phi1))
 
     @property
     def mean_radius(self) -> float:

@@ -171,10 +171,10 @@ def clearances(meshing: Meshing) -> list[Array]:
         phi1 = turning.rolling.arc.angle(places)
         passed = phi1 <= pairs.travel * (1.0 + _PASSED)
         phi1 = phi1[passed]
-        turn, offset = turning.pose(phi1, 0.0)
+        pose = turning.pose(phi1, 0.0)
         # a half-tooth begins in the middle of its tip
         numbers = np.array(toothing.numbers)[toothing.whole][passed]
         tips = own.tips[np.searchsorted(own.teeth, numbers)]
-        seen = tips * turn + offset if toothing.wheel == 1 else (tips - offset) / turn
-        result.append(mate.distance(seen))
+        pose = pose if toothing.wheel == 1 else pose.inverse
+        result.append(mate.distance(pose.apply(tips)))
     return result

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.gears.contact import FlankPairs
-from gearcam.gears.normals import Pose, normals, touch
+from gearcam.gears.normals import FlankPositions, normals, touch
 from gearcam.gears.track import WHEELS
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 
@@ -91,17 +91,19 @@ def contacts(pairs: FlankPairs, phi1: ArrayLike) -> Contacts:
     """
     phi1 = np.atleast_1d(np.asarray(phi1, dtype=float))
     side = pairs.side
-    step, pair, limits = sought(pairs, phi1, Pose(phi1, phi1, phi1, np.zeros(phi1.shape)))
-    pose, at, touching = touch(pairs, phi1[step], pairs.separation(pair), limits=limits)
+    step, pair, limits = sought(pairs, phi1, FlankPositions(phi1, phi1, phi1, np.zeros(phi1.shape)))
+    positions, at, touching = touch(pairs, phi1[step], pairs.separation(pair), limits=limits)
     rolled = [
         sign * (pairs.place(wheel, pair) - pairs.track.arc_length(angle))
-        for wheel, sign, angle in zip(WHEELS, (side, -side), (pose.one, pose.two), strict=True)
+        for wheel, sign, angle in zip(
+            WHEELS, (side, -side), (positions.one, positions.two), strict=True
+        )
     ]
     for wheel, w in zip(WHEELS, rolled, strict=True):
         low, high = pairs.reach(wheel, pair)
         touching = touching & (w >= low) & (w <= high)
-    kept = outermost(step, pair, -side * pose.lead, touching)
-    step, pair, pose, at = step[kept], pair[kept], pose.take(kept), at.take(kept)
+    kept = outermost(step, pair, -side * positions.lead, touching)
+    step, pair, positions, at = step[kept], pair[kept], positions.take(kept), at.take(kept)
     first, second = at.frames
     (one, two), sf = pairs.toothings, [pairs.place(wheel, pair) for wheel in WHEELS]
     normal = at.normal[0]
@@ -121,7 +123,7 @@ def contacts(pairs: FlankPairs, phi1: ArrayLike) -> Contacts:
     return Contacts(
         step=step,
         pair=pair,
-        lead=pose.lead,
+        lead=positions.lead,
         point=point,
         force=force,
         pressure_angle=np.arctan2(force.real, side * force.imag),
@@ -133,7 +135,7 @@ def contacts(pairs: FlankPairs, phi1: ArrayLike) -> Contacts:
 
 
 def sought(
-    pairs: FlankPairs, phi1: Array, nominal: Pose
+    pairs: FlankPairs, phi1: Array, nominal: FlankPositions
 ) -> tuple[Ints, Ints, tuple[Array, Array] | None]:
     """Return the intervals in which to search for common normals of flanks.
 
@@ -146,7 +148,7 @@ def sought(
         The side.
     phi1 : (n,) array, rad
         Phases.
-    nominal : Pose
+    nominal : FlankPositions
         Start of the search.
 
     Returns

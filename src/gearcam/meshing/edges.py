@@ -110,13 +110,13 @@ def _facing(pairs: FlankPairs, phi1: Array) -> tuple[Facing, Array, Array]:
     With the driver angles, rad, of the ends of the range on the driver, root first.
     """
     step, pair = pairs.beside(phi1)
-    turn, offset = pairs.guide.stand(pairs.guide.nominal(phi1)[step])
+    pose = pairs.guide.pose(pairs.guide.nominal(phi1)[step])
     every = Facing(
         pairs=pairs,
         step=step,
         pair=pair,
-        turn=np.stack([np.exp(-1j * phi1[step]), turn]),
-        offset=np.stack([np.full_like(offset, -pairs.distance), offset]),
+        turn=np.stack([np.exp(-1j * phi1[step]), pose.rotation]),
+        offset=np.stack([np.full_like(pose.shift, -pairs.distance), pose.shift]),
     )
     # relative to the guide, heights fall from root to tip of the driver's flank
     (highest, lowest), (root, tip) = (

@@ -20,6 +20,7 @@ from gearcam.gears.flank import Curve, Toothing
 from gearcam.gears.outline import Outline
 from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.bulges import as_complex
+from gearcam.numeric.pose import Pose
 
 _BELOW = 0.5
 """Depth of the half-teeth below the root, in dedendums: more than any overlap of interest."""
@@ -115,13 +116,14 @@ class HalfTeeth:
         left, low, right, high = shapely.bounds(self.polygons[: self.count]).T
         return 0.5 * (left + right + 1j * (low + high)), 0.5 * np.hypot(right - left, high - low)
 
-    def placed(self, which: Ints, turn: Plane, offset: Plane) -> Any:
-        """Return half-teeth `which` as polygons, each moved by its `turn` and `offset`, mm."""
+    def placed(self, which: Ints, pose: Pose) -> Any:
+        """Return half-teeth `which` as polygons, each in its place by one of the n poses `pose`."""
         sizes = self.starts[which + 1] - self.starts[which]
         owner = np.repeat(np.arange(len(which)), sizes)
         first = np.cumsum(sizes) - sizes
         index = np.arange(len(owner)) - first[owner] + self.starts[which][owner]
-        return as_polygons(self.points[index] * turn[owner] + offset[owner], sizes)
+        places = self.points[index] * pose.rotation[owner] + pose.shift[owner]
+        return as_polygons(places, sizes)
 
 
 def half_teeth(outline: Outline) -> HalfTeeth:

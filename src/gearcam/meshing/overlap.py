@@ -19,8 +19,9 @@ import shapely
 
 from gearcam.gears.rolling import Rolling
 from gearcam.meshing.half_teeth import HalfTeeth, as_polygons
-from gearcam.numeric.arrays import Array, Ints, Mask, Plane
+from gearcam.numeric.arrays import Array, Ints, Mask
 from gearcam.numeric.bulges import as_complex
+from gearcam.numeric.pose import Pose
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -93,10 +94,8 @@ class Turning:
         """Largest height of the driven wheel, mm."""
         return float(self.rolling.guide.height(self.driven.points).max())
 
-    def pose(
-        self, phi1: Array, overclosure: float, lead: Array | float = 0.0
-    ) -> tuple[Plane, Plane]:
-        """Return the rotation and offset of the driver's points into the driven wheel's frame.
+    def pose(self, phi1: Array, overclosure: float, lead: Array | float = 0.0) -> Pose:
+        """Return the poses of the driver in the driven wheel's frame.
 
         Parameters
         ----------
@@ -106,22 +105,16 @@ class Turning:
             Angle by which the driver is ahead of them.
         lead : (n,) array or float, rad, for a rack mm
             Angle by which the driven wheel is ahead of them.
-
-        Returns
-        -------
-        turn, offset : (n,) complex arrays, 1 and mm
         """
         guide = self.rolling.guide
-        turn, offset = guide.stand(guide.nominal(phi1) + lead)
-        back = np.conj(turn)
-        return np.exp(-1j * (phi1 + overclosure)) * back, back * (-self.distance - offset)
+        driven = guide.pose(guide.nominal(phi1) + lead)
+        return driven.inverse @ Pose(-(phi1 + overclosure), -self.distance)
 
     def overlaps(self, phi1: Array, overclosure: float, lead: Array | float = 0.0) -> Overlaps:
         """Return all pieces of overlap at phases (see `pose`)."""
-        turn, offset = self.pose(phi1, overclosure, lead)
-        step, one = self._candidates(turn, offset)
-        turn, offset = turn[step], offset[step]
-        polygons = self.driver.placed(one, turn, offset)
+        pose = self.pose(phi1, overclosure, lead)
+        step, one = self._candidates(pose)
+        polygons = self.driver.placed(one, pose[step])
         own, mate = self._tree.query(polygons)
         mates = self.driven.polygons[mate]
         # prepared polygons first: twice as fast as the tree's own test
@@ -133,7 +126,7 @@ class Turning:
         half = np.stack([one[own] + self.driver.first, mate + self.driven.first])
         bounds = shapely.bounds(shared)
         corners, of = shapely.get_coordinates(shared, return_index=True)
-        seen = np.abs(as_complex(corners) - offset[own][of])
+        seen = np.abs(as_complex(corners) - pose.shift[step[own]][of])
         starts = np.searchsorted(of, np.arange(len(shared)))
         return Overlaps(
             step=step[own],
@@ -184,7 +177,7 @@ class Turning:
         (n,) array, mm
             0 where they overlap; infinite where none face each other.
         """
-        turn, offset = self.pose(phi1, overclosure, lead)
+        pose = self.pose(phi1, overclosure, lead)
         s, pitch = self.rolling.tracks[0].arc_length(phi1), self.driver.pitch
         pair = np.rint(s / pitch - 0.25 * side).astype(np.int64)
         least = np.full(len(phi1), np.inf)
@@ -192,18 +185,18 @@ class Turning:
             half = 2 * j - (side < 0)
             one, two = self.driver.index(half), self.driven.index(half)
             there = np.flatnonzero((one >= 0) & (two >= 0))
-            polygons = self.driver.placed(one[there], turn[there], offset[there])
+            polygons = self.driver.placed(one[there], pose[there])
             distance = shapely.distance(polygons, self.driven.polygons[two[there]])
             least[there] = np.minimum(least[there], distance)
         return least
 
-    def _candidates(self, turn: Plane, offset: Plane) -> tuple[Ints, Ints]:
+    def _candidates(self, pose: Pose) -> tuple[Ints, Ints]:
         """Phases and half-teeth of the driver that may touch the driven wheel.
 
         The driver's body has the last number.
         """
         center, radius = self.driver.circles
-        seen = center * turn[:, None] + offset[:, None]
+        seen = pose[:, None].apply(center)
         step, half = np.nonzero(self.rolling.guide.height(seen) - radius <= self._height)
         seen = seen[step, half]
         points: Any = shapely.points(seen.real, seen.imag)
@@ -213,20 +206,20 @@ class Turning:
             near |= shapely.dwithin(body, points, cast("Any", radius[half]))
         step, half = step[near], half[near]
         if not self.driver.closed:
-            bodies = self._touched_bodies(turn, offset)
+            bodies = self._touched_bodies(pose)
             step = np.append(step, bodies)
             half = np.append(half, np.full(len(bodies), self.driver.count))
             order = np.argsort(step, kind="stable")
             step, half = step[order], half[order]
         return step, half
 
-    def _touched_bodies(self, turn: Plane, offset: Plane) -> Ints:
+    def _touched_bodies(self, pose: Pose) -> Ints:
         """Phases at which the driver's body may touch the driven wheel."""
         body, last = self.driver.polygons[-1], self.driver.starts[-2:]
         center, radius = self.driven.circles
-        seen = (center - offset[:, None]) * np.conj(turn)[:, None]
+        seen = pose.inverse[:, None].apply(center)
         centers: Any = shapely.points(seen.real, seen.imag)
         touched = shapely.dwithin(body, centers, cast("Any", radius)).any(axis=1)
-        points = self.driver.points[last[0] : last[1]] * turn[:, None] + offset[:, None]
-        bodies = as_polygons(points.ravel(), np.full(len(turn), points.shape[1]))
+        points = pose[:, None].apply(self.driver.points[last[0] : last[1]])
+        bodies = as_polygons(points.ravel(), np.full(len(points), points.shape[1]))
         return np.flatnonzero(touched | shapely.intersects(self.driven.polygons[-1], bodies))

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.gears.contact import FlankPairs
-from gearcam.gears.normals import Normals, Pose, normals
+from gearcam.gears.normals import FlankPositions, Normals, normals
 from gearcam.gears.track import WHEELS, Wheel
 from gearcam.meshing.contact import outermost, sought
 from gearcam.meshing.placed_flanks import PlacedFlanks
@@ -192,16 +192,16 @@ def _overlapping(pairs: FlankPairs, phi1: Array, overclosure: float, lead: Array
     """Return the common normals of pairs, and the pairs that overlap along them."""
     side, guide, ahead = pairs.side, pairs.guide, phi1 + overclosure
     moved, motion = guide.nominal(phi1) + lead, guide.motion(ahead)
-    nominal = Pose(ahead, phi1, phi1, moved - motion[0])
+    nominal = FlankPositions(ahead, phi1, phi1, moved - motion[0])
     step, pair, limits = sought(pairs, phi1, nominal)
-    pose, motion, ahead, moved = nominal.take(step), motion[:, step], ahead[step], moved[step]
-    center, at = _shared(pairs, pose, pairs.separation(pair), motion, limits)
+    positions, motion, ahead, moved = nominal.take(step), motion[:, step], ahead[step], moved[step]
+    center, at = _shared(pairs, positions, pairs.separation(pair), motion, limits)
     (first, second), (one, two) = at.frames, pairs.toothings
     sf = [pairs.place(wheel, pair) for wheel in WHEELS]
     with np.errstate(divide="ignore", invalid="ignore"):
         curvature = first.kappa / one.regularity(first, sf[0], side)
         curvature = curvature + second.kappa / two.regularity(second, sf[1], -side)
-    turn = np.stack([np.exp(-1j * ahead), guide.stand(moved)[0]])
+    turn = np.stack([np.exp(-1j * ahead), guide.pose(moved).rotation])
     origin = at.foot[0] + one.ahead(first, sf[0]) * at.normal[0]
     offset = at.foot - np.stack([first.p, second.p]) * turn - origin
     # the tangent towards the driver's tip is the x-axis
@@ -223,12 +223,12 @@ def _overlapping(pairs: FlankPairs, phi1: Array, overclosure: float, lead: Array
 
 def _shared(
     pairs: FlankPairs,
-    pose: Pose,
+    positions: FlankPositions,
     separation: Array,
     motion: Array,
     limits: tuple[Array, Array] | None,
 ) -> tuple[Array, Normals]:
-    """Return the rolls at which two flanks in a given pose have a common normal, at any distance.
+    """Return the rolls at which two flanks have a common normal, at any distance along it.
 
     As driver angles, rad, (2, n), with the normal. `motion` is `Guide.motion` at the phases,
     `limits` bound the rolls.
@@ -238,14 +238,14 @@ def _shared(
     by_distance = np.stack([none, none - 1.0, none])
 
     def evaluate(x: Array, some: Ints) -> tuple[Normals, Array, Array]:
-        placed = pose.take(some)._replace(one=x[0], two=x[1])
+        placed = positions.take(some)._replace(one=x[0], two=x[1])
         at = normals(pairs, placed, separation[some], motion[:, some])
         by = by_distance[:, some]
         slopes = np.stack([at.slopes[:, 1], at.slopes[:, 2], by], axis=1)
         return at, at.equations + x[2] * by, slopes
 
-    scale = pairs.toothings[0].frames(pose.one, curved=False).speed / pairs.pitch
-    x = np.stack([pose.one, pose.two, none])
+    scale = pairs.toothings[0].frames(positions.one, curved=False).speed / pairs.pitch
+    x = np.stack([positions.one, positions.two, none])
     x, at = damped_newton(evaluate, x, scale, _SMALL, limits)
     return x[:2], at
 

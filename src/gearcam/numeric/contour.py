@@ -18,6 +18,7 @@ import numpy as np
 from gearcam.base.display import Brief
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.moments import Moments, curve_moments
+from gearcam.numeric.pose import UNMOVED, Pose
 
 if TYPE_CHECKING:
     from shapely import Polygon
@@ -80,8 +81,8 @@ class Contour(Brief):
         The chord error measured against the dense runs.
     source : Contour or None
         The contour in its own frame, if this one is *placed*.
-    stand : (complex, complex)
-        Its rotation, a number of length 1, and then shift, mm.
+    pose : Pose
+        Its pose, if it is placed.
     """
 
     dense: Callable[[], tuple[Run, ...]]
@@ -89,32 +90,31 @@ class Contour(Brief):
     tolerance: float
     chord_error: float
     source: Contour | None = None
-    stand: tuple[complex, complex] = (1.0, 0.0)
+    pose: Pose = UNMOVED
 
     @property
     def own(self) -> Contour:
         """The contour in its own frame."""
         return self.source or self
 
-    def placed(self, turn: complex, shift: complex) -> Contour:
-        """Return the contour turned by `turn`, then moved by `shift`, mm (see `stand`)."""
-        own, stand = self.own, (turn * self.stand[0], turn * self.stand[1] + shift)
+    def placed(self, pose: Pose) -> Contour:
+        """Return the contour in its place."""
+        own, pose = self.own, pose @ self.pose
+        turned = Pose(pose.turn)
         return replace(
             own,
             dense=lambda: tuple(
-                replace(
-                    run, points=_move(run.points, *stand), tangents=_move(run.tangents, stand[0])
-                )
+                replace(run, points=_move(run.points, pose), tangents=_move(run.tangents, turned))
                 for run in own.runs
             ),
-            vertices=_move(own.vertices, *stand),
+            vertices=_move(own.vertices, pose),
             source=own,
-            stand=stand,
+            pose=pose,
         )
 
     def moved(self, points: Array) -> Array:
         """Return points (n, 2) of its own frame in their places."""
-        return points if self.source is None else _move(points, *self.stand)
+        return points if self.source is None else _move(points, self.pose)
 
     def fitted(self, fit: Callable[[Sequence[Run], float], Fitted], tolerance: float) -> Fitted:
         """Return `fit` of the runs in their own frame to a `tolerance`, cached."""
@@ -168,9 +168,9 @@ class Contour(Brief):
         return Polygon(self.vertices)
 
 
-def _move(points: Array, turn: complex, shift: complex = 0.0) -> Array:
+def _move(points: Array, pose: Pose) -> Array:
     values = np.ascontiguousarray(points, dtype=np.float64).view(np.complex128)
-    return (values * turn + shift).view(np.float64)
+    return pose.apply(values).view(np.float64)
 
 
 def polygon_area(vertices: Array) -> float:

@@ -24,6 +24,7 @@ from gearcam.base.errors import GearcamError, MissingExtraError
 from gearcam.base.numerals import shown
 from gearcam.numeric.arrays import Array, Ints
 from gearcam.numeric.contour import Contour
+from gearcam.numeric.pose import Pose
 from gearcam.parts.body import Body, Layer, Mark, Part
 from gearcam.parts.shapes import circle_segments
 
@@ -71,21 +72,11 @@ class Mesh:
         twice = (x[b] - x[a]) * (y[c] - y[a]) - (x[c] - x[a]) * (y[b] - y[a])
         return float((twice * (z[a] + z[b] + z[c])).sum()) / 6
 
-    def placed(self, angle: float, offset: tuple[float, float], height: float = 0.0) -> Mesh:
-        """Return the mesh turned about z by `angle`, rad, and shifted.
-
-        Parameters
-        ----------
-        angle : float, rad
-            Counter-clockwise.
-        offset : (2,) tuple, mm
-            Shift after the turn.
-        height : float, mm
-            Shift along z.
-        """
-        cosine, sine = math.cos(angle), math.sin(angle)
+    def placed(self, pose: Pose) -> Mesh:
+        """Return the mesh in its place."""
         x, y, z = self.vertices.T
-        moved = [cosine * x - sine * y + offset[0], sine * x + cosine * y + offset[1], z + height]
+        points = pose.apply(x + 1j * y)
+        moved = [points.real, points.imag, z + pose.height]
         return Mesh(vertices=np.stack(moved, axis=1), triangles=self.triangles)
 
     @cached_property

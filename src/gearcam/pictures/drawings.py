@@ -17,7 +17,6 @@ Depends on parts and numeric, numpy only.
 
 from __future__ import annotations
 
-import cmath
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from typing import Final
@@ -29,6 +28,7 @@ from gearcam.base.errors import beyond_limit
 from gearcam.base.numerals import shown
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.contour import Contour
+from gearcam.numeric.pose import UNMOVED, Pose
 from gearcam.parts.body import Part
 from gearcam.parts.shapes import Circle, Loop
 
@@ -96,11 +96,6 @@ class Cross(Brief):
 
 Shape = Contour | Circle | Loop | Path | Cross
 
-Placement = tuple[float, tuple[float, float]]
-"""Rotation about the origin of its own frame, rad, then shift, mm."""
-
-UNMOVED: Final[Placement] = (0.0, (0.0, 0.0))
-
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Feature(Brief):
@@ -129,34 +124,31 @@ class Drawing(Brief):
         return tuple(f.shape for f in self.features if isinstance(f.shape, Contour))
 
 
-def placed(shape: Shape, angle: float, offset: tuple[float, float]) -> Shape:
-    """Return a shape turned about the origin, then shifted.
+def placed(shape: Shape, pose: Pose) -> Shape:
+    """Return a shape in its place.
 
     Parameters
     ----------
     shape : Contour or Circle or Loop or Path or Cross
         In its own frame; crosses stay upright.
-    angle : float, rad
-        Counter-clockwise.
-    offset : (2,) tuple, mm
-        Shift after the turn.
+    pose : Pose
+        Where it is.
 
     Returns
     -------
     Contour or Circle or Loop or Path or Cross
         The same object if nothing moves.
     """
-    if (angle, offset) == UNMOVED:
+    if pose == UNMOVED:
         return shape
-    turn, shift = cmath.exp(1j * angle), complex(*offset)
 
     def move(points: Array) -> Array:
         values = np.ascontiguousarray(points, dtype=np.float64).view(np.complex128)
-        return (values * turn + shift).view(np.float64)
+        return pose.apply(values).view(np.float64)
 
     match shape:
         case Contour():
-            return shape.placed(turn, shift)
+            return shape.placed(pose)
         case Path():
             return replace(shape, points=move(shape.points))
         case Loop():
@@ -193,12 +185,10 @@ def chains(shape: Shape, sagitta: float) -> Iterator[tuple[Array, bool]]:
             yield shape.points(sagitta), True
 
 
-def place(
-    features: Iterable[Feature], angle: float, offset: tuple[float, float], prefix: str = ""
-) -> tuple[Feature, ...]:
+def place(features: Iterable[Feature], pose: Pose, prefix: str = "") -> tuple[Feature, ...]:
     """Return features placed (see `placed`), with a prefix before their layers."""
     return tuple(
-        replace(feature, layer=prefix + feature.layer, shape=placed(feature.shape, angle, offset))
+        replace(feature, layer=prefix + feature.layer, shape=placed(feature.shape, pose))
         for feature in features
     )
 

@@ -22,6 +22,7 @@ import numpy as np
 from gearcam.base.display import Brief
 from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.bulges import as_complex
+from gearcam.numeric.pose import Pose
 from gearcam.pictures.drawings import Feature, chains
 
 PLACES: Final = 720
@@ -48,10 +49,8 @@ class MovingBody(Brief):
         Name for people.
     features : tuple of Feature
         Shapes in its own frame; later ones are drawn on top.
-    turn : (n,) array, rad
-        Rotation at each place, counter-clockwise, without jumps.
-    shift : (n,) complex array, mm
-        Position of its origin at each place.
+    pose : Pose
+        Its n poses, one for each place; the turn has no jumps.
     teeth : (k, 2) array of int
         Indices of the first and last vertex of each tooth on the shape of the first feature, in the
         order of tooth numbers; first > last for a tooth across vertex 0. None without teeth.
@@ -60,8 +59,7 @@ class MovingBody(Brief):
     name: str
     called: str
     features: tuple[Feature, ...]
-    turn: Array
-    shift: Plane
+    pose: Pose
     teeth: Ints | None = None
 
 
@@ -124,8 +122,8 @@ class Scene(Brief):
 
     def __post_init__(self) -> None:
         for body in self.bodies:
-            if not body.turn.shape == body.shift.shape == self.places.shape:
-                raise ValueError(f"{body.name}: needs a placement for each place of the driver")
+            if not np.shape(body.pose.turn) == np.shape(body.pose.shift) == self.places.shape:
+                raise ValueError(f"{body.name}: needs a pose for each place of the driver")
         for name, contacts in self.contacts.items():
             if len(contacts.start) != len(self.places) + 1:
                 raise ValueError(f"{name}: needs contacts for each place of the driver")
@@ -133,8 +131,8 @@ class Scene(Brief):
 
 def still(features: tuple[Feature, ...], places: Array) -> MovingBody:
     """Return a body named ``frame`` of `features` that are fixed at all `places`."""
-    turn, shift = np.zeros(len(places)), np.zeros(len(places), dtype=np.complex128)
-    return MovingBody(name="frame", called="frame", features=features, turn=turn, shift=shift)
+    pose = Pose(np.zeros(len(places)), np.zeros(len(places), dtype=np.complex128))
+    return MovingBody(name="frame", called="frame", features=features, pose=pose)
 
 
 def extent(scene: Scene) -> tuple[float, float, float, float]:
@@ -146,10 +144,11 @@ def extent(scene: Scene) -> tuple[float, float, float, float]:
     for body in scene.bodies:
         points = np.vstack([p for f in body.features for p, _ in chains(f.shape, SAGITTA)])
         places = as_complex(points)
-        if np.ptp(body.turn) < 2.0 * np.pi:
-            moved = _outmost(places) * np.exp(1j * body.turn[:, None]) + body.shift[:, None]
+        if np.ptp(body.pose.turn) < 2.0 * np.pi:
+            moved = body.pose[:, None].apply(_outmost(places))
         else:
-            moved = np.abs(places).max() * np.array([1 + 1j, -1 - 1j]) + body.shift[:, None]
+            corners = np.abs(places).max() * np.array([1 + 1j, -1 - 1j])
+            moved = corners + body.pose.shift[:, None]
         low.append((moved.real.min(), moved.imag.min()))
         high.append((moved.real.max(), moved.imag.max()))
     (left, bottom), (right, top) = np.min(low, axis=0), np.max(high, axis=0)

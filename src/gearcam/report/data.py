@@ -85,9 +85,9 @@ def _body(body: MovingBody) -> dict[str, Any]:
         "plates": [0, *edges[1:]],  # openings may be drawn before the first edge
         "floor": floor,
         "lines": lines,
-        "turn": _steady(body.turn, _RAD),
-        "x": _steady(body.shift.real, _MM),
-        "y": _steady(body.shift.imag, _MM),
+        "turn": _steady(body.pose.turn, _RAD),
+        "x": _steady(np.real(body.pose.shift), _MM),
+        "y": _steady(np.imag(body.pose.shift), _MM),
         "teeth": None if body.teeth is None else body.teeth.tolist(),
     }
 

@@ -14,9 +14,10 @@ if TYPE_CHECKING:
     from trimesh import Trimesh
 
     from gearcam.export.dxf import DxfStyle
+    from gearcam.numeric.pose import Pose
     from gearcam.parts.body import Part
     from gearcam.parts.solids import Mesh
-    from gearcam.pictures.drawings import Drawing, Placement
+    from gearcam.pictures.drawings import Drawing
     from gearcam.sheets.sheet import Sheet
 
 Files = dict[str, bytes]
@@ -109,16 +110,11 @@ class PartsResult(Result):
         return ""
 
     @property
-    def placements(self) -> tuple[Placement, ...]:
-        """Rotation, rad, and shift, mm, of each part in the assembly."""
-        from gearcam.pictures.drawings import UNMOVED
+    def poses(self) -> tuple[Pose, ...]:
+        """Where each part is in the assembly."""
+        from gearcam.numeric.pose import UNMOVED
 
         return (UNMOVED,) * len(self.parts)
-
-    @property
-    def heights(self) -> tuple[float, ...]:
-        """Height of each part in the assembly, mm."""
-        return (0.0,) * len(self.parts)
 
     @cached_property
     def to_cut(self) -> tuple[Drawing, ...]:
@@ -165,8 +161,8 @@ class PartsResult(Result):
         """Return the meshes in their places in the assembly (see `Result`)."""
         if (self.design.output.chord_tolerance or 0.0) < chords:
             return self.with_chords(chords).assembled()
-        places = zip(self.meshes.items(), self.placements, self.heights, strict=True)
-        return {name: mesh.placed(*place, height) for (name, mesh), place, height in places}
+        places = zip(self.meshes.items(), self.poses, strict=True)
+        return {name: mesh.placed(pose) for (name, mesh), pose in places}
 
     @property
     def dxf_style(self) -> DxfStyle:
@@ -311,7 +307,7 @@ def _mesh(kind: str, result: PartsResult, measured: Measured) -> Files:
 def _step(result: PartsResult, _: Measured) -> Files:
     """Return the parts, and their assembly, as STEP files."""
     from gearcam.export.step import step_bytes
-    from gearcam.pictures.drawings import UNMOVED
+    from gearcam.numeric.pose import UNMOVED
 
     parts, assembly, close = result.parts, result.assembly, _STEP_PART * result.profile_tolerance
     made: dict[Part, Any] = {}
@@ -319,8 +315,8 @@ def _step(result: PartsResult, _: Measured) -> Files:
         f"{part.name}.step": step_bytes([(part, UNMOVED)], part.name, close, made) for part in parts
     }
     if assembly:
-        placed = list(zip(parts, result.placements, strict=True))
-        files[f"{assembly}.step"] = step_bytes(placed, assembly, close, made, result.heights)
+        placed = list(zip(parts, result.poses, strict=True))
+        files[f"{assembly}.step"] = step_bytes(placed, assembly, close, made)
     return files
 
 

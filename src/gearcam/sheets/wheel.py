@@ -22,6 +22,7 @@ import numpy as np
 from gearcam.base.numerals import decimal
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.bulges import as_complex
+from gearcam.numeric.pose import Pose
 from gearcam.parts.body import Edge, Hub, Part
 from gearcam.parts.shapes import Circle, Loop
 from gearcam.pictures.drawings import BORE, HOLE, INNER, SLOT, part_features, placed, reach
@@ -264,7 +265,7 @@ def _bore_view(board: Board, bore: Loop, left: float) -> None:
     kind, floor = ("keyway", corners[-2:]) if len(corners) == 5 else ("flat", corners[[0, -1]])
     radius, middle = float(abs(corners[0])), complex(floor.mean())
     unit, x, top, direction = board.unit, left + radius, abs(middle), cmath.phase(middle)
-    board.draw(EDGE, placed(bore, 0.5 * math.pi - direction, (x, 0.0)))
+    board.draw(EDGE, placed(bore, Pose(0.5 * math.pi - direction, x)))
     board.centre(np.array([x, 0.0]), max(radius, top))
     first = FIRST_LEVEL * unit
     below = -radius - first

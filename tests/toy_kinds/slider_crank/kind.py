@@ -27,6 +27,7 @@ from gearcam.designs.table import table_of
 from gearcam.export.table import table_bytes
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.bulges import as_pairs
+from gearcam.numeric.pose import Pose
 from gearcam.pictures.charts import Chart, Line
 from gearcam.pictures.drawings import CENTER, FOLLOWER, Cross, Feature, Path
 from gearcam.pictures.scenes import PLACES, MovingBody, Scene, still
@@ -213,7 +214,7 @@ def scene(result: Any, places: int = PLACES) -> Scene:
     along, _, angle, pin = result.slide(around.places)
     design = result.design
     if design.drive.pair is not None:
-        shaft = next(one.shift[0] for one in around.bodies if one.name == "gear2")
+        shaft = next(one.pose.shift[0] for one in around.bodies if one.name == "gear2")
     else:
         shaft = complex(design.drive.cam.follower.pivot_distance or 0.0)
     size = 0.25 * design.crank.length
@@ -247,7 +248,7 @@ def _body(name: str, points: Any, half: float, turn: Array, shift: Plane) -> Mov
         points = np.concatenate([points[1] + bend, points[0] - bend])
     path = Path(points=as_pairs(np.asarray(points, dtype=np.complex128)))
     shape = (Feature(layer=FOLLOWER, shape=path),)
-    return MovingBody(name=name, called=name, features=shape, turn=turn, shift=shift)
+    return MovingBody(name=name, called=name, features=shape, pose=Pose(turn, shift))
 
 
 def _stroke(result: Any, _: Any) -> StudyResult:

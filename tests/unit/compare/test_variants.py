@@ -252,7 +252,9 @@ def test_what_repeats_goes_on_where_another_is_still_on_its_way() -> None:
     places = np.linspace(0.0, 900.0, 1801)
     body = next(one for one in _over(variant.scene, places).bodies if one.name == "gear2")
     wanted = moved(variant, np.radians(places))["phi2_deg"]
-    np.testing.assert_allclose(np.degrees(body.turn - body.turn[0]), wanted - wanted[0], atol=1e-3)
+    np.testing.assert_allclose(
+        np.degrees(body.pose.turn - body.pose.turn[0]), wanted - wanted[0], atol=1e-3
+    )
 
 
 def test_a_driver_of_another_way_is_told_and_not_drawn() -> None:

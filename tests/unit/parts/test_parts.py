@@ -12,6 +12,7 @@ from gearcam.base.errors import InfeasibleError
 from gearcam.base.quantities import params_of
 from gearcam.kinds.gear_pair.drawn import pair_drawing
 from gearcam.numeric.contour import Contour, Run
+from gearcam.numeric.pose import Pose
 from gearcam.parts.blank import Blank
 from gearcam.parts.body import Hub, Mark, Opening, Part
 from gearcam.parts.marks import timing_mark
@@ -141,7 +142,7 @@ def test_circle_points_keep_the_sagitta() -> None:
 
 def test_placing_turns_then_shifts() -> None:
     contour = gear_contour(8, 3.0)
-    moved = placed(contour, 0.4, (10.0, -3.0))
+    moved = placed(contour, Pose(0.4, 10.0 - 3.0j))
     assert isinstance(moved, Contour)
     c, s = math.cos(0.4), math.sin(0.4)
     turn = np.array([[c, -s], [s, c]])
@@ -151,10 +152,10 @@ def test_placing_turns_then_shifts() -> None:
     )
     assert moved.runs[3].tangents == pytest.approx(contour.runs[3].tangents @ turn.T, abs=1e-12)
     assert moved.area == pytest.approx(contour.area, rel=1e-12)
-    circle = placed(Circle(center=np.array([1.0, 0.0]), diameter=2.0), math.pi / 2, (5.0, 0.0))
+    circle = placed(Circle(center=np.array([1.0, 0.0]), diameter=2.0), Pose(math.pi / 2, 5.0))
     assert isinstance(circle, Circle)
     assert circle.center == pytest.approx([5.0, 1.0], abs=1e-15)
-    assert placed(contour, 0.0, (0.0, 0.0)) is contour
+    assert placed(contour, Pose()) is contour
 
 
 def test_the_pair_drawing_puts_wheel_two_at_the_centre_distance() -> None:

@@ -79,7 +79,7 @@ def wheels(found: Scene, result: Any) -> list[MovingBody]:
 
 def stood(body: MovingBody, k: int, points: Any) -> Any:
     """Return points of a body, (n, 2), as complex numbers where they stand at a place."""
-    return (np.asarray(points) @ [1.0, 1j]) * np.exp(1j * body.turn[k]) + body.shift[k]
+    return (np.asarray(points) @ [1.0, 1j]) * np.exp(1j * body.pose.turn[k]) + body.pose.shift[k]
 
 
 def plane(points: Any) -> Any:
@@ -109,16 +109,16 @@ def test_wheels_move_as_the_law_says_and_never_into_each_other(name):
     found = scene(result)
     motion = result.motion(np.radians(found.places))
     one, two = wheels(found, result)
-    assert one.turn == pytest.approx(-np.radians(motion["phi1_deg"]))
-    assert not one.shift.any()
+    assert one.pose.turn == pytest.approx(-np.radians(motion["phi1_deg"]))
+    assert not one.pose.shift.any()
     if result.pair.on_rack:
-        assert not two.turn.any()
-        assert two.shift == pytest.approx(-1j * motion["travel_mm"])
+        assert not two.pose.turn.any()
+        assert two.pose.shift == pytest.approx(-1j * motion["travel_mm"])
     else:
         # a wheel turns against its mate, a ring with it
         way = -1.0 if result.pair.internal else 1.0
-        assert two.turn == pytest.approx(way * np.radians(motion["phi2_deg"]))
-        assert two.shift == pytest.approx(np.full(FEW + 1, way * result.pair.center_distance))
+        assert two.pose.turn == pytest.approx(way * np.radians(motion["phi2_deg"]))
+        assert two.pose.shift == pytest.approx(np.full(FEW + 1, way * result.pair.center_distance))
     for k in (0, 17):
         first, second = (
             Polygon(
@@ -148,7 +148,7 @@ def test_teeth_touch_where_the_scene_says(name):
                 numbers, point = contacts.teeth[row], contacts.point[row]
                 back = np.exp(1j * turns * lag[row]) if turns else 1.0
                 # the driven wheel stands where it is designed; flanks touch when it is behind
-                middle = bodies[1].shift[k]
+                middle = bodies[1].pose.shift[k]
                 own = middle + (point - middle) * back if turns else point - 1j * lag[row]
                 for body, number, place in zip(bodies, numbers, (point, own), strict=True):
                     assert off(body, k, tooth(body, number), place) < tolerance
@@ -189,7 +189,7 @@ def test_a_rack_goes_all_its_way_and_a_turn_ends_a_closed_pair():
     rack, pair = scene(made("feeder")), scene(made("limacon"))
     assert (rack.places[-1], rack.closed) == (540.0, False)  # 60 teeth under a wheel of 40
     assert (pair.places[-1], pair.closed) == (360.0, True)
-    assert np.ptp(pair.bodies[1].turn) == pytest.approx(math.pi)
+    assert np.ptp(pair.bodies[1].pose.turn) == pytest.approx(math.pi)
 
 
 @pytest.mark.parametrize(("angle", "start"), [(-150.0, 0.0), (100.0, 100.0), (900.0, 540.0)])
@@ -219,7 +219,7 @@ def test_steps_stand_behind_the_lowest_and_move_with_it():
     for number, name in enumerate(("gear1", "gear2")):
         steps = [body for body in found.bodies if body.name == name]
         *behind, lowest = steps
-        assert all(np.array_equal(one.turn, lowest.turn) for one in behind)
+        assert all(np.array_equal(one.pose.turn, lowest.pose.turn) for one in behind)
         assert [one.teeth is None for one in steps] == [True, True, True, False]
         shapes = [one.features[0].shape for one in (lowest, *reversed(behind))]
         for shape, gears in zip(shapes, result.steps, strict=True):
@@ -353,16 +353,18 @@ def _demand_motion(result: Any, found: Scene) -> None:
     motion = result.motion(found.places / driver.scale * driver.rate)
     for cam in cams:
         if result.form.slides:
-            assert cam.shift == pytest.approx(found.places + 0j)
+            assert cam.pose.shift == pytest.approx(found.places + 0j)
         else:
             way = -1.0 if result.design.cam.clockwise else 1.0
-            assert cam.turn == pytest.approx(way * np.radians(found.places))
+            assert cam.pose.turn == pytest.approx(way * np.radians(found.places))
     column = next(name for name in motion if name.startswith("lift"))
     lift = motion[column] - motion[column][0]
     if column == "lift_deg":
-        assert np.abs(follower.turn - follower.turn[0]) == pytest.approx(np.radians(np.abs(lift)))
+        assert np.abs(follower.pose.turn - follower.pose.turn[0]) == pytest.approx(
+            np.radians(np.abs(lift))
+        )
     else:
-        way = (follower.shift - follower.shift[0]) * np.exp(
+        way = (follower.pose.shift - follower.pose.shift[0]) * np.exp(
             1j * math.radians(getattr(result.design.follower, "axis", 0.0) or 0.0)
         )
         assert np.abs(way) == pytest.approx(np.abs(lift), abs=1e-9)

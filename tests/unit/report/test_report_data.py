@@ -12,6 +12,7 @@ import pytest
 
 import gearcam
 from arch import rules
+from gearcam.numeric.pose import Pose
 from gearcam.pictures.charts import Chart, Limit, Line, MarkedPlace
 from gearcam.pictures.drawings import CENTRODE, OUTLINE, Feature, Path
 from gearcam.pictures.scenes import ContactPoints, MovingBody, Scene
@@ -39,9 +40,9 @@ def test_a_scene_is_read_back_to_its_decimals(name):
     assert [one["name"] for one in data["bodies"]] == [body.name for body in scene.bodies]
     for told, body in zip(data["bodies"], scene.bodies, strict=True):
         for key, values, digits in (
-            ("turn", body.turn, 7),
-            ("x", body.shift.real, 4),
-            ("y", body.shift.imag, 4),
+            ("turn", body.pose.turn, 7),
+            ("x", body.pose.shift.real, 4),
+            ("y", body.pose.shift.imag, 4),
         ):
             # one number where nothing changes
             assert isinstance(told[key], float) == (np.ptp(values) == 0.0)
@@ -86,8 +87,7 @@ def test_what_is_no_number_is_null_and_nothing_is_minus_zero():
         name="a",
         called="a",
         features=(Feature(layer=OUTLINE, shape=square),),
-        turn=np.array([-0.0, 1e-9]),
-        shift=np.zeros(2, dtype=np.complex128),
+        pose=Pose(np.array([-0.0, 1e-9]), np.zeros(2, dtype=np.complex128)),
     )
     contacts = ContactPoints(
         start=np.array([0, 1, 1]),

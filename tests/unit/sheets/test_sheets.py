@@ -16,6 +16,7 @@ from gearcam.base.numerals import decimal
 from gearcam.export.dxf_read import read_dxf
 from gearcam.kinds.gear_pair.drawn import pair_drawing
 from gearcam.kinds.gear_pair.sheet import pair_sheet
+from gearcam.numeric.pose import Pose
 from gearcam.parts.body import Mark, Opening, Part
 from gearcam.parts.shapes import Circle, Loop
 from gearcam.pictures.drawings import OUTLINE, Drawing, Feature, Path, placed
@@ -148,7 +149,7 @@ def test_a_stop_slot_is_told() -> None:
 
 def test_a_rack_has_no_axis() -> None:
     square = square_contour(30.0)
-    moved = placed(square, 0.0, (100.0, 0.0))
+    moved = placed(square, Pose(shift=100.0))
     rack = Part(name="gear2", contours=(moved,), width=4.0)  # type: ignore[arg-type]
     sheet = wheel_sheet(rack, {}, "t")
     assert sorted(one.value for one in sheet.dimensions) == pytest.approx([4.0, 30.0, 30.0])
@@ -211,8 +212,8 @@ def circles(count: int = 360) -> list[Path]:
 
 def pair(phi: float = 0.2) -> Drawing:
     wheel = Part(name="g", contours=(gear_contour(30, 2.0, squash=(1.0, 1.0)),), width=5.0)
-    placements = ((-phi, (0.0, 0.0)), (phi, (60.0, 0.0)))
-    return pair_drawing([wheel, wheel], 60.0, circles(), placements=placements)
+    poses = Pose(-phi), Pose(phi, 60.0)
+    return pair_drawing([wheel, wheel], 60.0, circles(), poses=poses)
 
 
 def test_the_pitch_point_is_marked() -> None:
@@ -235,7 +236,7 @@ def test_a_pair_with_a_rack_has_no_centre_distance() -> None:
 
 def test_the_shaft_of_an_open_ring_may_lie_beside_its_outline() -> None:
     """Its centre line is on the paper, and the height is measured left of it."""
-    ring = placed(disc_contour(20.0, 1e-3), 0.0, (90.0, 0.0))
+    ring = placed(disc_contour(20.0, 1e-3), Pose(shift=90.0))
     parts = [part(30.0), Part(name="gear2", contours=(ring,), width=5.0)]  # type: ignore[arg-type]
     sheet = pair_sheet(pair_drawing(parts, -60.0), -60.0, {}, "t", pitch_radius=30.0)
     (height,) = (

@@ -25,6 +25,7 @@ from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.piecewise import with_both_sides
+from gearcam.numeric.pose import Pose
 from gearcam.parts.blank import KIND as PARTS_KIND
 from gearcam.results.parts import CHORDS, PartsResult
 
@@ -209,9 +210,9 @@ class CamResult(PartsResult):
         return self.form.assembly
 
     @property
-    def heights(self) -> tuple[float, ...]:
-        """Height of each cam on the shaft, mm."""
-        return self.form.heights(self)
+    def poses(self) -> tuple[Pose, ...]:
+        """Where each cam is on the shaft."""
+        return tuple(Pose(height=height) for height in self.form.heights(self))
 
     @property
     def profile_tolerance(self) -> float:

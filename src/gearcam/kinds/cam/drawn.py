@@ -11,6 +11,7 @@ import numpy as np
 from gearcam.base.errors import InfeasibleError
 from gearcam.cams.wall import PitchMotion, Wall
 from gearcam.numeric.contour import Contour
+from gearcam.numeric.pose import Pose
 from gearcam.parts.body import Part
 from gearcam.parts.parallel import moved, sized
 from gearcam.parts.shapes import Circle
@@ -110,7 +111,7 @@ def cam_drawing(
     turning = list(part_features(part, outline=outline))
     if pitch is not None:
         turning.append(Feature(layer=PITCH, shape=pitch))
-    features = list(place(turning, angle, (0.0, 0.0)))
+    features = list(place(turning, Pose(angle)))
     circle = Circle(center=np.zeros(2), diameter=2.0 * prime_radius)
     features.append(Feature(layer=PRIME, shape=circle))
     features += [Feature(layer=FOLLOWER, shape=shape) for shape in follower]

@@ -7,13 +7,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gearcam.numeric.pose import Pose
 from gearcam.pictures.drawings import CENTER, FOLLOWER, Feature, place
 from gearcam.pictures.scenes import PLACES, ContactPoints, MovingBody, Scene, still
 
 if TYPE_CHECKING:
     from gearcam.cams.wall import PitchMotion, Wall
     from gearcam.kinds.cam.build import CamResult
-    from gearcam.numeric.arrays import Array, Plane
+    from gearcam.numeric.arrays import Array
 
 
 def scene(result: CamResult, places: int = PLACES) -> Scene:
@@ -36,27 +37,23 @@ def scene(result: CamResult, places: int = PLACES) -> Scene:
     output = result.design.output
     pose = output.pose if carrier.around else (output.place or 0.0) / driver.scale
     theta = np.linspace(0.0, 2.0 * math.pi, places + 1)
-    turn, shift = _pose(motion, theta)
-    (turned,), (shifted,) = _pose(motion, np.array([pose]))
-    back = -float(turned), (-float(shifted.real), -float(shifted.imag))
+    moving, drawn = (_pose(motion, at) for at in (theta, np.array([pose])))
+    back = Pose(float(drawn.turn[0]), complex(drawn.shift[0])).inverse
     shown = result.drawing.features
     plates = [one for one in shown if one.kind not in (CENTER, FOLLOWER)]
-    angle, way = _carried(motion, theta, pose)
     follower = MovingBody(
         name="follower",
         called="follower",
         features=tuple(one for one in shown if one.kind == FOLLOWER),
-        turn=angle,
-        shift=way,
+        pose=_carried(motion, theta, pose),
     )
     several = len(result.parts) > 1
     cams = [
         MovingBody(
             name=part.name,
             called=f"cam {number}" if several else "cam",
-            features=place(_of_part(plates, part.name if several else ""), *back),
-            turn=turn,
-            shift=shift,
+            features=place(_of_part(plates, part.name if several else ""), back),
+            pose=moving,
         )
         for number, part in enumerate(result.parts, start=1)
     ]
@@ -68,7 +65,7 @@ def scene(result: CamResult, places: int = PLACES) -> Scene:
         closed=not result.program.open,
         start=driver.scale * (pose % (2.0 * math.pi) if carrier.around else pose),
         bodies=(*cams, follower, fixed),
-        contacts=_contacts(result, theta, turn, shift),
+        contacts=_contacts(result, theta, moving),
     )
 
 
@@ -77,34 +74,34 @@ def _of_part(features: list[Feature], name: str) -> list[Feature]:
     return [one for one in features if one.layer.startswith(name.upper())]
 
 
-def _pose(motion: PitchMotion, theta: Array) -> tuple[Array, Plane]:
-    """Return the rotation, rad, and shift, mm, of the cam."""
+def _pose(motion: PitchMotion, theta: Array) -> Pose:
+    """Return the pose of the cam at cam angles, rad."""
     carrier = motion.mechanism.carrier
-    turn, (_, shift) = carrier.rate * theta, carrier.frame(theta)
-    return (-turn, -np.conj(shift)) if motion.clockwise else (turn, shift)
+    return _mirrored(motion, Pose(carrier.rate * theta, carrier.frame(theta)[1]))
 
 
-def _carried(motion: PitchMotion, theta: Array, pose: float) -> tuple[Array, Plane]:
-    """Return the rigid motion of a follower that is drawn at the cam angle `pose`."""
+def _carried(motion: PitchMotion, theta: Array, pose: float) -> Pose:
+    """Return the pose of a follower that is drawn at the cam angle `pose`, at cam angles, rad."""
     lift = motion.program.derivatives(theta, 0)[0] - float(motion.program.derivatives(pose, 0)[0])
-    turn, way = motion.mechanism.follower.moved(lift)
-    return (-turn, -np.conj(way)) if motion.clockwise else (turn, way)
+    return _mirrored(motion, Pose(*motion.mechanism.follower.moved(lift)))
 
 
-def _contacts(
-    result: CamResult, theta: Array, turn: Array, shift: Plane
-) -> dict[str, ContactPoints]:
+def _mirrored(motion: PitchMotion, pose: Pose) -> Pose:
+    """Return a pose, mirrored in the y-axis if the cam turns clockwise."""
+    return Pose(-pose.turn, -np.conj(pose.shift)) if motion.clockwise else pose
+
+
+def _contacts(result: CamResult, theta: Array, pose: Pose) -> dict[str, ContactPoints]:
     """Return points of contact on each wall, or on both sides of a cam in a yoke."""
 
     def found(wall: Wall, ahead: float = 0.0) -> ContactPoints:
         asked = theta + ahead
         left, points, normals = wall.places_at(asked)
-        at = np.searchsorted(asked, left)
-        stand = np.exp(1j * turn[at])
+        there = pose[np.searchsorted(asked, left)]
         return ContactPoints(
             start=np.searchsorted(left, np.append(asked, np.inf)),
-            point=points * stand + shift[at],
-            force=normals * stand,
+            point=there.apply(points),
+            force=normals * there.rotation,
         )
 
     if result.form.half_turns:  # the upper side touches a point half a turn after the lower side

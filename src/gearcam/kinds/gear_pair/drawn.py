@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from gearcam.numeric.pose import Pose
 from gearcam.parts.body import Part
 from gearcam.pictures.drawings import (
     CENTER,
@@ -16,7 +17,6 @@ from gearcam.pictures.drawings import (
     Drawing,
     Feature,
     Path,
-    Placement,
     part_features,
     place,
 )
@@ -45,12 +45,11 @@ def pair_drawing(
     center_distance: float,
     centrodes: Sequence[Path] = (),
     *,
-    placements: tuple[Placement, Placement] | None = None,
+    poses: tuple[Pose, Pose] | None = None,
 ) -> Drawing:
     """Return the drawing of the assembled pair.
 
-    The default placement is phi1 = 0: wheel 1 in its own frame, wheel 2 shifted by the centre
-    distance.
+    By default phi1 = 0: wheel 1 in its own frame, wheel 2 shifted by the centre distance.
 
     Parameters
     ----------
@@ -60,8 +59,8 @@ def pair_drawing(
         Position of the second shaft on x, negative for a ring; 0 for a rack, which has none.
     centrodes : sequence of Path
         In the wheels' own frames, driver first; may be empty.
-    placements : two Placement, optional
-        Rotation, rad, and shift, mm, of each wheel.
+    poses : two Pose, optional
+        Where the wheels are.
 
     Returns
     -------
@@ -74,23 +73,21 @@ def pair_drawing(
     """
     if len(parts) != 2 or len(centrodes) not in (0, 2):
         raise ValueError("a pair takes two parts, and two centrodes or none")
-    offsets = ((0.0, 0.0), (float(center_distance), 0.0))
-    stands = placements or ((0.0, offsets[0]), (0.0, offsets[1]))
+    poses = poses or (Pose(), Pose(shift=center_distance))
     features: list[Feature] = []
-    numbered = enumerate(zip(parts, stands, strict=True), start=1)
+    numbered = enumerate(zip(parts, poses, strict=True), start=1)
     # drawn later means on top: a wheel in its ring
-    for number, (part, stand) in sorted(numbered, key=lambda one: not one[1][0].inner):
-        features += place(part_features(part), *stand, prefix=f"GEAR{number}_")
-    for path, stand in zip(centrodes, stands, strict=False):
-        features += place([Feature(layer=CENTRODE, shape=path)], *stand)
+    for number, (part, pose) in sorted(numbered, key=lambda one: not one[1][0].inner):
+        features += place(part_features(part), pose, prefix=f"GEAR{number}_")
+    for path, pose in zip(centrodes, poses, strict=False):
+        features += place([Feature(layer=CENTRODE, shape=path)], pose)
     size = CROSS_SIZE * (abs(center_distance) or float(np.ptp(parts[0].contour.vertices)))
-    for offset in offsets if center_distance else offsets[:1]:
-        features.append(Feature(layer=CENTER, shape=Cross(center=np.array(offset), size=size)))
+    for shaft in (0.0, center_distance) if center_distance else (0.0,):
+        cross = Cross(center=np.array([shaft, 0.0]), size=size)
+        features.append(Feature(layer=CENTER, shape=cross))
     return Drawing(name="pair", features=tuple(features))
 
 
 def assembled(result: GearPairResult) -> Drawing:
     """Return the drawing of the assembled pair of a `result`, with its centrodes."""
-    return pair_drawing(
-        result.parts, result.pair.shift, result.centrode_paths, placements=result.placements
-    )
+    return pair_drawing(result.parts, result.pair.shift, result.centrode_paths, poses=result.poses)

@@ -46,9 +46,10 @@ from gearcam.results.result import Progress
 if TYPE_CHECKING:
     from gearcam.gears.contact import FlankPairs
     from gearcam.gears.estimates import Estimates
+    from gearcam.numeric.pose import Pose
     from gearcam.parts.body import Part
     from gearcam.parts.checks import PartsSubject
-    from gearcam.pictures.drawings import Drawing, Path, Placement
+    from gearcam.pictures.drawings import Drawing, Path
     from gearcam.results.study import StudyResult
     from gearcam.sheets.sheet import Sheet
 
@@ -299,13 +300,9 @@ class GearPairResult(PartsResult):
         return "pair"
 
     @property
-    def placements(self) -> tuple[Placement, Placement]:
-        """Placements of the assembled wheels: wheel 1 turned by -phi1."""
-        phi1, guide = self.design.output.pose, self.pair.rolling.guide
-        moved = float(guide.nominal(np.array(phi1)))
-        if self.pair.on_rack:
-            return (-phi1, (0.0, 0.0)), (0.0, (0.0, -moved))
-        return (-phi1, (0.0, 0.0)), (guide.turns * moved, (guide.place, 0.0))
+    def poses(self) -> tuple[Pose, Pose]:
+        """Where the wheels are in the assembly: wheel 1 turned by -phi1."""
+        return self.pair.rolling.poses(self.design.output.pose)
 
     @property
     def profile_tolerance(self) -> float:

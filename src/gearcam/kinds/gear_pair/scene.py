@@ -15,7 +15,8 @@ from gearcam.pictures.scenes import PLACES, ContactPoints, MovingBody, Scene, st
 if TYPE_CHECKING:
     from gearcam.gears.pair import Gear
     from gearcam.kinds.gear_pair.result import GearPairResult
-    from gearcam.numeric.arrays import Array, Plane
+    from gearcam.numeric.arrays import Array
+    from gearcam.numeric.pose import Pose
     from gearcam.parts.body import Part
     from gearcam.pictures.drawings import Path
 
@@ -38,12 +39,9 @@ def scene(result: GearPairResult, places: int = PLACES) -> Scene:
     guide, pose = result.pair.rolling.guide, result.design.output.pose
     phi1 = result.turn(places)
     end = float(phi1[-1])
-    moved = guide.nominal(phi1)
-    way = np.zeros_like(moved) if guide.turns else moved
-    shift = np.asarray(guide.place - 1j * way, dtype=np.complex128)
-    stands = ((-phi1, np.zeros_like(shift)), (guide.turns * moved, shift))
     names = ("driver", "rack" if result.pair.on_rack else "driven wheel")
-    wheels = zip(result.gears, result.parts, names, result.centrode_paths, stands, strict=True)
+    poses = result.pair.rolling.poses(phi1)
+    wheels = zip(result.gears, result.parts, names, result.centrode_paths, poses, strict=True)
     bodies = [_stepped(*wheel) for wheel in wheels]
     size = CROSS_SIZE * (abs(result.pair.shift) or float(np.ptp(result.gear1.outline)))
     shafts = (0.0, result.pair.shift) if guide.turns else (0.0,)
@@ -65,19 +63,15 @@ def scene(result: GearPairResult, places: int = PLACES) -> Scene:
     )
 
 
-def _stepped(
-    gear: Gear, part: Part, called: str, path: Path, stand: tuple[Array, Plane]
-) -> list[MovingBody]:
+def _stepped(gear: Gear, part: Part, called: str, path: Path, pose: Pose) -> list[MovingBody]:
     """Return the steps of a wheel as bodies that move together, the lowest with its teeth."""
     # the toothed edge first: for a ring the inner one
     lowest = sorted(part_features(part), key=lambda one: one.shape is not part.contour)
-    turn, shift = stand
     first = MovingBody(
         name=part.name,
         called=called,
         features=(*lowest, Feature(layer=CENTRODE, shape=path)),
-        turn=turn,
-        shift=shift,
+        pose=pose,
         teeth=gear.profile.teeth[1],
     )
     others = [
@@ -85,8 +79,7 @@ def _stepped(
             name=part.name,
             called=f"{called}, step {step + 1}",
             features=part_features(part, step),
-            turn=turn,
-            shift=shift,
+            pose=pose,
         )
         for step in range(1, len(part.contours))
     ]

@@ -22,6 +22,7 @@ from gearcam.kinds.cam.forms.disc import STEM, TOOL_PATH, workpiece
 from gearcam.kinds.cam.wall_facts import curvature, trimming
 from gearcam.laws.phases_of_lift import DwellPhase, Phase
 from gearcam.laws.program import Program, make_program
+from gearcam.numeric.pose import Pose
 
 if TYPE_CHECKING:
     from gearcam.base.tolerances import Tolerances
@@ -328,7 +329,7 @@ def _drawing(result: CamResult, follower: Sequence[Shape] = (), way: float = 0.0
     ]
     if cam.motion.mechanism.radius:
         moving.append(Feature(layer=PITCH, shape=Path(points=cam.lower.pitch_line, closed=False)))
-    features = list(place(moving, 0.0, (way, 0.0)))
+    features = list(place(moving, Pose(shift=way)))
     features += [Feature(layer=FOLLOWER, shape=shape) for shape in follower]
     size = CROSS_SIZE * float(np.ptp(part.contour.vertices))
     features.append(Feature(layer=CENTER, shape=Cross(center=np.zeros(2), size=size)))

@@ -19,6 +19,7 @@ from gearcam.kinds.cam.forms.disc import Disc, disc_cam
 from gearcam.laws.half_turns import agreeing, completed, miss
 from gearcam.laws.phases_of_lift import fill_half
 from gearcam.laws.program import Program, make_program
+from gearcam.numeric.pose import Pose
 from gearcam.pictures.drawings import FOLLOWER, Feature, placed
 
 if TYPE_CHECKING:
@@ -73,9 +74,7 @@ class Yoke(Disc):
         reach = float(np.hypot(*result.profile.vertices.T).max())
         other = follower(wall, pose + math.pi, reach)
         drawing = super().picture(result)
-        second = (
-            Feature(layer=FOLLOWER, shape=placed(shape, math.pi, (0.0, 0.0))) for shape in other
-        )
+        second = (Feature(layer=FOLLOWER, shape=placed(shape, Pose(math.pi))) for shape in other)
         return replace(drawing, features=(*drawing.features, *second))
 
     def facts(self, result: CamResult) -> dict[str, Any]:
