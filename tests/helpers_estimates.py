@@ -10,17 +10,18 @@ from typing import Any
 import numpy as np
 
 import gearcam
+from claims.claim import ExactCase
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.tolerances import DEFAULT
 from gearcam.gears.estimates import estimates, ratio_error
 from gearcam.gears.pair import GearPair
 from gearcam.gears.rolling import Rolling, roll
 from gearcam.gears.track import Wheel
-from helpers_exact import RING_TYPE, Case
 from witness.exact import Exact, Number, mp
 
 gc: Any = gearcam
 MODULE = 2.0
+RING_TYPE = {1: "external", 0: "external", -1: "internal"}
 ROUNDING = 1e-13
 
 
@@ -79,7 +80,7 @@ def largest_between(function: Any, low: Number, high: Number) -> Number:
     return max(*ends, function((low + high) / 2))
 
 
-def of_the_law(case: Case, law: Any, exact: Exact, rolling: Rolling) -> list[Row]:
+def of_the_law(case: ExactCase, law: Any, exact: Exact, rolling: Rolling) -> list[Row]:
     """Driven angle, arc length, size."""
     x = places(law)
     truth = [exact.integral(mp.mpf(float(place))) for place in x]
@@ -114,7 +115,7 @@ def of_ratios(law: Any, exact: Exact, pair: Any) -> Row:
     return Row("ratio", off((low, high), truth), ratio_error(pair), high * (1.0 + high))
 
 
-def of_curvatures(case: Case, rolling: Rolling, exact: Exact) -> list[Row]:
+def of_curvatures(case: ExactCase, rolling: Rolling, exact: Exact) -> list[Row]:
     """Least convex radius and largest concave curvature of both centrodes, each near its place.
 
     At a knot of both pieces; those of the spirals beyond an open pair's ends are left out.
@@ -150,7 +151,7 @@ def of_curvatures(case: Case, rolling: Rolling, exact: Exact) -> list[Row]:
     return [Row(name, *map(max, zip(*rows, strict=True))) for name, rows in named if rows]
 
 
-def of_flanks(case: Case, pair: GearPair, exact: Exact, told: float) -> Row:
+def of_flanks(case: ExactCase, pair: GearPair, exact: Exact, told: float) -> Row:
     """Points on flanks beside places of a turn, and the pitch point's own flank."""
     law, worst, far = pair.law, 0.0, 0.0
     length = exact.integral(exact.period)[1] * law.lobes.n1
@@ -303,7 +304,7 @@ def _inside(pair: GearPair, wheel: Wheel, tooth: int) -> bool:
     return pair.law.closed or 3 < tooth < toothing.teeth - 2
 
 
-def rows_of(case: Case) -> list[Row]:
+def rows_of(case: ExactCase) -> list[Row]:
     """Return all rows of a design; of one that no teeth fit those of its centrodes."""
     law = case.law.build(case.lobes, DEFAULT)
     exact = case.exact(law)

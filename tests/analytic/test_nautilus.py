@@ -10,13 +10,13 @@ import pytest
 import shapely
 
 import gearcam as gc
+from claims.laws.centrodes import exact_nautilus
 from claims.test_laws import tanh_sinh
 from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.base.tolerances import DEFAULT
 from gearcam.laws.ratio.base import RatioLaw
 from gearcam.laws.ratio.centrodes import LogSpiral
 from gearcam.laws.ratio.span import RING, Lobes
-from helpers_exact import nautilus
 from helpers_pairs import profile
 
 CASES = [(0.5, 95.386), (2.0, 80.0), (0.4, 60.0), (0.9, 180.0), (0.999, 120.0), (0.1, 20.0)]
@@ -45,7 +45,7 @@ def test_both_centrodes_are_one_curve(start: float, degrees: float) -> None:
 def test_it_agrees_with_thirty_digits(start: float, degrees: float) -> None:
     law = law_of(start, degrees)
     ends = (start, 1 / start)
-    exact = nautilus(LogSpiral(ratios=ends, return_angle=math.radians(degrees)))(None)
+    exact = exact_nautilus(LogSpiral(ratios=ends, return_angle=math.radians(degrees)))(None)
     for phi in np.linspace(0, 2 * math.pi, 41).tolist():
         found = exact.ratio(phi)
         i, slope = (float(one[0]) for one in law.ratio.derivatives(np.array([phi]), 1))

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import math
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.ratio.base import RatioLaw
-from gearcam.laws.ratio.span import ONE_LOBE, Lobes
+from gearcam.laws.ratio.span import ONE_LOBE, RING, WHEEL, Lobes
 from gearcam.laws.rises.base import RiseParameters
 from random_designs.draw import Draw
 from random_designs.law_draw import Counts, Law, LawDraw
+from witness.exact import Exact
+
+RING_TEETH = (30, 90)
+"""Teeth of a wheel and a ring."""
 
 
 class LawParameters(Protocol):
@@ -47,6 +52,35 @@ class LawClaim:
     continuity: int
 
 
+@dataclass(frozen=True, eq=False)
+class ExactCase:
+    """A pair whose law is known in 30 digits, its mathematics written anew (see `witness.exact`).
+
+    Parameters
+    ----------
+    law : LawParameters
+        As designs have them; every double is taken as it is.
+    teeth : (int, int)
+        Tooth counts.
+    exact : callable
+        ``exact(law)`` returns what it is; the built law gives places to begin with.
+    mate : {WHEEL, RACK, RING}
+        Type of the mate.
+    """
+
+    law: LawParameters
+    teeth: tuple[int, int]
+    exact: Callable[[Any], Exact]
+    mate: int = WHEEL
+
+    @property
+    def lobes(self) -> Lobes:
+        """Lobes of the tooth counts."""
+        common = math.gcd(*self.teeth)
+        mate = RING if self.mate == RING else WHEEL
+        return Lobes(self.teeth[0] // common, self.teeth[1] // common, mate)
+
+
 @dataclass(frozen=True, kw_only=True)
 class LawClaims:
     """All that is claimed of a ratio law, and how random ones are drawn.
@@ -58,7 +92,11 @@ class LawClaims:
     ratio : callable or None
         The mathematics of the law once more: ``ratio(parameters, lobes, x, m)`` returns the ratio
         at driver angles x by functions of ``m``, which is numpy or `witness.exact`. None if
-        `helpers_exact` has it.
+        `cases` has it.
+    cases : callable
+        Returns more pairs with their law in 30 digits, for the honesty of estimated errors: closed
+        and open, wheels, rings and racks, and the extremes of the law. Those of `values` are among
+        them if there is a `ratio`.
     usual : mapping of str to (float, float)
         Ranges of parameters, in the units of files, within which most random ones can be built.
         Others are drawn from their lower bound to the value in the law's example.
@@ -68,6 +106,7 @@ class LawClaims:
 
     values: tuple[LawClaim, ...]
     ratio: Callable[[Any, Lobes, Any, Any], Any] | None = None
+    cases: Callable[[], Iterable[ExactCase]] = tuple
     usual: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     draw: Callable[[LawDraw], tuple[Law, Counts]] | None = None
 

@@ -29,7 +29,11 @@ CLAIMS = [
 ]
 
 MEMBERS = [
-    *(pytest.param(param.values[0].parameters, id=param.id) for param in CLAIMS),
+    *(
+        pytest.param(claim.parameters, id=f"{name}-{number}")
+        for name, claims in MOTION_CLAIMS.items()
+        for number, claim in enumerate(claims.values)
+    ),
     *(
         pytest.param(
             parameters(random_motion_law(Draw(f"claims {name} {number}"), name)),

@@ -24,17 +24,17 @@ from gearcam.laws.ratio.span import ONE_LOBE
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.chebyshev import expand
 from helpers_estimates import MODULE, gc, rows_of
-from helpers_exact_designs import cases
+from helpers_exact import cases
 
-CASES = {case.name: case for case in cases()}
+CASES = cases()
 TIGHT = 100.0
-FEW = ("constant-1", "ellipse-7", "log-spiral-4", "multispeed-5", "function-5", "rack-1")
+FEW = ("constant-1", "ellipse-7", "log-spiral-4", "multispeed-5", "formula-11", "rack-1")
 
 
 WIDE = {
-    ("function-5", "tip_thickness_mm"): 400.0,
-    ("function-6", "convex_radius_mm"): 600.0,
-    ("function-6", "concave_curvature_per_mm"): 600.0,
+    ("formula-11", "tip_thickness_mm"): 400.0,
+    ("formula-13", "convex_radius_mm"): 600.0,
+    ("formula-13", "concave_curvature_per_mm"): 600.0,
 }
 """Rows that are wider: the derivatives of a Python function are known by a bound, which is that
 of its noisiest place, and the thinnest tooth or the sharpest bend stands elsewhere."""
@@ -165,7 +165,7 @@ def test_the_error_of_the_size_is_one_of_radii() -> None:
 
 def test_the_miss_of_a_solved_law_is_one_of_curvatures() -> None:
     """As of a ratio that is off everywhere by the same share."""
-    law, miss = CASES["formula-4"].law.build(ONE_LOBE, DEFAULT), 1e-6
+    law, miss = CASES["formula-8"].law.build(ONE_LOBE, DEFAULT), 1e-6
     missed = replace(law, driven=law.driven.shifted(miss))
     rolling = roll(missed, teeth=(61, 61), center_distance=1.0, module=None, tolerances=DEFAULT)
     for number, track in enumerate(rolling.tracks):
@@ -226,7 +226,7 @@ def test_the_estimate_of_a_python_function_knows_its_noise() -> None:
     """Values that are rounded to 12 digits: the driven angle and the flanks are told so."""
     clean, noisy = (
         Formula(ratio=lambda x, digits=digits: np.round(1.0 + 0.3 * np.cos(x), digits)).build(
-            CASES["function-4"].lobes, DEFAULT
+            CASES["formula-9"].lobes, DEFAULT
         )
         for digits in (16, 13)
     )

@@ -99,7 +99,7 @@ def _required(owner: Any, field: str) -> bool:
     return found.default is REQUIRED
 
 
-def _value(d: LawDraw, param: Param, shown: Any, usual: tuple[float, float] | None) -> Any:
+def _value(d: Draw, param: Param, shown: Any, usual: tuple[float, float] | None) -> Any:
     """Return a value in the unit of files: of the usual range, or from a bound to the example."""
     if param.choices:
         return d.pick(param.choices)

@@ -11,6 +11,7 @@ from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 import mpmath
@@ -296,3 +297,38 @@ def of_radius(
         return lambda x: (lambda r: r / (c - mate * r))(shape(x))
 
     return Exact([(low, high, ratio(shape)) for low, high, shape in shapes], mate), c
+
+
+def turn_of(count: int) -> Number:
+    """The angle of a lobe of a wheel with so many."""
+    return 2 * mp.pi / count
+
+
+def of(value: Any) -> Number:
+    """A double as it is."""
+    return mp.mpf(float(value))
+
+
+def whole(function: Function, period: Number, parts: int = 4) -> list[Piece]:
+    """One function over a period."""
+    edges = [period * k / parts for k in range(parts + 1)]
+    return [(low, high, function) for low, high in pairwise(edges)]
+
+
+def closed_by(function: Function, period: Number, advance: Number, mate: int) -> Exact:
+    """Scale a ratio so that it closes."""
+    mean = Exact(whole(function, period), 0).integral.sums[-1][0]
+    return Exact(whole(lambda x: function(x) * (advance / mean), period), mate)
+
+
+def by_radius(pieces: Sequence[Piece], advance: Number, mate: int) -> Callable[[Any], Exact]:
+    """Return what makes the law of a driver's centrode from a law in doubles, which is near."""
+
+    def make(law: Any) -> Exact:
+        # the ratio at any place tells the centre distance
+        x = of(0.3) * pieces[-1][1]
+        shape = next(shape for _, high, shape in pieces if x <= high)
+        r, i = shape(Slope(x, mp.mpf(1))).v, of(law.ratio(float(x)))
+        return of_radius(pieces, advance, mate, float(r / i + mate * r))[0]
+
+    return make

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterator
+from typing import Any
 
-from claims.claim import LawClaim, LawClaims
+from claims.claim import RING_TEETH, ExactCase, LawClaim, LawClaims
 from gearcam.laws.ratio.centrodes import EccentricCircle, Limacon, Lobed, LogSpiral
-from gearcam.laws.ratio.span import RING, Lobes
+from gearcam.laws.ratio.span import RING, WHEEL, Lobes
 from random_designs.draw import short
 from random_designs.law_draw import Counts, Law, LawDraw
+from witness import exact
+from witness.exact import Exact, Number, Slope, by_radius, mp, of, turn_of, whole
 
 TURN = 2 * math.pi
 DOUBLE = Lobes(1, 2, RING)
@@ -166,13 +170,122 @@ def any_spiral(d: LawDraw) -> tuple[Law, Counts]:
     return {"ratios": ratios[:: d.sign()], "driven_travel_deg": d.even(60, 220)}, d.equal()
 
 
+def exact_circle(e: float, mate: int, turns: int) -> Callable[[Any], Exact]:
+    def radius(x: Slope) -> Slope:
+        across = of(e) * exact.sin(x)
+        return of(e) * exact.cos(x) + exact.sqrt(1 - across * across)
+
+    return by_radius(whole(radius, turn_of(1), 8), turn_of(turns), mate)
+
+
+def circle_cases() -> Iterator[ExactCase]:
+    for e, teeth, mate in (
+        *((e, (61, 61), WHEEL) for e in (0.0, 0.2, 0.5, 0.8, 0.95)),
+        (0.4, (30, 60), WHEEL),
+        (0.3, RING_TEETH, RING),
+    ):
+        law = EccentricCircle(eccentricity=e)
+        yield ExactCase(law, teeth, exact_circle(e, mate, teeth[1] // teeth[0]), mate)
+
+
+def exact_lobed(e: float, n: tuple[int, int], mate: int) -> Callable[[Any], Exact]:
+    shape = whole(lambda x: 1 + of(e) * exact.cos(n[0] * x), turn_of(n[0]))
+    return by_radius(shape, turn_of(n[1]), mate)
+
+
+def limacon_cases() -> Iterator[ExactCase]:
+    for e in (0.1, 0.4, 0.7, 0.9):
+        yield ExactCase(Limacon(eccentricity=e), (61, 61), exact_lobed(e, (1, 1), WHEEL))
+    yield ExactCase(Limacon(eccentricity=0.2), RING_TEETH, exact_lobed(0.2, (1, 3), RING), RING)
+
+
+def lobed_cases() -> Iterator[ExactCase]:
+    for e, teeth, n, mate in (
+        (0.1, (60, 90), (2, 3), WHEEL),
+        (0.05, (90, 60), (3, 2), WHEEL),
+        (0.2, (61, 61), (1, 1), WHEEL),
+        (0.3, (40, 80), (1, 2), WHEEL),
+        (0.05, (60, 90), (2, 3), RING),
+    ):
+        yield ExactCase(Lobed(eccentricity=e), teeth, exact_lobed(e, n, mate), mate)
+
+
+def exact_spiral(law: LogSpiral, mate: int) -> Callable[[Any], Exact]:
+    start, end = (of(value) for value in law.ratios)
+    first, turn = start / (1 + mate * start), (1 + mate * end) / (1 + mate * start)
+    growth = mate * mp.log(turn) / of(law.driven_travel)
+    travel = mp.log(end / start / turn) / growth
+
+    def ratio(x: Slope) -> Slope:
+        share = first * exact.exp(growth * x)
+        return share / (1 - mate * share)
+
+    return lambda _: Exact(whole(ratio, travel), mate)
+
+
+def exact_nautilus(law: LogSpiral) -> Callable[[Any], Exact]:
+    """A closed spiral: phi1 = t + h and phi2 = t - h, t from the middle of the return."""
+    k, turn = mp.sqrt(of(law.ratios[1]) / of(law.ratios[0])), of(law.return_angle)
+    joint, half = 2 * mp.pi - turn, turn / 2
+    c = mp.log(k) / joint
+    # h' = a*t + b*t^3 + e*t^5 meets -tanh(c*(t - pi)) at the end, up to the second derivative
+    v = mp.tanh(c * (mp.pi - half))
+    rows = [[half, half**3, half**5], [1, 3 * half**2, 5 * half**4], [0, 6 * half, 20 * half**3]]
+    d = -c * (1 - v * v)
+    a, b, e = mp.lu_solve(mp.matrix(rows), mp.matrix([v, d, 2 * c * v * d]))
+
+    def h(t: Number) -> Number:
+        return a * t**2 / 2 + b * t**4 / 4 + e * t**6 / 6
+
+    def slope(t: Any) -> Any:
+        return a * t + b * t**3 + e * t**5
+
+    def falling(x: Slope) -> Slope:
+        t, goal = mp.mpf(0), x.v - (2 * mp.pi - half - h(half))
+        for _ in range(40):
+            t -= (t + h(t) - goal) / (1 + slope(t))
+        here = slope(Slope(t, x.d / (1 + slope(t))))
+        return (1 - here) / (1 + here)
+
+    def rising(x: Slope) -> Slope:
+        share = exact.exp(c * x) / (1 + k)
+        return share / (1 - share)
+
+    pieces = [*whole(rising, joint), *((joint + turn * j / 8, joint + turn * (j + 1) / 8, falling)
+                                       for j in range(8))]  # fmt: skip
+    return lambda _: Exact(pieces, WHEEL)
+
+
+def spiral_cases() -> Iterator[ExactCase]:
+    for ratios, travel, mate in (
+        ((0.5, 2.0), 2.0, WHEEL),
+        ((1.0, 1.3), 4.0, WHEEL),
+        ((3.0, 0.4), 1.2, WHEEL),
+        ((0.2, 0.4), 1.0, RING),
+        ((1.0, 1.0001), 2.0, WHEEL),
+    ):
+        law = LogSpiral(ratios=ratios, driven_travel=travel)
+        yield ExactCase(law, (30, 30), exact_spiral(law, mate), mate)
+    for ratios, degrees in (((0.5, 2.0), 95.386), ((1.5, 1 / 1.5), 120.0)):
+        law = LogSpiral(ratios=ratios, return_angle=math.radians(degrees))
+        yield ExactCase(law, (48, 48), exact_nautilus(law))
+
+
 CLAIMS = {
     "eccentric-circle": LawClaims(
-        values=eccentric_circle() + eccentric_circle_in_rings(), usual={"eccentricity": (1e-3, 0.7)}
+        values=eccentric_circle() + eccentric_circle_in_rings(),
+        usual={"eccentricity": (1e-3, 0.7)},
+        cases=circle_cases,
     ),
     "limacon": LawClaims(
-        values=limacon() + limacon_in_rings(), usual={"eccentricity": (1e-3, 0.6)}
+        values=limacon() + limacon_in_rings(),
+        usual={"eccentricity": (1e-3, 0.6)},
+        cases=limacon_cases,
     ),
-    "lobed": LawClaims(values=lobed() + lobed_in_rings(), usual={"eccentricity": (1e-3, 0.15)}),
-    "log-spiral": LawClaims(values=log_spiral() + log_spiral_in_rings(), draw=any_spiral),
+    "lobed": LawClaims(
+        values=lobed() + lobed_in_rings(), usual={"eccentricity": (1e-3, 0.15)}, cases=lobed_cases
+    ),
+    "log-spiral": LawClaims(
+        values=log_spiral() + log_spiral_in_rings(), draw=any_spiral, cases=spiral_cases
+    ),
 }

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterator
 from typing import Any
 
-from claims.claim import LawClaim, LawClaims
+from claims.claim import RING_TEETH, ExactCase, LawClaim, LawClaims
+from claims.laws.phases import arc, arcs
 from gearcam.laws.ratio.composite import Fourier, Multispeed, ThreePhasePolynomial
-from gearcam.laws.ratio.span import RING, Lobes
+from gearcam.laws.ratio.span import RING, WHEEL, Lobes
 from random_designs.draw import short
 from random_designs.law_draw import Counts, Law, LawDraw, period
+from witness import exact
+from witness.exact import Exact, Slope, mp, of, turn_of, whole
 
 TURN = 2 * math.pi
 DOUBLE = Lobes(1, 2, RING)
@@ -184,10 +188,104 @@ def any_fourier(d: LawDraw) -> tuple[Law, Counts]:
     return {"of": of, "cosines": cosines, "sines": sines}, z
 
 
+def exact_multispeed(law: Multispeed, mate: int) -> Callable[[Any], Exact]:
+    knots, ratios = [mp.mpf(0)], [law.ratios[0]]
+    for number, (angle, ratio) in enumerate(zip(law.angles, law.ratios, strict=True)):
+        if number:
+            knots.append(knots[-1] + of(law.transition))
+            ratios.append(ratio)
+        if angle:
+            knots.append(knots[-1] + of(angle))
+            ratios.append(ratio)
+    advance = turn_of(1)
+    if law.driven_travel is None:
+        knots.append(turn_of(1))
+        ratios.append(law.ratios[0])
+    else:
+        advance = of(law.driven_travel)
+    return lambda _: arcs(knots, ratios, law.shape, advance, mate)
+
+
+def multispeed_cases() -> Iterator[ExactCase]:
+    for width, shape, ratio in (
+        (30.0, "quintic", 0.8),
+        (10.0, "cosine", 0.7),
+        (3.0, "cubic", 0.9),
+        (1.0, "quintic", 0.97),
+        (0.3, "cosine", 0.99),
+        (0.1, "quintic", 0.995),
+        (0.1, "cubic", 0.99),
+        (0.1, "quintic", 0.99999),
+    ):
+        t = math.radians(width)
+        angles = (2.5, TURN - 2 * t - 2.5)
+        law = Multispeed(ratios=(ratio, "solve"), angles=angles, transition=t, shape=shape)
+        yield ExactCase(law, (61, 61), exact_multispeed(law, WHEEL))
+    for t in (0.3, math.radians(0.1)):
+        law = Multispeed(ratios=(1.0, "solve"), angles=(0.7, 2.0), transition=t, driven_travel=3.2)
+        yield ExactCase(law, (40, 40), exact_multispeed(law, WHEEL))
+
+
+def exact_polynomials(law: ThreePhasePolynomial, mate: int) -> Callable[[Any], Exact]:
+    u, v, turn, a = of(law.knots[1]), of(law.knots[2]), turn_of(1), of(law.lowest)
+    first, second, third = u, v - u, turn - v
+    rise = (second + third) / 2
+    weight = rise * first / 2 + second**2 / 6 + rise * third - third**2 / 6
+    p = (turn - a * turn) / weight
+    b = a + p * rise
+    return lambda _: Exact(
+        [
+            arc(mp.mpf(0), u, b, a, "cubic"),
+            (u, v, lambda x: a + p / 2 / second * (x - u) ** 2),
+            (v, turn, lambda x: b - p / 2 / third * (x - turn) ** 2),
+        ],
+        mate,
+    )
+
+
+def three_phase_cases() -> Iterator[ExactCase]:
+    for a in (0.4, 0.7, 0.95):
+        law = ThreePhasePolynomial(knots=(0.0, 2.8, 4.7, TURN), lowest=a)
+        yield ExactCase(law, (61, 61), exact_polynomials(law, WHEEL))
+
+
+def exact_fourier(law: Fourier, n: tuple[int, int], mate: int) -> Callable[[Any], Exact]:
+    mean = mp.mpf(n[0]) / n[1]
+
+    def ratio(x: Slope) -> Slope:
+        total = Slope(mp.mpf(1))
+        for k, (a, b) in enumerate(zip(law.cosines, law.sines, strict=True), start=1):
+            c, s = exact.cos(k * n[0] * x), exact.sin(k * n[0] * x)
+            if law.of == "ratio":
+                total = total + of(a) * c + of(b) * s
+            else:
+                total = total + (k * n[0] * mp.pi / 180) * (of(b) * c - of(a) * s)
+        return mean * total
+
+    return lambda _: Exact(whole(ratio, turn_of(n[0])), mate)
+
+
+def fourier_cases() -> Iterator[ExactCase]:
+    for law, teeth, n, mate in (
+        (Fourier(cosines=(0.2, 0.1), sines=(0.05, 0.0)), (61, 61), (1, 1), WHEEL),
+        (Fourier(of="phi2", cosines=(3.0, 0.5), sines=(-4.0, 0.2)), (60, 90), (2, 3), WHEEL),
+        (Fourier(cosines=(0.1,) * 3, sines=(-0.05,) * 3), (30, 60), (1, 2), WHEEL),
+        (Fourier(cosines=(0.1,), sines=(0.1,)), RING_TEETH, (1, 3), RING),
+        (Fourier(cosines=(0.004,) * 12, sines=(0.008,) * 12), (61, 61), (1, 1), WHEEL),
+    ):
+        yield ExactCase(law, teeth, exact_fourier(law, n, mate), mate)
+
+
 CLAIMS = {
-    "multispeed": LawClaims(values=multispeed() + multispeed_in_rings(), draw=any_multispeed),
-    "three-phase-polynomial": LawClaims(
-        values=three_phase_polynomial() + three_phase_polynomial_in_rings(), draw=any_three_phases
+    "multispeed": LawClaims(
+        values=multispeed() + multispeed_in_rings(), draw=any_multispeed, cases=multispeed_cases
     ),
-    "fourier": LawClaims(values=fourier() + fourier_in_rings(), draw=any_fourier),
+    "three-phase-polynomial": LawClaims(
+        values=three_phase_polynomial() + three_phase_polynomial_in_rings(),
+        draw=any_three_phases,
+        cases=three_phase_cases,
+    ),
+    "fourier": LawClaims(
+        values=fourier() + fourier_in_rings(), draw=any_fourier, cases=fourier_cases
+    ),
 }

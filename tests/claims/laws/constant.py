@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
-from claims.claim import LawClaim, LawClaims
+from claims.claim import RING_TEETH, ExactCase, LawClaim, LawClaims
 from gearcam.laws.ratio.constant import Constant
-from gearcam.laws.ratio.span import RING, Lobes
+from gearcam.laws.ratio.span import RING, WHEEL, Lobes
 from random_designs.law_draw import Counts, Law, LawDraw
+from witness.exact import Exact, Slope, mp, turn_of, whole
 
 TURN = 2 * math.pi
 
@@ -40,6 +42,17 @@ def any_constant(d: LawDraw) -> tuple[Law, Counts]:
     return {}, (d.whole(6, d.most_teeth), d.whole(6, d.most_teeth))
 
 
+def constant_cases() -> Iterator[ExactCase]:
+    for teeth, n, share, mate in (
+        ((20, 31), 20, mp.mpf(20) / 31, WHEEL),
+        (RING_TEETH, 1, mp.mpf(1) / 3, RING),
+    ):
+        exact = Exact(whole(lambda x, i=share: Slope(i) + 0 * x, turn_of(n)), mate)
+        yield ExactCase(Constant(), teeth, lambda _, exact=exact: exact, mate)
+
+
 CLAIMS = {
-    "constant": LawClaims(values=constant() + constant_in_rings(), draw=any_constant),
+    "constant": LawClaims(
+        values=constant() + constant_in_rings(), draw=any_constant, cases=constant_cases
+    ),
 }

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterator
 from typing import Any
 
-from claims.claim import LawClaim, LawClaims
+from claims.claim import RING_TEETH, ExactCase, LawClaim, LawClaims
 from gearcam.laws.ratio.ellipse import Ellipse
-from gearcam.laws.ratio.span import RING, Lobes
+from gearcam.laws.ratio.span import RING, WHEEL, Lobes
+from witness import exact
+from witness.exact import Exact, by_radius, of, turn_of, whole
 
 
 def ellipse() -> tuple[LawClaim, ...]:
@@ -69,8 +72,33 @@ def ratio(law: Ellipse, lobes: Lobes, x: Any, m: Any) -> Any:
     return 1 / (distance * (1 + e * m.cos(k[0] * x)) - w)
 
 
+def exact_ellipse(
+    e: float, n: tuple[int, int] = (1, 1), mate: int = WHEEL
+) -> Callable[[Any], Exact]:
+    shape = whole(lambda x: 1 / (1 + of(e) * exact.cos(n[0] * x)), turn_of(n[0]))
+    return by_radius(shape, turn_of(n[1]), mate)
+
+
+def ellipse_cases() -> Iterator[ExactCase]:
+    for e in (0.0, 0.05, 0.3, 0.6, 0.8, 0.9, 0.95, 0.99):
+        yield ExactCase(Ellipse(eccentricity=e), (61, 61), exact_ellipse(e))
+    for e, teeth, n in (
+        (0.2, (60, 40), (3, 2)),
+        (0.4, (40, 80), (1, 2)),
+        (0.7, (30, 90), (1, 3)),
+        (0.15, (51, 34), (3, 2)),
+    ):
+        yield ExactCase(Ellipse(eccentricity=e), teeth, exact_ellipse(e, n))
+    for e in (0.1, 0.3, 0.6):
+        exact = exact_ellipse(e, (1, 3), RING)
+        yield ExactCase(Ellipse(eccentricity=e), RING_TEETH, exact, RING)
+
+
 CLAIMS = {
     "ellipse": LawClaims(
-        values=ellipse() + ellipse_in_rings(), ratio=ratio, usual={"eccentricity": (1e-3, 0.8)}
+        values=ellipse() + ellipse_in_rings(),
+        ratio=ratio,
+        usual={"eccentricity": (1e-3, 0.8)},
+        cases=ellipse_cases,
     ),
 }

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterator
+from typing import Any
 
 import numpy as np
 
-from claims.claim import LawClaim, LawClaims
+from claims.claim import RING_TEETH, ExactCase, LawClaim, LawClaims
 from gearcam.laws.ratio.formula import Formula, RackLaw
-from gearcam.laws.ratio.span import RING, Lobes
+from gearcam.laws.ratio.span import RACK, RING, Lobes
 from random_designs.draw import short
 from random_designs.law_draw import Counts, Law, LawDraw
+from witness import exact
+from witness.exact import Exact, Slope, by_radius, closed_by, mp, of, turn_of, whole
 
 TURN = 2 * math.pi
 DOUBLE = Lobes(1, 2, RING)
@@ -179,7 +183,117 @@ def any_rack(d: LawDraw) -> tuple[Law, Counts]:
     return shape, (d.whole(14, d.most_teeth), d.whole(6, d.most_teeth))
 
 
+Written = Callable[[Any, Any], Any]
+"""A formula with the library of its functions: numpy, or `witness.exact`; doubles stay exact."""
+
+PHI2: tuple[tuple[str, Written, Written, tuple[int, int]], ...] = (
+    # text, phi2, its derivative, teeth
+    (
+        "phi1 - 0.08*sin(2*phi1)",
+        lambda x, m: x - 0.08 * m.sin(2 * x),
+        lambda x, m: 1 - mp.mpf(0.08) * 2 * m.cos(2 * x),
+        (61, 61),
+    ),
+    (
+        "phi1 - 0.6*sin(phi1)",
+        lambda x, m: x - 0.6 * m.sin(x),
+        lambda x, m: 1 - 0.6 * m.cos(x),
+        (61, 61),
+    ),
+    (
+        "phi1 + 0.001*sin(60*phi1)",
+        lambda x, m: x + 0.001 * m.sin(60 * x),
+        lambda x, m: 1 + mp.mpf(0.001) * 60 * m.cos(60 * x),
+        (61, 61),
+    ),
+    (
+        "phi1/2 + 0.1*cos(phi1)",
+        lambda x, m: x / 2 + 0.1 * m.cos(x),
+        lambda x, m: 0.5 - 0.1 * m.sin(x),
+        (40, 80),
+    ),
+)
+OTHERS: tuple[tuple[str, str, Written, tuple[int, int], int], ...] = (
+    # what, text, itself, teeth, mate
+    ("ratio", "1 + 0.3*cos(phi1)", lambda x, m: 1 + 0.3 * m.cos(x), (61, 61), 1),
+    (
+        "ratio",
+        "1/(1 + 0.9*cos(phi1 + 0.4))",
+        lambda x, m: 1 / (1 + 0.9 * m.cos(x + 0.4)),
+        (61, 61),
+        1,
+    ),
+    (
+        "ratio",
+        "1 + 0.2*tanh(20*sin(phi1))",
+        lambda x, m: 1 + 0.2 * m.tanh(20 * m.sin(x)),
+        (61, 61),
+        1,
+    ),
+    (
+        "ratio",
+        "1 + 0.3*exp(-40*(1 - cos(phi1)))",
+        lambda x, m: 1 + 0.3 * m.exp(-40 * (1 - m.cos(x))),
+        (61, 61),
+        1,
+    ),
+    ("ratio", "1 + 0.1*sin(2*phi1)", lambda x, m: 1 + 0.1 * m.sin(2 * x), (60, 90), 1),
+    ("ratio", "1 + 0.1*sin(phi1)", lambda x, m: 1 + 0.1 * m.sin(x), RING_TEETH, -1),
+    ("r1", "1/(1 + 0.5*cos(phi1))", lambda x, m: 1 / (1 + 0.5 * m.cos(x)), (61, 61), 1),
+    ("r1", "2 + 0.1*cos(3*phi1)", lambda x, m: 2 + 0.1 * m.cos(3 * x), (60, 40), 1),
+    ("r1", "5 + exp(sin(phi1))", lambda x, m: 5 + m.exp(m.sin(x)), (61, 61), 1),
+    (
+        "r1",
+        "3 + 0.05*tanh(30*cos(phi1))",
+        lambda x, m: 3 + 0.05 * m.tanh(30 * m.cos(x)),
+        (61, 61),
+        1,
+    ),
+)
+
+
+def exact_formula(what: str, function: Written, teeth: tuple[int, int], mate: int) -> Any:
+    """Return what makes the exact law of a formula."""
+    common = math.gcd(*teeth)
+    period, advance = turn_of(teeth[0] // common), turn_of(teeth[1] // common)
+
+    def shape(x: Slope) -> Slope:
+        return function(x, exact)
+
+    if what == "r1":
+        return by_radius(whole(shape, period, 8), advance, mate)
+    if what == "ratio":
+        return lambda _: closed_by(shape, period, advance, mate)
+    return lambda _: Exact(whole(shape, period, 8), mate)
+
+
+def formula_cases() -> Iterator[ExactCase]:
+    """Each formula as a text and as a Python function."""
+    rows = [("phi2", text, phi2, ratio, teeth, 1) for text, phi2, ratio, teeth in PHI2]
+    rows += [(what, text, one, one, teeth, mate) for what, text, one, teeth, mate in OTHERS]
+    for what, text, written, ratio, teeth, mate in rows:
+
+        def function(x: Any, written: Written = written) -> Any:
+            return written(x, np)
+
+        for given in (text, function):
+            law = Formula(**{what: given})  # type: ignore[arg-type]
+            yield ExactCase(law, teeth, exact_formula(what, ratio, teeth, mate), mate)
+
+
+def rack_cases() -> Iterator[ExactCase]:
+    for what, text, radius in (
+        ("r1", "1 + 0.2*cos(phi1)", lambda x: 1 + of(0.2) * exact.cos(x)),
+        ("r1", "2 + 0.1*exp(sin(2*phi1))", lambda x: 2 + of(0.1) * exact.exp(exact.sin(2 * x))),
+        ("travel", "2*phi1 + 0.3*sin(phi1)", lambda x: 2 + of(0.3) * exact.cos(x)),
+    ):
+        law = Exact(whole(radius, turn_of(1)), RACK)
+        yield ExactCase(RackLaw(**{what: text}), (24, 31), lambda _, law=law: law, RACK)
+
+
 CLAIMS = {
-    "formula": LawClaims(values=formula() + formula_in_rings(), draw=any_formula),
-    "rack": LawClaims(values=rack(), draw=any_rack),
+    "formula": LawClaims(
+        values=formula() + formula_in_rings(), draw=any_formula, cases=formula_cases
+    ),
+    "rack": LawClaims(values=rack(), draw=any_rack, cases=rack_cases),
 }

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterator, Sequence
+from itertools import pairwise
 from typing import Any
 
-from claims.claim import LawClaim, LawClaims
+from claims.claim import ExactCase, LawClaim, LawClaims
 from gearcam.laws.ratio.phases import Phases
-from gearcam.laws.ratio.span import RING, Lobes
+from gearcam.laws.ratio.span import RING, WHEEL, Lobes
 from random_designs.draw import short
 from random_designs.law_draw import Counts, Law, LawDraw, period, rising
+from witness import exact
+from witness.exact import Exact, Number, Piece, Slope, mp, of, turn_of
 
 TURN = 2 * math.pi
 DOUBLE = Lobes(1, 2, RING)
@@ -128,6 +132,78 @@ def any_phases(d: LawDraw) -> tuple[Law, Counts]:
     return {"shape": shape, "knots_deg": rising(d, count, period(z)), "ratios": ratios}, z
 
 
+Shape = tuple[Callable[[Slope], Slope], Number]
+"""What rises from 0 to 1 over the unit interval, and its mean."""
+
+SHAPES: dict[str, Shape] = {
+    "cosine": (lambda t: (1 - exact.cos(mp.pi * t)) / 2, mp.mpf(1) / 2),
+    "cubic": (lambda t: t * t * (3 - 2 * t), mp.mpf(1) / 2),
+    "quintic": (lambda t: t**3 * (10 + t * (6 * t - 15)), mp.mpf(1) / 2),
+    "sine": (lambda t: exact.sin(mp.pi / 2 * t), 2 / mp.pi),
+}
+
+
+def arc(low: Number, high: Number, start: Number, end: Number, shape: str) -> Piece:
+    rise = SHAPES[shape][0]
+    return low, high, lambda x: start + (end - start) * rise((x - low) / (high - low))
+
+
+def arcs(
+    knots: Sequence[Number], ratios: Sequence[Any], shape: str, advance: Number, mate: int
+) -> Exact:
+    """Ratios at knots joined by arcs; one ratio, or the last knot, is what closure asks for."""
+    knots, share = list(knots), SHAPES[shape][1]
+    if "solve" in ratios:
+        known = [mp.mpf(0) if value == "solve" else of(value) for value in ratios]
+        weights = [mp.mpf(0)] * len(knots)
+        for k, (low, high) in enumerate(pairwise(knots)):
+            weights[k] += (1 - share) * (high - low)
+            weights[k + 1] += share * (high - low)
+        rest = advance - sum(w * v for w, v in zip(weights, known, strict=True))
+        unknown = sum(w for w, v in zip(weights, ratios, strict=True) if v == "solve")
+        values = [rest / unknown if v == "solve" else of(v) for v in ratios]
+    else:
+        values = [of(value) for value in ratios]
+    if knots[-1] is None:
+        means = [(1 - share) * a + share * b for a, b in pairwise(values)]
+        way = sum(m * (b - a) for m, (a, b) in zip(means[:-1], pairwise(knots[:-1]), strict=True))
+        knots[-1] = knots[-2] + (advance - way) / means[-1]
+    pieces = zip(pairwise(knots), pairwise(values), strict=True)
+    return Exact([arc(low, high, a, b, shape) for (low, high), (a, b) in pieces], mate)
+
+
+def exact_phases(law: Phases, mate: int) -> Callable[[Any], Exact]:
+    *inner, last = law.knots
+    knots: list[Any] = [of(knot) for knot in inner]
+    if law.driven_travel is None:
+        return lambda _: arcs([*knots, turn_of(1)], law.ratios, law.shape, turn_of(1), mate)
+    end = None if last == "solve" else of(last)
+    return lambda _: arcs([*knots, end], law.ratios, law.shape, of(law.driven_travel), mate)
+
+
+def phases_cases() -> Iterator[ExactCase]:
+    for shape in ("cosine", "cubic", "quintic"):
+        for knot in (120, 160):
+            two = Phases(
+                shape=shape, knots=(0.0, math.radians(knot), TURN), ratios=(1.6, "solve", 1.6)
+            )
+            yield ExactCase(two, (61, 61), exact_phases(two, WHEEL))
+    given = Phases(knots=(0.0, math.radians(160), TURN), ratios=(1.6, 0.4, 1.6))
+    yield ExactCase(given, (61, 61), exact_phases(given, WHEEL))
+    three = Phases(knots=(0.0, 2.0, 4.1, TURN), ratios=(1.2, 0.7, "solve", 1.2))
+    yield ExactCase(three, (61, 61), exact_phases(three, WHEEL))
+    travels: tuple[tuple[str, Any, Any], ...] = (
+        ("cosine", (0.0, 0.2, 1.0, "solve"), (1.0, 1.0, 2.0, 2.0)),
+        ("sine", (0.0, 1.0, "solve"), (1.0, 2.0, 2.0)),
+        ("quintic", (0.0, 1.0, 2.0, 4.0), (1.0, 1.5, "solve", 0.8)),
+    )
+    for shape, knots, ratios in travels:
+        law = Phases(shape=shape, knots=knots, ratios=ratios, driven_travel=4.0)
+        yield ExactCase(law, (40, 40), exact_phases(law, WHEEL))
+    sharp = Phases(knots=(0.0, 0.02, 3.0, TURN), ratios=(1.0, 0.9, "solve", 1.0))
+    yield ExactCase(sharp, (61, 61), exact_phases(sharp, WHEEL))
+
+
 CLAIMS = {
-    "phases": LawClaims(values=phases() + phases_in_rings(), draw=any_phases),
+    "phases": LawClaims(values=phases() + phases_in_rings(), draw=any_phases, cases=phases_cases),
 }

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
-from claims.claim import LawClaim, LawClaims
+from claims.claim import ExactCase, LawClaim, LawClaims
 from gearcam.laws.ratio.position import MotionLaw
-from gearcam.laws.ratio.span import RING, Lobes
+from gearcam.laws.ratio.span import RING, WHEEL, Lobes
 from random_designs.law_draw import Counts, Law, LawDraw
+from witness import exact
+from witness.exact import Exact, closed_by, of, turn_of, whole
 
 SECTOR = Lobes(1, 1, RING)
 
@@ -86,6 +89,23 @@ def any_motion(d: LawDraw) -> tuple[Law, Counts]:
     return law | {"driver_travel_deg": travel, "driven_travel_deg": travel}, d.equal()
 
 
+def motion_cases() -> Iterator[ExactCase]:
+    for y, rise in (
+        ("x + x**2/10", lambda x: 1 + x / 5),
+        ("x + 0.1*sin(3*x)", lambda x: 1 + of(0.1) * 3 * exact.cos(3 * x)),
+        ("exp(x)", exact.exp),
+    ):
+        law = MotionLaw(y=y, x_from=0.0, x_to=2.0, driver_travel=3.0, driven_travel=2.5)
+        travel = of(3.0)
+        ratio = closed_by(lambda x, f=rise, p=travel: f(2 * x / p), travel, of(2.5), WHEEL)
+        yield ExactCase(law, (40, 40), lambda _, ratio=ratio: ratio)
+    for lead, rod in ((0.0, 3.0), (0.2, 3.0), (0.3, 2.0), (0.1, 20.0)):
+        led = f"(phi1 - {lead}*sin(phi1))"
+        slide = f"1 - cos{led} + {rod}*(1 - sqrt(1 - (sin{led}/{rod})**2))"
+        ratio = Exact(whole(lambda x, a=lead: 1 - of(a) * exact.cos(x), turn_of(1)))
+        yield ExactCase(MotionLaw(slide=slide, rod=rod), (61, 61), lambda _, ratio=ratio: ratio)
+
+
 CLAIMS = {
-    "motion": LawClaims(values=motion() + motion_in_rings(), draw=any_motion),
+    "motion": LawClaims(values=motion() + motion_in_rings(), draw=any_motion, cases=motion_cases),
 }

@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Iterator
+from itertools import pairwise
+from typing import Any
 
-from claims.claim import LawClaim, LawClaims
+import numpy as np
+
+from claims.claim import ExactCase, LawClaim, LawClaims
+from gearcam.laws.ratio.base import RatioLaw
 from gearcam.laws.ratio.span import RING, Lobes
 from gearcam.laws.ratio.table import TableLaw
 from random_designs.draw import short
 from random_designs.law_draw import Counts, Law, LawDraw, period
+from witness.exact import Exact, Function, Slope, by_radius, of, turn_of
 
 TURN = 2 * math.pi
 DOUBLE = Lobes(1, 2, RING)
@@ -93,6 +100,75 @@ def any_table(d: LawDraw) -> tuple[Law, Counts]:
     return {"phi1_deg": angles, kind: values}, z
 
 
+def exact_table(law: TableLaw, n: tuple[int, int], mate: int) -> Callable[[Any], Exact]:
+    """The quintics of the table, from the pieces that the program made of its rows."""
+    kind, angles, values = law.points
+
+    def make(built: RatioLaw) -> Exact:
+        from gearcam.numeric.shape_keeping import quintics
+
+        closed = law.driven_travel is None
+        last = turn_of(n[0]) if closed else of(angles[-1])
+        rise = float(values[-1] - values[0]) if kind == "phi2" else 0.0
+        grid = np.array([0.0, *angles[1:-1], built.period])
+        rows = quintics(grid, values, rise if closed else None)
+
+        def polynomial(low: float, powers: Any) -> Function:
+            known = [of(value) for value in powers]
+
+            def value(x: Slope) -> Slope:
+                t = x - of(low)
+                total = Slope(known[-1])
+                for power in known[-2::-1]:
+                    total = total * t + power
+                return total
+
+            return value
+
+        if kind == "phi2":
+            rows = rows[:, 1:] * np.arange(1, 6)
+        knots = [*(of(x) for x in grid[:-1]), last]
+        pieces = [
+            (low, high, polynomial(float(x), row))
+            for (low, high), x, row in zip(pairwise(knots), grid, rows, strict=False)
+        ]
+        advance = turn_of(n[1]) if closed else of(law.driven_travel)
+        if kind == "r1":
+            return by_radius(pieces, advance, mate)(built)
+        if kind == "phi2":
+            return Exact(pieces, mate)
+        factor = advance / Exact(pieces, 0).integral.sums[-1][0]
+        scaled = [(a, b, lambda x, f=f: factor * f(x)) for a, b, f in pieces]
+        return Exact(scaled, mate)
+
+    return make
+
+
+def table_cases() -> Iterator[ExactCase]:
+    for kind, count, teeth, mate in (
+        ("ratio", 12, (61, 61), 1),
+        ("ratio", 90, (60, 90), 1),
+        ("ratio", 24, (30, 90), -1),
+        ("phi2", 24, (61, 61), 1),
+        ("phi2", 72, (61, 61), 1),
+        ("r1", 16, (61, 61), 1),
+        ("r1", 48, (40, 80), 1),
+        ("ratio", 400, (61, 61), 1),
+    ):
+        common = math.gcd(*teeth)
+        n = teeth[0] // common, teeth[1] // common
+        angles = TURN / n[0] * np.arange(count + 1) / count
+        wave = 0.2 * np.cos(n[0] * angles + 0.7)
+        values = 1.0 + wave
+        values[-1] = values[0]
+        if kind == "phi2":
+            values = angles + 0.2 * (np.sin(angles + 0.7) - math.sin(0.7))
+            values[-1] = TURN
+        given: dict[str, Any] = {kind: tuple(values.tolist())}
+        law = TableLaw(phi1=tuple(angles.tolist()), **given)
+        yield ExactCase(law, teeth, exact_table(law, n, mate), mate)
+
+
 CLAIMS = {
-    "table": LawClaims(values=table() + table_in_rings(), draw=any_table),
+    "table": LawClaims(values=table() + table_in_rings(), draw=any_table, cases=table_cases),
 }
