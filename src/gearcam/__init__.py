@@ -38,8 +38,7 @@ if TYPE_CHECKING:
     from gearcam.laws import rises
     from gearcam.numeric.columns import Columns
     from gearcam.results.advice import Remedies
-    from gearcam.results.result import Result
-    from gearcam.results.study import StudyResult
+    from gearcam.results.result import Result, StudyResult
 
     _R = TypeVar("_R", covariant=True)
 
@@ -65,8 +64,7 @@ _HOMES = {
     "gearcam.laws": ("laws",),
     "gearcam.laws.rises": ("rises",),
     "gearcam.numeric.columns": ("Columns",),
-    "gearcam.results.result": ("Result",),
-    "gearcam.results.study": ("StudyResult",),
+    "gearcam.results.result": ("Result", "StudyResult"),
     "gearcam.base.tolerances": ("Tolerances",),
 }  # fmt: skip
 """Names that are imported on demand, by their modules; kinds of design add theirs."""

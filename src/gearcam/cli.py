@@ -38,11 +38,10 @@ from gearcam.designs import Design, load
 from gearcam.designs.faults import unknown_word
 from gearcam.designs.kind import all_formats
 from gearcam.designs.outputs import FORMATS
-from gearcam.results.kind import KINDS, Kind
+from gearcam.results.kind import KINDS, Kind, Study
 
 if TYPE_CHECKING:
     from gearcam.results.result import Progress, Result
-    from gearcam.results.study import Study
     from gearcam.results.written import Written
 
 GOOD, FINDINGS, WRONG, IMPOSSIBLE, FAULT, INTERRUPTED = 0, 1, 2, 3, 4, 130

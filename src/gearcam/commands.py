@@ -6,14 +6,11 @@ import argparse
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from gearcam.base.errors import DesignError, Problem
 from gearcam.designs.design import Design
-from gearcam.results.kind import KINDS, Kind
-
-if TYPE_CHECKING:
-    from gearcam.results.study import Study
+from gearcam.results.kind import KINDS, Kind, Study
 
 
 @dataclass(frozen=True)

@@ -12,10 +12,7 @@ import os
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Final
-
-if TYPE_CHECKING:
-    from gearcam.base.facts import Facts
+from typing import Any, Final
 
 WIDTH: Final = 96
 """Length of the one-line representation, characters."""
@@ -108,7 +105,7 @@ class Displayed(ABC):
 
     @cached_property
     @abstractmethod
-    def facts(self) -> Facts:
+    def facts(self) -> Mapping[str, Any]:
         """The quantities shown."""
 
     @abstractmethod

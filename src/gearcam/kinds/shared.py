@@ -11,8 +11,8 @@ from gearcam.base.quantities import COUNT, TEXT, param
 
 if TYPE_CHECKING:
     from gearcam.designs.design import Design
-    from gearcam.results.result import Progress, Result
-    from gearcam.results.study import Study, StudyResult
+    from gearcam.results.kind import Study
+    from gearcam.results.result import Progress, Result, StudyResult
 
 TABLE: Final = "accuracy.csv"
 PAGE: Final = "accuracy.html"
@@ -45,7 +45,7 @@ class AccuracySpec(Brief):
 @cache
 def accuracy_study() -> Study:
     """Return the study of error against run time (see `gearcam.results.accuracy`)."""
-    from gearcam.results.study import Study
+    from gearcam.results.kind import Study
 
     return Study(
         name="accuracy",
@@ -68,7 +68,7 @@ def _demand(design: Design) -> None:
 def _measure(result: Result, progress: Progress | None) -> StudyResult:
     from gearcam.report.page import charts_page
     from gearcam.results.accuracy import accuracy
-    from gearcam.results.study import StudyResult
+    from gearcam.results.result import StudyResult
 
     settings: AccuracySpec = result.design.accuracy
     found = accuracy(result, settings.stage, settings.repeat, progress)

@@ -1,7 +1,9 @@
 """Results: everything computed from a design on demand, its files, studies and remedies.
 
-- `result`: the stages, facts, charts, solids and files of a design; `written`: what was written.
-- `study`: the outcome of a further computation on a result, as data that can be written.
+- `kind`: what a kind of design and a study are.
+- `result`: the stages, facts, charts and files of a design, and the outcomes of its studies;
+  `parts`: drawings and solids of designs of which parts are made; `nested`: refusals and findings
+  of a design within another; `written`: what was written.
 - `advice`: the search for changes that make a refused design, or one with errors, work.
 - `accuracy`: error against run time. A *ladder* (`ladders`) computes one stage of a design at
   several levels; a *rung* is one measured level: error, median run time, number of points.

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final, cast
 
 from gearcam.base.facts import Facts
+from gearcam.base.registry import deferred
 from gearcam.designs import kind as reading
 from gearcam.designs.kind import DesignKind
 
@@ -19,9 +20,6 @@ if TYPE_CHECKING:
     from gearcam.designs.design import Design
     from gearcam.pictures.charts import Chart
     from gearcam.pictures.scenes import Scene
-    from gearcam.results.advice import Advice
-    from gearcam.results.ladders import Ladder
-    from gearcam.results.study import Study
 
 FileMaker = Callable[[Any, dict[str, Any]], dict[str, bytes]]
 """``maker(result, measured)`` returns contents by file name, and adds values measured on them to
@@ -32,10 +30,65 @@ ChartMaker = Callable[[Any], "Chart | None"]
 """``maker(result)`` returns a chart, or None if there is nothing to show."""
 
 
-def _plain_advice() -> Advice:
-    from gearcam.results.advice import Advice
+def _anything(_: Design) -> None:
+    """Allow all settings; a function of the module, so that studies can be pickled."""
 
-    return Advice()
+
+_PLAIN_ADVICE: Final = deferred("gearcam.results.advice:Advice")
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class Study:
+    """A study: a further computation on a result, such as meshing.
+
+    It has settings, a table of the design, and computes rows, facts, findings, charts and points
+    for the moving picture. It runs by its command, from Python, or as a part of a design that names
+    it in ``output.studies``: then summary, report, hash and `compare` include it.
+
+    Parameters
+    ----------
+    name : str
+        Name of its command, and in ``output.studies``.
+    key : str
+        Its key in ``summary.json``.
+    doc : str
+        One line of help: what it does and which files it writes.
+    done : str
+        Past participle for messages, such as ``meshed``.
+    table : str
+        Title of the table of its settings in a design; the command has an option for each key.
+    compute : callable
+        ``compute(result, progress)`` returns its outcome, a `StudyResult`; the settings are those
+        of the design.
+    options : mapping of str to str
+        Names of options that differ from those of their keys.
+    argument : str
+        Key that is given on the command line without an option, after the design file.
+    metavar : str
+        What stands for it in the usage.
+    demand : callable
+        ``demand(design)`` refuses settings that the keys alone allow, before anything is built.
+    repeats : tuple of str
+        Codes of findings of the design that the study gives anew.
+    many : bool
+        Whether its command takes several design files.
+    """
+
+    name: str
+    key: str
+    doc: str
+    done: str
+    table: str
+    compute: Callable[[Any, Any], Any]
+    options: Mapping[str, str] = field(default_factory=dict)
+    argument: str = ""
+    metavar: str = ""
+    demand: Callable[[Design], None] = _anything
+    repeats: tuple[str, ...] = ()
+    many: bool = True
+
+    def __repr__(self) -> str:
+        return f'<Study "{self.name}">'
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -53,7 +106,7 @@ class Kind(DesignKind):
     scene : callable
         ``scene(result, places)`` returns the moving parts at so many positions of the driver.
     advice : callable
-        ``advice()`` returns how remedies are searched for.
+        ``advice()`` returns how remedies are searched for (see `gearcam.results.advice.Advice`).
     studies : mapping of str to Study
         Studies by name; each is a command, too.
     ladders : mapping of str to callable
@@ -66,9 +119,9 @@ class Kind(DesignKind):
     files: Mapping[str, FileMaker] = field(default_factory=dict)
     charts: Mapping[str, ChartMaker] = field(default_factory=dict)
     scene: Callable[[Any, int], Scene | None] = lambda *_: None
-    advice: Callable[[], Advice] = _plain_advice
+    advice: Callable[[], Any] = _PLAIN_ADVICE
     studies: Mapping[str, Study] = field(default_factory=dict)
-    ladders: Mapping[str, Callable[[Any], Ladder]] = field(default_factory=dict)
+    ladders: Mapping[str, Callable[[Any], Any]] = field(default_factory=dict)
     public: Mapping[str, type] = field(default_factory=dict)
 
 

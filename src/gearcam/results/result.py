@@ -12,10 +12,12 @@ import time
 from abc import abstractmethod
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, Final, Self
+
+from numpy.typing import ArrayLike
 
 from gearcam.base.display import Displayed, cut, renderer
 from gearcam.base.errors import GearcamError
@@ -26,7 +28,8 @@ from gearcam.base.registry import deferred
 from gearcam.base.tolerances import DEFAULT, Tolerances
 from gearcam.designs.design import hash_of, summary_of
 from gearcam.numeric.arguments import one_of, refused
-from gearcam.results.kind import Kind, kind_of
+from gearcam.numeric.columns import Columns
+from gearcam.results.kind import Kind, Study, kind_of
 from gearcam.results.written import Written, demand_formats, versions
 
 if TYPE_CHECKING:
@@ -34,8 +37,7 @@ if TYPE_CHECKING:
 
     from gearcam.parts.solids import Mesh
     from gearcam.pictures.charts import Chart
-    from gearcam.pictures.scenes import Scene
-    from gearcam.results.study import StudyResult
+    from gearcam.pictures.scenes import ContactPoints, Scene
 
 FORMAT: Final = 1
 """Version of the layout of ``summary.json``."""
@@ -467,7 +469,7 @@ class Result(Displayed):
         Written
             With the summary as its only file.
         """
-        return self.keep({}, directory)
+        return self.put(directory, {}, self.facts, self.findings, keep=True)
 
     def write(
         self,
@@ -526,56 +528,45 @@ class Result(Displayed):
             self.sizes = {name: len(content) for name, content in contents.items()}
         tell("writing")
         facts = self.facts_with(measured) if measured else self.facts
-        return self._put(directory, contents, facts, self.findings)
+        return self.put(directory, contents, facts, self.findings, keep=False)
 
-    def keep(
-        self,
-        contents: Mapping[str, bytes],
-        directory: str | Path,
-        facts: Facts | None = None,
-        findings: Sequence[Finding] | None = None,
-    ) -> Written:
-        """Write files and keep those of an earlier build.
-
-        Parameters
-        ----------
-        contents : mapping of str to bytes
-            The files by name.
-        directory : path
-            Parent folder.
-        facts : Facts, optional
-            For the summary; by default those of the result.
-        findings : sequence of Finding, optional
-            For the summary; by default those of the result.
-
-        Returns
-        -------
-        Written
-        """
-        found = self.findings if findings is None else findings
-        return self._put(directory, contents, facts or self.facts, found, keep=True)
-
-    def _put(
+    def put(
         self,
         directory: str | Path,
         contents: Mapping[str, bytes],
         facts: Facts,
         findings: Sequence[Finding],
         *,
-        keep: bool = False,
+        keep: bool,
     ) -> Written:
-        """Write files and the summary, all or none; `keep` the other files of an earlier build."""
+        """Write files and the summary, all or none.
+
+        Parameters
+        ----------
+        directory : path
+            Parent folder.
+        contents : mapping of str to bytes
+            The files by name.
+        facts, findings
+            For the summary.
+        keep : bool
+            Whether the other files of an earlier build are kept.
+
+        Returns
+        -------
+        Written
+        """
         import json
 
         from gearcam.export.write import SUMMARY, write_all
 
-        made = self.design_hash
+        own = self.design_hash
         summary: dict[str, Any] = {}
 
         def complete(before: Mapping[str, str]) -> dict[str, bytes]:
-            hashes = {**(before if keep else {}), **dict.fromkeys(contents, made)}
-            stale = {name: old for name, old in hashes.items() if old != made}
-            about = {"files": {name: made for name in hashes if name not in stale}}
+            hashes = {**(before if keep else {}), **dict.fromkeys(contents, own)}
+            stale = {name: old for name, old in hashes.items() if old != own}
+            about = {"files": {name: own for name in hashes if name not in stale}}
             more = {"stale": stale} if stale else {}
             summary.update(self.document(facts, findings, {**about, **more}))
             text = json.dumps(summary, indent=2, ensure_ascii=False, allow_nan=False)
@@ -591,3 +582,130 @@ class Result(Displayed):
             facts=facts,
             findings=tuple(findings),
         )
+
+
+def _nothing(_: Scene) -> dict[str, ContactPoints]:
+    return {}
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class StudyResult(Displayed):
+    """The outcome of a study of a result.
+
+    Parameters
+    ----------
+    result : Result
+        The result studied.
+    study : Study
+        The study.
+    file : str
+        Name of the CSV file for the table.
+    table : mapping of str to (n,) array
+        Columns by name, with the unit at the end of the name.
+    group : mapping
+        Its facts.
+    found : tuple of Finding
+        Its findings.
+    drawn : callable
+        ``drawn()`` returns its `charts`; called when they are first read.
+    overlay : callable
+        ``overlay(scene)`` returns points of contact for the moving picture, by name.
+    pages : mapping of str to bytes
+        Files beside the table, by name.
+    lines : tuple of str
+        Lines to print in place of its facts.
+    interrupted : str
+        How much was done when it was interrupted: ``125 of 1000 steps``; empty if it is complete.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> study = gc.build(gc.load("profiles/ellipse.toml")).mesh(steps=4)
+    >>> study.columns["phi1_deg"][:3], study.complete
+    (array([ 0.,  0., 90.]), True)
+    """
+
+    result: Result
+    study: Study
+    file: str
+    table: Mapping[str, ArrayLike]
+    group: Mapping[str, Any]
+    found: tuple[Finding, ...] = ()
+    drawn: Callable[[], Mapping[str, Chart]] = dict
+    overlay: Callable[[Scene], Mapping[str, ContactPoints]] = _nothing
+    pages: Mapping[str, bytes] = field(default_factory=dict)
+    lines: tuple[str, ...] = ()
+    interrupted: str = ""
+
+    @property
+    def complete(self) -> bool:
+        """Whether it was not interrupted."""
+        return not self.interrupted
+
+    def __repr__(self) -> str:
+        rows = len(next(iter(self.columns.values()), ()))
+        state = "" if self.complete else " (interrupted)"
+        return cut(
+            f'<StudyResult{state}: {rows} rows, as in {self.file}, of "{self.result.design.name}">'
+        )
+
+    @cached_property
+    def charts(self) -> Mapping[str, Chart]:
+        """Its charts by name."""
+        return self.drawn()
+
+    def __getstate__(self) -> dict[str, Any]:
+        # what charts are drawn from need not be picklable
+        return {**vars(self), "charts": self.charts, "drawn": dict}
+
+    @cached_property
+    def columns(self) -> Columns:
+        """The table with the columns of the CSV file; missing values are NaN."""
+        return Columns(self.table)
+
+    @cached_property
+    def facts(self) -> Facts:
+        """The facts of the result and of the study (see docs/summary.md)."""
+        return self.result.design_facts({}).with_group(self.study.key, self.group)
+
+    @cached_property
+    def findings(self) -> tuple[Finding, ...]:
+        """Findings of the study, and those of the design that it does not repeat; errors first."""
+        return self.result.findings_with((self,))
+
+    def picture(self) -> str:
+        """Return an empty text: a study has no picture."""
+        return ""
+
+    @property
+    def files(self) -> dict[str, bytes]:
+        """Its files: the table and its pages, by name."""
+        from gearcam.export.table import table_bytes
+
+        return {self.file: table_bytes(self.table), **self.pages}
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the content of ``summary.json`` without files (see `Result.to_dict`)."""
+        return self.result.document(self.facts, self.findings)
+
+    def write(self, directory: str | Path = "output") -> Written:
+        """Write its files and the summary; the files of a build are kept.
+
+        Parameters
+        ----------
+        directory : path
+            Parent folder.
+
+        Returns
+        -------
+        Written
+            With the files and the summary.
+
+        Raises
+        ------
+        WriteError
+            If a file cannot be written.
+        """
+        written = self.result.put(directory, self.files, self.facts, self.findings, keep=True)
+        lines = self.lines or tuple(self.facts.lines(f"{self.study.key}."))
+        return replace(written, table=lines, interrupted=self.interrupted)

@@ -32,10 +32,9 @@ from gearcam.pictures.charts import Chart, Line
 from gearcam.pictures.drawings import CENTER, FOLLOWER, Cross, Feature, Path
 from gearcam.pictures.scenes import PLACES, MovingBody, Scene, still
 from gearcam.report.file import report_files
-from gearcam.results.kind import Kind
+from gearcam.results.kind import Kind, Study
 from gearcam.results.nested import placed, within
-from gearcam.results.result import Result
-from gearcam.results.study import Study, StudyResult
+from gearcam.results.result import Result, StudyResult
 
 FORMATS = ("csv", "report")
 STEEPEST = 45.0

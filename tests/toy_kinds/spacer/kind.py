@@ -18,9 +18,8 @@ from gearcam.designs.outputs import OutputSpec, files_param, studies_param
 from gearcam.designs.table import table_of
 from gearcam.export.table import outline_bytes
 from gearcam.pictures.charts import Chart, Line
-from gearcam.results.kind import Kind
-from gearcam.results.result import Result
-from gearcam.results.study import Study, StudyResult
+from gearcam.results.kind import Kind, Study
+from gearcam.results.result import Result, StudyResult
 
 FORMATS = ("csv", "outline-txt")
 

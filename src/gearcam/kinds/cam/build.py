@@ -37,8 +37,7 @@ if TYPE_CHECKING:
     from gearcam.parts.body import Part
     from gearcam.parts.checks import PartsSubject
     from gearcam.pictures.drawings import Drawing
-    from gearcam.results.result import Progress
-    from gearcam.results.study import StudyResult
+    from gearcam.results.result import Progress, StudyResult
 
 
 class CamResult(PartsResult):

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.base.errors import DesignError, Problem
 from gearcam.kinds.shared import accuracy_study
-from gearcam.results.study import Study, StudyResult
+from gearcam.results.kind import Study
+from gearcam.results.result import StudyResult
 
 if TYPE_CHECKING:
     from pathlib import Path

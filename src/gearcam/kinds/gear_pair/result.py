@@ -41,7 +41,7 @@ from gearcam.numeric.sampling import MARGIN
 from gearcam.parts.blank import KIND as PARTS_KIND
 from gearcam.parts.blank import Blank
 from gearcam.results.parts import CHORDS, PartsResult
-from gearcam.results.result import Progress
+from gearcam.results.result import Progress, StudyResult
 
 if TYPE_CHECKING:
     from gearcam.gears.contact import FlankPairs
@@ -50,7 +50,6 @@ if TYPE_CHECKING:
     from gearcam.parts.body import Part
     from gearcam.parts.checks import PartsSubject
     from gearcam.pictures.drawings import Drawing, Path
-    from gearcam.results.study import StudyResult
     from gearcam.sheets.sheet import Sheet
 
 Side = Literal["drive", "coast"]

@@ -10,7 +10,8 @@ import numpy as np
 
 from gearcam.base.findings import run_checks
 from gearcam.kinds.shared import accuracy_study
-from gearcam.results.study import Study, StudyResult
+from gearcam.results.kind import Study
+from gearcam.results.result import StudyResult
 
 if TYPE_CHECKING:
     from gearcam.kinds.gear_pair.result import GearPairResult
