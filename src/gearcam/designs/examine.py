@@ -23,7 +23,7 @@ from gearcam.designs.lines import Path, line_at, lines_of
 from gearcam.designs.reader import LARGEST, decoded, document_in, find_tables
 from gearcam.designs.slips import STRONG, SURE, did_you_mean, hinted, key_hint, nearest
 from gearcam.designs.table import Key, Table
-from gearcam.designs.validate import faults_of, own_faults
+from gearcam.designs.validate import document_faults, faults_of, made_of
 
 _NAME = re.compile(r"\w[\w.-]*")
 _NAME_RULE: Final = (
@@ -96,7 +96,10 @@ def examine(document: Mapping[str, Any], *, stem: str = "", place: Place | None 
     found.parts["limits"] = {}
     if "limits" in document:  # the table loads the checks
         _examine_table(document, kind, "limits", found, place or Place())
-    found.faults += kind.rules(document, found)
+    if kind.rules:
+        tables = {title: kind.table(title) for title in kind.tables}
+        found.faults += list(document_faults(tables, kind.rules, document, found.faults))
+    found.faults += kind.problems(document, found)
     return found
 
 
@@ -262,11 +265,12 @@ def _examine_table(
     for at, given in items:
         one, below = _with_designs(known, given, at, place)
         faults = [*below, *faults_of(known, one, home=home, far=_other_home, at=at, listed=listed)]
-        found.faults += faults
-        if not faults:
-            values = known.inward(one)
-            made.append(known.owner(**values) if known.owner else values)
-            found.faults += own_faults(made[-1], known, one, at)
+        part, problems = None, list[Fault]()
+        if isinstance(one, Mapping):
+            part, problems = made_of(known, known.owner or dict, one, faults, at)
+        found.faults += [*faults, *problems]
+        if part is not None and not faults:
+            made.append(part)
     if several and len(made) == len(raw):
         found.parts[title] = tuple(made)
     elif not several and made:

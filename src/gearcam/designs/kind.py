@@ -10,12 +10,13 @@ from __future__ import annotations
 import importlib
 import math
 import pkgutil
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from typing import Any, Final
 
 from gearcam.base.findings import CHECKS
+from gearcam.base.rules import Rule
 from gearcam.designs.faults import Fault
 from gearcam.designs.table import Key, Table
 
@@ -101,12 +102,12 @@ class DesignKind:
         Titles of tables that a file must have.
     several : tuple of str
         Titles of tables that a file gives once or more, in double brackets; a tuple in the design.
-    one_of : mapping of str to tuple
-        Alternatives of which a table has exactly one, by its title: keys, or values of a key.
     conditions : mapping of str to callable
         Functions that return additions to the JSON schema of a table, by its title.
-    rules : callable
-        ``rules(document, found)`` yields contradictions between tables.
+    rules : tuple of Rule
+        Rules between tables; those between the keys of a table belong to its class.
+    problems : callable
+        ``problems(document, found)`` yields contradictions between tables that are computed.
     listed : callable
         ``listed(document, table)`` returns the keys of a table for messages about unknown keys and
         missing tables.
@@ -137,11 +138,9 @@ class DesignKind:
     tables: Mapping[str, Callable[[], Table]]
     required: tuple[str, ...]
     several: tuple[str, ...] = ()
-    one_of: Mapping[str, tuple[str | Mapping[str, Sequence[str]], ...]] = field(
-        default_factory=dict
-    )
     conditions: Mapping[str, Callable[[], dict[str, Any]]] = field(default_factory=dict)
-    rules: Callable[[Mapping[str, Any], Examined], Iterable[Fault]] = lambda *_: ()
+    rules: tuple[Rule, ...] = ()
+    problems: Callable[[Mapping[str, Any], Examined], Iterable[Fault]] = lambda *_: ()
     listed: Callable[[Mapping[str, Any], Table], Iterable[str]] = lambda _, table: table.entries
     later: Callable[[Mapping[str, Any]], Fault | None] = lambda _: None
     formats: tuple[str, ...]

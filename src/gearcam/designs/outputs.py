@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
 from gearcam.base.display import Brief
 from gearcam.base.quantities import ANGLE, FINEST, LENGTH, TEXT, param
-from gearcam.designs.faults import Fault, show
+from gearcam.base.rules import distinct, excluded
 
 FORMATS: Final = (
     "dxf", "cut-svg", "svg", "stl", "3mf", "glb", "step", "csv", "drawing-dxf", "drawing-svg",
@@ -86,20 +85,12 @@ class OutputSpec(Brief):
         doc="version of dxf files; if left out R12 (for old machines) with lines, else R2010",
     )
 
-
-def output_faults(raw: Any) -> Iterator[Fault]:
-    """Yield contradictions in a table ``[output]`` of any kind, as read."""
-    if not isinstance(raw, Mapping):
-        return
-    if raw.get("dxf_curves") == "splines" and raw.get("dxf_version") == "R12":
-        rule = '"arcs" or "lines" in R12, "splines" in R2010'
-        yield Fault(
-            ("output", "dxf_version"), '"R12": DXF R12 does not support splines', "R12", rule
-        )
-    for key, what in (("files", "kind of file"), ("studies", "study")):
-        given = raw.get(key)
-        names = given if isinstance(given, list) else []
-        for index, name in enumerate(names):
-            if isinstance(name, str) and name in names[:index]:
-                message = f"{show(name)} is listed twice"
-                yield Fault(("output", key, index), message, name, f"each {what} once")
+    rules = (
+        excluded(
+            "dxf_version", "R12", dxf_curves="splines",
+            why="DXF R12 does not support splines",
+            allowed='"arcs" or "lines" in R12, "splines" in R2010',
+        ),
+        distinct("files", "kind of file"),
+        distinct("studies", "study"),
+    )  # fmt: skip

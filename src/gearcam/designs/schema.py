@@ -6,10 +6,11 @@ Other rules, such as increasing knots and valid formulas, are checked only when 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Final
 
 from gearcam.base.quantities import REQUIRED
+from gearcam.base.rules import Keys, Rule
 from gearcam.designs.faults import description
 from gearcam.designs.kind import KINDS, DesignKind
 from gearcam.designs.table import Key, Table
@@ -114,6 +115,7 @@ def table_schema(known: Table, doc: str = "", **words: str) -> Schema:
         **({"required": required} if required else {}),
         "properties": {name: {"const": word} for name, word in words.items()}
         | {name: _property(key) for name, key in entries},
+        **_rules(getattr(known.owner, "rules", ()), _Keys({"": known})),
     }
 
 
@@ -135,28 +137,65 @@ def _branch(kind: DesignKind, main: Schema) -> Schema:
             **({kind.main.title: main} if kind.main else {}),
         }
         | {title: {"$ref": f"#/$defs/{kind.name}-{title}"} for title in (*kind.tables, "limits")},
+        **_rules(kind.rules, _Keys({f"{title}.": kind.table(title) for title in kind.tables})),
     }
 
 
 def _titled(kind: DesignKind, title: str) -> Schema:
     made = table_schema(kind.table(title))
-    if title in kind.one_of:
-        made["oneOf"] = [_either(one) for one in kind.one_of[title]]
     if title in kind.conditions:
         made |= kind.conditions[title]()
-    if title == "output":
-        made["properties"]["files"]["uniqueItems"] = True
     if title in kind.several:
         made = {"type": "array", "items": made}
     return made
 
 
-def _either(one: str | Mapping[str, Sequence[str]]) -> Schema:
-    """Return the schema of an alternative: a required key, or allowed values of a key."""
-    if isinstance(one, str):
-        return {"required": [one]}
-    words = {key: {"enum": list(values)} for key, values in one.items()}
-    return {"required": list(one), "properties": words}
+class _Keys:
+    """Keys for rules, by the names of their fields (see `gearcam.base.rules.Keys`)."""
+
+    def __init__(self, tables: Mapping[str, Table]) -> None:
+        self._entries = {
+            title + entry.name: (title[:-1], entry)
+            for title, known in tables.items()
+            for entry in known.entries.values()
+        }
+
+    def given(self, name: str) -> Schema:
+        entry = self._entries[name][1]
+        none = [entry.outward(entry.default)] if entry.default not in (None, REQUIRED) else []
+        return self._unlike(name, [*none, *_zeros(entry)])
+
+    def written(self, name: str) -> Schema:
+        return self._unlike(name, _zeros(self._entries[name][1]))
+
+    def value(self, name: str, schema: Schema, *, required: bool = False) -> Schema:
+        title, entry = self._entries[name]
+        found = {"properties": {entry.key: schema}} if schema else {}
+        found |= {"required": [entry.key]} if required else {}
+        if not title:
+            return found
+        return {"properties": {title: found}} | ({"required": [title]} if required else {})
+
+    def is_one_of(self, name: str, words: Iterable[Any]) -> Schema:
+        values, default = list(words), self._entries[name][1].default
+        return self.value(name, {"enum": values}, required=default not in values)
+
+    def both(self, name: str) -> bool:
+        return self._entries[name][1].param.both
+
+    def _unlike(self, name: str, values: list[Any]) -> Schema:
+        return self.value(name, {"not": {"enum": values}} if values else {}, required=True)
+
+
+def _zeros(entry: Key) -> list[Any]:
+    zeros = [0, [0, 0]] if entry.param.both else [0]
+    return zeros if entry.param.zero_is_none else []
+
+
+def _rules(rules: Iterable[Rule], keys: Keys) -> Schema:
+    """Return the schema of `rules`, as far as a schema can say them."""
+    said = [schema for rule in rules if (schema := rule.schema(keys))]
+    return {"allOf": said} if said else {}
 
 
 def _property(key: Key) -> Schema:

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
+from gearcam.base.quantities import REQUIRED
+from gearcam.base.rules import Breach, Rule
 from gearcam.designs.faults import Fault, allowed, functions_of, is_of, show, value_fault
 from gearcam.designs.lines import Path
 from gearcam.designs.slips import STRONG, hinted, key_hint, misspelt
@@ -111,17 +114,141 @@ def _fits(key: Key, value: Any) -> bool:
     )
 
 
-Told = Iterable[tuple[str, int | None, str, str]]
-"""Mistakes found by parameter classes: field, index of an item, message, what is allowed."""
+@dataclass(frozen=True)
+class _Written:
+    """A key for rules: its text, what it takes, what is written, and whether this is wrong."""
+
+    key: str
+    entry: Key
+    value: Any
+    wrong: bool
 
 
-def told_faults(told: Told, known: Table, raw: Mapping[str, Any], at: Path) -> Iterator[Fault]:
+class _Values:
+    """Values for rules, by the names of their fields (see `gearcam.base.rules.Values`)."""
+
+    def __init__(self, written: Mapping[str, _Written]) -> None:
+        self._written = written
+
+    def get(self, name: str) -> Any:
+        one = self._written[name]
+        value = _default(one.entry) if one.value is None else one.value
+        return None if one.wrong else value
+
+    def given(self, name: str) -> bool:
+        entry, value = self._written[name].entry, self.get(name)
+        return not _is_none(entry, value) and value != _default(entry)
+
+    def missing(self, name: str) -> bool:
+        one = self._written[name]
+        return not one.wrong and _is_none(one.entry, self.get(name))
+
+    def key(self, name: str) -> str:
+        return self._written[name].key
+
+    def unit(self, name: str) -> str:
+        return self._written[name].entry.param.quantity.unit
+
+    def text(self, name: str) -> str:
+        one = self._written[name]
+        return f"{one.key} = {show(_default(one.entry) if one.value is None else one.value)}"
+
+
+def _default(entry: Key) -> Any:
+    """Return the default of a key as in a file, of one wheel; None without one."""
+    default = entry.default
+    if default is REQUIRED or default is None:
+        return None
+    return entry.outward(default)[0] if entry.param.both else entry.outward(default)
+
+
+def _is_none(entry: Key, value: Any) -> bool:
+    """Return whether a value is none: left out, or a 0 that means so."""
+    return value is None or (entry.param.zero_is_none and is_of(value, float) and value == 0)
+
+
+def _written_in(
+    known: Table, raw: Any, faults: Iterable[Fault], at: Path, wheel: int = 0, title: str = ""
+) -> dict[str, _Written]:
+    """Return the keys of a table, in which there are `faults`, by the names of their fields."""
+    wrong = {one.path[len(at) :] for one in faults if one.path[: len(at)] == at}
+    table = raw if isinstance(raw, Mapping) else {}
+    if wrong:
+        wrong |= {(key,) for key in misspelt(table, known.entries)}
+    written: dict[str, _Written] = {}
+    for key, entry in known.entries.items():
+        value = table.get(key)
+        path: Path = (key,)
+        if entry.param.both and isinstance(value, list):
+            value, path = value[wheel] if wheel < len(value) else None, (key, wheel)
+        is_wrong = not wrong.isdisjoint([(), (key,), path])
+        # of two keys of a field the one that is written
+        if entry.name not in written or key in table:
+            written[title + entry.name] = _Written(title + key, entry, value, is_wrong)
+    return written
+
+
+def rule_faults(known: Table, raw: Any, faults: Iterable[Fault], at: Path) -> Iterator[Fault]:
+    """Yield the faults of broken rules between the keys of a table.
+
+    Parameters
+    ----------
+    known, raw, at
+        As for `told_faults`.
+    faults : iterable of Fault
+        Faults of single values in the table.
+    """
+    rules: Sequence[Rule] = getattr(known.owner, "rules", ())
+    if not rules or not isinstance(raw, Mapping):
+        return
+    both = any(entry.param.both for entry in known.entries.values())
+    breaches = (
+        (name, wheel if both and index is None else index, message, allowed)
+        for wheel in range(1 + both)
+        for values in [_Values(_written_in(known, raw, faults, at, wheel))]
+        for rule in rules
+        for name, index, message, allowed in rule.breaches(values)
+    )
+    yield from told_faults(breaches, known, raw, at)
+
+
+def document_faults(
+    tables: Mapping[str, Table],
+    rules: Iterable[Rule],
+    document: Mapping[str, Any],
+    faults: Iterable[Fault],
+) -> Iterator[Fault]:
+    """Yield the faults of broken rules between the tables of a document.
+
+    Parameters
+    ----------
+    tables : mapping of str to Table
+        The tables by their titles.
+    rules : iterable of Rule
+        Rules between fields with dotted names: ``pair.module``.
+    document : mapping
+        As read from TOML.
+    faults : iterable of Fault
+        Faults found before.
+    """
+    written: dict[str, _Written] = {}
+    for title, known in tables.items():
+        written |= _written_in(known, document.get(title), faults, (title,), title=f"{title}.")
+    for rule in rules:
+        for name, *breach in rule.breaches(_Values(written)):
+            title, _, field = name.partition(".")
+            yield from told_faults([(field, *breach)], tables[title], document[title], (title,))
+
+
+def told_faults(
+    told: Iterable[Breach], known: Table, raw: Mapping[str, Any], at: Path
+) -> Iterator[Fault]:
     """Yield the faults for mistakes found by a parameter class, with keys and values.
 
     Parameters
     ----------
     told : iterable of tuple
-        See `Told`.
+        See `gearcam.base.rules.Breach`.
     known : Table
         The table of the parameters.
     raw : mapping
@@ -132,9 +259,10 @@ def told_faults(told: Told, known: Table, raw: Mapping[str, Any], at: Path) -> I
     keys = {entry.name: entry.key for entry in known.entries.values()}
     seen: set[Path] = set()
     for name, index, message, rule in told:
-        key = keys[name]
-        value, path = raw.get(key), (*at, key)
-        if index is not None and (isinstance(value, list) or not known.entries[key].param.both):
+        key = keys.get(name, "")
+        value, path = raw.get(key), (*at, key) if key else at
+        single = not isinstance(value, list) and key and known.entries[key].param.both
+        if index is not None and not single:
             path = (*at, key, index)
             if isinstance(value, list) and index < len(value):
                 value = value[index]
@@ -164,7 +292,7 @@ def made_of(
     faults: Sequence[Fault],
     at: Path,
 ) -> tuple[Any, list[Fault]]:
-    """Create parameters if their values can be read, and collect the mistakes that they find.
+    """Create parameters if their values can be read; collect broken rules and what they find.
 
     These are reported in addition to faults of single values.
 
@@ -189,16 +317,18 @@ def made_of(
         Mistakes that they find.
     """
     depth = len(at)
+    broken = list(rule_faults(known, raw, faults, at))
     here = [fault.path[depth:] for fault in faults]
     if any(len(path) == 1 and path[0] in known.entries for path in here):
-        return None, []
+        return None, broken
+    here += [fault.path[depth:] for fault in broken if fault.path != at]
     wrong = {path[0] for path in here} | misspelt(raw if faults else {}, known.entries)
     readable = {key: value for key, value in raw.items() if key in known.entries}
     try:
         made = make(**known.inward(readable))
         problems = [p for p in own_faults(made, known, raw, at) if p.path[depth] not in wrong]
     except (TypeError, ValueError, AttributeError, IndexError, KeyError):
-        if not faults:
+        if not faults and not broken:
             raise
-        return None, []
-    return made, problems
+        return None, broken
+    return made, [*broken, *problems]

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from gearcam.base.display import Brief
 from gearcam.base.quantities import ANGLE, COUNT, LENGTH, LONGEST, NUMBER, TEXT, param
+from gearcam.base.rules import exactly_one, excludes, only_with
 
 RIM = 2.7
 """Default rim beyond the roots, in modules: 1.2 tooth depths."""
@@ -175,6 +176,8 @@ class PairSpec(Brief):
         LENGTH, default=10.0, gt=0, le=LONGEST, doc="face width of the wheels"
     )
 
+    rules = (exactly_one("center_distance", "module", note="the other is computed"),)
+
 
 @dataclass(frozen=True, kw_only=True)
 class RingSpec:
@@ -217,6 +220,11 @@ class RingSpec:
         example=30,
         doc="teeth of the pinion cutter, not necessarily whole; if left out, a number that leaves "
         "room for the tips of wheel 1",
+    )
+
+    rules = (
+        excludes("outer_diameter", "rim"),
+        only_with(["outer_diameter"], "outer", "round"),
     )
 
     def least_rim(self, roots: float, module: float) -> float:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from gearcam.base.display import Brief
 from gearcam.base.quantities import ANGLE, COUNT, LENGTH, LONGEST, param
+from gearcam.base.rules import above, distinct, excluded
 
 KIND = "meshing"
 """Registered checks of a study."""
@@ -71,3 +72,13 @@ class MeshingSpec(Brief):
         example=80.1,
         doc="centre distance as mounted, not for racks; as designed by default",
     )
+
+    rules = (
+        above("end", "start", why="the study would end before it begins, at {}"),
+        excluded(
+            "overclosure", 0,
+            why="without an overclosure no flanks overlap, and the study finds no contact",
+            allowed="-1 to 1, but not 0; 0.005 is usual",
+        ),
+        distinct("teeth", "tooth"),
+    )  # fmt: skip

@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final, get_type_hints
 from gearcam.base.display import Brief
 from gearcam.base.numerals import shown
 from gearcam.base.quantities import ANGLE, COUNT, DENSITY, LENGTH, LONGEST, TEXT, param, params_of
+from gearcam.base.rules import Breach, below, excludes, needs, together
 
 KIND: Final = "parts"
 """The checks of parts."""
@@ -32,8 +33,16 @@ _FOLLOWING: Final = ("bore_diameter", "keyway_width", "bore_flat", "bolt_diamete
 _COMMON: Final = ("timing_marks", "mark_diameter", "clearance_bores")
 """Given once for both wheels."""
 
-Problem = tuple[str, int | None, str, str]
-"""Field, number of the wheel's value, what is wrong, what is allowed."""
+SHAFT_RULES: Final = (
+    *(needs(name, "bore_diameter") for name in ("keyway_width", "keyway_depth", "bore_flat")),
+    *together("keyway_width", "keyway_depth"),
+    below("keyway_width", "bore_diameter", why="is as wide as the bore"),
+    excludes("bore_flat", "keyway_width"),
+    needs("hub_front", "hub_diameter"),
+    needs("hub_back", "hub_diameter"),
+    needs("hub_diameter", "hub_front", "hub_back", one=True),
+)
+"""Rules for bore and hub."""
 
 
 def _length(*, doc: str, le: float = LONGEST) -> Any:
@@ -148,41 +157,17 @@ class WheelBlank(Brief):
         wider = {name: size + self.widening for name, size in sizes.items() if size}
         return replace(self, clearance_bores=False, **wider)
 
-    def problems(self) -> Iterator[Problem]:
+    rules = (*SHAFT_RULES, needs("bolts", "bolt_circle", "bolt_diameter"))
+
+    def problems(self) -> Iterator[Breach]:
         """Yield what is wrong by reading: field, None, message, allowed."""
-        for name, message, rule in (*_bore_problems(self), *_other_problems(self)):
-            yield name, None, message, rule
-
-
-def _bore_problems(one: WheelBlank) -> Iterator[tuple[str, str, str]]:
-    bore = one.bore
-    for name in ("keyway_width", "keyway_depth", "bore_flat"):
-        if getattr(one, name) and not bore:
-            yield name, "there is no bore", "bore_diameter_mm above 0"
-            return
-    if bool(one.keyway_width) != bool(one.keyway_depth):
-        missing = "keyway_width" if one.keyway_depth else "keyway_depth"
-        yield missing, "a keyway needs both width and depth", "keyway_width_mm with keyway_depth_mm"
-    if bore and one.keyway_width >= bore:
-        yield "keyway_width", "is as wide as the bore", f"below the bore's {shown(bore)} mm"
-    if one.keyway_width and one.bore_flat:
-        yield "bore_flat", "the bore has a keyway", "a keyway or a flat"
-    if one.bore_flat and not 0.5 * bore < one.bore_flat < bore:
-        rule = f"above {shown(0.5 * bore)} and below the bore's {shown(bore)} mm"
-        yield "bore_flat", "the flat is not within the bore", rule
-
-
-def _other_problems(one: WheelBlank) -> Iterator[tuple[str, str, str]]:
-    for name in ("bolt_circle", "bolt_diameter"):
-        if one.bolts and not getattr(one, name):
-            yield name, "is missing beside bolts", "bolts with bolt_circle_mm and bolt_diameter_mm"
-    if (one.hub_front or one.hub_back) and not one.hub_diameter:
-        yield "hub_diameter", "is missing beside hub_front_mm or hub_back_mm", "above the bore"
-    if one.hub_diameter and not (one.hub_front or one.hub_back):
-        yield "hub_front", "the hub has no height", "hub_front_mm or hub_back_mm above 0"
-    if one.hub_diameter and one.hub_diameter <= 2.0 * one.bore_reach:
-        rule = f"above {shown(2.0 * one.bore_reach)} mm, the diameter across the bore"
-        yield "hub_diameter", "the bore is as large as the hub", rule
+        half, reach = 0.5 * self.bore, 2.0 * self.bore_reach
+        if self.bore and self.bore_flat and not half < self.bore_flat < self.bore:
+            rule = f"above {shown(half)} and below the bore's {shown(self.bore)} mm"
+            yield "bore_flat", None, "the flat is not within the bore", rule
+        if self.hub_diameter and self.hub_diameter <= reach:
+            rule = f"above {shown(reach)} mm, the diameter across the bore"
+            yield "hub_diameter", None, "the bore is as large as the hub", rule
 
 
 def _both(name: str, hint: Any, default: Any) -> tuple[str, Any, Any]:
@@ -232,7 +217,9 @@ class Blank(Brief, _BothWheels):
         own = {name: v[number - 1] if isinstance(v, tuple) else v for name, v in values.items()}
         return WheelBlank(**own)
 
-    def problems(self) -> Iterator[Problem]:
+    rules = WheelBlank.rules
+
+    def problems(self) -> Iterator[Breach]:
         """Yield what is wrong by reading: field, wheel, message, allowed."""
         for number in (1, 2):
             for name, _, message, rule in self.wheel(number).problems():

@@ -7,7 +7,7 @@ to x; the origin is the shaft of the crank.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from typing import Any
@@ -19,9 +19,8 @@ from gearcam.base.errors import InfeasibleError, Way
 from gearcam.base.facts import Fact, Facts, extent
 from gearcam.base.findings import Finding, in_order
 from gearcam.base.quantities import ANGLE, LENGTH, nested, param
+from gearcam.base.rules import exactly_one
 from gearcam.designs.design import Design
-from gearcam.designs.faults import Fault
-from gearcam.designs.kind import Examined
 from gearcam.designs.outputs import OutputSpec, files_param, studies_param
 from gearcam.designs.table import table_of
 from gearcam.export.table import table_bytes
@@ -39,7 +38,6 @@ from gearcam.results.result import Result, StudyResult
 FORMATS = ("csv", "report")
 STEEPEST = 45.0
 """Angle between rod and guide from which a finding warns, deg."""
-DRIVES = ("pair", "cam")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,6 +48,8 @@ class DriveSpec:
     cam: Design | None = nested(
         "cam", default=None, example="cam.toml", doc="the cam whose follower has the crank"
     )
+
+    rules = (exactly_one("pair", "cam"),)
 
     @property
     def key(self) -> str:
@@ -88,12 +88,6 @@ class SliderCrankDesign(Design):
     rod: RodSpec
     output: SliderOutput = field(default_factory=SliderOutput)
     stroke: StrokeSpec = field(default_factory=StrokeSpec)
-
-
-def rules(document: Mapping[str, Any], _: Examined) -> Iterator[Fault]:
-    drive = document.get("drive")
-    if isinstance(drive, Mapping) and sum(key in drive for key in DRIVES) != 1:
-        yield Fault(("drive",), "has no drive, or two", allowed="exactly one of pair and cam")
 
 
 class SliderCrank(Result):
@@ -292,8 +286,6 @@ KIND = Kind(
         "stroke": partial(table_of, "stroke", StrokeSpec),
     },
     required=("drive", "crank", "rod"),
-    one_of={"drive": DRIVES},
-    rules=rules,
     formats=FORMATS,
     example={
         "drive": {

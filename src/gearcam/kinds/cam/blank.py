@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from gearcam.base.quantities import LENGTH, LONGEST, param
-from gearcam.parts.blank import Problem, WheelBlank
+from gearcam.base.rules import Breach, needs
+from gearcam.parts.blank import SHAFT_RULES, WheelBlank
 
 
 def _size(*, example: float, doc: str) -> Any:
@@ -46,12 +47,15 @@ class CamBlank(WheelBlank):
         example=10, doc="from the lower edge of a translating cam's plate to the row of bolts"
     )
 
-    def problems(self) -> Iterator[Problem]:
+    rules = (*SHAFT_RULES, needs("bolts", "bolt_diameter"))
+
+    def problems(self) -> Iterator[Breach]:
         """Yield faults of the given values: field, None, message, allowed."""
+        yield from super().problems()
         plate = not {self.length, self.height, self.bolt_spacing, self.bolt_height} <= {None}
-        for name, index, message, rule in super().problems():
-            if not (plate and name == "bolt_circle"):
-                yield name, index, message, rule
+        if not plate and self.bolts and not self.bolt_circle:
+            rule = "bolts with bolt_circle_mm and bolt_diameter_mm"
+            yield "bolt_circle", None, "is missing beside bolts", rule
         if plate and self.bolts:
             rule = "bolts with bolt_diameter_mm, bolt_spacing_mm and bolt_height_mm"
             for name in ("bolt_spacing", "bolt_height"):

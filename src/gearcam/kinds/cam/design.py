@@ -22,7 +22,6 @@ from gearcam.designs.outputs import (
     FORMATS,
     OutputSpec,
     files_param,
-    output_faults,
     pose_param,
     studies_param,
 )
@@ -259,10 +258,9 @@ def later(document: Mapping[str, Any]) -> Fault | None:
     return Fault(("cam", "form"), message, form, rule)
 
 
-def rules(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
+def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
     """Yield contradictions between the tables of a `document` of which parts are `found`."""
     output, follower = document.get("output"), document.get("follower")
-    yield from output_faults(output)
     yield from _follow_faults(output, document.get("follow"))
     yield from _tool_faults(output, follower)
     if "cam" in found.parts:

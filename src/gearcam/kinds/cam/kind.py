@@ -20,7 +20,7 @@ from gearcam.kinds.cam.design import (
     examine_motion_of,
     later,
     motion_document,
-    rules,
+    problems,
 )
 from gearcam.kinds.cam.forms.base import SLIDING, form_keys, form_schema
 from gearcam.kinds.cam.motion import TITLE, homes
@@ -54,9 +54,8 @@ KIND: Final = Kind(
         "accuracy": partial(table_of, "accuracy", AccuracySpec),
     },
     required=("follower", "cam"),
-    one_of={"cam": ("prime_radius_mm", "base_radius_mm", {"form": SLIDING})},
     conditions={"cam": partial(form_schema, "cam", CamSpec)},
-    rules=rules,
+    problems=problems,
     listed=form_keys,
     later=later,
     formats=CAM_FORMATS,

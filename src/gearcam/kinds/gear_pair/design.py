@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final, TypeGuard
 
-from gearcam.base.numerals import shown
 from gearcam.base.quantities import COUNT, param
 from gearcam.base.registry import classes_in, name_of
+from gearcam.base.rules import Breach, Rule, Values, at_most, only_with
 from gearcam.designs.design import Design, Wanted
 from gearcam.designs.examine import chosen, home_of
 from gearcam.designs.faults import Fault, quoted, show
 from gearcam.designs.kind import KINDS, Examined
-from gearcam.designs.outputs import OutputSpec, output_faults, pose_param, studies_param
-from gearcam.designs.slips import misspelt
+from gearcam.designs.outputs import OutputSpec, pose_param, studies_param
 from gearcam.designs.table import Table, table_of
 from gearcam.designs.validate import faults_of, made_of
 from gearcam.gears.spec import PairSpec, Rack, RingSpec, StepsSpec
@@ -188,17 +187,34 @@ def planetary(document: Mapping[str, Any]) -> Fault | None:
     )
 
 
-def rules(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
-    """Yield contradictions between the tables of a `document` of which parts are `found`."""
-    pair, output = document.get("pair"), document.get("output")
-    yield from _pair_faults(pair)
-    yield from _ring_faults(document.get("ring"), pair)
-    yield from output_faults(output)
-    yield from _tolerance_faults(output, pair)
-    yield from _meshing_faults(document.get("meshing"), pair)
-    yield from _step_faults(document.get("meshing"), document.get("steps"))
+def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
+    """Yield what is wrong between the tables of a `document` of which parts are `found`."""
+    pair = document.get("pair")
     if isinstance(pair, Mapping) and pair.get("type") == "internal":
         yield from _shaft_faults(document.get("blank"), found)
+
+
+def _tooth_breaches(values: Values) -> Iterator[Breach]:
+    """Yield the teeth to study that the driver does not have."""
+    teeth, counts = values.get("meshing.teeth"), values.get("pair.teeth")
+    most = counts[0] if isinstance(counts, list) and counts else None
+    for index, tooth in enumerate(teeth if isinstance(teeth, list) and _is_number(most) else ()):
+        if _is_number(tooth) and tooth > most:
+            yield "meshing.teeth", index, "the driver has no such tooth", f"1 to {show(most)}"
+
+
+RULES: Final = (
+    only_with(
+        (f"ring.{one.name}" for one in fields(RingSpec)), "pair.type", "internal",
+        why="an external pair has no ring",
+    ),
+    at_most(
+        "output.chord_tolerance", "pair.module", part=1.0 / _COARSEST, why="is too coarse for {}"
+    ),
+    at_most("meshing.step", "steps.count", why="the wheels have no such step"),
+    Rule(_tooth_breaches),
+)  # fmt: skip
+"""Rules between the tables of a pair."""
 
 
 def _shaft_faults(raw: Any, found: Examined) -> Iterator[Fault]:
@@ -216,84 +232,6 @@ def _shaft_faults(raw: Any, found: Examined) -> Iterator[Fault]:
         elif value and "blank" in found.parts:
             own = getattr(found.parts["blank"], name)[0]
             found.parts["blank"] = replace(found.parts["blank"], **{name: (own, 0)})
-
-
-def _pair_faults(raw: Any) -> Iterator[Fault]:
-    if not isinstance(raw, Mapping):
-        return
-    rule = "exactly one of center_distance_mm and module_mm; the other is computed"
-    distance, module = raw.get("center_distance_mm"), raw.get("module_mm")
-    if distance is not None and module is not None:
-        message = (
-            f"center_distance_mm = {show(distance)} and module_mm = {show(module)} are both given"
-        )
-        yield Fault(("pair", "module_mm"), message, module, rule)
-    elif distance is None and module is None:
-        known = KINDS[NAME].table("pair").entries
-        if misspelt(raw, known) & {"center_distance_mm", "module_mm"}:
-            return  # the unknown key is reported
-        yield Fault(("pair",), "neither center_distance_mm nor module_mm is given", allowed=rule)
-
-
-def _ring_faults(raw: Any, pair: Any) -> Iterator[Fault]:
-    known = KINDS[NAME].table("ring").entries
-    told = raw if isinstance(raw, Mapping) else {}
-    given = {key: told[key] for key in known if key in told and told[key] != known[key].default}
-    kind = pair.get("type", "external") if isinstance(pair, Mapping) else "internal"
-    if kind == "external":
-        for key, value in given.items():
-            rule = 'pair.type = "internal", or no [ring]'
-            yield Fault(("ring", key), f"{show(value)}: an external pair has no ring", value, rule)
-        return
-    rule = 'outer_diameter_mm or rim_mm; outer_diameter_mm only with outer = "round"'
-    diameter = given.get("outer_diameter_mm")
-    if diameter is not None and (other := {"rim_mm", "outer"} & set(given)):
-        key = max(other)  # rim_mm before outer
-        message = f"{show(diameter)}: is given beside {key} = {show(given[key])}"
-        yield Fault(("ring", "outer_diameter_mm"), message, diameter, rule)
-
-
-def _tolerance_faults(raw: Any, pair: Any) -> Iterator[Fault]:
-    module = pair.get("module_mm") if isinstance(pair, Mapping) else None
-    tolerance = raw.get("chord_tolerance_mm") if isinstance(raw, Mapping) else None
-    if _is_number(module) and _is_number(tolerance):
-        coarsest = module / _COARSEST
-        if tolerance > coarsest > 0:
-            message = f"{show(tolerance)} is too coarse for a module of {show(module)} mm"
-            rule = f"at most module/{_COARSEST} = {shown(coarsest)} mm"
-            yield Fault(("output", "chord_tolerance_mm"), message, tolerance, rule)
-
-
-def _meshing_faults(raw: Any, pair: Any) -> Iterator[Fault]:
-    if not isinstance(raw, Mapping):
-        return
-    start, end = raw.get("from_deg", 0), raw.get("to_deg")
-    if _is_number(start) and _is_number(end) and not end > start:
-        message = f"{show(end)}: the study would end before it begins, at {show(start)} deg"
-        yield Fault(("meshing", "to_deg"), message, end, "to_deg above from_deg")
-    if raw.get("overclosure_deg") == 0:
-        message = "0: without an overclosure no flanks overlap, and the study finds no contact"
-        allowed = "-1 to 1, but not 0; 0.005 is usual"
-        yield Fault(("meshing", "overclosure_deg"), message, 0, allowed)
-    given = raw.get("teeth")
-    teeth = given if isinstance(given, list) else []
-    counts = pair.get("teeth") if isinstance(pair, Mapping) else None
-    known = counts[0] if isinstance(counts, list) and counts else None
-    for index, tooth in enumerate(teeth):
-        path = ("meshing", "teeth", index)
-        if _is_number(known) and _is_number(tooth) and tooth > known:
-            message = f"the driver has no tooth {show(tooth)}"
-            yield Fault(path, message, tooth, f"1 to {show(known)}")
-        if tooth in teeth[:index]:
-            yield Fault(path, f"{show(tooth)} is listed twice", tooth, "each tooth once")
-
-
-def _step_faults(meshing: Any, stepped: Any) -> Iterator[Fault]:
-    step = meshing.get("step", 1) if isinstance(meshing, Mapping) else 1
-    count = stepped.get("count", 1) if isinstance(stepped, Mapping) else 1
-    if _is_number(step) and _is_number(count) and step > count:
-        message = f"the wheels have no step {show(step)}"
-        yield Fault(("meshing", "step"), message, step, f"1 to {show(count)} (steps.count)")
 
 
 def _is_number(value: Any) -> TypeGuard[float]:

@@ -13,6 +13,7 @@ from gearcam.gears.spec import PairSpec, Rack, RingSpec, StepsSpec
 from gearcam.gears.subject import KIND as TEETH
 from gearcam.kinds.gear_pair.design import (
     NAME,
+    RULES,
     GearPairDesign,
     PairOutputSpec,
     examine_law,
@@ -20,7 +21,7 @@ from gearcam.kinds.gear_pair.design import (
     law_of,
     law_table,
     planetary,
-    rules,
+    problems,
 )
 from gearcam.kinds.shared import AccuracySpec
 from gearcam.meshing.settings import KIND as MESHING
@@ -60,8 +61,8 @@ KIND: Final = Kind(
         }.items()
     },
     required=("pair",),
-    one_of={"pair": ("center_distance_mm", "module_mm")},
-    rules=rules,
+    rules=RULES,
+    problems=problems,
     later=planetary,
     formats=FORMATS,
     check_modules=("gearcam.gears.checks", "gearcam.meshing.checks", "gearcam.parts.checks"),

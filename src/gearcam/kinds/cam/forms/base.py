@@ -255,4 +255,6 @@ def form_schema(title: str, owner: type) -> dict[str, Any]:
         foreign = [{"required": [key]} for key, entry in entries if entry.name not in takes]
         then = {"required": required, **({"not": {"anyOf": foreign}} if foreign else {})}
         rules.append({"if": given, "then": then})
-    return {"allOf": rules}
+    sizes = [{"required": ["prime_radius_mm"]}, {"required": ["base_radius_mm"]}]
+    slides = {"required": ["form"], "properties": {"form": {"enum": list(SLIDING)}}}
+    return {"allOf": rules, "oneOf": [*sizes, slides]}
