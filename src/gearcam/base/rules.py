@@ -35,6 +35,10 @@ class Values(Protocol):
         """Return whether a right value is given."""
         ...
 
+    def written(self, name: str) -> bool:
+        """Return whether a value is written, right or wrong, and not as 0 for none."""
+        ...
+
     def missing(self, name: str) -> bool:
         """Return whether a value is left out, or is 0 and this means that there is none."""
         ...
@@ -109,8 +113,8 @@ def exactly_one(*names: str, note: str = "") -> Rule:
 
     def breaches(values: Values) -> Iterator[Breach]:
         allowed = f"exactly one of {_listed(map(values.key, names))}{note and f'; {note}'}"
-        written = [name for name in names if not values.missing(name)]
-        if not written:
+        written = [name for name in names if values.written(name)]
+        if all(map(values.missing, names)):
             keys = " nor ".join(map(values.key, names))
             yield "", None, f"neither {keys} is given", allowed
         for name in written[1:]:
@@ -312,7 +316,7 @@ def _compared(how: str, name: str, other: str, why: str, part: float = 1.0) -> R
             share = f"{values.key(other)}/{shown(1.0 / part)}" if part != 1.0 else values.key(other)
             size = f"{shown(part * limit)} {values.unit(other)}".rstrip()
             message = why.format(values.text(other))
-            yield name, None, message, f"{how} {share}, which is {size}"
+            yield name, None, message, f"{how} {share} = {size}"
 
     return Rule(breaches)
 

@@ -139,6 +139,9 @@ class _Values:
         entry, value = self._written[name].entry, self.get(name)
         return not _is_none(entry, value) and value != _default(entry)
 
+    def written(self, name: str) -> bool:
+        return not _is_none(self._written[name].entry, self._written[name].value)
+
     def missing(self, name: str) -> bool:
         one = self._written[name]
         return not one.wrong and _is_none(one.entry, self.get(name))
@@ -318,7 +321,7 @@ def made_of(
     """
     depth = len(at)
     broken = list(rule_faults(known, raw, faults, at))
-    here = [fault.path[depth:] for fault in faults]
+    here = [fault.path[depth:] for fault in faults if len(fault.path) > depth]
     if any(len(path) == 1 and path[0] in known.entries for path in here):
         return None, broken
     here += [fault.path[depth:] for fault in broken if fault.path != at]

@@ -316,7 +316,7 @@ def test_a_tolerance_too_coarse_for_the_module_is_refused() -> None:
     by_module = changed("center_distance_mm = 180", "module_mm = 5")
     assert loads(by_module + "chord_tolerance_mm = 0.1").output.chord_tolerance == 0.1
     problem = only(by_module + "chord_tolerance_mm = 0.1001")
-    assert "module/50 = 0.1 mm" in problem.allowed
+    assert "at most pair.module_mm/50 = 0.1 mm" in problem.allowed
 
 
 @pytest.mark.parametrize(
