@@ -84,7 +84,7 @@ def _without(_: Keys) -> Schema:
     return {}
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Rule:
     """A rule between values.
 
@@ -98,6 +98,9 @@ class Rule:
 
     breaches: Callable[[Values], Iterator[Breach]]
     schema: Callable[[Keys], Schema] = _without
+
+    def __repr__(self) -> str:
+        return f"<Rule {self.breaches.__qualname__.partition('.')[0]}>"
 
 
 def exactly_one(*names: str, note: str = "") -> Rule:
@@ -284,7 +287,15 @@ def excluded(name: str, value: Any, *, why: str, allowed: str, **beside: Any) ->
 
 
 def distinct(name: str, item: str) -> Rule:
-    """Return the rule that a list has every value once; an `item` is the word for one of them."""
+    """Return the rule that a list has every value once.
+
+    Parameters
+    ----------
+    name : str
+        The field.
+    item : str
+        The word for a value.
+    """
 
     def breaches(values: Values) -> Iterator[Breach]:
         given = values.get(name)
@@ -322,12 +333,28 @@ def _compared(how: str, name: str, other: str, why: str, part: float = 1.0) -> R
 
 
 def above(name: str, other: str, *, why: str = "is not above {}") -> Rule:
-    """Return the rule that a given value is above that of another field; `why` is the message."""
+    """Return the rule that a given value is above that of another field.
+
+    Parameters
+    ----------
+    name, other : str
+        The fields.
+    why : str
+        The message; ``{}`` stands for the other key with its value.
+    """
     return _compared("above", name, other, why)
 
 
 def below(name: str, other: str, *, why: str = "is not below {}") -> Rule:
-    """Return the rule that a given value is below that of another field; `why` is the message."""
+    """Return the rule that a given value is below that of another field.
+
+    Parameters
+    ----------
+    name, other : str
+        The fields.
+    why : str
+        The message; ``{}`` stands for the other key with its value.
+    """
     return _compared("below", name, other, why)
 
 
