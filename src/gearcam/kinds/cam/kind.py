@@ -22,7 +22,7 @@ from gearcam.kinds.cam.design import (
     motion_document,
     problems,
 )
-from gearcam.kinds.cam.forms.base import SLIDING, form_keys, form_schema
+from gearcam.kinds.cam.forms.base import form_keys, form_schema
 from gearcam.kinds.cam.motion import TITLE, homes
 from gearcam.kinds.shared import AccuracySpec
 from gearcam.parts.blank import KIND as PARTS
