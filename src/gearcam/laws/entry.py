@@ -1,8 +1,8 @@
-"""Registry entries of laws (ratio laws of pairs, motion laws of followers) and what they cite."""
+"""What all laws share: registry entries, what they cite, and the variable of their formulas."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -11,6 +11,45 @@ TYPED: Final = 1e-9
 
 NO_JUMPS: Final = "a change within a few arc seconds counts as a jump"
 """Note in messages about functions that are not smooth but may only be steep."""
+
+
+VARIABLE: Final = "phi1"
+"""Name of the angle of the driver, rad, in formulas."""
+
+Function = Callable[[Any], Any]
+"""A Python function of a float array or a float; it returns as many values."""
+
+Functions = Function | tuple[Function, ...]
+"""A function, or a tuple of a function and its first derivatives in order."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Axis:
+    """The variable and the interval of a formula.
+
+    Parameters
+    ----------
+    name : str
+        Name of the values, such as ``phi2``.
+    low, high : float
+        The interval.
+    place : callable
+        ``place(x)`` returns a place as text for messages.
+    variable : str
+        Name of the variable in formulas.
+    remedy : str
+        Alternative to a function that is not smooth, for messages.
+    series : bool
+        Whether long Taylor series are needed, which only harmonics give accurately.
+    """
+
+    name: str
+    low: float = 0.0
+    high: float
+    place: Callable[[float], str]
+    variable: str = VARIABLE
+    remedy: str = ""
+    series: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,57 +7,20 @@ must be finite and smooth up to its jerk.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
-from typing import Any, Final
 
 import numpy as np
 
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.displacement import EXACT
-from gearcam.laws.entry import NO_JUMPS
-from gearcam.laws.formula_syntax import VARIABLE, FormulaError, parse
+from gearcam.laws.entry import NO_JUMPS, VARIABLE, Axis, Functions
+from gearcam.laws.formula_syntax import FormulaError, parse
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.chebyshev import NotSmoothError, expand
 from gearcam.numeric.jets import Jet, Value
 
-Function = Callable[[Any], Any]
-"""A Python function of a float array or a float; it returns as many values."""
-
-Functions = Function | tuple[Function, ...]
-"""A function, or a tuple of a function and its first derivatives in order."""
-
 Given = str | Functions
 """A formula, as text or as functions."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Axis:
-    """The variable and the interval of a formula.
-
-    Parameters
-    ----------
-    name : str
-        Name of the values, such as ``phi2``.
-    low, high : float
-        The interval.
-    place : callable
-        ``place(x)`` returns a place as text for messages.
-    variable : str
-        Name of the variable in formulas.
-    remedy : str
-        Alternative to a function that is not smooth, for messages.
-    series : bool
-        Whether long Taylor series are needed, which only harmonics give accurately.
-    """
-
-    name: str
-    low: float = 0.0
-    high: float
-    place: Callable[[float], str]
-    variable: str = VARIABLE
-    remedy: str = ""
-    series: bool = False
 
 
 def formula_problems(
@@ -141,14 +104,6 @@ def derivative(function: Callable[..., Jet]) -> Callable[..., Jet]:
     return slope
 
 
-_ODD_SHARE: Final = 0.3819660112501052
-"""Where the search for corners is cut first: a corner at a round place then lies inside a part."""
-
-_OF_FUNCTION: Final = 1e-6
-"""Roughness of a derivative that does not count, in its largest value, where it is that of the
-expansion of a function: this has lost digits, and its smoothness is proven already."""
-
-
 def demand_smooth(
     function: Callable[[Jet], Jet],
     given: Given,
@@ -181,11 +136,12 @@ def demand_smooth(
     InfeasibleError
         With the place.
     """
-    tolerance = tolerances.expansion if isinstance(given, str) else _OF_FUNCTION
+    # derivatives of an expansion have lost digits, and their smoothness is proven already
+    tolerance = tolerances.expansion if isinstance(given, str) else 1e-6
     *_, cuts = [_cuts(function, order, axis, name, tolerance) for order, name in enumerate(names)]
     ends = np.array([axis.low, axis.high])
-    found = np.array(function(Jet.variable(ends, len(names))).derivatives())
-    for place, column in zip(ends.tolist(), found.T, strict=True):
+    values = np.array(function(Jet.variable(ends, len(names))).derivatives())
+    for place, column in zip(ends.tolist(), values.T, strict=True):
         if not np.isfinite(column).all():
             order = int(np.argmin(np.isfinite(column)))
             what = f"{(*names, 'the derivative of its jerk')[order]} cannot be computed"
@@ -203,7 +159,8 @@ def _cuts(
         # with 1 added, the rounding of a derivative that is zero does not count as rough
         return 1.0 + function(Jet.variable(x, order)).derivatives()[order]
 
-    odd = axis.low + _ODD_SHARE * (axis.high - axis.low)
+    # cut at an odd place first, so that a corner at a round one lies inside a part
+    odd = axis.low + 0.3819660112501052 * (axis.high - axis.low)
     try:
         return expand(values, [axis.low, odd, axis.high], tolerance).knots
     except NotSmoothError as error:

@@ -27,10 +27,8 @@ import numpy as np
 
 from gearcam.base.errors import GearcamError
 from gearcam.base.numerals import shown
+from gearcam.laws.entry import VARIABLE
 from gearcam.numeric.jets import FUNCTIONS
-
-VARIABLE: Final = "phi1"
-"""The angle of the driver, rad."""
 
 MAX_LENGTH: Final = 2000
 """Largest number of characters of a formula, which also limits the work of reading it."""

@@ -14,18 +14,16 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.numerals import shown
+from gearcam.laws.entry import Axis, Function, Functions
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.chebyshev import Expansion, NotSmoothError, expand
 from gearcam.numeric.jets import Jet, composed, harmonics
-
-if TYPE_CHECKING:
-    from gearcam.laws.formula import Axis, Function, Functions
 
 _PLACES: Final = 2054
 """Places, ends included, at which a function is evaluated first and its expansion is compared: a
@@ -36,9 +34,7 @@ _MOST_HARMONICS: Final = 96
 """Largest number of harmonics that are kept; those above must be rounding."""
 
 _DEGREE: Final = 16
-_CUTS: Final = (1, 8, 64, 512)
-"""Degree and first number of Chebyshev pieces. Few wide ones keep most digits of derivatives; more
-are tried if they miss something between their nodes."""
+"""Degree of Chebyshev pieces."""
 
 _SCATTER: Final = 1e-12
 """Largest scatter of values over the largest value: the fourth derivative has four digits then."""
@@ -48,19 +44,6 @@ _MISS: Final = 1e-11
 
 _ROUNDING: Final = 4.0 * np.finfo(float).eps
 """Rounding of a value over the largest value."""
-
-_ROUGH: Final = 1e-4
-"""Jump of a derivative between pieces, over its largest value, of a function that is not smooth."""
-
-_SMOOTH_TO: Final = 4
-"""Derivatives that are examined: one more than the jerk."""
-
-_AGREEMENT: Final = 1e-7
-"""Largest difference between given and computed derivative over its largest value."""
-
-_SPOTS: Final = 8
-_BESIDE: Final = 1e-7
-"""Spots at which scatter is measured, and the distance of places there over the interval."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,18 +152,17 @@ class Expanded:
     @property
     def errors(self) -> tuple[float, ...]:
         """Estimated errors of the function and its first three derivatives."""
-        found = []
-        for k in range(4):
-            own = min(k, len(self.curves) - 1)
-            found.append(self.curves[own].error(self.misses[own], self.scales[own], k - own))
-        return tuple(found)
+        given = [min(k, len(self.curves) - 1) for k in range(4)]
+        return tuple(
+            self.curves[g].error(self.misses[g], self.scales[g], k - g) for k, g in enumerate(given)
+        )
 
     def __call__(self, x: Jet) -> Jet:
         """Return the function of a jet."""
         places, last = np.asarray(x.c[0]), min(x.order, len(self.curves) - 1)
-        found = [curve.derivatives(places, 0)[0] for curve in self.curves[:last]]
-        found += self.curves[last].derivatives(places, x.order - last)
-        return composed(x, [values / math.factorial(k) for k, values in enumerate(found)])
+        values = [curve.derivatives(places, 0)[0] for curve in self.curves[:last]]
+        values += self.curves[last].derivatives(places, x.order - last)
+        return composed(x, [value / math.factorial(k) for k, value in enumerate(values)])
 
 
 def expanded(given: Functions, axis: Axis, tolerance: float) -> Expanded:
@@ -239,11 +221,13 @@ class _Asked:
 
     def refusal(self, state: str, x: float, **numbers: Any) -> InfeasibleError:
         """Return the error that says what is wrong at a place: its `state`."""
-        of = f"{_ordinal(self.number)} derivative given with " if self.number else ""
+        ordinal = {1: "first", 2: "second", 3: "third"}.get(self.number, f"{self.number}th")
+        of = f"{ordinal} derivative given with " if self.number else ""
         name = f"the {of}{self.axis.name}" if of else self.axis.name
         return InfeasibleError(f"{name} {state}", where=self.axis.place(x), **numbers)
 
     def not_smooth(self, x: float) -> InfeasibleError:
+        """Return the error of a corner or a jump."""
         return self.refusal("is not smooth", x, nearest=self.axis.remedy)
 
     def __call__(self, x: Array) -> Array:
@@ -261,29 +245,25 @@ class _Asked:
         """Return the values; None if the function does not accept arrays."""
         try:
             with np.errstate(all="ignore"):
-                found = np.asarray(self.function(x.copy()))
+                values = np.asarray(self.function(x.copy()))
         except Exception:
             return None  # reported if it fails for floats too
-        usable = found.dtype.kind in "iuf" and found.shape in ((), x.shape)
-        return np.broadcast_to(found.astype(float), x.shape) if usable else None
+        usable = values.dtype.kind in "iuf" and values.shape in ((), x.shape)
+        return np.broadcast_to(values.astype(float), x.shape) if usable else None
 
     def _value(self, x: float) -> float:
         try:
             with np.errstate(all="ignore"):
                 result = self.function(x)
-                found = np.asarray(result)
+                value = np.asarray(result)
         except Exception as error:
-            told = f"raises {type(error).__name__}: {error}".rstrip(": ")
-            raise self.refusal(told, x) from error
-        if found.size != 1 or found.dtype.kind not in "iuf":
-            what = f"an array of shape {found.shape}" if found.shape else repr(result)
+            state = f"raises {type(error).__name__}: {error}".rstrip(": ")
+            raise self.refusal(state, x) from error
+        if value.size != 1 or value.dtype.kind not in "iuf":
+            what = f"an array of shape {value.shape}" if value.shape else repr(result)
             rule = "a function returns a number for a float, or an array for an array"
             raise self.refusal(f"gives {what}, not a number", x, nearest=rule)
-        return float(found.item())
-
-
-def _ordinal(number: int) -> str:
-    return {1: "first", 2: "second", 3: "third"}.get(number, f"{number}th")
+        return float(value.item())
 
 
 def _scatter(ask: _Asked, places: Array, values: Array, scale: float) -> float:
@@ -299,19 +279,15 @@ def _scatter(ask: _Asked, places: Array, values: Array, scale: float) -> float:
             nearest="the limit is the value returned first",
         )
     span = places[-1] - places[0]
-    spots = places[0] + span * ((np.arange(_SPOTS) + 0.5) * 0.6180339887498949 % 0.99)
-    beside = spots[:, None] + span * _BESIDE * np.arange(16)
+    spots = places[0] + span * ((np.arange(8) + 0.5) * 0.6180339887498949 % 0.99)
+    beside = spots[:, None] + span * 1e-7 * np.arange(16)
     fourth = np.diff(ask(beside.ravel()).reshape(beside.shape), 4, axis=1) / math.sqrt(70.0)
-    found = float(np.median(np.sqrt((fourth**2).mean(axis=1)))) / (scale or 1.0)
-    if found > _SCATTER:
-        raise ask.refusal(
-            f"is not smooth anywhere: its values scatter by {shown(found)} times the largest",
-            float(spots[0]),
-            value=found,
-            limit=_SCATTER,
-            nearest=ask.axis.remedy,
-        )
-    return found
+    scatter = float(np.median(np.sqrt((fourth**2).mean(axis=1)))) / (scale or 1.0)
+    if scatter > _SCATTER:
+        what = f"is not smooth anywhere: its values scatter by {shown(scatter)} times the largest"
+        remedy, place = ask.axis.remedy, float(spots[0])
+        raise ask.refusal(what, place, value=scatter, limit=_SCATTER, nearest=remedy)
+    return scatter
 
 
 def _waves(ask: _Asked, values: Array, allowed: float) -> Waves | None:
@@ -320,50 +296,49 @@ def _waves(ask: _Asked, values: Array, allowed: float) -> Waves | None:
     start, slope = float(values[0]), float(values[-1] - values[0]) / span
     distance = span * np.arange(_SAMPLES) / _SAMPLES
     rest = ask(low + distance) - start - slope * distance
-    found = np.fft.rfft(rest) * (2.0 / _SAMPLES)
-    last = int(np.flatnonzero(np.abs(found[1:]) > allowed).max(initial=-1)) + 1
+    harmonics = np.fft.rfft(rest) * (2.0 / _SAMPLES)
+    last = int(np.flatnonzero(np.abs(harmonics[1:]) > allowed).max(initial=-1)) + 1
     if last > _MOST_HARMONICS:
         return None
-    kept = found[1 : last + 1]
-    made = Waves(
-        low, 2.0 * math.pi / span, start + 0.5 * float(found[0].real), slope, kept.real, -kept.imag
-    )
+    start += 0.5 * float(harmonics[0].real)
+    kept = harmonics[1 : last + 1]
+    waves = Waves(low, 2.0 * math.pi / span, start, slope, kept.real, -kept.imag)
     places = np.linspace(low, ask.axis.high, len(values))
-    missed = np.abs(made.derivatives(places, 0)[0] - values).max()
-    return made if missed <= _MISS * np.abs(values).max() else None
+    missed = np.abs(waves.derivatives(places, 0)[0] - values).max()
+    return waves if missed <= _MISS * np.abs(values).max() else None
 
 
 def _pieces(ask: _Asked, places: Array, values: Array, allowed: float, scale: float) -> Pieces:
     ends = [ask.axis.low, ask.axis.high]
     worst = places[0]
-    for cuts in _CUTS:
+    # few wide pieces keep most digits of derivatives
+    for cuts in (1, 8, 64, 512):
         try:
-            found = expand(ask, ends, allowed, degree=_DEGREE, cuts=cuts)
+            raw = expand(ask, ends, allowed, degree=_DEGREE, cuts=cuts)
         except NotSmoothError as error:
             raise ask.not_smooth(error.place) from error
         # rounding would dominate high derivatives
-        counts = np.logical_or.accumulate(np.abs(found.coefficients[::-1]) > allowed * scale)
-        made = Pieces(replace(found, coefficients=found.coefficients * counts[::-1]))
-        missed = np.abs(made.expansion(places) - values)
+        counts = np.logical_or.accumulate(np.abs(raw.coefficients[::-1]) > allowed * scale)
+        pieces = Pieces(replace(raw, coefficients=raw.coefficients * counts[::-1]))
+        missed = np.abs(pieces.expansion(places) - values)
         if missed.max() <= _MISS * scale:
-            _demand_smooth(made, ask, allowed * scale)
-            return made
+            _demand_smooth(pieces, ask, allowed * scale)
+            return pieces
         worst = places[missed >= 0.5 * missed.max()][0]  # of places alike the first, always
     raise ask.not_smooth(float(worst))
 
 
-def _demand_smooth(made: Pieces, ask: _Asked, rounding: float) -> None:
+def _demand_smooth(pieces: Pieces, ask: _Asked, rounding: float) -> None:
     """Refuse a function whose derivatives jump between pieces: it has corners there."""
-    knots = made.expansion.knots
-    loss = (
-        2.0 * _DEGREE**2 / np.diff(knots).max()
-    )  # of digits in one derivative, at the ends of a piece
-    for order in range(1, _SMOOTH_TO + 1 - ask.number):
-        c = made.order(order).coefficients
+    knots = pieces.expansion.knots
+    # what a derivative loses at the ends of a piece
+    loss = 2.0 * _DEGREE**2 / np.diff(knots).max()
+    for order in range(1, 5 - ask.number):  # to one more than the jerk
+        c = pieces.order(order).coefficients
         ends, starts = c.sum(axis=0), ((-1.0) ** np.arange(len(c))) @ c
         jumps = np.abs(ends[:-1] - starts[1:])
         noise = 100.0 * rounding * loss**order / math.prod(range(1, 2 * order, 2))
-        if jumps.size and jumps.max() > _ROUGH * np.abs(c).sum(axis=0).max() + noise:
+        if jumps.size and jumps.max() > 1e-4 * np.abs(c).sum(axis=0).max() + noise:
             raise ask.not_smooth(float(knots[int(jumps.argmax()) + 1]))
 
 
@@ -372,7 +347,7 @@ def _demand_agreement(before: Waves | Pieces, ask: _Asked, places: Array, values
     slopes = before.derivatives(places, 1)[1]
     off = np.abs(slopes - values)
     worst = int(off.argmax())
-    if off[worst] > _AGREEMENT * np.abs(slopes).max():
+    if off[worst] > 1e-7 * np.abs(slopes).max():
         raise ask.refusal(
             "is not the derivative of the function given before it",
             float(places[worst]),

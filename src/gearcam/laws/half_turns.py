@@ -34,9 +34,6 @@ from gearcam.numeric.piecewise import Piece, extremes, piecewise
 HALF: Final = 0.5 * TURN
 """Half a turn of the cam, rad."""
 
-_TURNED: Final = {"rise": "return", "return": "rise", "dwell": "dwell"}
-"""Kind of the opposite phase."""
-
 
 @dataclass(frozen=True)
 class _Opposite(Brief):
@@ -68,9 +65,10 @@ def completed(half: Program) -> Program:
     ]
     knots = np.append(half.knots, half.knots[1:] + HALF)
     knots[-1] = TURN
+    opposites = {"rise": "return", "return": "rise", "dwell": "dwell"}
     later = (
-        PlacedPhase(kind=_TURNED[one.kind], start=one.start + HALF, end=one.end + HALF)
-        for one in half.stretches
+        PlacedPhase(kind=opposites[phase.kind], start=phase.start + HALF, end=phase.end + HALF)
+        for phase in half.stretches
     )
     lift = piecewise(knots, [*half.lift.pieces, *opposite])
     return replace(

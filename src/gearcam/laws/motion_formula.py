@@ -17,9 +17,8 @@ from gearcam.base.errors import InfeasibleError, beyond_limit
 from gearcam.base.numerals import shown
 from gearcam.base.quantities import LONGEST, TEXT, param
 from gearcam.base.tolerances import Tolerances
-from gearcam.laws.entry import TYPED
+from gearcam.laws.entry import TYPED, Axis
 from gearcam.laws.formula import (
-    Axis,
     Given,
     demand_smooth,
     errors_of,
@@ -44,9 +43,7 @@ _AXIS: Final = Axis(
 _NAMES: Final = ("the lift", "its velocity", "its acceleration", "its jerk")
 
 _PLACES: Final = 1440
-_PER_CUT: Final = 2
-"""Places at which the lift is compared, a quarter of a degree apart, and as many for each cut: the
-shortest wave has several, which cannot all be its zeros."""
+"""Places at which the lift is compared, a quarter of a degree apart."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -108,7 +105,8 @@ class MotionFormula:
                 what, _AXIS.place(float(theta[far])), scale * float(first[far]), limit, unit=unit
             )
         cuts = demand_smooth(function, self.lift, _AXIS, _NAMES, tolerances)
-        count = max(_PLACES, _PER_CUT * len(cuts))
+        # two at least for each cut: the shortest wave has several, which cannot all be its zeros
+        count = max(_PLACES, 2 * len(cuts))
         theta = np.linspace(0.0, TURN, count + 1)
         values = values_of(function)(theta)
         extent, size = float(np.ptp(values)), float(np.abs(values).max())

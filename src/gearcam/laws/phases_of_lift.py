@@ -50,20 +50,15 @@ Problem = tuple[int | None, str, str, str]
 TURN: Final = 2.0 * math.pi
 """A turn of the cam, rad."""
 
-_WAY: Final = Param(
-    LENGTH, word="way", gt=0, le=LONGEST, example=60, doc="travel of a translating cam"
-)
-
-_NARROWEST_SHARE: Final = 1e-6
-"""Least share of the whole travel that a phase covers."""
-
 _SPAN: Final[dict[str, Any]] = {
     "ge": NARROWEST_DEG,
     "le": 360,
     "example": 60,
     "doc": "cam angle of the phase, or the rest of the turn",
     "when": ("turning",),
-    "other": _WAY,
+    "other": Param(
+        LENGTH, word="way", gt=0, le=LONGEST, example=60, doc="travel of a translating cam"
+    ),
 }
 """Parameter for the angle, or the travel, of a phase."""
 
@@ -186,9 +181,6 @@ PHASES: Final[dict[str, type]] = {
 }
 """The phases, by their names in files."""
 
-_ASKED: Final[dict[type, str]] = {RisePhase: "lift", SegmentPhase: "to"}
-"""The required parameter of a phase."""
-
 
 def angles_of(phases: Sequence[Phase], turn: float = TURN) -> list[float]:
     """Return the cam angle of each phase, rad; ``"rest"`` is replaced by the remainder.
@@ -287,10 +279,10 @@ def program_problems(
     unit = "deg" if oscillating else "mm"
     clean = True
     for number, phase in enumerate(phases):
-        asked = _ASKED.get(type(phase))
-        if asked and getattr(phase, asked) is None:
+        required = {RisePhase: "lift", SegmentPhase: "to"}.get(type(phase))
+        if required and getattr(phase, required) is None:
             clean = False
-            yield number, asked, "is missing", f"a lift in {unit}"
+            yield number, required, "is missing", f"a lift in {unit}"
     if clean:
         if closed:
             yield from _turn_problems(phases, 0.5 * TURN if half else TURN)
@@ -325,7 +317,7 @@ def _way_problems(phases: Sequence[Phase]) -> Iterator[Problem]:
         if number not in ways:
             yield number, "angle", "a cam that slides has no turn with a rest", "a length above 0"
     whole = sum(ways.values())
-    least = whole * _NARROWEST_SHARE
+    least = whole * 1e-6
     for number, way in ways.items():
         if way < least:
             rule = f"at least {shown(least)} mm of {shown(whole)} mm"

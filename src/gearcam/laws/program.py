@@ -40,12 +40,6 @@ from gearcam.numeric.hermite import hermite_quintics
 from gearcam.numeric.jets import Jet, Value, polynomial
 from gearcam.numeric.piecewise import Piece, Piecewise, extremes_among, piecewise, places_between
 
-_INNER = slice(5, -5, 6)
-"""Number of places that give the size of derivatives well enough to judge jumps."""
-
-_KNOT = 4.0 * np.finfo(float).eps * TURN
-"""Rounding of a knot, rad."""
-
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Survey(Brief):
@@ -192,11 +186,13 @@ class Program(Brief, Displacement):
     def jumps(self) -> tuple[Jump, ...]:
         """The lowest derivative that jumps at each knot; both ends of the turn are one knot."""
         survey = self.survey
-        inside = np.abs(survey.found[..., _INNER]).max(axis=(1, 2))
+        # a sixth of the places gives the size of derivatives well enough
+        inside = np.abs(survey.found[..., 5:-5:6]).max(axis=(1, 2))
         at_knots = np.abs([survey.before, survey.after]).max(axis=(0, 1))
         scales = np.maximum(inside, at_knots)[:4]
         # a knot is rounded: a derivative on its wrong side is off by its slope times the rounding
-        limits = JUMP * scales + _KNOT * np.append(scales[1:], inside[4])
+        rounding = 4.0 * np.finfo(float).eps * TURN
+        limits = JUMP * scales + rounding * np.append(scales[1:], inside[4])
         jumping = (np.abs(survey.after - survey.before)[:, :4] > limits)[:, 1:]
         return tuple(
             Jump(

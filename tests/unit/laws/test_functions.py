@@ -12,7 +12,7 @@ import pytest
 
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.tolerances import DEFAULT
-from gearcam.laws.formula import Axis, Functions
+from gearcam.laws.entry import Axis, Functions
 from gearcam.laws.functions import Expanded, expanded
 from gearcam.numeric.jets import Jet
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from gearcam.laws.ratio.centrodes import EccentricCircle as EccentricCircle
@@ -21,16 +21,3 @@ if TYPE_CHECKING:
     from gearcam.laws.ratio.shapes import BSplineLaw as BSplineLaw
     from gearcam.laws.ratio.shapes import RoundedPolygon as RoundedPolygon
     from gearcam.laws.ratio.table import TableLaw as TableLaw
-
-HOMES: Final = {
-    "phases": ("phases",),
-    "composite": ("three-phase-polynomial", "multispeed", "fourier"),
-    "constant": ("constant",),
-    "ellipse": ("ellipse",),
-    "centrodes": ("eccentric-circle", "limacon", "lobed", "log-spiral"),
-    "shapes": ("bspline", "rounded-polygon"),
-    "formula": ("formula", "rack"),
-    "table": ("table",),
-    "position": ("motion",),
-}
-"""The laws of each module, by their names in design files."""

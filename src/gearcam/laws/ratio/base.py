@@ -25,7 +25,6 @@ from gearcam.base.registry import Registry
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.displacement import Displacement, Jump
 from gearcam.laws.entry import LawEntry
-from gearcam.laws.ratio import HOMES
 from gearcam.laws.ratio.span import (
     RING,
     Span,
@@ -234,8 +233,21 @@ class RatioLaw(Brief, Displacement):
         return measured + solved + self.function_error + rounding
 
 
+_HOMES: Final = {
+    "phases": ("phases",),
+    "composite": ("three-phase-polynomial", "multispeed", "fourier"),
+    "constant": ("constant",),
+    "ellipse": ("ellipse",),
+    "centrodes": ("eccentric-circle", "limacon", "lobed", "log-spiral"),
+    "shapes": ("bspline", "rounded-polygon"),
+    "formula": ("formula", "rack"),
+    "table": ("table",),
+    "position": ("motion",),
+}
+"""The laws of each module, by their names in design files; `laws.ratio` names their classes."""
+
 LAWS: Final[Registry[LawEntry]] = Registry(
-    "law", {f"gearcam.laws.ratio.{home}": names for home, names in HOMES.items()}
+    "law", {f"gearcam.laws.ratio.{home}": names for home, names in _HOMES.items()}
 )
 """Ratio laws by name."""
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Final, TypeVar
+from typing import TypeVar
 
 from gearcam.base.display import Brief
 from gearcam.base.errors import Way, beyond_limit
@@ -32,12 +32,6 @@ from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet, atan, cos, sin, sqrt
 from gearcam.numeric.piecewise import Piece
 from gearcam.numeric.roots import newton_in_bracket
-
-_ROUNDING: Final = 1e-15
-"""Accuracy of places on a return, rad."""
-
-_EVEN: Final = 0.05
-"""Power of the ratios of a closed spiral that is the mildest one tried: 1 itself is no spiral."""
 
 T = TypeVar("T", Array, Jet)
 
@@ -194,7 +188,7 @@ class LogSpiral(Brief):
         if self.return_angle is not None:
             first, last = self.ratios
             start = 1.0 / float(last) if first == "solve" else first
-            far = {"law.ratios": [start**_EVEN, "solve"]}
+            far = {"law.ratios": [start**0.05, "solve"]}  # 1 itself is no spiral
             yield Way(near={"law.ratios": [start, "solve"]}, far=far)
             yield Way(far={"law.return_deg": 180.0})
 
@@ -282,7 +276,7 @@ def _return(k: float, growth: float, half: float) -> Piece:
         """Return t, the solution of ``phi1 = middle + t + h(t)``."""
         goal = x.c[0] - middle
         found = newton_in_bracket(
-            lambda t: (t + h(t) - goal, 1.0 + rate(t)), -half, half, 0.0 * goal, _ROUNDING
+            lambda t: (t + h(t) - goal, 1.0 + rate(t)), -half, half, 0.0 * goal, 1e-15
         )
         over = 1.0 + rate(found)
         t = Jet([found, *[0.0] * x.order])

@@ -20,9 +20,6 @@ from gearcam.numeric.roots import newton_in_bracket
 _APART = 1e-9
 """Smallest distance between driven shaft and largest radius, relative: closer values are lost."""
 
-_LAST_DIGIT = 1e-15
-"""Accuracy of the centre distance over the largest possible one: its rounding."""
-
 _SMALLEST, _LARGEST = 1e-100, 1e100
 """Range of ratios and radii, whose squares must be finite."""
 
@@ -177,7 +174,7 @@ def solve_center(
     low = largest * (1.0 + _APART) if mate == WHEEL else 0.0
     high = largest * (mate + ratio) * (1.0 + _APART)
     start = min(max(mean * (mate + ratio), 0.75 * low + 0.25 * high), high)
-    return float(newton_in_bracket(excess, low, high, start, _LAST_DIGIT * high))
+    return float(newton_in_bracket(excess, low, high, start, 1e-15 * high))
 
 
 def demand_lobes(given: tuple[int, int] | None, lobes: Lobes) -> int:

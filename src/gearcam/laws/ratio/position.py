@@ -13,9 +13,8 @@ from gearcam.base.errors import InfeasibleError, beyond_limit
 from gearcam.base.numerals import shown
 from gearcam.base.quantities import NUMBER, TEXT, param
 from gearcam.base.tolerances import Tolerances
-from gearcam.laws.entry import LawEntry
-from gearcam.laws.formula import Axis, Given, errors_of, formula_problems, function_of, values_of
-from gearcam.laws.formula_syntax import VARIABLE
+from gearcam.laws.entry import VARIABLE, Axis, LawEntry
+from gearcam.laws.formula import Given, errors_of, formula_problems, function_of, values_of
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.formula import axis_of, from_phi2
 from gearcam.laws.ratio.slider import NARROWEST, crank_angle, make_slide

@@ -20,18 +20,6 @@ from gearcam.numeric.jets import Jet, Value, cos, polynomial, sin, sqrt
 from gearcam.numeric.piecewise import Piece, piecewise
 from gearcam.numeric.roots import bracketed_root
 
-_BASIS = np.array([[1, 4, 1, 0], [-3, 0, 3, 0], [3, -6, 3, 0], [-1, 3, -3, 1]]) / 6.0
-"""Cubic B-spline on a segment: powers of t (rows) of four control values (columns)."""
-
-_EDGE = 1e-6
-"""Share of the possible heights of a polygon that is excluded where its corner meets the shaft."""
-
-_ROUND = 1e-12
-"""Share of the corner radius by which the lowest polygon is above a circle: it has sides."""
-
-_HEIGHT = 1e-16
-"""Accuracy of a polygon's height, in centre distances: the last digit."""
-
 
 @dataclass(frozen=True, kw_only=True)
 class BSplineLaw(Brief):
@@ -50,10 +38,12 @@ class BSplineLaw(Brief):
         count = len(self.radii)
         knots = np.linspace(0.0, lobes.period, count + 1)
         control = np.array(self.radii)
+        # powers of the distance from the knot before (rows) of four control values (columns)
+        basis = np.array([[1, 4, 1, 0], [-3, 0, 3, 0], [3, -6, 3, 0], [-1, 3, -3, 1]]) / 6.0
         scale = (count / lobes.period) ** np.arange(4)
 
         def segment(k: int) -> Piece:
-            powers = scale * (_BASIS @ control[np.arange(k - 1, k + 3) % count])
+            powers = scale * (basis @ control[np.arange(k - 1, k + 3) % count])
             return Piece(polynomial, parameters=(float(knots[k]), *powers.tolist()))
 
         return law_of_centrode([segment(k) for k in range(count)], knots, lobes, tolerances)
@@ -145,9 +135,10 @@ class RoundedPolygon(Brief):
                 driven = math.inf  # a corner too close to the other shaft
             return np.array(driven - 2.0 * math.pi / self.corners * lobes.n1 / lobes.n2)
 
-        edge = _EDGE * (highest - self.corner_radius)
-        low = np.array(self.corner_radius * (1.0 + _ROUND))
-        return float(bracketed_root(excess, low, np.array(highest - edge), _HEIGHT))
+        # not a circle, which has no sides, nor a corner that meets the other shaft
+        low = np.array(self.corner_radius * (1.0 + 1e-12))
+        high = np.array(highest - 1e-6 * (highest - self.corner_radius))
+        return float(bracketed_root(excess, low, high, 1e-16))
 
 
 LAWS.register(

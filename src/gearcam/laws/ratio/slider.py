@@ -27,26 +27,13 @@ from gearcam.numeric.piecewise import Piece, extremes
 
 Function = Callable[[Jet], Jet]
 
-_ORDER = 30
-"""Terms of the Taylor series at a dead centre."""
-
-_TAIL = 6
-"""Number of last terms of the series that decide its range."""
-
-_BELOW = 1e-17
-"""Size of the last terms of the series over its first: below rounding."""
-
-_BESIDE = 1e-6
-"""Distance from the end of a period, over the period, at which the direction is compared."""
-
 _STILL = 1e-6
 """Smallest second Taylor coefficient of the slide at a dead centre, crank radii per rad^2: below it
 the crank would stand still."""
 
-_WIDEST = 0.3
 NARROWEST = 0.02
-"""Angles about a dead centre, rad, within which its series is used: as far as it is accurate, and
-at least as far as the closed form loses digits."""
+"""Angle about a dead centre, rad, within which its series is needed: the closed form loses digits
+there."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -120,7 +107,7 @@ def _dead_centres(
 ) -> list[tuple[float, float]]:
     """Return the inner extremes, and the end of the lobe if the slope changes sign there."""
     found = [(float(x), float(v)) for x, v in zip(places[1:-1], values[1:-1], strict=True)]
-    step = _BESIDE * period
+    step = 1e-6 * period
     before, after = function(np.array([period - step, step]))[1]
     at_end = [x for x, _ in found if not step < x < period - step]
     if before * after < 0.0 and not at_end:
@@ -197,7 +184,7 @@ def _between(slide: Slide) -> Callable[..., Jet]:
 
 def _series(slide: Slide, place: float, sign: float) -> tuple[float, list[float]]:
     """Return range and coefficients of the series about a dead centre; sign -1 for the inner."""
-    jet = slide.position(Jet.variable(np.array([place]), _ORDER))
+    jet = slide.position(Jet.variable(np.array([place]), 30))
     c = np.array([float(np.ravel(value)[0]) for value in jet.c]) * sign
     if not c[2] > _STILL:
         what = "the slide rests at its dead centre: the crank would stand still"
@@ -211,9 +198,10 @@ def _series(slide: Slide, place: float, sign: float) -> tuple[float, list[float]
     root = sqrt(over * factor / (4.0 * (1.0 + slide.rod - s)))
     powers = np.array([float(value) for value in (2.0 * asin(Jet([0.0, *root.c]))).c])
     rates = np.arange(1, len(powers)) * powers[1:]
-    k, sizes = np.arange(len(rates))[-_TAIL:], np.abs(rates[-_TAIL:])
+    # as far as each of the last six terms is below rounding
+    k, sizes = np.arange(len(rates))[-6:], np.abs(rates[-6:])
     with np.errstate(divide="ignore"):
-        reach = float(min(_WIDEST, ((_BELOW * rates[0] / sizes) ** (1.0 / k)).min()))
+        reach = float(min(0.3, ((1e-17 * rates[0] / sizes) ** (1.0 / k)).min()))
     reach = min(reach, 0.2 * abs(((slide.inner - slide.outer) % slide.period) or math.inf))
     if reach < NARROWEST:
         what = "the motion of the slide bends too sharply at its dead centre"

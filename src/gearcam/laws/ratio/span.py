@@ -24,12 +24,6 @@ from gearcam.numeric.chebyshev import NotSmoothError
 from gearcam.numeric.jets import Jet, exp, log
 from gearcam.numeric.piecewise import Piece, Piecewise
 
-_FLAT = 1e-9
-"""Growth of the radius per radian below which the continued centrode is a circle: rounding."""
-
-_CLOSED_FORM = 1e-3
-"""Growth above which the closed form of the driven angle is better than an expansion."""
-
 SAME: Final = 1e-12
 """Distance, rad, below which knots are the same: the rounding of a few sums."""
 
@@ -38,9 +32,6 @@ PLACES: Final = 2049
 
 _LARGEST: Final = 1e4
 """Largest quotient of the travels of an open pair."""
-
-_ROOM = 0.9
-"""Largest share of the distance to either shaft that a continued centrode may use."""
 
 
 WHEEL: Final = 1
@@ -334,14 +325,14 @@ def _end(
     ratio, slope = end
     radius = ratio / (1.0 + mate * ratio)
     growth = slope / (ratio * (1.0 + mate * ratio))
-    if abs(growth) < _FLAT:
+    if abs(growth) < 1e-9:  # a circle, but for rounding
         piece = Piece(lambda x: 0.0 * x + ratio, lambda x: ratio * x)
         return place + side * length / radius, piece
     outward, stretch = side * growth, math.hypot(1.0, growth)
     room = radius
     if outward > 0.0:  # a ring leaves room for any wheel
         room = 1.0 - radius if mate == WHEEL else math.inf
-    rise = math.copysign(min(length * abs(outward) / stretch, _ROOM * room), outward)
+    rise = math.copysign(min(length * abs(outward) / stretch, 0.9 * room), outward)
 
     reach = side * math.log1p(rise / radius) / outward
     return place + reach, spiral(radius, growth, mate, place)
@@ -373,6 +364,7 @@ def spiral(radius: float, growth: float, mate: int, place: float = 0.0) -> Piece
     def driven(x: Jet) -> Jet:
         return (-mate / growth) * log(1.0 - mate * share(x))
 
-    return Piece(
-        lambda x: share(x) / (1.0 - mate * share(x)), driven if abs(growth) > _CLOSED_FORM else None
-    )
+    def ratio(x: Jet) -> Jet:
+        return share(x) / (1.0 - mate * share(x))
+
+    return Piece(ratio, driven if abs(growth) > 1e-3 else None)

@@ -11,7 +11,7 @@ Cycloidal()
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 from gearcam.base.registry import classes_in, lazy_names
 
@@ -35,23 +35,6 @@ if TYPE_CHECKING:
     from gearcam.laws.rises.simple import SineTrapezoidalVelocity as SineTrapezoidalVelocity
     from gearcam.laws.rises.simple import TrapezoidalAcceleration as TrapezoidalAcceleration
     from gearcam.laws.rises.simple import TrapezoidalVelocity as TrapezoidalVelocity
-
-HOMES: Final = {
-    "simple": (
-        "constant-velocity",
-        "constant-acceleration",
-        "harmonic",
-        "cycloidal",
-        "trapezoidal-velocity",
-        "sine-trapezoidal-velocity",
-        "trapezoidal-acceleration",
-    ),
-    "polynomials": ("2-3", "3-4-5", "4-5-6-7", "5-6-7-8-9", "3-4-5-6", "polynomial"),
-    "scca": ("modified-trapezoid", "modified-sine", "scca"),
-    "points": ("b-spline", "table"),
-    "formula": ("formula",),
-}
-"""The motion laws of each module, by their names in design files."""
 
 
 def _classes() -> dict[str, type]:

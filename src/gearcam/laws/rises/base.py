@@ -21,7 +21,6 @@ from gearcam.base.registry import Registry
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.displacement import EXACT
 from gearcam.laws.entry import LawEntry
-from gearcam.laws.rises import HOMES
 from gearcam.numeric.piecewise import Piecewise
 
 NARROWEST: Final = 1e-4
@@ -72,7 +71,24 @@ class ClosedForm(Brief, ABC):
         return Rise(function=self.function(), mirrored=self.mirrored)
 
 
+_HOMES: Final = {
+    "simple": (
+        "constant-velocity",
+        "constant-acceleration",
+        "harmonic",
+        "cycloidal",
+        "trapezoidal-velocity",
+        "sine-trapezoidal-velocity",
+        "trapezoidal-acceleration",
+    ),
+    "polynomials": ("2-3", "3-4-5", "4-5-6-7", "5-6-7-8-9", "3-4-5-6", "polynomial"),
+    "scca": ("modified-trapezoid", "modified-sine", "scca"),
+    "points": ("b-spline", "table"),
+    "formula": ("formula",),
+}
+"""The laws of each module, by their names in design files; `laws.rises` names their classes."""
+
 RISES: Final[Registry[LawEntry]] = Registry(
-    "rise", {f"gearcam.laws.rises.{home}": names for home, names in HOMES.items()}
+    "rise", {f"gearcam.laws.rises.{home}": names for home, names in _HOMES.items()}
 )
 """Motion laws by name."""

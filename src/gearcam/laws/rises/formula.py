@@ -11,9 +11,8 @@ from gearcam.base.errors import beyond_limit
 from gearcam.base.numerals import shown
 from gearcam.base.quantities import TEXT, param
 from gearcam.base.tolerances import Tolerances
-from gearcam.laws.entry import TYPED, LawEntry
+from gearcam.laws.entry import TYPED, Axis, LawEntry
 from gearcam.laws.formula import (
-    Axis,
     Given,
     demand_smooth,
     errors_of,

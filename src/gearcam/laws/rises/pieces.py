@@ -22,12 +22,9 @@ Shape = Callable[[Jet], Jet]
 _NOTHING: Final = 1e-12
 """Width below which a sector is left out: the rounding of widths."""
 
-_SERIES: Final = 1.5
-"""Argument below which ``x - sin(x)`` is computed as a series; above it loses at most one digit."""
-
 _POWERS: Final = tuple((-1) ** k / factorial(2 * k + 3) for k in range(10, -1, -1))
-"""Coefficients of that series over ``x^3``, of falling powers of ``x^2``; the next term is below
-1e-18 of the sum."""
+"""Coefficients of the series of ``x - sin(x)`` over ``x^3``, of falling powers of ``x^2``; the next
+term is below 1e-18 of the sum."""
 
 
 def lag(x: Jet) -> Jet:
@@ -38,7 +35,8 @@ def lag(x: Jet) -> Jet:
     for power in _POWERS[2:]:
         series *= square
         series += power
-    exact = np.where(np.abs(value) < _SERIES, series * square * value, value - wave.c[0])
+    # above this the difference loses a digit at most
+    exact = np.where(np.abs(value) < 1.5, series * square * value, value - wave.c[0])
     slope = [2.0 * half * half * rate for rate in x.c[1:2]]
     return Jet([exact, *slope, *(a - b for a, b in zip(x.c[2:], wave.c[2:], strict=True))])
 

@@ -24,15 +24,6 @@ from gearcam.numeric.piecewise import Piecewise
 
 Problem = tuple[str, int | None, str, str]
 
-_MOVES: Final = (1, 2)
-"""Periods of the signs with which the values of a table are changed to estimate rounding."""
-
-_ROUNDING: Final = 24.0 * float(np.finfo(float).eps)
-"""Relative change of the values."""
-
-_SHARES: Final = np.array([[0.0], [0.25], [0.5], [0.75]])
-"""Places between rows at which the change is measured."""
-
 _CLOSEST: Final = 1e-6
 """Smallest step of x in a table: a second of arc of a full turn."""
 
@@ -207,14 +198,14 @@ def _errors(
     The equations are solved again with values changed by their rounding, in several patterns.
     """
     x, y = points.T
-    places = (x[:-1] + np.diff(x) * _SHARES).ravel(order="F")
-    own = np.array(_through(points, start, end).derivatives(places, 3))
+    places = (x[:-1] + np.diff(x) * np.array([[0.0], [0.25], [0.5], [0.75]])).ravel(order="F")
+    exact = np.array(_through(points, start, end).derivatives(places, 3))
     changes = []
-    for step in _MOVES:
+    for step in (1, 2):
         sign = (-1.0) ** (np.arange(len(y)) // step)
-        moved = np.column_stack([x, y * (1.0 + _ROUNDING * sign)])
-        found = np.array(_through(moved, start, end).derivatives(places, 3))
-        changes.append(np.abs(found - own).max(axis=1))
+        rounded = np.column_stack([x, y * (1.0 + 24.0 * np.finfo(float).eps * sign)])
+        values = np.array(_through(rounded, start, end).derivatives(places, 3))
+        changes.append(np.abs(values - exact).max(axis=1))
     return tuple(np.max(changes, axis=0).tolist())
 
 
