@@ -86,8 +86,8 @@ class CsvRows(Brief):
             if any(row[len(head) :]):
                 state = f"line {line}: {len(row)} values for {len(head)} columns"
                 raise ColumnsError(state + _HINT)
-        found = [_numbers(row, places, line) for line, row in zip(lines, rows, strict=True)]
-        return np.array(found).reshape(-1, len(names)), lines
+        numbers = [_numbers(row, places, line) for line, row in zip(lines, rows, strict=True)]
+        return np.array(numbers).reshape(-1, len(names)), lines
 
 
 class FromFile(Brief):
@@ -161,12 +161,12 @@ def read_rows(file: str) -> CsvRows:
     cells = []
     for line, row in rows:
         try:
-            found = next(csv.reader([row], delimiter=";" if semicolons else ","))
+            row_cells = next(csv.reader([row], delimiter=";" if semicolons else ","))
         except csv.Error as error:
             raise ColumnsError(f"line {line}: no row of a table: {error}") from error
-        cells.append([cell.strip() for cell in found])
-    made = CsvRows(file=file, lines=tuple(line for line, _ in rows), cells=tuple(cells))
-    return _with_points(made) if semicolons else made
+        cells.append([cell.strip() for cell in row_cells])
+    table = CsvRows(file=file, lines=tuple(line for line, _ in rows), cells=tuple(cells))
+    return _with_points(table) if semicolons else table
 
 
 def close_angles(angles: Array) -> Iterator[tuple[int, str, str]]:
@@ -201,25 +201,25 @@ def _with_points(rows: CsvRows) -> CsvRows:
     commas = any(_COMMA_NUMBER.fullmatch(cell) for cell in cells)
     if not commas or any(_POINT_NUMBER.fullmatch(cell) for cell in cells):
         return replace(rows, note="read with semicolons between columns")
-    turned = tuple(
+    with_points = tuple(
         [cell.replace(",", ".") if _COMMA_NUMBER.fullmatch(cell) else cell for cell in row]
         for row in rows.cells
     )
-    return replace(rows, cells=turned, note="read with semicolons and decimal commas")
+    return replace(rows, cells=with_points, note="read with semicolons and decimal commas")
 
 
 def _numbers(cells: Sequence[str], places: Sequence[int], line: int) -> list[float]:
-    found = []
+    numbers = []
     for place in places:
         text = cells[place] if place < len(cells) else ""
-        told = text if len(text) <= _SHOWN else f"{text[:_SHOWN]}..."
+        written = text if len(text) <= _SHOWN else f"{text[:_SHOWN]}..."
         try:
             if "_" in text or not text.isascii():  # which are numbers to Python
                 raise ValueError(text)
-            found.append(float(text))
+            numbers.append(float(text))
         except ValueError:
             hint = _HINT if _COMMA_NUMBER.fullmatch(text) else ""
-            raise ColumnsError(f"line {line}: {told!r} is not a number{hint}") from None
-        if not math.isfinite(found[-1]):
-            raise ColumnsError(f"line {line}: {told!r} is not finite")
-    return found
+            raise ColumnsError(f"line {line}: {written!r} is not a number{hint}") from None
+        if not math.isfinite(numbers[-1]):
+            raise ColumnsError(f"line {line}: {written!r} is not finite")
+    return numbers

@@ -256,13 +256,13 @@ def _words(text: str, variable: str) -> Iterator[tuple[str, str, int]]:
 
 
 def _check_name(word: str, column: int, variable: str) -> None:
-    known = (variable, *CONSTANTS, *FUNCTIONS)
-    if word in known:
+    names = (variable, *CONSTANTS, *FUNCTIONS)
+    if word in names:
         return
     import difflib
 
     alias = _ALIASES.get(word, _ALIASES.get(word.lower()))
-    close = [alias] if alias else difflib.get_close_matches(word.lower(), known, n=1)
+    close = [alias] if alias else difflib.get_close_matches(word.lower(), names, n=1)
     raise FormulaError(
         f"unknown name {word!r}",
         column=column,

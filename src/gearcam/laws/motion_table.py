@@ -118,8 +118,8 @@ class MotionTable(FromFile):
         except ColumnsError as error:
             yield "file", None, str(error), f"a CSV file with {' and '.join(_columns(oscillating))}"
             return
-        told = chain(_angle_problems(theta), self._lift_problems(theta, lift, oscillating))
-        for name, row, message, rule in islice(told, 1):
+        problems = chain(_angle_problems(theta), self._lift_problems(theta, lift, oscillating))
+        for name, row, message, rule in islice(problems, 1):
             if self.file is None or name == "smoothing_tolerance":
                 yield name, row, message, rule
             else:
@@ -142,22 +142,22 @@ class MotionTable(FromFile):
     def _lift_problems(self, theta: Array, lift: Array, oscillating: bool) -> Iterator[Problem]:
         scale, unit = (_DEG, "deg") if oscillating else (1.0, "mm")
 
-        def told(value: float) -> str:
+        def text(value: float) -> str:
             return f"{shown(value / scale, 10)} {unit}"
 
         largest = math.pi if oscillating else LONGEST
         for row in np.flatnonzero(np.abs(lift) > largest).tolist():
-            yield "lift", row, f"the lift is {told(lift[row])}", f"at most {told(largest)}"
+            yield "lift", row, f"the lift is {text(lift[row])}", f"at most {text(largest)}"
         extent, tolerance = float(np.ptp(lift)), self.smoothing_tolerance or 0.0
         if extent <= TYPED * float(np.abs(lift).max()):
             yield "lift", None, "the follower never moves", "at least two different lifts"
         if tolerance >= 0.5 * extent:
-            rule = f"below {told(0.5 * extent)}, half of the total lift"
+            rule = f"below {text(0.5 * extent)}, half of the total lift"
             yield "smoothing_tolerance", None, "leaves no lift", rule
         jump = float(lift[-1] - lift[0])
         if _repeats(theta) and abs(jump) > max(tolerance, TYPED * extent):
-            state = f"the lift after the turn is {told(lift[-1])}: it jumps by {told(abs(jump))}"
-            yield "lift", len(lift) - 1, state, f"that of the first row, {told(lift[0])}"
+            state = f"the lift after the turn is {text(lift[-1])}: it jumps by {text(abs(jump))}"
+            yield "lift", len(lift) - 1, state, f"that of the first row, {text(lift[0])}"
 
     def program(self, tolerances: Tolerances, *, oscillating: bool = False) -> Program:  # noqa: ARG002  (a spline is in closed form)
         """Return the program of the rows.

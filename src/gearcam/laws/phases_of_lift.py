@@ -223,18 +223,18 @@ def levels(phases: Sequence[Phase]) -> list[float]:
     list of float
         The first is 0.
     """
-    found = [0.0]
+    lifts = [0.0]
     for phase in phases:
         match phase:
             case DwellPhase():
-                found.append(found[-1])
+                lifts.append(lifts[-1])
             case SegmentPhase():
-                found.append(phase.end[0])
+                lifts.append(phase.end[0])
             case ReturnPhase():
-                found.append(0.0 if phase.lift is None else found[-1] - phase.lift)
+                lifts.append(0.0 if phase.lift is None else lifts[-1] - phase.lift)
             case RisePhase():
-                found.append(found[-1] + (phase.lift or 0.0))
-    return found
+                lifts.append(lifts[-1] + (phase.lift or 0.0))
+    return lifts
 
 
 def fill_half(phases: Sequence[Phase]) -> bool:
@@ -251,8 +251,8 @@ def fill_half(phases: Sequence[Phase]) -> bool:
         for turn in (0.5 * TURN, TURN):
             if abs(math.fsum(angles) - turn) <= TURN_MISS:
                 return turn < TURN
-    found = levels(phases)
-    return abs(found[-1]) > _LIFT_MISS * max(map(abs, found))
+    lifts = levels(phases)
+    return abs(lifts[-1]) > _LIFT_MISS * max(map(abs, lifts))
 
 
 def program_problems(
@@ -327,19 +327,19 @@ def _way_problems(phases: Sequence[Phase]) -> Iterator[Problem]:
 def _closure_problems(
     phases: Sequence[Phase], unit: str, *, closed: bool, half: bool
 ) -> Iterator[Problem]:
-    found = levels(phases)
+    lifts = levels(phases)
     for number, phase in enumerate(phases):
-        if isinstance(phase, ReturnPhase) and phase.lift is None and not found[number] > 0.0:
+        if isinstance(phase, ReturnPhase) and phase.lift is None and not lifts[number] > 0.0:
             message = "the follower is at lift 0 or below: nothing to return from"
             yield number, "lift", message, "a rise before it, or a given lift"
-    largest = max(map(abs, found))
+    largest = max(map(abs, lifts))
     if largest == 0.0:
         yield None, "", "the follower never moves", "at least one rise"
     elif half:
-        if abs(found[-1]) <= _LIFT_MISS * largest:
+        if abs(lifts[-1]) <= _LIFT_MISS * largest:
             rule = "another lift at its end, or phases of a whole turn, 360 deg"
             yield None, "", "the half turn ends at the lift with which it begins", rule
-    elif closed and abs(found[-1]) > _LIFT_MISS * largest:
-        end = math.degrees(found[-1]) if unit == "deg" else found[-1]
+    elif closed and abs(lifts[-1]) > _LIFT_MISS * largest:
+        end = math.degrees(lifts[-1]) if unit == "deg" else lifts[-1]
         rule = "the lift 0, as at the start of the turn"
         yield None, "", f"the program ends at a lift of {shown(end, 10)} {unit}", rule

@@ -275,11 +275,11 @@ def _return(k: float, growth: float, half: float) -> Piece:
     def place(x: Jet) -> Jet:
         """Return t, the solution of ``phi1 = middle + t + h(t)``."""
         goal = x.c[0] - middle
-        found = newton_in_bracket(
+        value = newton_in_bracket(
             lambda t: (t + h(t) - goal, 1.0 + rate(t)), -half, half, 0.0 * goal, 1e-15
         )
-        over = 1.0 + rate(found)
-        t = Jet([found, *[0.0] * x.order])
+        over = 1.0 + rate(value)
+        t = Jet([value, *[0.0] * x.order])
         for _ in range(x.order):  # each step makes one more derivative exact
             t = t - (t + h(t) - (x - middle)) / over
         return t

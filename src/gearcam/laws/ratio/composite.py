@@ -28,7 +28,7 @@ from gearcam.laws.entry import LawEntry
 from gearcam.laws.formula import derivative
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.phases import ARCS, SMOOTH, arcs_law, knot_problems, one_lobe
-from gearcam.laws.ratio.span import SAME, Lobes, Travel, angle_text, demand_equal, open_travel
+from gearcam.laws.ratio.span import SAME, Lobes, angle_text, open_travel, span_of
 from gearcam.numeric.jets import Jet, harmonics, polynomial, primitive
 from gearcam.numeric.piecewise import Piece, piecewise
 
@@ -65,9 +65,8 @@ class Multispeed(Brief):
             if 0.0 < angle < NARROWEST:
                 rule = f"0, or at least {shown(NARROWEST_DEG)} deg"
                 yield "angles", index, "this phase is too short", rule
-        unknown = [k for k, value in enumerate(self.ratios) if value == "solve"]
-        if len(unknown) > 1:
-            yield "ratios", unknown[1], 'more than one "solve"', 'one "solve"'
+        for index in [k for k, value in enumerate(self.ratios) if value == "solve"][1:2]:
+            yield "ratios", index, 'more than one "solve"', 'one "solve"'
 
     def milder(self, mean: float) -> Iterator[Way]:
         """Yield a way towards the ratio `mean` of a closed law (see `Phases.milder`)."""
@@ -94,12 +93,10 @@ class Multispeed(Brief):
         knots, places = np.cumsum([width for width, _ in steps]), [place for _, place in steps]
         values: list[float | Solve] = [self.ratios[place] for place in places]
         arc = ARCS[self.shape]
-        if self.driven_travel is not None:
-            demand_equal(lobes)
-            span = Travel(float(knots[-1]), self.driven_travel, lobes.mate)
-            return arcs_law(arc, knots, values, span, tolerances, places=places)
-        grid, lobe = one_lobe(knots, values, lobes, "law.angles_deg with transitions")
-        return arcs_law(arc, grid, lobe, lobes, tolerances, places=places)
+        span = span_of(lobes, float(knots[-1]), self.driven_travel)
+        if self.driven_travel is None:
+            knots, values = one_lobe(knots, values, lobes, "law.angles_deg with transitions")
+        return arcs_law(arc, knots, values, span, tolerances, places=places)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -188,10 +185,11 @@ class Fourier(Brief):
             If the ratio is not positive everywhere.
         """
         n, mean = lobes.n1, lobes.advance / lobes.period
+        given = enumerate(zip_longest(self.cosines, self.sines, fillvalue=0.0), start=1)
         if self.of == "ratio":  # the integrals are harmonics of phi2
-            waves = [(-b / (k * n), a / (k * n)) for k, a, b in self._harmonics()]
+            waves = [(-b / (k * n), a / (k * n)) for k, (a, b) in given]
         else:
-            waves = [(math.radians(a), math.radians(b)) for _, a, b in self._harmonics()]
+            waves = [(math.radians(a), math.radians(b)) for _, (a, b) in given]
 
         def phi2(x: Jet) -> Jet:
             return mean * (x + harmonics(n * x, *np.reshape(waves, (-1, 2)).T))
@@ -205,10 +203,6 @@ class Fourier(Brief):
             ways = (Way(far={"law.cosines": 0.0, "law.sines": 0.0}),)
             raise beyond_limit(what, angle_text(place), smallest, 0.0, note, ways=ways)
         return make_law(lobes, knots, pieces, tolerances)
-
-    def _harmonics(self) -> list[tuple[int, float, float]]:
-        pairs = zip_longest(self.cosines, self.sines, fillvalue=0.0)
-        return [(k, a, b) for k, (a, b) in enumerate(pairs, start=1)]
 
 
 LAWS.register(

@@ -64,7 +64,15 @@ def law_of_centrode(
     radius = piecewise(knots, shapes)
     with demand_smooth("r1"):
         center = solve_center(radius, knots, lobes, tolerances)
-    ratios = {shape.function: _ratio(shape.function, center, lobes.mate) for shape in shapes}
+
+    def ratio(shape: Callable[..., Jet]) -> Callable[..., Jet]:
+        def over_distance(x: Jet, *parameters: Value) -> Jet:
+            r = shape(x, *parameters)
+            return r / (center - lobes.mate * r)
+
+        return over_distance
+
+    ratios = {shape.function: ratio(shape.function) for shape in shapes}
     pieces = [Piece(ratios[shape.function], parameters=shape.parameters) for shape in shapes]
     return make_law(lobes, knots, pieces, tolerances, {"center_distance_over_scale": center})
 
@@ -120,14 +128,6 @@ def demand_radii(name: str, angles: Array, values: Array, place: str = "") -> No
             value = None if limit is None else float(values[row])
             where = place + angle_text(float(angles[row]))
             raise InfeasibleError(f"{name} {state}", where=where, value=value, limit=limit)
-
-
-def _ratio(shape: Callable[..., Jet], center: float, mate: int) -> Callable[..., Jet]:
-    def ratio(x: Jet, *parameters: Value) -> Jet:
-        radius = shape(x, *parameters)
-        return radius / (center - mate * radius)
-
-    return ratio
 
 
 def solve_center(

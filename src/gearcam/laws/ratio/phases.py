@@ -31,74 +31,75 @@ from gearcam.base.quantities import (
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
-from gearcam.laws.ratio.span import SAME, Lobes, Span, Travel, demand_equal, open_travel
+from gearcam.laws.ratio.span import SAME, Lobes, Span, open_travel, span_of
 from gearcam.numeric.jets import Jet, Value, cos, polynomial, primitive, sin
 from gearcam.numeric.piecewise import Piece
 
+Curve = Callable[[Jet, Value, Value, Value, Value], Jet]
+"""A function of phi1, with the ratios at both ends, the angle at the start and the width."""
 
-@dataclass(frozen=True, kw_only=True)
+
+@dataclass(frozen=True)
 class Arc:
     """A shape of arcs.
 
     Parameters
     ----------
-    piece : callable
-        ``piece(start, end, low, width)`` returns the arc.
+    ratio, integral : callable
+        The ratio, and its integral with any constant.
     share : float
         Weight of the end value in the mean of the arc.
     """
 
-    piece: Callable[[float, float, float, float], Piece]
+    ratio: Curve
+    integral: Curve
     share: float = 0.5
 
+    def piece(self, start: float, end: float, low: float, width: float) -> Piece:
+        """Return the arc between two ratios over ``[low, low + width]``."""
+        return Piece(self.ratio, self.integral, (start, end, low, width))
 
-def _cosine(start: float, end: float, low: float, width: float) -> Piece:
+
+def _cosine(x: Jet, start: Value, end: Value, low: Value, width: Value) -> Jet:
     """003 eqs. (2.1), (2.17) with Tables 2.2, 2.4."""
-    mean, half, speed = 0.5 * (start + end), 0.5 * (start - end), math.pi / width
-    return Piece(_cosine_ratio, _cosine_integral, (mean, half, speed, low))
+    return 0.5 * (start - end) * cos(math.pi / width * (x - low)) + 0.5 * (start + end)
 
 
-def _cosine_ratio(x: Jet, mean: Value, half: Value, speed: Value, low: Value) -> Jet:
-    return half * cos(speed * (x - low)) + mean
+def _cosine_integral(x: Jet, start: Value, end: Value, low: Value, width: Value) -> Jet:
+    half, speed = 0.5 * (start - end), math.pi / width
+    return 0.5 * (start + end) * x + (half / speed) * sin(speed * (x - low))
 
 
-def _cosine_integral(x: Jet, mean: Value, half: Value, speed: Value, low: Value) -> Jet:
-    return mean * x + (half / speed) * sin(speed * (x - low))
+def _sine(x: Jet, start: Value, end: Value, low: Value, width: Value) -> Jet:
+    """Return a quarter of a sine, 003 eqs. (3.1), (3.10), (3.11), with a slope at the start."""
+    return (end - start) * sin(0.5 * math.pi / width * (x - low)) + start
 
 
-def _curve(*powers: float) -> Callable[[float, float, float, float], Piece]:
+def _sine_integral(x: Jet, start: Value, end: Value, low: Value, width: Value) -> Jet:
+    speed = 0.5 * math.pi / width
+    return start * x - ((end - start) / speed) * cos(speed * (x - low))
+
+
+def _rising(*powers: float) -> Arc:
     """Return arcs shaped as a polynomial that rises from 0 to 1 over the unit interval."""
 
-    def ratio(x: Jet, start: Value, rise: Value, low: Value, width: Value) -> Jet:
-        return rise * polynomial((x - low) / width, 0.0, *powers) + start
+    def ratio(x: Jet, start: Value, end: Value, low: Value, width: Value) -> Jet:
+        return (end - start) * polynomial((x - low) / width, 0.0, *powers) + start
 
-    def integral(x: Jet, start: Value, rise: Value, low: Value, width: Value) -> Jet:
+    def integral(x: Jet, start: Value, end: Value, low: Value, width: Value) -> Jet:
         t = (x - low) / width
-        return width * (start * t + rise * primitive(t, 0.0, *powers))
+        return width * (start * t + (end - start) * primitive(t, 0.0, *powers))
 
-    return lambda start, end, low, width: Piece(ratio, integral, (start, end - start, low, width))
-
-
-def _sine(start: float, end: float, low: float, width: float) -> Piece:
-    """Return a quarter of a sine, 003 eqs. (3.1), (3.10), (3.11), with a slope at the start."""
-    return Piece(_sine_ratio, _sine_integral, (start, end - start, 0.5 * math.pi / width, low))
-
-
-def _sine_ratio(x: Jet, start: Value, rise: Value, speed: Value, low: Value) -> Jet:
-    return rise * sin(speed * (x - low)) + start
-
-
-def _sine_integral(x: Jet, start: Value, rise: Value, speed: Value, low: Value) -> Jet:
-    return start * x - (rise / speed) * cos(speed * (x - low))
+    return Arc(ratio, integral)
 
 
 ARCS: Final[dict[str, Arc]] = {
-    "cosine": Arc(piece=_cosine),
+    "cosine": Arc(_cosine, _cosine_integral),
     # 003 eq. (2.13) with Table 2.3, written on the unit interval
-    "cubic": Arc(piece=_curve(0.0, 0.0, 3.0, -2.0)),
+    "cubic": _rising(0.0, 0.0, 3.0, -2.0),
     # also the second derivative of the ratio is zero at both ends
-    "quintic": Arc(piece=_curve(0.0, 0.0, 0.0, 10.0, -15.0, 6.0)),
-    "sine": Arc(piece=_sine, share=2.0 / math.pi),
+    "quintic": _rising(0.0, 0.0, 0.0, 10.0, -15.0, 6.0),
+    "sine": Arc(_sine, _sine_integral, share=2.0 / math.pi),
 }
 """Shapes by their names in design files."""
 
@@ -178,9 +179,8 @@ class Phases(Brief):
         if self.driven_travel is None:
             knots, ratios = one_lobe(np.array(self.knots, dtype=float), self.ratios, lobes)
             return arcs_law(arc, knots, ratios, lobes, tolerances, places=range(len(self.ratios)))
-        demand_equal(lobes)
         knots, solved = _solve_knot(arc, self.knots, self.ratios, self.driven_travel)
-        span = Travel(float(knots[-1]), self.driven_travel, lobes.mate)
+        span = span_of(lobes, float(knots[-1]), self.driven_travel)
         return arcs_law(arc, knots, self.ratios, span, tolerances, solved)
 
 
@@ -188,8 +188,8 @@ def knot_problems(knots: RowOfSome) -> Iterator[tuple[str, int | None, str, str]
     """Yield the faults of `knots`, rad: field, index, message, allowed."""
     if knots[0] != 0.0:
         yield "knots", 0, "the first knot is not 0", "0"
-    known = [(k, value) for k, value in enumerate(knots) if value != "solve"]
-    for (_, before), (index, value) in pairwise(known):
+    given = [(k, value) for k, value in enumerate(knots) if value != "solve"]
+    for (_, before), (index, value) in pairwise(given):
         if not value >= before + NARROWEST:
             rule = f"at least {shown(NARROWEST_DEG)} deg more than the knot before"
             yield "knots", index, "knots must rise", rule
@@ -276,12 +276,12 @@ def arcs_law(
     """
     widths = np.diff(knots)
     weights = np.append((1.0 - arc.share) * widths, 0.0) + np.append(0.0, arc.share * widths)
-    values, found = _close(weights, ratios, lobes, tolerances, places or range(len(ratios)))
+    values, closing = _close(weights, ratios, lobes, tolerances, places or range(len(ratios)))
     pieces = [
         arc.piece(values[k], values[k + 1], float(knots[k]), float(widths[k]))
         for k in range(len(widths))
     ]
-    return make_law(lobes, knots, pieces, tolerances, (solved or {}) | found)
+    return make_law(lobes, knots, pieces, tolerances, (solved or {}) | closing)
 
 
 def _close(
@@ -340,15 +340,15 @@ def _closing_values(
     """
     lines, ways, left = [], [], set(range(len(given)))
     while left:
-        group, own, size = {min(left)}, set[int](), 0
+        group, same, size = {min(left)}, set[int](), 0
         while size < len(group):  # knots with one ratio, and ratios of one knot
             size = len(group)
-            own = {place for k, place in enumerate(places) if k % len(given) in group}
-            group |= {k % len(given) for k, place in enumerate(places) if place in own}
+            same = {place for k, place in enumerate(places) if k % len(given) in group}
+            group |= {k % len(given) for k, place in enumerate(places) if place in same}
         left -= group
         closing = float(given[min(group)] + rest / weights[sorted(group)].sum())
         if closing > 0.0:
-            names = [f"ratios[{place}]" for place in sorted(own)]
+            names = [f"ratios[{place}]" for place in sorted(same)]
             lines.append(f"{' = '.join(names)} = {shown(closing, 10)}")
             ways.append(Way(near={f"law.{name}": closing for name in names}))
     if not lines:

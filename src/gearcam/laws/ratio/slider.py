@@ -106,13 +106,12 @@ def _dead_centres(
     places: Array, values: Array, period: float, function: Callable[[Array], list[Array]]
 ) -> list[tuple[float, float]]:
     """Return the inner extremes, and the end of the lobe if the slope changes sign there."""
-    found = [(float(x), float(v)) for x, v in zip(places[1:-1], values[1:-1], strict=True)]
+    turns = [(float(x), float(v)) for x, v in zip(places[1:-1], values[1:-1], strict=True)]
     step = 1e-6 * period
     before, after = function(np.array([period - step, step]))[1]
-    at_end = [x for x, _ in found if not step < x < period - step]
-    if before * after < 0.0 and not at_end:
-        found.append((0.0, float(function(np.zeros(1))[0][0])))
-    return found
+    if before * after < 0.0 and all(step < x < period - step for x, _ in turns):
+        turns.append((0.0, float(function(np.zeros(1))[0][0])))
+    return turns
 
 
 def crank_angle(slide: Slide) -> tuple[Array, list[Piece], float]:
@@ -139,7 +138,14 @@ def crank_angle(slide: Slide) -> tuple[Array, list[Piece], float]:
     """
     outer = (slide.outer, *_series(slide, slide.outer, 1.0), 1.0)
     inner = (slide.inner, *_series(slide, slide.inner, -1.0), -1.0)
-    angle, period = _between(slide), slide.period
+    period = slide.period
+
+    def angle(x: Jet, sign: Array) -> Jet:
+        """Return the crank angle between dead centres, from the outer (sign 1) or the inner one."""
+        s = slide.position(x)
+        sine, cosine = s * (2.0 * slide.rod - s), (2.0 - s) * (2.0 + 2.0 * slide.rod - s)
+        return (2.0 * sign) * atan(sqrt(sine / cosine))
+
     ratio = derivative(angle)
     stretches: list[tuple[float, float, Piece]] = []
     for (middle, reach, powers, sign), other in ((outer, inner), (inner, outer)):
@@ -169,17 +175,6 @@ def _start(slide: Slide, s: float, slope: float) -> float:
     cosine = max(0.0, (2.0 - s) * (2.0 + 2.0 * slide.rod - s))
     angle = 2.0 * math.atan2(math.sqrt(sine), math.sqrt(cosine))
     return angle if slope >= 0.0 else 2.0 * math.pi - angle
-
-
-def _between(slide: Slide) -> Callable[..., Jet]:
-    """Return the crank angle between dead centres; sign 1 from the outer to the inner one."""
-
-    def angle(x: Jet, sign: Array) -> Jet:
-        s = slide.position(x)
-        sine, cosine = s * (2.0 * slide.rod - s), (2.0 - s) * (2.0 + 2.0 * slide.rod - s)
-        return (2.0 * sign) * atan(sqrt(sine / cosine))
-
-    return angle
 
 
 def _series(slide: Slide, place: float, sign: float) -> tuple[float, list[float]]:

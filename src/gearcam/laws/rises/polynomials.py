@@ -47,11 +47,11 @@ def of_least_degree(
         np.array([Fraction(v) / math.factorial(k) for k, v in enumerate([*e, *[0] * rest])])
         for e, rest in ((start, n), (end, m))
     )
-    known = np.array(about(first.tolist(), 1))
+    about_one = np.array(about(first.tolist(), 1))
     inverse = np.array([Fraction((-1) ** j * math.comb(m + j - 1, j)) for j in range(n)])
     power = np.array([Fraction(math.comb(m, j)) for j in range(m + 1)])
-    missing = np.convolve((last - known)[:n], inverse)[:n]
-    about_end = (known + np.convolve(power, missing)).tolist()
+    missing = np.convolve((last - about_one)[:n], inverse)[:n]
+    about_end = (about_one + np.convolve(power, missing)).tolist()
     return about(about_end, -1), about_end
 
 
