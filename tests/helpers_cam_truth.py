@@ -146,8 +146,8 @@ def rows(result: Any, design: Mapping[str, Any], seed: int = 0) -> Iterator[Row]
     pieces = lift(design)
     motions, walls = touches(design, pieces)
     theta = places(pieces, seed)
-    told, unit = result.motion_at(np.array(theta)), result.mechanism.outward[1]
-    driver = result.mechanism.driver
+    told, unit = result.motion_at(np.array(theta)), result.follower.lift_unit[1]
+    driver = result.driver
     states = [exact.at(pieces, mp.mpf(t)) for t in theta]
     factor, rate = (mp.degrees(1) if unit == "deg" else mp.mpf(1)), mp.mpf(1)
     if driver.unit == "mm":
@@ -173,7 +173,7 @@ def rows(result: Any, design: Mapping[str, Any], seed: int = 0) -> Iterator[Row]
 
 def _ends(result: Any, order: int) -> list[float]:
     """Both ends of a derivative of the lift, as people are told them."""
-    scale = result.mechanism.outward[0] / result.mechanism.driver.rate**order
+    scale = result.follower.lift_unit[0] / result.driver.rate**order
     return [scale * end for end in result.program.range_of(order)]
 
 
@@ -299,7 +299,7 @@ def _room(touch: Touch, piece: Piece, theta: Number) -> Number:
 
 def trimming(result: Any, own: Any, touch: Touch, pieces: list[Piece]) -> Iterator[Row]:
     """Yield ends of undercut stretches, the lift that corners cost, and what sizes they leave."""
-    driver, (scale, unit) = result.mechanism.driver, result.mechanism.outward
+    driver, (scale, unit) = result.driver, result.follower.lift_unit
     for end in np.unique(own.undercut).tolist():
         if inside(pieces, end):
             piece = exact.piece_at(pieces, end)
@@ -330,12 +330,12 @@ def trimming(result: Any, own: Any, touch: Touch, pieces: list[Piece]) -> Iterat
 
 def play(result: Any, motion: Touch, walls: list[Touch], pieces: list[Piece]) -> Iterator[Row]:
     """Yield the lost motion between two walls without corners, and without a clearance 0."""
-    cam, (scale, unit) = result.cam, result.mechanism.outward
+    cam, (scale, unit) = result.cam, result.follower.lift_unit
     lost = cam.lost_motion
     if lost is None or any(wall.corners for wall in cam.walls) or not inside(pieces, lost.theta):
         return
-    second = getattr(cam, "radius2", None)
-    radii = [motion.radius, motion.radius if second is None else mp.mpf(second)]
+    rollers = getattr(cam, "rollers", (cam.motions[0].follower,) * 2)
+    radii = [mp.mpf(roller.radius) for roller in rollers]
     insets = [walls[0].radius - radii[0], walls[1].radius + radii[1]]
 
     def between(t: Number) -> Number:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -12,12 +13,13 @@ from numpy.typing import NDArray
 
 from gearcam.base.tolerances import DEFAULT
 from gearcam.cams.disc import CHORD_TOLERANCE, DiscCam, make_cam
-from gearcam.cams.mechanism import Mechanism, make_mechanism
+from gearcam.cams.followers import Arm, Face, FlatArm, FlatStem, Follower, Round, Stem
+from gearcam.cams.placing import make_follower
 from gearcam.cams.spec import CamSpec, FollowerSpec
 from gearcam.laws.phases_of_lift import DwellPhase, Phase, ReturnPhase, RisePhase
 from gearcam.laws.program import Program, make_program
 from gearcam.laws.rises.base import RISES
-from witness.cam_sweep import Follower
+from witness.cam_sweep import Follower as Witness
 
 Array = NDArray[np.float64]
 Plane = Any
@@ -111,20 +113,62 @@ def there_and_back(
     return program(phases, swings=swings)
 
 
-def mechanism(kind: str, **changed: float) -> Mechanism:
+def follower_of(kind: str, **changed: float) -> Any:
     """Return the follower of a kind; `changed` are other sizes of the follower or the cam."""
     follower, cam = (dict(given) for given in SPECS[kind])
     for name, value in changed.items():
         (cam if name in ("prime_radius", "base_radius") else follower)[name] = value
-    return make_mechanism(FollowerSpec(**follower), CamSpec(**cam))
+    return make_follower(FollowerSpec(**follower), CamSpec(**cam))
 
 
-def witness_of(kind: str, **changed: float) -> Follower:
+@dataclass(frozen=True)
+class Sizes:
+    """A follower over a cam that turns, as numbers for formulas: what it has not is 0."""
+
+    flat: bool
+    oscillating: bool
+    start: float
+    radius: float = 0.0
+    offset: float = 0.0
+    arm: float = 0.0
+    pivot: float = 0.0
+    face_offset: float = 0.0
+
+    @property
+    def round(self) -> Round:
+        if self.oscillating:
+            pivot = complex(self.pivot)
+            return Arm(start=self.start, radius=self.radius, arm=self.arm, pivot=pivot)
+        return Stem(start=self.start, radius=self.radius, offset=self.offset)
+
+    @property
+    def follower(self) -> Follower:
+        if not self.flat:
+            return self.round
+        if self.oscillating:
+            return FlatArm(start=self.start, pivot=self.pivot, offset=self.face_offset)
+        return FlatStem(start=self.start, offset=self.offset)
+
+
+def sizes_of(follower: Any) -> Sizes:
+    """Return the numbers of a follower."""
+    flat, swings = isinstance(follower, Face), follower.angular
+    more = {
+        "radius": follower.radius,
+        "offset": 0.0 if swings else follower.offset,
+        "arm": getattr(follower, "arm", 0.0),
+        "pivot": complex(getattr(follower, "pivot", 0.0)).real,
+        "face_offset": follower.offset if flat and swings else 0.0,
+    }
+    return Sizes(flat=flat, oscillating=swings, start=follower.start, **more)
+
+
+def witness_of(kind: str, **changed: float) -> Witness:
     """Return the same follower for the witness, which knows nothing of the package."""
     given: dict[str, Any] = {**SPECS[kind][0], **SPECS[kind][1], **changed}
     radius = given.get("roller_radius", 0.0) + given.get("dome_radius", 0.0)
     size = given["prime_radius"] if "prime_radius" in given else given["base_radius"] + radius
-    return Follower(
+    return Witness(
         size=size,
         flat=given["type"] == "flat",
         swings="motion" in given,
@@ -138,7 +182,7 @@ def witness_of(kind: str, **changed: float) -> Follower:
 
 def lever(made: DiscCam) -> float:
     """Return mm of contact for a unit of lift, to measure both motions alike."""
-    m = made.mechanism
+    m = sizes_of(made.follower)
     return (m.arm or m.pivot) if m.oscillating else 1.0
 
 
@@ -153,8 +197,8 @@ def cam(
     **changed: float,
 ) -> DiscCam:
     """Return a cam of a kind; `lift` in mm, or in degrees of an arm."""
-    found = mechanism(kind, **changed)
-    motion = there_and_back(rise_law, lift, degrees, swings=found.oscillating)
+    found = follower_of(kind, **changed)
+    motion = there_and_back(rise_law, lift, degrees, swings=found.angular)
     return make_cam(motion, found, clockwise=clockwise, tolerance=tolerance)
 
 
@@ -194,7 +238,7 @@ def stiffness(made: DiscCam, theta: Array) -> Array:
     """Return the lift, mm or rad, that a mm of metal gives along the normal of the contact."""
     place: Any = made.curve.contact(theta, 0).place.c[0]
     along = np.cos(made.motion(theta)["pressure"])
-    m = made.mechanism
+    m = sizes_of(made.follower)
     if not m.oscillating:
         return 1.0 / along
     if m.flat:

@@ -16,20 +16,21 @@ import pytest
 import shapely
 
 from gearcam.cams.disc import DiscCam, make_cam
-from gearcam.cams.mechanism import Mechanism
 from helpers_cams import (
     KINDS,
     TURN,
+    Sizes,
     angles,
     back,
     cam,
     dense,
+    follower_of,
     program,
     rise,
+    sizes_of,
     there_and_back,
     witness_of,
 )
-from helpers_cams import mechanism as kind_of
 from witness.cam_sweep import Exact, Motion, dot, mp
 
 DEGREES = (80.0, 70.0, 110.0, 100.0)
@@ -59,7 +60,7 @@ def close(got: float, exact: Any, scale: float | None = None) -> None:
 def test_contact_by_differences(kind: str) -> None:
     law = ("cycloidal", "3-4-5")[KINDS.index(kind) % 2]
     made = cam(kind, law, 9.0, DEGREES)
-    exact = Exact(witness_of(kind), Motion(law, 9.0, DEGREES, made.mechanism.oscillating))
+    exact = Exact(witness_of(kind), Motion(law, 9.0, DEGREES, made.follower.angular))
     theta = samples(3, 5)
     found, radii = made.motion(theta), made.radii(theta)
     contact: Any = made.curve.contact(theta, 0)
@@ -67,18 +68,18 @@ def test_contact_by_differences(kind: str) -> None:
         t = mp.mpf(float(at))
         close(found["s"][k], exact.motion(t, mp), 1.0)
         close(found["pressure"][k], exact.pressure(t), 1.0)
-        if not made.mechanism.flat:
+        if made.follower.has_centre:
             close(1.0 / found["rho_pitch"][k], exact.curvature(exact.pitch, t))
             close(contact.pitch_speed.c[0][k], abs(mp.diff(exact.pitch, t)))
         close(1.0 / radii[k], exact.curvature(exact.contact, t))
-        if made.mechanism.radius or made.mechanism.flat:
+        if made.curve.rounded:
             close(contact.speed.c[0][k], abs(mp.diff(exact.contact, t)))
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_profile_points_by_differences(kind: str) -> None:
     made = cam(kind, "3-4-5", 9.0, DEGREES)
-    exact = Exact(witness_of(kind), Motion("3-4-5", 9.0, DEGREES, made.mechanism.oscillating))
+    exact = Exact(witness_of(kind), Motion("3-4-5", 9.0, DEGREES, made.follower.angular))
     theta, points, normals = made.places(12)
     assert len(theta) == 12
     for at, point, normal in zip(theta + 0.0, points, normals, strict=True):
@@ -103,7 +104,7 @@ def test_undercut_has_a_negative_radius(kind: str, changed: dict[str, Any]) -> N
     steep = (60.0, 90.0, 60.0, 150.0)
     made = cam(kind, "cycloidal", 14.0, steep, **changed)
     exact = Exact(
-        witness_of(kind, **changed), Motion("cycloidal", 14.0, steep, made.mechanism.oscillating)
+        witness_of(kind, **changed), Motion("cycloidal", 14.0, steep, made.follower.angular)
     )
     theta = np.radians(np.linspace(1.0, 59.0, 14))
     radii = made.radii(theta)
@@ -178,7 +179,7 @@ RADIUS, AWAY = 40.0, 7.0
 """Of the circle, and its centre's distance from the axis, below it at theta = 0."""
 
 
-def circle_lift(m: Mechanism, turn: str) -> str:
+def circle_lift(m: Sizes, turn: str) -> str:
     """The follower's place on the circle, as a formula of its centre ``AWAY*(sin, -cos)(turn)``."""
     x, y = f"({AWAY}*sin({turn}))", f"(0 - {AWAY}*cos({turn}))"
     if not m.oscillating:
@@ -194,7 +195,7 @@ def circle_lift(m: Mechanism, turn: str) -> str:
     return f"(atan({y}/{across}) + {rest})"
 
 
-def place(m: Mechanism, turn: float) -> float:
+def place(m: Sizes, turn: float) -> float:
     """The same as a number: the touching circle is seen from where the follower is guided."""
     x, y, reach = AWAY * math.sin(turn), -AWAY * math.cos(turn), RADIUS + m.radius
     if not m.oscillating:
@@ -207,7 +208,7 @@ def place(m: Mechanism, turn: float) -> float:
 
 def circle_cam(kind: str, clockwise: bool = False) -> DiscCam:
     """The cam that lifts the follower as the circle does: one rise, one return, by formulas."""
-    m = kind_of(kind)
+    m = sizes_of(follower_of(kind))
     low, high = place(m, 0.0), place(m, math.pi)
     up = f"({circle_lift(m, 'pi*x')} - {low!r})/{high - low!r}"
     down = f"({high!r} - {circle_lift(m, 'pi + pi*x')})/{high - low!r}"
@@ -218,7 +219,7 @@ def circle_cam(kind: str, clockwise: bool = False) -> DiscCam:
         back("formula", 180.0, formula=down),
     ]
     motion = program(phases, swings=swings)
-    return make_cam(motion, replace(m, start=low), clockwise=clockwise, tolerance=1e-3)
+    return make_cam(motion, replace(m, start=low).follower, clockwise=clockwise, tolerance=1e-3)
 
 
 @pytest.mark.parametrize(
@@ -243,8 +244,8 @@ def test_an_eccentric_circle_under_every_follower(kind: str, clockwise: bool) ->
 def test_a_wrong_circle_is_seen() -> None:
     """The control: the roller's offset other than the formula's."""
     made = circle_cam("roller, offset")
-    m = made.mechanism
-    points = dense(make_cam(made.program, replace(m, offset=-8.0)))
+    m = sizes_of(made.follower)
+    points = dense(make_cam(made.program, replace(m, offset=-8.0).follower))
     assert np.abs(np.abs(points - complex(0.0, -AWAY)) - RADIUS).max() > 0.1
 
 

@@ -16,7 +16,7 @@ from helpers_cams import (
     back,
     cam,
     dense,
-    mechanism,
+    follower_of,
     program,
     rise,
     there_and_back,
@@ -123,7 +123,7 @@ def harmonic_circle(name: str, clockwise: bool = False) -> DiscCam:
     """A flat face on ``s = e*(1 - cos(theta))`` with e = 5 mm, Rb = 30 mm."""
     more: dict[str, Any] = {"formula": "(1 - cos(pi*x))/2"} if name == "formula" else {}
     phases = [rise(name, 180.0, 10.0, **more), back(name, 180.0, **more)]
-    found = mechanism("flat", base_radius=30.0)
+    found = follower_of("flat", base_radius=30.0)
     return make_cam(program(phases), found, clockwise=clockwise, tolerance=1e-4)
 
 
@@ -150,14 +150,13 @@ def test_the_circle_turns_clockwise_too() -> None:
 def test_the_profile_is_a_parallel_of_the_pitch_curve(kind: str) -> None:
     """``rho_pitch = rho_profile + r``, and every point of the profile is r from its centre."""
     made = cam(kind, lift=6.0)
-    theta, radius = angles(200), made.mechanism.radius
+    theta, radius = angles(200), made.follower.radius
     found = made.motion(theta)
     np.testing.assert_allclose(found["rho_pitch"], made.radii(theta) + radius, rtol=1e-13)
     assert np.ptp(found["rho_pitch"]) > 1.0
     points = made.places(200)[1]
-    centres = made.curve.pitch(
-        TURN * np.arange(200) / 200, made.program.derivatives(TURN * np.arange(200) / 200, 0)[0]
-    )
+    turned = TURN * np.arange(200) / 200
+    centres, _ = made.pitch_curve.trace(turned, *made.program.derivatives(turned, 1))
     np.testing.assert_allclose(np.abs(points - centres), radius, rtol=1e-13)
     # the three curves' perimeters differ by 2*pi*r each (Steiner), whatever their form
     outer = made.pitch_contour.moments.area
@@ -218,7 +217,7 @@ def test_a_rising_shock_leaves_an_arc_of_the_roller(kind: str) -> None:
     made = cam(kind, "constant-velocity")
     convex, concave = made.profile_radius
     assert convex == 0.0
-    assert concave == pytest.approx(made.mechanism.radius, rel=1e-12)
+    assert concave == pytest.approx(made.follower.radius, rel=1e-12)
 
 
 def test_shocks_of_a_point_are_corners() -> None:
@@ -246,7 +245,7 @@ def test_the_pitch_curve_has_corners_at_shocks() -> None:
     made = cam("roller, offset", "constant-velocity")
     runs = made.pitch_contour.runs
     knots = made.program.knots[:-1]
-    corners = made.curve.pitch(knots, made.program.derivatives(knots, 0)[0])
+    corners, _ = made.pitch_curve.trace(knots, *made.program.derivatives(knots, 1))
     starts = np.array([run.points[0] @ [1, 1j] for run in runs])
     assert len(runs) == 4
     off = np.abs(starts[:, None] - corners).min(axis=0)

@@ -17,7 +17,7 @@ import pytest
 
 import gearcam
 from gearcam.cams.disc import DiscCam, make_cam
-from gearcam.cams.mechanism import make_mechanism
+from gearcam.cams.placing import make_follower
 from gearcam.cams.spec import CamSpec, FollowerSpec
 from helpers_cams import KINDS, SPECS, there_and_back
 from helpers_pairs import PROFILES
@@ -41,12 +41,12 @@ def at_scale(kind: str, law: str, scale: float) -> DiscCam:
     spec = FollowerSpec(**follower)
     lift = LENGTH * (1.0 if spec.oscillating else scale)
     program = there_and_back(law, lift, STEEP, swings=spec.oscillating)
-    return make_cam(program, make_mechanism(spec, CamSpec(**cam)), tolerance=1e-3 * scale)
+    return make_cam(program, make_follower(spec, CamSpec(**cam)), tolerance=1e-3 * scale)
 
 
 def measured(made: DiscCam, scale: float) -> dict[str, float]:
     """Numbers of a cam, in its own size; radii that do not exist are left out."""
-    of_lift = made.mechanism.lever / scale
+    of_lift = made.follower.lever / scale
     pitch = made.pitch_curvature()
     radii = {
         name: value / scale

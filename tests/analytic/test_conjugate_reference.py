@@ -11,11 +11,11 @@ import pytest
 
 from gearcam.cams.conjugate import ConjugateCam, SecondRoller, make_conjugate
 from gearcam.cams.follow import follow
-from gearcam.cams.mechanism import make_mechanism
+from gearcam.cams.placing import make_round_follower
 from gearcam.cams.spec import CamSpec, FollowerSpec
 from gearcam.cams.wall import Wall
 from gearcam.laws.program import Program
-from helpers_cams import TURN, angles, back, dwell, program, rise
+from helpers_cams import TURN, angles, back, dwell, program, rise, sizes_of
 from witness.cam_sweep import Follower
 from witness.follower import rest
 
@@ -39,7 +39,7 @@ def motion(*, swings: bool = False) -> Program:
 def sliding(offset: float = 0.0, *, clockwise: bool = False, **second: Any) -> ConjugateCam:
     follower = FollowerSpec(type="roller", roller_radius=10.0, offset=offset)
     roller = SecondRoller(**({"radius": 8.0, "prime": 40.0} | second))
-    found = make_mechanism(follower, CamSpec(prime_radius=40.0))
+    found = make_round_follower(follower, CamSpec(prime_radius=40.0))
     return make_conjugate(motion(), found, roller, clockwise=clockwise)
 
 
@@ -48,7 +48,7 @@ def swinging(*, clockwise: bool = False, **second: Any) -> ConjugateCam:
         type="roller", motion="oscillating", roller_radius=8.0, arm=90.0, pivot_distance=100.0
     )
     roller = SecondRoller(**({"radius": 8.0, "arm": 85.0, "prime": 38.0} | second))
-    found = make_mechanism(follower, CamSpec(prime_radius=40.0))
+    found = make_round_follower(follower, CamSpec(prime_radius=40.0))
     return make_conjugate(motion(swings=True), found, roller, clockwise=clockwise)
 
 
@@ -96,8 +96,8 @@ def test_points_of_translating_cams(offset: float, apart: float) -> None:
 def test_points_and_radii_of_oscillating_cams() -> None:
     made, degrees = swinging(), (0, 30, 60, 100, 210, 260)
     assert math.degrees(made.apart) == pytest.approx(65.386022742032, abs=1e-11)
-    assert math.degrees(made.first.mechanism.start) == pytest.approx(23.5564643091, abs=1e-10)
-    top = -math.degrees(made.second.mechanism.start) - 20.0
+    assert math.degrees(made.first.follower.start) == pytest.approx(23.5564643091, abs=1e-10)
+    top = -math.degrees(made.second.follower.start) - 20.0
     assert top == pytest.approx(21.82955843293, abs=1e-10)
     expected = np.array(SWINGING)
     assert points(made, *degrees) == pytest.approx(expected[:, :4], abs=POINT)
@@ -173,15 +173,15 @@ def test_a_follower_finds_the_same_lift_on_both(kind: str, *, clockwise: bool) -
         runs = [run.points @ [1.0, 1j] for whole in wall.contour.runs for run in whole.pieces]
         if clockwise:
             runs = [-np.conj(one) for one in runs]
-        m, sign = wall.mechanism, -1.0 if wall.mechanism.below else 1.0
-        if m.below:
+        m, sign = sizes_of(wall.follower), -1.0 if wall.follower.below else 1.0
+        if wall.follower.below:
             runs = [np.conj(one) for one in runs]
         own = Follower(
-            size=m.least, swings=m.oscillating, radius=m.radius, offset=m.offset, arm=m.arm,
-            pivot=m.pivot,
+            size=wall.follower.prime_radius, swings=m.oscillating, radius=m.radius,
+            offset=m.offset, arm=m.arm, pivot=m.pivot,
         )  # fmt: skip
         found.append(sign * rest(runs, own, sign * theta).position - m.start)
-    lever = made.first.mechanism.arm or 1.0
+    lever = made.first.follower.lever
     assert np.abs(found[0] - found[1]).max() * lever < 1e-9
     assert np.abs(found[0] - made.first.program.derivatives(theta, 0)[0]).max() * lever < 1e-9
 
@@ -189,9 +189,9 @@ def test_a_follower_finds_the_same_lift_on_both(kind: str, *, clockwise: bool) -
 @pytest.mark.parametrize("made", [sliding(), sliding(-6.0), swinging()], ids=["0", "-6", "swings"])
 def test_follow_finds_it_within_the_chords(made: ConjugateCam) -> None:
     theta = np.linspace(0.0, TURN, 91)
-    lever = made.first.mechanism.arm or 1.0
+    lever = made.first.follower.lever
     for wall in made.walls:
-        found = follow(wall.outline, wall.mechanism, theta)
+        found = follow(wall.outline, wall.follower, theta)
         off = (found.lift - wall.program.derivatives(theta, 0)[0]) * lever
         assert np.abs(off).max() < 1.5 * wall.tolerance
         # it falls towards the axis between points
@@ -226,7 +226,9 @@ def test_a_centred_pair_is_symmetric(name: str) -> None:
     the dwells exchanged: here they are equal.
     """
     there = program([rise(name, 120, 8), dwell(60), back(name, 120), dwell(60)])
-    found = make_mechanism(FollowerSpec(type="roller", roller_radius=5.0), CamSpec(prime_radius=40))
+    found = make_round_follower(
+        FollowerSpec(type="roller", roller_radius=5.0), CamSpec(prime_radius=40)
+    )
     made = make_conjugate(there, found, SecondRoller(radius=5.0, prime=40.0))
     one, two = made.walls
     assert two.size.area == pytest.approx(one.size.area, rel=1e-12)

@@ -14,8 +14,8 @@ import pytest
 from numpy.typing import NDArray
 
 from gearcam.cams.follow import Followed, follow
-from gearcam.cams.mechanism import Mechanism
 from gearcam.numeric.bulges import as_complex, as_pairs, flatten_bulges
+from helpers_cams import Sizes
 from helpers_sampling import few
 from witness.cam_sweep import Follower
 from witness.follower import Rest, rest
@@ -28,36 +28,34 @@ DENSE = 20000
 RADIUS, MIDDLE = 40.0, 7.0 * np.exp(0.4j)
 
 FOLLOWERS = {
-    "flat": Mechanism(flat=True, oscillating=False, start=33.0),
-    "roller": Mechanism(flat=False, oscillating=False, start=41.0, radius=8.0, offset=5.0),
-    "needle": Mechanism(flat=False, oscillating=False, start=33.0, radius=1e-4, offset=5.0),
-    "point": Mechanism(flat=False, oscillating=False, start=33.0, offset=-5.0),
-    "dome": Mechanism(flat=False, oscillating=False, start=333.0, radius=300.0, offset=5.0),
-    "swinging face": Mechanism(
-        flat=True, oscillating=True, start=0.3, pivot=100.0, face_offset=6.0
-    ),
-    "face off the pivot": Mechanism(
+    "flat": Sizes(flat=True, oscillating=False, start=33.0),
+    "roller": Sizes(flat=False, oscillating=False, start=41.0, radius=8.0, offset=5.0),
+    "needle": Sizes(flat=False, oscillating=False, start=33.0, radius=1e-4, offset=5.0),
+    "point": Sizes(flat=False, oscillating=False, start=33.0, offset=-5.0),
+    "dome": Sizes(flat=False, oscillating=False, start=333.0, radius=300.0, offset=5.0),
+    "swinging face": Sizes(flat=True, oscillating=True, start=0.3, pivot=100.0, face_offset=6.0),
+    "face off the pivot": Sizes(
         flat=True, oscillating=True, start=0.3, pivot=100.0, face_offset=-6.0
     ),
-    "swinging roller": Mechanism(
+    "swinging roller": Sizes(
         flat=False, oscillating=True, start=0.4, pivot=100.0, arm=90.0, radius=8.0
     ),
-    "swinging point": Mechanism(flat=False, oscillating=True, start=0.4, pivot=100.0, arm=90.0),
-    "swinging dome": Mechanism(
+    "swinging point": Sizes(flat=False, oscillating=True, start=0.4, pivot=100.0, arm=90.0),
+    "swinging dome": Sizes(
         flat=False, oscillating=True, start=0.4, pivot=100.0, arm=120.0, radius=135.0
     ),
-    "pivot within the cam": Mechanism(
+    "pivot within the cam": Sizes(
         flat=False, oscillating=True, start=0.4, pivot=25.0, arm=60.0, radius=8.0
     ),
 }
 
 
-def witness_of(m: Mechanism) -> Follower:
+def witness_of(m: Sizes) -> Follower:
     """The same follower for the witness; its size is not asked for."""
     return Follower(0.0, m.flat, m.oscillating, m.radius, m.offset, m.arm, m.pivot, m.face_offset)
 
 
-def smooth(follower: Mechanism, theta: Array, *pieces: Plane) -> Rest:
+def smooth(follower: Sizes, theta: Array, *pieces: Plane) -> Rest:
     """Where the witness rests on smooth pieces."""
     return rest(pieces, witness_of(follower), theta)
 
@@ -75,7 +73,7 @@ def turns(count: int, uneven: bool = False) -> Array:
     return u * (2.0 * math.pi / count)
 
 
-def on_circle(follower: Mechanism, theta: Array) -> Array:
+def on_circle(follower: Sizes, theta: Array) -> Array:
     """Lift on a circle about MIDDLE, from where its middle stands."""
     middle = MIDDLE * np.exp(1j * theta)
     f, d, arm = follower, follower.pivot, follower.arm
@@ -105,7 +103,7 @@ def on_circle(follower: Mechanism, theta: Array) -> Array:
     return np.arctan2(centre.imag, d - centre.real) - f.start
 
 
-def in_mm(follower: Mechanism, found: Followed | Rest, lift: Array) -> float:
+def in_mm(follower: Sizes, found: Followed | Rest, lift: Array) -> float:
     """Largest difference of lifts at the roller or, of a face, 100 mm from its pivot."""
     arm = (follower.arm or 100.0) if follower.oscillating else 1.0
     mine = found.lift if isinstance(found, Followed) else found.position - follower.start
@@ -128,7 +126,7 @@ def test_a_polygon_converges_to_its_circle_with_the_second_order(name: str) -> N
     counts, errors = (250, 500, 1000, 2000, 4000), []
     for count in counts:
         points = MIDDLE + RADIUS * np.exp(1j * turns(count))
-        followed = follow(points, follower, THETA)
+        followed = follow(points, follower.follower, THETA)
         # never too high: the polygon is within the circle
         assert np.max(followed.lift - exact) < 1e-12
         assert np.all(np.abs(followed.lift - exact) <= 1.02 * followed.error)
@@ -142,12 +140,12 @@ def test_a_polygon_converges_to_its_circle_with_the_second_order(name: str) -> N
 def test_an_ellipse_under_a_flat_face(exact: bool, count: int, within: float) -> None:
     a, b = 50.0, 20.0
     points = a * np.cos(turns(count)) + 1j * b * np.sin(turns(count))
-    follower = Mechanism(flat=True, oscillating=False, start=b)
+    follower = Sizes(flat=True, oscillating=False, start=b)
     if exact:
         found = smooth(follower, THETA, lapped(points))
         lift, contact = found.position - b, found.contact
     else:
-        followed = follow(points, follower, THETA)
+        followed = follow(points, follower.follower, THETA)
         lift, contact = followed.lift, followed.contact
     support = np.sqrt((a * np.sin(THETA)) ** 2 + (b * np.cos(THETA)) ** 2)
     assert np.abs(lift - (support - b)).max() < within
@@ -179,7 +177,7 @@ def on_square(half: float, radius: float | None, theta: Array) -> Array:
 @pytest.mark.parametrize("radius", [None, 0.0, 5.0, 200.0])
 @pytest.mark.parametrize(("exact", "count"), [(False, 2), (False, 50), (True, 50)])
 def test_a_square_with_its_corners(radius: float | None, exact: bool, count: int) -> None:
-    follower = Mechanism(flat=radius is None, oscillating=False, start=30.0, radius=radius or 0.0)
+    follower = Sizes(flat=radius is None, oscillating=False, start=30.0, radius=radius or 0.0)
     theta = np.append(THETA, [0.0, math.pi / 4, math.pi / 2])
     points = square(30.0, count, 0.0)
     if exact:
@@ -187,13 +185,13 @@ def test_a_square_with_its_corners(radius: float | None, exact: bool, count: int
         pieces = [sides[k * count : (k + 1) * count + 1] for k in range(4)]
         lift = smooth(follower, theta, *pieces).position - 30.0
     else:
-        lift = follow(points, follower, theta).lift
+        lift = follow(points, follower.follower, theta).lift
     assert lift == pytest.approx(on_square(30.0, radius, theta) - 30.0, abs=1e-11)
 
 
 def test_corners_without_points_are_cut_off_a_polygon() -> None:
     """The control of the test above: the same points, read as a polygon, lose the corners."""
-    followed = follow(square(30.0, 50, 0.5), FOLLOWERS["flat"], THETA)
+    followed = follow(square(30.0, 50, 0.5), FOLLOWERS["flat"].follower, THETA)
     assert np.abs(followed.lift + 33.0 - on_square(30.0, None, THETA)).max() > 0.1
 
 
@@ -206,7 +204,7 @@ def test_two_arcs_are_a_circle(name: str) -> None:
     ends = as_pairs(np.array([MIDDLE + RADIUS, MIDDLE - RADIUS]))
     sagitta = 1e-4
     points = flatten_bulges(ends, np.ones(2), sagitta)
-    chords = follow(points, follower, THETA)
+    chords = follow(points, follower.follower, THETA)
     off = in_mm(follower, chords, exact)
     assert 0.1 * sagitta < off < 5.0 * sagitta
     assert in_mm(follower, smooth(follower, THETA, lapped(as_complex(points))), exact) < 1e-9
@@ -247,13 +245,13 @@ def test_arcs_and_straight_flanks(radius: float | None) -> None:
     """Jumps of the curvature, at points as a polyline has them."""
     shape = (30.0, 8.0, 35.0)
     vertices, bulges = nose(*shape)
-    follower = Mechanism(flat=radius is None, oscillating=False, start=30.0, radius=radius or 0.0)
+    follower = Sizes(flat=radius is None, oscillating=False, start=30.0, radius=radius or 0.0)
     if radius is None:
         exact = np.maximum(shape[0], shape[2] * np.sin(THETA) + shape[1])
     else:
         exact = on_nose(*shape, radius, THETA)
     points = flatten_bulges(vertices, bulges, 1e-4, least=8)
-    lift = follow(points, follower, THETA).lift
+    lift = follow(points, follower.follower, THETA).lift
     assert -5e-4 < np.min(lift + 30.0 - exact) < -1e-6
     assert np.max(lift + 30.0 - exact) < 1e-11
     z, corners = as_complex(points), as_complex(vertices)
@@ -291,7 +289,7 @@ def rise_and_return(rise: Rise, theta: Array) -> tuple[Array, Array]:
     return lift, 10.0 * np.where(rising, up[1] / knots[1], -down[1] / (knots[3] - knots[2]))
 
 
-def made_for(rise: Rise, follower: Mechanism, theta: Array) -> Plane:
+def made_for(rise: Rise, follower: Sizes, theta: Array) -> Plane:
     """The cam by its envelope: the contact of a flat face, or the inner parallel of the centres."""
     lift, slope = rise_and_return(rise, theta)
     if follower.flat:
@@ -309,18 +307,16 @@ def share(uneven: bool) -> Array:
 
 
 MADE = [
-    Mechanism(flat=True, oscillating=False, start=40.0),
-    Mechanism(flat=False, oscillating=False, start=29.0, radius=6.0, offset=8.0),
-    Mechanism(flat=False, oscillating=False, start=29.0, offset=8.0),
+    Sizes(flat=True, oscillating=False, start=40.0),
+    Sizes(flat=False, oscillating=False, start=29.0, radius=6.0, offset=8.0),
+    Sizes(flat=False, oscillating=False, start=29.0, offset=8.0),
 ]
 
 
 @pytest.mark.parametrize("follower", MADE)
 @pytest.mark.parametrize("rise", [parabolas, polynomial])
 @pytest.mark.parametrize("uneven", few([True, False]))
-def test_a_cam_gives_the_lift_it_was_made_for(
-    rise: Rise, follower: Mechanism, uneven: bool
-) -> None:
+def test_a_cam_gives_the_lift_it_was_made_for(rise: Rise, follower: Sizes, uneven: bool) -> None:
     """At every degree, and at the knots and close to them, where no point lies."""
     near = np.random.default_rng(3).uniform(-1e-3, 1e-3, 100)
     knots = np.radians([0.0, 40.0, 80.0, 150.0, 210.0, 270.0])
@@ -335,12 +331,12 @@ def test_a_cam_gives_the_lift_it_was_made_for(
 
 
 @pytest.mark.parametrize("follower", MADE)
-def test_a_mirrored_cam_and_a_wrong_direction_are_seen(follower: Mechanism) -> None:
+def test_a_mirrored_cam_and_a_wrong_direction_are_seen(follower: Sizes) -> None:
     """The control: rise and return differ, so that each mistake is far off."""
     exact = rise_and_return(polynomial, THETA)[0]
     points = made_for(polynomial, follower, turns(2000))
-    assert np.abs(follow(points, follower, THETA).lift - exact).max() < 1e-4
-    mirrored = follow(np.conj(points), follower, THETA).lift
-    backwards = follow(points, follower, -THETA).lift
+    assert np.abs(follow(points, follower.follower, THETA).lift - exact).max() < 1e-4
+    mirrored = follow(np.conj(points), follower.follower, THETA).lift
+    backwards = follow(points, follower.follower, -THETA).lift
     assert np.abs(mirrored - exact).max() > 1.0
     assert np.abs(backwards - exact).max() > 1.0

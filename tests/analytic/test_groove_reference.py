@@ -10,7 +10,7 @@ import pytest
 
 from gearcam.cams.groove import GrooveCam, make_groove
 from gearcam.cams.lost_motion import Rest
-from helpers_cams import mechanism, there_and_back
+from helpers_cams import follower_of, there_and_back
 
 CLEARANCE = 0.1
 
@@ -30,7 +30,7 @@ POINTS = {
 @pytest.fixture(scope="module")
 def reference() -> GrooveCam:
     return make_groove(
-        there_and_back("cycloidal", 10.0), mechanism("roller, offset"), clearance=CLEARANCE
+        there_and_back("cycloidal", 10.0), follower_of("roller, offset"), clearance=CLEARANCE
     )
 
 
@@ -38,7 +38,7 @@ def steep(**sizes: Any) -> GrooveCam:
     """A groove whose outer wall is the first to be undercut."""
     motion = there_and_back("3-4-5", 25.0, (50.0, 130.0, 50.0, 130.0))
     radius = sizes.pop("radius")
-    return make_groove(motion, mechanism("roller", roller_radius=radius), **sizes)
+    return make_groove(motion, follower_of("roller", roller_radius=radius), **sizes)
 
 
 @pytest.mark.parametrize("degrees", POINTS)
@@ -106,7 +106,9 @@ def test_radii_of_the_outer_wall_are_those_of_its_metal(reference: GrooveCam) ->
 def test_the_play_where_the_follower_rests_is_that_of_two_circles(reference: GrooveCam) -> None:
     """A dwell's walls are circles: the centre stands half the clearance within and beyond."""
     theta = np.radians([135.0, 300.0])
-    up, down = (Rest(wall=wall, radius=6.0).lift(theta)[0] for wall in reference.walls)
+    up, down = (
+        Rest(wall=wall, roller=reference.rollers[0]).lift(theta)[0] for wall in reference.walls
+    )
     radii = np.array([abs(8.0 + 1j * (math.sqrt(836.0) + 10.0)), 30.0])
     expected = [np.sqrt((radii + half) ** 2 - 64.0) for half in (-0.05, 0.05)]
     np.testing.assert_allclose(up, expected[0] - math.sqrt(836.0), atol=1e-12)
@@ -117,7 +119,7 @@ def test_the_largest_lost_motion_is_the_clearance_over_the_cosine_to_first_order
     alpha = math.radians(31.810726241518)
     for clearance in (1e-2, 1e-3, 1e-4):
         made = make_groove(
-            there_and_back("cycloidal", 10.0), mechanism("roller, offset"), clearance=clearance
+            there_and_back("cycloidal", 10.0), follower_of("roller, offset"), clearance=clearance
         )
         play = made.lost_motion.value
         assert play / clearance == pytest.approx(1.0 / math.cos(alpha), rel=0.1 * clearance)

@@ -14,7 +14,7 @@ from gearcam.base.tolerances import DEFAULT
 from gearcam.cams.follow import follow
 from gearcam.cams.lost_motion import Rest
 from gearcam.cams.measures import over_the_end
-from gearcam.cams.mechanism import make_sliding_mechanism
+from gearcam.cams.placing import make_follower_over_plate
 from gearcam.cams.sliding import SlidingCam, make_sliding
 from gearcam.cams.spec import FollowerSpec
 from gearcam.laws.phases_of_lift import DwellPhase, ReturnPhase, RisePhase
@@ -58,8 +58,10 @@ def made(name: str = "upright", radius: float = 6.0, run: float = 0.0, **sizes: 
         *still,
     ]
     program = make_program(phases, DEFAULT, oscillating=spec.oscillating, closed=False)
-    mechanism = make_sliding_mechanism(spec, 130.0 + 2.0 * run)
-    return make_sliding(program, mechanism, **{"height": 60.0, "groove": True} | sizes)
+    follower, travel = make_follower_over_plate(spec), 130.0 + 2.0 * run
+    return make_sliding(
+        program, follower, **{"travel": travel, "height": 60.0, "groove": True} | sizes
+    )
 
 
 def angle(cam: SlidingCam, way: float) -> Any:
@@ -95,7 +97,7 @@ def test_extremes(
     assert pressure is not None
     assert bend is not None
     assert math.degrees(pressure.largest) == pytest.approx(steepest, abs=1e-10)
-    scale = motion.mechanism.driver.scale
+    scale = motion.carrier.driver.scale
     for end, sign, at in ((bend.low, -1.0, at_valley), (bend.high, 1.0, at_crest)):
         assert sign / end.value == pytest.approx(valley, abs=1e-10)
         assert scale * end.theta == pytest.approx(at, abs=1e-6)
@@ -160,11 +162,11 @@ def test_a_roller_on_the_lower_wall_has_the_lift_asked_for(name: str) -> None:
     cam = made(name, run=RUN, groove=False, tolerance=1e-5, height=80.0)
     theta = np.linspace(0.02, 6.26, 301)
     dense = np.vstack([run.points for run in cam.edge.runs]) @ [1.0, 1.0j]
-    found = follow(dense, cam.motion.mechanism, theta)
+    found = follow(dense, cam.roller, theta, carrier=cam.motion.carrier)
     asked = cam.motion.program.derivatives(theta, 0)[0]
     np.testing.assert_allclose(found.lift, asked, atol=1e-6)
     for wall in made(name, run=RUN).walls:
-        lift, slope = Rest(wall=wall, radius=6.0).lift(theta)
+        lift, slope = Rest(wall=wall, roller=cam.roller).lift(theta)
         np.testing.assert_allclose(lift, asked, atol=1e-11)
         np.testing.assert_allclose(slope, cam.motion.program.derivatives(theta, 1)[1], atol=1e-9)
 
@@ -198,7 +200,7 @@ def test_lost_lift_is_what_a_roller_on_the_trimmed_wall_lacks(name: str) -> None
     assert wall.corners
     assert wall.shortfall > 1e-3
     theta = np.linspace(0.05, 6.2, 2001)
-    found = follow(cam.edge.vertices, cam.motion.mechanism, theta)
+    found = follow(cam.edge.vertices, cam.roller, theta, carrier=cam.motion.carrier)
     lost = program.derivatives(theta, 0)[0] - found.lift
     assert lost.max() == pytest.approx(wall.shortfall, rel=1e-2)
     low, high = wall.corners[0].before, wall.corners[-1].after

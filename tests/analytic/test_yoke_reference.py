@@ -13,7 +13,7 @@ from gearcam.cams.disc import YokeCam, make_cam, make_yoke
 from gearcam.laws.half_turns import completed
 from gearcam.laws.phases_of_lift import Phase, SegmentPhase
 from gearcam.laws.program import Program, make_program
-from helpers_cams import angles, dwell, mechanism, pieces_of, rise
+from helpers_cams import angles, dwell, follower_of, pieces_of, rise, sizes_of
 from witness.cam_sweep import Follower
 from witness.follower import rest
 
@@ -33,7 +33,7 @@ def reference(name: str = "cycloidal") -> Program:
 
 def yoke(kind: str, motion: Program | None = None, **sizes: Any) -> YokeCam:
     turns = {"clockwise": sizes.pop("clockwise", False)}
-    return make_yoke(make_cam(motion or reference(), mechanism(kind, **sizes), **turns))
+    return make_yoke(make_cam(motion or reference(), follower_of(kind, **sizes), **turns))
 
 
 def segmented() -> Program:
@@ -120,7 +120,7 @@ def test_both_faces_touch_at_every_angle(name: str) -> None:
 def test_a_follower_rests_on_both_sides_at_the_same_lift(kind: str, clockwise: bool) -> None:
     for motion in (reference(), segmented()):
         made, theta = yoke(kind, motion, clockwise=clockwise), angles(60)
-        m = made.mechanism
+        m = sizes_of(made.follower)
         own = Follower(size=m.start, flat=m.flat, radius=m.radius)
         above, below = (rest(pieces_of(made), own, t).position for t in (theta, theta + math.pi))
         asked = made.program.derivatives(theta, 0)[0]

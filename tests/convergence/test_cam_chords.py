@@ -57,7 +57,7 @@ def test_the_area_converges_with_the_square_of_the_vertices(kind: str) -> None:
 def test_the_lift_converges_with_the_square_of_the_vertices(kind: str) -> None:
     theta, errors = angles(500), []
     for made in (at(kind, float(tolerance)) for tolerance in TOLERANCES):
-        found = follow(corners_of(made), made.mechanism, theta)
+        found = follow(corners_of(made), made.follower, theta)
         errors.append(np.abs(found.lift - made.program.derivatives(theta, 0)[0]).max())
     assert slope(counts(kind), errors) == pytest.approx(-2.0, abs=0.1)
     assert errors[-1] * lever(at(kind, float(TOLERANCES[-1]))) < 2.0 * TOLERANCES[-1]
@@ -143,7 +143,7 @@ def test_a_swept_follower_leaves_the_trimmed_profile(name: str) -> None:
     case = SWEPT[name]
     kind, law, lift, degrees, changed = case
     made = cam(kind, law, lift, degrees, **changed)
-    steps = [96, 192, 384, 768] if made.mechanism.flat else [72, 144, 288, 576]
+    steps = [72, 144, 288, 576] if made.follower.has_centre else [96, 192, 384, 768]
     assert bool(made.corners) == ("undercut" in name or "shocks" in name or "larger" in name)
     left = [sweep(case, made, count) for count in steps]
     over = [region.area - made.size.area for region in left]

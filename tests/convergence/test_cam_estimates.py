@@ -44,7 +44,7 @@ def test_chords_and_the_lift_that_they_give(kind: str) -> None:
     assert slope(counts, [one.contour.chord_error for one in made]) == pytest.approx(-2.0, abs=0.1)
     theta, told = angles(200), []
     for one in made:
-        found = follow(one.outline, one.mechanism, theta)
+        found = follow(one.outline, one.follower, theta)
         off = np.abs(found.lift - one.program.derivatives(theta, 0)[0])
         told.append(float(found.error.max()))
         assert off.max() < told[-1] < 100.0 * off.max()

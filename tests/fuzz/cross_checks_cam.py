@@ -45,16 +45,16 @@ def doubts(result: CamResult) -> Iterator[tuple[str, str]]:
         room = _room(wall, theta)
         worst = int((off - room).argmax())
         if off[worst] > room[worst]:
-            at = wall.mechanism.driver.told(float(theta[worst]))
+            at = wall.carrier.driver.told(float(theta[worst]))
             words = f"{wall.called} {wall.key}: the lift at {at} differs by {off[worst]}"
-            yield "lift", f"{words}, {room[worst]} {wall.mechanism.outward[1]} are allowed"
+            yield "lift", f"{words}, {room[worst]} {wall.follower.lift_unit[1]} are allowed"
 
 
 def _room(wall: Wall, theta: Array) -> Array:
     """Return the allowed error of the lift at cam angles, in the unit of files."""
-    mechanism, contact = wall.mechanism, wall.curve.contact(theta, 0)
-    lever = mechanism.lever * np.cos(contact.pressure.c[0])
-    if mechanism.flat:  # perpendicular to the face
-        lever = np.abs(contact.place.c[0]) if mechanism.oscillating else 1.0
+    follower, contact = wall.follower, wall.curve.contact(theta, 0)
+    lever = follower.lever * np.cos(contact.pressure.c[0])
+    if not follower.has_centre:  # perpendicular to the face
+        lever = np.abs(contact.place.c[0]) if follower.angular else 1.0
     normal = _ROOM * wall.tolerance + _ROUNDING * np.abs(wall.outline).max()
-    return mechanism.outward[0] * (normal / lever + wall.shortfall + np.zeros_like(theta))
+    return follower.lift_unit[0] * (normal / lever + wall.shortfall + np.zeros_like(theta))

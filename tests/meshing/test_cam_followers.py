@@ -30,6 +30,7 @@ from helpers_cams import (
     lever,
     pieces_of,
     resting,
+    sizes_of,
     stiffness,
     witness_of,
 )
@@ -64,7 +65,7 @@ def test_the_exact_profile_gives_the_lift_asked_for(kind: str, clockwise: bool) 
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_polygon_gives_it_within_the_tolerance(kind: str, clockwise: bool) -> None:
     made = cam(kind, "3-4-5", 8.0, DEGREES, clockwise=clockwise, tolerance=CHORD)
-    found = follow(corners_of(made), made.mechanism, THETA)
+    found = follow(corners_of(made), made.follower, THETA)
     asked = made.program.derivatives(THETA, 0)[0]
     # in mm along the normal; the contact moves by half a chord, and alpha with it by a few percent
     off = (found.lift - asked) / stiffness(made, THETA)
@@ -237,7 +238,7 @@ def test_a_trimmed_cam_loses_what_it_says(name: str, clockwise: bool) -> None:
 def test_a_corner_is_drawn_from_both_its_sides(name: str) -> None:
     """At both angles the follower of the lift asked for touches the corner, and nothing is lost."""
     made = built(name)
-    m = made.mechanism
+    m = sizes_of(made.follower)
     for corner in made.corners:
         both = np.array([corner.before, corner.after])
         position = m.start + made.program.derivatives(both, 0)[0]

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from gearcam.base.errors import InfeasibleError
 from gearcam.cams.disc import DiscCam, make_cam
 from gearcam.cams.follow import follow
-from gearcam.cams.mechanism import make_mechanism
+from gearcam.cams.placing import make_follower
 from gearcam.cams.spec import CamSpec, FollowerSpec
 from gearcam.laws.phases_of_lift import Phase, SegmentPhase, levels
 from helpers_cams import angles, back, corners_of, dwell, program, resting, rise, stiffness
@@ -111,7 +111,7 @@ def made_of(design: Given) -> DiscCam | InfeasibleError:
     follower, size, phases = design
     spec = FollowerSpec(**follower)
     try:
-        found = make_mechanism(spec, CamSpec(**size))
+        found = make_follower(spec, CamSpec(**size))
         motion = program(phases, swings=spec.oscillating)
         made = make_cam(motion, found, tolerance=CHORD)
         assert made.contour.runs
@@ -140,14 +140,14 @@ def demand_cam(design: Given) -> DiscCam | None:
 
 def demand_motion(made: DiscCam) -> None:
     theta = angles(120)
-    found = follow(corners_of(made), made.mechanism, theta)
+    found = follow(corners_of(made), made.follower, theta)
     missing = made.program.derivatives(theta, 0)[0] - found.lift
     # steep contacts move along the profile by more than a first order tells
     room = 1.5 * CHORD * stiffness(made, theta) + 1e-9
     near = resting(made, theta, 0.02)
     assert np.all(missing[~near] >= -room[~near])
     assert np.all(missing[~near] <= room[~near])
-    lever = made.mechanism.arm or made.mechanism.pivot or 1.0
+    lever = made.follower.lever
     assert np.all(missing >= -60.0 * CHORD / lever)
     assert missing.max() <= made.shortfall + room.max()
 

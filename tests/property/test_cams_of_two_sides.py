@@ -17,12 +17,12 @@ from gearcam.base.errors import InfeasibleError
 from gearcam.base.tolerances import DEFAULT
 from gearcam.cams.conjugate import ConjugateCam, SecondRoller, make_conjugate
 from gearcam.cams.disc import YokeCam, make_cam, make_yoke
-from gearcam.cams.mechanism import make_mechanism
+from gearcam.cams.placing import make_follower, make_round_follower
 from gearcam.cams.spec import CamSpec, FollowerSpec
 from gearcam.laws.half_turns import completed, miss
 from gearcam.laws.phases_of_lift import levels
 from gearcam.laws.program import Program, make_program
-from helpers_cams import TURN, close, program, rise
+from helpers_cams import TURN, close, program, rise, sizes_of
 from helpers_sampling import QUICK, rounded
 from property.test_cams import LAWS, dwell, programs, segment
 from witness.cam_sweep import Follower, swept
@@ -60,7 +60,7 @@ def conjugate(design: Any) -> ConjugateCam | InfeasibleError:
     follower, prime, second, phases = design
     spec = FollowerSpec(**follower)
     try:
-        found = make_mechanism(spec, CamSpec(prime_radius=prime))
+        found = make_round_follower(spec, CamSpec(prime_radius=prime))
         motion = program(phases, swings=spec.oscillating)
         made = make_conjugate(motion, found, second, tolerance=CHORD)
         assert all(wall.contour.runs for wall in made.walls)
@@ -71,7 +71,7 @@ def conjugate(design: Any) -> ConjugateCam | InfeasibleError:
 
 def centers_of(made: ConjugateCam) -> tuple[Any, Any]:
     """Middles of both rollers, seen from the cams, by the geometry of one rigid follower."""
-    one, motion, roller = made.first.mechanism, made.first.program, made.roller
+    one, motion, roller = sizes_of(made.first.follower), made.first.program, made.roller
     theta = turns(motion, 20000)
     position = one.start + motion.derivatives(theta, 0)[0]
     if one.oscillating:
@@ -93,7 +93,7 @@ def demand_conjugate(design: Any) -> bool:
         assert made.nearest or made.limit is not None
         return False
     for wall, centers in zip(made.walls, centers_of(made), strict=True):
-        close(wall.contour, island(band(centers, wall.mechanism.radius)), CHORD)
+        close(wall.contour, island(band(centers, wall.follower.radius)), CHORD)
         assert np.isfinite(wall.shortfall)
         assert wall.contour.moments.area == pytest.approx(wall.size.area, rel=1e-6)
     assert made.prime2 == pytest.approx(design[2].prime, rel=1e-9)
@@ -133,7 +133,7 @@ def yoke(design: Given) -> YokeCam | InfeasibleError:
     try:
         cam = CamSpec(base_radius=size) if spec.flat else CamSpec(prime_radius=size)
         motion = completed(make_program(phases, DEFAULT, half=True))
-        made = make_yoke(make_cam(motion, make_mechanism(spec, cam), tolerance=CHORD))
+        made = make_yoke(make_cam(motion, make_follower(spec, cam), tolerance=CHORD))
         assert made.contour.runs
     except InfeasibleError as error:
         return error
@@ -148,7 +148,7 @@ def demand_yoke(design: Given) -> bool:
         return False
     scale = made.breadth
     assert abs(miss(made.program).value) < 1e-14 * scale
-    m, motion = made.mechanism, made.program
+    m, motion = sizes_of(made.follower), made.program
     theta = turns(motion, 4000 if m.flat else 20000)
     lift = motion.derivatives(theta, 0)[0]
     if m.flat:

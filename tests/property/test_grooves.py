@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 
 from gearcam.base.errors import InfeasibleError
 from gearcam.cams.groove import GrooveCam, make_groove
-from gearcam.cams.mechanism import make_mechanism
+from gearcam.cams.placing import make_round_follower
 from gearcam.cams.spec import CamSpec, FollowerSpec
-from helpers_cams import close, program
+from helpers_cams import close, program, sizes_of
 from helpers_sampling import QUICK, rounded
 from property.test_cams import programs
 from witness.roller_bands import band, island
@@ -41,7 +41,7 @@ def made_of(design: Given) -> GrooveCam | InfeasibleError:
     follower, prime, clearance, phases = design
     spec = FollowerSpec(**follower)
     try:
-        found = make_mechanism(spec, CamSpec(prime_radius=prime))
+        found = make_round_follower(spec, CamSpec(prime_radius=prime))
         motion = program(phases, swings=spec.oscillating)
         made = make_groove(motion, found, clearance=clearance, tolerance=CHORD)
         assert all(wall.contour.runs for wall in made.walls)
@@ -52,7 +52,7 @@ def made_of(design: Given) -> GrooveCam | InfeasibleError:
 
 def centers_of(made: GrooveCam) -> Any:
     """Middles of rollers, by the geometry of the follower."""
-    m, motion = made.motion.mechanism, made.motion.program
+    m, motion = sizes_of(made.motion.follower), made.motion.program
     theta = np.linspace(0.0, 2.0 * np.pi, 20001)[:-1]
     theta = np.union1d(theta, motion.knots[:-1])
     position = m.start + motion.derivatives(theta, 0)[0]

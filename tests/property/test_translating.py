@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.tolerances import DEFAULT
-from gearcam.cams.mechanism import make_sliding_mechanism
+from gearcam.cams.placing import make_follower_over_plate
 from gearcam.cams.sliding import SlidingCam, make_sliding
 from gearcam.cams.spec import FollowerSpec
 from gearcam.laws.phases_of_lift import DwellPhase, SegmentPhase
@@ -63,9 +63,14 @@ def made_of(design: Given) -> SlidingCam | InfeasibleError:
         motion = make_program(
             [*before, *phases, *after], DEFAULT, oscillating=spec.oscillating, closed=False
         )
-        found = make_sliding_mechanism(spec, way * (1.0 + sum(runs)))
         made = make_sliding(
-            motion, found, height=HIGH, groove=True, clearance=clearance, tolerance=CHORD
+            motion,
+            make_follower_over_plate(spec),
+            travel=way * (1.0 + sum(runs)),
+            height=HIGH,
+            groove=True,
+            clearance=clearance,
+            tolerance=CHORD,
         )
         assert made.groove is not None
         assert all(wall.contour.runs for wall in made.walls)

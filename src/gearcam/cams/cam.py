@@ -5,7 +5,7 @@ such a motion cuts. A disc cam has one motion and one wall, a groove two walls o
 conjugate cams two motions of one follower with one wall each. If there are several, each has a
 *key*, the ending of names of files and facts, and a name for messages.
 
-Each motion and wall is given in the frame of its own follower, counter-clockwise (see `mechanism`).
+Each motion and wall is given in the frame of its own follower, counter-clockwise (see `followers`).
 
 Depends on wall.
 """
@@ -69,7 +69,7 @@ class Cam(Displayed):
             prefix = f"{wall.key}_" if wall.key else ""
             sizes[f"{prefix}perimeter_mm"] = wall.size.perimeter
             sizes[f"{prefix}area_mm2"] = wall.size.area if wall.program.closed else None
-        scale, unit = motion.mechanism.outward
+        scale, unit = motion.follower.lift_unit
         motion_lost = None if lost is None else Fact(scale * lost.value, "lost motion", unit=unit)
         chord = max(wall.contour.chord_error for wall in self.walls)
         tree = {"total_lift": motion.total_lift, **sizes, "lost_motion": motion_lost}

@@ -18,6 +18,7 @@ from typing import ClassVar, Protocol
 import numpy as np
 
 from gearcam.base.display import Brief
+from gearcam.base.numerals import shown
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.jets import Jet, cos, sin
 
@@ -30,6 +31,49 @@ def unit(angle: Array | float) -> Plane:
     result = np.empty(np.shape(angle), dtype=np.complex128)
     result.real, result.imag = np.cos(angle), np.sin(angle)
     return result
+
+
+@dataclass(frozen=True, kw_only=True)
+class Driver(Brief):
+    """Name and unit of a cam's angle or travel in output.
+
+    Parameters
+    ----------
+    symbol, unit, per : str
+        Symbol and unit of angle or travel, as in names of columns; unit of the variable of
+        derivatives.
+    called : str
+        Its name in words.
+    scale : float
+        Angle or travel, in the unit, per rad.
+    rate : float
+        Variable of derivatives per rad.
+    """
+
+    symbol: str
+    unit: str
+    per: str
+    called: str
+    scale: float
+    rate: float
+
+    @property
+    def turn(self) -> float:
+        """Whole turn or travel, in the unit."""
+        return 2.0 * math.pi * self.scale
+
+    @property
+    def column(self) -> str:
+        """The name of its column."""
+        return f"{self.symbol}_{self.unit}"
+
+    def told(self, theta: float) -> str:
+        """Return an angle, rad, as text with its unit, with rounding shown as 0."""
+        return f"{shown(self.scale * theta, scale=self.turn)} {self.unit}"
+
+    def seen(self, theta: float) -> str:
+        """Return a position as text."""
+        return f"at {self.told(theta)}"
 
 
 class Centred(Protocol):
@@ -56,6 +100,14 @@ class Carrier(ABC, Brief):
 
     around: ClassVar[bool]
     """Whether profiles go around the origin."""
+
+    returns: ClassVar[bool]
+    """Whether it comes back the same way, so that returns push the follower too."""
+
+    @property
+    @abstractmethod
+    def driver(self) -> Driver:
+        """Name and unit of its angle or travel in output."""
 
     @abstractmethod
     def seen(self, ahead: Pair, at: Pair) -> Pair:
@@ -112,7 +164,19 @@ class Carrier(ABC, Brief):
 class Rotating(Carrier):
     """A cam that turns counter-clockwise about the origin."""
 
-    rate, around = 1.0, True
+    rate, around, returns = 1.0, True, False
+
+    @property
+    def driver(self) -> Driver:
+        """Name and unit of the cam angle."""
+        return Driver(
+            symbol="theta",
+            unit="deg",
+            per="rad",
+            called="cam angle",
+            scale=math.degrees(1.0),
+            rate=1.0,
+        )
 
     def seen(self, ahead: Pair, at: Pair) -> Pair:  # noqa: ARG002
         """Return ``conj(t)*C``, as ``U = -i*C`` (see `Carrier.seen`)."""
@@ -154,7 +218,14 @@ class Sliding(Carrier):
 
     scale: float
 
-    rate, around = 0.0, False
+    rate, around, returns = 0.0, False, True
+
+    @property
+    def driver(self) -> Driver:
+        """Name and unit of the travel."""
+        return Driver(
+            symbol="u", unit="mm", per="mm", called="travel", scale=self.scale, rate=self.scale
+        )
 
     def seen(self, ahead: Pair, at: Pair) -> Pair:  # noqa: ARG002
         """Return ``k*i*conj(t)``, as ``U = k`` everywhere (see `Carrier.seen`)."""
@@ -183,3 +254,7 @@ class Sliding(Carrier):
         p = follower.on_level(z.imag)
         centre = follower.centre(p)
         return (z - centre).real / self.scale, p, centre
+
+
+ROTATING = Rotating()
+"""A cam that turns."""

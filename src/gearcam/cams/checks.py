@@ -17,26 +17,12 @@ from gearcam.base.findings import Remark, check
 from gearcam.base.numerals import shortened, shown
 from gearcam.base.quantities import ANGLE, LENGTH, Param
 from gearcam.cams.cam import Cam
-from gearcam.cams.mechanism import Mechanism
+from gearcam.cams.followers import Follower
 from gearcam.cams.spec import FOLLOWED, KIND
 from gearcam.cams.wall import PitchMotion, Wall
 
 if TYPE_CHECKING:
     from gearcam.cams.follow import Followed
-
-PRESSURE: Final = {False: math.radians(30.0), True: math.radians(45.0)}
-"""Largest recommended pressure angle, rad: of translating and of oscillating followers."""
-
-JAMMING: Final = {False: math.radians(65.0), True: math.radians(80.0)}
-"""Pressure angle from which friction blocks the follower, rad: of translating and oscillating ones.
-
-A stem in a guide of length b that overhangs it by a jams at ``tan(alpha + rho) = 1/(mu*(1 +
-2*a/b))``, an arm on a pin of radius r at ``cos(alpha + rho) = r/l*sin(arctan(mu))``; rho is the
-angle of friction at the cam, ``arctan(mu)`` of a contact that slides and nearly 0 of a roller.
-With ``mu = 0.15`` a stem jams from 65.8 deg with a roller and ``a = b``, from 64.8 deg with a
-sliding contact and ``a = b/2``; an arm with ``r = l/10`` and a sliding contact from 80.6 deg.
-Source: 000 eqs. (3.82), (3.84), (3.99).
-"""
 
 _MISSED: Final = 0.1
 """Part of the whole lift by which wear cannot change the lift of a cam's own profile."""
@@ -44,15 +30,15 @@ _MISSED: Final = 0.1
 _TURN: Final = 2.0 * math.pi
 
 
-def pressure_limit(mechanism: Mechanism, given: float) -> float:
-    """Return the largest pressure angle of a `mechanism`, rad: `given`, the default where nan."""
-    return PRESSURE[mechanism.oscillating] if math.isnan(given) else given
+def pressure_limit(follower: Follower, given: float) -> float:
+    """Return the largest pressure angle of a `follower`, rad: `given`, the default where nan."""
+    return follower.pressure_limit if math.isnan(given) else given
 
 
 def driven(cam: Cam, motion: PitchMotion) -> tuple[str, ...]:
     """Return the kinds of phases in which the walls of a motion push the follower.
 
-    A cam that slides comes back: then its returns push too.
+    Of a cam that comes back the same way returns push too.
 
     Parameters
     ----------
@@ -66,10 +52,10 @@ def driven(cam: Cam, motion: PitchMotion) -> tuple[str, ...]:
     tuple of str
         ``rise``, ``return`` or both.
     """
-    if motion.mechanism.slide:
+    if motion.carrier.returns:
         return "rise", "return"
     own = (wall for wall in cam.walls if motion in (wall, wall.of))
-    return tuple("rise" if wall.curve.mechanism.away > 0 else "return" for wall in own)
+    return tuple("rise" if wall.curve.lift_sign > 0 else "return" for wall in own)
 
 
 def _at(motion: PitchMotion, place: str) -> str:
@@ -98,7 +84,7 @@ def pressure_angle(cam: Cam, limit: float) -> Iterator[Remark]:
     Looks at: the pressure angle: the larger it is, the larger is the side force on the follower.
     """
     for motion in cam.motions:
-        largest = pressure_limit(motion.mechanism, limit)
+        largest = pressure_limit(motion.follower, limit)
         yield from _steep(motion, ("rise", "return"), largest)
 
 
@@ -127,7 +113,7 @@ def jamming(cam: Cam, limit: float) -> Iterator[Remark]:
     from 80.6 degrees.
     """
     for motion in cam.motions:
-        largest = JAMMING[motion.mechanism.oscillating] if math.isnan(limit) else limit
+        largest = motion.follower.jamming_limit if math.isnan(limit) else limit
         for remark in _steep(motion, driven(cam, motion), largest):
             yield remark._replace(
                 message=f"{remark.message[:-1]}: friction can block the follower, whatever "
@@ -145,7 +131,7 @@ def _steep(motion: PitchMotion, kinds: tuple[str, ...], largest: float) -> Itera
         angle = math.degrees(abs(worst.value))
         yield Remark(
             f"The pressure angle on the {kind} reaches {shown(angle)} deg.",
-            _at(motion, f"{kind}, at {motion.mechanism.driver.told(worst.theta)}"),
+            _at(motion, f"{kind}, at {motion.carrier.driver.told(worst.theta)}"),
             angle,
             limit=math.degrees(largest),
         )
@@ -171,14 +157,13 @@ def undercut(cam: Cam, limit: float) -> Iterator[Remark]:
 
 def _undercut(wall: Wall, limit: float) -> Iterator[Remark]:
     left = wall.undercut_ranges
-    lever, swings = wall.mechanism.lever, wall.mechanism.oscillating
-    told = wall.mechanism.driver.told
+    follower, told = wall.follower, wall.carrier.driver.told
     for corner, loss in zip(wall.corners, wall.lost, strict=True):
         low, high = corner.before, corner.after
         inside = [pair for pair in left if _within(pair, low, high)]
         left = [pair for pair in left if pair not in inside]
-        lost = loss.value * lever
-        angle = f" ({shown(math.degrees(loss.value), 4)} deg)" if swings else ""
+        lost = loss.value * follower.lever
+        angle = f" ({shown(math.degrees(loss.value), 4)} deg)" if follower.angular else ""
         cut, much = _stretches(inside, told), f"{shown(lost, 4)} mm{angle}"
         yield Remark(
             f"The {wall.called} is {cut}. After trimming it has a corner, on which the follower "
@@ -214,7 +199,7 @@ def _stretches(pairs: list[tuple[float, float]], told: Callable[[float], str]) -
 def _shocks(cam: Cam, order: int) -> Iterator[tuple[str, float, str]]:
     """Yield place, jump and unit of every knot whose derivative of this order jumps."""
     lead = cam.motions[0]
-    driver, (scale, unit) = lead.mechanism.driver, lead.mechanism.outward
+    driver, (scale, unit) = lead.carrier.driver, lead.follower.lift_unit
     unit = f"{unit}/{driver.per}{order if order > 1 else ''}"
     for jump in lead.program.jumps:
         if jump.order == order:
@@ -287,7 +272,7 @@ def coarse_rows(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     Looks at: the estimated error of the lift against `chord_tolerance_mm`.
     """
     lead = cam.motions[0]
-    error = lead.program.errors[0] * lead.mechanism.lever
+    error = lead.program.errors[0] * lead.follower.lever
     if error > lead.tolerance:
         yield Remark(
             f"Between the rows of its table the lift is known to {shown(error, 3)} mm, the profile "
@@ -308,15 +293,15 @@ def lost_motion(cam: Cam, limit: float) -> Iterator[Remark]:
 
     Looks at: how far the follower can move while the cam does not.
     """
-    found, mechanism = cam.lost_motion, cam.motions[0].mechanism
+    found, lead = cam.lost_motion, cam.motions[0]
     if found is None:
         return
-    lost = found.value * mechanism.lever
-    angle = f" ({shown(math.degrees(found.value), 4)} deg)" if mechanism.oscillating else ""
+    lost = found.value * lead.follower.lever
+    angle = f" ({shown(math.degrees(found.value), 4)} deg)" if lead.follower.angular else ""
     if lost > limit:
         yield Remark(
             f"Between its walls the follower has {shown(lost, 4)} mm{angle} of lost motion.",
-            f"at {mechanism.driver.told(found.theta)}",
+            lead.carrier.driver.seen(found.theta),
             lost,
         )
 
@@ -346,7 +331,7 @@ def other_profile(found: tuple[Wall, Followed], limit: float) -> Iterator[Remark
     """
     wall, seen = found
     low, high = wall.program.range
-    scale, unit = wall.mechanism.outward
+    scale, unit = wall.follower.lift_unit
     off = np.abs(seen.lift - wall.program.derivatives(seen.theta, 0)[0])
     worst, most = int(off.argmax()), _MISSED * (high - low)
     if off[worst] > most:
@@ -354,7 +339,7 @@ def other_profile(found: tuple[Wall, Followed], limit: float) -> Iterator[Remark
             f"The lift differs by up to {shown(scale * float(off[worst]), 4)} {unit} from that of "
             f"the design, {shown(scale * (high - low))} {unit}: the profile belongs to another "
             "wall or another cam, or is in another frame.",
-            _at(wall, f"at {wall.mechanism.driver.told(float(seen.theta[worst]))}"),
+            _at(wall, f"at {wall.carrier.driver.told(float(seen.theta[worst]))}"),
             scale * float(off[worst]),
             unit=unit,
             limit=scale * most,

@@ -15,7 +15,7 @@ The second cam is smallest at the highest lift, where its prime radius is define
 Refused: as for disc cams, for either cam; a second roller on the shaft, arms across the line of
 centres.
 
-Depends on cam, disc, wall and mechanism.
+Depends on cam, disc, followers and wall.
 """
 
 from __future__ import annotations
@@ -25,18 +25,15 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from gearcam.base.display import Brief
-from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.errors import InfeasibleError, beyond_limit
 from gearcam.base.numerals import shown
 from gearcam.cams.cam import Cam
 from gearcam.cams.disc import demand_standing
-from gearcam.cams.followers import swing
-from gearcam.cams.mechanism import Mechanism
+from gearcam.cams.followers import Round
 from gearcam.cams.wall import CHORD_TOLERANCE, Wall
 from gearcam.laws.program import Program
 
 _PRIME2 = "cam.prime_radius2_mm"
-_DISTANCE = "follower.roller_distance_mm"
-_ANGLE = "follower.arms_angle_deg"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,7 +45,7 @@ class SecondRoller:
     radius : float, mm
         Of the roller.
     arm : float, mm
-        Of an oscillating follower.
+        Of an oscillating follower; 0 if that of the first.
     prime : float or None, mm
         From the axis to its centre at the highest lift; None if `apart` is given.
     apart : float or None, mm or rad
@@ -64,11 +61,6 @@ class SecondRoller:
     prime: float | None = None
     apart: float | None = None
     preload: float = 0.0
-
-    @property
-    def squeeze(self) -> float:
-        """The preload in the unit of `apart`, mm or rad."""
-        return self.preload / self.arm if self.arm else self.preload
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -97,18 +89,19 @@ class ConjugateCam(Brief, Cam):
     @property
     def apart(self) -> float:
         """Distance of the rollers, mm, or angle between the arms, rad: on the follower."""
-        return self.first.mechanism.start - self.second.mechanism.start - self.roller.squeeze
+        squeeze = self.roller.preload / self.second.follower.lever
+        return self.first.follower.start - self.second.follower.start - squeeze
 
     @cached_property
     def prime2(self) -> float:
         """From the axis to the second roller's centre at the highest lift, mm."""
-        m = self.second.mechanism
-        return m.follower.distance(m.start + self.second.program.range[1])
+        follower = self.second.follower
+        return follower.distance(follower.start + self.second.program.range[1])
 
 
 def make_conjugate(
     program: Program,
-    mechanism: Mechanism,
+    follower: Round,
     roller: SecondRoller,
     *,
     clockwise: bool = False,
@@ -120,7 +113,7 @@ def make_conjugate(
     ----------
     program : Program
         The lift.
-    mechanism : Mechanism
+    follower : Round
         The follower on the first cam.
     roller : SecondRoller
         Its second roller.
@@ -138,80 +131,50 @@ def make_conjugate(
     InfeasibleError
         If a position is impossible.
     """
-    demand_standing(program, mechanism)
+    demand_standing(program, follower)
     common = {"program": program, "clockwise": clockwise, "tolerance": tolerance}
-    lowest, highest = (mechanism.start + lift for lift in program.range)
-    place = _swinging if mechanism.oscillating else _sliding
-    apart = highest + place(mechanism, roller, lowest, highest)
-    other = replace(mechanism, start=mechanism.start - apart, radius=roller.radius, arm=roller.arm)
+    second = follower.with_end(roller.radius, roller.arm)
+    across = _across(follower, second, roller, program.range)
+    second = replace(second, start=-across - program.range[1])
 
-    def wall(own: Mechanism, key: str) -> Wall:
-        return Wall(mechanism=own, key=key, called=f"profile of cam {key}", **common)
+    def wall(touching: Round, key: str) -> Wall:
+        return Wall(follower=touching, key=key, called=f"profile of cam {key}", **common)
 
-    return ConjugateCam(first=wall(mechanism, "1"), second=wall(other, "2"), roller=roller)
-
-
-def _sliding(mechanism: Mechanism, roller: SecondRoller, _: float, highest: float) -> float:
-    """Return the distance of the second roller below the axis at the highest lift, mm."""
-    aside = abs(mechanism.offset)
-    least = max(aside, roller.radius)
-    if roller.prime is not None:
-        if not roller.prime > least:
-            raise _on_shaft(_PRIME2, roller.prime, least)
-        return math.sqrt((roller.prime - aside) * (roller.prime + aside))
-    below = (roller.apart or 0.0) + roller.squeeze - highest
-    room = math.sqrt((least - aside) * (least + aside))
-    if not below > room:
-        raise _on_shaft(_DISTANCE, roller.apart or 0.0, highest + room - roller.squeeze)
-    return below
+    return ConjugateCam(first=wall(follower, "1"), second=wall(second, "2"), roller=roller)
 
 
-def _on_shaft(key: str, value: float, limit: float) -> InfeasibleError:
-    return InfeasibleError(
-        "the second roller reaches the cam's axis at the highest lift",
-        where=key,
-        value=value,
-        limit=limit,
-        unit="mm",
-        nearest="the value must exceed the limit",
-        ways=(Way(near={key: limit}, far={key: limit + 2.0 * max(limit, value)}),),
-    )
+def _across(first: Round, second: Round, given: SecondRoller, lifts: tuple[float, float]) -> float:
+    """Return the position of the second roller at the highest lift, across the axis, mm or rad."""
+    low, high = lifts
+    near = max(second.nearest, second.radius)
+    if near >= second.farthest:
+        raise _out_of_place("follower.roller2_radius_mm", second.radius, 0.0, second.farthest)
+    least, most = float(second.on_circle(near)), second.highest - (high - low)
+    if given.prime is not None:
+        far = second.distance(max(most, least))
+        if not near < given.prime < far:
+            raise _out_of_place(_PRIME2, given.prime, near, far)
+        return float(second.on_circle(given.prime))
+    shift = first.start + high - given.preload / second.lever
+    across = (given.apart or 0.0) - shift
+    if not least < across < most:
+        (scale, unit), apart = first.lift_unit, given.apart or 0.0
+        key = f"follower.{'arms_angle' if first.angular else 'roller_distance'}_{unit}"
+        limits = least + shift, max(most, least) + shift
+        raise _out_of_place(key, scale * apart, *(scale * limit for limit in limits))
+    return across
 
 
-def _swinging(mechanism: Mechanism, roller: SecondRoller, lowest: float, highest: float) -> float:
-    """Return the angle of the second arm from the line of centres at the highest lift, rad."""
-    pivot, arm = mechanism.pivot, roller.arm
-    near = max(abs(pivot - arm), roller.radius)
-    if near >= pivot + arm:
-        raise _out_of_place("follower.roller2_radius_mm", roller.radius, 0.0, pivot + arm, "mm")
-    low, high = float(swing(pivot, arm, near)), math.pi - (highest - lowest)
-    if roller.prime is not None:
-        far = replace(mechanism, arm=arm).follower.distance(max(high, low))
-        if not near < roller.prime < far:
-            raise _out_of_place(_PRIME2, roller.prime, near, far, "mm")
-        return float(swing(pivot, arm, roller.prime))
-    below = (roller.apart or 0.0) + roller.squeeze - highest
-    if not low < below < high:
-        shift = highest - roller.squeeze
-        given = (roller.apart or 0.0, low + shift, max(high, low) + shift)
-        value, near, far = map(math.degrees, given)
-        raise _out_of_place(_ANGLE, value, near, far, "deg")
-    return below
-
-
-def _out_of_place(key: str, value: float, near: float, far: float, unit: str) -> InfeasibleError:
-    """Return the error for a second arm that is not across the axis at every lift."""
-    ways: tuple[Way, ...] = ()
-    nearest = "no value is possible: the arm swings too far"
-    if near < far:
-        ways = (Way(near={key: near if value <= near else far}, far={key: 0.5 * (near + far)}),)
-        nearest = f"it must be between {shown(near)} and {shown(far)} {unit}"
-    return InfeasibleError(
-        "the second roller reaches the cam's axis, or its arm passes the line of centres",
-        where=key,
-        value=value,
-        limit=near if value <= near else far,
-        unit=unit,
-        nearest=nearest,
-        ways=ways,
-    )
+def _out_of_place(key: str, value: float, near: float, far: float) -> InfeasibleError:
+    """Return the error for a second roller that is not across the axis at every lift."""
+    what = "the second roller reaches the cam's axis at the highest lift"
+    if math.isinf(far):
+        rule, change = "the value must exceed the limit", near + 2.0 * max(near, value)
+        return beyond_limit(what, key, value, near, rule, far=change)
+    what = "the second roller reaches the cam's axis, or its arm passes the line of centres"
+    limit = near if value <= near else far
+    if not near < far:
+        rule = "no value is possible: the arm swings too far"
+        return beyond_limit(what, key, value, limit, rule)
+    rule = f"it must be between {shown(near)} and {shown(far)} {key.rpartition('_')[2]}"
+    return beyond_limit(what, key, value, limit, rule, far=0.5 * (near + far))

@@ -9,7 +9,7 @@ where it is undercut. For a cam that slides it is open and ends with the travel.
 Curves are complex points, mm, in the cam's frame; for a cam that turns clockwise they are mirrored
 at the y axis.
 
-Depends on followers, mechanism, laws and numeric; numpy only.
+Depends on followers, carriers, laws and numeric; numpy only.
 """
 
 from __future__ import annotations
@@ -21,8 +21,9 @@ from itertools import pairwise
 import numpy as np
 
 from gearcam.base.display import Brief
+from gearcam.cams.carriers import Carrier
 from gearcam.cams.contact import Contact
-from gearcam.cams.mechanism import Mechanism
+from gearcam.cams.followers import Follower
 from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.crossings import CurvePoint
@@ -37,21 +38,42 @@ _GRAIN = 2.0
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class CamCurve(Brief):
-    """The untrimmed curves of a cam.
+    """An untrimmed curve of a cam: its pitch curve, a parallel of that, or the envelope of a face.
 
     Parameters
     ----------
     program : Program
         The lift.
-    mechanism : Mechanism
+    follower : Follower
         The follower.
+    carrier : Carrier
+        Motion of the cam.
+    inset : float, mm
+        Depth below a round follower's centre: 0 for the pitch curve, the follower's radius for a
+        profile inside it, negative for one outside it. Of no meaning for faces, whose profile is
+        the only curve.
     mirrored : bool
         Whether the cam turns clockwise.
     """
 
     program: Program
-    mechanism: Mechanism
+    follower: Follower
+    carrier: Carrier
+    inset: float = 0.0
     mirrored: bool = False
+
+    @property
+    def lift_sign(self) -> int:
+        """Whether a rise moves the follower away from the metal (1) or towards it (-1).
+
+        Towards it at a wall outside the pitch curve, or below the axis.
+        """
+        return -1 if self.follower.below != (self.inset < 0.0) else 1
+
+    @property
+    def rounded(self) -> bool:
+        """Whether it runs on where the velocity jumps (see `Follower.rounded`)."""
+        return self.follower.rounded(self.inset)
 
     def contact(self, theta: Array, order: int = 1) -> Contact:
         """Return the contact at cam angles.
@@ -77,38 +99,24 @@ class CamCurve(Brief):
         """
         factors = (1.0, 1.0, 0.5, 1.0 / 6.0)[: order + 2]
         s, ds = (Jet([f * found[k + j] for j, f in enumerate(factors)]) for k in range(2))
-        m = self.mechanism
-        return m.follower.contact(m.carrier, s + m.start, ds, m.radius)
+        follower = self.follower
+        return follower.contact(self.carrier, s + follower.start, ds, self.inset)
 
-    def pitch(self, theta: Array, s: Array) -> Plane:
-        """Return centres of a round follower in the cam's frame, not mirrored.
-
-        Parameters
-        ----------
-        theta, s : (n,) arrays
-            Cam angles, rad, and lift, mm or rad.
-        """
-        m = self.mechanism
-        return m.carrier.under(theta, m.centred.centre(m.start + s))
-
-    def trace(self, theta: Array, s: Array, ds: Array, inset: float) -> tuple[Plane, Plane]:
-        """Return points and unit tangents of the curve at a depth below a round follower's centre.
+    def trace(self, theta: Array, s: Array, ds: Array) -> tuple[Plane, Plane]:
+        """Return points and unit tangents.
 
         Parameters
         ----------
         theta, s, ds : (n,) arrays
             Cam angles, rad, lift and velocity there.
-        inset : float, mm
-            0 for the pitch curve, the follower's radius for the profile; of no meaning for flat
-            faces, whose profile is the only curve.
 
         Returns
         -------
         points, tangents : (n,) complex arrays, mm and 1
             Clockwise, or mirrored.
         """
-        m = self.mechanism
-        points, tangents = m.follower.trace(m.carrier, theta, m.start + s, ds, inset)
+        position = self.follower.start + s
+        points, tangents = self.follower.trace(self.carrier, theta, position, ds, self.inset)
         if self.mirrored:
             return -np.conj(points), -np.conj(tangents)
         return points, tangents
@@ -121,9 +129,7 @@ class ProfileSegments(Brief):
     Parameters
     ----------
     curve : CamCurve
-        The untrimmed curves.
-    inset : float, mm
-        Depth below a round follower's centre; negative beyond it.
+        The untrimmed curve.
     piece : (n,) array of int
         Smooth piece of the lift that a sweep belongs to, or that begins at a jump.
     start, end : (n,) arrays
@@ -135,7 +141,6 @@ class ProfileSegments(Brief):
     """
 
     curve: CamCurve
-    inset: float
     piece: Ints
     start: Array
     end: Array
@@ -194,7 +199,7 @@ class ProfileSegments(Brief):
     @property
     def backward(self) -> Mask:
         """Mask of jumps that run backwards: at a corner of the pitch curve towards the profile."""
-        return self.jump & ((self.end - self.start) * self.curve.mechanism.away < 0.0)
+        return self.jump & ((self.end - self.start) * self.curve.lift_sign < 0.0)
 
     @property
     def breaks(self) -> tuple[Ints, Array]:
@@ -220,8 +225,8 @@ class ProfileSegments(Brief):
         theta = np.where(jump, program.knots[self.piece[index]], parameter)
         s, ds, *more = program.lift.on_pieces(self.piece[index], theta, order)
         if jump.any():
-            m = self.curve.mechanism
-            ds[jump] = m.follower.velocity(m.carrier, m.start + s[jump], parameter[jump])
+            follower, carrier = self.curve.follower, self.curve.carrier
+            ds[jump] = follower.velocity(carrier, follower.start + s[jump], parameter[jump])
         return theta, s, ds, *more
 
     def at(self, index: Ints, parameter: Array) -> tuple[Plane, Plane]:
@@ -235,7 +240,7 @@ class ProfileSegments(Brief):
             Within them.
         """
         theta, s, ds = self.states(index, parameter)
-        return self.curve.trace(theta, s, ds, self.inset)
+        return self.curve.trace(theta, s, ds)
 
     def moving(self, index: Ints, parameter: Array) -> tuple[Plane, Plane]:
         """Return points, and their derivatives by the parameter.
@@ -253,42 +258,42 @@ class ProfileSegments(Brief):
             Opposite to the tangent where the curve runs backwards.
         """
         theta, s, ds, d2s = self.states(index, parameter, 2)
-        m = self.curve.mechanism
-        found = self.curve.contact_of((s, ds, d2s), 0)
-        speed = found.speed if self.inset else found.pitch_speed
-        points, tangents = self.curve.trace(theta, s, ds, self.inset)
-        rolling = m.follower.jump_speed(m.carrier, m.start + s, self.inset)
-        return points, np.where(self.jump[index], rolling, speed.c[0]) * tangents
+        curve = self.curve
+        speed = curve.contact_of((s, ds, d2s), 0).speed.c[0]
+        points, tangents = curve.trace(theta, s, ds)
+        jump = self.jump[index]
+        if jump.any():
+            position = curve.follower.start + s
+            rolling = curve.follower.jump_speed(curve.carrier, position, curve.inset)
+            speed = np.where(jump, rolling, speed)
+        return points, speed * tangents
 
 
-def segments(curve: CamCurve, inset: float) -> ProfileSegments:
-    """Return the whole curve over a turn, in order of theta.
+def segments(curve: CamCurve) -> ProfileSegments:
+    """Return a whole curve over a turn, in order of theta.
 
     Parameters
     ----------
     curve : CamCurve
-        The cam.
-    inset : float, mm
-        Depth below a round follower's centre; 0 gives the pitch curve, with corners at jumps.
+        The curve.
 
     Returns
     -------
     ProfileSegments
         From the beginning of the turn; corners only at a pitch curve's jumps (see `begun`).
     """
-    program = curve.program
+    program, follower = curve.program, curve.follower
     hard = {jump.theta: jump for jump in program.hard}
-    drawn = curve.mechanism.flat or inset != 0.0
     rows: list[tuple[int, float, float, bool, bool]] = []
     for piece, (low, high) in enumerate(pairwise(program.knots.tolist())):
         jump = hard.get(low)
-        if jump and drawn:
-            m, lift = curve.mechanism, program.lift.side(piece, 1, 0)[0] + np.zeros(2)
+        if jump and curve.rounded:
+            position = follower.start + program.lift.side(piece, 1, 0)[0] + np.zeros(2)
             speeds = np.array([jump.before, jump.after])
-            ends = m.follower.jump(m.carrier, m.start + lift, speeds).tolist()
+            ends = follower.jump(curve.carrier, position, speeds).tolist()
             rows.append((piece, *ends, True, False))
-        rows.append((piece, low, high, False, jump is not None and not drawn))
-    return ProfileSegments(curve, inset, *map(np.array, zip(*rows, strict=True)))
+        rows.append((piece, low, high, False, jump is not None and not curve.rounded))
+    return ProfileSegments(curve, *map(np.array, zip(*rows, strict=True)))
 
 
 def begun(segments: ProfileSegments) -> ProfileSegments:

@@ -12,8 +12,8 @@ oscillating flat     ``Psi = Psi_z + arcsin(f/D)``
 
 where ``z = d - D*exp(-i*Psi_z)`` (see `Follower.rest`).
 
-Inside a wall that lies outside the pitch curve, which has a negative radius, and below the axis,
-the mirror image is used: the lowest position becomes the highest.
+Inside a wall that lies outside the pitch curve, and below the axis, the mirror image is used: the
+lowest position becomes the highest.
 
 The same formulas with r, or the face, *grown* by g give the position on a disc of radius g around
 z, and so a bound for all points within: blocks of points that cannot be the highest are skipped.
@@ -34,10 +34,9 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearcam.base.errors import InfeasibleError
-from gearcam.cams.carriers import Carrier
+from gearcam.base.errors import InfeasibleError, beyond_limit
+from gearcam.cams.carriers import ROTATING, Carrier
 from gearcam.cams.followers import Follower
-from gearcam.cams.mechanism import Mechanism
 from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.bulges import as_complex
 from gearcam.numeric.jets import Jet
@@ -90,7 +89,13 @@ class Followed:
 
 
 def follow(
-    points: Plane | Array, mechanism: Mechanism, theta: ArrayLike, missed: float = 0.0
+    points: Plane | Array,
+    follower: Follower,
+    theta: ArrayLike,
+    *,
+    carrier: Carrier = ROTATING,
+    side: int = 1,
+    missed: float = 0.0,
 ) -> Followed:
     """Return the lift that a profile, the polygon of some points, produces.
 
@@ -100,11 +105,14 @@ def follow(
         A closed profile in the cam's frame, in order, in either sense. For a polyline with bulges
         use `gearcam.numeric.bulges.flatten_bulges`, whose points lie on its arcs. Of a cam that
         slides the mirror image in the y axis, as in output.
-    mechanism : Mechanism
-        The follower; the cam turns counter-clockwise by theta, or slides. On a wall outside the
-        pitch curve its radius is negative.
+    follower : Follower
+        The follower.
     theta : (m,) array, rad
         Cam angles.
+    carrier : Carrier
+        Motion of the cam: it turns counter-clockwise by theta, or slides.
+    side : {1, -1}
+        Whether the profile lies inside the pitch curve or outside it.
     missed : float, mm
         Chord error of the points; 0 if unknown.
 
@@ -117,18 +125,17 @@ def follow(
     InfeasibleError
         If the points are not a closed profile around the axis, or the follower cannot rest on it.
     """
-    follower, carrier = mechanism.follower, mechanism.carrier
     profile = profile_points(points, around=carrier.around, missed=missed)
     if not carrier.around:  # given as the mirror image, like all output of a cam that slides
         profile = replace(profile, points=-np.conj(profile.points[::-1]))
     angles = np.atleast_1d(np.asarray(theta, dtype=float))
-    if mechanism.away > 0:
+    if follower.below == (side < 0):
         _demand_clear_pivot(profile, follower, carrier)
         found = _rested(profile, follower, carrier, angles)
     else:
         # mirrored, a cam that turns does so the other way
         sense = -1.0 if carrier.around else 1.0
-        within = mechanism.radius < 0.0 and carrier.around  # metal to the right of its edge
+        within = side < 0 and carrier.around  # metal to the right of its edge
         other = np.conj(profile.points)
         other = replace(profile, points=other if within else other[::-1].copy())
         seen = _rested(other, follower.mirrored(), carrier, sense * angles)
@@ -158,14 +165,11 @@ def _demand_clear_pivot(profile: ProfilePoints, follower: Follower, carrier: Car
     """Refuse a profile that reaches past the pivot of a swinging follower."""
     limit = follower.clear
     if carrier.around and profile.size >= limit:
-        raise InfeasibleError(
+        what, rule = (
             "the profile reaches past the follower's pivot",
-            where="its largest radius",
-            value=profile.size,
-            limit=limit,
-            unit="mm",
-            nearest="place the pivot farther from the cam",
+            "place the pivot farther from the cam",
         )
+        raise beyond_limit(what, "its largest radius", profile.size, limit, rule, unit="mm")
 
 
 def _highest(
@@ -446,20 +450,14 @@ def profile_points(
     z = z[np.abs(z - np.roll(z, 1)) > _ALIKE * np.abs(z).max(initial=0.0)]
     least = FEWEST if around else _LEAST
     if len(z) < least:
-        raise InfeasibleError(
-            "the profile has too few points", value=len(z), limit=least, unit="points"
-        )
+        raise beyond_limit("the profile has too few points", "", len(z), least, unit="points")
     if not around:
         turned = float((np.conj(z) * np.roll(z, -1)).imag.sum())
         points = z if turned > 0.0 else z[::-1].copy()
         return ProfilePoints(points=points, corner=_CORNER, missed=missed)
     turns = float(np.angle(np.roll(z, -1) * np.conj(z)).sum()) / (2.0 * math.pi)
     if abs(abs(turns) - 1.0) > 0.25 or not np.all(z):
-        raise InfeasibleError(
-            "the profile does not go around the cam's axis once",
-            value=turns,
-            limit=1.0,
-            unit="turns",
-            nearest="give one closed line in order, with the origin inside",
-        )
+        what = "the profile does not go around the cam's axis once"
+        rule = "give one closed line in order, with the origin inside"
+        raise beyond_limit(what, "", turns, 1.0, rule, unit="turns")
     return ProfilePoints(points=z if turns > 0.0 else z[::-1].copy(), missed=missed)

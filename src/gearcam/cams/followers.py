@@ -22,6 +22,21 @@ A flat face is a support line at the distance h from the cam's axis, which turns
 cam's frame: it touches ``g = h'/beta'`` along itself, and the profile is traced at the speed
 ``h*beta' + g'``. The curves run clockwise.
 
+Frame: the cam's axis is the origin. Over a cam that turns a stem moves along ``+y``, and the pivot
+of an arm or a swinging face is on the x axis; positions are
+
+==================== ==========================================================
+stem                 height of the centre
+flat stem            height of the face
+arm                  Psi, between the arm and the line from pivot to cam
+flat arm             the same of the face
+==================== ==========================================================
+
+A roller *below* the axis, the second on one follower, has a negative position; the formulas of the
+first are valid for it unchanged.
+
+Refused: positions that an arm or a swinging face cannot take.
+
 Sources: 000 eqs. (3.17), (3.21), (3.26), (3.30), (3.33), section 3.4.4; derived anew.
 """
 
@@ -36,10 +51,27 @@ from typing import ClassVar, Self
 import numpy as np
 
 from gearcam.base.display import Brief
+from gearcam.base.errors import beyond_limit
+from gearcam.base.numerals import rounded_down
 from gearcam.cams.carriers import Carrier, Pair, unit
 from gearcam.cams.contact import Contact
+from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array, Mask, Plane
 from gearcam.numeric.jets import Jet, asin, atan, cos, sin_cos, sqrt
+
+_UPRIGHT = 0.5 * math.pi
+"""Largest angle, rad, of an arm over a cam that slides, and of a face from the line of centres."""
+
+_STANDSTILL = 1e-7
+"""Least relative difference of a face's downward speed from the cam's: below it the contact is a
+million pivot distances away, or stays at one point."""
+
+
+Line = tuple[complex, ...]
+"""Points of an open line, mm."""
+
+Disc = tuple[complex, float]
+"""Centre and radius, mm."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,10 +92,71 @@ class Follower(Brief, ABC):
     angular: ClassVar[bool]
     """Whether positions and lifts are angles."""
 
+    has_centre: ClassVar[bool]
+    """Whether it has a centre, which traces a pitch curve."""
+
+    pressure_limit: ClassVar[float]
+    """Largest recommended pressure angle, rad."""
+
+    jamming_limit: ClassVar[float]
+    """Pressure angle from which friction blocks the follower, rad.
+
+    A stem in a guide of length b that overhangs it by a jams at ``tan(alpha + rho) = 1/(mu*(1 +
+    2*a/b))``, an arm on a pin of radius r at ``cos(alpha + rho) = r/l*sin(arctan(mu))``; rho is the
+    angle of friction at the cam, ``arctan(mu)`` of a contact that slides and nearly 0 of a roller.
+    With ``mu = 0.15`` a stem jams from 65.8 deg with a roller and ``a = b``, from 64.8 deg with a
+    sliding contact and ``a = b/2``; an arm with ``r = l/10`` and a sliding contact from 80.6 deg.
+    Source: 000 eqs. (3.82), (3.84), (3.99).
+    """
+
+    @property
+    def lift_unit(self) -> tuple[float, str]:
+        """Factor from lift, mm or rad, to its unit in output, and that unit: mm or deg."""
+        return (math.degrees(1.0), "deg") if self.angular else (1.0, "mm")
+
     @property
     @abstractmethod
     def lever(self) -> float:
         """Millimetres per unit of lift."""
+
+    @property
+    def below(self) -> bool:
+        """Whether it is below the cam's axis, and comes nearer to it as it rises."""
+        return False
+
+    @property
+    def prime_radius(self) -> float:
+        """Distance from the cam's axis at zero lift, mm; of a flat face the base radius."""
+        return self.distance(self.start)
+
+    @property
+    def aside(self) -> float:
+        """Distance of the guide of a round end from the origin, mm."""
+        return 0.0
+
+    @property
+    def nearest(self) -> float:
+        """Least distance from the origin to its centre or face, mm, over all positions."""
+        return 0.0
+
+    @property
+    def on_axis(self) -> float:
+        """Position, mm or rad, at which it touches the cam's axis, or is as near as it can."""
+        return float(self.on_circle(max(self.radius, self.nearest)))
+
+    def demand(self, program: Program) -> None:
+        """Refuse a lift that brings it to positions that it cannot take.
+
+        Parameters
+        ----------
+        program : Program
+            The lift.
+
+        Raises
+        ------
+        InfeasibleError
+            If it passes a position that it cannot take, or loses its contact.
+        """
 
     @abstractmethod
     def contact(self, carrier: Carrier, p: Jet, ds: Jet, inset: float) -> Contact:
@@ -122,6 +215,45 @@ class Follower(Brief, ABC):
     def distance(self, p: float) -> float:
         """Return the distance from the origin to its centre or face, mm, at a position."""
 
+    @abstractmethod
+    def on_circle(self, radius: Array | float) -> Array:
+        """Return positions (n,) at distances from the origin, mm: the inverse of `distance`."""
+
+    def least_start(self, limit: float, lift: Array, velocity: Array) -> tuple[float, float]:  # noqa: ARG002
+        """Return the range of positions at zero lift that keep a limit of the pressure angle.
+
+        Over a cam that turns. The pressure angle of a face does not depend on them.
+
+        Parameters
+        ----------
+        limit : float, rad
+            Largest pressure angle.
+        lift, velocity : (n,) arrays
+            Along the motion.
+
+        Returns
+        -------
+        low, high : float, mm or rad
+            Infinite and reversed if there is none.
+        """
+        return math.inf, -math.inf
+
+    def starting_at(self, radius: float) -> Self:
+        """Return the follower that is at a distance from the origin, mm, at zero lift."""
+        return replace(self, start=float(self.on_circle(radius)))
+
+    def rounded(self, inset: float) -> bool:  # noqa: ARG002
+        """Return whether the curve at a depth runs on during a jump of the velocity.
+
+        It is an arc about the centre, or straight along a face; the pitch curve has a corner there.
+
+        Parameters
+        ----------
+        inset : float, mm
+            Depth below a round follower's centre.
+        """
+        return True
+
     @property
     def clear(self) -> float:
         """Largest radius of a cam about the origin that does not reach past its pivot, mm."""
@@ -176,8 +308,8 @@ class Follower(Brief, ABC):
         """
 
     @abstractmethod
-    def symbol(self, p: float, reach: float, wide: float) -> list[tuple[complex, ...]]:
-        """Return lines that show the follower, mm; a round end is shown besides.
+    def symbol(self, p: float, reach: float, wide: float) -> tuple[list[Line], list[Disc]]:
+        """Return lines and discs that show the follower.
 
         Parameters
         ----------
@@ -235,6 +367,29 @@ class Follower(Brief, ABC):
 class Round(Follower):
     """A follower with a round end: a roller, a dome, or a point."""
 
+    has_centre = True
+
+    highest: ClassVar[float]
+    """Limit of its positions over a cam that turns, mm or rad."""
+
+    @property
+    def farthest(self) -> float:
+        """Largest distance from the origin to its centre, mm, over all positions."""
+        return math.inf
+
+    def _end(self, p: float) -> tuple[complex, list[Disc]]:
+        """Return the centre, and its end as discs: none of a point."""
+        centre = complex(self.centre(np.array(p)))
+        return centre, [(centre, self.radius)] if self.radius else []
+
+    @abstractmethod
+    def with_end(self, radius: float, arm: float) -> Self:
+        """Return the follower with an end of another radius, mm, and an arm unless 0."""
+
+    def rounded(self, inset: float) -> bool:
+        """Return whether there is a depth (see `Follower.rounded`)."""
+        return inset != 0.0
+
     @property
     @abstractmethod
     def spin(self) -> float:
@@ -247,10 +402,6 @@ class Round(Follower):
     @abstractmethod
     def lean(self, p: Array) -> Array | float:
         """Return the angle of its direction at positions (n,), rad, from that of the y axis."""
-
-    @abstractmethod
-    def on_circle(self, radius: Array) -> Array:
-        """Return positions (n,) with the centre on circles about the origin, mm."""
 
     @abstractmethod
     def on_level(self, height: Array) -> Array:
@@ -282,7 +433,7 @@ class Round(Follower):
             along=a,
             turning=turning,
             pitch_speed=speed,
-            speed=speed - inset * turning,
+            speed=speed - inset * turning if inset else speed,
             place=0.0 * a,
         )
 
@@ -325,11 +476,37 @@ class Stem(Round):
     tilt: float = 0.0
 
     angular = False
+    highest = math.inf
+    pressure_limit = math.radians(30.0)
+    jamming_limit = math.radians(65.0)
 
     @property
     def spin(self) -> float:
         """Rotating of its direction per unit of position, rad."""
         return 0.0
+
+    @property
+    def aside(self) -> float:
+        """Distance of its guide from the origin, mm."""
+        return abs(self.offset)
+
+    @property
+    def nearest(self) -> float:
+        """Distance of its guide from the origin, mm."""
+        return abs(self.offset)
+
+    @property
+    def below(self) -> bool:
+        """Whether its positions are negative."""
+        return self.start < 0.0
+
+    def with_end(self, radius: float, arm: float) -> Self:  # noqa: ARG002
+        """Return the stem with another end (see `Round.with_end`)."""
+        return replace(self, radius=radius)
+
+    def least_start(self, limit: float, lift: Array, velocity: Array) -> tuple[float, float]:
+        """Return the range of positions at zero lift (see `Follower.least_start`)."""
+        return float((np.abs(velocity - self.offset) / math.tan(limit) - lift).max()), math.inf
 
     @property
     def lever(self) -> float:
@@ -348,7 +525,7 @@ class Stem(Round):
         """Return ``exp(-i*tilt)`` and ``p - i*offset``."""
         return (math.cos(self.tilt), -math.sin(self.tilt)), (p, -self.offset)
 
-    def on_circle(self, radius: Array) -> Array:
+    def on_circle(self, radius: Array | float) -> Array:
         """Return positions above the origin."""
         return np.sqrt((radius - self.offset) * (radius + self.offset))
 
@@ -358,7 +535,7 @@ class Stem(Round):
 
     def behind(self, z: Plane, grow: Array | float) -> Mask:
         """Return which discs lie above one below the axis (see `Follower.behind`)."""
-        return np.full(z.shape, self.start < 0.0) & (z.imag - grow > 0.0)
+        return np.full(z.shape, self.below) & (z.imag - grow > 0.0)
 
     def on_chord(self, z: Plane, chord: Plane, grow: Array | float) -> Array:
         """Return the place between the ends (see `Follower.on_chord`)."""
@@ -379,11 +556,11 @@ class Stem(Round):
             1j * cmath.exp(1j * self.tilt) * rise, dtype=np.complex128
         )
 
-    def symbol(self, p: float, reach: float, wide: float) -> list[tuple[complex, ...]]:  # noqa: ARG002
-        """Return the stem (see `Follower.symbol`)."""
-        centre = complex(self.centre(np.array(p)))
+    def symbol(self, p: float, reach: float, wide: float) -> tuple[list[Line], list[Disc]]:  # noqa: ARG002
+        """Return the stem and its end (see `Follower.symbol`)."""
+        centre, ends = self._end(p)
         up = math.copysign(0.5 * reach, self.start) * 1j * cmath.exp(1j * self.tilt)
-        return [(centre, centre + up)]
+        return [(centre, centre + up)], ends
 
     def on_level(self, height: Array) -> Array:
         """Return positions at heights of a stem through the origin."""
@@ -417,6 +594,49 @@ class Arm(Round):
     hand: int = 1
 
     angular = True
+    highest = math.pi
+    pressure_limit = math.radians(45.0)
+    jamming_limit = math.radians(80.0)
+
+    @property
+    def nearest(self) -> float:
+        """Difference of arm and pivot distance, mm."""
+        return abs(self.pivot.real - self.arm)
+
+    @property
+    def farthest(self) -> float:
+        """Sum of arm and pivot distance, mm."""
+        return self.pivot.real + self.arm
+
+    @property
+    def below(self) -> bool:
+        """Whether it points to below the line of centres."""
+        return self.hand > 0 and self.start < 0.0
+
+    def demand(self, program: Program) -> None:
+        """Refuse an arm over the line of centres, or across a travel (see `Follower.demand`)."""
+        if self.hand > 0:
+            _demand_within(self, program, (0.0, self.highest), "passes the line of centres")
+        else:
+            across = "gets perpendicular to the cam's travel"
+            _demand_within(self, program, (-_UPRIGHT, _UPRIGHT), across)
+
+    def with_end(self, radius: float, arm: float) -> Self:
+        """Return the arm with another end (see `Round.with_end`)."""
+        return replace(self, radius=radius, arm=arm or self.arm)
+
+    def least_start(self, limit: float, lift: Array, velocity: Array) -> tuple[float, float]:
+        """Return the range of positions at zero lift (see `Follower.least_start`).
+
+        With ``turn = arccos(l*(1 + s')*cos(limit)/d)`` a position q keeps the limit at a lift s if
+        ``abs(turn - limit) <= q + s <= turn + limit`` and ``q + s <= 2*pi - turn - limit``.
+        """
+        share = self.arm * (1.0 + velocity) * math.cos(limit) / self.pivot.real
+        if np.abs(share).max() > 1.0:
+            return math.inf, -math.inf
+        turn = np.arccos(share)
+        most = np.minimum(turn + limit, 2.0 * math.pi - turn - limit) - lift
+        return float((np.abs(turn - limit) - lift).max()), float(most.min())
 
     @property
     def lever(self) -> float:
@@ -449,9 +669,17 @@ class Arm(Round):
             across, against = across + y * c, against + y * s
         return (c, s), (across, against + self.hand * self.arm)
 
-    def on_circle(self, radius: Array) -> Array:
+    def on_circle(self, radius: Array | float) -> Array:
         """Return positions above the origin, of a pivot on the x axis."""
-        return swing(self.pivot.real, self.arm, radius)
+        # half the angle from the sides, with parentheses (after Kahan) that keep all digits if the
+        # triangle is nearly flat
+        small, large = sorted([self.pivot.real, self.arm])
+        apart = large - small
+        half = np.arctan2(
+            np.sqrt((radius - apart) * (radius + apart)),
+            np.sqrt((small - (radius - large)) * (small + (radius + large))),
+        )
+        return 2.0 * half
 
     @property
     def clear(self) -> float:
@@ -469,7 +697,7 @@ class Arm(Round):
         """Return which discs lie beyond the pivot, or above the axis (see `Follower.behind`)."""
         if self.hand < 0:
             return z.real - self.pivot.real + self.radius + grow < 0.0
-        return np.full(z.shape, self.start < 0.0) & (z.imag - grow > 0.0)
+        return np.full(z.shape, self.below) & (z.imag - grow > 0.0)
 
     def on_chord(self, z: Plane, chord: Plane, grow: Array | float) -> Array:
         """Return the place between the ends (see `Follower.on_chord`)."""
@@ -489,9 +717,10 @@ class Arm(Round):
         turn = -self.hand * rise
         return turn, self.pivot * (1.0 - unit(turn))
 
-    def symbol(self, p: float, reach: float, wide: float) -> list[tuple[complex, ...]]:  # noqa: ARG002
-        """Return the arm (see `Follower.symbol`)."""
-        return [(self.pivot, complex(self.centre(np.array(p))))]
+    def symbol(self, p: float, reach: float, wide: float) -> tuple[list[Line], list[Disc]]:  # noqa: ARG002
+        """Return the arm and its end (see `Follower.symbol`)."""
+        centre, ends = self._end(p)
+        return [(self.pivot, centre)], ends
 
     def on_level(self, height: Array) -> Array:
         """Return positions on this side of the perpendicular to the x axis."""
@@ -514,6 +743,8 @@ class Arm(Round):
 @dataclass(frozen=True, kw_only=True)
 class Face(Follower):
     """A follower with a flat face."""
+
+    has_centre = False
 
     @abstractmethod
     def line(self, p: Jet, ds: Jet) -> tuple[Jet, Jet, Jet]:
@@ -596,6 +827,8 @@ class FlatStem(Face):
     offset: float = 0.0
 
     angular = False
+    pressure_limit = Stem.pressure_limit
+    jamming_limit = Stem.jamming_limit
 
     @property
     def lever(self) -> float:
@@ -606,6 +839,10 @@ class FlatStem(Face):
         """Return the height of the face, mm."""
         return p
 
+    def on_circle(self, radius: Array | float) -> Array:
+        """Return the heights themselves."""
+        return np.asarray(radius)
+
     def mirrored(self) -> Self:
         """Return its mirror image in the x axis."""
         return replace(self, start=-self.start)
@@ -614,10 +851,10 @@ class FlatStem(Face):
         """Return the shift along the guide (see `Follower.moved`)."""
         return np.zeros_like(rise), np.asarray(1j * rise, dtype=np.complex128)
 
-    def symbol(self, p: float, reach: float, wide: float) -> list[tuple[complex, ...]]:
+    def symbol(self, p: float, reach: float, wide: float) -> tuple[list[Line], list[Disc]]:
         """Return face and stem (see `Follower.symbol`)."""
         foot = complex(self.offset, p)
-        return [(complex(-wide, p), complex(wide, p)), (foot, foot + 0.5j * reach)]
+        return [(complex(-wide, p), complex(wide, p)), (foot, foot + 0.5j * reach)], []
 
     def lean(self, p: Array) -> float:  # noqa: ARG002
         """Return 0: the face is level."""
@@ -670,11 +907,33 @@ class FlatArm(Face):
     offset: float = 0.0
 
     angular = True
+    pressure_limit = Arm.pressure_limit
+    jamming_limit = Arm.jamming_limit
 
     @property
     def lever(self) -> float:
         """Millimetres per unit of lift, at the cam's axis."""
         return self.pivot
+
+    @property
+    def nearest(self) -> float:
+        """Least distance from the origin to the face, mm, over all positions."""
+        return max(0.0, -self.pivot - self.offset)
+
+    def demand(self, program: Program) -> None:
+        """Refuse a face that turns too far or falls too fast (see `Follower.demand`)."""
+        across = "is perpendicular to the line of centres"
+        _demand_within(self, program, (-_UPRIGHT, _UPRIGHT), across)
+        slowest = program.range_of(1)[0]
+        if not slowest > -1.0 + _STANDSTILL:
+            what = "the face swings down faster than the cam turns: no profile can support it"
+            share = rounded_down(-100.0 * (1.0 - 2.0 * _STANDSTILL) / slowest, 4)
+            note = "value and limit are rad of swing per rad of the cam; lifts of less than "
+            raise beyond_limit(what, "motion", slowest, -1.0, f"{note}{share} % of these work")
+
+    def on_circle(self, radius: Array | float) -> Array:
+        """Return positions at distances of the face from the origin."""
+        return np.arcsin((radius + self.offset) / self.pivot)
 
     @property
     def clear(self) -> float:
@@ -693,11 +952,11 @@ class FlatArm(Face):
         """Return the rotation about the pivot (see `Follower.moved`)."""
         return -rise, self.pivot * (1.0 - unit(-rise))
 
-    def symbol(self, p: float, reach: float, wide: float) -> list[tuple[complex, ...]]:  # noqa: ARG002
+    def symbol(self, p: float, reach: float, wide: float) -> tuple[list[Line], list[Disc]]:  # noqa: ARG002
         """Return the face, and its distance from the pivot (see `Follower.symbol`)."""
         along = cmath.exp(-1j * p)
         foot = self.pivot - self.offset * 1j * along
-        return [(complex(self.pivot), foot, foot - along * (self.pivot + 0.4 * reach))]
+        return [(complex(self.pivot), foot, foot - along * (self.pivot + 0.4 * reach))], []
 
     def lean(self, p: Array) -> Array:
         """Return the angle of the face, rad."""
@@ -744,25 +1003,17 @@ class FlatArm(Face):
         return self.pivot * np.cos(p)
 
 
-def swing(pivot: float, arm: float, size: Array | float) -> Array:
-    """Return Psi, rad, of an arm with its end at given distances from the cam's axis.
-
-    Parameters
-    ----------
-    pivot, arm : float, mm
-        Axis to pivot; arm.
-    size : (n,) array, mm
-        Arm's end to axis.
-    """
-    # half the angle from the sides, with parentheses (after Kahan) that keep all digits if the
-    # triangle is nearly flat
-    small, large = sorted([pivot, arm])
-    apart = large - small
-    half = np.arctan2(
-        np.sqrt((size - apart) * (size + apart)),
-        np.sqrt((small - (size - large)) * (small + (size + large))),
-    )
-    return 2.0 * half
+def _demand_within(
+    follower: Follower, program: Program, limits: tuple[float, float], passing: str
+) -> None:
+    """Refuse an arm whose positions are not between two `limits`, rad, and say what it passes."""
+    (low, high), (least, most) = (follower.start + lift for lift in program.range), limits
+    if least < low and high < most:
+        return
+    position, limit = (low, least) if low <= least else (high, most)
+    value, limit = (math.degrees(angle - follower.start) for angle in (position, limit))
+    what, note = f"the arm swings too far: it {passing}", "value and limit are lifts"
+    raise beyond_limit(what, "motion", value, limit, note, unit="deg")
 
 
 def _seen(across: Jet, y: Jet) -> tuple[Jet, Jet]:

@@ -9,7 +9,7 @@ clearance.
 
 Refused: as for disc cams, with the widest roller, and blanks whose edge the groove would open.
 
-Depends on cam, disc, lost_motion, wall and mechanism.
+Depends on cam, disc, followers, lost_motion and wall.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from gearcam.base.display import Brief
-from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.errors import InfeasibleError, beyond_limit
 from gearcam.cams.cam import Cam
 from gearcam.cams.disc import clears_axis, demand_standing
+from gearcam.cams.followers import Follower, Round
 from gearcam.cams.lost_motion import Rest, largest_lost_motion
 from gearcam.cams.measures import Extreme
-from gearcam.cams.mechanism import Mechanism
 from gearcam.cams.wall import CHORD_TOLERANCE, PitchMotion, Wall
 from gearcam.laws.program import Program
 
@@ -39,8 +39,8 @@ class GrooveCam(Brief, Cam):
         Motion of the roller that touches the inner wall.
     inner, outer : Wall
         Inside and outside the pitch curve; their followers are as wide as the groove.
-    radius2 : float, mm
-        Radius of the roller that touches the outer wall.
+    rollers : (Round, Round)
+        The rollers that touch the inner and the outer wall, one and the same if there is one.
     relief : Wall or None
         Wall set back at the height of the larger of two rollers, which must not touch it.
     """
@@ -50,7 +50,7 @@ class GrooveCam(Brief, Cam):
     motion: PitchMotion
     inner: Wall
     outer: Wall
-    radius2: float
+    rollers: tuple[Round, Round]
     relief: Wall | None = None
 
     @property
@@ -66,33 +66,28 @@ class GrooveCam(Brief, Cam):
     @property
     def width(self) -> float:
         """Width of the groove, mm: the smaller one if it has two."""
-        return self.inner.mechanism.radius + self.outer.mechanism.radius
+        return self.inner.follower.radius + self.outer.follower.radius
 
     @property
     def reach(self) -> float:
         """Largest distance of the groove from the axis, mm."""
         walls = (self.outer, self.relief or self.outer)
-        radius = max(wall.mechanism.radius for wall in walls if wall.side < 0)
-        return _farthest(self.motion) + radius
+        radius = max(wall.follower.radius for wall in walls if wall.side < 0)
+        follower, (_, high) = self.motion.follower, self.motion.program.range
+        return follower.distance(follower.start + high) + radius
 
     @cached_property
     def lost_motion(self) -> Extreme:
         """Largest lost motion, mm or rad: free travel of the follower while the cam is at rest."""
+        one, other = self.rollers
         return largest_lost_motion(
-            Rest(wall=self.inner, radius=self.motion.mechanism.radius),
-            Rest(wall=self.outer, radius=self.radius2),
+            Rest(wall=self.inner, roller=one), Rest(wall=self.outer, roller=other)
         )
-
-
-def _farthest(motion: PitchMotion) -> float:
-    """Return the largest distance of the roller's centre from the axis, mm."""
-    m = motion.mechanism
-    return m.follower.distance(m.start + motion.program.range[1])
 
 
 def make_groove(
     program: Program,
-    mechanism: Mechanism,
+    roller: Round,
     *,
     clearance: float = 0.0,
     radius2: float | None = None,
@@ -106,8 +101,8 @@ def make_groove(
     ----------
     program : Program
         The lift.
-    mechanism : Mechanism
-        The follower, with the radius of the roller (of two, that on the inner wall).
+    roller : Round
+        The follower with its roller, of two that on the inner wall.
     clearance : float, mm
         Width of the groove less the roller's diameter; half of it at each of two rollers.
     radius2 : float, mm, optional
@@ -129,13 +124,12 @@ def make_groove(
         If a position is impossible, or the groove would open the edge of the blank.
     """
     common = {"program": program, "clockwise": clockwise, "tolerance": tolerance}
-    motion = PitchMotion(mechanism=mechanism, **common)
-    radius, second = mechanism.radius, mechanism.radius if radius2 is None else radius2
+    motion = PitchMotion(follower=roller, **common)
+    radius, second = roller.radius, roller.radius if radius2 is None else radius2
 
     def wall(size: float, side: int, key: str) -> Wall:
-        wide = replace(mechanism, radius=size + 0.5 * clearance)
-        called = f"{key} wall"
-        return Wall(mechanism=wide, side=side, of=motion, key=key, called=called, **common)
+        wide, called = replace(roller, radius=size + 0.5 * clearance), f"{key} wall"
+        return Wall(follower=wide, side=side, of=motion, key=key, called=called, **common)
 
     relief = None
     if second != radius:
@@ -143,44 +137,23 @@ def make_groove(
         relief = wall(far, side, "relief")
     inner, outer = wall(radius, 1, "inner"), wall(second, -1, "outer")
     deepest = relief if relief is not None and relief.side > 0 else inner
-    demand_standing(program, mechanism)
-    if not clears_axis(program, deepest.mechanism):
-        raise _too_wide(program, deepest.mechanism)
-    made = GrooveCam(
-        motion=motion,
-        inner=inner,
-        outer=outer,
-        radius2=second,
-        relief=relief,
-    )
-    least = 2.0 * made.reach
+    demand_standing(program, roller)
+    if not clears_axis(program, deepest.follower):
+        raise _too_wide(program, deepest.follower)
+    rollers = roller, replace(roller, radius=second)
+    cam = GrooveCam(motion=motion, inner=inner, outer=outer, rollers=rollers, relief=relief)
+    least = 2.0 * cam.reach
     if not diameter > least:
-        raise InfeasibleError(
-            "the groove opens the edge of the blank",
-            where="cam.outer_diameter_mm",
-            value=diameter,
-            limit=least,
-            unit="mm",
-            nearest="it must exceed twice the groove's largest distance from the axis, the limit",
-            ways=(
-                Way(
-                    near={"cam.outer_diameter_mm": least},
-                    far={"cam.outer_diameter_mm": 1.5 * least},
-                ),
-            ),
-        )
-    return made
+        what, key = "the groove opens the edge of the blank", "cam.outer_diameter_mm"
+        rule = "it must exceed twice the groove's largest distance from the axis, the limit"
+        raise beyond_limit(what, key, diameter, least, rule, far=1.5 * least)
+    return cam
 
 
-def _too_wide(program: Program, deepest: Mechanism) -> InfeasibleError:
+def _too_wide(program: Program, deepest: Follower) -> InfeasibleError:
     """Return the error for a groove that contains the axis."""
-    nearest = deepest.follower.distance(deepest.start + program.range[0])
-    return InfeasibleError(
-        "the groove is so wide that it reaches the cam's axis",
-        where="[cam]",
-        value=deepest.radius,
-        limit=nearest,
-        unit="mm",
-        nearest="the value is the distance from the middle of the groove to its inner wall, the "
-        "limit its least distance from the axis",
-    )
+    nearest = deepest.distance(deepest.start + program.range[0])
+    what = "the groove is so wide that it reaches the cam's axis"
+    note = "the value is the distance from the middle of the groove to its inner wall, the limit "
+    note += "its least distance from the axis"
+    return beyond_limit(what, "[cam]", deepest.radius, nearest, note, unit="mm")

@@ -3,7 +3,7 @@
 Between the cam angles of the two sides of a corner the follower touches only corners; its lift
 there has a closed form, and its largest deviation from the given lift is a root of a derivative.
 
-Depends on trim, mechanism, laws and numeric; numpy only.
+Depends on trim, followers, laws and numeric; numpy only.
 """
 
 from __future__ import annotations
@@ -14,10 +14,11 @@ from collections.abc import Callable
 import numpy as np
 
 from gearcam.base.errors import InfeasibleError
+from gearcam.cams.carriers import Carrier
+from gearcam.cams.curve import CamCurve
+from gearcam.cams.followers import Follower
 from gearcam.cams.measures import Extreme
-from gearcam.cams.mechanism import Mechanism
 from gearcam.cams.trim import Corner
-from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import extremes
@@ -27,13 +28,17 @@ _NARROWEST = 1e-9
 """Angle, rad, below which rounding may exchange the two sides of a corner."""
 
 
-def resting(mechanism: Mechanism, point: complex, side: int = 1) -> Callable[[Jet], Jet]:
+def resting(
+    follower: Follower, carrier: Carrier, point: complex, side: int = 1
+) -> Callable[[Jet], Jet]:
     """Return the lift of a follower that rests on a point of the cam.
 
     Parameters
     ----------
-    mechanism : Mechanism
+    follower : Follower
         The follower.
+    carrier : Carrier
+        Motion of the cam.
     point : complex, mm
         In the cam's frame, turning counter-clockwise.
     side : {1, -1}
@@ -44,7 +49,6 @@ def resting(mechanism: Mechanism, point: complex, side: int = 1) -> Callable[[Je
     callable
         ``lift(theta) -> Jet``, mm or rad; nan where the point cannot be touched.
     """
-    follower, carrier = mechanism.follower, mechanism.carrier
 
     def lift(theta: Jet) -> Jet:
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -56,19 +60,15 @@ def resting(mechanism: Mechanism, point: complex, side: int = 1) -> Callable[[Je
     return lift
 
 
-def lost_lift(program: Program, mechanism: Mechanism, corner: Corner, side: int = 1) -> Extreme:
+def lost_lift(curve: CamCurve, corner: Corner) -> Extreme:
     """Return the largest lift lost at a corner, and its cam angle.
 
     Parameters
     ----------
-    program : Program
-        The given lift.
-    mechanism : Mechanism
-        The follower.
+    curve : CamCurve
+        The untrimmed profile, turning counter-clockwise.
     corner : Corner
-        Corner of the trimmed profile, turning counter-clockwise.
-    side : {1, -1}
-        Whether the profile is inside or outside the pitch curve.
+        Corner of the trimmed profile.
 
     Returns
     -------
@@ -80,7 +80,8 @@ def lost_lift(program: Program, mechanism: Mechanism, corner: Corner, side: int 
     InfeasibleError
         If the follower cannot touch the corner anywhere.
     """
-    rest, start, end = resting(mechanism, corner.point, side), corner.before, corner.after
+    side, start, end = curve.lift_sign, corner.before, corner.after
+    rest = resting(curve.follower, curve.carrier, corner.point, side)
     if end < start:
         end += _TURN
     if end == start or end - start > _TURN - _NARROWEST:
@@ -88,13 +89,13 @@ def lost_lift(program: Program, mechanism: Mechanism, corner: Corner, side: int 
 
     def missing(theta: Array) -> list[Array]:
         given = rest(Jet.variable(theta, 1)).derivatives()
-        return list(side * np.subtract(program.derivatives(theta, 1), given))
+        return list(side * np.subtract(curve.program.derivatives(theta, 1), given))
 
-    places, values = extremes(missing, program.cuts_between(start, end))
+    places, values = extremes(missing, curve.program.cuts_between(start, end))
     if np.isnan(values).all():
         raise InfeasibleError(
             "the follower cannot rest on a corner that trimming leaves",
-            where=mechanism.driver.told(start),
+            where=curve.carrier.driver.told(start),
             nearest="its arm or its pivot does not allow that position",
         )
     best = int(np.nanargmax(values))

@@ -4,7 +4,7 @@ A roller that rests on a wall has its centre on a parallel of the pitch curve, n
 half the clearance, or on an arc about a corner left by trimming. For a centre on that parallel the
 cam angle and the lift have closed forms; for a given angle the centre is a bracketed root.
 
-Depends on curve, lost, mechanism and numeric; numpy only.
+Depends on curve, followers, lost and numeric; numpy only.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ import numpy as np
 from gearcam.base.display import Brief
 from gearcam.cams.carriers import unit
 from gearcam.cams.curve import ProfileSegments, segments
+from gearcam.cams.followers import Round
 from gearcam.cams.lost import resting
 from gearcam.cams.measures import Extreme
 from gearcam.cams.wall import Wall
@@ -51,36 +52,34 @@ class Rest(Brief):
     ----------
     wall : Wall
         Wall of a follower as wide as the groove.
-    radius : float, mm
-        Radius of the roller, at most that of the wall's follower.
+    roller : Round
+        The roller, at most as wide as the wall's follower.
     """
 
     wall: Wall
-    radius: float
+    roller: Round
 
     @cached_property
     def _centers(self) -> ProfileSegments:
         """The curve of the roller's centre, without corners."""
-        curve = replace(self.wall.curve, mirrored=False)
-        inset = self.wall.side * (self.wall.mechanism.radius - self.radius)
-        return segments(replace(curve, mechanism=replace(curve.mechanism, radius=inset)), inset)
+        inset = self.wall.side * (self.wall.follower.radius - self.roller.radius)
+        return segments(replace(self.wall.curve, inset=inset))
 
     def _moving(self, index: Ints, parameter: Array) -> tuple[Array, Array, Array, Array]:
         """Return angles and lifts at points of the curve of centres, with their derivatives."""
-        m = self.wall.mechanism
         jumps = self._centers.jump[index]
         knots = self._centers.curve.program.knots[self._centers.piece[index]]
         theta = np.where(jumps, knots, parameter)
         centers, velocities = self._centers.moving(index, parameter)
-        follower, carrier = m.centred, m.carrier
-        stands, position, fixed = carrier.stand(follower, centers, theta)
+        carrier = self.wall.carrier
+        stands, position, fixed = carrier.stand(self.roller, centers, theta)
         # components along the follower's direction and across it
-        across = np.conj(unit(follower.lean(position)))
+        across = np.conj(unit(self.roller.lean(position)))
         drawn = across * velocities * carrier.frame(stands)[0]
         turned = across * carrier.passing(fixed)
         slope = -drawn.real / turned.real
-        rise = (drawn.imag + turned.imag * slope) / follower.lever
-        lift = position - follower.start
+        rise = (drawn.imag + turned.imag * slope) / self.roller.lever
+        lift = position - self.roller.start
         return stands, lift, slope, rise
 
     @cached_property
@@ -98,12 +97,12 @@ class Rest(Brief):
     @cached_property
     def _corners(self) -> Sequence[tuple[tuple[float, float], complex]]:
         """Corners, with the angles between which the roller rests on them."""
-        found, centers, m = [], self._centers, self.wall.mechanism
+        found, curve = [], self._centers.curve
         for corner in self.wall.corners:
             theta = np.array([corner.before, corner.after])
             s, ds = self.wall.program.derivatives(theta, 1)
-            places = centers.curve.trace(theta, s, ds, centers.inset)[0]
-            before, after = m.carrier.stand(m.centred, places, theta)[0].tolist()
+            places = curve.trace(theta, s, ds)[0]
+            before, after = curve.carrier.stand(self.roller, places, theta)[0].tolist()
             found.append(((before, after), corner.point))
         return found
 
@@ -144,10 +143,9 @@ class Rest(Brief):
         stands, lift, slope, rise = self._moving(index, places)
         rise = rise / slope
         lift = lift + rise * (aim - stands)  # remaining error of the search
-        roller = replace(self.wall.mechanism, radius=self.radius)
         for (before, after), point in self._corners:
             inside = np.mod(theta - before, _TURN) <= np.mod(after - before, _TURN)
-            given = resting(roller, point, self.wall.side)
+            given = resting(self.roller, self.wall.carrier, point, self.wall.side)
             lift[inside], rise[inside] = given(Jet.variable(theta[inside], 1)).derivatives()
         return lift, rise
 

@@ -125,10 +125,10 @@ def undercut(curve: CamCurve) -> list[tuple[float, float]]:
         Cam angles, rad, in rising order; both are equal if only a jump runs backwards. A stretch
         across the end of the turn is cut there.
     """
-    if not curve.mechanism.flat and curve.mechanism.radius == 0.0:
+    if not curve.rounded:
         return []
     survey = curve.program.survey
-    side, hard = curve.mechanism.away, curve.program.hard
+    side, hard = curve.lift_sign, curve.program.hard
     back = (jump.theta for jump in hard if side * (jump.after - jump.before) < 0.0)
     found = [(theta, theta) for theta in back]
 
@@ -257,7 +257,7 @@ def _unknown(segments: ProfileSegments, cells: int, nodes: int, found: Array) ->
     """
     program = segments.curve.program
     if not program.rough or segments.corner[1:].any():
-        off = program.errors[0] * segments.curve.mechanism.lever
+        off = program.errors[0] * segments.curve.follower.lever
         return off * np.array([2.0 * math.pi, found[0]])
     rough = [
         replace(segments, curve=replace(segments.curve, program=replace(program, lift=lift)))

@@ -6,23 +6,23 @@ perturbed by a few units of the last digit, lift and derivatives by their known 
 result is computed again. The estimate is the largest change in a few trials, at cam angles all over
 the turn.
 
-Depends on curve, lost, wall, mechanism and laws; numpy only.
+Depends on curve, followers, lost, wall and laws; numpy only.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
 from gearcam.base.display import Brief
 from gearcam.cams.curve import CamCurve
+from gearcam.cams.followers import Follower
 from gearcam.cams.lost import resting
-from gearcam.cams.mechanism import Mechanism
 from gearcam.cams.wall import PitchMotion, Wall
 from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array, Ints, Plane
@@ -32,10 +32,8 @@ _LENGTHS, _ANGLES, _COEFFICIENTS = (n * float(np.finfo(float).eps) for n in (4, 
 """Relative perturbations, in roundings: of sizes of the follower; of cam angles, since knots are
 sums; of coefficients of the lift."""
 
-_SIZES: Final = (
-    "start", *(one.name for one in fields(Mechanism) if isinstance(one.default, float))
-)  # fmt: skip
-"""Fields of a mechanism that are perturbed."""
+_SIZES: Final = 11
+"""Number of factors drawn for sizes: more than any follower has."""
 
 _TRIES: Final = 4
 
@@ -56,12 +54,22 @@ class _State:
     factors: Array
 
     def of(self, curve: CamCurve, quantity: Quantity) -> Array | Plane:
-        sizes = {
-            name: getattr(curve.mechanism, name) * float(factor)
-            for name, factor in zip(_SIZES, self.factors, strict=False)
-        }
-        moved = replace(curve, mechanism=replace(curve.mechanism, **sizes))
+        inset, *factors = self.factors.tolist()
+        follower = scaled(curve.follower, factors)
+        moved = replace(curve, follower=follower, inset=curve.inset * inset)
         return quantity(moved, self.theta, self.found)
+
+
+def scaled(follower: Follower, factors: Sequence[float]) -> Follower:
+    """Return a follower with sizes times `factors`, of a complex size one for each part."""
+    more, sizes = iter(factors), dict[str, Any]()
+    for field in fields(follower):
+        size = getattr(follower, field.name)
+        if isinstance(size, complex):
+            sizes[field.name] = complex(size.real * next(more), size.imag * next(more))
+        elif isinstance(size, float):
+            sizes[field.name] = size * next(more)
+    return replace(follower, **sizes)
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,14 +105,13 @@ class Moved(Brief):
         def moved(values: Array, step: float = _COEFFICIENTS) -> Array:
             return values * (1.0 + step * signs(values.shape))
 
-        count = len(fields(Mechanism))
-        made = [_State(theta, lift.on_pieces(index, theta, 3), np.ones(count))]
+        made = [_State(theta, lift.on_pieces(index, theta, 3), np.ones(_SIZES))]
         off = np.array(self.program.errors)[:, None]
         for _ in range(_TRIES):
             places = moved(theta, _ANGLES)
             found = lift.on_pieces(index, places, 3, moved)
             found += off * np.sign(signs(found.shape))
-            made.append(_State(places, found, moved(np.ones(count), _LENGTHS)))
+            made.append(_State(places, found, moved(np.ones(_SIZES), _LENGTHS)))
         return made
 
     @cached_property
@@ -187,7 +194,7 @@ def contact_place(curve: CamCurve, theta: Array, found: Array) -> Array:
 
 def profile_point(curve: CamCurve, theta: Array, found: Array) -> Plane:
     """Return points of the profile, mm (see `Quantity`)."""
-    return curve.trace(theta, found[0], found[1], curve.mechanism.radius)[0]
+    return curve.trace(theta, found[0], found[1])[0]
 
 
 def _speed(curve: CamCurve, theta: Array, found: Array) -> Array:
@@ -235,7 +242,7 @@ def lost_lift_error(moved: Moved, wall: Wall) -> float:
     float
         From the gap between both sides of a corner, and the angle at which they cross.
     """
-    worst, away = 0.0, wall.curve.mechanism.away
+    worst, curve = 0.0, wall.curve
     points, misses = _corner_errors(moved, wall)
     for corner, loss in zip(wall.corners, wall.lost, strict=True):
         off = misses[np.abs(points - corner.point).argmin()]
@@ -243,7 +250,9 @@ def lost_lift_error(moved: Moved, wall: Wall) -> float:
         # a perturbed corner may be out of the follower's reach: then it has no lift
         with np.errstate(invalid="ignore"):
             lifts = [
-                resting(wall.mechanism, complex(point), away)(theta).derivatives()[0]
+                resting(curve.follower, curve.carrier, complex(point), curve.lift_sign)(
+                    theta
+                ).derivatives()[0]
                 for point in (corner.point, *(corner.point + off), *(corner.point - off))
             ]
         change = float(np.nanmax(np.abs(np.subtract(lifts[1:], lifts[0])), initial=0.0))
@@ -271,7 +280,7 @@ def _corner_errors(moved: Moved, wall: Wall) -> tuple[Plane, Plane]:
 def _normal_errors(moved: Moved, wall: Wall, theta: Array) -> Array:
     """Return position errors of a wall along its normal, mm, at cam angles (n,), rad."""
     s, ds = wall.program.derivatives(theta, 1)
-    normals = -1j * wall.curve.trace(theta, s, ds, wall.curve.mechanism.radius)[1]
+    normals = -1j * wall.curve.trace(theta, s, ds)[1]
 
     def height(curve: CamCurve, places: Array, found: Array) -> Array:
         return (np.conj(normals) * profile_point(curve, places, found)).real
@@ -300,5 +309,5 @@ def play_error(moved: Moved, motion: PitchMotion, walls: tuple[Wall, ...], theta
     """
     place = np.array([theta])
     off = sum(float(_normal_errors(moved, wall, place)[0]) for wall in walls)
-    slant = float(motion.curve.contact(place, 0).pressure.derivatives()[0][0])
-    return off / (math.cos(slant) * motion.mechanism.lever)
+    slant = float(motion.pitch_curve.contact(place, 0).pressure.derivatives()[0][0])
+    return off / (math.cos(slant) * motion.follower.lever)

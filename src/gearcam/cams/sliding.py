@@ -1,6 +1,6 @@
 """A translating cam: a plate that slides past its follower, with one wall or with a groove.
 
-The rotation of a disc cam is a translation here (see `mechanism`). A wall is open and is closed by
+The rotation of a disc cam is a translation here (see `carriers`). A wall is open and is closed by
 its plate: beyond its ends the outline continues level, then down (or up) to the straight edge of
 the metal. The groove is closed at both ends by the roller's circle, so that the plate stays in one
 piece.
@@ -10,7 +10,7 @@ Frame: output is the mirror image, as for a cam that turns clockwise: the cam mo
 
 Refused: arms that get perpendicular to the travel, plates that are too small for their walls.
 
-Depends on cam, lost_motion, sliding_wall, wall and mechanism.
+Depends on cam, followers, lost_motion, sliding_wall and wall.
 """
 
 from __future__ import annotations
@@ -22,19 +22,18 @@ from functools import cached_property
 import numpy as np
 
 from gearcam.base.display import Brief, renderer
-from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.errors import InfeasibleError, beyond_limit
 from gearcam.cams.cam import Cam
+from gearcam.cams.carriers import Sliding
+from gearcam.cams.followers import Round
 from gearcam.cams.lost_motion import Rest, largest_lost_motion
 from gearcam.cams.measures import Extreme
-from gearcam.cams.mechanism import Mechanism
 from gearcam.cams.sliding_wall import Plate, SlidingWall, arc, joined, straight
 from gearcam.cams.wall import CHORD_TOLERANCE, PitchMotion
 from gearcam.laws.program import Program
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.bulges import as_complex
 from gearcam.numeric.contour import Contour
-
-_UPRIGHT = 0.5 * math.pi
-"""Largest angle of an arm over a sliding cam, rad: its roller must move along the cam."""
 
 _FAR = 3.0
 """Size of a plate in remedies, over the least: bolts need space next to the groove."""
@@ -48,6 +47,8 @@ class SlidingCam(Brief, Cam):
     ----------
     motion : PitchMotion
         Motion of its follower.
+    roller : Round
+        That follower.
     lower : SlidingWall
         The wall below the follower.
     upper : SlidingWall or None
@@ -57,6 +58,7 @@ class SlidingCam(Brief, Cam):
     title = "translating cam"
 
     motion: PitchMotion
+    roller: Round
     lower: SlidingWall
     upper: SlidingWall | None = None
 
@@ -73,12 +75,12 @@ class SlidingCam(Brief, Cam):
     @property
     def way(self) -> float:
         """Travel, mm."""
-        return self.motion.mechanism.driver.turn
+        return self.motion.carrier.driver.turn
 
     @property
     def width(self) -> float:
         """Width of the groove, mm."""
-        return 2.0 * self.lower.mechanism.radius
+        return 2.0 * self.lower.follower.radius
 
     @property
     def plate(self) -> Plate:
@@ -90,8 +92,7 @@ class SlidingCam(Brief, Cam):
         """Largest lost motion in a groove, mm or rad."""
         if self.upper is None:
             return None
-        radius = self.motion.mechanism.radius
-        lower, upper = (Rest(wall=wall, radius=radius) for wall in self.walls)
+        lower, upper = (Rest(wall=wall, roller=self.roller) for wall in self.walls)
         return largest_lost_motion(lower, upper)
 
     @cached_property
@@ -128,8 +129,9 @@ class SlidingCam(Brief, Cam):
 
 def make_sliding(
     program: Program,
-    mechanism: Mechanism,
+    follower: Round,
     *,
+    travel: float,
     height: float,
     length: float | None = None,
     groove: bool = False,
@@ -142,8 +144,10 @@ def make_sliding(
     ----------
     program : Program
         The lift, open.
-    mechanism : Mechanism
-        The follower of a cam that slides.
+    follower : Round
+        The follower.
+    travel : float, mm
+        Travel of the cam.
     height : float, mm
         Height of the plate; for a cam with one wall at the highest lift.
     length : float, mm, optional
@@ -165,61 +169,45 @@ def make_sliding(
     InfeasibleError
         If one of them is impossible.
     """
-    if mechanism.oscillating:
-        _demand_swing(program, mechanism)
-    common = {"program": program, "clockwise": True, "tolerance": tolerance}
-    wide = replace(mechanism, radius=mechanism.radius + (0.5 * clearance if groove else 0.0))
-    plate = _plate(program, wide, height, length, groove)
-
-    motion = PitchMotion(mechanism=mechanism, **common)
+    follower.demand(program)
+    carrier = Sliding(travel / (2.0 * math.pi))
+    common = {"program": program, "carrier": carrier, "clockwise": True, "tolerance": tolerance}
+    motion = PitchMotion(follower=follower, **common)
+    wide = replace(follower, radius=follower.radius + (0.5 * clearance if groove else 0.0))
+    plate = _plate(motion, wide, height, length, groove)
 
     def wall(side: int, key: str, called: str) -> SlidingWall:
         told = {"side": side, "of": motion, "key": key, "called": called}
-        return SlidingWall(mechanism=wide, plate=plate, **told, **common)
+        return SlidingWall(follower=wide, plate=plate, **told, **common)
 
     if not groove:
-        return SlidingCam(motion=motion, lower=wall(1, "", "profile"))
-    lower, upper = (
-        wall(*told) for told in ((1, "lower", "lower wall"), (-1, "upper", "upper wall"))
-    )
-    return SlidingCam(motion=motion, lower=lower, upper=upper)
-
-
-def _demand_swing(program: Program, mechanism: Mechanism) -> None:
-    """Refuse an arm that gets perpendicular to the travel, or nearly so."""
-    low, high = (mechanism.start + lift for lift in program.range)
-    if not -_UPRIGHT < low <= high < _UPRIGHT:
-        past = low if low <= -_UPRIGHT else high
-        raise InfeasibleError(
-            "the arm swings too far: it gets perpendicular to the cam's travel",
-            where="motion",
-            value=math.degrees(past - mechanism.start),
-            limit=math.degrees(math.copysign(_UPRIGHT, past) - mechanism.start),
-            unit="deg",
-            nearest="value and limit are lifts",
-        )
+        return SlidingCam(motion=motion, roller=follower, lower=wall(1, "", "profile"))
+    lower, upper = wall(1, "lower", "lower wall"), wall(-1, "upper", "upper wall")
+    return SlidingCam(motion=motion, roller=follower, lower=lower, upper=upper)
 
 
 def _plate(
-    program: Program, mechanism: Mechanism, height: float, length: float | None, groove: bool
+    motion: PitchMotion, wide: Round, height: float, length: float | None, groove: bool
 ) -> Plate:
-    """Return the plate of a cam; the mechanism's radius is half the groove's width."""
-    radius, sides = mechanism.radius, (1.0, -1.0) if groove else (1.0,)
+    """Return the plate of a cam, with a follower as `wide` as its groove."""
+    radius, program = wide.radius, motion.program
     theta = np.array([0.0, 2.0 * math.pi])
     s, ds = program.derivatives(theta, 1)
-    curve = PitchMotion(program=program, mechanism=mechanism).curve
-    drawn = [-curve.trace(theta, s, ds, side * radius)[0].real for side in sides]
+
+    def ends(inset: float) -> Array:
+        return -replace(motion.pitch_curve, inset=inset).trace(theta, s, ds)[0].real
+
+    drawn = [ends(radius)]
     if groove:  # its ends are round
-        middle = -curve.pitch(theta, s).real
-        drawn += [middle - 2.0 * radius, middle + 2.0 * radius]
+        drawn += [ends(-radius), ends(0.0) - 2.0 * radius, ends(0.0) + 2.0 * radius]
     left, right = float(np.min(drawn)) + 0.0, float(np.max(drawn)) + 0.0
     bare = right - left - (2.0 * radius if groove else 0.0)
     if length is not None:
         if not (length > bare if groove else length >= bare):
             raise _too_small("length_mm", "long", length, bare)
         left, right = (0.5 * (left + right + way) for way in (-length, length))
-    positions = np.array(program.range) + mechanism.start
-    bottom, top = mechanism.centred.centre(positions).imag.tolist()
+    positions = np.array(program.range) + wide.start
+    bottom, top = wide.centre(positions).imag.tolist()
     least = top - bottom + (2.0 * radius if groove else 0.0)
     if not height > least:
         raise _too_small("height_mm", "high", height, least)
@@ -228,13 +216,8 @@ def _plate(
 
 
 def _too_small(key: str, word: str, value: float, limit: float) -> InfeasibleError:
-    where = f"blank.{key}"
-    return InfeasibleError(
+    what, rule = (
         f"the plate is not {word} enough for the cam",
-        where=where,
-        value=value,
-        limit=limit,
-        unit="mm",
-        nearest="at the limit no metal is left there",
-        ways=(Way(near={where: limit}, far={where: _FAR * limit}),),
+        "at the limit no metal is left there",
     )
+    return beyond_limit(what, f"blank.{key}", value, limit, rule, far=_FAR * limit)

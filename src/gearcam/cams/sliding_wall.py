@@ -124,7 +124,7 @@ class SlidingWall(Wall):
         if not outwards * (far - start.real) > _ALIKE * (self.plate.right - self.plate.left):
             return [], self.line[which]
         aside = far - center.real
-        deep = math.sqrt((self.mechanism.radius - aside) * (self.mechanism.radius + aside))
+        deep = math.sqrt((self.follower.radius - aside) * (self.follower.radius + aside))
         end = complex(far, center.imag - self.side * deep)
         turn = float(np.angle((end - center) / (start - center)))
         return [arc(self, center, start, turn)], np.array([end.real, end.imag])

@@ -209,7 +209,7 @@ def trimmed(
             if not _backwards(made[0], undercut):
                 return made
     if segments.curve.program.open:
-        run, runs = _RUNS * abs(segments.inset), ("cam.run_in_mm", "cam.run_out_mm")
+        run, runs = _RUNS * abs(segments.curve.inset), ("cam.run_in_mm", "cam.run_out_mm")
         what = "the wall is undercut at the beginning or end of its travel and cannot be trimmed"
         ways = (Way(near=dict.fromkeys(runs, 0.0), far=dict.fromkeys(runs, run)),)
         raise InfeasibleError(

@@ -22,11 +22,12 @@ import numpy as np
 
 from gearcam.base.display import Brief
 from gearcam.base.facts import Fact
+from gearcam.cams.carriers import ROTATING, Carrier
 from gearcam.cams.contact import Contact
 from gearcam.cams.curve import CamCurve, ProfileSegments, begun, segments
+from gearcam.cams.followers import Follower
 from gearcam.cams.lost import lost_lift
 from gearcam.cams.measures import Extreme, Range, Size, over_the_end, range_of, size_of, undercut
-from gearcam.cams.mechanism import Mechanism
 from gearcam.cams.trim import Corner, crossing_chords, star_shaped, trimmed, without_tiny_loops
 from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array, Plane
@@ -53,8 +54,10 @@ class PitchMotion(Brief):
     ----------
     program : Program
         The given lift.
-    mechanism : Mechanism
+    follower : Follower
         The follower.
+    carrier : Carrier
+        Motion of the cam.
     clockwise : bool
         Whether the cam turns clockwise.
     tolerance : float, mm
@@ -66,22 +69,36 @@ class PitchMotion(Brief):
     """
 
     program: Program
-    mechanism: Mechanism
+    follower: Follower
+    carrier: Carrier = ROTATING
     clockwise: bool = False
     tolerance: float = CHORD_TOLERANCE
     key: str = ""
     called: str = "profile"
 
     @cached_property
-    def curve(self) -> CamCurve:
-        """The untrimmed curves of the cam, turning counter-clockwise."""
-        return CamCurve(program=self.program, mechanism=self.mechanism)
+    def pitch_curve(self) -> CamCurve:
+        """The pitch curve, or the profile below a face, of the cam turning counter-clockwise."""
+        return CamCurve(program=self.program, follower=self.follower, carrier=self.carrier)
+
+    @property
+    def motion_scales(self) -> dict[str, float]:
+        """Names of the motion's columns in output, with factors from internal units.
+
+        The lift and its first three derivatives, in this order.
+        """
+        (scale, unit), driver = self.follower.lift_unit, self.carrier.driver
+        names = ("lift_{}", "velocity_{}_per_{}", "acceleration_{}_per_{}2", "jerk_{}_per_{}3")
+        return {
+            name.format(unit, driver.per): scale / driver.rate**order
+            for order, name in enumerate(names)
+        }
 
     @property
     def total_lift(self) -> Fact:
         """Total lift, from the lowest to the highest, in the unit of output."""
         low, high = self.program.range
-        scale, unit = self.mechanism.outward
+        scale, unit = self.follower.lift_unit
         return Fact(scale * (high - low), "lift", unit=unit)
 
     @cached_property
@@ -93,7 +110,7 @@ class PitchMotion(Brief):
         """Return the range of `pick` over a turn or all phases of a `kind`, cached."""
         if (what, kind) not in self._ranges:
             stretches = self.program.phases(kind) if kind else _TURN
-            self._ranges[what, kind] = range_of(self.curve, pick, stretches)
+            self._ranges[what, kind] = range_of(self.pitch_curve, pick, stretches)
         return self._ranges[what, kind]
 
     def pressure(self, kind: str) -> Range | None:
@@ -106,16 +123,16 @@ class PitchMotion(Brief):
         None for a flat follower, whose profile is its pitch curve (see `face_radius`), and if there
         is no such phase.
         """
-        if self.mechanism.flat:
+        if not self.follower.has_centre:
             return None
         return self._range("curvature", lambda contact: contact.turning / contact.pitch_speed, kind)
 
     @cached_property
     def contact_place(self) -> Range | None:
         """Range of the contact along a flat face, mm (see `gearcam.cams.contact.Contact`)."""
-        if not self.mechanism.flat:
+        if self.follower.has_centre:
             return None
-        return range_of(self.curve, lambda contact: contact.place, _TURN)
+        return range_of(self.pitch_curve, lambda contact: contact.place, _TURN)
 
     def motion(self, theta: Array) -> dict[str, Array]:
         """Return the motion and the contact at cam angles.
@@ -132,7 +149,7 @@ class PitchMotion(Brief):
             where straight.
         """
         s, ds, d2s, d3s = self.program.derivatives(theta, 3)
-        found = self.curve.contact(theta, 0)
+        found = self.pitch_curve.contact(theta, 0)
         return {
             "s": s,
             "ds": ds,
@@ -177,9 +194,8 @@ class Wall(PitchMotion):
 
     @cached_property
     def curve(self) -> CamCurve:
-        """The wall's untrimmed curves, turning counter-clockwise; outside at a negative depth."""
-        radius = self.side * self.mechanism.radius
-        return CamCurve(program=self.program, mechanism=replace(self.mechanism, radius=radius))
+        """The untrimmed wall, of the cam turning counter-clockwise."""
+        return replace(self.pitch_curve, inset=self.side * self.follower.radius)
 
     def pitch_curvature(self, kind: str = "") -> Range | None:
         """Return the pitch curve's curvature, 1/mm, of a `kind` (see `PitchMotion`)."""
@@ -210,16 +226,15 @@ class Wall(PitchMotion):
         if self.face_radius is not None:
             convex, concave = self.face_radius.low.value, math.inf
         else:
-            found, radius = self.pitch_curvature(), self.mechanism.radius
+            found, radius = self.pitch_curvature(), self.follower.radius
             low, high = (found.low.value, found.high.value) if found else (0.0, 0.0)
             if self.side < 0:
                 low, high = -high, -low
             convex = 1.0 / high - radius if high > 0.0 else math.inf
             concave = -1.0 / low + radius if low < 0.0 else math.inf
             for jump in self.program.hard:
-                if (
-                    self.curve.mechanism.away * (jump.after - jump.before) > 0.0
-                ):  # an arc about the roller's centre
+                # an arc about the roller's centre, or an edge
+                if self.curve.lift_sign * (jump.after - jump.before) > 0.0:
                     concave = min(concave, radius)
                 else:
                     convex = 0.0
@@ -228,7 +243,7 @@ class Wall(PitchMotion):
     @cached_property
     def face_radius(self) -> Range | None:
         """Radius of curvature of a flat follower's profile, mm, negative where undercut."""
-        if not self.mechanism.flat:
+        if self.follower.has_centre:
             return None
         return range_of(self.curve, lambda contact: contact.speed / contact.turning, _TURN)
 
@@ -246,7 +261,7 @@ class Wall(PitchMotion):
 
     @cached_property
     def _kept(self) -> _Kept:
-        whole = segments(self.curve, self.curve.mechanism.radius)
+        whole = segments(self.curve)
         kept, corners, left = without_tiny_loops(whole, self.undercut, self._reach)
         drawn, sampler = self._sampled(self._drawn(kept))
         if left or not star_shaped(*sampler.probes, slides=self.program.open):
@@ -260,11 +275,11 @@ class Wall(PitchMotion):
     @property
     def _reach(self) -> float:
         """The size of the cam, mm, as a scale of small lengths."""
-        m = self.mechanism
-        return (2.0 * math.pi * m.slide or m.least) + self.program.range[1] * m.lever
+        size = self.follower.prime_radius if self.carrier.around else self.carrier.driver.turn
+        return size + self.program.range[1] * self.follower.lever
 
     def _drawn(self, kept: ProfileSegments) -> ProfileSegments:
-        return replace(begun(kept), curve=replace(self.curve, mirrored=self.clockwise))
+        return replace(begun(kept), curve=replace(kept.curve, mirrored=self.clockwise))
 
     def _sampled(self, drawn: ProfileSegments) -> tuple[ProfileSegments, Sampler]:
         """Return a curve divided so that the probes of its sampler resolve it, and that sampler."""
@@ -287,10 +302,7 @@ class Wall(PitchMotion):
     @cached_property
     def lost(self) -> tuple[Extreme, ...]:
         """Largest lost lift, mm or rad, of each corner, with its cam angle, rad."""
-        side = self.curve.mechanism.away
-        return tuple(
-            lost_lift(self.program, self.mechanism, corner, side) for corner in self.corners
-        )
+        return tuple(lost_lift(self.curve, corner) for corner in self.corners)
 
     @cached_property
     def shortfall(self) -> float:
@@ -310,7 +322,7 @@ class Wall(PitchMotion):
     @property
     def nearest_flat(self) -> float:
         """Least distance of the axis from the inside of a straight piece, mm; inf without one."""
-        if not self.mechanism.flat:
+        if self.follower.has_centre:
             return math.inf
         kept = self.drawn
         inside = np.flatnonzero(kept.jump & (kept.start < 0.0) & (kept.end > 0.0))
@@ -339,13 +351,13 @@ class Wall(PitchMotion):
     @cached_property
     def pitch_contour(self) -> Contour:
         """The pitch curve, counter-clockwise; for a flat or pointed follower the profile."""
-        if self.mechanism.flat or self.mechanism.radius == 0.0:
+        if self.follower.radius == 0.0:
             return self.contour
         return self._contour(self._pitch_sampler)
 
     @property
     def _pitch_sampler(self) -> Sampler:
-        return self._sampled(self._drawn(segments(self.curve, 0.0)))[1]
+        return self._sampled(self._drawn(segments(self.pitch_curve)))[1]
 
     def _contour(self, sampler: Sampler) -> Contour:
         _, points, error = sampler.chords

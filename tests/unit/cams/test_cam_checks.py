@@ -17,7 +17,7 @@ from gearcam.base.tolerances import DEFAULT
 from gearcam.cams.disc import DiscCam, make_cam
 from gearcam.cams.spec import KIND
 from gearcam.laws.motion_table import MotionTable
-from helpers_cams import back, cam, dwell, mechanism, program, rise, there_and_back
+from helpers_cams import back, cam, dwell, follower_of, program, rise, there_and_back
 
 STEEP = (60.0, 90.0, 60.0, 150.0)
 
@@ -163,7 +163,7 @@ def test_the_sharpest_place_is_held_against_its_limit() -> None:
 def test_a_millimetre_is_sharp(radius: float, speaks: bool) -> None:
     """A face on ``s = e*(1 - cos)`` has the constant radius base + e."""
     phases = [rise("harmonic", 180.0, 1.0), back("harmonic", 180.0)]
-    made = make_cam(program(phases), mechanism("flat", base_radius=radius - 0.5))
+    made = make_cam(program(phases), follower_of("flat", base_radius=radius - 0.5))
     assert bool(findings(made, "sharp-profile")) == speaks
 
 
@@ -278,8 +278,8 @@ def test_undercut_over_the_end_of_the_turn_is_one_finding() -> None:
         dwell(150.0),
         rise("formula", shift, lift, formula=f"{last}/{start}"),
     ]
-    m = made.mechanism
-    turned = make_cam(program(phases), mechanism("flat", base_radius=m.start + lift))
+    m = made.follower
+    turned = make_cam(program(phases), follower_of("flat", base_radius=m.start + lift))
     assert turned.size.area == pytest.approx(made.size.area, rel=1e-12)
     assert len(turned.undercut) == 3
     found = findings(turned, "undercut")
@@ -355,7 +355,7 @@ def test_a_shock_counts_from_a_billionth_of_the_peak(size: float, speaks: bool) 
         back("3-4-5", 90.0),
         dwell(90.0),
     ]
-    made = make_cam(program(phases), mechanism("flat"))
+    made = make_cam(program(phases), follower_of("flat"))
     assert made.program.peaks[0] == pytest.approx(1.875 * lift / b, rel=1e-6)
     assert bool(findings(made, "hard-shock")) == speaks
 
@@ -370,7 +370,7 @@ def test_coarse_rows_are_told(kind: str, lever: float) -> None:
     rows = table.program(DEFAULT, oscillating=swings)
     for share, speaks in ((1.0 + 1e-9, False), (1.0 - 1e-9, True)):
         tolerance = share * lever * rows.errors[0]
-        made = make_cam(rows, mechanism(kind), tolerance=tolerance)
+        made = make_cam(rows, follower_of(kind), tolerance=tolerance)
         found = findings(made, "coarse-rows")
         assert bool(found) is speaks
     assert found[0].value == pytest.approx(lever * rows.errors[0])
@@ -379,7 +379,7 @@ def test_coarse_rows_are_told(kind: str, lever: float) -> None:
 
 
 def test_a_quiet_cam_has_no_findings() -> None:
-    made = make_cam(there_and_back("cycloidal", 10.0), mechanism("roller", prime_radius=60.0))
+    made = make_cam(there_and_back("cycloidal", 10.0), follower_of("roller", prime_radius=60.0))
     assert run_checks(KIND, made, {}) == ()
 
 

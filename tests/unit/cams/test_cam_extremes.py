@@ -25,10 +25,11 @@ from helpers_cams import (
     cam,
     corners_of,
     dwell,
-    mechanism,
+    follower_of,
     program,
     resting,
     rise,
+    sizes_of,
     stiffness,
     witness_of,
 )
@@ -159,7 +160,7 @@ def test_an_extreme_cam_is_what_its_follower_leaves(name: str) -> None:
 
 def chords(made: DiscCam) -> float:
     """What the sides of inscribed circles leave, at most: a rim of their sagitta."""
-    return made.size.perimeter * made.mechanism.radius * (math.pi / SIDES) ** 2 / 2.0
+    return made.size.perimeter * made.follower.radius * (math.pi / SIDES) ** 2 / 2.0
 
 
 @pytest.mark.parametrize("name", EXTREMES)
@@ -167,7 +168,7 @@ def test_an_extreme_cam_moves_its_follower(name: str) -> None:
     """On the polygon; nowhere too high, and too low only at corners, by what they say."""
     made = built(name)
     theta = np.sort(np.concatenate([angles(180), [loss.theta for loss in made.lost]]))
-    found = follow(corners_of(made), made.mechanism, theta)
+    found = follow(corners_of(made), made.follower, theta)
     missing = made.program.derivatives(theta, 0)[0] - found.lift
     room = 2.0 * made.tolerance * stiffness(made, theta)
     rests = resting(made, theta)
@@ -180,7 +181,7 @@ def test_an_extreme_cam_moves_its_follower(name: str) -> None:
 
 def corner_room(made: DiscCam) -> float:
     """Lift that a chord error may cost at a corner, where the pressure angle is the corner's."""
-    return 20.0 * made.tolerance / (made.mechanism.pivot or 1.0)
+    return 20.0 * made.tolerance / (sizes_of(made.follower).pivot or 1.0)
 
 
 def test_a_lift_is_lost_almost_whole_in_a_hundredth_of_a_degree() -> None:
@@ -197,7 +198,7 @@ def test_a_head_is_cut_off_at_its_neck() -> None:
         back("formula", b, formula="x**6"),
         dwell(360.0 - 2 * b - top),
     ]
-    made = make_cam(program(phases), mechanism("roller", roller_radius=10.0))
+    made = make_cam(program(phases), follower_of("roller", roller_radius=10.0))
     demand_contour(made)
     assert made.undercut == []
     (corner,) = made.corners
@@ -212,7 +213,7 @@ def test_a_head_is_cut_off_at_its_neck() -> None:
     assert left.area == pytest.approx(made.size.area, rel=1e-3)
     assert left.area > made.size.area
     at = np.array([made.lost[0].theta])
-    found = follow(corners_of(made), made.mechanism, at)
+    found = follow(corners_of(made), made.follower, at)
     asked = float(made.program.derivatives(at, 0)[0][0])
     assert made.shortfall == pytest.approx(asked - found.lift[0], abs=1e-9)
     assert made.shortfall > 0.9 * lift
@@ -310,7 +311,7 @@ def test_a_small_loop_beside_a_large_one(kind: str, law: str, depth: float) -> N
     """The rise is barely undercut, the steady return has a shock at its start."""
     some = near_limit(kind, depth, law)
     phases = [rise(law, 60.0, 10.0), dwell(90.0), back("constant-velocity", 60.0), dwell(150.0)]
-    made = make_cam(program(phases), some.mechanism)
+    made = make_cam(program(phases), some.follower)
     demand_contour(made)
     small, large = made.lost
     assert small.value == pytest.approx(some.shortfall, rel=1e-3, abs=1e-12)
@@ -327,11 +328,11 @@ def test_a_small_loop_at_a_rising_shock(depth: float) -> None:
     ]
     size = {"pivot_distance": 102.318, "arm": 97.738, "prime_radius": 28.224}
     motion = program(phases, swings=True)
-    curvature = make_cam(motion, mechanism("swinging roller", **size)).pitch_curvature()
+    curvature = make_cam(motion, follower_of("swinging roller", **size)).pitch_curvature()
     assert curvature is not None
     assert curvature.high.theta == pytest.approx(0.0, abs=1e-9)
     radius = 1.0 / curvature.high.value + depth
-    made = make_cam(motion, mechanism("swinging roller", roller_radius=radius, **size))
+    made = make_cam(motion, follower_of("swinging roller", roller_radius=radius, **size))
     demand_contour(made)
     assert len(made.corners) == 2
     assert min(loss.value for loss in made.lost) < 1e-9
@@ -341,7 +342,7 @@ def near_limit(kind: str, depth: float, law: str = "cycloidal") -> DiscCam:
     """A cam whose size is beyond the limit of undercut by so much."""
     made = cam(kind, law, 10.0, STEEP)
     if made.face_radius is not None:
-        limit = made.mechanism.start - made.face_radius.low.value
+        limit = made.follower.start - made.face_radius.low.value
         return cam(kind, law, 10.0, STEEP, base_radius=limit - depth)
     curvature = made.pitch_curvature()
     assert curvature is not None
@@ -360,7 +361,7 @@ def test_small_shocks_cost_nothing(kind: str, size: float) -> None:
         dwell(90.0),
     ]
     changed: dict[str, Any] = {} if "roller" in kind else {"base_radius": 60.0}
-    made = make_cam(program(phases, swings=swings), mechanism(kind, **changed))
+    made = make_cam(program(phases, swings=swings), follower_of(kind, **changed))
     demand_contour(made)
     assert made.shortfall < 1e-5
     assert len(made.corners) <= 1

@@ -20,7 +20,7 @@ from gearcam.cams.groove import make_groove
 from gearcam.laws.motion_formula import MotionFormula
 from gearcam.laws.phases_of_lift import Phase, SegmentPhase
 from gearcam.laws.program import Program
-from helpers_cams import back, cam, dwell, mechanism, program, rise, there_and_back
+from helpers_cams import back, cam, dwell, follower_of, program, rise, there_and_back
 
 BESIDE = 1e-9
 
@@ -36,7 +36,7 @@ DIPPING = ["point", "roller", "roller, offset", "flat", "swinging roller", "swin
 
 @pytest.mark.parametrize("kind", DIPPING)
 def test_the_lowest_lift_that_is_told_is_the_lowest(kind: str) -> None:
-    made, swings = mechanism(kind), kind.startswith("swinging")
+    made, swings = follower_of(kind), kind.startswith("swinging")
     deep = -1.5 if swings else -100.0
     with pytest.raises(InfeasibleError) as refused:
         make_cam(dip(deep, swings=swings), made)
@@ -51,7 +51,7 @@ def test_the_lowest_lift_that_is_told_is_the_lowest(kind: str) -> None:
 
 def test_an_arm_that_meets_the_axis_is_told_at_which_lift() -> None:
     """By the cosine rule: an arm as long as its pivot is far would meet the axis itself."""
-    made = mechanism("swinging roller", arm=100.0, roller_radius=8.0)
+    made = follower_of("swinging roller", arm=100.0, roller_radius=8.0)
     touching = math.acos(1.0 - 8.0**2 / (2.0 * 100.0**2))
     with pytest.raises(InfeasibleError, match="onto the cam's axis") as refused:
         make_cam(dip(touching - made.start - 1e-6, swings=True), made)
@@ -62,18 +62,20 @@ def test_an_arm_that_meets_the_axis_is_told_at_which_lift() -> None:
 def test_the_share_of_a_lift_that_a_falling_face_carries(degrees: float) -> None:
     phases = [60.0, 90.0, degrees, 210.0 - degrees]
     with pytest.raises(InfeasibleError, match="faster than the cam turns") as refused:
-        make_cam(there_and_back("cycloidal", 20.0, phases, swings=True), mechanism("swinging face"))
+        make_cam(
+            there_and_back("cycloidal", 20.0, phases, swings=True), follower_of("swinging face")
+        )
     (share,) = re.findall(r"less than ([\d.]+) % of these", str(refused.value))
     part = float(share) / 100.0
     assert len(share.replace(".", "")) <= 4
     assert degrees / 40.0 * (1.0 - 3e-4) < part < degrees / 40.0
     lift = 20.0 * part
-    make_cam(there_and_back("cycloidal", lift, phases, swings=True), mechanism("swinging face"))
+    make_cam(there_and_back("cycloidal", lift, phases, swings=True), follower_of("swinging face"))
 
 
 @pytest.mark.parametrize("second", [None, 25.0])
 def test_a_groove_that_reaches_the_axis(second: float | None) -> None:
-    lift, made = there_and_back("cycloidal", 10.0), mechanism("roller")
+    lift, made = there_and_back("cycloidal", 10.0), follower_of("roller")
     size: dict[str, Any] = {"clearance": 48.0} if second is None else {"radius2": second}
     with pytest.raises(InfeasibleError, match="groove is so wide") as refused:
         make_groove(lift, made, **size)
@@ -85,7 +87,7 @@ def test_a_groove_that_reaches_the_axis(second: float | None) -> None:
 
 def test_the_base_radii_of_a_face_begin_at_zero() -> None:
     with pytest.raises(InfeasibleError, match="between 0 and 100 mm"):
-        mechanism("swinging face", base_radius=100.0)
+        follower_of("swinging face", base_radius=100.0)
 
 
 # --- narrow profiles ------------------------------------------------------------------------------
@@ -127,7 +129,7 @@ def test_a_roller_passes_over_a_peak_wherever_it_stands(before: float, degrees: 
     lead = [dwell(before)] if before else []
     rest = dwell(360.0 - before - 3.0 * degrees)
     steps = [rise("cycloidal", degrees, 10.0), dwell(degrees), back("cycloidal", degrees), rest]
-    made = make_cam(program([*lead, *steps]), mechanism("roller"))
+    made = make_cam(program([*lead, *steps]), follower_of("roller"))
     assert made.contour.polygon.is_valid
     assert made.shortfall == pytest.approx(10.0, abs=1e4 * math.radians(degrees))
     assert made.size.area == pytest.approx(math.pi * 24.0**2, rel=2.0 * degrees)
@@ -136,7 +138,7 @@ def test_a_roller_passes_over_a_peak_wherever_it_stands(before: float, degrees: 
 @pytest.mark.slow
 def test_hundreds_of_undercut_places_are_refused() -> None:
     with pytest.raises(InfeasibleError, match="undercut in too many places") as refused:
-        make_cam(waves("0.01*sin(600*theta)"), mechanism("roller")).contour  # noqa: B018
+        make_cam(waves("0.01*sin(600*theta)"), follower_of("roller")).contour  # noqa: B018
     assert (refused.value.value, refused.value.limit) == (600, 500)
 
 
@@ -199,7 +201,7 @@ def test_a_size_goes_through_the_limit_of_undercut_without_a_leap(kind: str) -> 
     made = cam(kind, "cycloidal", 10.0, STEEP)
     face = made.face_radius
     pitch = made.pitch_curvature()
-    limit = made.mechanism.start - face.low.value if face else 1.0 / pitch.high.value  # type: ignore[union-attr]
+    limit = made.follower.start - face.low.value if face else 1.0 / pitch.high.value  # type: ignore[union-attr]
     key, sign = ("base_radius", -1.0) if face else ("roller_radius", 1.0)
     walked = [
         cam(kind, "cycloidal", 10.0, STEEP, **{key: limit + sign * depth})
@@ -267,5 +269,5 @@ def test_a_follower_comes_to_its_dead_centre_by_the_root_of_the_distance() -> No
         with mpmath.workdps(30):
             cosine = (mpmath.mpf(100) ** 2 + 90**2 - mpmath.mpf(prime) ** 2) / (2 * 100 * 90)
             angle = float(mpmath.acos(cosine))
-        made = mechanism("swinging roller", prime_radius=prime)
+        made = follower_of("swinging roller", prime_radius=prime)
         assert made.start == pytest.approx(angle, rel=1e-14)

@@ -12,7 +12,7 @@ import pytest
 import gearcam
 from gearcam.base.errors import InfeasibleError
 from gearcam.cams.disc import make_cam
-from gearcam.cams.mechanism import make_mechanism
+from gearcam.cams.placing import make_follower
 from gearcam.cams.spec import CamSpec, FollowerSpec, size_problems
 from gearcam.laws.phases_of_lift import (
     DwellPhase,
@@ -23,7 +23,7 @@ from gearcam.laws.phases_of_lift import (
     levels,
     program_problems,
 )
-from helpers_cams import back, cam, dwell, law, mechanism, program, rise, there_and_back
+from helpers_cams import back, cam, dwell, follower_of, law, program, rise, there_and_back
 from helpers_sampling import few
 
 # --- programs ------------------------------------------------------------------------------------
@@ -157,12 +157,12 @@ def test_followers_that_cannot_touch_are_refused(
     kind: str, changed: dict[str, Any], message: str
 ) -> None:
     with pytest.raises(InfeasibleError, match=message):
-        mechanism(kind, **changed)
+        follower_of(kind, **changed)
     nudged = {
         name: value + (1e-6 if value in (10.0, -31.0) else -1e-6) for name, value in changed.items()
     }
     if -31.0 not in changed.values():
-        mechanism(kind, **nudged)
+        follower_of(kind, **nudged)
 
 
 def test_lifts_that_bring_the_follower_to_the_axis_are_refused() -> None:
@@ -171,9 +171,9 @@ def test_lifts_that_bring_the_follower_to_the_axis_are_refused() -> None:
             phases = [back("cycloidal", 90.0, lift), dwell(90.0), rise("cycloidal", 180.0, lift)]
             if refused:
                 with pytest.raises(InfeasibleError, match="onto the cam's axis"):
-                    make_cam(program(phases), mechanism(kind, offset=0.0))
+                    make_cam(program(phases), follower_of(kind, offset=0.0))
             else:
-                make_cam(program(phases), mechanism(kind, offset=0.0))
+                make_cam(program(phases), follower_of(kind, offset=0.0))
 
 
 def test_a_follower_may_not_pass_below_the_axis() -> None:
@@ -182,10 +182,10 @@ def test_a_follower_may_not_pass_below_the_axis() -> None:
     for lift in (height - 0.1, height + 0.1):
         phases = [back("cycloidal", 90.0, lift), dwell(90.0), rise("cycloidal", 180.0, lift)]
         if lift < height:
-            assert make_cam(program(phases), mechanism("roller, offset")).size.area > 0.0
+            assert make_cam(program(phases), follower_of("roller, offset")).size.area > 0.0
         else:
             with pytest.raises(InfeasibleError, match="onto the cam's axis"):
-                make_cam(program(phases), mechanism("roller, offset"))
+                make_cam(program(phases), follower_of("roller, offset"))
 
 
 def test_arms_that_swing_too_far_are_refused() -> None:
@@ -207,7 +207,7 @@ def test_a_face_that_falls_faster_than_the_cam_turns_is_refused() -> None:
         with pytest.raises(InfeasibleError, match="faster than the cam turns"):
             cam("swinging face", lift=20.0, degrees=(60.0, 90.0, degrees, 210.0 - degrees))
     motion = there_and_back("cycloidal", 40.0, (30.0, 90.0, 120.0, 120.0), swings=True)
-    make_cam(motion, mechanism("swinging face"))
+    make_cam(motion, follower_of("swinging face"))
 
 
 WRONG: list[tuple[dict[str, Any], dict[str, Any], set[str]]] = [
@@ -257,11 +257,11 @@ def test_sizes_that_do_not_belong_are_told(
 
 def test_a_base_radius_is_the_prime_radius_less_the_roller() -> None:
     follower = FollowerSpec(type="roller", roller_radius=6.0, offset=8.0)
-    one = make_mechanism(follower, CamSpec(prime_radius=30.0))
-    two = make_mechanism(follower, CamSpec(base_radius=24.0))
+    one = make_follower(follower, CamSpec(prime_radius=30.0))
+    two = make_follower(follower, CamSpec(base_radius=24.0))
     assert one == two
     assert one.start == pytest.approx(math.sqrt(30.0**2 - 8.0**2), rel=1e-15)
-    assert one.least == pytest.approx(30.0, rel=1e-15)
+    assert one.prime_radius == pytest.approx(30.0, rel=1e-15)
 
 
 # --- tables --------------------------------------------------------------------------------------

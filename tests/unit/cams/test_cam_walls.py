@@ -8,18 +8,18 @@ import pytest
 import shapely
 
 from gearcam.cams.disc import make_cam
-from gearcam.cams.mechanism import make_mechanism
+from gearcam.cams.placing import make_follower
 from gearcam.cams.spec import CamSpec, FollowerSpec
 from gearcam.cams.wall import Wall
-from helpers_cams import back, mechanism, program, rise, there_and_back
+from helpers_cams import back, follower_of, program, rise, there_and_back
 
 RADIUS = 6.0
 
 
 def walls(lift: float, degrees: tuple[float, ...], law: str) -> tuple[Wall, Wall]:
     """The walls inside and outside the pitch curve of a roller."""
-    program, follower = there_and_back(law, lift, degrees), mechanism("roller")
-    outer = Wall(program=program, mechanism=follower, side=-1)
+    program, follower = there_and_back(law, lift, degrees), follower_of("roller")
+    outer = Wall(program=program, follower=follower, side=-1)
     return make_cam(program, follower), outer
 
 
@@ -46,6 +46,6 @@ def test_sides_meet_at_the_corner_of_a_steep_return() -> None:
     """The speed of the profile there, times the rounding of cam angles, is far below a chord."""
     phases = [rise("modified-sine", 360.0 - 7e-3, 5000.0), back("cycloidal", 7e-3)]
     dome = FollowerSpec(type="domed", dome_radius=10000.0)
-    wall = make_cam(program(phases), make_mechanism(dome, CamSpec(prime_radius=20000.0)))
+    wall = make_cam(program(phases), make_follower(dome, CamSpec(prime_radius=20000.0)))
     (run,) = wall.contour.runs
     assert math.dist(run.points[0], run.points[-1]) < 0.1 * wall.tolerance

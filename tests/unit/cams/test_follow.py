@@ -11,18 +11,20 @@ import pytest
 from numpy.typing import NDArray
 
 from gearcam.base.errors import InfeasibleError
+from gearcam.cams.carriers import Sliding
 from gearcam.cams.follow import follow, profile_points
-from gearcam.cams.mechanism import Mechanism
+from gearcam.cams.followers import Arm
 from gearcam.numeric.bulges import as_pairs
+from helpers_cams import Sizes
 from helpers_curves import distances
 from helpers_sampling import few
 
 Array = NDArray[np.float64]
 Plane = NDArray[np.complex128]
 
-FLAT = Mechanism(flat=True, oscillating=False, start=30.0)
-ROLLER = Mechanism(flat=False, oscillating=False, start=36.0, radius=6.0, offset=4.0)
-SWINGING = Mechanism(flat=False, oscillating=True, start=0.4, pivot=100.0, arm=90.0, radius=8.0)
+FLAT = Sizes(flat=True, oscillating=False, start=30.0)
+ROLLER = Sizes(flat=False, oscillating=False, start=36.0, radius=6.0, offset=4.0)
+SWINGING = Sizes(flat=False, oscillating=True, start=0.4, pivot=100.0, arm=90.0, radius=8.0)
 
 
 def circle(count: int, radius: float = 30.0, middle: complex = 0.0) -> Plane:
@@ -40,28 +42,28 @@ def wavy(count: int, seed: int) -> Plane:
     return np.maximum(size, 10.0) * np.exp(1j * u)
 
 
-def followers(seed: int, size: float) -> list[Mechanism]:
+def followers(seed: int, size: float) -> list[Sizes]:
     """One of each kind, with random numbers."""
     rng = np.random.default_rng(seed)
     offset, radius, face = rng.uniform(-9.0, 9.0), rng.uniform(0.5, 20.0), rng.uniform(-15.0, 15.0)
     moving = {"oscillating": False, "start": 0.0}
     swinging = {"oscillating": True, "start": 0.0}
     return [
-        Mechanism(flat=True, **moving),
-        Mechanism(flat=False, radius=radius, offset=offset, **moving),
-        Mechanism(flat=False, radius=500.0, offset=offset, **moving),
-        Mechanism(flat=False, offset=offset, **moving),
-        Mechanism(flat=True, pivot=1.5 * size, face_offset=face, **swinging),
-        Mechanism(flat=False, pivot=1.5 * size, arm=1.4 * size, radius=radius, **swinging),
-        Mechanism(flat=False, pivot=2.0 * size, arm=2.5 * size, radius=3.0 * size, **swinging),
-        Mechanism(flat=False, pivot=1.5 * size, arm=1.4 * size, **swinging),
+        Sizes(flat=True, **moving),
+        Sizes(flat=False, radius=radius, offset=offset, **moving),
+        Sizes(flat=False, radius=500.0, offset=offset, **moving),
+        Sizes(flat=False, offset=offset, **moving),
+        Sizes(flat=True, pivot=1.5 * size, face_offset=face, **swinging),
+        Sizes(flat=False, pivot=1.5 * size, arm=1.4 * size, radius=radius, **swinging),
+        Sizes(flat=False, pivot=2.0 * size, arm=2.5 * size, radius=3.0 * size, **swinging),
+        Sizes(flat=False, pivot=1.5 * size, arm=1.4 * size, **swinging),
         # pivots as near as they may be
-        Mechanism(flat=True, pivot=1.01 * size + abs(face), face_offset=face, **swinging),
-        Mechanism(flat=False, pivot=1.51 * size, arm=2.5 * size, radius=3.0 * size, **swinging),
+        Sizes(flat=True, pivot=1.01 * size + abs(face), face_offset=face, **swinging),
+        Sizes(flat=False, pivot=1.51 * size, arm=2.5 * size, radius=3.0 * size, **swinging),
     ]
 
 
-def highest(points: Plane, mechanism: Mechanism, theta: float, parts: int) -> float:
+def highest(points: Plane, mechanism: Sizes, theta: float, parts: int) -> float:
     """Highest touch over the points of the polygon and of each chord's `parts`, one by one."""
     share = np.arange(parts) / parts
     z = (points[:, None] + share * (np.roll(points, -1) - points)[:, None]).ravel()
@@ -99,7 +101,7 @@ def test_nothing_higher_is_missed(seed: int) -> None:
     parts = 200
     step = float(np.abs(np.roll(points, -1) - points).max()) / parts
     for mechanism in followers(seed, size):
-        lift = follow(points, mechanism, theta).lift
+        lift = follow(points, mechanism.follower, theta).lift
         brute = np.array([highest(points, mechanism, float(t), parts) for t in theta])
         lever = (mechanism.arm or size) if mechanism.oscillating else 1.0
         # where the path of a swinging point crosses is interpolated
@@ -111,10 +113,10 @@ def test_nothing_higher_is_missed(seed: int) -> None:
 
 
 @pytest.mark.parametrize("mechanism", [ROLLER, SWINGING])
-def test_the_roller_touches_and_does_not_overlap(mechanism: Mechanism) -> None:
+def test_the_roller_touches_and_does_not_overlap(mechanism: Sizes) -> None:
     """Distance of its centre from the whole profile: its radius, reached at the contact."""
     points, theta = wavy(400, 3), np.linspace(0.0, 6.0, 60)
-    followed = follow(points, mechanism, theta)
+    followed = follow(points, mechanism.follower, theta)
     position = followed.lift + mechanism.start
     if mechanism.oscillating:
         fixed = mechanism.pivot - mechanism.arm * np.exp(-1j * position)
@@ -137,11 +139,11 @@ def test_two_contacts_at_once() -> None:
     half = math.acos(apart / radius)
     right = apart + radius * np.exp(1j * np.linspace(half - math.pi, math.pi - half, 4001))
     points = np.concatenate([right[:-1], -right[:-1]])
-    roller = Mechanism(flat=False, oscillating=False, start=0.0, radius=10.0)
+    roller = Sizes(flat=False, oscillating=False, start=0.0, radius=10.0)
     theta = np.array([-0.1, -1e-7, 0.0, 1e-7, 0.1])
     middle = np.asarray(apart * np.exp(1j * np.abs(theta)), dtype=np.complex128)
     exact = middle.imag + np.sqrt((radius + 10.0) ** 2 - middle.real**2)
-    followed = follow(points, roller, theta)
+    followed = follow(points, roller.follower, theta)
     assert followed.lift == pytest.approx(exact, abs=3e-5)
     sides = (followed.contact * np.exp(1j * theta)).real
     assert sides[0] < -1.0
@@ -150,7 +152,7 @@ def test_two_contacts_at_once() -> None:
 
 def test_order_repeats_and_shape_of_the_points_do_not_matter() -> None:
     points, theta = wavy(300, 5), np.linspace(0.0, 6.0, 25)
-    lift = follow(points, ROLLER, theta).lift
+    lift = follow(points, ROLLER.follower, theta).lift
     closed = np.append(points, points[0])
     for same in (
         points[::-1],
@@ -159,14 +161,14 @@ def test_order_repeats_and_shape_of_the_points_do_not_matter() -> None:
         np.repeat(points, 2),
         as_pairs(points),
     ):
-        assert follow(same, ROLLER, theta).lift == pytest.approx(lift, abs=1e-9)
+        assert follow(same, ROLLER.follower, theta).lift == pytest.approx(lift, abs=1e-9)
 
 
 def test_the_stated_error_holds_on_a_coarse_ellipse() -> None:
     u = np.arange(60) * (2.0 * math.pi / 60)
     theta = np.linspace(0.0, math.pi, 400)
     exact = np.sqrt((50.0 * np.sin(theta)) ** 2 + (35.0 * np.cos(theta)) ** 2) - 30.0
-    followed = follow(50.0 * np.cos(u) + 35.0j * np.sin(u), FLAT, theta)
+    followed = follow(50.0 * np.cos(u) + 35.0j * np.sin(u), FLAT.follower, theta)
     off = np.abs(followed.lift - exact)
     assert 1e-8 < off.max() < 0.1
     assert np.all(off <= 1.1 * followed.error)
@@ -174,8 +176,8 @@ def test_the_stated_error_holds_on_a_coarse_ellipse() -> None:
 
 
 def test_one_angle_and_none() -> None:
-    assert follow(circle(100), FLAT, 0.0).lift == pytest.approx([0.0], abs=1e-9)
-    assert follow(circle(100), FLAT, []).lift.shape == (0,)
+    assert follow(circle(100), FLAT.follower, 0.0).lift == pytest.approx([0.0], abs=1e-9)
+    assert follow(circle(100), FLAT.follower, []).lift.shape == (0,)
 
 
 @pytest.mark.parametrize(
@@ -192,29 +194,29 @@ def test_one_angle_and_none() -> None:
 )
 def test_what_is_no_profile_is_refused(points: Plane, words: str) -> None:
     with pytest.raises(InfeasibleError) as caught:
-        follow(points, FLAT, [0.0])
+        follow(points, FLAT.follower, [0.0])
     assert words in str(caught.value)
 
 
 def test_a_follower_that_meets_nothing_is_refused_at_its_angle() -> None:
     """Its axis passes beside the cam, but for the tip of it."""
-    beside = Mechanism(flat=False, oscillating=False, start=0.0, radius=2.0, offset=45.0)
+    beside = Sizes(flat=False, oscillating=False, start=0.0, radius=2.0, offset=45.0)
     points = circle(200, 30.0, 15.0)
-    assert follow(points, beside, [0.0]).lift[0] < 20.0
+    assert follow(points, beside.follower, [0.0]).lift[0] < 20.0
     with pytest.raises(InfeasibleError, match=r"meets no point.*\(cam angle\); value 90 deg"):
-        follow(points, beside, np.radians([0.0, 90.0, 180.0]))
+        follow(points, beside.follower, np.radians([0.0, 90.0, 180.0]))
 
 
 @pytest.mark.parametrize(
     ("mechanism", "limit"),
     [
-        (Mechanism(flat=True, oscillating=True, start=0, pivot=33, face_offset=4), 29.0),
-        (Mechanism(flat=False, oscillating=True, start=0, pivot=20, arm=15, radius=6), 29.0),
+        (Sizes(flat=True, oscillating=True, start=0, pivot=33, face_offset=4), 29.0),
+        (Sizes(flat=False, oscillating=True, start=0, pivot=20, arm=15, radius=6), 29.0),
     ],
 )
-def test_a_cam_that_reaches_past_the_pivot_is_refused(mechanism: Mechanism, limit: float) -> None:
+def test_a_cam_that_reaches_past_the_pivot_is_refused(mechanism: Sizes, limit: float) -> None:
     with pytest.raises(InfeasibleError, match="past the follower's pivot") as caught:
-        follow(circle(100), mechanism, [0.0])
+        follow(circle(100), mechanism.follower, [0.0])
     assert caught.value.value == pytest.approx(30.0)
     assert caught.value.limit == pytest.approx(limit)
 
@@ -252,12 +254,12 @@ def test_a_long_chord_between_even_turns_is_straight() -> None:
 
 
 @pytest.mark.parametrize("mechanism", [ROLLER, SWINGING, replace(ROLLER, offset=-9.0)])
-def test_a_roller_within_a_wall_of_circles(mechanism: Mechanism) -> None:
+def test_a_roller_within_a_wall_of_circles(mechanism: Sizes) -> None:
     """Its centre stands on a smaller circle, by the law of cosines; the far side does not count."""
     middle, size = 3.0 - 2.0j, 60.0
     theta = np.linspace(0.0, 2.0 * math.pi, 60)
-    m = replace(mechanism, radius=-mechanism.radius)
-    seen = follow(circle(20000, size, middle), m, theta)
+    m = mechanism
+    seen = follow(circle(20000, size, middle), m.follower, theta, side=-1)
     place, reach = middle * np.exp(1j * theta), size - mechanism.radius
     if m.oscillating:
         toward = m.pivot - place
@@ -274,13 +276,10 @@ def test_a_roller_within_a_wall_of_circles(mechanism: Mechanism) -> None:
 @pytest.mark.parametrize("radius", [0.0, 4.0])
 def test_an_arm_does_not_rest_on_what_lies_behind_its_pivot(radius: float) -> None:
     """The end of a plate slides past the pivot, which stands lower: it counts before it only."""
-    m = Mechanism(
-        flat=False, oscillating=True, start=0.0, pivot=66.0, arm=56.0, height=-40.0,
-        radius=radius, slide=30.0,
-    )  # fmt: skip
+    follower = Arm(start=0.0, pivot=-66.0 - 40.0j, arm=56.0, radius=radius, hand=-1)
     corners = np.array([110.0, -300.0, -300.0 - 120.0j, 110.0 - 120.0j, 110.0])
     edge = np.concatenate([np.linspace(*ends, 5)[:-1] for ends in pairwise(corners)])
-    seen = follow(edge, m, np.linspace(0.0, 0.3, 9))
+    seen = follow(edge, follower, np.linspace(0.0, 0.3, 9), carrier=Sliding(30.0))
     np.testing.assert_allclose(seen.lift, math.asin((40.0 + radius) / 56.0), atol=1e-12)
 
 

@@ -284,12 +284,13 @@ def test_a_follower_moves_as_a_rigid_body(case: Case) -> None:
     follower, rise = case.follower, 0.4 * case.lift
     (turn,), (shift,) = follower.moved(np.array([rise]))
     here, there = (follower.symbol(follower.start + s, 50.0, 9.0) for s in (0.0, rise))
-    for before, after in zip(here, there, strict=True):
+    shapes = ([*lines, *([centre] for centre, _ in discs)] for lines, discs in (here, there))
+    for before, after in zip(*shapes, strict=True):
         moved = np.array(before) * np.exp(1j * turn) + shift
         assert moved == pytest.approx(np.array(after), abs=1e-13)
     p = np.array([follower.start, follower.start + rise])
     touched, _ = follower.trace(case.carrier, 0.0 * p, p, 0.0 * p, 0.0)
-    lines = [np.array(line) for line in there]
+    lines = [np.array(line) for line in there[0]]
     # the centre, or the point touched, is on its lines
     ways = [(one[-1] - one[-2]) / abs(one[-1] - one[-2]) for one in lines]
     off = [

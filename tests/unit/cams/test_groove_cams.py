@@ -12,14 +12,16 @@ import shapely
 
 from gearcam.base.findings import run_checks
 from gearcam.base.tolerances import DEFAULT
+from gearcam.cams.carriers import ROTATING
 from gearcam.cams.checks import KIND
 from gearcam.cams.follow import follow
+from gearcam.cams.followers import Stem
 from gearcam.cams.groove import GrooveCam, make_groove
 from gearcam.cams.lost import resting
 from gearcam.cams.lost_motion import Rest
 from gearcam.laws.motion_formula import MotionFormula
 from gearcam.numeric.jets import Jet
-from helpers_cams import angles, back, mechanism, program, rise, there_and_back
+from helpers_cams import angles, back, follower_of, program, rise, there_and_back
 from witness.roller_bands import band, lift
 
 STEEP = (50.0, 130.0, 50.0, 130.0)
@@ -28,7 +30,7 @@ STEEP = (50.0, 130.0, 50.0, 130.0)
 def groove(kind: str = "roller", **sizes: Any) -> GrooveCam:
     swings = kind.startswith("swinging")
     motion = there_and_back("cycloidal", 12.0, swings=swings)
-    return make_groove(motion, mechanism(kind), **sizes)
+    return make_groove(motion, follower_of(kind), **sizes)
 
 
 @pytest.mark.parametrize("clockwise", [False, True])
@@ -39,7 +41,7 @@ def test_a_groove_has_the_area_of_its_width_along_the_pitch_curve(
     made = groove(kind, clearance=0.4, clockwise=clockwise)
     inner, outer = (wall.size for wall in made.walls)
     length = 0.5 * (inner.perimeter + outer.perimeter)
-    assert made.width == pytest.approx(2.0 * made.motion.mechanism.radius + 0.4)
+    assert made.width == pytest.approx(2.0 * made.rollers[0].radius + 0.4)
     assert outer.perimeter - inner.perimeter == pytest.approx(2.0 * math.pi * made.width)
     assert outer.area - inner.area == pytest.approx(made.width * length, rel=1e-12)
 
@@ -48,18 +50,18 @@ def test_a_groove_has_the_area_of_its_width_along_the_pitch_curve(
 def test_play_by_dense_points(kind: str) -> None:
     """The slope too, by differences; and by a follower on points of each wall."""
     made, theta = groove(kind, clearance=0.3, tolerance=1e-5), angles(90)
-    m = made.motion.mechanism
+    m = made.rollers[0]
     for wall in made.walls:
-        found, slope = Rest(wall=wall, radius=m.radius).lift(theta)
+        found, slope = Rest(wall=wall, roller=m).lift(theta)
         step = 1e-6
-        ahead, behind = (Rest(wall=wall, radius=m.radius).lift(theta + d)[0] for d in (step, -step))
+        ahead, behind = (Rest(wall=wall, roller=m).lift(theta + d)[0] for d in (step, -step))
         smooth = np.abs(theta % (0.5 * math.pi)) > 1e-3
         np.testing.assert_allclose(
             slope[smooth], ((ahead - behind) / (2.0 * step))[smooth], atol=1e-6
         )
-        own = replace(m, radius=wall.side * m.radius)
-        np.testing.assert_allclose(follow(wall.outline, own, theta).lift, found, atol=3e-5)
-        if wall.side < 0 and not m.oscillating:
+        followed = follow(wall.outline, m, theta, side=wall.side).lift
+        np.testing.assert_allclose(followed, found, atol=3e-5)
+        if wall.side < 0 and isinstance(m, Stem):
             dense = np.concatenate([run.points for run in wall.contour.runs]) @ [1.0, 1.0j]
             dense = dense[:-1, None] + np.diff(dense)[:, None] * np.linspace(0.0, 1.0, 9)
             places = [
@@ -77,26 +79,30 @@ def test_a_roller_that_rests_touches_its_wall_and_no_more(
     """On corners too: the distance from its centre to the whole wall is its radius."""
     swings = kind.startswith("swinging")
     motion = there_and_back("3-4-5", height, STEEP, swings=swings)
-    follower = mechanism(kind, roller_radius=13.6, prime_radius=prime)
+    follower = follower_of(kind, roller_radius=13.6, prime_radius=prime)
     made = make_groove(motion, follower, clearance=2.0, tolerance=1e-4)
     theta = np.linspace(0.0, 2.0 * math.pi, 721)
     for wall in made.walls:
         assert wall.corners
-        position = follower.start + Rest(wall=wall, radius=13.6).lift(theta)[0]
+        position = follower.start + Rest(wall=wall, roller=follower).lift(theta)[0]
         fixed = follower.pivot - follower.arm * np.exp(-1j * position) if swings else 1j * position
         center = fixed * np.exp(-1j * theta)
         places = shapely.points(center.real, center.imag)
         away = shapely.distance(places, wall.contour.polygon.boundary)
         np.testing.assert_allclose(away, 13.6, atol=2e-4)
         assert np.all(shapely.contains(wall.contour.polygon, places) == (wall.side < 0))
-        wide = follower.start + Rest(wall=wall, radius=14.6).lift(theta)[0] - follower.start
+        wide = (
+            follower.start
+            + Rest(wall=wall, roller=replace(follower, radius=14.6)).lift(theta)[0]
+            - follower.start
+        )
         beyond = wall.side * (motion.derivatives(theta, 0)[0] - wide)
         assert beyond.max() == pytest.approx(wall.shortfall, rel=1e-2)
 
 
 def test_jumps_of_velocity_round_one_wall_and_cut_the_other() -> None:
     made = make_groove(
-        there_and_back("constant-velocity", 10.0), mechanism("roller"), clearance=1.0
+        there_and_back("constant-velocity", 10.0), follower_of("roller"), clearance=1.0
     )
     for wall in made.walls:
         convex, concave = wall.profile_radius
@@ -104,7 +110,7 @@ def test_jumps_of_velocity_round_one_wall_and_cut_the_other() -> None:
         assert concave == pytest.approx(6.5)
     rises = MotionFormula(lift="10*sin(theta/2)").program(DEFAULT, oscillating=False)
     assert [jump.after - jump.before for jump in rises.hard] == [pytest.approx(10.0)]
-    inner, outer = make_groove(rises, mechanism("roller"), clearance=1.0).walls
+    inner, outer = make_groove(rises, follower_of("roller"), clearance=1.0).walls
     assert inner.profile_radius[0] > 1.0
     assert inner.profile_radius[1] == pytest.approx(6.5)
     assert outer.profile_radius[0] == 0.0
@@ -114,12 +120,12 @@ def test_jumps_of_velocity_round_one_wall_and_cut_the_other() -> None:
 def test_without_clearance_only_corners_give_play() -> None:
     assert groove("roller, offset").lost_motion.value < 1e-13
     motion = there_and_back("3-4-5", 25.0, STEEP)
-    made = make_groove(motion, mechanism("roller", roller_radius=9.5))
+    made = make_groove(motion, follower_of("roller", roller_radius=9.5))
     corner = made.outer.corners[0]
     assert made.inner.corners == ()
     assert made.lost_motion.value == pytest.approx(made.outer.shortfall, rel=1e-12)
     theta = np.linspace(corner.before, corner.after, 400)
-    rest = resting(made.outer.mechanism, corner.point, -1)(Jet.variable(theta, 0)).c[0]
+    rest = resting(made.outer.follower, ROTATING, corner.point, -1)(Jet.variable(theta, 0)).c[0]
     beyond = rest - motion.derivatives(theta, 0)[0]
     assert beyond.min() > -1e-12
     assert made.lost_motion.value == pytest.approx(beyond.max(), rel=1e-4)
@@ -128,10 +134,10 @@ def test_without_clearance_only_corners_give_play() -> None:
 @pytest.mark.parametrize("law", ["cycloidal", "constant-velocity"])
 def test_the_largest_lost_motion_is_the_largest_of_many(law: str) -> None:
     made = make_groove(
-        there_and_back(law, 10.0, (60.0, 20.0, 70.0, 210.0)), mechanism("roller"), clearance=0.5
+        there_and_back(law, 10.0, (60.0, 20.0, 70.0, 210.0)), follower_of("roller"), clearance=0.5
     )
     theta = np.linspace(0.0, 2.0 * math.pi, 20001)
-    inner, outer = (Rest(wall=wall, radius=6.0).lift(theta)[0] for wall in made.walls)
+    inner, outer = (Rest(wall=wall, roller=made.rollers[0]).lift(theta)[0] for wall in made.walls)
     play = outer - inner
     assert play.min() > 0.0
     assert play.max() <= made.lost_motion.value + 1e-12
@@ -150,7 +156,7 @@ def test_lost_motion_is_told(limit: float, count: int) -> None:
 
 def test_findings_name_the_wall() -> None:
     motion = there_and_back("3-4-5", 25.0, STEEP)
-    made = make_groove(motion, mechanism("roller", roller_radius=9.5), clearance=0.1)
+    made = make_groove(motion, follower_of("roller", roller_radius=9.5), clearance=0.1)
     found = [one for one in run_checks(KIND, made, {}) if one.code == "undercut"]
     assert len(found) == 2
     assert all(one.where.startswith("outer wall, at ") for one in found)
@@ -161,7 +167,7 @@ def test_an_undercut_stretch_may_end_in_a_jump_at_the_end_of_the_turn() -> None:
     """The outer wall runs backwards before it, and the velocity rises at once there."""
     phases = [rise("constant-velocity", angle, 4.0) for angle in (22.36, 22.36, 292.92)]
     motion = program([*phases, back("constant-acceleration", 22.36, q=0.5)])
-    made = make_groove(motion, mechanism("roller", prime_radius=15.0, roller_radius=0.75))
+    made = make_groove(motion, follower_of("roller", prime_radius=15.0, roller_radius=0.75))
     first, last = (made.outer.undercut[k] for k in (0, -1))
     assert first == (0.0, 0.0)
     assert 6.28 < last[0] < last[1]
@@ -173,12 +179,12 @@ def test_an_undercut_stretch_may_end_in_a_jump_at_the_end_of_the_turn() -> None:
 
 def test_two_rollers_touch_a_wall_each() -> None:
     made = groove("roller", clearance=0.1, radius2=7.0)
-    assert [wall.mechanism.radius for wall in made.walls] == pytest.approx([6.05, 7.05])
+    assert [wall.follower.radius for wall in made.walls] == pytest.approx([6.05, 7.05])
     assert made.relief is not None
-    assert (made.relief.side, made.relief.mechanism.radius) == (1, pytest.approx(8.05))
+    assert (made.relief.side, made.relief.follower.radius) == (1, pytest.approx(8.05))
     smaller = groove("roller", clearance=0.1, radius2=5.0)
     assert smaller.relief is not None
-    assert (smaller.relief.side, smaller.relief.mechanism.radius) == (-1, pytest.approx(7.05))
+    assert (smaller.relief.side, smaller.relief.follower.radius) == (-1, pytest.approx(7.05))
     assert smaller.lost_motion.value == pytest.approx(
         groove("roller", clearance=0.1).lost_motion.value, rel=1e-9
     )

@@ -13,11 +13,11 @@ import pytest
 import gearcam
 from gearcam.base.findings import Finding, run_checks
 from gearcam.cams.cam import Cam
-from gearcam.cams.checks import JAMMING
 from gearcam.cams.disc import make_cam
+from gearcam.cams.followers import Arm, Stem
 from gearcam.cams.groove import make_groove
 from gearcam.cams.spec import KIND
-from helpers_cams import mechanism, there_and_back
+from helpers_cams import follower_of, there_and_back
 from helpers_remedies import ARM, FACE, ROLLER, cam, followed, job_of, plate
 
 GROOVE = {"form": "groove", "outer_diameter_mm": 130, "groove_depth_mm": 5}
@@ -184,7 +184,7 @@ def test_a_stem_jams_where_no_force_along_it_is_left(
         if math.cos(pushed) <= friction * (upper + lower):
             jams.append(math.degrees(angle))
     assert min(jams) == pytest.approx(degrees, abs=0.15)
-    assert math.degrees(JAMMING[False]) == pytest.approx(degrees, abs=1.0)
+    assert math.degrees(Stem.jamming_limit) == pytest.approx(degrees, abs=1.0)
 
 
 def test_an_arm_jams_where_no_moment_is_left() -> None:
@@ -194,16 +194,16 @@ def test_an_arm_jams_where_no_moment_is_left() -> None:
     left = np.cos(angles + friction) - pin * math.sin(friction)
     first = math.degrees(angles[left <= 0.0][0])
     assert first == pytest.approx(80.6, abs=0.15)
-    assert math.degrees(JAMMING[True]) == pytest.approx(first, abs=1.0)
+    assert math.degrees(Arm.jamming_limit) == pytest.approx(first, abs=1.0)
 
 
 def test_a_follower_that_a_spring_returns_cannot_jam_there() -> None:
     """What the wall pushes counts: rises, and returns of a follower that two walls hold."""
     lift = there_and_back("cycloidal", 20.0, (170.0, 10.0, 20.0, 160.0))
-    steep = make_cam(lift, mechanism("roller", prime_radius=30.0))
+    steep = make_cam(lift, follower_of("roller", prime_radius=30.0))
     (found,) = found_by(steep, "pressure-angle", pressure_angle=math.radians(65.0))
     assert found.where.startswith("return, ")
     assert found_by(steep, "jamming") == []
-    held = make_groove(lift, mechanism("roller", prime_radius=30.0))
+    held = make_groove(lift, follower_of("roller", prime_radius=30.0))
     (jammed,) = found_by(held, "jamming")
     assert (jammed.where, jammed.value) == (found.where, pytest.approx(found.value))

@@ -12,7 +12,7 @@ from shapely import Polygon
 
 from gearcam.cams.disc import DiscCam, make_cam
 from gearcam.cams.follow import follow
-from gearcam.cams.mechanism import make_mechanism
+from gearcam.cams.placing import make_follower
 from gearcam.cams.spec import CamSpec, FollowerSpec
 from gearcam.cams.wall import OVERSAMPLING
 from gearcam.kinds.cam.accuracy import error_rows
@@ -20,7 +20,7 @@ from gearcam.kinds.cam.follow import followed
 from gearcam.numeric.moments import curve_moments
 from gearcam.parts.body import Part
 from gearcam.parts.mass import quadrature_error
-from helpers_cams import back, corners_of, dwell, mechanism, program, rise
+from helpers_cams import back, corners_of, dwell, follower_of, program, rise
 from helpers_files import built
 
 TOP, FALL, LIFT = 150.0, 90.0, 10.0
@@ -28,8 +28,8 @@ TOP, FALL, LIFT = 150.0, 90.0, 10.0
 
 def stepped(kind: str, rise_law: str, width: float, after: float) -> DiscCam:
     """A cam whose rise, of a width in degrees, begins after a dwell."""
-    made = mechanism(kind)
-    swings = made.oscillating
+    made = follower_of(kind)
+    swings = made.angular
     walk = [
         rise(rise_law, width, LIFT, swings=swings),
         dwell(TOP),
@@ -234,13 +234,13 @@ LAWS = ("constant-velocity", "constant-acceleration", "harmonic", "cycloidal", "
 def demand_told(follower: dict[str, Any], prime: float, walk: list[Any], tolerance: float) -> bool:
     """Whether a swinging cam is whole; then its chords are felt no more than is told."""
     spec = FollowerSpec(motion="oscillating", **follower)
-    touched = make_mechanism(spec, CamSpec(prime_radius=prime))
+    touched = make_follower(spec, CamSpec(prime_radius=prime))
     made = make_cam(program(walk, swings=True), touched, tolerance=tolerance)
     if made.corners:
         return False
     knots = made.program.knots
     theta = np.linspace(knots[:-1], knots[1:], 400, axis=1).ravel()
-    found = follow(corners_of(made), touched, theta, tolerance)
+    found = follow(corners_of(made), touched, theta, missed=tolerance)
     off = np.abs(found.lift - made.program.derivatives(theta, 0)[0])
     assert np.all(off <= found.error + 1e-12)
     assert found.error.max() < math.inf

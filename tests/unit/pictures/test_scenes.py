@@ -349,7 +349,7 @@ def _demand_apart(result: Any, found: Scene, slack: float) -> None:
 def _demand_motion(result: Any, found: Scene) -> None:
     """Demand that the follower moves by its lift, upwards or against the cam's own turn."""
     *cams, follower, _ = found.bodies
-    driver = result.mechanism.driver
+    driver = result.driver
     motion = result.motion(found.places / driver.scale * driver.rate)
     for cam in cams:
         if result.form.slides:

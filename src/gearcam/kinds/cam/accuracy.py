@@ -49,7 +49,7 @@ def error_rows(result: CamResult) -> Rows:
     """
     cam, program = result.cam, result.program
     moved, how = Moved(program), _UNKNOWN if any(program.errors) else _ROUNDED
-    motion = zip(result.mechanism.motion_scales.items(), moved.lift, strict=True)
+    motion = zip(result.cam.motions[0].motion_scales.items(), moved.lift, strict=True)
     rows = {name: (scale * off, how) for (name, scale), off in motion}
     rows |= {name: (value, how) for name, value in _shape(cam, moved)}
     rows |= dict(_trimming(result, moved))
@@ -61,21 +61,21 @@ def error_rows(result: CamResult) -> Rows:
 
 def _shape(cam: Cam, moved: Moved) -> Iterator[tuple[str, float]]:
     """Yield the errors of contact, curvature and profile, the largest of all walls."""
-    curves = [motion.curve for motion in cam.motions]
+    curves = [motion.pitch_curve for motion in cam.motions]
     walls = [wall.curve for wall in cam.walls]
     slant = max(moved.error(one, pressure_angle) for one in curves)
     yield "pressure_angle_deg", math.degrees(slant)
-    if curves[0].mechanism.flat:
+    if curves[0].follower.has_centre:
+        yield "curvature_per_mm", max(moved.error(one, pitch_curvature) for one in curves)
+    else:
         yield "radius_mm", max(moved.error(one, face_radius) for one in walls)
         yield "contact_mm", max(moved.error(one, contact_place) for one in walls)
-    else:
-        yield "curvature_per_mm", max(moved.error(one, pitch_curvature) for one in curves)
     yield "profile_mm", max(moved.error(one, profile_point) for one in walls)
 
 
 def _trimming(result: CamResult, moved: Moved) -> Iterator[tuple[str, tuple[float, str]]]:
     """Yield the errors of undercut ranges, lost lift, and lost motion between two walls."""
-    cam, driver, (scale, unit) = result.cam, result.mechanism.driver, result.mechanism.outward
+    cam, driver, (scale, unit) = result.cam, result.driver, result.follower.lift_unit
     if any(wall.undercut for wall in cam.walls):
         off = driver.scale * max(undercut_error(moved, wall) for wall in cam.walls)
         how = "change of the speed along the profile if every input changes by its rounding, "

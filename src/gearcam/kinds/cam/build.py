@@ -31,7 +31,8 @@ from gearcam.results.parts import CHORDS, PartsResult
 
 if TYPE_CHECKING:
     from gearcam.cams.cam import Cam
-    from gearcam.cams.mechanism import Mechanism
+    from gearcam.cams.carriers import Driver
+    from gearcam.cams.followers import Follower
     from gearcam.cams.wall import PitchMotion, Wall
     from gearcam.kinds.cam.accuracy import Rows
     from gearcam.parts.body import Part
@@ -84,9 +85,14 @@ class CamResult(PartsResult):
             return self.form.make(self.design, program)
 
     @property
-    def mechanism(self) -> Mechanism:
-        """The follower's geometry; for conjugate cams that on the first."""
-        return self.cam.motions[0].mechanism
+    def follower(self) -> Follower:
+        """The follower; for conjugate cams that on the first."""
+        return self.cam.motions[0].follower
+
+    @property
+    def driver(self) -> Driver:
+        """Name and unit of the cam's angle or travel in output."""
+        return self.cam.motions[0].carrier.driver
 
     @cached_property
     def profiles(self) -> tuple[Contour, ...]:
@@ -103,7 +109,7 @@ class CamResult(PartsResult):
     @property
     def angles(self) -> Array:
         """The cam angles of tables, (n,) rad: a turn in steps of the design, both ends."""
-        return even_angles(self.design.output, self.mechanism.driver, self.program.open)
+        return even_angles(self.design.output, self.driver, self.program.open)
 
     def motion(self, theta: ArrayLike | None = None) -> Columns:
         """Return the exact motion of the follower, pressure angle and radii of curvature.
@@ -148,7 +154,7 @@ class CamResult(PartsResult):
         """Return cam angles, rad, from given angles, rad, or travels, mm."""
         if theta is None:
             return self.angles
-        driver = self.mechanism.driver
+        driver = self.driver
         if not self.form.slides:
             return angles("theta", theta)
         slack = WHOLE * driver.turn
@@ -157,11 +163,11 @@ class CamResult(PartsResult):
 
     def motion_at(self, theta: Array) -> Columns:
         """Return the table of `motion` at cam angles `theta`, rad; a whole travel is 2*pi."""
-        driver = self.mechanism.driver
+        driver = self.driver
         motions, walls = self.cam.motions, self.cam.walls
         found = motions[0].motion(theta)
         columns = {driver.column: driver.scale * theta}
-        names = zip(self.mechanism.motion_scales.items(), ("s", "ds", "d2s", "d3s"), strict=True)
+        names = zip(motions[0].motion_scales.items(), ("s", "ds", "d2s", "d3s"), strict=True)
         columns |= {name: scale * found[short] for (name, scale), short in names}
         told = [found, *(one.motion(theta) for one in motions[1:])]
         for one, values in zip(motions, told, strict=True):
@@ -239,7 +245,7 @@ class CamResult(PartsResult):
     @property
     def main_errors(self) -> Sequence[tuple[str, Sequence[str], str]]:
         """Errors that users act on (see `Result`)."""
-        lift = next(iter(self.mechanism.motion_scales))
+        lift = next(iter(self.cam.motions[0].motion_scales))
         return (
             ("lift of the follower", [lift], ""),
             ("points of the profile", ["profile_mm"], ""),
@@ -285,7 +291,7 @@ class CamResult(PartsResult):
             If the cam is impossible.
         """
         left, points, normals = self.wall(wall).places_at(self._asked(theta))
-        driver = self.mechanism.driver
+        driver = self.driver
         if self.form.slides:
             fixed = points + driver.scale * left
         else:

@@ -26,12 +26,12 @@ an undercut or nearly sharp profile has no largest one, and would leave no room 
 
 def _places(result: CamResult) -> tuple[str, str]:
     """Return the column of cam angles or travels, and its axis label."""
-    driver = result.mechanism.driver
+    driver = result.driver
     return driver.column, f"{driver.called} {driver.symbol}, {driver.unit}"
 
 
 def _knots(result: CamResult) -> tuple[MarkedPlace, ...]:
-    driver = result.mechanism.driver
+    driver = result.driver
     return knot_marks(driver.scale * np.asarray(result.program.knots), 0.0, driver.turn)
 
 
@@ -43,19 +43,19 @@ def _of_lift(name: str, result: CamResult) -> Chart:
     lines = [Line(label=name, x=table[places], y=table[column])]
     given = result.program.given
     if given is not None and name == "lift":
-        mechanism, (theta, lift) = result.mechanism, given.T
-        x, y = mechanism.driver.scale * theta, mechanism.outward[0] * lift
+        theta, lift = given.T
+        x, y = result.driver.scale * theta, result.follower.lift_unit[0] * lift
         lines.append(Line(label="given points, before smoothing", x=x, y=y, dots=True))
     title, unit = f"{name.capitalize()} of the follower", f"{name}, {unit}"
     return Chart(title=title, x=told, y=unit, lines=(*lines,), marks=_knots(result))
 
 
 def _pressure_angle(result: CamResult) -> Chart | None:
-    if result.mechanism.flat and not result.mechanism.oscillating:
-        return None  # it is zero everywhere
     table = result.motion_of_turn
+    if not any(np.any(table[pressure_column(one)]) for one in result.cam.motions):
+        return None
     given = limit_of(KIND, "pressure-angle", result.design.limits)
-    limit = math.degrees(pressure_limit(result.mechanism, given))
+    limit = math.degrees(pressure_limit(result.follower, given))
     places, told = _places(result)
     return Chart(
         title="Pressure angle",
@@ -88,10 +88,10 @@ def _radii(result: CamResult) -> dict[str, str]:
 
 
 def _curvature(result: CamResult) -> Chart:
-    table, radius = result.motion_of_turn, result.mechanism.radius
+    table, radius = result.motion_of_turn, result.follower.radius
     with np.errstate(divide="ignore"):
         lines = {label: 1.0 / table[name] for label, name in _radii(result).items()}
-    if result.mechanism.flat:
+    if not result.follower.has_centre:
         del lines["pitch curve"]
     bent = np.abs(np.concatenate([*lines.values()]))
     bent = bent[np.isfinite(bent) & (bent > 0.0)]
@@ -102,7 +102,7 @@ def _curvature(result: CamResult) -> Chart:
     if tool and any(math.isfinite(wall.profile_radius[1]) for wall in result.cam.walls):
         label = f"concave limit for a tool of {shown(tool)} mm"
         limits.append(Limit(label=label, value=-2.0 / tool))
-    rollers = {one.side / one.mechanism.radius: one for one in result.cam.walls if radius}
+    rollers = {one.side / one.follower.radius: one for one in result.cam.walls if radius}
     for value, wall in rollers.items():
         what = "convex" if wall.side > 0 else "concave"
         limits.append(Limit(label=f"roller ({what} pitch curve)", value=value))

@@ -35,7 +35,7 @@ def helped(result: CamResult, finding: Finding) -> Finding:
 def _remedies(result: CamResult, finding: Finding) -> Iterator[str]:
     table, lead, error = result.design.motion, result.cam.motions[0], finding.value or 0.0
     if isinstance(table, MotionTable) and lead.program.fall < _SCATTERED:
-        oscillating, lever = lead.mechanism.oscillating, lead.mechanism.lever
+        oscillating, lever = lead.follower.angular, lead.follower.lever
         entries = turn_tables()[0].bound([result.design.follower.motion]).entries.values()
         entry = next(one for one in entries if one.name == "smoothing_tolerance")
         given = 2.0 * (table.smoothing_tolerance or 0.0)

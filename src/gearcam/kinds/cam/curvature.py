@@ -38,15 +38,15 @@ def curvature_columns(
     InfeasibleError
         If the profile has cusps, where there is no curvature.
     """
-    curve, flat = motion.curve, motion.mechanism.flat
-    if flat and undercut(curve):
+    curve = motion.pitch_curve
+    if undercut(curve):  # only the profile below a face, which is its own pitch curve
         what = "the profile is undercut and has cusps, where there is no curvature to study"
         note = "leave out the curvature study, or remove the undercut"
         raise InfeasibleError(what, where="output.files", nearest=note)
 
     def points(theta: Array) -> Plane:
         s, ds = motion.program.derivatives(theta, 1)
-        return np.conj(curve.trace(theta, s, ds, 0.0)[0])  # mirrored: counter-clockwise
+        return np.conj(curve.trace(theta, s, ds)[0])  # mirrored: counter-clockwise
 
     def exact(theta: Array) -> Array:
         found = curve.contact(theta, 0)

@@ -129,7 +129,7 @@ def plate(
     prime: float | None = None,
 ) -> Drawing:
     """Return a drawing of a plate, its outline a wall, with the pitch curve (see `cam_drawing`)."""
-    prime = wall.mechanism.least if prime is None else prime
+    prime = wall.follower.prime_radius if prime is None else prime
     pitch = None if wall.pitch_contour is part.contour else wall.pitch_contour
     return cam_drawing(part, pitch, prime, follower, angle=angle)
 
@@ -151,8 +151,8 @@ def follower(motion: PitchMotion, theta: float, reach: float) -> list[Shape]:
     list of Shape
         In the fixed frame.
     """
-    m, side = motion.mechanism, -1.0 if motion.clockwise else 1.0
-    position = m.start + float(motion.program.derivatives(theta, 0)[0])
+    touching, side = motion.follower, -1.0 if motion.clockwise else 1.0
+    position = touching.start + float(motion.program.derivatives(theta, 0)[0])
     reach = 1.2 * reach
 
     def path(*points: complex) -> Path:
@@ -160,19 +160,19 @@ def follower(motion: PitchMotion, theta: float, reach: float) -> list[Shape]:
 
     found = motion.contact_place
     wide = 0.2 * reach + (found.largest if found is not None else 0.0)
-    lines: list[Shape] = [path(*line) for line in m.follower.symbol(position, reach, wide)]
-    if m.follower.radius == 0.0:
-        return lines
-    center = complex(m.centred.centre(np.array(position)))
-    middle = np.array([side * center.real, center.imag])
-    return [Circle(center=middle, diameter=2.0 * m.follower.radius), *lines]
+    lines, discs = touching.symbol(position, reach, wide)
+    circles = [
+        Circle(center=np.array([side * center.real, center.imag]), diameter=2.0 * radius)
+        for center, radius in discs
+    ]
+    return [*circles, *(path(*line) for line in lines)]
 
 
 def grooved(
     part: Part, walls: Sequence[Wall], follower: Sequence[Shape] = (), *, angle: float = 0.0
 ) -> Drawing:
     """Return a drawing of a disc with a groove, whose first wall is inside (see `cam_drawing`)."""
-    pitch, least = walls[0].pitch_contour, walls[0].mechanism.least
+    pitch, least = walls[0].pitch_contour, walls[0].follower.prime_radius
     drawing = cam_drawing(part, pitch, least, follower, angle=angle, outline=BLANK)
     # a circle stays a circle in files
     edge = Circle(center=np.zeros(2), diameter=2.0 * part.contour.reach)
@@ -182,5 +182,5 @@ def grooved(
 
 def rows_of(result: CamResult, number: int) -> list[str]:
     """Return the names of the facts in the table of the drawing of part `number` of a `result`."""
-    other = f"{'prime' if result.mechanism.flat else 'base'}_radius_mm"
+    other = f"{'base' if result.follower.has_centre else 'prime'}_radius_mm"
     return [one for one in result.form.rows_of(number, _ROWS) if not one.endswith(other)]

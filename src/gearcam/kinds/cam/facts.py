@@ -58,8 +58,8 @@ def facts(result: CamResult, measured: Mapping[str, Any]) -> Facts:
 
 def _motion(result: CamResult) -> Tree:
     """Return lift in mm or deg and the peaks of its derivatives that are finite."""
-    program, driver = result.program, result.mechanism.driver
-    scale, unit = result.mechanism.outward
+    program, driver = result.program, result.driver
+    scale, unit = result.follower.lift_unit
     low, high = program.range
     return {
         "unit": unit,
@@ -91,8 +91,7 @@ def _deviation(program: Program, scale: float, unit: str) -> Fact | None:
 
 
 def _cam(result: CamResult) -> Tree:
-    design, mechanism = result.design, result.mechanism
-    given, swings = design.follower, mechanism.oscillating
+    design, given = result.design, result.design.follower
     takes = result.form.takes["follower"]
     return {
         "form": design.cam.form,
@@ -102,7 +101,7 @@ def _cam(result: CamResult) -> Tree:
         "pivot_distance_mm": given.pivot_distance,
         "arm_mm": given.arm,
         "face_offset_mm": given.face_offset or None,
-        "offset_mm": None if swings or "offset" not in takes else given.offset,
+        "offset_mm": None if given.oscillating or "offset" not in takes else given.offset,
         **result.form.sizes(result),
         "thickness_mm": design.cam.thickness,
         "pressure_angle_deg": pressure(result, result.cam.motions[0]),
@@ -129,7 +128,7 @@ def pressure(result: CamResult, motion: PitchMotion) -> Tree:
     made: Tree = {}
     whose = f", {motion.called}" if motion.key else ""
     given = limit_of(KIND, "pressure-angle", result.design.limits)
-    limit = pressure_limit(result.mechanism, given)
+    limit = pressure_limit(result.follower, given)
     for kind in ("rise", "return"):
         found = motion.pressure(kind)
         if found is not None:
@@ -138,7 +137,7 @@ def pressure(result: CamResult, motion: PitchMotion) -> Tree:
                 math.degrees(found.largest),
                 f"pressure angle, {kind}{whose}",
                 at_most=math.degrees(limit),
-                place=result.mechanism.driver.seen(worst.theta),
+                place=result.driver.seen(worst.theta),
                 unit="deg",
                 shown=found.largest > 0.0,
             )
@@ -148,11 +147,11 @@ def pressure(result: CamResult, motion: PitchMotion) -> Tree:
 
 def _lost_motion(result: CamResult) -> Fact | None:
     """Return how far a follower between two walls can move while the cam stands still."""
-    lost, mechanism = result.cam.lost_motion, result.mechanism
+    lost = result.cam.lost_motion
     if lost is None:
         return None
-    scale, unit = mechanism.outward
-    place = mechanism.driver.seen(lost.theta)
+    scale, unit = result.follower.lift_unit
+    place = result.driver.seen(lost.theta)
     return Fact(scale * lost.value, "lost motion", place=place, unit=unit, shown=True)
 
 

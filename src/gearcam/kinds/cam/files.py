@@ -70,7 +70,7 @@ def _inspection(result: CamResult, _: Measured) -> Files:
 
 def _inspected(result: CamResult, wall: Wall, profile: Contour, count: int) -> dict[str, Array]:
     theta, points, normals = wall.places(count)
-    driver = wall.mechanism.driver
+    driver = wall.carrier.driver
     clearance = result.design.blank.clearance
     if clearance:
         from gearcam.parts.parallel import touches

@@ -106,12 +106,18 @@ def followed(
         If the follower cannot rest on the profile.
     """
     outline = flatten_bulges(vertices, bulges, _SAGITTA * wall.tolerance)
-    mechanism = wall.curve.mechanism
-    driver = mechanism.driver
-    mirrored = wall.clockwise and not mechanism.slide
-    side = np.array([-1.0 if mirrored else 1.0, 1.0])
-    found = follow(outline * side, mechanism, theta, wall.tolerance)
-    scale, unit = mechanism.outward
+    carrier, driver = wall.carrier, wall.carrier.driver
+    # output of a cam that slides is the mirror image, which `follow` expects
+    side = np.array([-1.0 if wall.clockwise and carrier.around else 1.0, 1.0])
+    found = follow(
+        outline * side,
+        wall.follower,
+        theta,
+        carrier=carrier,
+        side=wall.side,
+        missed=wall.tolerance,
+    )
+    scale, unit = wall.follower.lift_unit
     asked = wall.program.derivatives(theta, 0)[0]
     difference = scale * (found.lift - asked)
     columns = {

@@ -93,12 +93,12 @@ def _cam(result: CamResult) -> Ladder:
     Next to a knot where a derivative of the lift jumps it converges more slowly, or not at all.
     """
     motion = result.cam.motions[0]
-    curve, program = motion.curve, motion.program
+    curve, program = motion.pitch_curve, motion.program
 
     def make(count: float) -> tuple[Array, Array]:
         theta = np.arange(int(count), dtype=np.float64) * (2.0 * math.pi / count)
         s, ds = program.derivatives(theta, 1)
-        points: Plane = np.conj(curve.trace(theta, s, ds, 0.0)[0])  # counter-clockwise
+        points: Plane = np.conj(curve.trace(theta, s, ds)[0])  # counter-clockwise
         return theta, three_point_curvature(points, closed=program.closed)
 
     def measure(made: tuple[Array, Array]) -> tuple[float, int]:

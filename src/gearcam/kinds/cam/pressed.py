@@ -13,7 +13,6 @@ from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.base.findings import CHECKS, Finding, limit_of
 from gearcam.base.numerals import shortened, shown
 from gearcam.cams.checks import KIND, driven
-from gearcam.cams.mechanism import position_at
 from gearcam.designs.design import document_of, value_at
 
 if TYPE_CHECKING:
@@ -75,7 +74,7 @@ def gentler(result: CamResult, code: str, number: int = 0) -> dict[str, float] |
         times what the follower needs does.
     """
     motion = result.cam.motions[number]
-    if motion.mechanism.slide or motion.mechanism.flat:
+    if not motion.carrier.around:
         return None
     steep = next(_steep(result, code, number), None)
     if steep is None:
@@ -109,17 +108,17 @@ def resized(result: CamResult, number: int, size: float) -> dict[str, float]:
         The radius; of the second of conjugate cams that at the highest lift.
     """
     document, motion = document_of(result.design), result.cam.motions[number]
-    mechanism = motion.mechanism
+    follower = motion.follower
     if number:
         if value_at(document, "cam.prime_radius2_mm"):
             return {"cam.prime_radius2_mm": size}
-        scale, _ = mechanism.outward
-        key = "follower.arms_angle_deg" if mechanism.oscillating else "follower.roller_distance_mm"
-        more = scale * (mechanism.start - _started(motion, size))
+        scale, unit = follower.lift_unit
+        key = f"follower.{'arms_angle' if follower.angular else 'roller_distance'}_{unit}"
+        more = scale * (follower.start - _started(motion, size))
         return {key: shortened(value_at(document, key) + more, more, 5)}
     base = value_at(document, "cam.base_radius_mm")
     key = "cam.prime_radius_mm" if base is None else "cam.base_radius_mm"
-    own = size if base is None else float(f"{size - mechanism.radius:.10g}")
+    own = size if base is None else float(f"{size - follower.radius:.10g}")
     return grown(document, key, own)
 
 
@@ -149,12 +148,13 @@ def _sentence(result: CamResult, code: str, number: int) -> str:
         told = " and ".join(f"{key} = {shown(value, 10)}" for key, value in changes.items())
         return f"The smallest cam that keeps the limit has {told}."
     motion = result.cam.motions[number]
-    mechanism = motion.mechanism
-    if mechanism.slide or mechanism.flat:
-        smaller = "face offset" if mechanism.flat else "lift or a longer way"
-        return f"A smaller {smaller} reduces it."
-    unless = ", or another arm or pivot distance" if mechanism.oscillating else ""
-    unless = ", or a smaller offset" if mechanism.offset else unless
+    follower = motion.follower
+    if not follower.has_centre:
+        return "A smaller face offset reduces it."
+    if not motion.carrier.around:
+        return "A smaller lift or a longer way reduces it."
+    unless = ", or another arm or pivot distance" if follower.angular else ""
+    unless = ", or a smaller offset" if follower.aside else unless
     return (
         f"No prime radius up to {shown(_MOST * _need(motion), 3)} mm keeps the limit: it takes a "
         f"larger angle or a smaller lift{unless}."
@@ -178,44 +178,32 @@ def _steep(result: CamResult, code: str, number: int, cam: Cam | None = None) ->
 
 def _started(motion: PitchMotion, size: float) -> float:
     """Return the position at zero lift of a follower that stands at a radius, mm."""
-    mechanism = motion.mechanism
-    place = position_at(mechanism, size)
+    position = float(motion.follower.on_circle(size))
     # below the axis it stands nearest at the highest lift
-    return -place - motion.program.range[1] if mechanism.below else place
+    return -position - motion.program.range[1] if motion.follower.below else position
 
 
 def _need(motion: PitchMotion) -> float:
     """Return what the size of a follower and its lift add up to, mm."""
-    m, (low, high) = motion.mechanism, motion.program.range
-    return m.lever * (high - low) + abs(m.offset) + m.radius
+    follower, (low, high) = motion.follower, motion.program.range
+    return follower.lever * (high - low) + follower.aside + follower.radius
 
 
 def _least(result: CamResult, motion: PitchMotion, code: str, limit: float) -> float | None:
-    """Return the least radius, mm, that keeps a limit, rad, at many cam angles.
-
-    A position q at zero lift keeps ``|alpha| <= limit`` at a lift s from a least one on, and that
-    of an arm up to a largest one: with ``turn = arccos(l*(1 + s')*cos(limit)/d)`` it is
-    ``abs(turn - limit) <= q + s <= turn + limit``, and ``q + s <= 2*pi - turn - limit``.
-    """
-    m, (bottom, top) = motion.mechanism, motion.program.range
+    """Return the least radius, mm, that keeps a limit, rad, at many cam angles."""
+    follower, (bottom, top) = motion.follower, motion.program.range
     survey = motion.program.survey
     kinds = driven(result.cam, motion) if code == "jamming" else ("rise", "return")
     middles = survey.places.mean(axis=1)
     ends = [pair for kind in kinds for pair in motion.program.phases(kind)]
     inside = np.any([(low < middles) & (middles < high) for low, high in ends], axis=0)
     lift, speed = survey.found[:2, inside].reshape(2, -1)
-    if m.below:  # below the axis it stands nearest at the highest lift
+    if follower.below:  # below the axis it stands nearest at the highest lift
         lift, bottom = top - lift, 0.0
-    size = min(m.least, _CLOSER * max(m.radius, abs(m.pivot - m.arm), abs(m.offset)))
-    least, most = position_at(m, size) - bottom, math.inf
-    if m.oscillating:
-        share = m.arm * (1.0 + speed) * math.cos(limit) / m.pivot
-        if np.abs(share).max() > 1.0:
-            return None
-        turn = np.arccos(share)
-        least = max(least, float((np.abs(turn - limit) - lift).max()))
-        most = float((np.minimum(turn + limit, 2.0 * math.pi - turn - limit) - lift).min())
-    else:
-        least = max(least, float((np.abs(speed - m.offset) / math.tan(limit) - lift).max()))
-    found = m.follower.distance(least)
-    return found if least <= most and found <= _MOST * _need(motion) else None
+    low, high = follower.least_start(limit, lift, speed)
+    size = min(follower.prime_radius, _CLOSER * max(follower.radius, follower.nearest))
+    low = max(low, float(follower.on_circle(size)) - bottom)
+    if low > high:
+        return None
+    least = follower.distance(low)
+    return least if least <= _MOST * _need(motion) else None

@@ -33,7 +33,7 @@ def scene(result: CamResult, places: int = PLACES) -> Scene:
         As designed, before clearance; without contact where the follower rests on a corner.
     """
     motion = result.cam.motions[0]
-    driver, carrier = motion.mechanism.driver, motion.mechanism.carrier
+    driver, carrier = motion.carrier.driver, motion.carrier
     output = result.design.output
     pose = output.pose if carrier.around else (output.place or 0.0) / driver.scale
     theta = np.linspace(0.0, 2.0 * math.pi, places + 1)
@@ -76,14 +76,14 @@ def _of_part(features: list[Feature], name: str) -> list[Feature]:
 
 def _pose(motion: PitchMotion, theta: Array) -> Pose:
     """Return the pose of the cam at cam angles, rad."""
-    carrier = motion.mechanism.carrier
+    carrier = motion.carrier
     return _mirrored(motion, Pose(carrier.rate * theta, carrier.frame(theta)[1]))
 
 
 def _carried(motion: PitchMotion, theta: Array, pose: float) -> Pose:
     """Return the pose of a follower that is drawn at the cam angle `pose`, at cam angles, rad."""
     lift = motion.program.derivatives(theta, 0)[0] - float(motion.program.derivatives(pose, 0)[0])
-    return _mirrored(motion, Pose(*motion.mechanism.follower.moved(lift)))
+    return _mirrored(motion, Pose(*motion.follower.moved(lift)))
 
 
 def _mirrored(motion: PitchMotion, pose: Pose) -> Pose:

@@ -14,7 +14,7 @@ from gearcam.base.errors import ABOVE, beyond_limit
 from gearcam.numeric.arrays import Array
 
 if TYPE_CHECKING:
-    from gearcam.cams.mechanism import Driver
+    from gearcam.cams.carriers import Driver
     from gearcam.kinds.cam.design import CamOutputSpec
 
 _WAY_STEP: Final = 1.0

@@ -90,11 +90,11 @@ def curvature(wall: Wall) -> Tree:
 
 def trimming(wall: Wall) -> Tree:
     """Return where a `wall` is undercut, its start angle, and the lift lost by trimming."""
-    mechanism, corners = wall.mechanism, bool(wall.corners)
-    swings, scale = mechanism.oscillating, mechanism.driver.scale
+    follower, corners, scale = wall.follower, bool(wall.corners), wall.carrier.driver.scale
+    swings = follower.angular
     return {
         "undercut": [[scale * low, scale * high] for low, high in wall.undercut_ranges],
-        "start_angle_deg": math.degrees(mechanism.start) if swings else None,
+        "start_angle_deg": math.degrees(follower.start) if swings else None,
         "lost_lift_deg": math.degrees(wall.shortfall) if corners and swings else None,
         "lost_lift_mm": wall.shortfall if corners and not swings else None,
     }

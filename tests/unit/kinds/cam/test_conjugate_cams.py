@@ -275,7 +275,7 @@ def test_an_undercut_second_cam_is_told_as_such() -> None:
     assert {one.where.partition(",")[0] for one in found} >= {"profile of cam 2"}
     # the follower itself, on the trimmed outline, misses as much as is said; it stands too high
     theta = np.linspace(0.0, 360.0, 7201)
-    lift = follow(second.outline, second.mechanism, np.radians(theta)).lift
+    lift = follow(second.outline, second.follower, np.radians(theta)).lift
     high = lift - second.program.derivatives(np.radians(theta), 0)[0]
     assert high.max() == pytest.approx(second.shortfall, abs=5e-3)
     assert second.shortfall > 0.05

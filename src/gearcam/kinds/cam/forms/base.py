@@ -137,15 +137,15 @@ class Form(Protocol):
 
     def leading(self, result: CamResult) -> str:
         """Return the name of the size for the headline, one of its `sizes`."""
-        return "base_radius_mm" if result.mechanism.flat else "prime_radius_mm"
+        return "prime_radius_mm" if result.follower.has_centre else "base_radius_mm"
 
     def sizes(self, result: CamResult) -> dict[str, Any]:
         """Return its sizes, as facts."""
-        mechanism = result.mechanism
+        follower = result.follower
         return {
             "rotation": Fact(result.design.cam.rotation, "cam turns"),
-            "prime_radius_mm": mechanism.least,
-            "base_radius_mm": mechanism.least - mechanism.radius,
+            "prime_radius_mm": follower.prime_radius,
+            "base_radius_mm": follower.prime_radius - follower.radius,
         }
 
     @abstractmethod

@@ -12,7 +12,7 @@ import numpy as np
 from gearcam.base.facts import Fact
 from gearcam.cams.conjugate import ConjugateCam, SecondRoller, make_conjugate
 from gearcam.cams.disc import CHORD_TOLERANCE
-from gearcam.cams.mechanism import make_mechanism
+from gearcam.cams.placing import make_round_follower
 from gearcam.designs.faults import Fault, show
 from gearcam.kinds.cam.facts import pressure
 from gearcam.kinds.cam.forms.base import FORMS, plate_keys
@@ -68,7 +68,7 @@ class Conjugate(Disc):
         follower, cam = design.follower, design.cam
         return make_conjugate(
             program,
-            make_mechanism(follower, cam),
+            make_round_follower(follower, cam),
             _second(follower, cam),
             clockwise=cam.clockwise,
             tolerance=design.output.chord_tolerance or CHORD_TOLERANCE,
@@ -127,14 +127,14 @@ class Conjugate(Disc):
         from gearcam.kinds.cam.drawn import cutter_way
 
         return {
-            f"{TOOL_PATH}_{wall.key}": cutter_way(part.contour, radius or wall.mechanism.radius)
+            f"{TOOL_PATH}_{wall.key}": cutter_way(part.contour, radius or wall.follower.radius)
             for wall, part in zip(result.cam.walls, result.parts, strict=True)
         }
 
     def facts(self, result: CamResult) -> dict[str, Any]:
         """Return the place of the second roller, and both cams."""
         cam, design = _cam(result), result.design
-        second, swings = cam.second.mechanism, cam.first.mechanism.oscillating
+        second, swings = cam.second.follower, cam.first.follower.angular
         clearance = design.blank.clearance
         told = [
             {
@@ -148,7 +148,7 @@ class Conjugate(Disc):
             "prime_radius_mm": Fact(cam.prime2, "prime radius"),
             "base_radius_mm": Fact(cam.prime2 - second.radius, "base radius"),
             "roller_radius_mm": second.radius,
-            "arm_mm": second.arm if swings else None,
+            "arm_mm": second.lever if swings else None,
             "pressure_angle_deg": pressure(result, cam.second),
         }
         return {
@@ -206,7 +206,7 @@ def _cam(result: CamResult) -> ConjugateCam:
 
 def _primes(result: CamResult) -> tuple[float, float]:
     cam = _cam(result)
-    return cam.first.mechanism.least, cam.prime2
+    return cam.first.follower.prime_radius, cam.prime2
 
 
 FORMS.register(Conjugate())

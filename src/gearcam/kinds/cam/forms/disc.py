@@ -9,7 +9,7 @@ import numpy as np
 
 from gearcam.base.facts import Fact
 from gearcam.cams.disc import CHORD_TOLERANCE, DiscCam, make_cam
-from gearcam.cams.mechanism import make_mechanism
+from gearcam.cams.placing import make_follower
 from gearcam.kinds.cam.forms.base import FORMS, Form
 from gearcam.kinds.cam.wall_facts import curvature, ends_of, size, trimming
 
@@ -38,7 +38,7 @@ def disc_cam(design: CamDesign, program: Program) -> DiscCam:
     """Return the disc cam that a `design` asks for, its lift a `program`."""
     return make_cam(
         program,
-        make_mechanism(design.follower, design.cam),
+        make_follower(design.follower, design.cam),
         clockwise=design.cam.clockwise,
         tolerance=design.output.chord_tolerance or CHORD_TOLERANCE,
     )
@@ -122,7 +122,7 @@ class Disc(Form):
         """Return the path around the plate."""
         from gearcam.kinds.cam.drawn import cutter_way
 
-        return {TOOL_PATH: cutter_way(result.part.contour, radius or result.mechanism.radius)}
+        return {TOOL_PATH: cutter_way(result.part.contour, radius or result.follower.radius)}
 
     def facts(self, result: CamResult) -> dict[str, Any]:
         """Return curvature, undercut and size of the profile."""

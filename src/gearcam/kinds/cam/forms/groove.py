@@ -13,7 +13,7 @@ from gearcam.base.facts import Fact
 from gearcam.base.numerals import shown
 from gearcam.cams.disc import CHORD_TOLERANCE
 from gearcam.cams.groove import GrooveCam, make_groove
-from gearcam.cams.mechanism import make_mechanism
+from gearcam.cams.placing import make_round_follower
 from gearcam.designs.faults import Fault, show
 from gearcam.kinds.cam.forms.base import FORMS, Form, Keys, plate_keys
 from gearcam.kinds.cam.forms.disc import STEM, TOOL_PATH, workpiece
@@ -75,7 +75,7 @@ class Groove(Form):
         cam = design.cam
         return make_groove(
             program,
-            make_mechanism(design.follower, cam),
+            make_round_follower(design.follower, cam),
             clearance=cam.roller_clearance or 0.0,
             radius2=design.follower.roller2_radius,
             diameter=cam.outer_diameter or math.inf,
@@ -147,13 +147,13 @@ class Groove(Form):
     def facts(self, result: CamResult) -> dict[str, Any]:
         """Return sizes of the groove, its lost motion, and both walls."""
         cam, given = _cam(result), result.design.cam
-        mechanism = cam.motion.mechanism
+        follower = cam.motion.follower
         return {
             "outer_diameter_mm": Fact(given.outer_diameter, "diameter of the blank"),
             "side": given.side or "front",
             "roller2_radius_mm": result.design.follower.roller2_radius,
             "roller_clearance_mm": given.roller_clearance or 0.0,
-            "start_angle_deg": math.degrees(mechanism.start) if mechanism.oscillating else None,
+            "start_angle_deg": math.degrees(follower.start) if follower.angular else None,
             "groove": {
                 "width_mm": Fact(cam.width, "width of the groove"),
                 "depth_mm": Fact(given.groove_depth, "depth of the groove"),
@@ -205,7 +205,7 @@ def _recesses(result: CamResult) -> tuple[Recess, ...]:
     wide, side = cam.relief.contour, cam.relief.side
     upper = (wide, outer) if side > 0 else (inner, wide)
     other = cam.outer if side > 0 else cam.inner
-    width = cam.relief.mechanism.radius + other.mechanism.radius
+    width = cam.relief.follower.radius + other.follower.radius
     return (
         recess(0.0, 0.5 * depth, upper, width),
         recess(0.5 * depth, depth, (inner, outer), cam.width),

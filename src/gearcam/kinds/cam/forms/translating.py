@@ -12,7 +12,7 @@ import numpy as np
 from gearcam.base.errors import beyond_limit
 from gearcam.base.facts import Fact
 from gearcam.base.numerals import shown
-from gearcam.cams.mechanism import make_sliding_mechanism
+from gearcam.cams.placing import make_follower_over_plate
 from gearcam.cams.sliding import SlidingCam, make_sliding
 from gearcam.cams.wall import CHORD_TOLERANCE
 from gearcam.designs.faults import Fault, show
@@ -93,7 +93,8 @@ class Translating(Form):
         _demand_reached(design.output.place or 0.0, way)
         return make_sliding(
             program,
-            make_sliding_mechanism(design.follower, way),
+            make_follower_over_plate(design.follower),
+            travel=way,
             height=blank.height or 0.0,
             length=blank.length,
             groove=cam.walls == "both",
@@ -152,7 +153,7 @@ class Translating(Form):
 
         place, (motion,) = result.design.output.place or 0.0, result.cam.motions
         reach = 0.5 * float(np.ptp(result.profile.vertices))
-        shapes = follower(motion, place / motion.mechanism.slide, reach)
+        shapes = follower(motion, place / result.driver.scale, reach)
         return _drawing(result, shapes, place)
 
     def paths(self, result: CamResult, radius: float | None) -> Mapping[str, Contour | Path]:
@@ -162,7 +163,7 @@ class Translating(Form):
 
         cam = _made(result)
         if cam.groove is None:
-            return {TOOL_PATH: cutter_way(cam.edge, radius or result.mechanism.radius)}
+            return {TOOL_PATH: cutter_way(cam.edge, radius or result.follower.radius)}
         radius = radius or 0.5 * cam.width
         if abs(2.0 * radius - cam.width) <= _ROUNDING * cam.width:
             return {TOOL_PATH: Path(points=cam.lower.pitch_line, closed=False)}
@@ -189,7 +190,7 @@ class Translating(Form):
     def facts(self, result: CamResult) -> dict[str, Any]:
         """Return curvature, undercut and length of the walls, and the lost motion in a groove."""
         cam, given = _cam(result), result.design.cam
-        mechanism, rows = cam.motion.mechanism, zip(cam.walls, result.contours, strict=True)
+        lead, rows = cam.motion.follower, zip(cam.walls, result.contours, strict=True)
         told = {
             wall.key or "profile": {
                 "curvature": curvature(wall),
@@ -201,7 +202,7 @@ class Translating(Form):
             }
             for wall, made in rows
         }
-        start = math.degrees(mechanism.start) if mechanism.oscillating else None
+        start = math.degrees(lead.start) if lead.angular else None
         clearance = result.design.blank.clearance
         if cam.groove is None:
             return {"start_angle_deg": start, "clearance_mm": clearance or None, **told}
@@ -286,8 +287,8 @@ def _made(result: CamResult) -> SlidingCam:
     if not clearance:
         return cam
     lower: SlidingWall = cam.lower
-    wide = replace(lower.mechanism, radius=lower.mechanism.radius + clearance)
-    return replace(cam, lower=replace(lower, mechanism=wide))
+    wide = replace(lower.follower, radius=lower.follower.radius + clearance)
+    return replace(cam, lower=replace(lower, follower=wide))
 
 
 def _bolts(result: CamResult) -> Iterator[Opening]:
@@ -327,7 +328,7 @@ def _drawing(result: CamResult, follower: Sequence[Shape] = (), way: float = 0.0
         replace(one, layer=GROOVE) if one.layer == OUTER_WALL else one
         for one in part_features(part, outline=PROFILE if cam.groove is None else BLANK)
     ]
-    if cam.motion.mechanism.radius:
+    if cam.motion.follower.radius:
         moving.append(Feature(layer=PITCH, shape=Path(points=cam.lower.pitch_line, closed=False)))
     features = list(place(moving, Pose(shift=way)))
     features += [Feature(layer=FOLLOWER, shape=shape) for shape in follower]

@@ -79,7 +79,7 @@ class Yoke(Disc):
 
     def facts(self, result: CamResult) -> dict[str, Any]:
         """Return the facts of a disc cam, and the distance of both sides of the follower."""
-        cam, flat = result.cam, result.mechanism.flat
+        cam, flat = result.cam, not result.follower.has_centre
         if not isinstance(cam, YokeCam):
             raise TypeError(f"{cam!r} is not a yoke cam")
         return {

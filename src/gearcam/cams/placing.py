@@ -1,0 +1,156 @@
+"""The followers of a design, at zero lift on their cams.
+
+The *position* of a follower at zero lift, to which the lift is added, is:
+
+==================== ==========================================================
+translating round    height of the centre, ``s0 = sqrt(prime^2 - e^2)``
+translating flat     height of the face, the base radius
+oscillating round    ``Psi0 = arccos((d^2 + l^2 - prime^2)/(2*d*l))``
+oscillating flat     ``Psi0 = arcsin((base + f)/d)``, the face f nearer the cam
+over a plate         0 of a translating follower; ``Psi0 = -arcsin(p/l)``, p the pivot's height
+==================== ==========================================================
+
+Refused: followers that cannot touch the cam at zero lift.
+
+Sources: 000 section 3.4.2 (3.14), (3.15); section 3.4.3 (3.28).
+"""
+
+from __future__ import annotations
+
+import math
+
+from gearcam.base.errors import InfeasibleError, Way, beyond_limit
+from gearcam.base.numerals import shown
+from gearcam.cams.followers import Arm, FlatArm, FlatStem, Follower, Round, Stem
+from gearcam.cams.spec import CamSpec, FollowerSpec
+
+
+def make_follower(follower: FollowerSpec, cam: CamSpec) -> Follower:
+    """Return a follower on a cam that turns.
+
+    Parameters
+    ----------
+    follower : FollowerSpec
+        The follower.
+    cam : CamSpec
+        The cam, with the prime or base radius that the follower needs.
+
+    Returns
+    -------
+    Follower
+
+    Raises
+    ------
+    InfeasibleError
+        If the follower cannot touch the cam at zero lift.
+    """
+    if not follower.flat:
+        return make_round_follower(follower, cam)
+    base = _given(cam.base_radius, "a base radius")
+    if not follower.oscillating:
+        return FlatStem(start=base, offset=follower.offset)
+    pivot = _given(follower.pivot_distance, "a pivot distance")
+    return _swinging_face(pivot, follower.face_offset, base)
+
+
+def make_round_follower(follower: FollowerSpec, cam: CamSpec) -> Round:
+    """Return a round follower on a cam that turns (see `make_follower`).
+
+    Parameters
+    ----------
+    follower : FollowerSpec
+        The follower, not flat.
+    cam : CamSpec
+        The cam, with its prime or base radius.
+
+    Returns
+    -------
+    Round
+
+    Raises
+    ------
+    InfeasibleError
+        If the follower cannot touch the cam at zero lift.
+    """
+    radius, size = follower.radius, cam.prime_radius
+    if size is None:
+        size = _given(cam.base_radius, "a prime or base radius") + radius
+    if follower.oscillating:
+        pivot = _given(follower.pivot_distance, "a pivot distance")
+        return _arm(pivot, _given(follower.arm, "an arm"), radius, size)
+    offset = follower.offset
+    if not abs(offset) < size:
+        what, key = "the follower's axis misses the prime circle", "follower.offset_mm"
+        rule = "the offset, to either side, must be below the prime radius"
+        near = math.copysign(size, offset)
+        raise beyond_limit(what, key, abs(offset), size, rule, near=near, far=0.0)
+    return Stem(start=0.0, radius=radius, offset=offset).starting_at(size)
+
+
+def make_follower_over_plate(follower: FollowerSpec) -> Round:
+    """Return a round follower over a cam that slides.
+
+    Parameters
+    ----------
+    follower : FollowerSpec
+        The follower.
+
+    Returns
+    -------
+    Round
+
+    Raises
+    ------
+    InfeasibleError
+        If the arm does not reach the height of zero lift.
+    """
+    if not follower.oscillating:
+        return Stem(start=0.0, radius=follower.radius, tilt=follower.axis or 0.0)
+    arm, height = _given(follower.arm, "an arm"), follower.pivot_height or 0.0
+    if not abs(height) < arm:
+        what = f"the arm does not reach {'down' if height > 0.0 else 'up'} to zero lift"
+        key, limit = "follower.pivot_height_mm", math.copysign(arm, height)
+        rule = "the pivot height must be below the arm length, the limit"
+        raise beyond_limit(what, key, height, limit, rule, far=0.0)
+    pivot = complex(-_given(follower.pivot_distance, "a pivot distance"), height)
+    start = -math.asin(height / arm)
+    return Arm(start=start, radius=follower.radius, arm=arm, pivot=pivot, hand=-1)
+
+
+def _arm(pivot: float, arm: float, radius: float, size: float) -> Arm:
+    follower = Arm(start=0.0, radius=radius, arm=arm, pivot=complex(pivot))
+    low, high = follower.nearest, follower.farthest
+    if not low < size < high:
+        what, parts = "the arm cannot reach the prime circle", "arm and pivot"
+        key, least = "follower.pivot_distance_mm", abs(arm - size)
+        near = least if pivot <= least else arm + size
+        way = Way(near={key: near}, far={key: max(arm, size)})
+        raise _out_of_reach(what, "cam.prime_radius_mm", parts, size, low, high, way)
+    return follower.starting_at(size)
+
+
+def _swinging_face(pivot: float, offset: float, size: float) -> FlatArm:
+    if not abs(size + offset) < pivot:
+        what, parts = "the face cannot touch the base circle", "pivot and face offset"
+        low, high, way = -pivot - offset, pivot - offset, Way(far={"follower.face_offset_mm": 0.0})
+        raise _out_of_reach(what, "cam.base_radius_mm", parts, size, low, high, way)
+    return FlatArm(start=0.0, pivot=pivot, offset=offset).starting_at(size)
+
+
+def _out_of_reach(
+    what: str, key: str, parts: str, size: float, low: float, high: float, way: Way
+) -> InfeasibleError:
+    """Return the error for a size outside the range that the parts allow."""
+    least = max(low, 0.0)
+    rule = f"{parts} allow sizes between {shown(least)} and {shown(high)} mm"
+    ways = (way,)
+    if high > 0.0:  # from the limit that the size exceeds to the middle of the allowed range
+        near = least if size <= least else high
+        ways = (Way(near={key: near}, far={key: 0.5 * (least + high)}), way)
+    return beyond_limit(what, key, size, low if size <= low else high, rule, ways=ways)
+
+
+def _given(value: float | None, what: str) -> float:
+    if value is None:
+        raise ValueError(f"this follower needs {what}")
+    return value
