@@ -56,7 +56,19 @@ class Arc:
     share: float = 0.5
 
     def piece(self, start: float, end: float, low: float, width: float) -> Piece:
-        """Return the arc between two ratios over ``[low, low + width]``."""
+        """Return an arc.
+
+        Parameters
+        ----------
+        start, end : float
+            Ratios at both ends.
+        low, width : float, rad
+            Where it starts, and its width.
+
+        Returns
+        -------
+        Piece
+        """
         return Piece(self.ratio, self.integral, (start, end, low, width))
 
 
