@@ -29,31 +29,24 @@ class Values(Protocol):
 
     def get(self, name: str) -> Any:
         """Return a value or its default; None if there is none, or a wrong one."""
-        ...
 
     def given(self, name: str) -> bool:
         """Return whether a right value is given."""
-        ...
 
     def written(self, name: str) -> bool:
         """Return whether a value is written, right or wrong, and not as 0 for none."""
-        ...
 
     def missing(self, name: str) -> bool:
         """Return whether a value is left out, or is 0 and this means that there is none."""
-        ...
 
     def key(self, name: str) -> str:
         """Return the key of a field: ``module_mm``, or ``pair.module_mm`` for a dotted name."""
-        ...
 
     def unit(self, name: str) -> str:
         """Return the unit of a field; empty without one."""
-        ...
 
     def text(self, name: str) -> str:
         """Return key and value as in a file: ``module_mm = 2``."""
-        ...
 
 
 class Keys(Protocol):
@@ -61,23 +54,18 @@ class Keys(Protocol):
 
     def given(self, name: str) -> Schema:
         """Return the schema of tables in which a value is given."""
-        ...
 
     def written(self, name: str) -> Schema:
         """Return the schema of tables in which a value is not missing."""
-        ...
 
     def value(self, name: str, schema: Schema, *, required: bool = False) -> Schema:
         """Return the schema of tables whose value, if there is one, obeys a `schema`."""
-        ...
 
     def is_one_of(self, name: str, words: Iterable[Any]) -> Schema:
         """Return the schema of tables in which a value or its default is one of some `words`."""
-        ...
 
     def both(self, name: str) -> bool:
         """Return whether a field has a value for each of two wheels."""
-        ...
 
 
 def _without(_: Keys) -> Schema:

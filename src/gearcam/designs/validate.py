@@ -154,7 +154,9 @@ class _Values:
 
     def text(self, name: str) -> str:
         one = self._written[name]
-        return f"{one.key} = {show(_default(one.entry) if one.value is None else one.value)}"
+        value = _default(one.entry) if one.value is None else one.value
+        value = int(value) if isinstance(value, float) and value.is_integer() else value
+        return f"{one.key} = {show(value)}"
 
 
 def _default(entry: Key) -> Any:
