@@ -106,11 +106,11 @@ def test_what_cannot_close_is_refused(name: str) -> None:
 
 
 WRONG = {
-    "neither": (
-        {"ratios": [0.5, 2]},
-        r"log-spiral needs return_deg \(a closed pair .*\) or driven_travel_deg \(an open pair",
+    "neither": ({"ratios": [0.5, 2]}, "law: neither return_deg nor driven_travel_deg is given"),
+    "both": (
+        {"ratios": [0.5, 2], "return_deg": 80, "driven_travel_deg": 90},
+        "law.driven_travel_deg: 90: is given beside return_deg = 80",
     ),
-    "both": ({"ratios": [0.5, 2], "return_deg": 80, "driven_travel_deg": 90}, "are both given"),
     "an open one": ({"ratios": [0.5, "solve"], "driven_travel_deg": 90}, "is not possible here"),
     "twice": ({"ratios": ["solve", "solve"], "return_deg": 90}, "is not possible here"),
     "too much": ({"ratios": [1e-4, "solve"], "return_deg": 90}, "0.0001 is out of range"),

@@ -207,7 +207,7 @@ def test_a_document_takes_functions_and_none_gives_them() -> None:
         (Formula(phi2=3.0), "law.phi2", "3.0 is not text"),  # pyright: ignore
         (Formula(phi2=(swing, 1)), "law.phi2", "is not text"),  # pyright: ignore
         (Formula(phi2=()), "law.phi2", "is not text"),
-        (Formula(phi2=swing, r1=lambda x: x), "law.r1", "a Python function: phi2 and r1 are given"),
+        (Formula(phi2=swing, r1=lambda x: x), "law.r1", "is given beside phi2 = a Python"),
         (Ellipse(eccentricity=swing), "law.eccentricity", "is not a number"),  # pyright: ignore
     ],
 )

@@ -11,7 +11,7 @@ from claims.motion import MOTION_CLAIMS
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.tolerances import DEFAULT
 from gearcam.designs.table import table_of
-from gearcam.designs.validate import faults_of
+from gearcam.designs.validate import faults_of, rule_faults
 from gearcam.laws.columns import ColumnsError, read_rows
 from gearcam.laws.rises.base import RISES
 from gearcam.laws.rises.formula import FormulaRise
@@ -96,9 +96,6 @@ def test_control_values_run_from_corner_to_corner() -> None:
 @pytest.mark.parametrize(
     ("table", "field", "index", "message"),
     [
-        (TableRise(x=EVEN, y=EVEN, file="a.csv"), "file", None, "the points are given twice"),
-        (TableRise(), "x", None, "no points are given"),
-        (TableRise(x=EVEN), "y", None, "no points are given"),
         (TableRise(x=EVEN, y=EVEN[1:]), "y", None, "4 values for 5 places"),
         (TableRise(x=(0.0, 1.0), y=(0.0, 1.0)), "x", None, "has 2 points"),
         (TableRise(x=(0.1, 0.5, 1.0), y=(0.0, 0.5, 1.0)), "x", 0, "the first x is 0.1, not 0"),
@@ -117,6 +114,21 @@ def test_points_that_make_no_rise_are_told(
     with pytest.raises(InfeasibleError) as caught:
         table.build(DEFAULT)
     assert str(caught.value).startswith(f"{message} ({where})")
+
+
+@pytest.mark.parametrize(
+    ("given", "key", "message"),
+    [
+        ({"x": EVEN, "y": EVEN, "file": "a.csv"}, "x", "is given beside file"),
+        ({}, "", "neither file nor x is given"),
+        ({"x": EVEN}, "", "neither file nor y is given"),
+        ({"y": EVEN}, "", "neither file nor x is given"),
+    ],
+)
+def test_points_are_given_once(given: dict[str, Any], key: str, message: str) -> None:
+    fault, *_ = rule_faults(table_of("motion", TableRise), given, [], ("motion", 0))
+    assert "".join(map(str, fault.path[2:])) == key
+    assert message in fault.message
 
 
 def test_typed_digits_of_the_corners_are_overlooked() -> None:

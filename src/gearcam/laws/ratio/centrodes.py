@@ -13,6 +13,7 @@ from typing import TypeVar
 from gearcam.base.display import Brief
 from gearcam.base.errors import Way, beyond_limit
 from gearcam.base.quantities import ANGLE, COUNT, NUMBER, Solve, param
+from gearcam.base.rules import Breach, exactly_one
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import TYPED, LawEntry
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
@@ -167,17 +168,16 @@ class LogSpiral(Brief):
         "ratio goes a little beyond both",
     )
 
-    def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
+    rules = (
+        exactly_one(
+            "return_angle", "driven_travel",
+            note="with a return the pair turns without end, with a travel to and fro",
+        ),
+    )  # fmt: skip
+
+    def problems(self) -> Iterator[Breach]:
         """Yield what is wrong by reading: field, index, message, allowed."""
         closed = self.return_angle is not None
-        if (self.driven_travel is None) != closed:
-            rule = (
-                "return_deg (a closed pair that turns without end) or driven_travel_deg "
-                "(an open pair, to and fro)"
-            )
-            words = "return_deg and driven_travel_deg are both given"
-            words, rule = (words, rule) if closed else (f"log-spiral needs {rule}", "")
-            yield "return_angle", None, words, rule
         for index, ratio in enumerate(self.ratios):
             if ratio == "solve" and (not closed or (index and self.ratios[0] == "solve")):
                 rule = "a number; one of the two ratios of a closed pair is solved at most"

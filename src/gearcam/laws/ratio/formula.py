@@ -12,6 +12,7 @@ from gearcam.base.display import Brief
 from gearcam.base.errors import InfeasibleError, Way, beyond_limit
 from gearcam.base.numerals import shown
 from gearcam.base.quantities import TEXT, param
+from gearcam.base.rules import Breach, exactly_one
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import TYPED, Axis, LawEntry
 from gearcam.laws.formula import (
@@ -25,6 +26,7 @@ from gearcam.laws.formula import (
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.driver import demand_positive, law_of_centrode
 from gearcam.laws.ratio.span import (
+    OPEN,
     PLACES,
     RING,
     Lobes,
@@ -34,7 +36,6 @@ from gearcam.laws.ratio.span import (
     demand_smooth,
     open_travel,
     span_of,
-    travel_problems,
 )
 from gearcam.numeric.chebyshev import expand
 from gearcam.numeric.jets import Jet
@@ -66,15 +67,13 @@ class Formula(Brief):
     driver_travel: float | None = open_travel("driver")
     driven_travel: float | None = open_travel("driven wheel")
 
-    def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
+    rules = (exactly_one(*_NAMES), *OPEN)
+
+    def problems(self) -> Iterator[Breach]:
         """Yield what is wrong by reading: field, index, message, allowed."""
-        given = [name for name in _NAMES if getattr(self, name) is not None]
-        if len(given) != 1:
-            state = "none is given" if not given else f"{' and '.join(given)} are given"
-            yield given[-1] if given else "phi2", None, state, "exactly one of phi2, ratio, r1"
-        for name in given:
-            yield from formula_problems(name, getattr(self, name))
-        yield from travel_problems(self.driver_travel, self.driven_travel)
+        for name in _NAMES:
+            if getattr(self, name) is not None:
+                yield from formula_problems(name, getattr(self, name))
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         """Return the law for `lobes`, to `tolerances`.
@@ -200,14 +199,13 @@ class RackLaw(Brief):
         TEXT, default=None, function=True, doc="or its travel over phi1, at any scale"
     )
 
-    def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
+    rules = (exactly_one("r1", "travel"),)
+
+    def problems(self) -> Iterator[Breach]:
         """Yield what is wrong by reading: field, index, message, allowed."""
-        if (self.r1 is None) == (self.travel is None):
-            state = "neither r1 nor travel is given" if self.r1 is None else "both are given"
-            yield "r1", None, state, "exactly one of r1, travel"
-            return
-        name = "r1" if self.travel is None else "travel"
-        yield from formula_problems(name, getattr(self, name))
+        for name in ("r1", "travel"):
+            if getattr(self, name) is not None:
+                yield from formula_problems(name, getattr(self, name))
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         """Return the law to `tolerances`; the rack may have any number of teeth.

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import Final
 
 import numpy as np
 
@@ -12,13 +13,16 @@ from gearcam.base.display import Brief
 from gearcam.base.errors import InfeasibleError, beyond_limit
 from gearcam.base.numerals import shown
 from gearcam.base.quantities import NUMBER, TEXT, param
+from gearcam.base.rules import Breach, exactly_one, excludes, needs
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import VARIABLE, Axis, LawEntry
 from gearcam.laws.formula import Given, errors_of, formula_problems, function_of, values_of
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.formula import axis_of, from_phi2
 from gearcam.laws.ratio.slider import NARROWEST, crank_angle, make_slide
-from gearcam.laws.ratio.span import Lobes, Span, open_travel, span_of, travel_problems
+from gearcam.laws.ratio.span import OPEN, Lobes, Span, open_travel, span_of
+
+_TWO_WAYS: Final = "y with x_from and x_to, or slide with rod"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,23 +53,23 @@ class MotionLaw(Brief):
     driver_travel: float | None = open_travel("driver")
     driven_travel: float | None = open_travel("driven wheel")
 
-    def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
+    rules = (
+        exactly_one("y", "slide"),
+        needs("y", "x_from", "x_to"),
+        needs("slide", "rod"),
+        *(excludes(name, "slide", allowed=_TWO_WAYS) for name in ("x_from", "x_to")),
+        excludes("rod", "y", allowed=_TWO_WAYS),
+        excludes("driven_travel", "slide", allowed="a travel with y: a crank makes full turns"),
+        *OPEN,
+    )
+
+    def problems(self) -> Iterator[Breach]:
         """Yield what is wrong by reading: field, index, message, allowed."""
-        rule = "y with x_from and x_to, or slide with rod"
-        if (self.y is None) == (self.slide is None):
-            yield "y", None, "neither y nor slide is given" if self.y is None else "both", rule
-            return
-        asked = ("x_from", "x_to") if self.slide is None else ("rod",)
-        for name in ("x_from", "x_to", "rod"):
-            if (getattr(self, name) is None) == (name in asked):
-                yield name, None, "is missing" if name in asked else "does not apply here", rule
-        name, variable = ("y", "x") if self.slide is None else ("slide", VARIABLE)
-        yield from formula_problems(name, getattr(self, name), variable)
+        for name, variable in (("y", "x"), ("slide", VARIABLE)):
+            if getattr(self, name) is not None:
+                yield from formula_problems(name, getattr(self, name), variable)
         if self.x_from is not None and self.x_from == self.x_to:
             yield "x_to", None, "is x_from", "another x"
-        if self.slide is not None and self.driven_travel is not None:
-            yield "driven_travel", None, "the crank of a slide makes full turns", rule
-        yield from travel_problems(self.driver_travel, self.driven_travel)
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         """Return the law for `lobes`, to `tolerances`.

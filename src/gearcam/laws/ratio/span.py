@@ -18,6 +18,7 @@ import numpy as np
 from gearcam.base.errors import InfeasibleError, Way, beyond_limit
 from gearcam.base.numerals import shown
 from gearcam.base.quantities import ANGLE, param
+from gearcam.base.rules import together
 from gearcam.laws.entry import NO_JUMPS
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.chebyshev import NotSmoothError
@@ -223,25 +224,13 @@ def span_of(lobes: Lobes, driver_travel: float | None, driven_travel: float | No
     return Travel(driver_travel, driven_travel, lobes.mate)
 
 
-def travel_problems(
-    driver_travel: float | None, driven_travel: float | None
-) -> Iterator[tuple[str, int | None, str, str]]:
-    """Yield the fault of a travel that is given without the other: field, index, message, allowed.
-
-    Parameters
-    ----------
-    driver_travel, driven_travel : float or None, rad
-        Travels as given.
-
-    Yields
-    ------
-    tuple
-        As for ``problems`` of a law.
-    """
-    if (driver_travel is None) != (driven_travel is None):
-        missing = "driven_travel" if driven_travel is None else "driver_travel"
-        rule = "driver_travel_deg and driven_travel_deg for an open pair, neither for a closed one"
-        yield missing, None, "is missing; the other travel is given", rule
+OPEN: Final = tuple(
+    together(
+        "driver_travel", "driven_travel",
+        allowed="driver_travel_deg and driven_travel_deg for an open pair, none for a closed one",
+    )
+)  # fmt: skip
+"""Rules of laws whose travels are given for open pairs."""
 
 
 @contextmanager

@@ -13,6 +13,7 @@ import numpy as np
 
 from gearcam.base.errors import InfeasibleError, Way, beyond_limit
 from gearcam.base.quantities import ANGLE, NUMBER, TEXT, Row, param
+from gearcam.base.rules import Breach, exactly_one
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.columns import MOST_ROWS, ColumnsError, CsvRows, FromFile, close_angles
 from gearcam.laws.entry import TYPED, LawEntry
@@ -58,14 +59,12 @@ class TableLaw(FromFile):
     )
     driven_travel: float | None = open_travel("driven wheel")
 
-    def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
+    rules = (exactly_one("file", "phi1"), exactly_one("file", *_VALUES))
+
+    def problems(self) -> Iterator[Breach]:
         """Yield what is wrong by reading: field, index, message, allowed."""
-        inline = [name for name in _VALUES if getattr(self, name) is not None]
-        rule = f"file, or phi1_deg with one of {', '.join(_VALUES.values())}"
+        inline = [values for name in _VALUES if (values := getattr(self, name)) is not None]
         if self.file is not None:
-            if inline or self.phi1 is not None:
-                yield "file", None, "the points are given twice", rule
-                return
             try:
                 _ = self.points
             except ColumnsError as error:
@@ -73,14 +72,12 @@ class TableLaw(FromFile):
                     f"a CSV file with the columns {_ANGLE} and one of {', '.join(_VALUES.values())}"
                 )
                 yield "file", None, str(error), columns
-        elif self.phi1 is None or len(inline) != 1:
-            state = f"{' and '.join(inline) or 'no values'} {'are' if len(inline) > 1 else 'is'}"
-            yield "phi1", None, f"{state} given for phi1_deg" if inline else "no points", rule
-        elif len(getattr(self, inline[0])) != len(self.phi1):
-            count = len(getattr(self, inline[0]))
-            message = f"{count} values for {len(self.phi1)} angles"
-            yield inline[0], None, message, "one value for each angle"
-        else:
+        elif self.phi1 is not None and len(inline) == 1:
+            if len(inline[0]) != len(self.phi1):
+                name = next(name for name in _VALUES if getattr(self, name) is not None)
+                message = f"{len(inline[0])} values for {len(self.phi1)} angles"
+                yield name, None, message, "one value for each angle"
+                return
             for row, state, rule in islice(close_angles(np.array(self.phi1)), 1):
                 yield "phi1", row, state, rule
 

@@ -13,6 +13,7 @@ import numpy as np
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.numerals import shown
 from gearcam.base.quantities import COUNT, NUMBER, TEXT, Row, param
+from gearcam.base.rules import exactly_one
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.columns import ColumnsError, FromFile
 from gearcam.laws.entry import TYPED, LawEntry
@@ -121,13 +122,11 @@ class TableRise(FromFile):
         NUMBER, default=(0.0, 0.0), ge=-1e6, le=1e6, doc="S' and S'' at the end; zero meets a dwell"
     )
 
+    rules = (exactly_one("file", "x"), exactly_one("file", "y"))
+
     def problems(self) -> Iterator[Problem]:
         """Yield what is wrong by reading: field, index, message, allowed."""
-        rule = "file, or x with y"
         if self.file is not None:
-            if self.x is not None or self.y is not None:
-                yield "file", None, "the points are given twice", rule
-                return
             try:
                 points, lines = self.points
             except ColumnsError as error:
@@ -136,13 +135,12 @@ class TableRise(FromFile):
             for _, row, message, allowed in _point_problems(points):
                 place = f"line {lines[row]}: " if row is not None else ""
                 yield "file", None, place + message, allowed
-        elif self.x is None or self.y is None:
-            yield ("x" if self.x is None else "y"), None, "no points are given", rule
-        elif len(self.x) != len(self.y):
-            message = f"{len(self.y)} values for {len(self.x)} places"
-            yield "y", None, message, "one value for each x"
-        else:
-            yield from _point_problems(self.points[0])
+        elif self.x is not None and self.y is not None:
+            if len(self.x) == len(self.y):
+                yield from _point_problems(self.points[0])
+            else:
+                message = f"{len(self.y)} values for {len(self.x)} places"
+                yield "y", None, message, "one value for each x"
 
     @cached_property
     def points(self) -> tuple[Array, list[int]]:
