@@ -18,7 +18,8 @@ from gearcam.base.numerals import shown
 from gearcam.base.quantities import REQUIRED
 from gearcam.base.tolerances import DEFAULT
 from gearcam.cams.spec import FOLLOWERS, CamSpec, FollowerSpec
-from gearcam.cli import EXIT_CODES, parsers
+from gearcam.cli import parsers
+from gearcam.commands import EXIT_CODES
 from gearcam.designs.table import Table
 from gearcam.kinds.cam.forms.base import FORMS, Form, form_keys
 from gearcam.kinds.cam.motion import WITH_LAW, phase_table, rise_table, summary, turn_tables

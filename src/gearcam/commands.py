@@ -1,16 +1,56 @@
-"""What a command is, and the commands of studies."""
+"""What a command is, its exit codes, and how it works on design files.
+
+Given several files, a command works on all of them and returns the largest code.
+"""
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Mapping
+import os
+import textwrap
+import time
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any, Final, NoReturn
 
-from gearcam.base.errors import DesignError, Problem
-from gearcam.designs.design import Design
+from gearcam import build, remedies
+from gearcam.base.errors import DesignError, InfeasibleError, MissingExtraError, Problem, WriteError
+from gearcam.console import (
+    DEBUG,
+    all_lines,
+    complain,
+    fault_text,
+    problem_text,
+    progress_bar,
+    refusal_text,
+    remedy_lines,
+    say,
+)
+from gearcam.designs import Design, load
 from gearcam.results.kind import KINDS, Kind, Study
+
+if TYPE_CHECKING:
+    from gearcam.results.result import Progress, Result
+    from gearcam.results.written import Written
+
+GOOD, FINDINGS, WRONG, IMPOSSIBLE, FAULT, INTERRUPTED = 0, 1, 2, 3, 4, 130
+
+EXIT_CODES: Final = {
+    GOOD: "success, possibly with warnings",
+    FINDINGS: "built, but a check found an error",
+    WRONG: "a mistake in the design file or the command, or a file that cannot be written",
+    IMPOSSIBLE: "the design cannot be made",
+    FAULT: "a bug in gearcam",
+    INTERRUPTED: "interrupted by Ctrl-C (143 by SIGTERM, 129 by SIGHUP)",
+}
+"""Meanings of the exit codes."""
+
+Options = Mapping[str, Any]
+"""Values of a command's arguments and options by name."""
+
+Action = Callable[["Result", "Progress | None"], "Written"]
+"""``action(result, progress)`` writes files of a result."""
 
 
 @dataclass(frozen=True)
@@ -31,22 +71,59 @@ class Command:
 
     name: str
     doc: str
-    run: Callable[[Mapping[str, Any]], int]
+    run: Callable[[Options], int]
     arguments: Callable[[argparse.ArgumentParser], None] = lambda _: None
 
 
-def study_arguments(study: Study, kind: Kind, parser: argparse.ArgumentParser) -> None:
-    """Add the options of a study's command: one for each key of its settings, which it overrides.
+def add_output(parser: argparse.ArgumentParser) -> None:
+    """Add the options of commands that write into an output folder to a `parser`."""
+    words = "output folder (default: output)"
+    parser.add_argument("-o", "--output", metavar="DIR", default="output", help=words)
+    parser.add_argument("--debug", action="store_true", help=f"show tracebacks (or set {DEBUG})")
 
-    Parameters
-    ----------
-    study : Study
-        The study.
-    kind : Kind
-        A kind of design that has it.
-    parser : ArgumentParser
-        Receives the options.
+
+def refuse(problems: Sequence[Problem]) -> NoReturn:
+    """Print `problems` of the command line and end the command.
+
+    Raises
+    ------
+    SystemExit
+        Always.
     """
+    for problem in problems:
+        complain(problem_text(problem))
+    raise SystemExit(WRONG)
+
+
+# --- studies -------------------------------------------------------------------------------------
+
+
+def study_command(study: Study, kind: Kind) -> Command:
+    """Return the command of a `study` of a `kind` of design that has it."""
+
+    def arguments(parser: argparse.ArgumentParser) -> None:
+        number = "+" if study.many else None
+        parser.add_argument("designs", nargs=number, metavar="FILE", help="design file (TOML)")
+        add_output(parser)
+        _add_settings(study, kind, parser)
+
+    def run(options: Options) -> int:
+        settings = dict(options)
+        files = settings.pop("designs")
+        output, debug = settings.pop("output"), settings.pop("debug")
+        return each_result(
+            files if study.many else [files],
+            lambda file: studied(study, load(file), settings),
+            study.done,
+            lambda result, progress: result.study(study.name, progress).write(output),
+            debug=debug,
+        )
+
+    return Command(study.name, study.doc, run, arguments)
+
+
+def _add_settings(study: Study, kind: Kind, parser: argparse.ArgumentParser) -> None:
+    """Add an option for each key of a study's settings, which it overrides, to a `parser`."""
     for key, entry in kind.table(study.table).entries.items():
         words: dict[str, Any] = {"help": entry.param.doc}
         if key == study.argument:
@@ -69,7 +146,7 @@ def _list(base: type, text: str) -> list[Any]:
         raise argparse.ArgumentTypeError(f'"{text}" is not a list such as 1,27') from None
 
 
-def studied(study: Study, design: Design, options: Mapping[str, Any]) -> Any:
+def studied(study: Study, design: Design, options: Options) -> Any:
     """Return the design of a study's command, with the given settings.
 
     Parameters
@@ -95,7 +172,138 @@ def studied(study: Study, design: Design, options: Mapping[str, Any]) -> Any:
     if design.kind not in kinds:
         message = f"this command is for designs of kind {' or '.join(kinds)}"
         raise DesignError([Problem(message, file=design.source, key="kind", value=design.kind)])
-    given = {f"{study.table}.{key}": one for key, one in options.items() if one is not None}
-    changed = design.with_(given) if given else design
+    settings = {f"{study.table}.{key}": one for key, one in options.items() if one is not None}
+    changed = design.with_(settings) if settings else design
     study.demand(changed)
     return changed
+
+
+# --- files ---------------------------------------------------------------------------------------
+
+
+def each_result(
+    files: Sequence[str],
+    read: Callable[[str], Any],
+    done: str,
+    action: Action,
+    *,
+    debug: bool,
+) -> int:
+    """Run an action on the result of every file.
+
+    Parameters
+    ----------
+    files : sequence of str
+        Design files.
+    read : callable
+        ``read(file)`` returns the design.
+    done : str
+        Past participle for messages, such as ``built``.
+    action : callable
+        ``action(result, progress)`` writes files of a result.
+    debug : bool
+        Whether to print tracebacks of bugs.
+
+    Returns
+    -------
+    int
+        The largest exit code.
+    """
+    names: dict[str, str] = {}
+
+    def work(file: str) -> int:
+        start = time.perf_counter()
+        design = read(file)
+        before = names.setdefault(design.name.casefold(), file)
+        if before != file:  # its files would be overwritten
+            message = f'the design of {before} has the same name, "{design.name}"'
+            raise DesignError([Problem(message, file=file, key="name", value=design.name)])
+        return _act(build(design), file, done, action, start)
+
+    return each(files, done, work, debug=debug)
+
+
+def _act(result: Result, file: str, done: str, action: Action, start: float) -> int:
+    """Run `action` on the `result` of one file, print the outcome and return the exit code."""
+    from gearcam.numeric.arrays import keep_freed_memory
+
+    keep_freed_memory()
+    try:
+        with progress_bar(file) as progress:
+            written = action(result, progress)
+    except InfeasibleError as error:
+        complain(refusal_text(error, file, done))
+        for line in remedy_lines(remedies(result, error)):
+            complain(f"  {line}")
+        return IMPOSSIBLE
+    say(f"{file}: {done} in {time.perf_counter() - start:.2f} s")
+    say(textwrap.indent("\n".join(all_lines(written)), "  "))
+    if written.interrupted:
+        complain(f"{file}: interrupted: {written.interrupted} were written")
+        return INTERRUPTED
+    errors = any(finding.severity == "error" for finding in written.findings)
+    for line in remedy_lines(remedies(result)) if errors else ():
+        say(f"  {line}")
+    return FINDINGS if errors else GOOD
+
+
+def each(
+    files: Sequence[str], done: str, work: Callable[[str], int], *, debug: bool = False
+) -> int:
+    """Run a function on every file and print its errors.
+
+    Parameters
+    ----------
+    files : sequence of str
+        Design files.
+    done : str
+        Past participle for messages, such as ``built``.
+    work : callable
+        ``work(file)`` returns the exit code.
+    debug : bool
+        Whether to print tracebacks of bugs.
+
+    Returns
+    -------
+    int
+        The largest exit code.
+    """
+    codes = []
+    for file in files:
+        try:
+            codes.append(work(file))
+            if codes[-1] == INTERRUPTED:
+                break
+        except KeyboardInterrupt:
+            return interrupted()
+        except DesignError as error:
+            complain(refusal_text(error, file, done))
+            codes.append(WRONG)
+        except (WriteError, MissingExtraError) as error:
+            complain(f"{file}: {error}")
+            codes.append(WRONG)
+        except Exception as error:
+            codes.append(fault(error, file=file, debug=debug))
+    if len(files) > 1:
+        count = sum(code in (GOOD, FINDINGS) for code in codes)
+        say(f"{len(files)} files: {count} {done}, {len(files) - count} refused")
+    return max(codes, default=GOOD)
+
+
+def fault(error: Exception, *, file: str = "", debug: bool = False) -> int:
+    """Report a bug, an unexpected `error` while working on a `file`, and return the exit code.
+
+    The traceback is printed only to `debug`.
+    """
+    if debug or os.environ.get(DEBUG):
+        import traceback
+
+        complain("".join(traceback.format_exception(error)).rstrip())
+    complain(fault_text(error, file))
+    return FAULT
+
+
+def interrupted() -> int:
+    """Report an interruption and return the exit code."""
+    complain("interrupted: no file was left half-written")
+    return INTERRUPTED

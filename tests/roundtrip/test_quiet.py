@@ -14,7 +14,8 @@ from typing import Any
 import pytest
 
 from gearcam import cli
-from gearcam.cli import FINDINGS, GOOD, main
+from gearcam.cli import main
+from gearcam.commands import FINDINGS, GOOD
 from gearcam.designs import load
 from helpers_pairs import PROFILES
 from helpers_processes import ENVIRONMENT

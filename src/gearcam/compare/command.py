@@ -7,9 +7,10 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from gearcam.base.errors import InfeasibleError
+from gearcam.commands import FINDINGS, GOOD, IMPOSSIBLE, Options, add_output, each
 from gearcam.compare.page import PAGE, document
 from gearcam.compare.table import lines
-from gearcam.compare.variants import MOST, settings_of, variants_of
+from gearcam.compare.variants import MOST, Variant, settings_of, variants_of
 from gearcam.console import infeasible_text, say
 from gearcam.export.write import write_all
 from gearcam.report.page import page
@@ -17,6 +18,7 @@ from gearcam.report.page import page
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of the command to a `parser`."""
+    add_output(parser)
     parser.add_argument("files", nargs="+", metavar="FILE", help="design files (TOML) of one kind")
     words = "compare these values of a key; when repeated, all combinations"
     words += f" (at most {MOST} variants)"
@@ -26,34 +28,18 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--all", dest="every", action="store_true", help=words)
 
 
-def compare(files: Sequence[str], settings: Sequence[str], output: str, *, every: bool) -> str:
-    """Print how variants differ, and write a page that compares them.
+def compare(options: Options) -> int:
+    """Print how variants differ, write a page that compares them, and return the exit code."""
+    files = options["files"]
 
-    Parameters
-    ----------
-    files : sequence of str
-        Design files of one kind.
-    settings : sequence of str
-        Settings as typed, such as ``pair.module_mm=2,3``.
-    output : str
-        The output folder.
-    every : bool
-        Whether to print all facts, not only those that differ.
+    def work(_: str) -> int:
+        return _compare(variants_of(files, settings_of(options["settings"])), options)
 
-    Returns
-    -------
-    str
-        ``refused`` if a variant cannot be made, else the worst severity of a finding.
+    return each([" ".join(files)], "compared", work, debug=options["debug"])
 
-    Raises
-    ------
-    DesignError
-        See `gearcam.compare.variants.variants_of`.
-    WriteError
-        If a file cannot be written.
-    """
-    variants = variants_of(files, settings_of(settings))
-    for line in lines(variants, every=every):
+
+def _compare(variants: Sequence[Variant], options: Options) -> int:
+    for line in lines(variants, every=options["every"]):
         say(line)
     refused = [one for one in variants if one.refusal is not None]
     for one in refused:
@@ -63,8 +49,10 @@ def compare(files: Sequence[str], settings: Sequence[str], output: str, *, every
     if len(refused) < len(variants):
         designs = dict.fromkeys(one.result.design.name for one in variants)
         title = ", ".join(designs) if len(designs) > 1 else f"{next(iter(designs))}, variants"
-        made = page(document(variants, title))
-        write_all(output, lambda _: {PAGE: made}, keep=True)
-        say(f"written to {Path(output) / PAGE}")
-    worst = {found.severity for one in variants if not one.refusal for found in one.result.findings}
-    return "refused" if refused else next((s for s in ("error", "warning") if s in worst), "")
+        content = page(document(variants, title))
+        write_all(options["output"], lambda _: {PAGE: content}, keep=True)
+        say(f"written to {Path(options['output']) / PAGE}")
+    if refused:
+        return IMPOSSIBLE
+    findings = [finding for one in variants for finding in one.result.findings]
+    return FINDINGS if any(one.severity == "error" for one in findings) else GOOD

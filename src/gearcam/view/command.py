@@ -13,6 +13,7 @@ from multiprocessing import active_children, get_context
 from typing import Any, Final
 
 from gearcam.base.interrupts import unbroken
+from gearcam.commands import GOOD, Options, each
 from gearcam.console import complain, say
 from gearcam.designs.reader import content_of
 from gearcam.view.server import Server
@@ -33,23 +34,18 @@ def arguments(parser: ArgumentParser) -> None:
     parser.add_argument("--no-browser", action="store_true", help=words)
 
 
-def view(file: str, port: int = 0, *, browser: bool = True) -> None:
-    """Serve the page of a design file and update it until interrupted (Ctrl-C).
+def view(options: Options) -> int:
+    """Serve the page of a design file and update it until interrupted (Ctrl-C)."""
 
-    Parameters
-    ----------
-    file : str
-        A design file; one with errors is shown once it is corrected.
-    port : int
-        Port of the page; 0 takes a free one.
-    browser : bool
-        Whether to open a browser.
+    def work(file: str) -> int:
+        _serve(file, options["port"], browser=not options["no_browser"])
+        return GOOD
 
-    Raises
-    ------
-    DesignError
-        If the file does not exist or the port cannot be used.
-    """
+    return each([options["file"]], "shown", work)
+
+
+def _serve(file: str, port: int, *, browser: bool) -> None:
+    """Serve the page of a design `file`; one with errors is shown once it is corrected."""
     content_of(file)
     count = min(max(os.cpu_count() or 1, _WORKERS.start), _WORKERS.stop - 1)
     context = get_context("spawn")  # threads of a server do not survive a fork

@@ -105,8 +105,8 @@ class Result:
 
 @pytest.fixture
 def desk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setattr("gearcam.cli.build", Result)
-    monkeypatch.setattr("gearcam.cli.remedies", lambda *_: CURED)
+    monkeypatch.setattr("gearcam.commands.build", Result)
+    monkeypatch.setattr("gearcam.commands.remedies", lambda *_: CURED)
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("GEARCAM_DEBUG", raising=False)
     Result.calls.clear()

@@ -11,7 +11,8 @@ import pytest
 
 import gearcam as gc
 from arch import rules
-from gearcam.cli import GOOD, WRONG, main
+from gearcam.cli import main
+from gearcam.commands import GOOD, WRONG
 from gearcam.parts.solids import LIBRARIES
 
 ROOT = rules.ROOT

@@ -23,6 +23,7 @@ import numpy as np
 import pytest
 
 import gearcam
+from gearcam.cli import main
 from gearcam.designs.kind import KINDS
 from helpers_pairs import PROFILES
 
@@ -162,10 +163,9 @@ def mesh(name: str, folder: Path) -> None:
 
 def compare(name: str, folder: Path) -> None:
     """Compare two variants."""
-    from gearcam.compare.command import compare as compared
-
     file = str(PROFILES / f"{name}.toml")
-    compared([file], ["output.chord_tolerance_mm=0.001,0.002"], str(folder), every=False)
+    words = ["compare", file, "--set", "output.chord_tolerance_mm=0.001,0.002"]
+    assert main([*words, "-o", str(folder)]) == 0
 
 
 def view(name: str, _: Path) -> None:
