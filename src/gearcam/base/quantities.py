@@ -69,6 +69,9 @@ ANGLE_PER_RAD2: Final = Quantity("_deg_per_rad2", math.pi / 180.0, "deg/rad2")
 LONGEST: Final = 1e5
 """Largest length of a design, mm."""
 
+LEAST_ALLOWANCE: Final = 1e-6
+"""Least amount that is taken off, as clearance or kerf, mm: it may be far below any size."""
+
 FINEST: Final = 1e-9
 """Least tolerance of a design, mm."""
 
@@ -89,6 +92,8 @@ class Param:
         Bounds of each value, in the unit of files.
     zero_is_none : bool
         Whether 0 means that there is none; other values are then at least `least`.
+    finest : float
+        Least value beside 0 where it is not that of the quantity, which is for sizes.
     choices : tuple of str or None
         The allowed words, for text.
     min_length : int or None
@@ -119,6 +124,7 @@ class Param:
     lt: float | None = None
     le: float | None = None
     zero_is_none: bool = False
+    finest: float = 0.0
     choices: tuple[str, ...] | None = None
     min_length: int | None = None
     doc: str = ""
@@ -139,7 +145,7 @@ class Param:
     @property
     def least(self) -> float:
         """Least value beside 0, in the unit of the file; 0 if there is no such limit."""
-        return self.quantity.least if self.zero_is_none else 0.0
+        return (self.finest or self.quantity.least) if self.zero_is_none else 0.0
 
     def key(self, name: str) -> str:
         """Return the key in a design file, such as ``module_mm``."""
@@ -154,6 +160,12 @@ def param(quantity: Quantity = NUMBER, *, default: Any = REQUIRED, **rest: Any) 
 def nested(*kinds: str, default: Any = REQUIRED, **rest: Any) -> Any:
     """Return a dataclass field that holds a design of one of some `kinds` (see `param`)."""
     return param(TEXT, default=default, nested=kinds, **rest)
+
+
+def allowance(*, doc: str) -> Any:
+    """Return a dataclass field of a length that is taken off: 0, or at least `LEAST_ALLOWANCE`."""
+    bounds = {"ge": 0, "le": 100, "zero_is_none": True, "finest": LEAST_ALLOWANCE}
+    return param(LENGTH, default=0.0, doc=doc, **bounds)
 
 
 def params_of(owner: type) -> dict[str, Param]:

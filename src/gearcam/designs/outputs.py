@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from gearcam.base.display import Brief
-from gearcam.base.quantities import ANGLE, FINEST, LENGTH, TEXT, param
+from gearcam.base.quantities import ANGLE, FINEST, LENGTH, TEXT, allowance, param
 from gearcam.base.rules import distinct, excluded
 
 FORMATS: Final = (
@@ -62,12 +62,7 @@ class OutputSpec(Brief):
         doc="largest distance of an outline from the true curve, at most module/50; 0.001 mm or "
         "module/1000 if left out, the smaller one",
     )
-    kerf: float = param(
-        LENGTH,
-        default=0.0,
-        ge=0,
-        le=100,
-        zero_is_none=True,
+    kerf: float = allowance(
         doc="width of the cut; cutting paths in dxf and cut-svg are offset from the part by half "
         "of it",
     )

@@ -21,7 +21,17 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final, get_type_hints
 
 from gearcam.base.display import Brief
 from gearcam.base.numerals import shown
-from gearcam.base.quantities import ANGLE, COUNT, DENSITY, LENGTH, LONGEST, TEXT, param, params_of
+from gearcam.base.quantities import (
+    ANGLE,
+    COUNT,
+    DENSITY,
+    LENGTH,
+    LONGEST,
+    TEXT,
+    allowance,
+    param,
+    params_of,
+)
 from gearcam.base.rules import Breach, below, excludes, needs, together
 
 KIND: Final = "parts"
@@ -121,7 +131,7 @@ class WheelBlank(Brief):
         example=7850,
         doc="density, for mass, centre of mass, unbalance and inertia",
     )
-    clearance: float = _length(doc="what is taken off the toothed edge, along its normal", le=100)
+    clearance: float = allowance(doc="what is taken off the toothed edge, along its normal")
     clearance_bores: bool = param(
         TEXT,
         default=False,

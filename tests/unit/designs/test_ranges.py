@@ -19,6 +19,7 @@ CAM: dict[str, Any] = {
     ],
     "follower": {"type": "roller", "roller_radius_mm": 5},
     "cam": {"prime_radius_mm": 40},
+    "blank": {},
     "output": {"chord_tolerance_mm": 0.01},
 }
 
@@ -32,6 +33,7 @@ SPEEDS: dict[str, Any] = {
         "transition_deg": 20,
     },
     "pair": {"module_mm": 2, "teeth": [40, 40]},
+    "blank": {},
 }
 SPIRAL: dict[str, Any] = {
     "kind": "gear-pair",
@@ -48,6 +50,11 @@ SPIRAL: dict[str, Any] = {
         (CAM, ("motion", 0, "lift_mm"), 1e5, 1.1e5, "to 100000 mm"),
         (CAM, ("motion", 0, "angle_deg"), 0.01, 0.009, "from 0.01 to 360 deg"),
         (CAM, ("follower", "roller_radius_mm"), 1e-3, 0.9e-3, "from 0.001 to"),
+        (CAM, ("blank", "clearance_mm"), 1e-6, 0.9e-6, "0 or at least 1e-06 mm"),
+        (CAM, ("output", "kerf_mm"), 0.0005, 0.9e-6, "0 or at least 1e-06 mm"),
+        (SPEEDS, ("blank", "clearance_mm"), 0.0005, 0.9e-6, "0 or at least 1e-06 mm"),
+        (SPEEDS, ("blank", "clearance_mm"), 0, -1e-6, "from 0 to 100 mm"),
+        (SPEEDS, ("pair", "backlash_mm"), 1e-6, -1e-6, "from 0 to"),
         (CAM, ("cam", "prime_radius_mm"), 1e5, 1.1e5, "to 100000 mm"),
         (CAM, ("output", "chord_tolerance_mm"), 1e-9, 0.9e-9, "from 1e-09 to 1 mm"),
         (SPEEDS, ("law", "transition_deg"), 0.01, 0.009, "from 0.01 to 360 deg"),
