@@ -163,7 +163,13 @@ def nested(*kinds: str, default: Any = REQUIRED, **rest: Any) -> Any:
 
 
 def allowance(*, doc: str) -> Any:
-    """Return a dataclass field of a length that is taken off: 0, or at least `LEAST_ALLOWANCE`."""
+    """Return a dataclass field of a length that is taken off: 0, or at least `LEAST_ALLOWANCE`.
+
+    Parameters
+    ----------
+    doc : str
+        Its meaning.
+    """
     bounds = {"ge": 0, "le": 100, "zero_is_none": True, "finest": LEAST_ALLOWANCE}
     return param(LENGTH, default=0.0, doc=doc, **bounds)
 
