@@ -291,10 +291,7 @@ def each(
 
 
 def fault(error: Exception, *, file: str = "", debug: bool = False) -> int:
-    """Report a bug, an unexpected `error` while working on a `file`, and return the exit code.
-
-    The traceback is printed only to `debug`.
-    """
+    """Return the exit code of an unexpected `error` in a `file`; report it, for `debug` fully."""
     if debug or os.environ.get(DEBUG):
         import traceback
 
