@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import replace
-from functools import partial
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -43,74 +41,76 @@ def _knots(result: GearPairResult) -> tuple[MarkedPlace, ...]:
     return knot_marks(np.degrees(result.knots), 0.0, math.degrees(end))
 
 
-def _of_centrodes(
-    title: str, unit: str, names: dict[str, str], result: GearPairResult, *, bend: bool = False
+def _chart(
+    result: GearPairResult,
+    title: str,
+    y: str,
+    phi1: Array,
+    lines: Mapping[str, Array],
+    limits: Sequence[Limit] = (),
 ) -> Chart:
-    table = result.centrodes_of_phases
-    with np.errstate(divide="ignore"):
-        lines = tuple(
-            Line(label=label, x=table["phi1_deg"], y=1.0 / table[name] if bend else table[name])
-            for name, label in names.items()
-            if name in table
-        )
-    return Chart(title=title, x=DRIVER, y=unit, lines=lines, marks=_knots(result))
+    """Return a chart over driver angles, degrees, with the lines by label and the knots."""
+    return Chart(
+        title=title,
+        x=DRIVER,
+        y=y,
+        lines=tuple(Line(label=label, x=phi1, y=values) for label, values in lines.items()),
+        limits=tuple(limits),
+        marks=_knots(result),
+    )
 
 
 def _position(result: GearPairResult) -> Chart:
     table = result.motion(result.phases)
-    name, label = ("travel_mm", "rack") if result.pair.on_rack else ("phi2_deg", "driven wheel")
-    unit = "travel, mm" if result.pair.on_rack else "driven angle phi2, deg"
-    return Chart(
-        title=f"Position of the {label}",
-        x=DRIVER,
-        y=unit,
-        lines=(Line(label=label, x=table["phi1_deg"], y=table[name]),),
-        marks=_knots(result),
-    )
+    phi1 = table["phi1_deg"]
+    if result.pair.on_rack:
+        line = {"rack": table["travel_mm"]}
+        return _chart(result, "Position of the rack", "travel, mm", phi1, line)
+    line = {"driven wheel": table["phi2_deg"]}
+    return _chart(result, "Position of the driven wheel", "driven angle phi2, deg", phi1, line)
 
 
 def _ratio(result: GearPairResult) -> Chart:
     if result.pair.on_rack:
         table = result.motion(result.phases)
-        line = Line(label="rack", x=table["phi1_deg"], y=table["velocity_mm_per_rad"])
-        title, unit = "Velocity of the rack", "velocity, mm/rad"
-        return Chart(title=title, x=DRIVER, y=unit, lines=(line,), marks=_knots(result))
-    return _of_centrodes("Transmission ratio", "ratio i21", {"ratio": "ratio i21"}, result)
+        line = {"rack": table["velocity_mm_per_rad"]}
+        return _chart(result, "Velocity of the rack", "velocity, mm/rad", table["phi1_deg"], line)
+    table = result.centrodes_of_phases
+    line = {"ratio i21": table["ratio"]}
+    return _chart(result, "Transmission ratio", "ratio i21", table["phi1_deg"], line)
+
+
+def _radii(result: GearPairResult) -> Chart:
+    table = result.centrodes_of_phases
+    lines = {"driver": table["r1_mm"]}
+    if not result.pair.on_rack:
+        lines["driven"] = table["r2_mm"]
+    return _chart(result, "Radii of the centrodes", "radius, mm", table["phi1_deg"], lines)
 
 
 def _curvature(result: GearPairResult) -> Chart:
-    names = {"rho1_mm": "driver", "rho2_mm": "driven"}
-    chart = _of_centrodes(
-        "Curvature of the centrodes (positive: convex towards the tips)",
-        "curvature, 1/mm",
-        names,
-        result,
-        bend=True,
-    )
-    found: dict[float, Limit] = {}
+    table = result.centrodes_of_phases
+    with np.errstate(divide="ignore"):
+        lines = {"driver": 1.0 / table["rho1_mm"], "driven": 1.0 / table["rho2_mm"]}
+    limits: dict[float, Limit] = {}
     for gear in result.gears:
         convex, concave = undercut_curvatures(gear)
-        for value, what in ((convex, "convex"), (-concave, "concave")):
-            found.setdefault(value, Limit(label=f"limit of undercut, {what}", value=value))
-    return replace(chart, limits=tuple(found.values()))
+        for value, side in ((convex, "convex"), (-concave, "concave")):
+            limits.setdefault(value, Limit(label=f"limit of undercut, {side}", value=value))
+    title = "Curvature of the centrodes (positive: convex towards the tips)"
+    phi1 = table["phi1_deg"]
+    return _chart(result, title, "curvature, 1/mm", phi1, lines, [*limits.values()])
 
 
 def _pressure_angle(result: GearPairResult) -> Chart:
     phi1, pair = result.phases, result.pair
     r, slope = pair.rolling.radii(phi1 % result.law.period if result.law.lobes.closed else phi1, 1)
     angles = result.subject.pressure_at(np.arctan(slope / r))
-    limit = limit_of(KIND, "pressure-angle", result.design.limits)
-    return Chart(
-        title="Pressure angle at the pitch point",
-        x=DRIVER,
-        y="pressure angle, deg",
-        lines=tuple(
-            Line(label=f"driving {way}", x=np.degrees(phi1), y=np.degrees(angle))
-            for way, angle in angles.items()
-        ),
-        limits=(Limit(label="limit", value=math.degrees(limit)),),
-        marks=_knots(result),
-    )
+    lines = {f"driving {direction}": np.degrees(angle) for direction, angle in angles.items()}
+    limit = math.degrees(limit_of(KIND, "pressure-angle", result.design.limits))
+    limits = [Limit(label="limit", value=limit)]
+    title, y = "Pressure angle at the pitch point", "pressure angle, deg"
+    return _chart(result, title, y, np.degrees(phi1), lines, limits)
 
 
 def _contact_ratio(result: GearPairResult) -> Chart:
@@ -204,20 +204,15 @@ def transmission_chart(
     -------
     Chart
     """
-    unit, lines = result.pair.rolling.guide.unit, []
+    lines: dict[str, Array] = {}
     for pairs, lead in leads:
-        label = _SIDES["drive" if pairs.side == DRIVE else "coast"]
         lag = np.where(np.isfinite(lead), -lead, np.nan)
         error = lag - float(np.nanmean(lag))
         error[np.abs(error) <= known_to(pairs, phi1)] = 0.0
-        lines.append(Line(label=label, x=np.degrees(phi1), y=error))
-    return Chart(
-        title=f"Transmission error, {how} (lag minus its mean)",
-        x=DRIVER,
-        y=f"lag of the {'rack' if unit == 'mm' else 'driven wheel'}, {unit}",
-        lines=tuple(lines),
-        marks=_knots(result),
-    )
+        lines[_SIDES["drive" if pairs.side == DRIVE else "coast"]] = error
+    driven, unit = "rack" if result.pair.on_rack else "driven wheel", result.pair.rolling.guide.unit
+    title = f"Transmission error, {how} (lag minus its mean)"
+    return _chart(result, title, f"lag of the {driven}, {unit}", np.degrees(phi1), lines)
 
 
 CHARTS: Final[Charts] = {
@@ -225,12 +220,7 @@ CHARTS: Final[Charts] = {
     "pressure_angle": _pressure_angle,
     "contact_ratio": _contact_ratio,
     "position": _position,
-    "radii": partial(
-        _of_centrodes,
-        "Radii of the centrodes",
-        "radius, mm",
-        {"r1_mm": "driver", "r2_mm": "driven"},
-    ),
+    "radii": _radii,
     "curvature": _curvature,
     "sliding": _sliding,
     "contact_patch": _contact_patch,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Final
 
-from gearcam.kinds.gear_pair.columns import POINTS
+from gearcam.kinds.gear_pair.tables import POINTS
 from gearcam.report.file import report_files
 from gearcam.results.parts import MESHES, Files, Measured, part_files
 

@@ -22,13 +22,13 @@ from gearcam.gears.pair import Gear, GearPair, leads, lobes_of, make_gear, make_
 from gearcam.gears.spec import Finish
 from gearcam.gears.subject import KIND, Subject
 from gearcam.gears.track import Wheel
-from gearcam.kinds.gear_pair.columns import (
+from gearcam.kinds.gear_pair.design import GearPairDesign
+from gearcam.kinds.gear_pair.tables import (
     centrode_columns,
     contact_ratio_columns,
     contact_rows,
     motion_columns,
 )
-from gearcam.kinds.gear_pair.design import GearPairDesign
 from gearcam.laws.ratio.base import RatioLaw
 from gearcam.laws.ratio.span import angle_text
 from gearcam.meshing import drive_checks  # noqa: F401  (its checks register themselves)
@@ -317,29 +317,40 @@ class GearPairResult(PartsResult):
     @cached_property
     def centrode_paths(self) -> tuple[Path, Path]:
         """Both centrodes as chains, each in its wheel's own frame, driver first."""
-        from gearcam.kinds.gear_pair.drawn import centrode_paths
+        from gearcam.kinds.gear_pair.drawings import centrode_path
 
-        return centrode_paths(self)
+        lobes = self.law.lobes
+        end = self.centrode_angles(2)[-1] if self.pair.on_rack else lobes.n2 * lobes.period
+        return (
+            centrode_path(self.gear1, lobes.n1 * lobes.period),
+            centrode_path(self.gear2, end),
+        )
 
     @cached_property
     def drawing(self) -> Drawing:
         """The assembled pair, with its centrodes."""
-        from gearcam.kinds.gear_pair.drawn import assembled
+        from gearcam.kinds.gear_pair.drawings import pair_drawing
 
-        return assembled(self)
+        return pair_drawing(self.parts, self.pair.shift, self.centrode_paths, poses=self.poses)
 
     @cached_property
     def sheets(self) -> tuple[Sheet, ...]:
         """The workshop drawings of both wheels and of the pair."""
-        from gearcam.kinds.gear_pair.sheet import sheet_of
+        from gearcam.kinds.gear_pair.drawings import PAIR_ROWS, pair_sheet
+        from gearcam.sheets.paper import sheet_rows
 
-        return *super().sheets, sheet_of(self)
+        design, pose = self.design, self.design.output.pose
+        rows = {"law": design.law_type, **sheet_rows(self.facts, PAIR_ROWS)}
+        rows["drawn at phi1"] = f"{shown(math.degrees(pose))} deg"
+        radius = float(abs(self.pair.rolling.tracks[0].frames(np.array([pose])).p[0]))
+        pair = pair_sheet(self.drawing, self.pair.shift, rows, design.name, pitch_radius=radius)
+        return *super().sheets, pair
 
     def rows_of(self, number: int) -> Sequence[str]:
-        """Return the names of the facts in the table of a part's drawing, by its `number`."""
-        from gearcam.kinds.gear_pair.sheet import rows_of
+        """Return the names of the facts in the table of a wheel's drawing, by its `number`."""
+        from gearcam.kinds.gear_pair.drawings import wheel_rows
 
-        return rows_of(number)
+        return wheel_rows(number)
 
     def centrode_angles(self, count: int | None = None) -> Array:
         """Return driver angles, rad, until both wheels close, or over the travel, both ends.
@@ -406,12 +417,12 @@ class GearPairResult(PartsResult):
         """
         if n is None:
             return self.whole_centrodes
-        return centrode_columns(self, self.centrode_angles(whole("n", n, 2)))
+        return centrode_columns(self.pair, self.centrode_angles(whole("n", n, 2)))
 
     @cached_property
     def whole_centrodes(self) -> Columns:
         """The default table of `centrodes`."""
-        return centrode_columns(self, self.centrode_angles())
+        return centrode_columns(self.pair, self.centrode_angles())
 
     def motion(self, phi1: ArrayLike | None = None) -> Columns:
         """Return the exact motion of the driven element.
@@ -436,7 +447,7 @@ class GearPairResult(PartsResult):
         InfeasibleError
             If the law is impossible.
         """
-        return motion_columns(self, self._phases(phi1))
+        return motion_columns(self.pair, self._phases(phi1))
 
     def contact(self, phi1: ArrayLike | None = None, side: Side = "drive") -> Columns:
         """Return all points of contact of the finished flanks at the design centre distance.
@@ -472,7 +483,7 @@ class GearPairResult(PartsResult):
             If the wheels are impossible.
         """
         pairs, phases = self.flanks_of(side), self._phases(phi1)
-        return contact_rows(self, pairs, phases, contacts(pairs, phases))
+        return contact_rows(self.pair, pairs, phases, contacts(pairs, phases))
 
     def flanks_of(self, side: Side) -> FlankPairs:
         """Return the pairs of flanks of a `side`; DesignError if it is unknown."""
@@ -488,13 +499,13 @@ class GearPairResult(PartsResult):
     def centrodes_of_phases(self) -> Columns:
         """The table of `centrodes` over `phases`."""
         same = np.array_equal(self.phases, self.centrode_angles())  # no knots, and one turn
-        return self.whole_centrodes if same else centrode_columns(self, self.phases)
+        return self.whole_centrodes if same else centrode_columns(self.pair, self.phases)
 
     @cached_property
     def paths_of_contact(self) -> dict[Side, Columns]:
         """The tables of `contact` of both sides, over `phases`."""
         return {
-            side: contact_rows(self, self.flanks_of(side), self.phases, found)
+            side: contact_rows(self.pair, self.flanks_of(side), self.phases, found)
             for side, found in self.touching.items()
         }
 

@@ -5,33 +5,31 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
 from gearcam.gears.contact import COAST, FlankPairs
+from gearcam.gears.pair import GearPair
 from gearcam.meshing.contact import Contacts, contact_columns
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
-
-if TYPE_CHECKING:
-    from gearcam.kinds.gear_pair.result import GearPairResult
 
 POINTS: Final = ("x1_mm", "y1_mm", "x2_mm", "y2_mm")
 """Columns of points, which are not in the file of the centrodes."""
 
 
-def centrode_columns(result: GearPairResult, phi1: Array) -> Columns:
-    """Return both centrodes of a `result` at driver angles `phi1`, rad."""
-    phi2, ratio = result.law.derivatives(phi1, 1)
-    one, two = (track.frames(phi1) for track in result.pair.rolling.tracks)
+def centrode_columns(pair: GearPair, phi1: Array) -> Columns:
+    """Return both centrodes of a `pair` at driver angles `phi1`, rad."""
+    phi2, ratio = pair.law.derivatives(phi1, 1)
+    one, two = (track.frames(phi1) for track in pair.rolling.tracks)
     driven = {
         "phi2_deg": np.degrees(phi2 - phi2[0]),
         "ratio": ratio,
         "r1_mm": np.abs(one.p),
         "r2_mm": np.abs(two.p),
     }
-    if result.pair.on_rack:
+    if pair.on_rack:
         driven = {"travel_mm": two.p.imag, "r1_mm": np.abs(one.p)}
     return Columns(
         {
@@ -51,24 +49,22 @@ def _radii(curvature: Array) -> Array:
         return np.where(curvature == 0.0, np.inf, 1.0 / curvature)
 
 
-def motion_columns(result: GearPairResult, phi1: Array) -> Columns:
-    """Return the motion of the driven element of a `result` at driver angles `phi1`, rad."""
-    place, *slopes = result.law.derivatives(phi1, 3)
+def motion_columns(pair: GearPair, phi1: Array) -> Columns:
+    """Return the motion of the driven element of a `pair` at driver angles `phi1`, rad."""
+    place, *slopes = pair.law.derivatives(phi1, 3)
     names = ("ratio", "acceleration_per_rad", "jerk_per_rad2")
     first = {"phi2_deg": np.degrees(place)}
-    if result.pair.on_rack:
+    if pair.on_rack:
         names = ("velocity_mm_per_rad", "acceleration_mm_per_rad2", "jerk_mm_per_rad3")
-        size = result.pair.center_distance
+        size = pair.center_distance
         first, slopes = {"travel_mm": size * place}, [size * slope for slope in slopes]
     columns = {"phi1_deg": np.degrees(phi1), **first, **dict(zip(names, slopes, strict=True))}
     return Columns(columns)
 
 
-def contact_rows(
-    result: GearPairResult, pairs: FlankPairs, phi1: Array, found: Contacts
-) -> Columns:
-    """Return the table of contacts `found` for flanks `pairs` of a `result` at `phi1`, rad."""
-    guide = result.pair.rolling.guide
+def contact_rows(pair: GearPair, pairs: FlankPairs, phi1: Array, found: Contacts) -> Columns:
+    """Return the table of contacts `found` for flanks `pairs` of a `pair` at `phi1`, rad."""
+    guide = pair.rolling.guide
     moved = np.degrees(guide.nominal(phi1)) if guide.turns else guide.nominal(phi1)
     return Columns(
         {

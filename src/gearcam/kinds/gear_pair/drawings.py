@@ -1,29 +1,42 @@
-"""Workshop drawings of a pair: tables of the wheels, and the sheet of both wheels assembled.
+"""Drawings of a gear pair: its centrodes, the assembled pair, and workshop drawings.
 
-The sheet shows the pair, its centrodes and the pitch point at the driver angle of the drawing from
-which it is made. The *pitch point* is where the driver's centrode crosses the line of centres.
+The sheet of the pair shows both wheels, their centrodes and the pitch point at the driver angle of
+the drawing from which it is made. The *pitch point* is where the driver's centrode crosses the line
+of centres.
 
 Depends on drawings and sheets.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Final
+from collections.abc import Mapping, Sequence
+from typing import Final
 
 import numpy as np
 
-from gearcam.base.numerals import shown
+from gearcam.gears.pair import Gear
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.contour import Contour
-from gearcam.pictures.drawings import CENTER, OUTLINE, Circle, Drawing, reach
+from gearcam.numeric.pose import Pose
+from gearcam.parts.body import Part
+from gearcam.pictures.drawings import (
+    CENTER,
+    CENTRODE,
+    CROSS_SIZE,
+    OUTLINE,
+    Circle,
+    Cross,
+    Drawing,
+    Feature,
+    Path,
+    part_features,
+    place,
+    reach,
+)
 from gearcam.sheets.board import FIRST_LEVEL, LEVEL, OVERHANG, Board
 from gearcam.sheets.extent import true_points
-from gearcam.sheets.paper import begin, finish, sheet_rows
+from gearcam.sheets.paper import begin, finish
 from gearcam.sheets.sheet import CENTERLINE, Sheet, fine
-
-if TYPE_CHECKING:
-    from gearcam.kinds.gear_pair.result import GearPairResult
 
 LEFT: Final = 24.0
 RIGHT: Final = 20.0
@@ -36,10 +49,12 @@ POINT: Final = 2.0
 LEVELS: Final = 3
 """Linear dimensions below the wheels."""
 
-_PAIR_ROWS: Final = ("pair.module_mm", "pair.teeth", "pair.ratio", "pair.travel_per_turn_mm")
 _RACK_ROWS: Final = (
     "pair.rack.pressure_angle_deg", "pair.rack.addendum", "pair.rack.dedendum",
     "pair.backlash_mm", "pair.face_width_mm", "steps.count",
+)  # fmt: skip
+PAIR_ROWS: Final = (
+    "pair.module_mm", "pair.teeth", "pair.ratio", "pair.travel_per_turn_mm", *_RACK_ROWS,
 )  # fmt: skip
 _GEAR_ROWS: Final = (
     "profile_shift", "centrode.length_mm", "cutter", "clearance_mm", "tip_rounding_mm",
@@ -48,21 +63,69 @@ _GEAR_ROWS: Final = (
 """Facts in the tables of drawings."""
 
 
-def rows_of(number: int) -> tuple[str, ...]:
+_POINTS: Final = 720
+"""Intervals of a centrode that is drawn."""
+
+
+def wheel_rows(number: int) -> tuple[str, ...]:
     """Return the names of the facts in the table of a wheel's drawing, by its `number`."""
     own = [f"gears.{number}.{name}" for name in _GEAR_ROWS]
     return (f"gears.{number}.teeth", "pair.module_mm", *_RACK_ROWS, *own)
 
 
-def sheet_of(result: GearPairResult) -> Sheet:
-    """Return the workshop drawing of the assembled pair of a `result`."""
-    pose = result.design.output.pose
-    radius = float(abs(result.pair.rolling.tracks[0].frames(np.array([pose])).p[0]))
-    rows = {"law": result.design.law_type}
-    rows |= sheet_rows(result.facts, (*_PAIR_ROWS, *_RACK_ROWS))
-    rows["drawn at phi1"] = f"{shown(np.degrees(pose))} deg"
-    title = result.design.name
-    return pair_sheet(result.drawing, result.pair.shift, rows, title, pitch_radius=radius)
+def centrode_path(gear: Gear, end: float) -> Path:
+    """Return the centrode of a `gear` as a chain in its own frame, to the driver angle `end`."""
+    closed = gear.toothing.closed
+    phi1 = np.linspace(0.0, end, _POINTS + 1)[: -1 if closed else None]
+    return Path(points=gear.centrode(phi1), closed=closed)
+
+
+def pair_drawing(
+    parts: Sequence[Part],
+    center_distance: float,
+    centrodes: Sequence[Path] = (),
+    *,
+    poses: tuple[Pose, Pose] | None = None,
+) -> Drawing:
+    """Return the drawing of the assembled pair.
+
+    By default phi1 = 0: wheel 1 in its own frame, wheel 2 shifted by the centre distance.
+
+    Parameters
+    ----------
+    parts : two Part
+        Driver first.
+    center_distance : float, mm
+        Position of the second shaft on x, negative for a ring; 0 for a rack, which has none.
+    centrodes : sequence of Path
+        In the wheels' own frames, driver first; may be empty.
+    poses : two Pose, optional
+        Where the wheels are.
+
+    Returns
+    -------
+    Drawing
+
+    Raises
+    ------
+    ValueError
+        If there are not two parts, or centrodes for another number of wheels.
+    """
+    if len(parts) != 2 or len(centrodes) not in (0, 2):
+        raise ValueError("a pair takes two parts, and two centrodes or none")
+    poses = poses or (Pose(), Pose(shift=center_distance))
+    features: list[Feature] = []
+    numbered = enumerate(zip(parts, poses, strict=True), start=1)
+    # drawn later means on top: a wheel in its ring
+    for number, (part, pose) in sorted(numbered, key=lambda one: not one[1][0].inner):
+        features += place(part_features(part), pose, prefix=f"GEAR{number}_")
+    for path, pose in zip(centrodes, poses, strict=False):
+        features += place([Feature(layer=CENTRODE, shape=path)], pose)
+    size = CROSS_SIZE * (abs(center_distance) or float(np.ptp(parts[0].contour.vertices)))
+    for shaft in (0.0, center_distance) if center_distance else (0.0,):
+        cross = Cross(center=np.array([shaft, 0.0]), size=size)
+        features.append(Feature(layer=CENTER, shape=cross))
+    return Drawing(name="pair", features=tuple(features))
 
 
 def pair_sheet(
@@ -78,7 +141,7 @@ def pair_sheet(
     Parameters
     ----------
     drawing : Drawing
-        The pair with its centrodes (see `gearcam.kinds.gear_pair.drawn.pair_drawing`).
+        The pair with its centrodes (see `pair_drawing`).
     center_distance : float, mm
         Position of the second shaft on x, with the first at 0: negative for a ring; 0 for a rack.
     facts : mapping of str to str
