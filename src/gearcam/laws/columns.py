@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields, is_dataclass, replace
 from functools import cached_property
 from typing import Any, Final
@@ -12,8 +12,10 @@ from typing import Any, Final
 import numpy as np
 
 from gearcam.base.display import Brief
+from gearcam.base.errors import InfeasibleError
 from gearcam.base.numerals import shown
 from gearcam.base.reading import UnreadableError, read
+from gearcam.base.rules import Breach
 from gearcam.numeric.arrays import Array
 
 MOST_ROWS: Final = 20000
@@ -91,7 +93,7 @@ class CsvRows(Brief):
 
 
 class FromFile(Brief):
-    """Parameters that may name a CSV file, which is read once, when its rows are needed."""
+    """Parameters of a table, in the design itself or in a CSV file, which is read once."""
 
     file: str | None
 
@@ -99,6 +101,72 @@ class FromFile(Brief):
     def rows(self) -> CsvRows | None:
         """Rows of the file; None without a file. Raises `ColumnsError` (see `read_rows`)."""
         return None if self.file is None else read_rows(self.file)
+
+    def row_problems(
+        self,
+        columns: Sequence[str],
+        read: Callable[[], tuple[Any, ...]],
+        check: Callable[..., Iterator[Breach]],
+        needed: str,
+    ) -> Iterator[Breach]:
+        """Yield the faults of the rows; those of a file with its line.
+
+        Parameters
+        ----------
+        columns : sequence of str
+            The fields of the columns, of which a design has two.
+        read : callable
+            Returns the columns, and the line of each row in the file.
+        check : callable
+            ``check(*columns)`` yields faults: field, row, message, allowed.
+        needed : str
+            What a file must have, for messages.
+
+        Yields
+        ------
+        tuple
+            Field, index, message, allowed.
+        """
+        if self.file is None:
+            given = [name for name in columns if getattr(self, name) is not None]
+            if len(given) != 2:
+                return  # a broken rule
+            first, second = (len(getattr(self, name)) for name in given)
+            if first != second:
+                message = f"{second} values, but {given[0]} has {first}"
+                yield given[1], None, message, f"one value for each {given[0]}"
+                return
+        try:
+            *values, lines = read()
+        except ColumnsError as error:
+            yield "file", None, str(error), f"a CSV file with {needed}"
+            return
+        for name, row, message, rule in check(*values):
+            if self.file is None or name not in columns:
+                yield name, row, message, rule
+            else:
+                place = "" if row is None else f"line {lines[row]}: "
+                yield "file", None, place + message, rule
+
+
+def demand(problems: Iterator[Breach], table: str) -> None:
+    """Refuse the first of the faults of a `table` of a design: its file may have been changed.
+
+    Parameters
+    ----------
+    problems : iterator of tuple
+        Field, index, message, allowed.
+    table : str
+        Name of the table.
+
+    Raises
+    ------
+    InfeasibleError
+        If there is a fault.
+    """
+    for name, index, message, rule in problems:
+        where = f"{table}.{name}" + ("" if index is None else f"[{index}]")
+        raise InfeasibleError(message, where=where, nearest=rule)
 
 
 def tables_in(part: Any) -> Iterator[CsvRows]:

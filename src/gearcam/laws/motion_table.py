@@ -9,25 +9,28 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import chain, islice
+from itertools import islice
 from typing import Final
 
 import numpy as np
 
-from gearcam.base.errors import InfeasibleError
 from gearcam.base.numerals import shown
 from gearcam.base.quantities import ANGLE, FINEST, LENGTH, LONGEST, TEXT, Param, Row, param
+from gearcam.base.rules import Breach
 from gearcam.base.tolerances import Tolerances
-from gearcam.laws.columns import NARROWEST_STEP, ColumnsError, FromFile, close_angles, degrees
+from gearcam.laws.columns import (
+    NARROWEST_STEP,
+    ColumnsError,
+    FromFile,
+    close_angles,
+    degrees,
+    demand,
+)
 from gearcam.laws.entry import TYPED
 from gearcam.laws.phases_of_lift import TURN
 from gearcam.laws.program import Program
 from gearcam.laws.rows_of_lift import program_of_rows
 from gearcam.numeric.arrays import Array
-
-Problem = tuple[str, int | None, str, str]
-
-_RULE: Final = "file, or theta_deg with lift_mm or lift_deg"
 
 _FEWEST: Final = 6
 _MOST: Final = 3600
@@ -88,19 +91,17 @@ class MotionTable(FromFile):
         other=Param(ANGLE, gt=0, doc="largest distance from a row (oscillating follower)"),
     )
 
-    def problems(self) -> Iterator[Problem]:
+    def problems(self) -> Iterator[Breach]:
         """Yield what is wrong by reading: field, index, message, allowed."""
+        rule = "file, or theta_deg with lift_mm or lift_deg"
         if self.file is not None:
             if self.theta is not None or self.lift is not None:
-                yield "file", None, "the rows are given twice", _RULE
+                yield "file", None, "the rows are given twice", rule
         elif self.theta is None or self.lift is None:
             missing = "theta" if self.theta is None else "lift"
-            yield missing, None, "is missing: a table has both columns, or a file", _RULE
-        elif len(self.lift) != len(self.theta):
-            message = f"{len(self.lift)} lifts for {len(self.theta)} angles"
-            yield "lift", None, message, "one lift for each angle"
+            yield missing, None, "is missing: a table has both columns, or a file", rule
 
-    def turn_problems(self, *, oscillating: bool) -> Iterator[Problem]:
+    def turn_problems(self, *, oscillating: bool) -> Iterator[Breach]:
         """Yield the first fault of the rows for a follower: field, index, message, allowed.
 
         Parameters
@@ -113,18 +114,16 @@ class MotionTable(FromFile):
         tuple
             Only the first fault, since others may follow from it.
         """
-        try:
-            theta, lift, lines = self._rows(oscillating)
-        except ColumnsError as error:
-            yield "file", None, str(error), f"a CSV file with {' and '.join(_columns(oscillating))}"
-            return
-        problems = chain(_angle_problems(theta), self._lift_problems(theta, lift, oscillating))
-        for name, row, message, rule in islice(problems, 1):
-            if self.file is None or name == "smoothing_tolerance":
-                yield name, row, message, rule
-            else:
-                place = "" if row is None else f"line {lines[row]}: "
-                yield "file", None, place + message, rule
+
+        def check(theta: Array, lift: Array) -> Iterator[Breach]:
+            yield from _angle_problems(theta)
+            yield from self._lift_problems(theta, lift, oscillating)
+
+        needed = " and ".join(_columns(oscillating))
+        problems = self.row_problems(
+            ("theta", "lift"), lambda: self._rows(oscillating), check, needed
+        )
+        yield from islice(problems, 1)
 
     def _rows(self, oscillating: bool) -> tuple[Array, Array, list[int]]:
         """Return angles, rad, lifts, mm or rad, and their lines in the file, if there is one."""
@@ -139,7 +138,7 @@ class MotionTable(FromFile):
         theta, lift = points.T * [[_DEG], [_DEG if oscillating else 1.0]]
         return theta, lift, lines
 
-    def _lift_problems(self, theta: Array, lift: Array, oscillating: bool) -> Iterator[Problem]:
+    def _lift_problems(self, theta: Array, lift: Array, oscillating: bool) -> Iterator[Breach]:
         scale, unit = (_DEG, "deg") if oscillating else (1.0, "mm")
 
         def text(value: float) -> str:
@@ -179,9 +178,7 @@ class MotionTable(FromFile):
         InfeasibleError
             If the file was changed and is not a valid table any more.
         """
-        for name, index, message, rule in self.turn_problems(oscillating=oscillating):
-            where = f"motion.{name}" + ("" if index is None else f"[{index}]")
-            raise InfeasibleError(message, where=where, nearest=rule)
+        demand(self.turn_problems(oscillating=oscillating), "motion")
         (theta, lift, _), spread = self._rows(oscillating), 0.0
         if _repeats(theta):
             spread = 0.5 * abs(float(lift[-1] - lift[0]))
@@ -199,7 +196,7 @@ def _repeats(theta: Array) -> bool:
     return TURN - float(theta[-1] - theta[0]) < NARROWEST_STEP
 
 
-def _angle_problems(theta: Array) -> Iterator[Problem]:
+def _angle_problems(theta: Array) -> Iterator[Breach]:
     if not _FEWEST <= len(theta) <= _MOST:
         yield "theta", None, f"has {len(theta)} rows", f"{_FEWEST} to {_MOST} rows"
     for row in np.flatnonzero((theta < 0.0) | (theta > TURN + TYPED)).tolist():

@@ -96,7 +96,7 @@ def test_control_values_run_from_corner_to_corner() -> None:
 @pytest.mark.parametrize(
     ("table", "field", "index", "message"),
     [
-        (TableRise(x=EVEN, y=EVEN[1:]), "y", None, "4 values for 5 places"),
+        (TableRise(x=EVEN, y=EVEN[1:]), "y", None, "4 values, but x has 5"),
         (TableRise(x=(0.0, 1.0), y=(0.0, 1.0)), "x", None, "has 2 points"),
         (TableRise(x=(0.1, 0.5, 1.0), y=(0.0, 0.5, 1.0)), "x", 0, "the first x is 0.1, not 0"),
         (TableRise(x=(0.0, 0.5, 0.9), y=(0.0, 0.5, 1.0)), "x", 2, "the last x is 0.9, not 1"),

@@ -15,11 +15,11 @@ from gearcam.base.errors import InfeasibleError, Way, beyond_limit
 from gearcam.base.quantities import ANGLE, NUMBER, TEXT, Row, param
 from gearcam.base.rules import Breach, exactly_one
 from gearcam.base.tolerances import Tolerances
-from gearcam.laws.columns import MOST_ROWS, ColumnsError, CsvRows, FromFile, close_angles
+from gearcam.laws.columns import MOST_ROWS, FromFile, close_angles, demand
 from gearcam.laws.entry import TYPED, LawEntry
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.driver import demand_radii, law_of_centrode
-from gearcam.laws.ratio.span import Lobes, Span, Travel, demand_equal, open_travel
+from gearcam.laws.ratio.span import Lobes, Span, open_travel, span_of
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet, polynomial, primitive, slope
 from gearcam.numeric.piecewise import Piece, integrate
@@ -63,23 +63,8 @@ class TableLaw(FromFile):
 
     def problems(self) -> Iterator[Breach]:
         """Yield what is wrong by reading: field, index, message, allowed."""
-        inline = [values for name in _VALUES if (values := getattr(self, name)) is not None]
-        if self.file is not None:
-            try:
-                _ = self.points
-            except ColumnsError as error:
-                columns = (
-                    f"a CSV file with the columns {_ANGLE} and one of {', '.join(_VALUES.values())}"
-                )
-                yield "file", None, str(error), columns
-        elif self.phi1 is not None and len(inline) == 1:
-            if len(inline[0]) != len(self.phi1):
-                name = next(name for name in _VALUES if getattr(self, name) is not None)
-                message = f"{len(inline[0])} values for {len(self.phi1)} angles"
-                yield name, None, message, "one value for each angle"
-                return
-            for row, state, rule in islice(close_angles(np.array(self.phi1)), 1):
-                yield "phi1", row, state, rule
+        needed = f"the columns {_ANGLE} and one of {', '.join(_VALUES.values())}"
+        yield from self.row_problems(("phi1", *_VALUES), lambda: self.points, _problems, needed)
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         """Return the law for `lobes`, to `tolerances`.
@@ -89,10 +74,8 @@ class TableLaw(FromFile):
         InfeasibleError
             If the file was changed and is not valid any more, spans no lobe, or gives no law.
         """
-        try:
-            kind, angles, values = self.points
-        except ColumnsError as error:
-            raise InfeasibleError(str(error), where="law.file") from error
+        demand(self.problems(), "law")
+        kind, angles, values, _ = self.points
         span = self._span(angles, lobes)
         knots = np.array([0.0, *angles[1:-1], span.period])
         rise = float(values[-1] - values[0])
@@ -109,44 +92,35 @@ class TableLaw(FromFile):
         return make_law(span, knots, pieces, tolerances, {"ratio_factor": factor})
 
     @cached_property
-    def points(self) -> tuple[str, Array, Array]:
-        """The kind of values (``ratio``, ``phi2`` or ``r1``), driver angles, rad, and values.
+    def points(self) -> tuple[str, Array, Array, list[int]]:
+        """What the values are, driver angles, rad, values, and the lines in the file.
 
-        Raises `ColumnsError` with the line of the file.
+        The values are ``ratio``, ``phi2`` or ``r1``. Raises `ColumnsError` with the line.
         """
-        if self.rows is not None:
-            return _points(self.rows)
-        kind = next(name for name in _VALUES if getattr(self, name) is not None)
-        return kind, np.array(self.phi1), np.array(getattr(self, kind))
+        if self.rows is None:
+            kind = next(name for name in _VALUES if getattr(self, name) is not None)
+            return kind, np.array(self.phi1), np.array(getattr(self, kind)), []
+        names = [name for name, column in _VALUES.items() if column in self.rows.cells[0]]
+        columns = [_ANGLE, _VALUES[names[0]]] if len(names) == 1 else []
+        points, lines = self.rows.columns(columns)
+        factor = math.pi / 180.0 if names[0] == "phi2" else 1.0
+        return names[0], np.radians(points[:, 0]), points[:, 1] * factor, lines
 
     def _span(self, angles: Array, lobes: Lobes) -> Span:
         if abs(angles[0]) > TYPED:
             raise self._miss("the table does not begin at phi1 = 0", _ANGLE, 0, angles[0], 0.0)
-        if self.driven_travel is not None:
-            demand_equal(lobes)
-            return Travel(float(angles[-1]), self.driven_travel, lobes.mate)
-        if abs(angles[-1] - lobes.period) > TYPED:
-            raise self._miss(
-                "the table must span one lobe of the tooth counts",
-                _ANGLE,
-                -1,
-                angles[-1],
-                lobes.period,
-                "the limit is where the last row must be; an open pair needs driven_travel_deg",
-            )
-        return lobes
+        if self.driven_travel is None and abs(angles[-1] - lobes.period) > TYPED:
+            what = "the table must span one lobe of the tooth counts"
+            note = "the limit is where the last row must be; an open pair needs driven_travel_deg"
+            raise self._miss(what, _ANGLE, -1, angles[-1], lobes.period, note)
+        return span_of(lobes, float(angles[-1]), self.driven_travel)
 
     def _demand_ratio(self, kind: str, angles: Array, values: Array, span: Span) -> None:
         """Refuse values that do not repeat or are not positive."""
         if span.closed and abs(values[-1] - values[0]) > TYPED * abs(values[0]):
-            raise self._miss(
-                "the last value of the table differs from the first",
-                kind,
-                -1,
-                values[-1],
-                values[0],
-                "the next lobe starts with the last value",
-            )
+            what = "the last value of the table differs from the first"
+            note = "the next lobe starts with the last value"
+            raise self._miss(what, kind, -1, values[-1], values[0], note)
         demand_radii(kind, angles, values, f"{self._place(kind)}, ")
 
     def _place(self, column: str) -> str:
@@ -157,7 +131,8 @@ class TableLaw(FromFile):
     ) -> InfeasibleError:
         """Return the refusal of a first or last `value` that must be `limit`, rad or 1."""
         unit, place = "deg" if column == _ANGLE else "", self._place(column)
-        value, limit = ((math.degrees if unit else float)(one) for one in (value, limit))
+        if unit:
+            value, limit = math.degrees(value), math.degrees(limit)
         if self.rows is not None:
             where, ways = f"{place}, {'last' if row else 'first'} {column}", ()
         else:
@@ -166,16 +141,11 @@ class TableLaw(FromFile):
         return beyond_limit(what, where, value, limit, nearest, ways=ways, unit=unit)
 
 
-def _points(rows: CsvRows) -> tuple[str, Array, Array]:
-    kinds = [kind for kind, column in _VALUES.items() if column in rows.cells[0]]
-    points, lines = rows.columns([_ANGLE, _VALUES[kinds[0]]] if len(kinds) == 1 else [])
-    if len(points) < _FEWEST:
-        raise ColumnsError(f"has {len(points)} rows; {_FEWEST} to {MOST_ROWS} are read")
-    angles = np.radians(points[:, 0])
+def _problems(_: str, angles: Array, __: Array) -> Iterator[Breach]:
+    if not _FEWEST <= len(angles) <= MOST_ROWS:
+        yield "phi1", None, f"has {len(angles)} rows", f"{_FEWEST} to {MOST_ROWS} rows"
     for row, state, rule in islice(close_angles(angles), 1):
-        raise ColumnsError(f"line {lines[row]}: {state}; {rule}")
-    factor = math.pi / 180.0 if kinds[0] == "phi2" else 1.0
-    return kinds[0], angles, points[:, 1] * factor
+        yield "phi1", row, state, rule
 
 
 def _pieces(

@@ -10,20 +10,17 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.base.errors import InfeasibleError
 from gearcam.base.numerals import shown
 from gearcam.base.quantities import COUNT, NUMBER, TEXT, Row, param
-from gearcam.base.rules import exactly_one
+from gearcam.base.rules import Breach, exactly_one
 from gearcam.base.tolerances import Tolerances
-from gearcam.laws.columns import ColumnsError, FromFile
+from gearcam.laws.columns import FromFile, demand
 from gearcam.laws.entry import TYPED, LawEntry
 from gearcam.laws.rises.base import RISES, ClosedForm, Rise
 from gearcam.laws.rises.pieces import about, spline
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.least_jerk import chain_slopes, coefficients
 from gearcam.numeric.piecewise import Piecewise
-
-Problem = tuple[str, int | None, str, str]
 
 _CLOSEST: Final = 1e-6
 """Smallest step of x in a table: a second of arc of a full turn."""
@@ -51,7 +48,7 @@ class BSplineRise(ClosedForm):
         COUNT, default=4, ge=3, le=5, doc="degree of the pieces; C2 to C4 (degree - 1)"
     )
 
-    def problems(self) -> Iterator[Problem]:
+    def problems(self) -> Iterator[Breach]:
         """Yield what is wrong by reading: field, index, message, allowed."""
         count = len(self.control)
         if not self.degree < count <= _MOST_VALUES:
@@ -124,23 +121,9 @@ class TableRise(FromFile):
 
     rules = (exactly_one("file", "x"), exactly_one("file", "y"))
 
-    def problems(self) -> Iterator[Problem]:
+    def problems(self) -> Iterator[Breach]:
         """Yield what is wrong by reading: field, index, message, allowed."""
-        if self.file is not None:
-            try:
-                points, lines = self.points
-            except ColumnsError as error:
-                yield "file", None, str(error), "a CSV file with the columns x and y"
-                return
-            for _, row, message, allowed in _point_problems(points):
-                place = f"line {lines[row]}: " if row is not None else ""
-                yield "file", None, place + message, allowed
-        elif self.x is not None and self.y is not None:
-            if len(self.x) == len(self.y):
-                yield from _point_problems(self.points[0])
-            else:
-                message = f"{len(self.y)} values for {len(self.x)} places"
-                yield "y", None, message, "one value for each x"
+        yield from self.row_problems("xy", lambda: self.points, _problems, "the columns x and y")
 
     @cached_property
     def points(self) -> tuple[Array, list[int]]:
@@ -157,17 +140,14 @@ class TableRise(FromFile):
         InfeasibleError
             If the file was changed and is not a valid table any more.
         """
-        for name, index, message, rule in self.problems():
-            where = f"motion.{name}" + ("" if index is None else f"[{index}]")
-            raise InfeasibleError(message, where=where, nearest=rule)
+        demand(self.problems(), "motion")
         points = self.points[0].copy()
         points[0], points[-1] = (0.0, 0.0), (1.0, 1.0)
         ends = self.start, self.end
         return Rise(function=_through(points, *ends), errors=_errors(points, *ends))
 
 
-def _point_problems(points: Array) -> Iterator[Problem]:
-    """Yield what is wrong with points: column, row, message, allowed."""
+def _problems(points: Array) -> Iterator[Breach]:
     if not _FEWEST <= len(points) <= _MOST:
         yield "x", None, f"has {len(points)} points", f"{_FEWEST} to {_MOST} points"
         return
