@@ -125,6 +125,8 @@ class MotionClaim:
         Largest absolute values; infinite where a derivative below jumps.
     continuity : int
         Order of continuity between dwells (3 means at least 3).
+    mirrored : bool
+        Whether a return is the rise run backwards.
     """
 
     parameters: RiseParameters
@@ -134,6 +136,7 @@ class MotionClaim:
     peak_acceleration: float
     peak_jerk: float
     continuity: int
+    mirrored: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)

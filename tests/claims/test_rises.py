@@ -153,6 +153,7 @@ def test_lift_and_velocity_do_not_jump_inside(law: RiseParameters) -> None:
 def test_continuity_is_as_claimed_and_seen_from_both_sides(claim: MotionClaim) -> None:
     rise = built(claim)
     assert rise.continuity == claim.continuity
+    assert rise.mirrored == claim.mirrored
     h = 1e-9
     found = np.array([v.ravel() for v in rise.function.derivatives(inside(rise, 801), 4)])
     largest = np.maximum(1.0, np.abs(found).max(axis=1))
@@ -214,8 +215,3 @@ def test_the_rise_return_of_the_textbook_is_told_against_a_dwell_and_against_its
     acceleration = rise.function.derivatives(phi, 2)[2]
     assert acceleration.max() == pytest.approx(4.8, abs=1e-8)
     assert acceleration.min() == -6.0
-    assert [name for name in RISES if _mirrored(name)] == ["3-4-5-6"]
-
-
-def _mirrored(name: str) -> bool:
-    return any(built(claim).mirrored for claim in MOTION_CLAIMS[name].values)

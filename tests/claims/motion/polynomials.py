@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 from claims.claim import MotionClaim, MotionClaims
 from gearcam.laws.rises.base import RiseParameters
@@ -61,7 +62,8 @@ def five_to_nine() -> tuple[MotionClaim, ...]:
 def three_to_six() -> tuple[MotionClaim, ...]:
     """``S' = 6*w*(1 - w^2)^2`` with ``w = 1 - phi`` is largest where ``w^2 = 1/5``."""
     powers = {3: 8.0, 4: -12.0, 5: 6.0, 6: -1.0}
-    return (_claim(Polynomial3456(), powers, (96 * math.sqrt(5) / 125, 6.0, math.inf), 1),)
+    claim = _claim(Polynomial3456(), powers, (96 * math.sqrt(5) / 125, 6.0, math.inf), 1)
+    return (replace(claim, mirrored=True),)
 
 
 def polynomial() -> tuple[MotionClaim, ...]:
