@@ -22,7 +22,6 @@ from gearcam.numeric.chebyshev import FIRST_CUTS, Expansion, expand
 from gearcam.numeric.sampling import Sampler
 
 if TYPE_CHECKING:
-    from gearcam.parts.solids import Mesh
     from gearcam.results.parts import PartsResult
 
 INTERVALS: Final = (1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, float(FIRST_CUTS), 2.0 * FIRST_CUTS)
@@ -123,15 +122,14 @@ def integral_ladder(
     x = np.linspace(*ends, _PLACES)
 
     def make(level: float) -> Expansion:
-        made = expand(function, knots, np.inf, cuts=int(level))
-        return made.antiderivative()
+        return expand(function, knots, np.inf, cuts=int(level)).antiderivative()
 
     truth = exact or make(4.0 * INTERVALS[-1])
     values = truth(x) - truth(x[:1])
 
-    def measure(made: Expansion) -> tuple[float, int]:
-        points = made.knots.size - 1
-        return size * float(np.abs(made(x) - values).max()), 9 * points
+    def measure(integral: Expansion) -> tuple[float, int]:
+        intervals = integral.knots.size - 1
+        return size * float(np.abs(integral(x) - values).max()), 9 * intervals
 
     return Ladder(
         refined="intervals",
@@ -146,9 +144,54 @@ def integral_ladder(
     )
 
 
-def tolerances_around(own: float, finest: float = 0.0, coarsest: float = np.inf) -> list[float]:
-    """Return chord tolerances, mm, around the design's `own`, from `coarsest` to `finest`."""
-    return [part * own for part in COARSER if finest <= part * own <= coarsest]
+def tolerances_around(used: float, finest: float = 0.0, coarsest: float = np.inf) -> list[float]:
+    """Return chord tolerances, mm, around the one that is `used`, from `coarsest` to `finest`."""
+    return [part * used for part in COARSER if finest <= part * used <= coarsest]
+
+
+def outline_ladder(
+    used: float,
+    levels: Sequence[float],
+    samplers: Callable[[float], Sequence[Sampler]],
+    *,
+    measured: str,
+    reach: float,
+) -> Ladder:
+    """Return the ladder of the largest distance of outlines from their chords.
+
+    Parameters
+    ----------
+    used : float, mm
+        The chord tolerance that the program uses.
+    levels : sequence of float
+        Chord tolerances, mm, from coarse to fine.
+    samplers : callable
+        ``samplers(tolerance)`` returns the outlines with their chords, computed.
+    measured : str
+        As in a `Ladder`.
+    reach : float, mm
+        Largest distance of the outlines from their origin.
+
+    Returns
+    -------
+    Ladder
+    """
+
+    def measure(outlines: Sequence[Sampler]) -> tuple[float, int]:
+        distances = [chord_distance(sampler) for sampler in outlines]
+        return max(off for off, _ in distances), sum(count for _, count in distances)
+
+    return Ladder(
+        refined="chord tolerance, mm",
+        measured=measured,
+        unit="mm",
+        levels=levels,
+        own=used,
+        order=CHORD_ORDER,
+        rounding=64.0 * np.finfo(float).eps * reach,
+        make=samplers,
+        measure=measure,
+    )
 
 
 def chord_distance(sampler: Sampler) -> tuple[float, int]:
@@ -167,15 +210,14 @@ def chord_distance(sampler: Sampler) -> tuple[float, int]:
     ends = np.append(points, points[:1]) if sampler.closed else points
     chord = np.diff(ends)
     j = places[:-1] + np.diff(places) * _SHARES[:, None]
-    away = sampler.at(j.ravel())[0].reshape(j.shape) - ends[:-1]
-    off = np.abs(np.imag(away * np.conj(chord))) / np.abs(chord)
-    return float(off.max()), len(chord)
+    offset = sampler.at(j.ravel())[0].reshape(j.shape) - ends[:-1]
+    distance = np.abs(np.imag(offset * np.conj(chord))) / np.abs(chord)
+    return float(distance.max()), len(chord)
 
 
 def limit_ladder(
-    own: float,
-    make: Callable[[float], Any],
-    told: Callable[[Any], tuple[Array, int]],
+    used: float,
+    make: Callable[[float], tuple[Array, int]],
     *,
     levels: Sequence[float],
     measured: str,
@@ -186,12 +228,10 @@ def limit_ladder(
 
     Parameters
     ----------
-    own : float, mm
-        The design's chord tolerance.
+    used : float, mm
+        The chord tolerance that the program uses.
     make : callable
-        ``make(tolerance)`` does the computation.
-    told : callable
-        ``told(made)`` returns the numbers and the number of points they were computed from.
+        ``make(tolerance)`` returns the numbers and the number of points they are computed from.
     levels : sequence of float
         Chord tolerances, mm, from coarse to fine.
     measured, unit : str
@@ -204,10 +244,10 @@ def limit_ladder(
     Ladder
         Its error is the largest of all numbers.
     """
-    limit = told(make(beyond * levels[-1]))[0]
+    limit, _ = make(beyond * levels[-1])
 
-    def measure(made: Any) -> tuple[float, int]:
-        values, points = told(made)
+    def measure(computed: tuple[Array, int]) -> tuple[float, int]:
+        values, points = computed
         return float(np.abs(values - limit).max()), points
 
     return Ladder(
@@ -215,7 +255,7 @@ def limit_ladder(
         measured=measured,
         unit=unit,
         levels=levels,
-        own=own,
+        own=used,
         order=CHORD_ORDER,
         rounding=64.0 * np.finfo(float).eps * float(np.abs(limit).max()),
         make=make,
@@ -223,14 +263,14 @@ def limit_ladder(
     )
 
 
-def solid_ladder(result: PartsResult, own: float, levels: Sequence[float]) -> Ladder:
+def solid_ladder(result: PartsResult, used: float, levels: Sequence[float]) -> Ladder:
     """Return the ladder of the volumes of a design's solids.
 
     Parameters
     ----------
     result : PartsResult
         The result of a design with the key ``output.chord_tolerance_mm``.
-    own : float, mm
+    used : float, mm
         The chord tolerance that the program uses.
     levels : sequence of float
         Chord tolerances, mm, from coarse to fine.
@@ -244,12 +284,10 @@ def solid_ladder(result: PartsResult, own: float, levels: Sequence[float]) -> La
 
     parts: dict[float, Any] = {}
 
-    def make(tolerance: float) -> list[Mesh]:
+    def make(tolerance: float) -> tuple[Array, int]:
         if tolerance not in parts:
             parts[tolerance] = result.with_chords(tolerance).parts
-        return [solid(part) for part in parts[tolerance]]
+        meshes = [solid(part) for part in parts[tolerance]]
+        return np.array([mesh.volume for mesh in meshes]), sum(len(one.triangles) for one in meshes)
 
-    def told(made: list[Mesh]) -> tuple[Array, int]:
-        return np.array([mesh.volume for mesh in made]), sum(len(mesh.triangles) for mesh in made)
-
-    return limit_ladder(own, make, told, levels=levels, measured="volume of solids", unit="mm3")
+    return limit_ladder(used, make, levels=levels, measured="volume of solids", unit="mm3")

@@ -9,15 +9,16 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from gearcam.cams.three_points import three_point_curvature
-from gearcam.cams.wall import CHORD_TOLERANCE, Wall
+from gearcam.cams.wall import CHORD_TOLERANCE
 from gearcam.kinds.cam.follow import followed
 from gearcam.numeric.arrays import Array, Plane
+from gearcam.numeric.sampling import Sampler
 from gearcam.results.ladders import (
     CHORD_ORDER,
     Ladder,
     Ladders,
-    chord_distance,
     limit_ladder,
+    outline_ladder,
     solid_ladder,
     tolerances_around,
 )
@@ -33,29 +34,17 @@ _ANGLES: Final = 120
 
 
 def _outline(result: CamResult) -> Ladder:
-    def make(tolerance: float) -> list[Wall]:
-        made = [replace(wall, tolerance=tolerance) for wall in result.cam.walls]
-        for wall in made:
+    walls, used = result.cam.walls, _own(result)
+
+    def samplers(tolerance: float) -> list[Sampler]:
+        cut = [replace(wall, tolerance=tolerance) for wall in walls]
+        for wall in cut:
             _ = wall.contour  # computed on demand
-        return made
+        return [wall.sampler for wall in cut]
 
-    def measure(made: list[Wall]) -> tuple[float, int]:
-        found = [chord_distance(wall.sampler) for wall in made]
-        return max(off for off, _ in found), sum(count for _, count in found)
-
-    own = _own(result)
-    reach = max(float(np.abs(wall.outline).max()) for wall in result.cam.walls)
-    return Ladder(
-        refined="chord tolerance, mm",
-        measured="chords of walls" if len(result.cam.walls) > 1 else "chords of the profile",
-        unit="mm",
-        levels=tolerances_around(own),
-        own=own,
-        order=CHORD_ORDER,
-        rounding=64.0 * np.finfo(float).eps * reach,
-        make=make,
-        measure=measure,
-    )
+    reach = max(float(np.abs(wall.outline).max()) for wall in walls)
+    measured = "chords of walls" if len(walls) > 1 else "chords of the profile"
+    return outline_ladder(used, tolerances_around(used), samplers, measured=measured, reach=reach)
 
 
 def _solid(result: CamResult) -> Ladder:
@@ -80,7 +69,6 @@ def _contact(result: CamResult) -> Ladder:
     return limit_ladder(
         own,
         make,
-        lambda made: made,
         levels=tolerances_around(own)[:-1],
         measured="lift from the profile",
         unit="deg" if result.design.follower.oscillating else "mm",

@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from gearcam.gears.pair import COARSEST, FINEST, FLANK_POINTS, Gear, make_gear
+from gearcam.gears.pair import COARSEST, FINEST, FLANK_POINTS, make_gear
+from gearcam.gears.track import WHEELS
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.piecewise import Piecewise
+from gearcam.numeric.sampling import Sampler
 from gearcam.results.ladders import (
     CHORD_ORDER,
     COARSER,
     Ladder,
     Ladders,
-    chord_distance,
     integral_ladder,
     limit_ladder,
+    outline_ladder,
     solid_ladder,
     tolerances_around,
 )
@@ -62,23 +63,20 @@ def _flank(result: GearPairResult) -> Ladder:
     gears = result.gears
 
     def points(count: float) -> list[Plane]:
-        made = []
-        for gear in gears:
-            found = gear.flank_points(int(count))
-            made.append((found["x_mm"] + 1j * found["y_mm"]).reshape(-1, int(count)))
-        return made
+        tables = [gear.flank_points(int(count)) for gear in gears]
+        return [(one["x_mm"] + 1j * one["y_mm"]).reshape(-1, int(count)) for one in tables]
 
     fine = points(2 * _FLANKS[-1] - 1)
 
-    def measure(made: list[Plane]) -> tuple[float, int]:
-        off = 0.0
-        for rough, exact in zip(made, fine, strict=True):
-            skip = (exact.shape[1] - 1) // (rough.shape[1] - 1)
+    def measure(coarse: list[Plane]) -> tuple[float, int]:
+        largest = 0.0
+        for ends, exact in zip(coarse, fine, strict=True):
+            skip = (exact.shape[1] - 1) // (ends.shape[1] - 1)
             middles = exact[:, skip // 2 :: skip]
-            chord = np.diff(rough, axis=1)
-            away = (middles - rough[:, :-1]) * np.conj(chord)
-            off = max(off, float((np.abs(away.imag) / np.abs(chord)).max()))
-        return off, sum(one.size for one in made)
+            chord = np.diff(ends, axis=1)
+            offset = (middles - ends[:, :-1]) * np.conj(chord)
+            largest = max(largest, float((np.abs(offset.imag) / np.abs(chord)).max()))
+        return largest, sum(one.size for one in coarse)
 
     return Ladder(
         refined="points on a flank",
@@ -94,23 +92,17 @@ def _flank(result: GearPairResult) -> Ladder:
 
 
 def _outline(result: GearPairResult) -> Ladder:
-    own, levels = _tolerances(result)
+    pair, ring, inner = result.pair, result.design.ring, result.tolerances
 
-    def measure(made: tuple[Gear, Gear]) -> tuple[float, int]:
-        found = [chord_distance(gear.profile.sampler) for gear in made]
-        return max(off for off, _ in found), sum(count for _, count in found)
+    def samplers(tolerance: float) -> list[Sampler]:
+        gears = [make_gear(pair, wheel, tolerance, inner, ring) for wheel in WHEELS]
+        for gear in gears:
+            _ = gear.outline  # computed on demand
+        return [gear.profile.sampler for gear in gears]
 
-    return Ladder(
-        refined="chord tolerance, mm",
-        measured="chords of outlines",
-        unit="mm",
-        levels=levels,
-        own=own,
-        order=CHORD_ORDER,
-        rounding=64.0 * np.finfo(float).eps * max(gear.largest_radius for gear in result.gears),
-        make=_cut(result),
-        measure=measure,
-    )
+    reach = max(gear.largest_radius for gear in result.gears)
+    used, levels = _tolerances(result)
+    return outline_ladder(used, levels, samplers, measured="chords of outlines", reach=reach)
 
 
 def _solid(result: GearPairResult) -> Ladder:
@@ -140,28 +132,11 @@ def _contact(result: GearPairResult) -> Ladder:
     return limit_ladder(
         own,
         make,
-        lambda made: made,
         levels=[part * own for part in COARSER[:4]],
         measured="overlap of a phase",
         unit="mm2",
         beyond=1.0 / 16.0,
     )
-
-
-def _cut(result: GearPairResult) -> Callable[[float], tuple[Gear, Gear]]:
-    """Return a function from chord tolerance, mm, to both outlines."""
-
-    def make(tolerance: float) -> tuple[Gear, Gear]:
-        pair, ring, inner = result.pair, result.design.ring, result.tolerances
-        made = (
-            make_gear(pair, 1, tolerance, inner, ring),
-            make_gear(pair, 2, tolerance, inner, ring),
-        )
-        for gear in made:
-            _ = gear.outline  # computed on demand
-        return made
-
-    return make
 
 
 def _tolerances(result: GearPairResult) -> tuple[float, list[float]]:
