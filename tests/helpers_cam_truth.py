@@ -66,13 +66,10 @@ def touches(design: Mapping[str, Any], pieces: list[Piece]) -> tuple[list[Touch]
     common: dict[str, Any] = {"flat": flat, "swings": swings, "radius": radius}
     common |= {"arm": arm, "pivot": pivot}
     if form == "translating":
-        keys = "run_in_mm", "run_out_mm"
-        way = mp.fsum(mp.mpf(one["way_mm"]) for one in design["motion"])
-        way += mp.fsum(mp.mpf(cam.get(key, 0)) for key in keys)
         height = mp.mpf(given.get("pivot_height_mm", 0))
         own = Touch(
             **common,
-            slide=way / (2 * mp.pi),
+            slide=1,
             tilt=mp.radians(mp.mpf(given.get("axis_deg", 0))),
             height=height,
             start=-mp.asin(height / arm) if swings else 0,
@@ -149,16 +146,14 @@ def rows(result: Any, design: Mapping[str, Any], seed: int = 0) -> Iterator[Row]
     told, unit = result.motion_at(np.array(theta)), result.follower.lift_unit[1]
     driver = result.driver
     states = [exact.at(pieces, mp.mpf(t)) for t in theta]
-    factor, rate = (mp.degrees(1) if unit == "deg" else mp.mpf(1)), mp.mpf(1)
-    if driver.unit == "mm":
-        rate = motions[0].slide
+    factor = mp.degrees(1) if unit == "deg" else mp.mpf(1)
     names = ("lift_{}", "velocity_{}_per_{}", "acceleration_{}_per_{}2", "jerk_{}_per_{}3")
     for order, name in enumerate(name.format(unit, driver.per) for name in names):
-        size = max(abs(state[order]) for state in states) * factor / rate**order
+        size = max(abs(state[order]) for state in states) * factor
         for value, state in zip(told[name].tolist(), states, strict=True):
-            yield name, value, state[order] * factor / rate**order, size
+            yield name, value, state[order] * factor, size
         if order < 3:
-            ends = [factor / rate**order * end for end in extremes(pieces, order)]
+            ends = [factor * end for end in extremes(pieces, order)]
             yield from zip([name] * 2, _ends(result, order), ends, [size] * 2, strict=True)
     for own, touch in zip(result.cam.motions, motions, strict=True):
         yield from _of_motion(own, touch, (theta, states), told)
@@ -173,7 +168,7 @@ def rows(result: Any, design: Mapping[str, Any], seed: int = 0) -> Iterator[Row]
 
 def _ends(result: Any, order: int) -> list[float]:
     """Both ends of a derivative of the lift, as people are told them."""
-    scale = result.follower.lift_unit[0] / result.driver.rate**order
+    scale = result.follower.lift_unit[0]
     return [scale * end for end in result.program.range_of(order)]
 
 
@@ -304,7 +299,7 @@ def trimming(result: Any, own: Any, touch: Touch, pieces: list[Piece]) -> Iterat
         if inside(pieces, end):
             piece = exact.piece_at(pieces, end)
             root = mp.findroot(partial(_room, touch, piece), mp.mpf(end))
-            yield f"undercut_{driver.unit}", driver.scale * end, driver.scale * root, driver.turn
+            yield f"undercut_{driver.unit}", driver.scale * end, driver.scale * root, driver.whole
     told = [(corner.before, corner.after) for corner in own.corners]
     if not told or own.program.hard or not all(inside(pieces, t) for pair in told for t in pair):
         return

@@ -35,7 +35,7 @@ def doubts(result: CamResult) -> Iterator[tuple[str, str]]:
     place, words : str
         Place and description of a contradiction.
     """
-    theta = 2.0 * np.pi / _ANGLES * (np.arange(float(_ANGLES)) + 0.5)
+    theta = result.program.period / _ANGLES * (np.arange(float(_ANGLES)) + 0.5)
     for wall, contour in zip(result.cam.walls, result.profiles, strict=True):
         vertices = contour.vertices
         columns, _, _ = followed(

@@ -66,7 +66,6 @@ def made_of(design: Given) -> SlidingCam | InfeasibleError:
         made = make_sliding(
             motion,
             make_follower_over_plate(spec),
-            travel=way * (1.0 + sum(runs)),
             height=HIGH,
             groove=True,
             clearance=clearance,
@@ -82,8 +81,8 @@ def made_of(design: Given) -> SlidingCam | InfeasibleError:
 def centers_of(design: Given, made: SlidingCam) -> Any:
     """Middles of rollers in the cam's frame, by the geometry of the follower."""
     given, motion = design[0], made.motion.program
-    theta = np.union1d(np.linspace(0.0, 2.0 * np.pi, 8001), motion.knots)
-    lift, way = motion.derivatives(theta, 0)[0], made.way * theta / (2.0 * np.pi)
+    way = np.union1d(np.linspace(0.0, made.way, 8001), motion.knots)
+    lift = motion.derivatives(way, 0)[0]
     if "arm" not in given:
         return lift * 1j * np.exp(-1j * given["axis"]) - way
     swing = lift - np.arcsin(given["pivot_height"] / given["arm"])

@@ -288,7 +288,7 @@ def _quintic(start: list[Number], end: list[Number], width: Number) -> list[Numb
 
 
 def lift(design: Mapping[str, Any]) -> list[Piece]:
-    """The lift of a design over a turn, mm or rad."""
+    """The lift of a design over a turn, rad, or a travel, mm."""
     motion, swings = design["motion"], design["follower"].get("motion") == "oscillating"
     unit, scale = ("deg", mp.pi / 180) if swings else ("mm", mp.mpf(1))
     turn = 2 * mp.pi
@@ -306,6 +306,8 @@ def lift(design: Mapping[str, Any]) -> list[Piece]:
         rest = whole - mp.fsum(told)
         told = [rest if p[key] == "rest" else mp.mpf(p[key]) for p in phases]
     share = turn / mp.fsum(told) * (mp.mpf(1) / 2 if design["cam"].get("form") == "yoke" else 1)
+    if sliding:
+        share = mp.mpf(1)
     state = [mp.mpf(0)] * 4
     if phases[0]["type"] == "segment" and not sliding:  # it leaves as the last phase ends
         state = _run(phases, told, share, (unit, scale), state)[-1].shape(turn)

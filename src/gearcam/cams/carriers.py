@@ -45,9 +45,9 @@ class Driver(Brief):
     called : str
         Its name in words.
     scale : float
-        Angle or travel, in the unit, per rad.
-    rate : float
-        Variable of derivatives per rad.
+        Unit in output, per rad or mm of the driver position.
+    whole : float
+        Whole turn or travel, in the unit.
     """
 
     symbol: str
@@ -55,12 +55,7 @@ class Driver(Brief):
     per: str
     called: str
     scale: float
-    rate: float
-
-    @property
-    def turn(self) -> float:
-        """Whole turn or travel, in the unit."""
-        return 2.0 * math.pi * self.scale
+    whole: float
 
     @property
     def column(self) -> str:
@@ -68,8 +63,8 @@ class Driver(Brief):
         return f"{self.symbol}_{self.unit}"
 
     def told(self, theta: float) -> str:
-        """Return an angle, rad, as text with its unit, with rounding shown as 0."""
-        return f"{shown(self.scale * theta, scale=self.turn)} {self.unit}"
+        """Return a driver position as text with its unit, with rounding shown as 0."""
+        return f"{shown(self.scale * theta, scale=self.whole)} {self.unit}"
 
     def seen(self, theta: float) -> str:
         """Return a position as text."""
@@ -93,7 +88,7 @@ class Centred(Protocol):
 
 
 class Carrier(ABC, Brief):
-    """The motion of a cam, by a driver position x: rad of a turn, or a share of a travel."""
+    """The motion of a cam, by a driver position x: rad of a turn, or mm of a travel."""
 
     rate: ClassVar[float]
     """Rotating of the fixed frame seen from the cam's, backwards, rad per unit of x."""
@@ -175,7 +170,7 @@ class Rotating(Carrier):
             per="rad",
             called="cam angle",
             scale=math.degrees(1.0),
-            rate=1.0,
+            whole=360.0,
         )
 
     def seen(self, ahead: Pair, at: Pair) -> Pair:  # noqa: ARG002
@@ -212,11 +207,11 @@ class Sliding(Carrier):
 
     Parameters
     ----------
-    scale : float, mm
-        Travel per unit of the driver position.
+    travel : float, mm
+        The whole travel.
     """
 
-    scale: float
+    travel: float
 
     rate, around, returns = 0.0, False, True
 
@@ -224,36 +219,34 @@ class Sliding(Carrier):
     def driver(self) -> Driver:
         """Name and unit of the travel."""
         return Driver(
-            symbol="u", unit="mm", per="mm", called="travel", scale=self.scale, rate=self.scale
+            symbol="u", unit="mm", per="mm", called="travel", scale=1.0, whole=self.travel
         )
 
     def seen(self, ahead: Pair, at: Pair) -> Pair:  # noqa: ARG002
-        """Return ``k*i*conj(t)``, as ``U = k`` everywhere (see `Carrier.seen`)."""
-        return self.scale * ahead[0], self.scale * ahead[1]
+        """Return ``i*conj(t)``, as ``U = 1`` everywhere (see `Carrier.seen`)."""
+        return ahead
 
     def under(self, x: Array, z: Plane) -> Plane:
         """Return the points moved on (see `Carrier.under`)."""
-        return z + self.scale * x
+        return z + x
 
     def frame(self, x: Array) -> tuple[Plane, Plane]:
         """Return a shift (see `Carrier.frame`)."""
-        return np.ones(np.shape(x), dtype=np.complex128), np.asarray(
-            -self.scale * x, dtype=np.complex128
-        )
+        return np.ones(np.shape(x), dtype=np.complex128), np.asarray(-x, dtype=np.complex128)
 
     def placed(self, x: Jet, z: complex) -> tuple[Jet, Jet]:
         """Return the point moved by x (see `Carrier.placed`)."""
-        return z.real - self.scale * x, z.imag + 0.0 * x
+        return z.real - x, z.imag + 0.0 * x
 
     def passing(self, z: Plane) -> Plane:
         """Return the velocity of all points."""
-        return np.full(np.shape(z), -self.scale, dtype=np.complex128)
+        return np.full(np.shape(z), -1.0, dtype=np.complex128)
 
     def stand(self, follower: Centred, z: Plane, near: Array) -> tuple[Array, Array, Plane]:  # noqa: ARG002
         """Return where the centres are on the points (see `Carrier.stand`)."""
         p = follower.on_level(z.imag)
         centre = follower.centre(p)
-        return (z - centre).real / self.scale, p, centre
+        return (z - centre).real, p, centre
 
 
 ROTATING = Rotating()

@@ -27,8 +27,6 @@ if TYPE_CHECKING:
 _MISSED: Final = 0.1
 """Part of the whole lift by which wear cannot change the lift of a cam's own profile."""
 
-_TURN: Final = 2.0 * math.pi
-
 
 def pressure_limit(follower: Follower, given: float) -> float:
     """Return the largest pressure angle of a `follower`, rad: `given`, the default where nan."""
@@ -160,7 +158,7 @@ def _undercut(wall: Wall, limit: float) -> Iterator[Remark]:
     follower, told = wall.follower, wall.carrier.driver.told
     for corner, loss in zip(wall.corners, wall.lost, strict=True):
         low, high = corner.before, corner.after
-        inside = [pair for pair in left if _within(pair, low, high)]
+        inside = [pair for pair in left if _within(pair, low, high, wall.program.period)]
         left = [pair for pair in left if pair not in inside]
         lost = loss.value * follower.lever
         angle = f" ({shown(math.degrees(loss.value), 4)} deg)" if follower.angular else ""
@@ -181,9 +179,9 @@ def _undercut(wall: Wall, limit: float) -> Iterator[Remark]:
         )
 
 
-def _within(pair: tuple[float, float], low: float, high: float) -> bool:
+def _within(pair: tuple[float, float], low: float, high: float, turn: float) -> bool:
     """Whether a range begins within a part of a turn, which may continue over its end."""
-    return (pair[0] - low) % _TURN <= (high - low) % _TURN
+    return (pair[0] - low) % turn <= (high - low) % turn
 
 
 def _stretches(pairs: list[tuple[float, float]], told: Callable[[float], str]) -> str:
@@ -203,7 +201,7 @@ def _shocks(cam: Cam, order: int) -> Iterator[tuple[str, float, str]]:
     unit = f"{unit}/{driver.per}{order if order > 1 else ''}"
     for jump in lead.program.jumps:
         if jump.order == order:
-            by = scale * (jump.after - jump.before) / driver.rate**order
+            by = scale * (jump.after - jump.before)
             yield f"at {driver.told(jump.theta)}", by, unit
 
 

@@ -8,7 +8,6 @@ Depends on trim, followers, laws and numeric; numpy only.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 
 import numpy as np
@@ -23,9 +22,8 @@ from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import extremes
 
-_TURN = 2.0 * math.pi
 _NARROWEST = 1e-9
-"""Angle, rad, below which rounding may exchange the two sides of a corner."""
+"""Angle, rad of a turn, below which rounding may exchange the two sides of a corner."""
 
 
 def resting(
@@ -80,18 +78,19 @@ def lost_lift(curve: CamCurve, corner: Corner) -> Extreme:
     InfeasibleError
         If the follower cannot touch the corner anywhere.
     """
-    side, start, end = curve.lift_sign, corner.before, corner.after
+    program, side = curve.program, curve.lift_sign
+    start, end = corner.before, corner.after
     rest = resting(curve.follower, curve.carrier, corner.point, side)
     if end < start:
-        end += _TURN
-    if end == start or end - start > _TURN - _NARROWEST:
+        end += program.period
+    if end == start or end - start > program.period - _NARROWEST * program.grain:
         return Extreme(theta=start, value=0.0)
 
     def missing(theta: Array) -> list[Array]:
         given = rest(Jet.variable(theta, 1)).derivatives()
-        return list(side * np.subtract(curve.program.derivatives(theta, 1), given))
+        return list(side * np.subtract(program.derivatives(theta, 1), given))
 
-    places, values = extremes(missing, curve.program.cuts_between(start, end))
+    places, values = extremes(missing, program.cuts_between(start, end))
     if np.isnan(values).all():
         raise InfeasibleError(
             "the follower cannot rest on a corner that trimming leaves",
@@ -99,4 +98,4 @@ def lost_lift(curve: CamCurve, corner: Corner) -> Extreme:
             nearest="its arm or its pivot does not allow that position",
         )
     best = int(np.nanargmax(values))
-    return Extreme(theta=float(places[best]) % _TURN, value=max(0.0, float(values[best])))
+    return Extreme(theta=float(places[best]) % program.period, value=max(0.0, float(values[best])))

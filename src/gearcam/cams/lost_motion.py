@@ -9,7 +9,6 @@ Depends on curve, followers, lost and numeric; numpy only.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -28,20 +27,18 @@ from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import places_between
 from gearcam.numeric.roots import bracketed_root, newton_in_bracket
 
-_TURN = 2.0 * math.pi
-
 _STEP = 1e-8
-"""Last step of a search, rad or in units of a jump's velocity: the error is of the order of its
-square."""
+"""Last step of a search, rad of a turn or in units of a jump's velocity: the error is of the order
+of its square."""
 
 _ROUNDING = 1e-13
-"""Angle, rad, larger than the rounding of angles in a turn."""
+"""Angle, rad of a turn, larger than the rounding of angles in it."""
 
 _FLAT = 1e-8
-"""Width, rad, of a bracket of a largest value, which changes with its square."""
+"""Width, rad of a turn, of a bracket of a largest value, which changes with its square."""
 
 _APART = 1e-9
-"""Angle, rad, below which two ends of stretches are merged."""
+"""Angle, rad of a turn, below which two ends of stretches are merged."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -110,7 +107,7 @@ class Rest(Brief):
     def span(self) -> tuple[float, float]:
         """Angles, rad, between which the roller rests on the wall."""
         if self.wall.program.closed:
-            return 0.0, _TURN
+            return 0.0, self.wall.program.period
         last = len(self._centers.end) - 1
         return float(self._starts[0]), float(
             self._moving(np.array([last]), self._centers.end[[last]])[0][0]
@@ -130,7 +127,9 @@ class Rest(Brief):
             mm or rad, and per rad.
         """
         centers, starts = self._centers, np.maximum.accumulate(self._starts)
-        aim = theta if self.wall.program.open else starts[0] + np.mod(theta - starts[0], _TURN)
+        program = self.wall.program
+        period, grain = program.period, program.grain
+        aim = theta if program.open else starts[0] + np.mod(theta - starts[0], period)
         index = np.maximum(np.searchsorted(starts, aim, side="right") - 1, 0)
         low, high = centers.start[index], centers.end[index]
 
@@ -139,12 +138,12 @@ class Rest(Brief):
             return stands - aim, slope
 
         first = np.where(centers.jump[index], 0.5 * (low + high), np.clip(aim, low, high))
-        places = newton_in_bracket(function, low, high, first, _STEP, _ROUNDING)
+        places = newton_in_bracket(function, low, high, first, _STEP * grain, _ROUNDING * grain)
         stands, lift, slope, rise = self._moving(index, places)
         rise = rise / slope
         lift = lift + rise * (aim - stands)  # remaining error of the search
         for (before, after), point in self._corners:
-            inside = np.mod(theta - before, _TURN) <= np.mod(after - before, _TURN)
+            inside = np.mod(theta - before, period) <= np.mod(after - before, period)
             given = resting(self.roller, self.wall.carrier, point, self.wall.side)
             lift[inside], rise[inside] = given(Jet.variable(theta[inside], 1)).derivatives()
         return lift, rise
@@ -168,14 +167,15 @@ def largest_lost_motion(inner: Rest, outer: Rest) -> Extreme:
         rows = zip(outer.lift(theta), inner.lift(theta), strict=True)
         return [high - low for high, low in rows]
 
-    spans = inner.span, outer.span
+    program, spans = inner.wall.program, (inner.span, outer.span)
+    period, apart = program.period, _APART * program.grain
     first, last = max(low for low, _ in spans), min(high for _, high in spans)
     ends = np.concatenate([inner.ends, outer.ends, [first]])
-    if inner.wall.program.closed:
-        ends = np.mod(ends, _TURN)
+    if program.closed:
+        ends = np.mod(ends, period)
     ends = np.sort(np.clip(ends, first, last))
-    kept = ends[np.append(True, np.diff(ends) > _APART)]
-    x = places_between(np.append(kept[kept < last - _APART], last))
+    kept = ends[np.append(True, np.diff(ends) > apart)]
+    x = places_between(np.append(kept[kept < last - apart], last))
     values, slopes = (found.reshape(x.shape) for found in missing(x.ravel()))
     best = int(values.argmax())
     place, value = float(x.flat[best]), float(values.flat[best])
@@ -188,10 +188,10 @@ def largest_lost_motion(inner: Rest, outer: Rest) -> Extreme:
             lambda theta: missing(theta)[1],
             x[:, :-1][cells],
             x[:, 1:][cells],
-            _FLAT,
+            _FLAT * program.grain,
             (low[cells], high[cells]),
         )
         found = missing(roots)[0]
         if found.max() > value:
             place, value = float(roots[found.argmax()]), float(found.max())
-    return Extreme(theta=place % _TURN, value=max(0.0, value))
+    return Extreme(theta=place % period, value=max(0.0, value))

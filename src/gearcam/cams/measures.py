@@ -17,16 +17,17 @@ import numpy as np
 from gearcam.base.display import Brief
 from gearcam.cams.contact import Contact
 from gearcam.cams.curve import CamCurve, ProfileSegments
+from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import extremes_among, places_between
 from gearcam.numeric.roots import bracketed_root
 
 _GAP = 1e-11
-"""Gap, rad, below which two undercut stretches are merged."""
+"""Gap, rad of a turn, below which two undercut stretches are merged."""
 
 _ROOT = 1e-15
-"""Width of a root's bracket, rad."""
+"""Width of a root's bracket, rad of a turn."""
 
 _GAUSS = 16
 _CELLS = 4
@@ -144,12 +145,12 @@ def undercut(curve: CamCurve) -> list[tuple[float, float]]:
     whole = low < high  # not across a knot
     turns = whole & (before != after)
     ends, known = (low[turns], high[turns]), (values[:-1][turns], values[1:][turns])
-    roots = bracketed_root(lambda t: speed(t)[0], *ends, _ROOT, known)
+    roots = bracketed_root(lambda t: speed(t)[0], *ends, _ROOT * curve.program.grain, known)
     low[turns & after] = roots[after[turns]]
     high[turns & before] = roots[before[turns]]
     kept = whole & (before | after) & (low < high)
     found += zip(low[kept].tolist(), high[kept].tolist(), strict=True)
-    return _joined(sorted(found))
+    return _joined(sorted(found), _GAP * curve.program.grain)
 
 
 def _stays_positive(places: Array, values: Array, slopes: Array) -> bool:
@@ -162,11 +163,11 @@ def _stays_positive(places: Array, values: Array, slopes: Array) -> bool:
     return bool(np.all(values - np.abs(slopes) * cell > 0.0))
 
 
-def _joined(stretches: list[tuple[float, float]]) -> list[tuple[float, float]]:
-    """Return stretches, with touching ones joined."""
+def _joined(stretches: list[tuple[float, float]], gap: float) -> list[tuple[float, float]]:
+    """Return stretches, with those joined that are at most a `gap` apart."""
     joined: list[tuple[float, float]] = []
     for low, high in stretches:
-        if joined and low - joined[-1][1] <= _GAP:
+        if joined and low - joined[-1][1] <= gap:
             joined[-1] = (joined[-1][0], max(joined[-1][1], high))
         else:
             joined.append((low, high))
@@ -174,7 +175,7 @@ def _joined(stretches: list[tuple[float, float]]) -> list[tuple[float, float]]:
 
 
 def over_the_end(
-    stretches: Sequence[tuple[float, float]], closed: bool = True
+    stretches: Sequence[tuple[float, float]], program: Program
 ) -> list[list[tuple[float, float]]]:
     """Return stretches of a turn one by one, with a stretch across the turn's end kept together.
 
@@ -182,8 +183,8 @@ def over_the_end(
     ----------
     stretches : sequence of (float, float)
         Cam angles, rad, in rising order, cut at the end of the turn.
-    closed : bool
-        Whether the turn continues over its end.
+    program : Program
+        The lift.
 
     Returns
     -------
@@ -191,7 +192,8 @@ def over_the_end(
         Each with one stretch, or with the two parts of one, that after the end first.
     """
     parts = [[stretch] for stretch in stretches]
-    if closed and len(parts) > 1 and stretches[0][0] == 0.0 and stretches[-1][1] >= 2.0 * math.pi:
+    both = len(parts) > 1 and stretches[0][0] == 0.0 and stretches[-1][1] >= program.period
+    if program.closed and both:
         return [*parts[1:-1], [stretches[0], stretches[-1]]]
     return parts
 

@@ -75,7 +75,7 @@ class SlidingCam(Brief, Cam):
     @property
     def way(self) -> float:
         """Travel, mm."""
-        return self.motion.carrier.driver.turn
+        return self.motion.program.period
 
     @property
     def width(self) -> float:
@@ -131,7 +131,6 @@ def make_sliding(
     program: Program,
     follower: Round,
     *,
-    travel: float,
     height: float,
     length: float | None = None,
     groove: bool = False,
@@ -146,8 +145,6 @@ def make_sliding(
         The lift, open.
     follower : Round
         The follower.
-    travel : float, mm
-        Travel of the cam.
     height : float, mm
         Height of the plate; for a cam with one wall at the highest lift.
     length : float, mm, optional
@@ -170,7 +167,7 @@ def make_sliding(
         If one of them is impossible.
     """
     follower.demand(program)
-    carrier = Sliding(travel / (2.0 * math.pi))
+    carrier = Sliding(program.period)
     common = {"program": program, "carrier": carrier, "clockwise": True, "tolerance": tolerance}
     motion = PitchMotion(follower=follower, **common)
     wide = replace(follower, radius=follower.radius + (0.5 * clearance if groove else 0.0))
@@ -191,7 +188,7 @@ def _plate(
 ) -> Plate:
     """Return the plate of a cam, with a follower as `wide` as its groove."""
     radius, program = wide.radius, motion.program
-    theta = np.array([0.0, 2.0 * math.pi])
+    theta = np.array([0.0, program.period])
     s, ds = program.derivatives(theta, 1)
 
     def ends(inset: float) -> Array:

@@ -60,7 +60,8 @@ _TINY = 2e-8
 it less lift is lost than this times the angle of the stretch."""
 
 _OVERLAP = 1e-12
-"""Angle, rad, by which an undercut stretch may reach into the remaining profile: rounding."""
+"""Angle, rad of a turn, by which an undercut stretch may reach into the remaining profile by
+rounding."""
 
 _MISS = 1e-12
 """Distance of two curves at their crossing, in sizes of the cam: rounding of points."""
@@ -131,7 +132,7 @@ def without_tiny_loops(
     cut: list[tuple[CurvePoint, CurvePoint]] = []
     left: list[tuple[float, float]] = []
     closed = segments.curve.program.closed
-    for parts in over_the_end(undercut, closed):
+    for parts in over_the_end(undercut, segments.curve.program):
         # a stretch in two parts, on both sides of the turn's end, begins with the later part; a
         # jump at that end is no stretch after it
         ends = _ends(segments, parts[-1][0], parts[0][1] or parts[-1][1])
@@ -224,8 +225,9 @@ def _backwards(segments: ProfileSegments, undercut: Sequence[tuple[float, float]
     if np.any(segments.backward):
         return True
     start, end = segments.start[~segments.jump], segments.end[~segments.jump]
+    overlap = _OVERLAP * segments.curve.program.grain
     return any(
-        bool(np.any(np.minimum(end, high) - np.maximum(start, low) > _OVERLAP))
+        bool(np.any(np.minimum(end, high) - np.maximum(start, low) > overlap))
         for low, high in undercut
     )
 
@@ -254,7 +256,7 @@ def _chain(
 ) -> Chain:
     """Return all segments as chords, fine around undercut stretches, counter-clockwise."""
     number, low, high = [], [], []
-    beside = _beside(undercut)
+    beside = _beside(undercut, segments.curve.program.period)
     for k in range(len(segments.start)):
         start, end = float(segments.start[k]), float(segments.end[k])
         probes = np.linspace(start, end, _PROBES)
@@ -283,12 +285,12 @@ def _chain(
     return Chain(curve=curve, low=lows, high=highs, points=points)
 
 
-def _beside(stretches: Sequence[tuple[float, float]]) -> Array:
-    """Return angles in and next to undercut stretches, also a turn before and after, rising."""
+def _beside(stretches: Sequence[tuple[float, float]], period: float) -> Array:
+    """Return angles in and next to undercut stretches, also a period before and after, rising."""
     low, high = np.reshape(stretches, (-1, 2)).T
     more = _BESIDE * (high - low)
     places = np.linspace(low - more, high + more, _AROUND)
-    turns = 2.0 * math.pi * np.array([-1.0, 0.0, 1.0])  # an open curve has nothing there
+    turns = period * np.array([-1.0, 0.0, 1.0])  # an open curve has nothing there
     return np.sort((places + turns[:, None, None]).ravel())
 
 

@@ -39,9 +39,6 @@ from gearcam.numeric.sampling import Sampler
 CHORD_TOLERANCE = 1e-3
 """Default chord tolerance, mm."""
 
-_TURN = [(0.0, 2.0 * math.pi)]
-"""The whole turn, as a list of stretches."""
-
 OVERSAMPLING = 8
 """Dense points per chord: their own chord error is 1/64 of the polygon's."""
 
@@ -89,10 +86,7 @@ class PitchMotion(Brief):
         """
         (scale, unit), driver = self.follower.lift_unit, self.carrier.driver
         names = ("lift_{}", "velocity_{}_per_{}", "acceleration_{}_per_{}2", "jerk_{}_per_{}3")
-        return {
-            name.format(unit, driver.per): scale / driver.rate**order
-            for order, name in enumerate(names)
-        }
+        return {name.format(unit, driver.per): scale for name in names}
 
     @property
     def total_lift(self) -> Fact:
@@ -100,6 +94,11 @@ class PitchMotion(Brief):
         low, high = self.program.range
         scale, unit = self.follower.lift_unit
         return Fact(scale * (high - low), "lift", unit=unit)
+
+    @property
+    def _whole(self) -> list[tuple[float, float]]:
+        """The whole turn or travel, as a list of stretches."""
+        return [(0.0, self.program.period)]
 
     @cached_property
     def _ranges(self) -> dict[tuple[str, str], Range | None]:
@@ -109,7 +108,7 @@ class PitchMotion(Brief):
     def _range(self, what: str, pick: Callable[[Contact], Jet], kind: str) -> Range | None:
         """Return the range of `pick` over a turn or all phases of a `kind`, cached."""
         if (what, kind) not in self._ranges:
-            stretches = self.program.phases(kind) if kind else _TURN
+            stretches = self.program.phases(kind) if kind else self._whole
             self._ranges[what, kind] = range_of(self.pitch_curve, pick, stretches)
         return self._ranges[what, kind]
 
@@ -132,7 +131,7 @@ class PitchMotion(Brief):
         """Range of the contact along a flat face, mm (see `gearcam.cams.contact.Contact`)."""
         if self.follower.has_centre:
             return None
-        return range_of(self.pitch_curve, lambda contact: contact.place, _TURN)
+        return range_of(self.pitch_curve, lambda contact: contact.place, self._whole)
 
     def motion(self, theta: Array) -> dict[str, Array]:
         """Return the motion and the contact at cam angles.
@@ -245,7 +244,7 @@ class Wall(PitchMotion):
         """Radius of curvature of a flat follower's profile, mm, negative where undercut."""
         if self.follower.has_centre:
             return None
-        return range_of(self.curve, lambda contact: contact.speed / contact.turning, _TURN)
+        return range_of(self.curve, lambda contact: contact.speed / contact.turning, self._whole)
 
     @cached_property
     def undercut(self) -> list[tuple[float, float]]:
@@ -255,8 +254,8 @@ class Wall(PitchMotion):
     @property
     def undercut_ranges(self) -> list[tuple[float, float]]:
         """The same for output: a stretch across the end of the turn ends beyond it."""
-        joined = over_the_end(self.undercut, self.program.closed)
-        ends = (parts[0][1] + (2.0 * math.pi if len(parts) > 1 else 0.0) for parts in joined)
+        joined = over_the_end(self.undercut, self.program)
+        ends = (parts[0][1] + (self.program.period if len(parts) > 1 else 0.0) for parts in joined)
         return [(parts[-1][0], end) for parts, end in zip(joined, ends, strict=True)]
 
     @cached_property
@@ -275,7 +274,7 @@ class Wall(PitchMotion):
     @property
     def _reach(self) -> float:
         """The size of the cam, mm, as a scale of small lengths."""
-        size = self.follower.prime_radius if self.carrier.around else self.carrier.driver.turn
+        size = self.follower.prime_radius if self.carrier.around else self.program.period
         return size + self.program.range[1] * self.follower.lever
 
     def _drawn(self, kept: ProfileSegments) -> ProfileSegments:
@@ -371,7 +370,7 @@ class Wall(PitchMotion):
 
     def places(self, count: int) -> tuple[Array, Plane, Plane]:
         """Return points of the profile at `count` even cam angles of a turn (see `places_at`)."""
-        return self.places_at(2.0 * math.pi * np.arange(count) / (count - self.program.open))
+        return self.places_at(self.program.period * np.arange(count) / (count - self.program.open))
 
     def places_at(self, theta: Array) -> tuple[Array, Plane, Plane]:
         """Return points of the profile at cam angles, as far as trimming leaves them.
@@ -389,7 +388,7 @@ class Wall(PitchMotion):
             Points of contact at those angles, with the outward normals of the metal.
         """
         kept = self.drawn
-        turn = 2.0 * math.pi
+        turn = self.program.period
         # an open curve ends with its last point
         within = np.minimum(theta, np.nextafter(turn, 0)) if self.program.open else theta % turn
         sweeps = np.flatnonzero(~kept.jump)

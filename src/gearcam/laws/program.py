@@ -2,7 +2,8 @@
 
 A program joins phases: motion laws scaled to their phases, and segments, quintics that continue the
 phase before. It repeats every turn and has knots where its velocity (*hard shock*), acceleration
-(*soft shock*) or jerk jumps. That of a translating cam is *open*; its travel counts as 2*pi rad.
+(*soft shock*) or jerk jumps. That of a translating cam is *open*, over a travel in mm in place of
+an angle in rad.
 
 Source: 000 section 3.3, eqs. (3.3)-(3.5).
 """
@@ -63,12 +64,14 @@ class Survey(Brief):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Program(Brief, Displacement):
-    """The lift of a follower over a turn, repeated.
+    """The lift of a follower over a turn, repeated, or over a travel.
+
+    Angles and derivatives in rad are in mm over a travel.
 
     Parameters
     ----------
     lift : Piecewise
-        s over ``[0, 2*pi]``, mm or rad.
+        s over the period, mm or rad.
     stretches : tuple of PlacedPhase
         Phases; a segment is a rise or a return, by its direction.
     cuts : (m,) array, rad
@@ -109,8 +112,13 @@ class Program(Brief, Displacement):
 
     @property
     def period(self) -> float:
-        """A turn of the cam, rad."""
-        return TURN
+        """A turn of the cam, rad, or its travel, mm."""
+        return float(self.knots[-1])
+
+    @property
+    def grain(self) -> float:
+        """The period over a turn: factor of small distances that are given in rad."""
+        return self.period / TURN
 
     def cuts_between(self, low: float, high: float) -> Array:
         """Return the cuts between two cam angles, these included.
@@ -124,7 +132,7 @@ class Program(Brief, Displacement):
         -------
         (n,) array, rad
         """
-        cuts = np.append(self.cuts, self.cuts + TURN)
+        cuts = np.append(self.cuts, self.cuts + self.period)
         return np.union1d([low, high], cuts[(cuts > low) & (cuts < high)])
 
     def sides(self, cuts: Sequence[Array]) -> tuple[Array, Array]:
@@ -133,7 +141,7 @@ class Program(Brief, Displacement):
         periods, middle = self.within(0.5 * (low + high))
         index = np.tile(np.searchsorted(self.knots[1:-1], middle), 2)
         ends = np.concatenate([low, high])
-        return ends, self.lift.on_pieces(index, ends - np.tile(periods, 2) * TURN, 2)
+        return ends, self.lift.on_pieces(index, ends - np.tile(periods, 2) * self.period, 2)
 
     def phases(self, kind: str) -> list[tuple[float, float]]:
         """Return start and end, rad, of every phase of a `kind`, such as rise."""
@@ -191,7 +199,7 @@ class Program(Brief, Displacement):
         at_knots = np.abs([survey.before, survey.after]).max(axis=(0, 1))
         scales = np.maximum(inside, at_knots)[:4]
         # a knot is rounded: a derivative on its wrong side is off by its slope times the rounding
-        rounding = 4.0 * np.finfo(float).eps * TURN
+        rounding = 4.0 * np.finfo(float).eps * self.period
         limits = JUMP * scales + rounding * np.append(scales[1:], inside[4])
         jumping = (np.abs(survey.after - survey.before)[:, :4] > limits)[:, 1:]
         return tuple(
@@ -235,7 +243,7 @@ def make_program(
     oscillating : bool
         Whether lifts are angles.
     closed : bool
-        Whether it repeats; else the phases cover a travel, which counts as a turn.
+        Whether it repeats; else the phases cover a travel.
     half : bool
         Whether the phases fill half a turn and are followed by their opposite; the first phase
         then starts with the opposite of the end state of the last.
@@ -295,12 +303,15 @@ def make_program(
 
 
 def _ends(phases: Sequence[Phase], *, closed: bool, half: bool) -> tuple[Array, list[float]]:
-    """Return the angles, rad, and lifts at the starts of phases and at the end of the last."""
-    turn = 0.5 * TURN if half else TURN
-    widths = angles_of(phases, turn) if closed else [float(phase.angle) for phase in phases]
-    share = turn / sum(widths)
-    angles = np.cumsum([0.0, *(width * share for width in widths)])
-    angles[-1] = turn
+    """Return the places and lifts at the starts of phases and at the end of the last."""
+    if closed:
+        turn = 0.5 * TURN if half else TURN
+        widths = angles_of(phases, turn)
+        share = turn / sum(widths)
+        angles = np.cumsum([0.0, *(width * share for width in widths)])
+        angles[-1] = turn
+    else:
+        angles = np.cumsum([0.0, *(float(phase.angle) for phase in phases)])
     heights = levels(phases)
     if closed and not half:
         heights[-1] = 0.0

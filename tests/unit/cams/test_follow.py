@@ -279,7 +279,7 @@ def test_an_arm_does_not_rest_on_what_lies_behind_its_pivot(radius: float) -> No
     follower = Arm(start=0.0, pivot=-66.0 - 40.0j, arm=56.0, radius=radius, hand=-1)
     corners = np.array([110.0, -300.0, -300.0 - 120.0j, 110.0 - 120.0j, 110.0])
     edge = np.concatenate([np.linspace(*ends, 5)[:-1] for ends in pairwise(corners)])
-    seen = follow(edge, follower, np.linspace(0.0, 0.3, 9), carrier=Sliding(30.0))
+    seen = follow(edge, follower, np.linspace(0.0, 9.0, 9), carrier=Sliding(200.0))
     np.testing.assert_allclose(seen.lift, math.asin((40.0 + radius) / 56.0), atol=1e-12)
 
 

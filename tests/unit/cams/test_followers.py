@@ -66,14 +66,14 @@ CASES = {
     ),
     "stem over a plate": Case(
         Stem(start=0.0, tilt=0.3, radius=6.0),
-        Sliding(15.0),
-        Touch(radius=6.0, slide=15.0, tilt=0.3),
+        Sliding(7.0),
+        Touch(radius=6.0, slide=1, tilt=0.3),
         10.0,
     ),
     "arm over a plate": Case(
         Arm(start=-0.1, arm=60.0, pivot=-70.0 + 6.0j, hand=-1, radius=6.0),
-        Sliding(15.0),
-        Touch(start=-0.1, swings=True, arm=60.0, pivot=70.0, height=6.0, radius=6.0, slide=15.0),
+        Sliding(7.0),
+        Touch(start=-0.1, swings=True, arm=60.0, pivot=70.0, height=6.0, radius=6.0, slide=1),
         0.2,
     ),
 }

@@ -350,7 +350,7 @@ def _demand_motion(result: Any, found: Scene) -> None:
     """Demand that the follower moves by its lift, upwards or against the cam's own turn."""
     *cams, follower, _ = found.bodies
     driver = result.driver
-    motion = result.motion(found.places / driver.scale * driver.rate)
+    motion = result.motion(found.places / driver.scale)
     for cam in cams:
         if result.form.slides:
             assert cam.pose.shift == pytest.approx(found.places + 0j)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
@@ -109,7 +108,7 @@ class CamResult(PartsResult):
     @property
     def angles(self) -> Array:
         """The cam angles of tables, (n,) rad: a turn in steps of the design, both ends."""
-        return even_angles(self.design.output, self.driver, self.program.open)
+        return even_angles(self.design.output, self.driver, self.program)
 
     def motion(self, theta: ArrayLike | None = None) -> Columns:
         """Return the exact motion of the follower, pressure angle and radii of curvature.
@@ -147,7 +146,7 @@ class CamResult(PartsResult):
     def motion_of_turn(self) -> Columns:
         """The table of `motion` over a turn, at both sides of all knots."""
         turn = self.angles
-        turn = np.append(turn[turn < 2.0 * math.pi], np.nextafter(2.0 * math.pi, 0.0))
+        turn = np.append(turn[turn < self.program.period], np.nextafter(self.program.period, 0.0))
         return self.motion_at(with_both_sides(turn, self.program.knots))
 
     def _asked(self, theta: ArrayLike | None) -> Array:
@@ -157,9 +156,9 @@ class CamResult(PartsResult):
         driver = self.driver
         if not self.form.slides:
             return angles("theta", theta)
-        slack = WHOLE * driver.turn
-        ways = angles("theta", theta, 0.0, driver.turn, slack, driver.unit)
-        return np.minimum(ways / driver.scale, 2.0 * math.pi)
+        travel = self.program.period
+        places = angles("theta", theta, 0.0, travel, WHOLE * travel, driver.unit)
+        return np.minimum(places, travel)
 
     def motion_at(self, theta: Array) -> Columns:
         """Return the table of `motion` at cam angles `theta`, rad; a whole travel is 2*pi."""
@@ -290,12 +289,12 @@ class CamResult(PartsResult):
         InfeasibleError
             If the cam is impossible.
         """
-        left, points, normals = self.wall(wall).places_at(self._asked(theta))
-        driver = self.driver
-        if self.form.slides:
-            fixed = points + driver.scale * left
-        else:
-            fixed = points * np.exp((-1j if self.design.cam.clockwise else 1j) * left)
+        touched, driver = self.wall(wall), self.driver
+        left, points, normals = touched.places_at(self._asked(theta))
+        turn, shift = touched.carrier.frame(left)
+        if touched.clockwise:
+            turn, shift = np.conj(turn), -np.conj(shift)
+        fixed = points * turn + shift
         return Columns(
             {
                 driver.column: driver.scale * left,

@@ -32,7 +32,7 @@ def _places(result: CamResult) -> tuple[str, str]:
 
 def _knots(result: CamResult) -> tuple[MarkedPlace, ...]:
     driver = result.driver
-    return knot_marks(driver.scale * np.asarray(result.program.knots), 0.0, driver.turn)
+    return knot_marks(driver.scale * np.asarray(result.program.knots), 0.0, driver.whole)
 
 
 def _of_lift(name: str, result: CamResult) -> Chart:

@@ -52,7 +52,7 @@ def curvature_columns(
         found = curve.contact(theta, 0)
         return np.asarray(found.turning.c[0] / found.pitch_speed.c[0])
 
-    study = curvature_study(points, exact, counts, closed=motion.program.closed)
+    study = curvature_study(points, exact, counts, motion.program.period, motion.program.closed)
     columns = {
         "points": study.count.astype(np.float64),
         "spacing_mm": study.spacing,

@@ -69,7 +69,7 @@ def _motion(result: CamResult) -> Tree:
         "deviation": _deviation(program, scale, unit),
         **{
             name: Fact(
-                scale * peak / driver.rate**order,
+                scale * peak,
                 meaning,
                 unit=f"{unit}/{driver.per}{order if order > 1 else ''}",
                 shown=True,

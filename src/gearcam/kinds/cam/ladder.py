@@ -55,7 +55,7 @@ def _solid(result: CamResult) -> Ladder:
 def _contact(result: CamResult) -> Ladder:
     """Return the lift from the polygon of the first finished profile, over chord tolerance."""
     wall = result.cam.walls[0]
-    theta = np.linspace(0.0, 2.0 * math.pi, _ANGLES, endpoint=False)
+    theta = np.linspace(0.0, wall.program.period, _ANGLES, endpoint=False)
     own, outlines = _own(result), dict[float, Array]()
 
     def make(tolerance: float) -> tuple[Array, int]:
@@ -84,7 +84,7 @@ def _cam(result: CamResult) -> Ladder:
     curve, program = motion.pitch_curve, motion.program
 
     def make(count: float) -> tuple[Array, Array]:
-        theta = np.arange(int(count), dtype=np.float64) * (2.0 * math.pi / count)
+        theta = np.arange(int(count), dtype=np.float64) * (program.period / count)
         s, ds = program.derivatives(theta, 1)
         points: Plane = np.conj(curve.trace(theta, s, ds)[0])  # counter-clockwise
         return theta, three_point_curvature(points, closed=program.closed)

@@ -16,6 +16,7 @@ from gearcam.numeric.arrays import Array
 if TYPE_CHECKING:
     from gearcam.cams.carriers import Driver
     from gearcam.kinds.cam.design import CamOutputSpec
+    from gearcam.laws.program import Program
 
 _WAY_STEP: Final = 1.0
 """Default step of a translating cam's travel, mm."""
@@ -28,7 +29,7 @@ _MOST: Final = 1e6
 """Largest number of steps of a table."""
 
 
-def even_angles(output: CamOutputSpec, driver: Driver, slides: bool) -> Array:
+def even_angles(output: CamOutputSpec, driver: Driver, program: Program) -> Array:
     """Return the cam angles of tables, including both ends.
 
     Parameters
@@ -37,20 +38,20 @@ def even_angles(output: CamOutputSpec, driver: Driver, slides: bool) -> Array:
         With the step.
     driver : Driver
         Unit of the cam's angle or travel.
-    slides : bool
-        Whether it slides: its travel may end with a shorter step.
+    program : Program
+        The lift; a travel may end with a shorter step.
 
     Returns
     -------
-    (n,) array, rad
+    (n,) array, rad or mm
 
     Raises
     ------
     InfeasibleError
         If there are more than a million.
     """
-    turn = 2.0 * math.pi
-    step = (output.way_step or _WAY_STEP) / driver.rate if slides else output.motion_step
+    turn, slides = program.period, program.open
+    step = output.way_step or _WAY_STEP if slides else output.motion_step
     if step < turn / _MOST:
         key = f"output.{'way_step' if slides else 'motion_step'}_{driver.unit}"
         least = turn / _MOST * driver.scale

@@ -94,7 +94,6 @@ class Translating(Form):
         return make_sliding(
             program,
             make_follower_over_plate(design.follower),
-            travel=way,
             height=blank.height or 0.0,
             length=blank.length,
             groove=cam.walls == "both",
@@ -153,7 +152,7 @@ class Translating(Form):
 
         place, (motion,) = result.design.output.place or 0.0, result.cam.motions
         reach = 0.5 * float(np.ptp(result.profile.vertices))
-        shapes = follower(motion, place / result.driver.scale, reach)
+        shapes = follower(motion, place, reach)
         return _drawing(result, shapes, place)
 
     def paths(self, result: CamResult, radius: float | None) -> Mapping[str, Contour | Path]:
