@@ -1,4 +1,4 @@
-"""What a cam says of itself beside the truth, by families of numbers."""
+"""What a cam says of itself beside the truth, by groups of numbers."""
 
 from __future__ import annotations
 
@@ -263,15 +263,27 @@ def judged(found: Iterator[Row]) -> dict[str, tuple[float, float]]:
     return made
 
 
+_KNOWN = 1e-11
+"""Share of its size by which a number without an estimate may be off."""
+
+
 def faults(
-    told: Mapping[str, float], found: Mapping[str, tuple[float, float]], most: float = 100.0
+    told: Mapping[str, float],
+    found: Mapping[str, tuple[float, float]],
+    most: float = 100.0,
+    known: float = _KNOWN,
 ) -> list[str]:
     """What is not honest: estimates below the true error, or above so many times it.
 
-    Where both are rounding, below 1e-13 of the size, only the first counts.
+    Where both are rounding, below 1e-13 of the size, only the first counts. Numbers without an
+    estimate may be off by a share of their size, `known`.
     """
     made = []
     for name, (true, size) in found.items():
+        if name not in told:
+            if true > known * size:
+                made.append(f"{name}: off by {true:.3g}, of {size:.3g}")
+            continue
         estimate = told[name]
         idle = max(estimate, true) <= 1e-13 * size
         if not (true <= estimate and (idle or estimate <= most * true)):

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -34,9 +34,6 @@ _CELLS = 4
 _MOST_CELLS = 1024
 _AGREED = 1e-14
 """Gauss points per cell of a segment; cells are halved until sums agree to this share."""
-
-_CANCELLED = 40.0
-"""Factor for the integral of a rough curve, in which errors partly cancel."""
 
 _ROUNDING = 16.0 * np.finfo(float).eps
 """Relative rounding of sums."""
@@ -206,13 +203,12 @@ class Size(Brief):
     ----------
     perimeter, area : float, mm and mm^2
         Length of the profile, and area inside it.
-    perimeter_error, area_error : float, mm and mm^2
-        Estimated errors.
+    area_error : float, mm^2
+        Estimated error of the area inside the computed curve: of quadrature, and rounding.
     """
 
     perimeter: float
     area: float
-    perimeter_error: float
     area_error: float
 
 
@@ -231,49 +227,29 @@ def size_of(segments: ProfileSegments, nodes: int = _GAUSS, most: int = _MOST_CE
     Returns
     -------
     Size
-        Errors: extrapolated differences from the result with half as many cells, the error of the
-        lift, and rounding.
+        Its error includes the difference from the result with half as many cells.
     """
-    cells, changes = _CELLS, np.full(2, np.inf)
+    cells = _CELLS
     found, _ = _integrals(segments, cells, nodes)
     while True:
         cells, before = 2 * cells, found
         found, rounding = _integrals(segments, cells, nodes)
-        earlier, changes = changes, np.abs(found - before)
+        changes = np.abs(found - before)
         if np.all(changes <= _AGREED * found) or cells >= most:
             break
-    falls = np.ones(2)
-    fell = np.isfinite(earlier) & (earlier > 0.0)
-    falls[fell] = np.minimum(1.0, 2.0 * changes[fell] / earlier[fell])
     perimeter, area = found.tolist()
-    unknown = _unknown(segments, cells, nodes, found)
-    errors = (changes * falls + unknown + rounding + _ROUNDING * found).tolist()
-    return Size(perimeter=perimeter, area=area, perimeter_error=errors[0], area_error=errors[1])
+    return Size(
+        perimeter=perimeter,
+        area=area,
+        area_error=float(changes[1]) + rounding + _ROUNDING * area,
+    )
 
 
-def _unknown(segments: ProfileSegments, cells: int, nodes: int, found: Array) -> Array:
-    """Return the errors of perimeter and area from the error of the lift.
-
-    Errors between rows alternate in sign and mostly cancel in an integral; rough curves show how
-    much remains. Between corners, which move with the lift, the largest error counts everywhere.
-    """
-    program = segments.curve.program
-    if not program.rough or segments.corner[1:].any():
-        off = program.errors[0] * segments.curve.follower.lever
-        return off * np.array([2.0 * math.pi, found[0]])
-    rough = [
-        replace(segments, curve=replace(segments.curve, program=replace(program, lift=lift)))
-        for lift in program.rough
-    ]
-    misses = [np.abs(_integrals(one, cells, nodes)[0] - found) for one in rough]
-    return _CANCELLED * np.max(misses, axis=0) / program.fall
-
-
-def _integrals(segments: ProfileSegments, cells: int, nodes: int) -> tuple[Array, Array]:
+def _integrals(segments: ProfileSegments, cells: int, nodes: int) -> tuple[Array, float]:
     """Return perimeter and area with given numbers of cells per segment, and nodes per cell.
 
-    Also their errors from the rounding of angles, of nodes and of ends, which are large where a
-    curve moves far within such a rounding.
+    Also the error of the area from the rounding of angles, of nodes and of ends, which are large
+    where a curve moves far within such a rounding.
     """
     places, weights = np.polynomial.legendre.leggauss(nodes)
     share = ((np.arange(cells)[:, None] + 0.5 * (places + 1.0)) / cells).ravel()
@@ -285,6 +261,6 @@ def _integrals(segments: ProfileSegments, cells: int, nodes: int) -> tuple[Array
     points, velocities = segments.moving(index, parameter)
     rates = np.stack([np.abs(velocities), 0.5 * (np.conj(points) * velocities).imag])
     grain = np.spacing(np.maximum(np.abs(segments.start), np.abs(segments.end)))
-    rounding = np.abs(rates).reshape(2, count, -1).max(axis=2) @ grain
+    rounding = float(np.abs(rates[1]).reshape(count, -1).max(axis=1) @ grain)
     length, swept = rates * run * np.tile(weight, count)
     return np.array([math.fsum(np.abs(length)), abs(float(swept.sum()))]), rounding

@@ -28,7 +28,7 @@ from gearcam.laws.ratio.span import angle_text
 from gearcam.numeric.arrays import Array, Ints, Mask
 from gearcam.numeric.bulges import as_pairs
 from gearcam.numeric.contour import Contour, Run
-from gearcam.numeric.sampling import MOST, Sampler
+from gearcam.numeric.sampling import MOST, Dense, Sampler
 
 _NO_MATE = 3.0
 """Reach in pitches beyond that of any flank."""
@@ -163,9 +163,18 @@ class Outline(Brief):
         return self.sampler.chords[2]
 
     @cached_property
+    def _dense(self) -> Dense:
+        return self.sampler.dense(self.oversampling)
+
+    @cached_property
     def dense_teeth(self) -> tuple[Run, ...]:
         """Dense points of the teeth, counter-clockwise."""
-        return self.sampler.dense(self.oversampling).runs(self.toothing.track.clockwise)
+        return self._dense.runs(self.toothing.track.clockwise)
+
+    @property
+    def cubics_missed(self) -> float:
+        """Bound of the area between the teeth and cubics through their dense points, mm^2."""
+        return self._dense.missed(self.sampler.at)
 
     @cached_property
     def contour(self) -> Contour:

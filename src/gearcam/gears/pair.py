@@ -43,6 +43,9 @@ PICTURED = 721
 FLANK_POINTS = 17
 """Default number of points on each flank."""
 
+_STRAIGHT = 1e12
+"""Least radius of curvature, in lengths of the centrode, of what is straight but for rounding."""
+
 COARSEST = 1.0 / 50.0
 """Coarsest tolerance of an outline, in modules: beyond it teeth lose their shape."""
 
@@ -393,7 +396,8 @@ def make_gear(
 
 def gear_tree(gear: Gear) -> dict[str, Any]:
     """Return the facts of a wheel as a nested dict (see `gearcam.base.facts.Facts`)."""
-    cutter, bends = gear.toothing.cutter, gear.pair.rolling.tracks[gear.wheel - 1].bends
+    cutter, track = gear.toothing.cutter, gear.toothing.track
+    convex, concave, straight = track.convex.radius, track.concave.radius, _STRAIGHT * track.length
     pinion = cutter.kind == "pinion"
     return {
         "name": gear.name,
@@ -401,8 +405,8 @@ def gear_tree(gear: Gear) -> dict[str, Any]:
         "teeth": gear.toothing.teeth,
         "centrode": {
             "length_mm": Fact(gear.toothing.length, "centrode length"),
-            "min_convex_radius_mm": bends.radius if bends.radius < math.inf else None,
-            "max_concave_curvature_per_mm": bends.concave,
+            "min_convex_radius_mm": convex if convex < straight else None,
+            "max_concave_curvature_per_mm": 1.0 / concave if concave < straight else 0.0,
             "closed": gear.toothing.closed,
         },
         "cutter": cutter.kind,

@@ -4,17 +4,15 @@ Both share one parameter, the driver angle `phi` (rad, any number of turns), and
 ``s(phi)``, since rolling gives equal lengths. The type of the mate follows from the law's span and
 is one number w, `mate`: 1 for an external wheel, 0 for a rack, whose shaft is infinitely far, and
 -1 for a ring. The driver's radius is ``r1 = A*i/(1 + w*i)``, the mate's shaft is at w*A, and the
-curvatures obey ``kappa1 + kappa2 = (1 + w*i)/v`` (Euler and Savary). Their extremes carry error
-bounds, from the errors of the ratio and its derivatives.
+curvatures obey ``kappa1 + kappa2 = (1 + w*i)/v`` (Euler and Savary).
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Final, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -32,31 +30,6 @@ from gearcam.numeric.pose import Pose
 
 _MARGIN = 2.0
 """Pitches beyond an open pair's ends over which its last teeth and fillets are formed."""
-
-EPS: Final = float(np.finfo(float).eps)
-
-FEW: Final = 8.0
-"""Largest rounding error of a number after a few operations, in units of the last place."""
-
-_STEP: Final = 1e-100
-"""Complex step by which a curvature is differentiated: it has no cancellation."""
-
-
-class Bends(NamedTuple):
-    """Least convex radius and largest concave curvature of a centrode.
-
-    Parameters
-    ----------
-    radius, radius_error : float, mm
-        Least convex radius; infinite where no part is known to be convex.
-    concave, concave_error : float, 1/mm
-        Largest concave curvature; 0 for a convex centrode.
-    """
-
-    radius: float
-    radius_error: float
-    concave: float
-    concave_error: float
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -148,11 +121,6 @@ class Rolling(Brief):
         first, second = extremes_of_each(curvatures, self.cells(self._tooth_knots), cells=True)
         return first, second
 
-    def curvatures_of(self, ratios: Sequence[Any]) -> Any:
-        """Return both centrodes' curvatures, 1/mm, of a ratio and two derivatives, any numbers."""
-        _, first, both = _bends(*_radii(ratios, self.mate))
-        return np.array([first, both - first]) / self.center_distance
-
     def cells(self, knots: Array) -> Array:
         """Return `knots`, and between them those of the arc length, dense where it changes fast.
 
@@ -171,12 +139,6 @@ class Rolling(Brief):
         low, high = self.arc.angle(np.array([-self.margin, self.arc.length + self.margin]))
         return np.concatenate([[low], self.law.knots, [high]])
 
-    @property
-    def size_error(self) -> float:
-        """Relative error of module or centre distance, whichever was solved."""
-        longest = max(track.length for track in self.tracks)
-        return self.arc_error / longest + EPS
-
     @cached_property
     def arc_error(self) -> float:
         """Estimated error of the centrodes' length, mm, and of arc lengths along them.
@@ -186,7 +148,7 @@ class Rolling(Brief):
         """
         arc, law = self.arc, self.law
         measured = 2.0 * missed(arc.unit, arc.speed, arc.unit.knots) + law.function_error
-        rounding = 4.0 * EPS * arc.unit_length
+        rounding = 4.0 * float(np.finfo(float).eps) * arc.unit_length
         lobes = max(track.length for track in self.tracks) / arc.length
         return float(self.center_distance * (measured + rounding) * lobes)
 
@@ -253,69 +215,6 @@ class Centrode(Track):
     def curvature_extremes(self) -> tuple[Array, Array]:
         """See `Track.curvature_extremes`."""
         return self.rolling.curvature_extremes[self.wheel - 1]
-
-    @cached_property
-    def bends(self) -> Bends:
-        """Its extreme curvatures, with their errors."""
-        _, kappa = self.curvature_extremes
-        errors = curvature_errors(self)
-        low, high = _most_of(kappa, errors)
-        radius = 1.0 / float(kappa.max()) if low > 0.0 else math.inf
-        missed = max(radius - 1.0 / high, 1.0 / low - radius) if low > 0.0 else 0.0
-        low, high = (max(most, 0.0) for most in _most_of(-kappa, errors))
-        concave = max(-float(kappa.min()), 0.0)
-        return Bends(radius, missed, concave, max(high - concave, concave - low))
-
-
-def systematic_errors(law: RatioLaw, phi: Array) -> Array:
-    """Return systematic errors of the ratio and its first two derivatives.
-
-    Parameters
-    ----------
-    law : RatioLaw
-        The ratio.
-    phi : (n,) array, rad
-        Driver angles in the first lobe, or in an open pair's travel.
-
-    Returns
-    -------
-    (3, n) array
-        Sum of the expansion error of a Python function, the rounding of knots and of the ratios
-        around them (larger the closer the knots are), and the residual of a solved law. Random
-        scatter is not included.
-    """
-    knots, order = law.knots, np.arange(3)[:, None]
-    piece = np.clip(np.searchsorted(knots, phi), 1, len(knots) - 1) - 1
-    width, rise = np.diff(knots)[piece], np.abs(np.diff(law.ratio(knots)))[piece]
-    found = np.abs(law.ratio.derivatives(phi, 2))
-    own = np.array(law.function_errors[1:])[:, None] + EPS * (found[0] + rise) / width**order
-    return own + (EPS * (FEW + order * law.period / width) + law.solved_error) * found
-
-
-def curvature_errors(track: Centrode) -> Array:
-    """Return errors of a centrode's extremes of curvature, 1/mm.
-
-    Scatter near them, plus the systematic error of the ratio. An extreme of a smooth stretch is
-    flat: the error of its place enters squared and is below rounding. An extreme at a knot is
-    evaluated at the knot itself.
-    """
-    rolling, number = track.rolling, track.wheel - 1
-    law, (phi, kappa) = rolling.law, track.curvature_extremes
-
-    def curvature(x: Array) -> Array:
-        return rolling.curvatures_of(law.ratio.derivatives(x, 2))[number]
-
-    found = law.scatter(phi, curvature) + rolling.size_error * np.abs(kappa)
-    for order, error in enumerate(systematic_errors(law, phi)):
-        ratios = [values.astype(complex) for values in law.ratio.derivatives(phi, 2)]
-        ratios[order] += _STEP * 1j
-        found += np.abs(rolling.curvatures_of(ratios)[number].imag) / _STEP * error
-    return found
-
-
-def _most_of(values: Array, errors: Array) -> tuple[float, float]:
-    """Return lower and upper bounds of the largest of `values`, given their `errors`."""
-    return float((values - errors).max()), float((values + errors).max())
 
 
 def _complex(real: Array, imag: Array) -> Plane:

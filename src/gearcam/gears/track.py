@@ -77,7 +77,7 @@ class Frames(NamedTuple):
     speed: Array
     s: Array
 
-    def some(self, which: Ints | Mask | int) -> Frames:
+    def some(self, which: Ints | Mask | slice | int) -> Frames:
         """Return the frames at some of the parameters; an empty curvature stays empty."""
         kappa = self.kappa[which] if self.kappa.size else self.kappa
         return Frames(self.p[which], self.t[which], kappa, self.speed[which], self.s[which])

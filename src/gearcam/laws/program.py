@@ -78,10 +78,8 @@ class Program(Brief, Displacement):
         Knots and places where a law bends sharply; extremes are searched between them.
     errors : (float, float, float, float)
         Estimated errors of the lift, mm or rad, and of its first three derivatives beyond rounding.
-    rough : tuple of Piecewise
-        Curves through fewer rows; their integrals differ from those of the lift by `fall` errors.
     fall : float
-        Error of the rough curves over that of the lift.
+        Error of a curve through every second row over that of the lift; 1 where there are no rows.
     deviation : Deviation, optional
         Largest distance of a smoothed lift from the rows.
     given : (n, 2) array, optional
@@ -94,7 +92,6 @@ class Program(Brief, Displacement):
     stretches: tuple[PlacedPhase, ...]
     cuts: Array
     errors: tuple[float, ...] = EXACT
-    rough: tuple[Piecewise, ...] = ()
     fall: float = 1.0
     deviation: Deviation | None = None
     given: Array | None = None

@@ -88,13 +88,11 @@ def program_of_rows(theta: Array, lift: Array, tolerance: float, spread: float) 
     curve = _curve(theta[::step], values[::step])
     level = max(tolerance, TYPED * float(np.ptp(lift)))
     errors, fall = _errors(theta[::step], values[::step])
-    pair = 2 * step
     return Program(
         lift=curve,
         stretches=stretches_of(curve, theta, values, level, cutoff),
         cuts=curve.knots,
         errors=errors,
-        rough=tuple(_rough(curve.knots, theta[k::pair], values[k::pair]) for k in (0, step)),
         fall=fall,
         deviation=deviation,
         given=np.column_stack([theta, lift]) if tolerance else None,
@@ -157,13 +155,6 @@ def _curve(theta: Array, lift: Array) -> Piecewise:
     left, right = (side[-1].tolist() for side in both)
     over = from_both_ends(left, right, float(x[-2]) - TURN, float(x[-1]) - TURN)
     return piecewise(np.concatenate([[0.0], theta, [TURN]]), [over, *curve.pieces])
-
-
-def _rough(knots: Array, theta: Array, lift: Array) -> Piecewise:
-    """Return the curve through rows with the knots of a finer one, which are among its own."""
-    curve = _curve(theta, lift)
-    owner = np.searchsorted(curve.knots[1:-1], 0.5 * (knots[:-1] + knots[1:]))
-    return piecewise(knots, [curve.pieces[k] for k in owner.tolist()])
 
 
 def _errors(theta: Array, lift: Array) -> tuple[tuple[float, ...], float]:

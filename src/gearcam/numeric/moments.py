@@ -133,8 +133,8 @@ def halving(points: Plane, tangents: Plane, middles: Plane, between: Plane) -> f
     return float(np.abs(parts.reshape(-1, 2).sum(axis=1) - whole).sum())
 
 
-def curve_errors(curves: Sequence[tuple[Array, Array]]) -> Moments:
-    """Return the errors of moments of sampled curves, not negative.
+def area_error(curves: Sequence[tuple[Array, Array]]) -> float:
+    """Return the error of the area at sampled curves, mm^2.
 
     Parameters
     ----------
@@ -143,7 +143,7 @@ def curve_errors(curves: Sequence[tuple[Array, Array]]) -> Moments:
 
     Returns
     -------
-    Moments
+    float
         Sum over curves of the absolute change from every second point to all points, extrapolated
         by the decrease from every fourth to every second.
     """
@@ -151,17 +151,17 @@ def curve_errors(curves: Sequence[tuple[Array, Array]]) -> Moments:
     change = np.abs(half - all_of)
     before = np.abs(quarter - half)
     fall = np.clip(before / np.where(change > 0.0, change, 1.0), _LEAST_FALL, _FALL)
-    return _moments((_SAFE * change / fall).sum(axis=1))
+    return float((_SAFE * change / fall).sum())
 
 
-def _by_curve(curves: Sequence[tuple[Array, Array]], every: int) -> Plane:
-    """Return area, first and polar moment of each curve from some of its points, (3, n)."""
+def _by_curve(curves: Sequence[tuple[Array, Array]], every: int) -> Array:
+    """Return the area at each curve from some of its points."""
     kept = [np.append(np.arange(0, len(points) - 1, every), -1) for points, _ in curves]
     some = [(points[k], tangents[k]) for (points, tangents), k in zip(curves, kept, strict=True)]
-    found = _on_cubics(*(as_complex(np.vstack(one)) for one in zip(*some, strict=True)))
+    found = _on_cubics(*(as_complex(np.vstack(one)) for one in zip(*some, strict=True)))[0].real
     starts = np.cumsum([0, *(len(k) for k in kept)])
-    found[:, starts[1:-1] - 1] = 0.0  # from one curve to the next
-    return np.asarray(np.add.reduceat(found, starts[:-1], axis=1), dtype=np.complex128)
+    found[starts[1:-1] - 1] = 0.0  # from one curve to the next
+    return np.asarray(np.add.reduceat(found, starts[:-1]))
 
 
 def _on_cubics(p: Plane, u: Plane) -> Plane:

@@ -17,7 +17,7 @@ from typing import Any, Final
 import numpy as np
 
 from gearcam.numeric.contour import Contour
-from gearcam.numeric.moments import Moments, curve_errors
+from gearcam.numeric.moments import Moments, area_error
 from gearcam.parts.body import Body, Edge, Part
 
 _PER_MM3: Final = 1e-9
@@ -114,62 +114,21 @@ def _(part: Part) -> tuple[Moments, float]:
     return total, height
 
 
-def quadrature_error(part: Part) -> Moments:
-    """Return the errors of a part's moments (see `numeric.moments.curve_errors`)."""
+def quadrature_error(part: Part) -> float:
+    """Return the error of a part's volume, mm^3, from sampled edges (see `area_error`)."""
     return sum(
-        (
-            layer.height * _missed(edge)
-            for layer in (*part.layers, *part.pockets)
-            for edge in layer.edges
-        ),
-        start=Moments(),
+        layer.height * _missed(edge)
+        for layer in (*part.layers, *part.pockets)
+        for edge in layer.edges
     )
 
 
-def _missed(edge: Edge) -> Moments:
-    rounding = _ROUNDING * error_of(edge.moments)
+def _missed(edge: Edge) -> float:
+    rounding = _ROUNDING * abs(edge.moments.area)
     if not isinstance(edge, Contour):
         return rounding
     pieces = [piece for run in edge.runs for piece in run.pieces]
-    return curve_errors([(one.points, one.tangents) for one in pieces]) + rounding
-
-
-def error_of(difference: Moments) -> Moments:
-    """Return the absolute values of a difference of moments, as their error."""
-    return Moments(
-        area=abs(difference.area),
-        first=complex(abs(difference.first)),
-        polar=abs(difference.polar),
-    )
-
-
-def mass_errors(part: Part, missed: Moments, density: float) -> dict[str, float]:
-    """Return the errors of a part's mass properties.
-
-    Parameters
-    ----------
-    part : Part
-        The finished part.
-    missed : Moments
-        Errors of the moments of its volume, not negative; equal for all steps.
-    density : float, kg/m^3
-        Density of its material.
-
-    Returns
-    -------
-    dict
-        Errors of volume, centroid and inertia, with the names of `MassProperties.as_dict`; the
-        relative error of the mass is that of the volume.
-    """
-    made = mass_properties(part, density)
-    middles = [0.5 * (step.low + step.high) for step in part.steps]
-    off = max(abs(middle - made.centroid[2]) for middle in middles)
-    tilt = math.hypot(missed.first.real + made.eccentricity * missed.area, off * missed.area)
-    return {
-        "volume_mm3": missed.area,
-        "centroid_mm": tilt / made.volume,
-        "inertia_kg_mm2": density * _PER_MM3 * missed.polar,
-    }
+    return area_error([(one.points, one.tangents) for one in pieces]) + rounding
 
 
 def mass_properties(body: Body, density: float) -> MassProperties:

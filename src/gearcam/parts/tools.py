@@ -49,20 +49,6 @@ _ALL: Final = 8000
 _BLOCK: Final = 1 << 16
 """Pairs of points processed at once: as many as the cache holds."""
 
-_SHARE: Final = 0.99
-"""Steps with more than this share of the largest curvature may contain the largest."""
-
-_SCATTER: Final = 1.5
-"""Safety factor on the error from parabolas, for the next order of the curvature."""
-
-_ROUNDING: Final = 32.0 * float(np.finfo(float).eps)
-"""Rounding of the angle between two tangents, rad, and of a width."""
-
-_HOW: Final = (
-    "inner radii by parabolas through curvatures of dense steps; slots, where they are as narrow,"
-    " by a finer search"
-)
-
 _FINER: Final = np.linspace(-1.5, 1.5, 121)
 """Positions, in steps of the first search, at which the narrowest slot is refined."""
 
@@ -81,27 +67,17 @@ class ToolLimits(Brief):
         Width of the narrowest slot; inf without one.
     slot_place : (float, float) or None, mm
         Its middle.
-    inner_error, slot_error : float, mm
-        Estimated error of the radius, and an error bound of the width.
     """
 
     inner_radius: float
     inner_place: tuple[float, float] | None
     slot: float
     slot_place: tuple[float, float] | None
-    inner_error: float = 0.0
-    slot_error: float = 0.0
 
     @property
     def diameter(self) -> float:
         """Diameter of the largest tool that reaches every point, mm."""
         return min(2.0 * self.inner_radius, self.slot)
-
-    @property
-    def error(self) -> float:
-        """Estimated error of that diameter, mm."""
-        sizes = ((2.0 * self.inner_radius, 2.0 * self.inner_error), (self.slot, self.slot_error))
-        return max(error for size, error in sizes if size - error <= self.diameter)
 
     def as_dict(self) -> dict[str, Any]:
         """Return the limits as JSON data, without those that do not exist."""
@@ -135,51 +111,23 @@ def tool_limits(contour: Contour, *, hollow: bool = False) -> ToolLimits:
     points = as_complex(np.concatenate([run.points for run in runs]))
     tangents = as_complex(np.concatenate([run.tangents for run in runs]))
     size = float(np.ptp(contour.vertices, axis=0).max())
-    begins = zip(ends.tolist(), runs, strict=True)
-    joints = [end - len(run.points) + one for end, run in begins for one in run.joints]
-    radius, off, place = _inner(points, tangents, ends, joints, size)
+    radius, place = _inner(points, tangents, ends, size)
     # no parts of a convex outline face each other
-    nothing = math.inf, 0.0, None
-    slot, missed, middle = nothing if place is None else _slot(points, tangents, ends)
+    slot, middle = (math.inf, None) if place is None else _slot(points, tangents, ends)
     return ToolLimits(
         inner_radius=radius,
         inner_place=None if place is None else (place.real, place.imag),
         slot=slot,
         slot_place=None if middle is None else (middle.real, middle.imag),
-        inner_error=off,
-        slot_error=missed,
     )
 
 
-def tool_errors(tools: Iterable[ToolLimits]) -> dict[str, tuple[float, str]]:
-    """Return the error of the diameters of largest tools.
-
-    Parameters
-    ----------
-    tools : iterable of ToolLimits
-        Limits of each part.
-
-    Returns
-    -------
-    dict of str to (float, str)
-        The largest error, and its method; empty if no round tool is limited, or if inner corners
-        allow none.
-    """
-    errors = [one.error for one in tools if 0.0 < one.diameter < math.inf]
-    return {"tool_mm": (max(errors), _HOW)} if errors else {}
-
-
-def _inner(
-    points: Plane, tangents: Plane, ends: Ints, joints: list[int], size: float
-) -> tuple[float, float, complex | None]:
-    """Return the smallest concave radius, its error and its position.
-
-    `ends` are the indices after the runs, `joints` those at which curves join smoothly.
-    """
+def _inner(points: Plane, tangents: Plane, ends: Ints, size: float) -> tuple[float, complex | None]:
+    """Return the smallest concave radius and its position; `ends` are the indices after runs."""
     turn = -np.angle(np.append(tangents[1:], tangents[0]) * np.conj(tangents))
     corners = np.flatnonzero(turn[ends - 1] > _CORNER)
     if corners.size:
-        return 0.0, 0.0, complex(points[ends[corners[0]] - 1])
+        return 0.0, complex(points[ends[corners[0]] - 1])
     # for an arc the chord is shorter by the sinc of half the angle
     length = np.abs(np.diff(points)) * (1.0 + turn[:-1] ** 2 / 24.0)
     length[ends[:-1] - 1] = 0.0  # a run begins where the one before it ends
@@ -187,48 +135,12 @@ def _inner(
     bend = np.divide(turn[:-1], length, out=np.zeros_like(length), where=real)
     k = int(bend.argmax())
     if bend[k] * size <= _GRAIN:
-        return math.inf, 0.0, None
-    cuts = np.zeros(len(points), dtype=bool)
-    cuts[joints] = cuts[ends - 1] = cuts[ends[:-1]] = True
-    more = _SCATTER * _peaks(bend[real], length[real], np.cumsum(cuts, dtype=np.int64)[:-1][real])
-    radius = 1.0 / float(bend[k])
-    off = radius**2 * (max(float((bend[real] + more).max() - bend[k]), 0.0) + _ROUNDING / length[k])
-    return radius, off, complex(0.5 * (points[k] + points[k + 1]))
+        return math.inf, None
+    return 1.0 / float(bend[k]), complex(0.5 * (points[k] + points[k + 1]))
 
 
-def _peaks(mean: Array, length: Array, piece: Ints) -> Array:
-    """Return by how much the curvature in a step may exceed its mean there.
-
-    From the flattest parabola with the means of the step and of two neighbours on the same piece,
-    since the curvature may jump between pieces; unknown for pieces of fewer steps.
-    """
-    (of,) = np.nonzero(mean > _SHARE * mean.max())
-    first, last = (np.searchsorted(piece, piece[of], side=side) for side in ("left", "right"))
-    of, first, last = (one[last - first >= 3] for one in (of, first, last))
-    begin = np.clip(of + np.array([[-2], [-1], [0]]), first, last - 3)
-    h, b = (np.stack([values[begin + i] for i in range(3)]) for values in (length, mean))
-    way = 0.5 * (h[1:] + h[:-1])
-    slopes = np.diff(b, axis=0) / way
-    c = np.concatenate([np.zeros_like(way[:1]), np.cumsum(way, axis=0)])
-    second = np.diff(c * c + h * h / 12.0, axis=0) / way
-    q = (slopes[1] - slopes[0]) / (second[1] - second[0])
-    p = slopes[0] - q * second[0]
-    level = b[0] - q * h[0] ** 2 / 12.0
-    middle = np.take_along_axis(c, (of - begin)[None], axis=0)[0]
-    flat = np.abs(q).argmin(axis=0)[None]
-    q, p, level, middle = (
-        np.take_along_axis(one, flat, axis=0)[0] for one in (q, p, level, middle)
-    )
-    ends = middle + np.array([[-0.5], [0.5]]) * length[of]
-    top = np.divide(-0.5 * p, q, out=middle.copy(), where=q < 0.0)
-    places = np.concatenate([ends, np.clip(top, *ends)[None]])
-    found = np.zeros_like(mean)
-    found[of] = (level + places * (p + q * places)).max(axis=0) - mean[of]
-    return found
-
-
-def _slot(points: Plane, tangents: Plane, ends: Ints) -> tuple[float, float, complex | None]:
-    """Width of the narrowest slot, a bound of its error, and its middle."""
+def _slot(points: Plane, tangents: Plane, ends: Ints) -> tuple[float, complex | None]:
+    """Return the width of the narrowest slot and its middle."""
     last = ends - 1
     first = np.append(0, ends[:-1])
     steps = np.abs(np.diff(points, prepend=points[0]))
@@ -252,16 +164,13 @@ def _slot(points: Plane, tangents: Plane, ends: Ints) -> tuple[float, float, com
     along = way[first[number]] + share * length[number]
     best, pair = _narrowest(*at(number, along))
     if math.isinf(best):
-        return best, 0.0, None
+        return best, None
     (p, n), (q, m) = (at(number[[k]], along[k] + step * _FINER) for k in pair)
     width = _width(p[:, None], n[:, None], q[None], m[None])
     least = width.min(axis=1)
     a = int(least.argmin())
-    beside = least[max(a - 1, 0) : a + 2]
-    # another slot may be narrower by as much as this one was after refinement
-    missed = max(best - float(least[a]), 0.0) + float(beside[np.isfinite(beside)].max() - least[a])
     best = float(least[a])
-    return best, missed + _ROUNDING * best, complex(p[a] + 0.5 * best * n[a])
+    return best, complex(p[a] + 0.5 * best * n[a])
 
 
 def _narrowest(p: Plane, n: Plane) -> tuple[float, tuple[int, int]]:

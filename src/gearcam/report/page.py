@@ -225,10 +225,10 @@ def verdict(findings: tuple[Finding, ...]) -> tuple[str, str]:
 
 def _errors(result: Result, facts: Facts) -> Iterator[tuple[str, str]]:
     """Yield label and value of each error that users act on: the largest of all parts."""
-    for label, names, unit in result.main_errors:
+    for label, names in result.main_errors:
         rows = (facts.quantity(f"accuracy.{name}") for name in names)
         largest = max(rows, key=lambda one: one.value)
-        yield label, f"{shown(largest.value, 2)} {unit or largest.unit}".rstrip()
+        yield label, f"{shown(largest.value, 2)} {largest.unit}".rstrip()
 
 
 @cache

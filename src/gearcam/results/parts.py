@@ -26,13 +26,16 @@ Files = dict[str, bytes]
 Measured = dict[str, Any]
 """Values measured on files, by group of facts."""
 
+Estimates = Mapping[str, tuple[float, str]]
+"""Estimated error and its method, by name."""
+
 MESHES: Final = ("stl", "3mf", "glb")
 """Formats of meshes."""
 
 _STEP_PART: Final = 2e-3
 """Tolerance of STEP surfaces over that of the outlines: their volumes are then good to 1e-6."""
 
-CHORDS: Final = ("outlines, between their points", ["chord_mm"], "")
+CHORDS: Final = ("outlines, between their points", ["chord_mm"])
 """The chord error among the `main_errors`."""
 
 _CHORD_HOW: Final = (
@@ -97,7 +100,7 @@ class PartsResult(Result):
 
     @cached_property
     @abstractmethod
-    def error_rows(self) -> Mapping[str, tuple[float, str]]:
+    def error_rows(self) -> Estimates:
         """Error estimates and their methods by name, without those of chords and files."""
 
     @abstractmethod
@@ -174,13 +177,13 @@ class PartsResult(Result):
         tolerance = self.profile_tolerance
         return DxfStyle(tolerance=tolerance, curves=output.dxf_curves, version=version)
 
-    def errors_of_parts(self) -> Iterator[tuple[str, Sequence[str], str]]:
+    def errors_of_parts(self) -> Iterator[tuple[str, Sequence[str]]]:
         """Yield the `main_errors` of area and volume, if they are estimated for a mass."""
         rows = self.error_rows
         areas = [name for name in rows if name.endswith("area_mm2")]
         if "volume_mm3" in rows:
-            yield from [("area", areas, "")] if areas else []
-            yield "volume (mass in the same proportion)", ["volume_mm3"], ""
+            yield from [("area", areas)] if areas else []
+            yield "volume (mass in the same proportion)", ["volume_mm3"]
 
     def accuracy(self, measured: Mapping[str, Any]) -> dict[str, Any]:
         """Return the error estimates as facts, with ``how`` for each.

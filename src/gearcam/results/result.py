@@ -267,8 +267,8 @@ class Result(Displayed):
         return {}
 
     @property
-    def main_errors(self) -> Sequence[tuple[str, Sequence[str], str]]:
-        """Errors that users act on: label, names of facts of ``accuracy``, unit if no name has it.
+    def main_errors(self) -> Sequence[tuple[str, Sequence[str]]]:
+        """Errors that users act on: label, and names of facts of ``accuracy``.
 
         Of several facts the largest counts.
         """

@@ -239,7 +239,7 @@ def test_files_are_made_and_the_summary_names_the_function(tmp_path: Path) -> No
     summary = json.loads((tmp_path / "mine" / "summary.json").read_text("utf-8"))
     law = {"type": "formula", "phi2": "Python function helpers_processes.swing"}
     assert summary["design"]["law"] == law
-    assert "Python function" in summary["accuracy"]["how"]["law"]
+    assert "Python function" in summary["accuracy"]["how"]["driven_angle_rad"]
     assert len(written.files) > 2
     assert not result.check(tmp_path).summary.get("stale")
     others = [pair(Formula(phi2=given)) for given in (swing, Bent(0.6), TEXT)]
@@ -251,7 +251,7 @@ def test_files_are_made_and_the_summary_names_the_function(tmp_path: Path) -> No
 def test_the_error_of_a_function_is_told() -> None:
     facts = gc.build(pair(Formula(r1=lambda x: 3.0 + 0.2 * np.cos(x)))).facts
     plain = gc.build(pair(Formula(r1="3 + 0.2*cos(phi1)"))).facts
-    assert plain["accuracy.law"] < facts["accuracy.law"] < 1e-13
+    assert plain["accuracy.driven_angle_rad"] < facts["accuracy.driven_angle_rad"] < 1e-13
     told = gc.build(cam(lambda x: x * x * (3 - 2 * x))).facts["accuracy"]
     assert "the lift" in told["how"]["profile_mm"]
     assert 0.0 < told["profile_mm"] < 1e-12

@@ -96,7 +96,7 @@ def test_the_module_shown_is_the_length_over_the_teeth() -> None:
 
 def test_the_accuracy_is_as_told(example: Run) -> None:
     accuracy = example.names["written"].summary["accuracy"]
-    assert math.ulp(2.0 * math.pi) < accuracy["law"] < 2e-14
+    assert math.ulp(2.0 * math.pi) < accuracy["driven_angle_rad"] < 2e-14
     assert math.ulp(100.0) < accuracy["flank_mm"] < 1e-11
     assert 0 < max(accuracy["chord_mm"], *accuracy["dxf_mm"].values()) < 1e-3
 

@@ -36,9 +36,7 @@ PAIR |= {"type", "x", "backlash_mm", "rack"}
 CENTRODE = {"length_mm", "min_convex_radius_mm", "max_concave_curvature_per_mm", "closed"}
 GEAR = {"cutter", "undercut_teeth", "tip_thickness_min_mm", "outline"}
 OUTLINE = {"vertices", "area_mm2", "chord_error_mm"}
-ACCURACY = {"law", "closure_rad", "arc_length_mm", "root_radius_mm", "chord_mm", "size", "ratio"}
-ACCURACY |= {"pressure_angle_deg", "contact_ratio", "tip_thickness_mm", "backlash_mm", "area_mm2"}
-ACCURACY |= {"acceleration_per_rad", "convex_radius_mm", "concave_curvature_per_mm", "flank_mm"}
+ACCURACY = {"driven_angle_rad", "flank_mm", "contact_ratio", "area_mm2", "chord_mm"}
 
 
 def small(**given: Any) -> GearPairResult:

@@ -284,4 +284,4 @@ def test_facts_are_plain_numbers(name: str) -> None:
 def test_facts_of_functions_are_plain_numbers() -> None:
     law = gearcam.laws.Formula(phi2=lambda phi1: phi1 - 0.3 * np.sin(phi1))
     made = job(law, (20, 20), module=2.0, tolerance=0.01)
-    assert type(made.facts["accuracy.law"]) is float
+    assert type(made.facts["accuracy.driven_angle_rad"]) is float

@@ -26,14 +26,13 @@ from gearcam.numeric.contour import Contour
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.numeric.pose import Pose
 from gearcam.parts.blank import KIND as PARTS_KIND
-from gearcam.results.parts import CHORDS, PartsResult
+from gearcam.results.parts import CHORDS, Estimates, PartsResult
 
 if TYPE_CHECKING:
     from gearcam.cams.cam import Cam
     from gearcam.cams.carriers import Driver
     from gearcam.cams.followers import Follower
     from gearcam.cams.wall import PitchMotion, Wall
-    from gearcam.kinds.cam.accuracy import Rows
     from gearcam.parts.body import Part
     from gearcam.parts.checks import PartsSubject
     from gearcam.pictures.drawings import Drawing
@@ -235,19 +234,19 @@ class CamResult(PartsResult):
         return rows_of(self, number)
 
     @cached_property
-    def error_rows(self) -> Rows:
+    def error_rows(self) -> Estimates:
         """Error estimates and their methods by name, without those of chords and files."""
         from gearcam.kinds.cam.accuracy import error_rows
 
         return error_rows(self)
 
     @property
-    def main_errors(self) -> Sequence[tuple[str, Sequence[str], str]]:
+    def main_errors(self) -> Sequence[tuple[str, Sequence[str]]]:
         """Errors that users act on (see `Result`)."""
         lift = next(iter(self.cam.motions[0].motion_scales))
         return (
-            ("lift of the follower", [lift], ""),
-            ("points of the profile", ["profile_mm"], ""),
+            ("lift of the follower", [lift]),
+            ("points of the profile", ["profile_mm"]),
             CHORDS,
             *self.errors_of_parts(),
         )

@@ -1,20 +1,20 @@
-"""Error estimates of a pair, one for each family of its numbers."""
+"""Error estimates of a pair: of driven angle, flanks, contact ratio, area and volume."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Final
 
-from gearcam.gears.estimates import Estimates, estimates, kink_error
+from gearcam.gears.estimates import pair_errors
 from gearcam.gears.pair import make_gear
-from gearcam.numeric.moments import Moments, curve_moments
-from gearcam.parts.mass import error_of, mass_errors, quadrature_error
-from gearcam.parts.tools import tool_errors
+from gearcam.numeric.moments import curve_moments
+from gearcam.parts.mass import quadrature_error
 
 if TYPE_CHECKING:
     from gearcam.gears.pair import Gear
     from gearcam.kinds.gear_pair.result import GearPairResult
     from gearcam.parts.body import Part
+    from gearcam.results.parts import Estimates
 
 _FINER: Final = 16.0
 """Factor by which the tolerance is finer when corners are followed again."""
@@ -22,9 +22,10 @@ _FINER: Final = 16.0
 _SOUGHT: Final = 2.0
 """Error over the change: ends of flanks are off in proportion to the tolerance, with scatter."""
 
-_HOW: Final = (
-    "cubics through every second dense point of all edges; curvature of tips; ends of flanks "
-    "searched again with a tolerance 16 times finer; flank_mm over the whole edge"
+
+_VOLUME: Final = (
+    "cubics through dense points with halved steps on teeth, with doubled steps on all edges; ends "
+    "of flanks searched again with a tolerance 16 times finer; flank_mm over the whole edge"
 )
 
 
@@ -41,64 +42,57 @@ def error_rows(result: GearPairResult) -> Estimates:
     dict of str to (float, str)
         Estimate and method by name, without those of chords and files.
     """
-    rows = estimates(result.subject)
-    flank, _ = rows["flank_mm"]
-    if result.ordered:
-        rows |= tool_errors(result.parts_subject.tools)
-    return rows | {name: (value, _HOW) for name, value in _weights(result, flank)}
+    driven, flank, contact_ratio = pair_errors(result.subject)
+    how = "largest change if the law and its integrals change by their errors"
+    if result.law.function_error:
+        how += ", with that of the expansion of the Python function"
+    area = max(gear.profile.chord_error * gear.profile.contour.length for gear in result.gears)
+    if result.pair.on_rack:
+        turning = "travel_mm", result.pair.center_distance * driven
+    else:
+        turning = "driven_angle_rad", driven
+    rows = {
+        turning[0]: (turning[1], how),
+        "flank_mm": (flank, how),
+        "contact_ratio": (contact_ratio, how),
+        "area_mm2": (area, "chord error times the length of the outline"),
+    }
+    volumes = (
+        [
+            _volume(result, part, gears, flank)
+            for number, (part, *gears) in enumerate(
+                zip(result.parts, *result.steps, strict=True), 1
+            )
+            if result.design.blank.wheel(number).density is not None
+        ]
+        if result.ordered
+        else []
+    )
+    if volumes:
+        rows["volume_mm3"] = max(volumes), _VOLUME
+    return rows
 
 
-def _weights(result: GearPairResult, flank: float) -> Iterator[tuple[str, float]]:
-    """Yield the errors of mass properties, the larger of both wheels, if there is a density."""
-    densities = [result.design.blank.wheel(number).density for number in (1, 2)]
-    if not result.ordered or densities == [None, None]:
-        return
-
-    def finer(gear: Gear) -> Gear:
-        tolerance = gear.profile.tolerance / _FINER
-        return make_gear(gear.pair, gear.wheel, tolerance, result.tolerances, result.design.ring)
-
-    errors = [
-        mass_errors(part, volume_error(part, gears, flank, finer), density)
-        for part, density, *gears in zip(result.parts, densities, *result.steps, strict=True)
-        if density is not None
-    ]
-    for name in errors[0]:
-        yield name, max(one[name] for one in errors)
-
-
-def volume_error(
-    part: Part, gears: Sequence[Gear], flank: float, finer: Callable[[Gear], Gear]
-) -> Moments:
-    """Return the errors of the moments of a part's volume.
-
-    Parameters
-    ----------
-    part : Part
-        A wheel.
-    gears : sequence of Gear
-        The wheel of each step.
-    flank : float, mm
-        Error of places on outlines.
-    finer : callable
-        Returns a wheel with a sixteenth of its tolerance.
-
-    Returns
-    -------
-    Moments
-        All at least zero.
-    """
-    height, found = part.width / len(gears), quadrature_error(part)
+def _volume(result: GearPairResult, part: Part, gears: Sequence[Gear], flank: float) -> float:
+    """Return the error of the volume of a part, mm^3, from the wheel of each of its steps."""
+    height, off = part.width / len(gears), quadrature_error(part)
     for gear in gears:
-        outline, far = gear.profile, gear.largest_radius
-        area = flank * outline.contour.length + kink_error(outline)
-        found += height * Moments(area=area, first=complex(far * area), polar=far**2 * area)
+        outline = gear.profile
+        area = outline.cubics_missed + flank * outline.contour.length
         if outline.flanks.sought:
-            found += _SOUGHT * height * error_of(_toothed(finer(gear)) - _toothed(gear))
-    return found
+            finer = make_gear(
+                gear.pair,
+                gear.wheel,
+                outline.tolerance / _FINER,
+                result.tolerances,
+                result.design.ring,
+            )
+            area += _SOUGHT * abs(_toothed(finer) - _toothed(gear))
+        off += height * area
+    return off
 
 
-def _toothed(gear: Gear) -> Moments:
-    """Return the moments of the teeth of a wheel, without the joining edge of an open one."""
+def _toothed(gear: Gear) -> float:
+    """Return the area at the teeth of a wheel, without the joining edge of an open one."""
     runs = gear.profile.dense_teeth
-    return sum((curve_moments(run.points, run.tangents) for run in runs), start=Moments())
+    return sum(curve_moments(run.points, run.tangents).area for run in runs)

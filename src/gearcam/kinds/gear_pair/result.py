@@ -40,12 +40,11 @@ from gearcam.numeric.piecewise import with_both_sides
 from gearcam.numeric.sampling import MARGIN
 from gearcam.parts.blank import KIND as PARTS_KIND
 from gearcam.parts.blank import Blank
-from gearcam.results.parts import CHORDS, PartsResult
+from gearcam.results.parts import CHORDS, Estimates, PartsResult
 from gearcam.results.result import Progress, StudyResult
 
 if TYPE_CHECKING:
     from gearcam.gears.contact import FlankPairs
-    from gearcam.gears.estimates import Estimates
     from gearcam.numeric.pose import Pose
     from gearcam.parts.body import Part
     from gearcam.parts.checks import PartsSubject
@@ -517,15 +516,15 @@ class GearPairResult(PartsResult):
         return error_rows(self)
 
     @property
-    def main_errors(self) -> Sequence[tuple[str, Sequence[str], str]]:
+    def main_errors(self) -> Sequence[tuple[str, Sequence[str]]]:
         """Errors that users act on (see `Result`)."""
         return (
-            ("rack travel", ["arc_length_mm"], "")
+            ("rack travel", ["travel_mm"])
             if self.pair.on_rack
-            else ("driven angle", ["law"], "rad"),
-            ("points of the flanks", ["flank_mm"], ""),
+            else ("driven angle", ["driven_angle_rad"]),
+            ("points of the flanks", ["flank_mm"]),
             CHORDS,
-            ("contact ratio", ["contact_ratio"], ""),
+            ("contact ratio", ["contact_ratio"]),
             *self.errors_of_parts(),
         )
 

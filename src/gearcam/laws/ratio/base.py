@@ -9,7 +9,7 @@ dataclass with the method ``build(lobes, tolerances)``; ``LAWS.register`` adds i
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, Final
@@ -40,15 +40,6 @@ from gearcam.numeric.piecewise import Piece, Piecewise, integrate, piecewise
 
 _SWING: Final = 1e6
 """Largest quotient of largest and smallest ratio."""
-
-_BUNCH: Final = 12
-_BESIDE: Final = 1e-7
-_ORDER: Final = 4
-"""Number of neighbouring places at which rounding is measured, their distance over the width of the
-piece, and the order of differences, which are rounding only."""
-
-_SIGMAS: Final = 3.0
-"""Factor on the scatter that covers nearly all errors."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -178,48 +169,9 @@ class RatioLaw(Brief, Displacement):
         """Error of phi2, rad, that comes from the expansion of a Python function."""
         return self.function_errors[0]
 
-    def scatter(self, phi: Array, function: Callable[[Array], Array] | None = None) -> Array:
-        """Return the rounding of the ratio and its slope: their scatter about smooth curves.
-
-        Parameters
-        ----------
-        phi : (n,) array, rad
-            Driver angles in the first lobe, or in the travel of an open pair.
-        function : callable, optional
-            Function of driver angles, ``(m, n) -> (..., m, n)``, instead of ratio and slope.
-
-        Returns
-        -------
-        (2, n) array, or (..., n)
-            Three times the standard deviation of the rounding, from differences of fourth order
-            between close neighbours.
-        """
-        knots = self.knots
-        piece = np.clip(np.searchsorted(knots, phi, side="right") - 1, 0, len(knots) - 2)
-        width = np.diff(knots)[piece]
-        start = np.clip((phi - knots[piece]) / width, _BESIDE, 1.0 - _BESIDE * (_BUNCH + 1))
-        x = knots[piece] + width * (start + _BESIDE * np.arange(_BUNCH)[:, None])
-        values = function(x) if function else np.array(self.ratio.derivatives(x, 1))
-        found = np.diff(values, _ORDER, axis=-2)
-        return _SIGMAS * np.sqrt((found**2).mean(axis=-2) / math.comb(2 * _ORDER, _ORDER))
-
     @cached_property
     def error(self) -> float:
-        """Estimated error of phi2, rad, or of a rack's travel, over a lobe or an open travel.
-
-        Error of the integral, plus the rounding of the driver angle times the largest ratio.
-        """
-        _, (_, fastest) = self.ratio_range
-        return self.integral_error + float(np.finfo(float).eps) * self.period * fastest
-
-    @property
-    def solved_error(self) -> float:
-        """Closure error of a solved law over the driven angle; 0 if nothing was solved."""
-        return abs(self.closure_error) / self.advance if self.solved else 0.0
-
-    @cached_property
-    def integral_error(self) -> float:
-        """Estimated error of phi2, rad, at an exact driver angle.
+        """Estimated error of phi2, rad, or of a rack's travel, at an exact driver angle.
 
         Twice the difference from a quadrature of the ratio, since both are rounded, plus the
         closure error of a solved law, the expansion error of a Python function, and rounding.
