@@ -141,8 +141,8 @@ def of_curvatures(case: ExactCase, rolling: Rolling, exact: Exact) -> list[Row]:
         return max(found, default=None)
 
     radii, concave = [], []
-    if law.function_error:
-        finest *= 1e3  # of a second derivative of a Python function fewer digits are known
+    # a second derivative has fewer digits, most of all that of a Python function
+    finest *= 1e3 if law.function_error else 10.0
     for track in rolling.tracks:
         radius, hollow = track.convex.radius, 1.0 / track.concave.radius
         if (true := most_bent(track, 1)) and radius < 1e12 * track.length:

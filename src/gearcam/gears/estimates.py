@@ -32,7 +32,7 @@ _ROUNDINGS: Final = 4.0 * EPS
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class _PerturbedRatio(Piecewise):
-    """A ratio that is perturbed anew at every place.
+    """A ratio whose parameters and values are perturbed anew at every place.
 
     Parameters
     ----------
@@ -49,8 +49,7 @@ class _PerturbedRatio(Piecewise):
         """Return perturbed values at places (n,) (see `Piecewise.derivatives`)."""
         x = np.asarray(x)
         index = np.searchsorted(self.knots[1:-1], x, side="right")
-        places = self.perturb(x, EPS * self.knots[-1])
-        found = self.on_pieces(index, places, order, lambda v: self.perturb(v, _ROUNDINGS * v))
+        found = self.on_pieces(index, x, order, lambda v: self.perturb(v, _ROUNDINGS * v))
         off = np.array(self.off[: order + 1])[:, None]
         return list(self.perturb(found, off + _ROUNDINGS * np.abs(found)))
 
@@ -103,15 +102,13 @@ def _perturbed(rolling: Rolling, perturb: Perturb) -> Rolling:
         off=law.function_errors[1:],
     )
     driven = law.driven.shifted(float(perturb(0.0, law.error)))
-    longest = max(track.length for track in rolling.tracks)
-    share = rolling.arc_error / longest + EPS
     return replace(
         rolling,
         law=replace(law, ratio=ratio, driven=driven),
         arc=replace(
             arc,
             unit=arc.unit.shifted(float(perturb(0.0, rolling.arc_error / arc.size))),
-            size=float(perturb(arc.size, share * arc.size)),
+            size=float(perturb(arc.size, EPS * arc.size)),
         ),
     )
 
