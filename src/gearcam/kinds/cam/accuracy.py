@@ -81,7 +81,7 @@ def motion_errors(cam: Cam) -> tuple[float, float]:
             )
             for one in curves
         ]
-        return [s, *(one.trace(places, s, ds, one.inset)[0] for one in moved)]
+        return [s, *(one.trace(places, s, ds)[0] for one in moved)]
 
     lift, *profiles = (float(change.max()) for change in largest_changes(compute))
     return lift, max(profiles)
