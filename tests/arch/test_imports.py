@@ -206,7 +206,7 @@ LAWS = {
             "ellipse",
             "cams",
             {"displacement", "entry"}
-            | {"ratio.base", "ratio.driver", "ratio.ellipse", "ratio.span"},
+            | {"ratio.base", "ratio.ellipse", "ratio.span"},
         ),
         (
             "eccentric_cam",

@@ -36,11 +36,6 @@ def formula_problems(
         yield name, None, f"{place}{error.what}{hint}", error.allowed
 
 
-def compiled(text: str, variable: str = VARIABLE) -> Callable[[Jet], Jet]:
-    """Return a formula as a function of jets (see `parse`)."""
-    return parse(text, variable).evaluate
-
-
 def function_of(given: Given, axis: Axis, tolerance: float) -> Callable[[Jet], Jet]:
     """Return a formula as a function of jets.
 
@@ -64,7 +59,7 @@ def function_of(given: Given, axis: Axis, tolerance: float) -> Callable[[Jet], J
         If a function is not finite, not smooth, or raises an exception.
     """
     if isinstance(given, str):
-        return compiled(given, axis.variable)
+        return parse(given, axis.variable).evaluate
     from gearcam.laws.functions import expanded  # which a text does not need
 
     return expanded(given, axis, tolerance)

@@ -187,37 +187,44 @@ def expanded(given: Functions, axis: Axis, tolerance: float) -> Expanded:
     InfeasibleError
         With the place (see the module docstring).
     """
-    functions = given if isinstance(given, tuple) else (given,)
-    places = np.linspace(axis.low, axis.high, _PLACES)
     curves: list[Waves | Pieces] = []
-    misses: list[float] = []
-    scales: list[float] = []
-    for number, function in enumerate(functions):
-        ask = _Asked(function, axis, number)
-        values = ask(places)
-        scale = float(np.abs(values).max())
-        allowed = max(tolerance, _ROUNDING, 8.0 * _scatter(ask, places, values, scale))
-        curve: Waves | Pieces | None = _waves(ask, values, allowed * scale)
+    samples: list[_Sample] = []
+    for number, function in enumerate(given if isinstance(given, tuple) else (given,)):
+        sample = _Sample(function, axis, number)
+        allowed = max(tolerance, _ROUNDING, 8.0 * sample.scatter())
+        curve: Waves | Pieces | None = sample.waves(allowed)
         if curve is None:
-            curve = _pieces(ask, places, values, allowed, scale)
+            curve = sample.pieces(allowed)
             if axis.series:
                 what = f"needs more than {_MOST_HARMONICS} harmonics over its interval"
-                raise ask.refusal(what, axis.low, nearest="a formula as text has no such limit")
+                raise sample.refusal(what, axis.low, nearest="a formula as text has no such limit")
         if curves:
-            _demand_agreement(curves[-1], ask, places, values)
-        miss = np.abs(curve.derivatives(places, 0)[0] - values)
-        misses.append(float(miss.max()))
-        scales.append(scale)
+            sample.demand_agreement(curves[-1])
         curves.append(curve)
-    return Expanded(tuple(curves), tuple(misses), tuple(scales))
+        samples.append(sample)
+    misses = tuple(
+        float(sample.missed(curve.derivatives(sample.places, 0)[0]).max())
+        for sample, curve in zip(samples, curves, strict=True)
+    )
+    return Expanded(tuple(curves), misses, tuple(sample.scale for sample in samples))
 
 
-class _Asked:
-    """A function (or its `number`-th derivative) whose values are checked."""
+class _Sample:
+    """A function (or its `number`-th derivative), checked wherever it is evaluated.
+
+    It is sampled at even places over the interval; `scale` is the largest value.
+    """
 
     def __init__(self, function: Function, axis: Axis, number: int) -> None:
         self.function, self.axis, self.number = function, axis, number
         self.takes_arrays = True
+        self.places = np.linspace(axis.low, axis.high, _PLACES)
+        self.values = self(self.places)
+        self.scale = float(np.abs(self.values).max())
+
+    def missed(self, values: Array) -> Array:
+        """Return by how much values at the places are off."""
+        return np.abs(values - self.values)
 
     def refusal(self, state: str, x: float, **numbers: Any) -> InfeasibleError:
         """Return the error that says what is wrong at a place: its `state`."""
@@ -265,93 +272,92 @@ class _Asked:
             raise self.refusal(f"gives {what}, not a number", x, nearest=rule)
         return float(value.item())
 
+    def scatter(self) -> float:
+        """Return the scatter of values about a smooth curve over the largest; refuse too much."""
+        again = slice(_PLACES - 2, _PLACES // 3, -3)
+        other = self(self.places[again])
+        for k in np.flatnonzero(~(np.abs(other - self.values[again]) <= _MISS * self.scale))[:1]:
+            raise self.refusal(
+                "is not deterministic: a repeated evaluation returned a different value",
+                float(self.places[again][k]),
+                value=float(other[k]),
+                limit=float(self.values[again][k]),
+                nearest="the limit is the value returned first",
+            )
+        low, span = self.axis.low, self.axis.high - self.axis.low
+        spots = low + span * ((np.arange(8) + 0.5) * 0.6180339887498949 % 0.99)
+        beside = spots[:, None] + span * 1e-7 * np.arange(16)
+        fourth = np.diff(self(beside.ravel()).reshape(beside.shape), 4, axis=1) / math.sqrt(70.0)
+        scatter = float(np.median(np.sqrt((fourth**2).mean(axis=1)))) / (self.scale or 1.0)
+        if scatter > _SCATTER:
+            what = (
+                f"is not smooth anywhere: its values scatter by {shown(scatter)} times the largest"
+            )
+            remedy, place = self.axis.remedy, float(spots[0])
+            raise self.refusal(what, place, value=scatter, limit=_SCATTER, nearest=remedy)
+        return scatter
 
-def _scatter(ask: _Asked, places: Array, values: Array, scale: float) -> float:
-    """Return the scatter of values about a smooth curve over the largest; refuse too much."""
-    again = slice(_PLACES - 2, _PLACES // 3, -3)
-    other = ask(places[again])
-    for k in np.flatnonzero(~(np.abs(other - values[again]) <= _MISS * scale))[:1]:
-        raise ask.refusal(
-            "is not deterministic: a repeated evaluation returned a different value",
-            float(places[again][k]),
-            value=float(other[k]),
-            limit=float(values[again][k]),
-            nearest="the limit is the value returned first",
-        )
-    span = places[-1] - places[0]
-    spots = places[0] + span * ((np.arange(8) + 0.5) * 0.6180339887498949 % 0.99)
-    beside = spots[:, None] + span * 1e-7 * np.arange(16)
-    fourth = np.diff(ask(beside.ravel()).reshape(beside.shape), 4, axis=1) / math.sqrt(70.0)
-    scatter = float(np.median(np.sqrt((fourth**2).mean(axis=1)))) / (scale or 1.0)
-    if scatter > _SCATTER:
-        what = f"is not smooth anywhere: its values scatter by {shown(scatter)} times the largest"
-        remedy, place = ask.axis.remedy, float(spots[0])
-        raise ask.refusal(what, place, value=scatter, limit=_SCATTER, nearest=remedy)
-    return scatter
+    def waves(self, allowed: float) -> Waves | None:
+        """Return a straight line plus harmonics, None if the function needs many."""
+        low, span = self.axis.low, self.axis.high - self.axis.low
+        start, slope = float(self.values[0]), float(self.values[-1] - self.values[0]) / span
+        distance = span * np.arange(_SAMPLES) / _SAMPLES
+        rest = self(low + distance) - start - slope * distance
+        harmonics = np.fft.rfft(rest) * (2.0 / _SAMPLES)
+        last = int(np.flatnonzero(np.abs(harmonics[1:]) > allowed * self.scale).max(initial=-1)) + 1
+        if last > _MOST_HARMONICS:
+            return None
+        start += 0.5 * float(harmonics[0].real)
+        kept = harmonics[1 : last + 1]
+        waves = Waves(low, 2.0 * math.pi / span, start, slope, kept.real, -kept.imag)
+        missed = self.missed(waves.derivatives(self.places, 0)[0]).max()
+        return waves if missed <= _MISS * self.scale else None
 
+    def pieces(self, allowed: float) -> Pieces:
+        """Return Chebyshev pieces; refuse a function that is not smooth."""
+        ends = [self.axis.low, self.axis.high]
+        worst = self.places[0]
+        # few wide pieces keep most digits of derivatives
+        for cuts in (1, 8, 64, 512):
+            try:
+                raw = expand(self, ends, allowed, degree=_DEGREE, cuts=cuts)
+            except NotSmoothError as error:
+                raise self.not_smooth(error.place) from error
+            # rounding would dominate high derivatives
+            counts = np.logical_or.accumulate(np.abs(raw.coefficients[::-1]) > allowed * self.scale)
+            pieces = Pieces(replace(raw, coefficients=raw.coefficients * counts[::-1]))
+            missed = self.missed(pieces.expansion(self.places))
+            if missed.max() <= _MISS * self.scale:
+                self._demand_smooth(pieces, allowed * self.scale)
+                return pieces
+            worst = self.places[missed >= 0.5 * missed.max()][
+                0
+            ]  # of places alike the first, always
+        raise self.not_smooth(float(worst))
 
-def _waves(ask: _Asked, values: Array, allowed: float) -> Waves | None:
-    """Return a straight line plus harmonics, None if the function needs many."""
-    low, span = ask.axis.low, ask.axis.high - ask.axis.low
-    start, slope = float(values[0]), float(values[-1] - values[0]) / span
-    distance = span * np.arange(_SAMPLES) / _SAMPLES
-    rest = ask(low + distance) - start - slope * distance
-    harmonics = np.fft.rfft(rest) * (2.0 / _SAMPLES)
-    last = int(np.flatnonzero(np.abs(harmonics[1:]) > allowed).max(initial=-1)) + 1
-    if last > _MOST_HARMONICS:
-        return None
-    start += 0.5 * float(harmonics[0].real)
-    kept = harmonics[1 : last + 1]
-    waves = Waves(low, 2.0 * math.pi / span, start, slope, kept.real, -kept.imag)
-    places = np.linspace(low, ask.axis.high, len(values))
-    missed = np.abs(waves.derivatives(places, 0)[0] - values).max()
-    return waves if missed <= _MISS * np.abs(values).max() else None
+    def _demand_smooth(self, pieces: Pieces, rounding: float) -> None:
+        """Refuse a function whose derivatives jump between pieces: it has corners there."""
+        knots = pieces.expansion.knots
+        # what a derivative loses at the ends of a piece
+        loss = 2.0 * _DEGREE**2 / np.diff(knots).max()
+        for order in range(1, 5 - self.number):  # to one more than the jerk
+            c = pieces.order(order).coefficients
+            ends, starts = c.sum(axis=0), ((-1.0) ** np.arange(len(c))) @ c
+            jumps = np.abs(ends[:-1] - starts[1:])
+            noise = 100.0 * rounding * loss**order / math.prod(range(1, 2 * order, 2))
+            if jumps.size and jumps.max() > 1e-4 * np.abs(c).sum(axis=0).max() + noise:
+                raise self.not_smooth(float(knots[int(jumps.argmax()) + 1]))
 
-
-def _pieces(ask: _Asked, places: Array, values: Array, allowed: float, scale: float) -> Pieces:
-    ends = [ask.axis.low, ask.axis.high]
-    worst = places[0]
-    # few wide pieces keep most digits of derivatives
-    for cuts in (1, 8, 64, 512):
-        try:
-            raw = expand(ask, ends, allowed, degree=_DEGREE, cuts=cuts)
-        except NotSmoothError as error:
-            raise ask.not_smooth(error.place) from error
-        # rounding would dominate high derivatives
-        counts = np.logical_or.accumulate(np.abs(raw.coefficients[::-1]) > allowed * scale)
-        pieces = Pieces(replace(raw, coefficients=raw.coefficients * counts[::-1]))
-        missed = np.abs(pieces.expansion(places) - values)
-        if missed.max() <= _MISS * scale:
-            _demand_smooth(pieces, ask, allowed * scale)
-            return pieces
-        worst = places[missed >= 0.5 * missed.max()][0]  # of places alike the first, always
-    raise ask.not_smooth(float(worst))
-
-
-def _demand_smooth(pieces: Pieces, ask: _Asked, rounding: float) -> None:
-    """Refuse a function whose derivatives jump between pieces: it has corners there."""
-    knots = pieces.expansion.knots
-    # what a derivative loses at the ends of a piece
-    loss = 2.0 * _DEGREE**2 / np.diff(knots).max()
-    for order in range(1, 5 - ask.number):  # to one more than the jerk
-        c = pieces.order(order).coefficients
-        ends, starts = c.sum(axis=0), ((-1.0) ** np.arange(len(c))) @ c
-        jumps = np.abs(ends[:-1] - starts[1:])
-        noise = 100.0 * rounding * loss**order / math.prod(range(1, 2 * order, 2))
-        if jumps.size and jumps.max() > 1e-4 * np.abs(c).sum(axis=0).max() + noise:
-            raise ask.not_smooth(float(knots[int(jumps.argmax()) + 1]))
-
-
-def _demand_agreement(before: Waves | Pieces, ask: _Asked, places: Array, values: Array) -> None:
-    """Refuse a given derivative that does not belong to the function before it."""
-    slopes = before.derivatives(places, 1)[1]
-    off = np.abs(slopes - values)
-    worst = int(off.argmax())
-    if off[worst] > 1e-7 * np.abs(slopes).max():
-        raise ask.refusal(
-            "is not the derivative of the function given before it",
-            float(places[worst]),
-            value=float(values[worst]),
-            limit=float(slopes[worst]),
-            nearest="the limit is the derivative of that function",
-        )
+    def demand_agreement(self, before: Waves | Pieces) -> None:
+        """Refuse a given derivative that does not belong to the function before it."""
+        slopes = before.derivatives(self.places, 1)[1]
+        off = self.missed(slopes)
+        worst = int(off.argmax())
+        if off[worst] > 1e-7 * np.abs(slopes).max():
+            raise self.refusal(
+                "is not the derivative of the function given before it",
+                float(self.places[worst]),
+                value=float(self.values[worst]),
+                limit=float(slopes[worst]),
+                nearest="the limit is the derivative of that function",
+            )

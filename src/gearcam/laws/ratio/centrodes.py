@@ -17,8 +17,9 @@ from gearcam.base.rules import Breach, exactly_one
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import TYPED, LawEntry
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
-from gearcam.laws.ratio.driver import LOBES, demand_lobes, law_of_centrode
+from gearcam.laws.ratio.driver import law_of_centrode
 from gearcam.laws.ratio.span import (
+    LOBES,
     ONE_LOBE,
     RING,
     WHEEL,
@@ -26,6 +27,7 @@ from gearcam.laws.ratio.span import (
     Travel,
     demand_below_one,
     demand_equal,
+    demand_lobes,
     open_travel,
     spiral,
 )

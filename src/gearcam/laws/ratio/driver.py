@@ -7,10 +7,10 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearcam.base.errors import InfeasibleError, Way, beyond_limit
+from gearcam.base.errors import InfeasibleError
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.ratio.base import RatioLaw, make_law
-from gearcam.laws.ratio.span import PLACES, WHEEL, Lobes, Span, angle_text, demand_smooth
+from gearcam.laws.ratio.span import PLACES, WHEEL, Span, angle_text, demand_smooth
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.chebyshev import NotSmoothError, expand
 from gearcam.numeric.jets import Jet, Value
@@ -22,9 +22,6 @@ _APART = 1e-9
 
 _SMALLEST, _LARGEST = 1e-100, 1e100
 """Range of ratios and radii, whose squares must be finite."""
-
-LOBES = "lobes of driver and driven wheel; default: tooth counts in lowest terms"
-"""Meaning of the key ``lobes``."""
 
 
 def law_of_centrode(
@@ -175,40 +172,3 @@ def solve_center(
     high = largest * (mate + ratio) * (1.0 + _APART)
     start = min(max(mean * (mate + ratio), 0.75 * low + 0.25 * high), high)
     return float(newton_in_bracket(excess, low, high, start, 1e-15 * high))
-
-
-def demand_lobes(given: tuple[int, int] | None, lobes: Lobes) -> int:
-    """Return the lobes of the driver: as given, or from the tooth counts in lowest terms.
-
-    Parameters
-    ----------
-    given : (int, int) or None
-        Lobes of driver and driven wheel.
-    lobes : Lobes
-        Lobes of the tooth counts.
-
-    Returns
-    -------
-    int
-
-    Raises
-    ------
-    InfeasibleError
-        If they are not in the ratio of the tooth counts.
-    """
-    if given is None:
-        return lobes.n1
-    if given[0] * lobes.n2 != given[1] * lobes.n1:
-        counts = [[lobes.n1, lobes.n2]]
-        if given[1] * lobes.n2 == given[0] * lobes.n1 and [*given[::-1]] not in counts:
-            counts.insert(0, [*given[::-1]])
-        what = "the lobes are not in the ratio of the tooth counts"
-        note = (
-            f"they are {given[0]}/{given[1]} and {lobes.n1}/{lobes.n2}; the tooth counts "
-            f"need [{lobes.n1}, {lobes.n2}] or a multiple"
-        )
-        ways = [Way(near={"law.lobes": both}) for both in counts]
-        raise beyond_limit(
-            what, "law.lobes", given[0] / given[1], lobes.n1 / lobes.n2, note, ways=ways
-        )
-    return given[0]

@@ -9,8 +9,7 @@ from gearcam.base.quantities import COUNT, NUMBER, param
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
-from gearcam.laws.ratio.driver import LOBES, demand_lobes
-from gearcam.laws.ratio.span import Lobes
+from gearcam.laws.ratio.span import LOBES, Lobes, demand_lobes
 from gearcam.numeric.jets import Jet, atan, cos, sin
 from gearcam.numeric.piecewise import Piece
 

@@ -41,6 +41,10 @@ RING: Final = -1
 """Type of the mate, w in ``r1 = A*i/(1 + w*i)``: an external wheel, a rack, a ring."""
 
 
+LOBES: Final = "lobes of driver and driven wheel; default: tooth counts in lowest terms"
+"""Meaning of the key ``lobes``."""
+
+
 @dataclass(frozen=True)
 class Lobes:
     """Lobes: the ratio repeats n1 times per turn of the driver and n2 per turn of the driven wheel.
@@ -112,6 +116,43 @@ ONE_LOBE: Final = Lobes(1, 1)
 
 Span = Lobes | Travel
 """Lobes of a closed pair, or travels of an open pair or a rack."""
+
+
+def demand_lobes(given: tuple[int, int] | None, lobes: Lobes) -> int:
+    """Return the lobes of the driver: as given, or from the tooth counts in lowest terms.
+
+    Parameters
+    ----------
+    given : (int, int) or None
+        Lobes of driver and driven wheel.
+    lobes : Lobes
+        Lobes of the tooth counts.
+
+    Returns
+    -------
+    int
+
+    Raises
+    ------
+    InfeasibleError
+        If they are not in the ratio of the tooth counts.
+    """
+    if given is None:
+        return lobes.n1
+    if given[0] * lobes.n2 != given[1] * lobes.n1:
+        counts = [[lobes.n1, lobes.n2]]
+        if given[1] * lobes.n2 == given[0] * lobes.n1 and [*given[::-1]] not in counts:
+            counts.insert(0, [*given[::-1]])
+        what = "the lobes are not in the ratio of the tooth counts"
+        note = (
+            f"they are {given[0]}/{given[1]} and {lobes.n1}/{lobes.n2}; the tooth counts "
+            f"need [{lobes.n1}, {lobes.n2}] or a multiple"
+        )
+        ways = [Way(near={"law.lobes": both}) for both in counts]
+        raise beyond_limit(
+            what, "law.lobes", given[0] / given[1], lobes.n1 / lobes.n2, note, ways=ways
+        )
+    return given[0]
 
 
 def demand_equal(lobes: Lobes) -> None:
