@@ -205,8 +205,7 @@ LAWS = {
         (
             "ellipse",
             "cams",
-            {"displacement", "entry"}
-            | {"ratio.base", "ratio.ellipse", "ratio.span"},
+            {"displacement", "entry"} | {"ratio.base", "ratio.ellipse", "ratio.span"},
         ),
         (
             "eccentric_cam",
