@@ -156,9 +156,10 @@ class Facts(Mapping[str, Any]):
         self._headline = tuple(headline)
         self._title = title
 
-    def with_group(self, name: str, group: Any) -> Facts:
-        """Return the facts with an additional `group` called `name`, unless it is empty."""
-        return Facts({**self._tree, name: group}, self._headline, self._title) if group else self
+    def with_groups(self, groups: Mapping[str, Any]) -> Facts:
+        """Return the facts with others, `groups` by name; those of one name are united."""
+        tree = _united(self._tree, {name: group for name, group in groups.items() if group})
+        return Facts(tree, self._headline, self._title)
 
     def __repr__(self) -> str:
         return line(type(self).__name__, [*self.headline, f"{len(self)} facts"])
@@ -265,6 +266,16 @@ def _leaves(tree: Any, path: str = "") -> Iterator[tuple[str, Any]]:
     for name, item in items:
         if item is not None:
             yield from _leaves(item, f"{path}.{name}" if path else str(name))
+
+
+def _united(tree: Mapping[str, Any], other: Mapping[str, Any]) -> dict[str, Any]:
+    """Return two trees as one: groups that both have are united."""
+    both = {
+        name: _united(tree[name], group)
+        for name, group in other.items()
+        if isinstance(group, Mapping) and isinstance(tree.get(name), Mapping)
+    }
+    return {**tree, **other, **both}
 
 
 def _at(tree: Any, name: str) -> Any:

@@ -19,7 +19,7 @@ _FRAME: Final = "border:0;width:100%;height:min(85vh,760px);resize:vertical"
 
 
 def report_files(result: Result, measured: Mapping[str, Any]) -> Files:
-    """Return the page of a `result`, with what was `measured` on the files before it.
+    """Return the page of a result, with facts measured on the files before it.
 
     Files: report.html.
 
@@ -31,7 +31,7 @@ def report_files(result: Result, measured: Mapping[str, Any]) -> Files:
     result : Result
         Of any kind with reports.
     measured : mapping
-        What was measured on the files before it.
+        Facts measured on the files before it, by group.
 
     Returns
     -------

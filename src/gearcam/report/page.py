@@ -137,7 +137,7 @@ def document(
     result : Result
         Of any kind of design.
     measured : mapping
-        Measurements of its files, by group of facts.
+        Facts measured on its files, by group.
     seek : bool
         Whether to search for remedies of errors, which takes some seconds.
 
@@ -188,7 +188,7 @@ def blocks(
     result : Result
         Of any kind of design.
     measured : mapping
-        Measurements of its files, by group of facts.
+        Facts measured on its files, by group.
     names : sequence of str
         Names from `BLOCKS`.
     seek : bool
@@ -198,7 +198,7 @@ def blocks(
     -------
     dict of str to str
     """
-    facts = result.facts_with(measured)
+    facts = result.facts.with_groups(measured)
     told = {
         "title": result.design.name,
         "facts": facts,

@@ -22,9 +22,9 @@ if TYPE_CHECKING:
     from gearcam.pictures.scenes import Scene
 
 FileMaker = Callable[[Any, dict[str, Any]], dict[str, bytes]]
-"""``maker(result, measured)`` returns contents by file name, and adds values measured on them to
-`measured`. Paragraphs of its docstring list the names of the files (``Files: ...``) and say what
-they hold."""
+"""``maker(result, measured)`` returns contents by file name, and adds groups of facts measured on
+them to `measured`. Paragraphs of its docstring list the names of the files (``Files: ...``) and say
+what they hold."""
 
 ChartMaker = Callable[[Any], "Chart | None"]
 """``maker(result)`` returns a chart, or None if there is nothing to show."""
@@ -98,7 +98,7 @@ class Kind(DesignKind):
     Parameters
     ----------
     facts : callable
-        ``facts(result, measured)`` returns its facts, with values measured on files, by group.
+        ``facts(result)`` returns its facts.
     files : mapping of str to FileMaker
         What makes each kind of file, by the names in `formats`.
     charts : mapping of str to ChartMaker
@@ -115,7 +115,7 @@ class Kind(DesignKind):
         Classes for designs written in Python, by name.
     """
 
-    facts: Callable[[Any, Mapping[str, Any]], Facts] = lambda _, measured: Facts({**measured})
+    facts: Callable[[Any], Facts] = lambda _: Facts({})
     files: Mapping[str, FileMaker] = field(default_factory=dict)
     charts: Mapping[str, ChartMaker] = field(default_factory=dict)
     scene: Callable[[Any, int], Scene | None] = lambda *_: None

@@ -24,7 +24,7 @@ Files = dict[str, bytes]
 """Contents by file name."""
 
 Measured = dict[str, Any]
-"""Values measured on files, by group of facts."""
+"""Facts measured on files, by group."""
 
 Estimates = Mapping[str, tuple[float, str]]
 """Estimated error and its method, by name."""
@@ -185,24 +185,12 @@ class PartsResult(Result):
             yield from [("area", areas)] if areas else []
             yield "volume (mass in the same proportion)", ["volume_mm3"]
 
-    def accuracy(self, measured: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the error estimates as facts, with ``how`` for each.
-
-        Parameters
-        ----------
-        measured : mapping
-            Measurements of exporters: ``dxf``.
-        """
+    @property
+    def accuracy(self) -> dict[str, Any]:
+        """The error estimates as facts, with ``how`` for each."""
         rows = {**self.error_rows, "chord_mm": (self.chord_error, _CHORD_HOW)}
-        made: dict[str, Any] = {name: float(value) for name, (value, _) in rows.items()}
         how = {name: words for name, (_, words) in rows.items()}
-        dxf = measured.get("dxf")
-        if dxf is not None:
-            made["dxf_mm"] = dxf["error_mm"]
-            kerf = self.design.output.kerf
-            what = "the edge, or its parallel at half the kerf" if kerf else "the curve"
-            how["dxf_mm"] = f"files read back ({dxf['curves']}), against {what}, both ways"
-        return {**made, "how": how}
+        return {**{name: float(value) for name, (value, _) in rows.items()}, "how": how}
 
 
 def part_files(texts: Mapping[str, str]) -> dict[str, Callable[..., Files]]:
@@ -226,15 +214,15 @@ def part_files(texts: Mapping[str, str]) -> dict[str, Callable[..., Files]]:
     return made
 
 
-def drawn(drawings: Sequence[Drawing], style: DxfStyle, measured: Measured) -> Files:
+def dxf_files(result: PartsResult, drawings: Sequence[Drawing], measured: Measured) -> Files:
     """Return drawings as DXF files, each read back and measured.
 
     Parameters
     ----------
+    result : PartsResult
+        The result with the options of DXF.
     drawings : sequence of Drawing
         Each becomes a file of its name.
-    style : DxfStyle
-        Options of DXF.
     measured : dict
         Receives the measured errors.
 
@@ -246,22 +234,25 @@ def drawn(drawings: Sequence[Drawing], style: DxfStyle, measured: Measured) -> F
     from gearcam.export.dxf import dxf_bytes
     from gearcam.export.dxf_read import Known, measure_dxf
 
+    style = result.dxf_style
+    curve = (
+        "the edge, or its parallel at half the kerf" if result.design.output.kerf else "the curve"
+    )
+    how = f"files read back ({style.curves}), against {curve}, both ways"
+    accuracy = measured.setdefault("accuracy", {"dxf_mm": {}, "how": {"dxf_mm": how}})
     files: Files = {}
     outlines: Known = {}
-    known = measured.setdefault(
-        "dxf", {"curves": style.curves, "version": style.version, "error_mm": {}}
-    )
     for drawing in drawings:
         name = f"{drawing.name}.dxf"
         files[name] = dxf_bytes(drawing, style)
         if drawing.contours:
-            known["error_mm"][name] = measure_dxf(files[name], drawing.contours, outlines)
+            accuracy["dxf_mm"][name] = measure_dxf(files[name], drawing.contours, outlines)
     return files
 
 
 def _dxf(result: PartsResult, measured: Measured) -> Files:
     """Return the cutting paths and their references as DXF."""
-    return drawn([*result.to_cut, *result.references], result.dxf_style, measured)
+    return dxf_files(result, [*result.to_cut, *result.references], measured)
 
 
 def _cut_svg(result: PartsResult, _: Measured) -> Files:

@@ -239,22 +239,18 @@ class Result(Displayed):
     @cached_property
     def facts(self) -> Facts:
         """All computed quantities by dotted names (see docs/summary.md)."""
-        return self.facts_with({})
+        return self.design_facts.with_groups(
+            {one.study.key: one.group for one in self.studies.values()}
+        )
 
-    def facts_with(self, measured: Mapping[str, Any]) -> Facts:
-        """Return the facts with values `measured` on files, by group, and those of its studies."""
-        made = self.design_facts(measured)
-        for one in self.studies.values():
-            made = made.with_group(one.study.key, one.group)
-        return made
-
-    def design_facts(self, measured: Mapping[str, Any]) -> Facts:
-        """Return the facts without those of studies, with values `measured` on files, by group."""
-        made = self.kind.facts(self, measured)
+    @cached_property
+    def design_facts(self) -> Facts:
+        """The facts without those of studies."""
         columns = sys.modules.get("gearcam.laws.columns")  # loaded only if a design has read a file
         tables = columns.tables_in(self.design) if columns else ()
         notes = [Fact(rows.note, Path(rows.file).name, shown=True) for rows in tables]
-        return made.with_group("tables", [{"note": one} for one in notes if one.value])
+        tables = [{"note": note} for note in notes if note.value]
+        return self.kind.facts(self).with_groups({"tables": tables})
 
     def assembled(self, chords: float = 0.0) -> dict[str, Mesh]:  # noqa: ARG002
         """Return the parts in their places as meshes, by name; empty without solids.
@@ -346,7 +342,7 @@ class Result(Displayed):
         kind : str
             A kind of file that ``output.files`` can list.
         measured : dict, optional
-            Receives the values measured on the files.
+            Receives facts measured on the files, by group.
 
         Returns
         -------
@@ -527,7 +523,7 @@ class Result(Displayed):
                 contents |= self.files(kind, measured)
             self.sizes = {name: len(content) for name, content in contents.items()}
         tell("writing")
-        facts = self.facts_with(measured) if measured else self.facts
+        facts = self.facts.with_groups(measured)
         return self.put(directory, contents, facts, self.findings, keep=False)
 
     def put(
@@ -666,7 +662,7 @@ class StudyResult(Displayed):
     @cached_property
     def facts(self) -> Facts:
         """The facts of the result and of the study (see docs/summary.md)."""
-        return self.result.design_facts({}).with_group(self.study.key, self.group)
+        return self.result.design_facts.with_groups({self.study.key: self.group})
 
     @cached_property
     def findings(self) -> tuple[Finding, ...]:

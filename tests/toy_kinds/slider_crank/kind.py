@@ -7,7 +7,6 @@ to x; the origin is the shaft of the crank.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from typing import Any
@@ -179,7 +178,7 @@ class SliderCrank(Result):
         return in_order((*below, *((own,) if steepest > STEEPEST else ())))
 
 
-def facts(result: Any, measured: Mapping[str, Any]) -> Facts:
+def facts(result: Any) -> Facts:
     along, rate = result.motion["slider_mm"], result.motion["rate"]
     low, high = float(along.min()), float(along.max())
     tree = {
@@ -189,7 +188,6 @@ def facts(result: Any, measured: Mapping[str, Any]) -> Facts:
             "place_mm": extent(low, high),
             "rate_max": Fact(float(np.abs(rate).max()), "largest rate", unit="mm per driver"),
         },
-        **measured,
     }
     return Facts(tree, ["slider.stroke_mm"], "slider-crank")
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, partial
 from typing import Any
@@ -74,10 +73,10 @@ class Spacer(Result):
         return ()
 
 
-def facts(result: Any, measured: Mapping[str, Any]) -> Facts:
+def facts(result: Any) -> Facts:
     ring = result.design.ring
     outer = Fact(ring.bore + 2.0 * ring.width, "outer diameter", shown=True)
-    tree = {"ring": {"bore_mm": ring.bore, "outer_mm": outer}, **measured}
+    tree = {"ring": {"bore_mm": ring.bore, "outer_mm": outer}}
     return Facts(tree, ["ring.bore_mm"], "spacer")
 
 

@@ -36,6 +36,8 @@ WATCHED = {
     "gearcam.meshing.edges": ("touches",),
     "gearcam.meshing.patches": ("patches",),
     "gearcam.meshing.half_teeth": ("half_teeth",),
+    "gearcam.kinds.gear_pair.facts": ("facts",),
+    "gearcam.kinds.cam.facts": ("facts",),
     "gearcam.kinds.gear_pair.tables": ("centrode_columns", "contact_rows"),
     "gearcam.laws.program": ("make_program",),
     "gearcam.cams.measures": ("range_of", "undercut"),
@@ -174,11 +176,11 @@ def view(name: str, _: Path) -> None:
     assert not show((PROFILES / f"{name}.toml").read_bytes(), f"{name}.toml")["error"]
 
 
-PAIR = {"roll": 1, "build_outline": 2, "Sampler.chords": 2, "Subject.sides": 1}
+PAIR = {"roll": 1, "facts": 1, "build_outline": 2, "Sampler.chords": 2, "Subject.sides": 1}
 SUMMARY = {"hash_of": 1, "summary_of": 1}
 BOTH_SIDES = {"FlankPairs.arcs": 2}
 CHARTED = {"contacts": 2, "contact_rows": 2, "centrode_columns": 1, "scene_data": 1}
-WALL = {"make_program": 1, "Wall.contour": 1, "undercut": 1}
+WALL = {"make_program": 1, "facts": 1, "Wall.contour": 1, "undercut": 1}
 # pressure angle and curvature of rise and return, and curvature of the whole turn; the radius that
 # the warning about the pressure angle names, proven on rise and return of two cams
 RANGES = {"range_of": 9}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from gearcam.base.facts import Fact, Facts, extent
@@ -27,28 +26,15 @@ _PEAKS = (
 )
 
 
-def facts(result: CamResult, measured: Mapping[str, Any]) -> Facts:
-    """Return the facts of a cam.
-
-    Parameters
-    ----------
-    result : CamResult
-        A built design.
-    measured : mapping
-        What exporters measured, by ``dxf``, ``solids``, ``curvature``.
-
-    Returns
-    -------
-    Facts
-    """
+def facts(result: CamResult) -> Facts:
+    """Return the facts of a cam, its `result`."""
     design = result.design
     tree: Tree = {
         "kerf_mm": design.output.kerf or None,
         "motion": _motion(result),
         "cam": _cam(result),
         "part": _part(result) or None,
-        "accuracy": result.accuracy(measured),
-        **{name: measured.get(name) for name in ("solids", "curvature")},
+        "accuracy": result.accuracy,
     }
     follower = f"{design.follower.motion} {design.follower.type} follower"
     article = "an" if design.follower.oscillating else "a"

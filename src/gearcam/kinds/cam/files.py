@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Final
 
 from gearcam.report.file import report_files
-from gearcam.results.parts import MESHES, Files, Measured, drawn, part_files
+from gearcam.results.parts import MESHES, Files, Measured, dxf_files, part_files
 
 if TYPE_CHECKING:
     from gearcam.cams.wall import Wall
@@ -106,7 +106,7 @@ def _tool_path(result: CamResult, measured: Measured) -> Files:
         Drawing(name=name, features=(Feature(layer=TOOL, shape=path),))
         for name, path in paths.items()
     ]
-    return tables | drawn(drawings, result.dxf_style, measured)
+    return tables | dxf_files(result, drawings, measured)
 
 
 def _curvature(result: CamResult, measured: Measured) -> Files:

@@ -26,29 +26,16 @@ if TYPE_CHECKING:
 Tree = dict[str, Any]
 
 
-def facts(result: GearPairResult, measured: Mapping[str, Any]) -> Facts:
-    """Return the facts of a pair.
-
-    Parameters
-    ----------
-    result : GearPairResult
-        A built design.
-    measured : mapping
-        What exporters measured, by ``dxf`` and ``solids``.
-
-    Returns
-    -------
-    Facts
-    """
+def facts(result: GearPairResult) -> Facts:
+    """Return the facts of a pair, its `result`."""
     kerf, leads = result.design.output.kerf, result.leads
     tree: Tree = {
         "pair": _pair(result),
         "mesh": _mesh(result),
         "kerf_mm": kerf or None,
         "gears": [_gear(result, gear) for gear in result.gears],
-        "accuracy": result.accuracy(measured),
+        "accuracy": result.accuracy,
         "steps": {"count": len(leads), "moved_mm": list(leads)} if len(leads) > 1 else None,
-        "solids": measured.get("solids"),
     }
     size = "travel_per_turn_mm" if result.pair.on_rack else "center_distance_mm"
     headline = [f"pair.{name}" for name in (size, "module_mm", "teeth")]
