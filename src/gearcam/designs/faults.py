@@ -11,6 +11,7 @@ from typing import Any, Final
 
 from gearcam.base.errors import Problem
 from gearcam.base.numerals import shown
+from gearcam.base.quantities import Param
 from gearcam.designs.lines import Path
 from gearcam.designs.slips import did_you_mean, nearest
 from gearcam.designs.table import Key
@@ -156,7 +157,7 @@ def _single(entry: Key) -> str:
         return quoted(entry.param.choices)
     if entry.base in (str, bool):
         return _KINDS[entry.base]
-    words = [f"a {_KINDS[entry.base]}", bounds(entry)]
+    words = ["0 or" * bool(entry.param.least), f"a {_KINDS[entry.base]}", bounds(entry)]
     text = " ".join(word for word in words if word)
     return f'{text}, or "{entry.literal}"' if entry.literal else text
 
@@ -178,7 +179,8 @@ def bounds(entry: Key) -> str:
     """Return the range of a value with its unit, as text; empty without one."""
     made = entry.param
     unit = f" {made.quantity.unit}" if made.quantity.unit else ""
-    low = f"from {shown(made.ge, 10)}" if made.ge is not None else ""
+    least = made.least or made.ge
+    low = f"from {shown(least, 10)}" if least is not None else ""
     low = f"above {shown(made.gt, 10)}" if made.gt is not None else low
     high = f"to {shown(made.le, 10)}" if made.le is not None else ""
     high = f"below {shown(made.lt, 10)}" if made.lt is not None else high
@@ -201,58 +203,80 @@ def _upper(high: str, low: str) -> str:
     return f"up {high}" if low.startswith("above") and high.startswith("to") else high
 
 
-def value_fault(path: Path, value: Any, entry: Key, *, item: bool) -> Fault:
-    """Return the fault for a value that its entry does not allow.
+def value_fault(path: Path, value: Any, entry: Key, *, item: bool = False) -> Fault | None:
+    """Return the fault of a single value; None if its entry allows it.
 
     Parameters
     ----------
     path : tuple
         Path of the value.
     value : object
-        The rejected value.
+        The value.
     entry : Key
         Its key.
     item : bool
         Whether the value is an item of a list.
     """
-    rule = allowed(entry, item=item)
-    if entry.param.nested:
-        kind = getattr(value, "kind", "")
-        what = f"is of kind {show(kind)}" if kind else "is not a design"
-        return Fault(path, f"{show(value)} {what}", value, rule)
-    as_list = entry.length is not None and not item
-    if as_list:
-        if isinstance(value, list):
-            return Fault(path, _count(value), value, rule)
+    message = _objection(value, entry)
+    if not message:
+        return None
+    words = entry.param.choices or ((entry.literal,) if entry.literal else ())
+    hint = did_you_mean(value, words) or _type_hint(value, entry)
+    return Fault(path, f"{show(value)} {message}", value, allowed(entry, item=item), hint)
+
+
+def list_fault(path: Path, value: Any, entry: Key) -> Fault | None:
+    """Return the fault of a list, without its items; None if its entry allows it.
+
+    Parameters
+    ----------
+    path, value, entry
+        As for `value_fault`.
+    """
+    if not isinstance(value, list):
         hint = _list_hint(value, entry)
-        return Fault(path, f"{show(value)} is not a list", value, rule, hint)
-    choices = entry.param.choices or ((entry.literal,) if entry.literal else ())
-    if isinstance(value, str) and choices:
-        hint = did_you_mean(value, choices) or _type_hint(value, entry)
-        return Fault(path, f"{show(value)} is not one of the allowed words", value, rule, hint)
+        return Fault(path, f"{show(value)} is not a list", value, allowed(entry), hint)
+    if entry.takes(count := len(value)):
+        return None
+    message = f"{show(value)} has {count} value" + "s" * (count > 1)
+    return Fault(path, message if count else "the list is empty", value, allowed(entry))
+
+
+def _objection(value: Any, entry: Key) -> str:
+    """Return what is wrong with a single value; empty if its entry allows it."""
+    param = entry.param
+    if (entry.literal and value == entry.literal) or (param.function and functions_of(value)):
+        return ""
+    if param.nested:
+        kind = getattr(value, "kind", "")
+        if isinstance(value, entry.base) and kind in param.nested:
+            return ""
+        return f"is of kind {show(kind)}" if kind else "is not a design"
+    if isinstance(value, str) and (param.choices or entry.literal):
+        return "" if value in (param.choices or ()) else "is not one of the allowed words"
     if not is_of(value, entry.base):
-        hint = _type_hint(value, entry)
-        return Fault(path, f"{show(value)} is not {_a_kind(entry)}", value, rule, hint)
-    if isinstance(value, float) and not math.isfinite(value):
-        return Fault(path, f"{show(value)} is not a finite number", value, rule)
-    if isinstance(value, float) and 0.0 < value < entry.param.least:
-        least = f"{shown(entry.param.least)} {entry.param.quantity.unit}"
-        return Fault(path, f"{show(value)} is too small", value, f"{rule}, 0 or at least {least}")
-    return Fault(path, f"{show(value)} is out of range", value, rule)
+        kind = "one of the words allowed" if param.choices else _KINDS[entry.base]
+        return f"is not {'a ' * (entry.base in (int, float))}{kind}"
+    return _beyond(value, param) if entry.base in (int, float) else ""
 
 
-def _count(value: list[Any]) -> str:
-    count = len(value)
-    return (
-        "the list is empty" if not count else f"{show(value)} has {count} value" + "s" * (count > 1)
+def _beyond(value: float, param: Param) -> str:
+    """Return why a number is not within its bounds; empty if it is."""
+    try:
+        number = float(value)
+    except OverflowError:
+        return "is out of range"
+    if not math.isfinite(number):
+        return "is not a finite number"
+    if 0.0 < number < param.least:
+        return "is too small"
+    within = (
+        (param.gt is None or number > param.gt)
+        and (param.ge is None or number >= param.ge)
+        and (param.lt is None or number < param.lt)
+        and (param.le is None or number <= param.le)
     )
-
-
-def _a_kind(entry: Key) -> str:
-    if entry.param.choices:
-        return "one of the words allowed"
-    kind = _KINDS[entry.base]
-    return kind if entry.base in (str, bool) else f"a {kind}"
+    return "" if within else "is out of range"
 
 
 def is_of(value: Any, base: type) -> bool:

@@ -219,6 +219,8 @@ def _single(key: Key) -> Schema:
         single: Schema = {"enum": list(made.choices)}
     else:
         bounds = {word: getattr(made, name) for name, word in _BOUNDS.items()}
+        bounds |= {"minimum": made.least} if made.least else {}
         single = {"type": _TYPES[key.base]}
         single |= {word: bound for word, bound in bounds.items() if bound is not None}
-    return {"anyOf": [single, {"const": key.literal}]} if key.literal else single
+    other = key.literal or (0 if made.least else None)
+    return single if other is None else {"anyOf": [single, {"const": other}]}

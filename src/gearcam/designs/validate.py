@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from gearcam.base.quantities import REQUIRED
 from gearcam.base.rules import Breach, Rule
-from gearcam.designs.faults import Fault, allowed, functions_of, is_of, show, value_fault
+from gearcam.designs.faults import Fault, allowed, is_of, list_fault, show, value_fault
 from gearcam.designs.lines import Path
 from gearcam.designs.slips import STRONG, hinted, key_hint, misspelt
 from gearcam.designs.table import Key, Table
@@ -76,42 +75,14 @@ def faults_of(
 def _of_value(key: Key, value: Any, path: Path) -> Iterator[Fault]:
     if key.param.nested and isinstance(value, Mapping | str):
         return  # it is no design: its faults have been found
+    faults: list[Fault | None] = []
     if key.length is None or (key.param.both and not isinstance(value, list)):
-        if not _fits(key, value):
-            yield value_fault(path, value, key, item=key.length is not None)
-    elif not isinstance(value, list):
-        yield value_fault(path, value, key, item=False)
+        faults = [value_fault(path, value, key, item=key.length is not None)]
     else:
-        for number, item in enumerate(value):
-            if not _fits(key, item):
-                yield value_fault((*path, number), item, key, item=True)
-        if not key.takes(len(value)):
-            yield value_fault(path, value, key, item=False)
-
-
-def _fits(key: Key, value: Any) -> bool:
-    """Return whether its key allows a single value."""
-    if (key.literal and value == key.literal) or (key.param.function and functions_of(value)):
-        return True
-    if key.param.nested:
-        return isinstance(value, key.base) and getattr(value, "kind", "") in key.param.nested
-    if not is_of(value, key.base) or (key.param.choices and value not in key.param.choices):
-        return False
-    if key.base not in (int, float):
-        return True
-    try:
-        number = float(value)
-    except OverflowError:
-        return False
-    made = key.param
-    return (
-        (math.isfinite(number) or key.base is int)
-        and (made.gt is None or number > made.gt)
-        and not 0.0 < number < made.least
-        and (made.ge is None or number >= made.ge)
-        and (made.lt is None or number < made.lt)
-        and (made.le is None or number <= made.le)
-    )
+        items = enumerate(value if isinstance(value, list) else ())
+        faults = [value_fault((*path, number), one, key, item=True) for number, one in items]
+        faults.append(list_fault(path, value, key))
+    yield from (fault for fault in faults if fault)
 
 
 @dataclass(frozen=True)
