@@ -13,9 +13,8 @@ from hypothesis import strategies as st
 
 from gearcam.base.errors import DesignError
 from gearcam.base.quantities import ANGLE, COUNT, LENGTH, NUMBER, Param, Quantity
-from gearcam.designs.design import path_of, value_at
+from gearcam.designs.design import loads, path_of, value_at
 from gearcam.designs.faults import dotted
-from gearcam.designs.loading import loads
 from gearcam.designs.table import Key
 from gearcam.view.numbers import equals, numbers, replaced, sliders, span
 from helpers_pairs import PROFILES

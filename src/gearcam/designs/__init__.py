@@ -11,8 +11,7 @@ and kinds of design that this version does not support.
 
 from __future__ import annotations
 
-from gearcam.designs.design import Design, design, document_of, hash_of
+from gearcam.designs.design import Design, design, document_of, hash_of, load, loads
 from gearcam.designs.kind import KINDS
-from gearcam.designs.loading import load, loads
 
 __all__ = ["KINDS", "Design", "design", "document_of", "hash_of", "load", "loads"]

@@ -1,4 +1,6 @@
-"""The base class of designs: a design made in Python obeys the rules of a design file.
+"""Designs: their base class, and how files, texts and dictionaries become one.
+
+A design made in Python obeys the rules of a design file.
 
 Only a Python function has no equivalent in a file. Designs compare functions by identity and have a
 unique hash then; a summary names the function, and writing such a design to a file is refused.
@@ -19,11 +21,12 @@ from typing import Any, ClassVar, Final, Self
 
 from gearcam.base.display import cut
 from gearcam.base.errors import DesignError, InfeasibleError, Problem
-from gearcam.designs.examine import examine
+from gearcam.designs.examine import examine, examine_file
 from gearcam.designs.faults import dotted, functions_of, is_deep
 from gearcam.designs.kind import KINDS
 from gearcam.designs.lines import Path
 from gearcam.designs.outputs import OutputSpec
+from gearcam.designs.reader import content_of, decoded, document_in, problems_of
 from gearcam.designs.table import settled
 from gearcam.numeric.arguments import instance
 
@@ -358,6 +361,55 @@ def design(document: Mapping[str, Any], source: str = "") -> Any:
     if found.faults:
         raise DesignError(fault.problem(source) for fault in found.faults)
     return KINDS[plain["kind"]].design(source=source, examined=True, **found.parts)
+
+
+def load(path: str | os.PathLike[str]) -> Design:
+    """Read a design file.
+
+    Parameters
+    ----------
+    path : path
+        A TOML file in UTF-8.
+
+    Returns
+    -------
+    Design
+        In mm and rad; its class depends on the kind.
+
+    Raises
+    ------
+    DesignError
+        If the file cannot be read, or with all mistakes in it, each with its line.
+    """
+    file = os.fspath(path)
+    return loads(decoded(content_of(file), file), file=file)
+
+
+def loads(text: str, *, file: str = "") -> Design:
+    """Read the text of a design file.
+
+    Parameters
+    ----------
+    text : str
+        TOML.
+    file : str
+        Name of the file, for messages; its stem is the default name of the design.
+
+    Returns
+    -------
+    Design
+        In mm and rad; its class depends on the kind.
+
+    Raises
+    ------
+    DesignError
+        With all mistakes, each with its line.
+    """
+    document = document_in(text, file)
+    found = examine_file(document, file)
+    if found.faults:
+        raise DesignError(problems_of(found.faults, text, file))
+    return KINDS[document["kind"]].design(source=file, examined=True, **found.parts)
 
 
 def _plain(value: Any) -> Any:

@@ -13,7 +13,7 @@ from textwrap import indent
 from typing import Any, Final, TypeVar
 
 from gearcam.base.errors import DesignError, WriteError
-from gearcam.designs.loading import loads
+from gearcam.designs.design import loads
 from gearcam.designs.reader import content_of, decoded
 from gearcam.export.write import rewrite
 from gearcam.view import work

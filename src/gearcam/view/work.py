@@ -18,8 +18,7 @@ from gearcam import build, remedies
 from gearcam.base.errors import DesignError, GearcamError, InfeasibleError
 from gearcam.base.interrupts import SIGNALS
 from gearcam.console import fault_text, quieten, refusal_text, remedy_lines
-from gearcam.designs.design import Design
-from gearcam.designs.loading import loads
+from gearcam.designs.design import Design, loads
 from gearcam.designs.reader import content_of, decoded
 from gearcam.numeric.arrays import keep_freed_memory
 from gearcam.report.page import document, draft

@@ -114,7 +114,7 @@ def test_a_close_mounting_ends_with_an_error(design: str) -> None:
         (["--overclosure", "0"], "without an overclosure"),
         (["--overclosure", "nan"], "meshing.overclosure_deg"),
         (["--from", "40"], "before it begins"),
-        (["--teeth", "21"], "no tooth 21"),
+        (["--teeth", "21"], "21: the driver has no such tooth"),
         (["--teeth", "2,2"], "listed twice"),
         (["--teeth", "two"], "is not a list such as"),
         (["--center", "-1"], "meshing.center_distance_mm"),
@@ -208,7 +208,7 @@ def test_a_study_without_a_beginning_begins_at_zero() -> None:
     design = loads(TEXT.replace("36", "0.5"))
     assert isinstance(design, GearPairDesign)
     assert design.meshing.end == pytest.approx(math.radians(0.5))
-    with pytest.raises(DesignError, match="would end before it begins, at 0 deg"):
+    with pytest.raises(DesignError, match="would end before it begins, at from_deg = 0"):
         loads(TEXT.replace("36", "0"))
 
 

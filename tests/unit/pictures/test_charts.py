@@ -16,7 +16,7 @@ from arch import rules
 from gearcam.base.errors import DesignError, MissingExtraError
 from gearcam.compare.page import joined
 from gearcam.compare.variants import Variant
-from gearcam.designs.loading import loads
+from gearcam.designs.design import loads
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.pictures.charts import Chart, Limit, Line, MarkedPlace
 from helpers_built import built
