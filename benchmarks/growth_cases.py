@@ -170,7 +170,7 @@ def program(follower: str, cam: str) -> str:
             f'{{ type = "rise", law = "cycloidal", angle_deg = 120, {lift} }}, '
             '{ type = "dwell", angle_deg = 30 }]'
         )
-    span = "way_mm" if "translating" in cam else "angle_deg"
+    span = "travel_mm" if "translating" in cam else "angle_deg"
     return (
         f'motion = [{{ type = "rise", law = "cycloidal", {span} = 90, {lift} }}, '
         f'{{ type = "dwell", {span} = 90 }}, '
@@ -313,7 +313,7 @@ def _of_cams() -> list[Series]:
         if "yoke" in form:
             continue
         lift = "lift_deg = 0.001" if "oscillating" in follower else "lift_mm = 0.001"
-        span = "way_mm" if "translating" in form else "angle_deg"
+        span = "travel_mm" if "translating" in form else "angle_deg"
         told = partial(phases, lift=lift, span=span)
         made.append(Series(f"phases, {name}", KNOTS, partial(_moved, name, told)))
         if "oscillating" not in follower and "translating" not in form:

@@ -16,9 +16,9 @@ from gearcam.cams.disc import CHORD_TOLERANCE, DiscCam, make_cam
 from gearcam.cams.followers import Arm, Face, FlatArm, FlatStem, Follower, Round, Stem
 from gearcam.cams.placing import make_follower
 from gearcam.cams.spec import CamSpec, FollowerSpec
+from gearcam.laws.motion.base import MOTION_LAWS
 from gearcam.laws.phases_of_lift import DwellPhase, Phase, ReturnPhase, RisePhase
 from gearcam.laws.program import Program, make_program
-from gearcam.laws.rises.base import RISES
 from witness.cam_sweep import Follower as Witness
 
 Array = NDArray[np.float64]
@@ -69,7 +69,7 @@ KINDS = list(SPECS)
 
 def law(name: str, **parameters: Any) -> Any:
     """Return the parameters of a rise."""
-    return RISES[name].parameters(**parameters)
+    return MOTION_LAWS[name].parameters(**parameters)
 
 
 def rise(name: str, degrees: float, lift: float, *, swings: bool = False, **more: Any) -> RisePhase:

@@ -118,15 +118,15 @@ kind = "cam"
 name = "one"
 [[motion]]
 type = "rise"
-way_mm = 60
+travel_mm = 60
 law = "3-4-5"
 lift_mm = 15
 [[motion]]
 type = "dwell"
-way_mm = 30
+travel_mm = 30
 [[motion]]
 type = "return"
-way_mm = 40
+travel_mm = 40
 law = "cycloidal"
 [follower]
 type = "roller"

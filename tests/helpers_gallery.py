@@ -403,7 +403,7 @@ CAM_NUMBERS: dict[str, dict[str, Number]] = {
         "cam.pressure_angle_deg.return_max": (DEG * math.atan(2 * 15 / 40), 1e-11),
         "cam.groove.lower.curvature.profile_convex_min_mm": (19.64980578843 - 6.025, 1e-10),
         "cam.groove.lower.curvature.profile_concave_min_mm": (19.64980578843 + 6.025, 1e-10),
-        "cam.way_mm": (170.0, 1e-12),
+        "cam.travel_mm": (170.0, 1e-12),
         "motion.peak_velocity": (0.75, 1e-12),
     },
     "plate_cam_oscillating": {

@@ -75,7 +75,7 @@ def plate(**blank: float) -> dict[str, Any]:
                         "run_in_mm": 20, "run_out_mm": 20}, lift=15)  # fmt: skip
     for phase, way in zip(made["motion"], (60, 30, 40, 10), strict=True):
         del phase["angle_deg"]
-        phase["way_mm"] = way
+        phase["travel_mm"] = way
     return made | {"blank": PLATE | blank}
 
 
@@ -279,7 +279,7 @@ REFUSED: dict[str, tuple[dict[str, Any], set[str]]] = {
         {"cam.prime_radius_mm", "motion[0].to_mm"},
     ),
     "drawn beyond a plate's way": (
-        plate() | {"output": {"files": ["svg"], "u_mm": 5000}}, {"output.u_mm"}
+        plate() | {"output": {"files": ["svg"], "travel_mm": 5000}}, {"output.travel_mm"}
     ),
     "drawn beyond a travel": (
         pair(DOOR, [30, 30], output={"files": ["svg"], "phi1_deg": -20}), {"output.phi1_deg"}

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from gearcam.base.findings import CHECKS, Check
-from gearcam.base.numerals import shown
+from gearcam.base.numerals import formatted
 from gearcam.base.quantities import REQUIRED
 from gearcam.base.tolerances import DEFAULT
 from gearcam.cams.spec import FOLLOWERS, CamSpec, FollowerSpec
@@ -25,10 +25,10 @@ from gearcam.kinds.cam.forms.base import FORMS, Form, form_keys
 from gearcam.kinds.cam.motion import WITH_LAW, phase_table, rise_table, summary, turn_tables
 from gearcam.kinds.gear_pair.design import law_table
 from gearcam.laws.entry import LawEntry
+from gearcam.laws.motion.base import MOTION_LAWS
 from gearcam.laws.phases_of_lift import PHASES, TURN, RisePhase
 from gearcam.laws.program import make_program
 from gearcam.laws.ratio.base import LAWS
-from gearcam.laws.rises.base import RISES
 from gearcam.results.kind import KINDS, Kind
 from reference_parts import (
     CHECKS_INTRO,
@@ -91,7 +91,7 @@ def peaks(entry: LawEntry) -> tuple[str, str, str]:
     made = make_program([phase], DEFAULT, oscillating=False, closed=False)
     smooth = int(known.group(1))
     first, second, third = (
-        shown(peak * TURN**order, 4) if order <= smooth + 1 else "infinite"
+        formatted(peak * TURN**order, 4) if order <= smooth + 1 else "infinite"
         for order, peak in enumerate(made.peaks, start=1)
     )
     return first, second, third
@@ -109,12 +109,12 @@ def motion_laws() -> Iterator[str]:
     )
     rows = (
         (f"[{code(name)}](#{name})", entry.doc, *peaks(entry), entry.continuity, entry.source)
-        for name, entry in RISES.items()
+        for name, entry in MOTION_LAWS.items()
     )
     heads = ("`law`", "what it is for", "velocity", "acceleration", "jerk", "continuity", "source")
     yield table(heads, rows)
     yield from law_sections(
-        RISES, rise_table, "[[motion]]", type="rise", angle_deg=120, lift_mm=10, law=""
+        MOTION_LAWS, rise_table, "[[motion]]", type="rise", angle_deg=120, lift_mm=10, law=""
     )
 
 
@@ -193,7 +193,7 @@ def limit(check: Check) -> str:
     if math.isnan(value):
         return f"{key}: {made.doc.partition('; ')[2] or made.doc}"
     unit = re.search(r", in (modules|addenda)$", made.doc)
-    number = shown(value / made.quantity.factor)
+    number = formatted(value / made.quantity.factor)
     return f"{key} = {number} {unit.group(1) if unit else made.quantity.unit}".rstrip()
 
 
@@ -257,8 +257,8 @@ def motion_section() -> Iterator[str]:
         "One table for each phase, in order. Its key `type` is"
         f" {', '.join(map(code, PHASES))}; rises and returns also have a `law` with its own keys,"
         " see [motion-laws.md](motion-laws.md). Lengths are for translating followers, angles for"
-        " oscillating ones; a translating cam has `way_mm` instead of `angle_deg`. The phases sum"
-        " to 360 degrees, with a yoke to 180 or 360."
+        " oscillating ones; a translating cam has `travel_mm` instead of `angle_deg`. The phases "
+        "sum to 360 degrees, with a yoke to 180 or 360."
     )
     for name, owner in PHASES.items():
         law = " It has a `law`." if name in WITH_LAW else ""

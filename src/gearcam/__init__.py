@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from gearcam.base.tolerances import Tolerances
     from gearcam.designs import Design
     from gearcam.kinds import *  # noqa: F403
-    from gearcam.laws import rises
+    from gearcam.laws import motion as motion_laws
     from gearcam.numeric.columns import Columns
     from gearcam.results.advice import Remedies
     from gearcam.results.result import Result, StudyResult
@@ -51,7 +51,7 @@ __all__ = [
     "Columns", "Design", "DesignError", "Facts", "Finding", "GearcamError", "InfeasibleError",
     "MissingExtraError", "Result", "StudyResult", "Tolerances", "WriteError", "__version__",
     "build",
-    "design", "laws", "load", "loads", "remedies", "rises",
+    "design", "laws", "load", "loads", "motion_laws", "remedies",
 ]  # fmt: skip
 
 _HOMES = {
@@ -62,7 +62,7 @@ _HOMES = {
     "gearcam.base.facts": ("Facts",),
     "gearcam.base.findings": ("Finding",),
     "gearcam.laws": ("laws",),
-    "gearcam.laws.rises": ("rises",),
+    "gearcam.laws.motion": ("motion_laws",),
     "gearcam.numeric.columns": ("Columns",),
     "gearcam.results.result": ("Result", "StudyResult"),
     "gearcam.base.tolerances": ("Tolerances",),

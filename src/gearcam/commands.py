@@ -32,7 +32,7 @@ from gearcam.results.kind import KINDS, Kind, Study
 
 if TYPE_CHECKING:
     from gearcam.results.result import Progress, Result
-    from gearcam.results.written import Written
+    from gearcam.results.written import BuildOutput
 
 GOOD, FINDINGS, WRONG, IMPOSSIBLE, FAULT, INTERRUPTED = 0, 1, 2, 3, 4, 130
 
@@ -49,7 +49,7 @@ EXIT_CODES: Final = {
 Options = Mapping[str, Any]
 """Values of a command's arguments and options by name."""
 
-Action = Callable[["Result", "Progress | None"], "Written"]
+Action = Callable[["Result", "Progress | None"], "BuildOutput"]
 """``action(result, progress)`` writes files of a result."""
 
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from gearcam.base.findings import Finding
     from gearcam.designs.listing import Listed
     from gearcam.results.advice import Remedies
-    from gearcam.results.written import Written
+    from gearcam.results.written import BuildOutput
 
 DEBUG: Final = "GEARCAM_DEBUG"
 """Environment variable that turns tracebacks on."""
@@ -70,14 +70,14 @@ def finding_lines(findings: Sequence[Finding]) -> Iterator[str]:
         yield wrapped(finding.message, first="      ", rest="      ")
 
 
-def all_lines(written: Written) -> Iterator[str]:
+def all_lines(written: BuildOutput) -> Iterator[str]:
     """Yield facts or table, findings and files of what was `written`."""
     yield from written.table or written.facts.lines()
     yield from finding_lines(written.findings)
     yield from written_lines(written)
 
 
-def written_lines(written: Written) -> Iterator[str]:
+def written_lines(written: BuildOutput) -> Iterator[str]:
     """Yield the files written, with their sizes, and those removed or outdated."""
     folder = written.directory
     yield f"written to {folder}"
@@ -86,9 +86,9 @@ def written_lines(written: Written) -> Iterator[str]:
         yield f"  {name:<{width}}  {_size(folder / name):>9}"
     for name in written.removed:
         yield f"  {name:<{width}}  removed: no longer part of this build"
-    if stale := ", ".join(written.summary.get("stale", ())):
+    if outdated := ", ".join(written.summary.get("outdated", ())):
         words = "made from another version of the design; build again to renew or remove them"
-        yield wrapped(f"outdated: {stale}: {words}", first="")
+        yield wrapped(f"outdated: {outdated}: {words}", first="")
 
 
 def _size(path: Path) -> str:

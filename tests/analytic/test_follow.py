@@ -275,10 +275,10 @@ def polynomial(x: Array) -> tuple[Array, Array]:
     return 10 * x**3 - 15 * x**4 + 6 * x**5, 30 * x**2 - 60 * x**3 + 30 * x**4
 
 
-Rise = Callable[[Array], tuple[Array, Array]]
+MotionFunction = Callable[[Array], tuple[Array, Array]]
 
 
-def rise_and_return(rise: Rise, theta: Array) -> tuple[Array, Array]:
+def rise_and_return(rise: MotionFunction, theta: Array) -> tuple[Array, Array]:
     """10 mm up in 80 degrees, dwell to 150, down to 270, dwell; with the derivative."""
     theta = np.mod(theta, 2.0 * math.pi)
     knots = np.radians([0.0, 80.0, 150.0, 270.0])
@@ -289,7 +289,7 @@ def rise_and_return(rise: Rise, theta: Array) -> tuple[Array, Array]:
     return lift, 10.0 * np.where(rising, up[1] / knots[1], -down[1] / (knots[3] - knots[2]))
 
 
-def made_for(rise: Rise, follower: Sizes, theta: Array) -> Plane:
+def made_for(rise: MotionFunction, follower: Sizes, theta: Array) -> Plane:
     """The cam by its envelope: the contact of a flat face, or the inner parallel of the centres."""
     lift, slope = rise_and_return(rise, theta)
     if follower.flat:
@@ -316,7 +316,9 @@ MADE = [
 @pytest.mark.parametrize("follower", MADE)
 @pytest.mark.parametrize("rise", [parabolas, polynomial])
 @pytest.mark.parametrize("uneven", few([True, False]))
-def test_a_cam_gives_the_lift_it_was_made_for(rise: Rise, follower: Sizes, uneven: bool) -> None:
+def test_a_cam_gives_the_lift_it_was_made_for(
+    rise: MotionFunction, follower: Sizes, uneven: bool
+) -> None:
     """At every degree, and at the knots and close to them, where no point lies."""
     near = np.random.default_rng(3).uniform(-1e-3, 1e-3, 100)
     knots = np.radians([0.0, 40.0, 80.0, 150.0, 210.0, 270.0])

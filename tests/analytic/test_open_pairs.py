@@ -189,7 +189,7 @@ def test_an_outside_within_the_end_faces_is_refused_with_one_that_does(
 
     with pytest.raises(InfeasibleError, match="end faces") as caught:
         sector(value)
-    (way,), limit = caught.value.ways, caught.value.limit
+    (way,), limit = caught.value.adjustments, caught.value.limit
     assert limit is not None
     named = way.near[key]
     assert isinstance(named, float)

@@ -215,16 +215,16 @@ LAWS = {
                 "entry",
                 "program",
                 "phases_of_lift",
-                "rises.pieces",
-                "rises.simple",
-                "rises.base",
+                "motion.pieces",
+                "motion.simple",
+                "motion.base",
             },
         ),
         (
             "measured_cam",
             "gears",
             {"columns", "displacement", "entry", "program", "phases_of_lift"}
-            | {"motion_table", "rows_of_lift", "rises.pieces", "rises.base"},
+            | {"motion_table", "rows_of_lift", "motion.pieces", "motion.base"},
         ),
     ],
 )

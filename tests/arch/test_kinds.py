@@ -289,4 +289,6 @@ def test_a_refusal_of_a_nested_design_has_its_place() -> None:
     with pytest.raises(InfeasibleError) as caught:
         _ = gearcam.build(broken).checked
     assert caught.value.where.startswith("drive.pair")
-    assert all(key.startswith("drive.pair.") for way in caught.value.ways for key in way.near)
+    assert all(
+        key.startswith("drive.pair.") for way in caught.value.adjustments for key in way.near
+    )

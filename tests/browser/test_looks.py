@@ -22,7 +22,7 @@ NAIL = "nail_machine_two_phase"
 TEXT, SHAPE = 4.5, 3.0
 """Least contrast of text and of what shows a shape or a control (WCAG 2.2, 1.4.3 and 1.4.11)."""
 
-Written = Callable[[str], Path]
+BuildOutput = Callable[[str], Path]
 
 
 def luminance(colour: str) -> float:
@@ -38,7 +38,7 @@ def contrast(one: str, other: str) -> float:
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_colours_stand_out(scheme: str, browser: Chrome, page_of: Written) -> None:
+def test_colours_stand_out(scheme: str, browser: Chrome, page_of: BuildOutput) -> None:
     open_page(browser, page_of("groove_cam"), prefers_color_scheme=scheme)
     source = page_of("groove_cam").read_text("utf-8")
     names = set(re.findall(r"--([a-z]+(?:-[a-z0-9]+)*): #", source))
@@ -66,7 +66,7 @@ def test_colours_stand_out(scheme: str, browser: Chrome, page_of: Written) -> No
 
 @pytest.mark.parametrize(("name", "size"), [(NAIL, LAPTOP), (NAIL, PHONE), ("groove_cam", PHONE)])
 def test_nothing_is_wider_than_the_window(
-    name: str, size: tuple[int, int], browser: Chrome, page_of: Written
+    name: str, size: tuple[int, int], browser: Chrome, page_of: BuildOutput
 ) -> None:
     open_page(browser, page_of(name), size)
     unfold(browser)
@@ -75,7 +75,7 @@ def test_nothing_is_wider_than_the_window(
 
 
 def test_on_a_phone_tables_are_whole_and_their_numbers_in_one_piece(
-    browser: Chrome, page_of: Written
+    browser: Chrome, page_of: BuildOutput
 ) -> None:
     open_page(browser, page_of("ring_ellipse"), PHONE)  # with the longest name that is solved
     unfold(browser)
@@ -106,7 +106,7 @@ def test_on_a_phone_tables_are_whole_and_their_numbers_in_one_piece(
     ],
 )
 def test_the_page_leads_with_what_decides_and_the_rest_is_folded(
-    name: str, leading: list[str], browser: Chrome, page_of: Written
+    name: str, leading: list[str], browser: Chrome, page_of: BuildOutput
 ) -> None:
     document = open_page(browser, page_of(name), (1600, 1000))
     titles = {chart["name"]: chart["title"] for chart in document["charts"]}
@@ -149,7 +149,9 @@ def test_charts_of_studies_that_a_design_asks_for_are_in_sight(
     assert complaints(browser) == []
 
 
-def test_a_page_without_moving_parts_shows_its_charts(browser: Chrome, page_of: Written) -> None:
+def test_a_page_without_moving_parts_shows_its_charts(
+    browser: Chrome, page_of: BuildOutput
+) -> None:
     source = page_of(NAIL)
     data = open_page(browser, source)
     still = source.with_name("still.html")
@@ -166,7 +168,7 @@ def test_a_page_without_moving_parts_shows_its_charts(browser: Chrome, page_of: 
     assert complaints(browser) == []
 
 
-def test_paper_shows_all_charts_facts_and_errors(browser: Chrome, page_of: Written) -> None:
+def test_paper_shows_all_charts_facts_and_errors(browser: Chrome, page_of: BuildOutput) -> None:
     document = open_page(browser, page_of(NAIL))
     script = """
     window.seen = [];
@@ -187,7 +189,7 @@ def test_paper_shows_all_charts_facts_and_errors(browser: Chrome, page_of: Writt
 
 
 def test_a_box_of_another_shape_is_drawn_before_it_is_shown(
-    browser: Chrome, page_of: Written
+    browser: Chrome, page_of: BuildOutput
 ) -> None:
     open_page(browser, page_of("groove_cam"))
     script = """
@@ -202,7 +204,7 @@ def test_a_box_of_another_shape_is_drawn_before_it_is_shown(
 
 @pytest.mark.parametrize("size", [LAPTOP, PHONE])
 def test_remedies_stand_under_the_verdict_with_what_is_known_of_them(
-    size: tuple[int, int], browser: Chrome, page_of: Written, built: Callable[[str], Any]
+    size: tuple[int, int], browser: Chrome, page_of: BuildOutput, built: Callable[[str], Any]
 ) -> None:
     open_page(browser, page_of("undercut_cam"), size)
     found = remedies(built("undercut_cam")).found
@@ -214,14 +216,14 @@ def test_remedies_stand_under_the_verdict_with_what_is_known_of_them(
     assert tops[2] < size[1]
 
 
-def test_on_a_phone_the_bar_stays_in_sight(browser: Chrome, page_of: Written) -> None:
+def test_on_a_phone_the_bar_stays_in_sight(browser: Chrome, page_of: BuildOutput) -> None:
     open_page(browser, page_of(NAIL), PHONE)
     browser.execute_script("document.getElementById('facts').scrollIntoView()")
     top = "return document.getElementById('controls').getBoundingClientRect().top"
     assert browser.execute_script(top) == 0
 
 
-def test_all_that_is_worked_has_a_name(browser: Chrome, page_of: Written) -> None:
+def test_all_that_is_worked_has_a_name(browser: Chrome, page_of: BuildOutput) -> None:
     open_page(browser, page_of(NAIL))
     unfold(browser)
     nodes: list[dict[str, Any]] = browser.execute_cdp_cmd("Accessibility.getFullAXTree", {})[
@@ -249,7 +251,7 @@ def test_all_that_is_worked_has_a_name(browser: Chrome, page_of: Written) -> Non
     assert len(set(found["button"])) == len(found["button"])
 
 
-def test_tab_leads_from_the_picture_to_its_controls(browser: Chrome, page_of: Written) -> None:
+def test_tab_leads_from_the_picture_to_its_controls(browser: Chrome, page_of: BuildOutput) -> None:
     open_page(browser, page_of(NAIL))
     keys = ActionChains(browser).send_keys(Keys.TAB).send_keys(Keys.ENTER)
     keys.perform()
@@ -264,7 +266,7 @@ def test_tab_leads_from_the_picture_to_its_controls(browser: Chrome, page_of: Wr
 
 
 def test_paper_is_light_without_controls_and_leaves_no_trace(
-    browser: Chrome, page_of: Written
+    browser: Chrome, page_of: BuildOutput
 ) -> None:
     open_page(browser, page_of(NAIL), prefers_color_scheme="dark")
     until(lambda: browser.find_elements(By.CLASS_NAME, "uplot"))
@@ -290,7 +292,9 @@ def test_paper_is_light_without_controls_and_leaves_no_trace(
         assert not browser.find_element(By.ID, name).is_displayed()
 
 
-def test_another_document_keeps_place_view_and_choices(browser: Chrome, page_of: Written) -> None:
+def test_another_document_keeps_place_view_and_choices(
+    browser: Chrome, page_of: BuildOutput
+) -> None:
     document = open_page(browser, page_of(NAIL))
     other = open_page(browser, page_of("ring_ellipse"))
     go(browser, 123.0)
@@ -315,7 +319,7 @@ def test_another_document_keeps_place_view_and_choices(browser: Chrome, page_of:
 
 
 def test_what_a_document_tells_is_no_markup(
-    browser: Chrome, tmp_path: Path, page_of: Written
+    browser: Chrome, tmp_path: Path, page_of: BuildOutput
 ) -> None:
     document = open_page(browser, page_of("groove_cam"))
     bad = "</script><script>window.bad = 1</script><img src=x onerror='window.bad = 1'>"

@@ -28,7 +28,7 @@ BENT = 0.5e-5
 """Error of a turn between two places half a degree apart, rad: an eighth of its second derivative,
 below 0.5 for these, times the square of the step."""
 
-Written = Callable[[str], Path]
+BuildOutput = Callable[[str], Path]
 Built = Callable[[str], Any]
 
 
@@ -56,7 +56,7 @@ def drawn(browser: Chrome, figure: WebElement) -> WebElement:
 
 @pytest.mark.parametrize("name", [NAIL, "groove_cam", "feeder"])
 def test_a_page_opens_without_complaint_or_network(
-    name: str, browser: Chrome, page_of: Written
+    name: str, browser: Chrome, page_of: BuildOutput
 ) -> None:
     open_page(browser, page_of(name))
     unfold(browser)
@@ -80,7 +80,7 @@ def test_a_written_page_is_small_and_quickly_there(
 
 
 def test_the_slider_turns_wheels_as_the_library_does(
-    browser: Chrome, page_of: Written, built: Built
+    browser: Chrome, page_of: BuildOutput, built: Built
 ) -> None:
     places = open_page(browser, page_of(NAIL))["scene"]["places"]
     for index in (0, 1, 250, 719, 720):
@@ -93,7 +93,9 @@ def test_the_slider_turns_wheels_as_the_library_does(
         assert (there["gear2"]["x"], there["gear2"]["y"]) == (180.0, 0.0)
 
 
-def test_between_places_wheels_turn_evenly(browser: Chrome, page_of: Written, built: Built) -> None:
+def test_between_places_wheels_turn_evenly(
+    browser: Chrome, page_of: BuildOutput, built: Built
+) -> None:
     open_page(browser, page_of(NAIL))
     for place in (33.2, 160.27):
         go(browser, place)
@@ -102,7 +104,7 @@ def test_between_places_wheels_turn_evenly(browser: Chrome, page_of: Written, bu
 
 
 def test_a_follower_is_lifted_as_the_library_does(
-    browser: Chrome, page_of: Written, built: Built
+    browser: Chrome, page_of: BuildOutput, built: Built
 ) -> None:
     open_page(browser, page_of("groove_cam"))
     for place in (0.0, 45.0, 120.0, 230.0):
@@ -122,7 +124,9 @@ return xs.map((x, k) => [...pen.getImageData(x, ys[k], 1, 1).data].slice(0, 3));
 """
 
 
-def test_the_picture_is_of_the_outlines(browser: Chrome, page_of: Written, built: Built) -> None:
+def test_the_picture_is_of_the_outlines(
+    browser: Chrome, page_of: BuildOutput, built: Built
+) -> None:
     """Pixels away from edges have the colour of the part that shapely finds there."""
     scene = open_page(browser, page_of(NAIL))["scene"]
     for box in browser.find_elements(By.CSS_SELECTOR, "#seen input:checked"):
@@ -167,7 +171,7 @@ def read_at(browser: Chrome, x: float, y: float) -> list[int]:
 
 
 def test_what_is_pointed_at_stays_when_zoomed_and_goes_when_dragged(
-    browser: Chrome, page_of: Written
+    browser: Chrome, page_of: BuildOutput
 ) -> None:
     """The cross of shaft 1: its middle is dark, what is beside it the ground of the bore."""
     box = open_page(browser, page_of(NAIL))["scene"]["box"]
@@ -187,7 +191,7 @@ def test_what_is_pointed_at_stays_when_zoomed_and_goes_when_dragged(
     assert browser.execute_script("return gearcam.place") == 0.0
 
 
-def test_the_view_follows_the_contact(browser: Chrome, page_of: Written) -> None:
+def test_the_view_follows_the_contact(browser: Chrome, page_of: BuildOutput) -> None:
     """The pitch point in the middle, with its own colour."""
     open_page(browser, page_of(NAIL))
     browser.find_element(By.ID, "mesh").click()
@@ -200,7 +204,7 @@ def test_the_view_follows_the_contact(browser: Chrome, page_of: Written) -> None
         assert read_at(browser, *browser.execute_script(middle)) == [0x5B, 0x2F, 0xA0]
 
 
-def test_keys_move_the_parts(browser: Chrome, page_of: Written) -> None:
+def test_keys_move_the_parts(browser: Chrome, page_of: BuildOutput) -> None:
     places = open_page(browser, page_of(NAIL))["scene"]["places"]
     pressed = [
         (Keys.ARROW_RIGHT, 1), (Keys.ARROW_UP, 2), (Keys.ARROW_LEFT, 1), (Keys.PAGE_UP, 21),
@@ -216,7 +220,7 @@ def test_keys_move_the_parts(browser: Chrome, page_of: Written) -> None:
     assert browser.find_element(By.ID, "place").get_attribute("value") == "21"
 
 
-def test_space_plays_and_pauses(browser: Chrome, page_of: Written) -> None:
+def test_space_plays_and_pauses(browser: Chrome, page_of: BuildOutput) -> None:
     open_page(browser, page_of(NAIL))
     canvas, button = (browser.find_element(By.ID, name) for name in ("parts", "play"))
     told = browser.find_element(By.ID, "told")
@@ -232,7 +236,7 @@ def test_space_plays_and_pauses(browser: Chrome, page_of: Written) -> None:
     assert told.text.startswith(f"driver angle phi1 = {place:.1f} deg, ratio i21 = ")
 
 
-def test_a_driven_wheel_goes_on_where_a_cycle_ends(browser: Chrome, page_of: Written) -> None:
+def test_a_driven_wheel_goes_on_where_a_cycle_ends(browser: Chrome, page_of: BuildOutput) -> None:
     """The ring has twice the teeth: after a turn of the driver it is half round, not back."""
     open_page(browser, page_of("ring_ellipse"))
     go(browser, 359.5)
@@ -246,7 +250,7 @@ def test_a_driven_wheel_goes_on_where_a_cycle_ends(browser: Chrome, page_of: Wri
 
 
 def test_a_click_on_a_chart_moves_parts_and_all_cursors(
-    browser: Chrome, page_of: Written, built: Built
+    browser: Chrome, page_of: BuildOutput, built: Built
 ) -> None:
     charts = open_page(browser, page_of(NAIL))["charts"]
     unfold(browser)
@@ -273,7 +277,7 @@ def test_a_click_on_a_chart_moves_parts_and_all_cursors(
             assert middle == pytest.approx(own["width"] * place / 360.0, abs=1.5)
 
 
-def test_a_chart_that_is_not_over_the_driver_stays(browser: Chrome, page_of: Written) -> None:
+def test_a_chart_that_is_not_over_the_driver_stays(browser: Chrome, page_of: BuildOutput) -> None:
     charts = open_page(browser, page_of(NAIL))["charts"]
     unfold(browser)
     figure = browser.find_elements(By.CLASS_NAME, "chart")[number_of("contact_ratio", charts)]
@@ -281,7 +285,7 @@ def test_a_chart_that_is_not_over_the_driver_stays(browser: Chrome, page_of: Wri
     assert browser.execute_script("return gearcam.place") == 0.0
 
 
-def test_where_motion_is_to_be_reduced_it_steps(browser: Chrome, page_of: Written) -> None:
+def test_where_motion_is_to_be_reduced_it_steps(browser: Chrome, page_of: BuildOutput) -> None:
     open_page(browser, page_of(NAIL), prefers_reduced_motion="reduce")
     button = browser.find_element(By.ID, "play")
     assert button.text == "Step"
@@ -305,14 +309,14 @@ def test_where_motion_is_to_be_reduced_it_steps(browser: Chrome, page_of: Writte
     ],
 )
 def test_the_place_is_said_with_what_is_measured_there(
-    name: str, value: str, browser: Chrome, page_of: Written
+    name: str, value: str, browser: Chrome, page_of: BuildOutput
 ) -> None:
     open_page(browser, page_of(name))
     go(browser, 100.0)
     assert re.fullmatch(value, browser.find_element(By.ID, "told").text)
 
 
-def test_knots_are_drawn_and_told(browser: Chrome, page_of: Written) -> None:
+def test_knots_are_drawn_and_told(browser: Chrome, page_of: BuildOutput) -> None:
     charts = open_page(browser, page_of(NAIL))["charts"]
     unfold(browser)
     figure = browser.find_elements(By.CLASS_NAME, "chart")[0]
@@ -347,7 +351,7 @@ gearcam.show({ charts: arguments[0] });
 
 
 def test_small_numbers_stand_at_the_axis_and_labels_of_limits_apart(
-    browser: Chrome, page_of: Written
+    browser: Chrome, page_of: BuildOutput
 ) -> None:
     charts = open_page(browser, page_of("groove_cam"))["charts"]
     assert "lift = 0 mm" in browser.find_element(By.TAG_NAME, "body").text
@@ -371,7 +375,7 @@ def test_small_numbers_stand_at_the_axis_and_labels_of_limits_apart(
 
 
 def test_numbers_at_logarithmic_axes_stand_at_their_logarithms(
-    browser: Chrome, page_of: Written
+    browser: Chrome, page_of: BuildOutput
 ) -> None:
     """An axis that is logarithmic after it was linear."""
     charts = open_page(browser, page_of("groove_cam"))["charts"]

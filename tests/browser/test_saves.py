@@ -22,7 +22,7 @@ SVG = "{http://www.w3.org/2000/svg}"
 ROUNDED = 2e-4
 """Lengths are written in steps of 1e-4 mm, points and placements apart."""
 
-Written = Callable[[str], Path]
+BuildOutput = Callable[[str], Path]
 Built = Callable[[str], Any]
 
 
@@ -51,7 +51,7 @@ def box(points: Any) -> list[float]:
 
 
 def test_a_saved_drawing_has_the_outlines_where_they_stand(
-    browser: Chrome, page_of: Written, built: Built, tmp_path: Path
+    browser: Chrome, page_of: BuildOutput, built: Built, tmp_path: Path
 ) -> None:
     document = open_page(browser, page_of(NAIL), prefers_color_scheme="dark")
     go(browser, 77.0)
@@ -72,7 +72,9 @@ def test_a_saved_drawing_has_the_outlines_where_they_stand(
     assert (root.attrib["width"], root.attrib["height"]) == (f"{wide}mm", f"{tall}mm")
 
 
-def test_a_saved_picture_is_what_is_seen(browser: Chrome, page_of: Written, tmp_path: Path) -> None:
+def test_a_saved_picture_is_what_is_seen(
+    browser: Chrome, page_of: BuildOutput, tmp_path: Path
+) -> None:
     open_page(browser, page_of(NAIL))
     data = saved(browser, tmp_path, "#png", f"{NAIL}.png").read_bytes()
     canvas = browser.find_element(By.ID, "parts")
@@ -83,7 +85,7 @@ def test_a_saved_picture_is_what_is_seen(browser: Chrome, page_of: Written, tmp_
 
 @pytest.mark.parametrize("name", ["radii", "sliding"])
 def test_the_data_of_a_chart_are_saved(
-    name: str, browser: Chrome, page_of: Written, built: Built, tmp_path: Path
+    name: str, browser: Chrome, page_of: BuildOutput, built: Built, tmp_path: Path
 ) -> None:
     """One column of places for lines that share them, else one for each; breaks are empty."""
     charts = open_page(browser, page_of(NAIL))["charts"]

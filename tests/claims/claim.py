@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 from gearcam.base.tolerances import Tolerances
+from gearcam.laws.motion.base import MotionLawParameters
 from gearcam.laws.ratio.base import RatioLaw
 from gearcam.laws.ratio.span import ONE_LOBE, RING, WHEEL, Lobes
-from gearcam.laws.rises.base import RiseParameters
 from random_designs.draw import Draw
 from random_designs.law_draw import Counts, Law, LawDraw
 from witness.exact import Exact
@@ -117,7 +117,7 @@ class MotionClaim:
 
     Parameters
     ----------
-    parameters : RiseParameters
+    parameters : MotionLawParameters
         The example.
     values, velocities : mapping of float to float
         S and S' by phi.
@@ -129,7 +129,7 @@ class MotionClaim:
         Whether a return is the rise run backwards.
     """
 
-    parameters: RiseParameters
+    parameters: MotionLawParameters
     values: Mapping[float, float]
     velocities: Mapping[float, float] = field(default_factory=dict)
     peak_velocity: float

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gearcam.base.tolerances import DEFAULT
-from gearcam.laws.rises.base import Rise
+from gearcam.laws.motion.base import MotionFunction
 from gearcam.numeric.piecewise import extremes
 
 Array = NDArray[np.float64]
@@ -19,7 +19,7 @@ JUMP = 1e-9
 """Jump of a derivative that counts, in its largest value: far above rounding."""
 
 
-class ShownRise(Rise):
+class ShownRise(MotionFunction):
     """A rise that is asked for its peaks."""
 
     @property

@@ -14,17 +14,17 @@ from claims.laws import LAW_CLAIMS
 from claims.motion import MOTION_CLAIMS
 from gearcam.base.tolerances import DEFAULT
 from gearcam.laws.displacement import Displacement
+from gearcam.laws.motion.base import MotionLawParameters
 from gearcam.laws.motion_formula import MotionFormula
 from gearcam.laws.motion_table import MotionTable
 from gearcam.laws.phases_of_lift import DwellPhase, Phase, ReturnPhase, RisePhase, SegmentPhase
 from gearcam.laws.program import make_program
-from gearcam.laws.rises.base import RiseParameters
 
 Array = NDArray[np.float64]
 TURN = 2.0 * math.pi
 
 
-def program(law: RiseParameters) -> Displacement:
+def program(law: MotionLawParameters) -> Displacement:
     """A rise, a return by a segment to half way and by the law, and a dwell."""
     phases: list[Phase] = [
         RisePhase(angle=1.5, law=law, lift=8.0),

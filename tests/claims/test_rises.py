@@ -16,7 +16,7 @@ from claims.motion import MOTION_CLAIMS
 from claims.shown_rise import ShownRise, shown
 from gearcam.base.quantities import params_of
 from gearcam.base.tolerances import DEFAULT
-from gearcam.laws.rises.base import RISES, Rise, RiseParameters
+from gearcam.laws.motion.base import MOTION_LAWS, MotionFunction, MotionLawParameters
 from random_designs.draw import Draw
 from random_designs.laws import parameters, random_motion_law
 
@@ -76,7 +76,7 @@ def peaks(made: Any) -> tuple[float, float, float]:
     return made.peak_velocity, made.peak_acceleration, made.peak_jerk
 
 
-def inside(rise: Rise, count: int) -> list[Array]:
+def inside(rise: MotionFunction, count: int) -> list[Array]:
     """Places in each piece, its ends left out by a billionth of its width."""
     steps = np.linspace(1e-9, 1.0 - 1e-9, count)
     knots = rise.function.knots
@@ -84,8 +84,8 @@ def inside(rise: Rise, count: int) -> list[Array]:
 
 
 def test_the_registry_holds_exactly_the_rises_that_are_claimed() -> None:
-    assert {entry.name for entry in RISES.values()} == set(MOTION_CLAIMS) == set(RISES)
-    for entry in RISES.values():
+    assert {entry.name for entry in MOTION_LAWS.values()} == set(MOTION_CLAIMS) == set(MOTION_LAWS)
+    for entry in MOTION_LAWS.values():
         assert len(MOTION_CLAIMS[entry.name].values) >= 1
         assert entry.source
         assert entry.continuity
@@ -98,7 +98,7 @@ def test_the_registry_holds_exactly_the_rises_that_are_claimed() -> None:
 
 def test_a_name_is_given_once() -> None:
     with pytest.raises(ValueError, match="'harmonic' is registered twice"):
-        RISES.register(RISES["harmonic"])
+        MOTION_LAWS.register(MOTION_LAWS["harmonic"])
 
 
 @pytest.mark.parametrize("claim", CLAIMS)
@@ -112,7 +112,7 @@ def test_values_are_those_of_the_closed_form(claim: MotionClaim) -> None:
 
 
 @pytest.mark.parametrize("law", MEMBERS)
-def test_it_goes_from_corner_to_corner(law: RiseParameters) -> None:
+def test_it_goes_from_corner_to_corner(law: MotionLawParameters) -> None:
     rise = law.build(DEFAULT)
     assert rise.function.knots[0] == 0.0
     assert rise.function.knots[-1] == 1.0
@@ -122,7 +122,7 @@ def test_it_goes_from_corner_to_corner(law: RiseParameters) -> None:
 
 
 @pytest.mark.parametrize("law", MEMBERS)
-def test_each_derivative_is_that_of_the_one_below(law: RiseParameters) -> None:
+def test_each_derivative_is_that_of_the_one_below(law: MotionLawParameters) -> None:
     """Gauss-Legendre integrals of S', S'' and S''' over each piece against differences."""
     rise = law.build(DEFAULT)
     nodes, weights = np.polynomial.legendre.leggauss(20)
@@ -142,7 +142,7 @@ def test_each_derivative_is_that_of_the_one_below(law: RiseParameters) -> None:
 
 
 @pytest.mark.parametrize("law", MEMBERS)
-def test_lift_and_velocity_do_not_jump_inside(law: RiseParameters) -> None:
+def test_lift_and_velocity_do_not_jump_inside(law: MotionLawParameters) -> None:
     function = law.build(DEFAULT).function
     for knot in range(1, len(function.knots) - 1):
         before, after = function.side(knot, -1, 1), function.side(knot, 1, 1)
@@ -194,7 +194,7 @@ def test_peaks_are_those_of_the_closed_form_and_of_dense_sampling(claim: MotionC
 
 @pytest.mark.parametrize("name", REFERENCE)
 def test_peaks_are_those_of_the_reference_table(name: str) -> None:
-    rise = shown(RISES[name].parameters())
+    rise = shown(MOTION_LAWS[name].parameters())
     for found, printed in zip(peaks(rise), REFERENCE[name], strict=True):
         if printed is not None:
             assert found == pytest.approx(printed, rel=1e-7 if len(f"{printed}") < 10 else 1e-10)
@@ -202,13 +202,13 @@ def test_peaks_are_those_of_the_reference_table(name: str) -> None:
 
 def test_laws_whose_acceleration_jumps_are_told_by_their_jerk() -> None:
     """The table prints 12 for the jerk of the 2-3 law, which is that between its ends."""
-    rise = shown(RISES["2-3"].parameters())
+    rise = shown(MOTION_LAWS["2-3"].parameters())
     assert rise.peak_jerk == math.inf
     assert rise.start[2] == rise.end[2] == -12.0
 
 
 def test_the_rise_return_of_the_textbook_is_told_against_a_dwell_and_against_its_return() -> None:
-    rise = shown(RISES["3-4-5-6"].parameters())
+    rise = shown(MOTION_LAWS["3-4-5-6"].parameters())
     assert rise.mirrored
     assert rise.end == (0.0, -6.0, 0.0)
     phi = np.linspace(0.0, 1.0, 100001)

@@ -9,8 +9,8 @@ import pytest
 
 from claims.shown_rise import ShownRise, shown
 from gearcam.base.tolerances import DEFAULT
-from gearcam.laws.rises.points import TableRise
-from gearcam.laws.rises.simple import Cycloidal
+from gearcam.laws.motion.points import TableRise
+from gearcam.laws.motion.simple import Cycloidal
 
 COUNTS = (8, 16, 32, 64)
 FINE = np.linspace(0.0, 1.0, 4001)

@@ -21,7 +21,7 @@ from fuzz.outcome import Failure
 from gearcam.base.errors import GearcamError, InfeasibleError
 from gearcam.numeric.contour import Contour
 from gearcam.parts.body import Layer, Part
-from gearcam.results.written import Written
+from gearcam.results.written import BuildOutput
 
 _ROUNDING: Final = 1e-9
 """Largest rounding of coordinates in files, relative to the size of the part."""
@@ -31,14 +31,14 @@ _JOINED: Final = 0.1
 angle moves their ends."""
 
 
-def look_at(result: Any, written: Written) -> Iterator[Failure]:
+def look_at(result: Any, written: BuildOutput) -> Iterator[Failure]:
     """Yield the failures of a result and its files.
 
     Parameters
     ----------
     result : Result
         The result to check.
-    written : Written
+    written : BuildOutput
         Its files.
     """
     parts = _parts(result)
@@ -85,7 +85,7 @@ def _rings(layer: Layer, tolerance: float) -> tuple[Any, list[Any]]:
     return layer.edge.points(tolerance), [one.shape.points(tolerance) for one in layer.openings]
 
 
-def _drawing_errors(parts: Iterable[Part], written: Written) -> Iterator[Failure]:
+def _drawing_errors(parts: Iterable[Part], written: BuildOutput) -> Iterator[Failure]:
     """Yield a failure if DXF curves read back deviate from the true ones by more than allowed."""
     read = written.summary.get("accuracy", {}).get("dxf_mm")
     if not read:

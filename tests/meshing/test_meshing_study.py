@@ -17,7 +17,7 @@ from gearcam.base.tolerances import DEFAULT
 from gearcam.gears.contact import COAST, DRIVE, flank_pairs
 from gearcam.gears.outline import build_outline
 from gearcam.gears.subject import KIND as PAIR_KIND
-from gearcam.gears.subject import Subject
+from gearcam.gears.subject import CheckedPair
 from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.meshing.checks import KIND
@@ -221,8 +221,8 @@ def test_the_pair_s_own_check_names_the_sides_alike() -> None:
     assert worse[0].value == pytest.approx(ratios[DRIVE], rel=1e-12)
 
 
-def subject_of(made: GearPairResult) -> Subject:
-    return Subject(pair=made.pair, gears=made.gears, bores=made.bores)
+def subject_of(made: GearPairResult) -> CheckedPair:
+    return CheckedPair(pair=made.pair, gears=made.gears, bores=made.bores)
 
 
 def test_teeth_that_cannot_be_told_apart_are_refused() -> None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from typing import Any, Final
 
-from gearcam.laws.rises.base import RISES
+from gearcam.laws.motion.base import MOTION_LAWS
 from random_designs.blank import blank
 from random_designs.draw import Draw, short
 from random_designs.laws import random_motion_law
@@ -34,7 +34,7 @@ def _moved(d: Draw, kind: str, law: str) -> dict[str, Any]:
 
 def _program(d: Draw, law: str, lift: float, unit: str) -> list[dict[str, Any]]:
     """Return phases over a turn; `lift` in `unit`, which is mm or deg."""
-    back = law if law == "3-4-5-6" or d.chance(0.3) else d.pick([*RISES])
+    back = law if law == "3-4-5-6" or d.chance(0.3) else d.pick([*MOTION_LAWS])
     back = law if back == "3-4-5-6" else back
     up = {**_moved(d, "rise", law), f"lift_{unit}": lift}
     if law != "3-4-5-6" and d.chance(0.2):
@@ -178,7 +178,7 @@ def _slide(d: Draw, design: dict[str, Any], size: float) -> None:
     """Change a design to a translating cam, with travels instead of angles."""
     follower = design["follower"]
     for phase in design["motion"]:
-        phase["way_mm"] = short(phase.pop("angle_deg") / _DEGREES * size)
+        phase["travel_mm"] = short(phase.pop("angle_deg") / _DEGREES * size)
     follower.pop("offset_mm", None)
     if "arm_mm" in follower:
         follower["pivot_height_mm"] = short(follower["arm_mm"] * d.even(-0.5, 0.5))
@@ -195,7 +195,7 @@ def _slide(d: Draw, design: dict[str, Any], size: float) -> None:
     design["cam"] = given
     design["blank"] = _bar(d, size)
     output = design["output"]
-    for key, own in (("theta_deg", "u_mm"), ("motion_step_deg", "way_step_mm")):
+    for key, own in (("theta_deg", "travel_mm"), ("motion_step_deg", "travel_step_mm")):
         if key in output:
             output[own] = short(abs(output.pop(key)) / _DEGREES * size)
 
@@ -223,7 +223,7 @@ def design(d: Draw, index: int) -> dict[str, Any]:
     index : int
         Number of the design.
     """
-    law = [*RISES][index % len(RISES)]
+    law = [*MOTION_LAWS][index % len(MOTION_LAWS)]
     kind = FOLLOWERS[index % len(FOLLOWERS)]
     swings = d.chance(0.4)
     size = d.pick([d.log(0.1, 1e5), d.log(10, 100)])

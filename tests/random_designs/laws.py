@@ -21,9 +21,9 @@ from gearcam.base.tolerances import DEFAULT
 from gearcam.designs.table import Table
 from gearcam.kinds.cam.motion import rise_table
 from gearcam.kinds.gear_pair.design import law_table
+from gearcam.laws.motion.base import MOTION_LAWS
 from gearcam.laws.ratio.base import LAWS
 from gearcam.laws.ratio.span import Lobes
-from gearcam.laws.rises.base import RISES
 from random_designs.draw import Draw, short
 from random_designs.law_draw import LOBES, Counts, Law, LawDraw
 
@@ -50,7 +50,7 @@ def random_motion_law(d: Draw, name: str) -> Law:
     if claims.draw:
         law = claims.draw(d)
     else:
-        law = _by_ranges(d, RISES[name].example, rise_table(name), claims.usual)
+        law = _by_ranges(d, MOTION_LAWS[name].example, rise_table(name), claims.usual)
     return {"law": name, **law}
 
 
@@ -60,7 +60,7 @@ def parameters(law: Mapping[str, Any]) -> Any:
     if name := given.pop("type", ""):
         return LAWS[name].parameters(**law_table(name).inward(given))
     name = given.pop("law")
-    return RISES[name].parameters(**rise_table(name).inward(given))
+    return MOTION_LAWS[name].parameters(**rise_table(name).inward(given))
 
 
 def _with_counts(

@@ -135,10 +135,10 @@ BENDS: dict[str, dict[str, Any]] = {
         "kind": "cam",
         "name": "corner",
         "motion": [
-            {"type": "rise", "law": "formula", "formula": "sin(pi*x/2)**2", "way_mm": 160}
+            {"type": "rise", "law": "formula", "formula": "sin(pi*x/2)**2", "travel_mm": 160}
             | {"lift_mm": 3.3},
-            {"type": "dwell", "way_mm": 205},
-            {"type": "return", "law": "3-4-5", "way_mm": 186},
+            {"type": "dwell", "travel_mm": 205},
+            {"type": "return", "law": "3-4-5", "travel_mm": 186},
         ],
         "follower": {"type": "point"},
         "cam": {"form": "translating"},

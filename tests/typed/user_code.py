@@ -40,7 +40,7 @@ def laws_of_other_kinds() -> tuple[object, ...]:
         gc.laws.Phases(knots=(0.0, 3.0, 2.0 * np.pi), ratios=(1.6, "solve", 1.6)),
         gc.laws.TableLaw(phi1=angles, ratio=ratio(angles)),
         gc.laws.Fourier(cosines=[0.1, 0.02]),
-        gc.rises.TableRise(x=angles, y=angles**2),
+        gc.motion_laws.TableRise(x=angles, y=angles**2),
     )
 
 
@@ -81,8 +81,8 @@ def of_pairs(design: gc.GearPairDesign, ax: Axes) -> Floats:
 def cams(theta: Floats, lift: Floats) -> gc.CamResult:
     follower = gc.FollowerSpec(type="roller", roller_radius=6.0)
     size = gc.CamSpec(prime_radius=40.0, thickness=8.0)
-    up = gc.RisePhase(angle=2.0, law=gc.rises.Cycloidal(), lift=10.0)
-    back = gc.ReturnPhase(angle=2.0, law=gc.rises.Polynomial345())
+    up = gc.RisePhase(angle=2.0, law=gc.motion_laws.Cycloidal(), lift=10.0)
+    back = gc.ReturnPhase(angle=2.0, law=gc.motion_laws.Polynomial345())
     phases = [up, gc.DwellPhase(angle=1.0), back, gc.DwellPhase(angle="rest")]
     gc.CamDesign(name="phases", motion=phases, follower=follower, cam=size)
     gc.CamDesign(name="formula", motion=gc.MotionFormula(lift=np.sin), follower=follower, cam=size)

@@ -296,7 +296,7 @@ def lift(design: Mapping[str, Any]) -> list[Piece]:
         shape = expanded(formula(motion["lift"], "theta"))
         return [Piece(turn * k / 16, turn * (k + 1) / 16, shape) for k in range(16)]
     sliding = design["cam"].get("form") == "translating"
-    phases, key = list(motion), "way_mm" if sliding else "angle_deg"
+    phases, key = list(motion), "travel_mm" if sliding else "angle_deg"
     for name, place in (("run_in_mm", 0), ("run_out_mm", len(phases) + 1)):
         if sliding and design["cam"].get(name):
             phases.insert(min(place, len(phases)), {"type": "dwell", key: design["cam"][name]})

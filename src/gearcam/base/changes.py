@@ -12,8 +12,8 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
-from gearcam.base.errors import Way
-from gearcam.base.numerals import shortened, shown
+from gearcam.base.errors import Adjustment
+from gearcam.base.numerals import formatted, shortened
 
 Changes = Mapping[str, Any]
 
@@ -32,9 +32,9 @@ def text_of(changes: Changes) -> str:
     return " and ".join(f"{key} = {_value(value)}" for key, value in changes.items())
 
 
-def joined(changes: Changes, way: Way) -> Way:
+def joined(changes: Changes, way: Adjustment) -> Adjustment:
     """Return a `way` that makes other `changes` too."""
-    return Way(
+    return Adjustment(
         near={**changes, **way.near} if way.near else {},
         far={**changes, **way.far} if way.far else {},
     )
@@ -46,13 +46,13 @@ def together(changes: Changes, more: Changes) -> Changes:
     return {**own, **more}
 
 
-def for_both(way: Way) -> Way | None:
+def for_both(way: Adjustment) -> Adjustment | None:
     """Return a `way` of one wheel's blank as one of both; None if it is none."""
     keys = [*way.near, *way.far]
     if not keys or not all(re.fullmatch(r"blank\.\w+\[\d\]", key) for key in keys):
         return None
     near, far = ({key[:-3]: end for key, end in ends.items()} for ends in (way.near, way.far))
-    return Way(near=near, far=far)
+    return Adjustment(near=near, far=far)
 
 
 def ahead(changes: Changes, near: Changes, far: Changes) -> bool:
@@ -105,7 +105,7 @@ def _value(value: object) -> str:
     if isinstance(value, list):
         return f"[{', '.join(map(_value, value))}]"
     if isinstance(value, float):
-        return shown(value, 10)
+        return formatted(value, 10)
     return json.dumps(value)
 
 

@@ -32,7 +32,7 @@ def renderer() -> Any:
     return importlib.import_module(RENDERER)
 
 
-class Brief:
+class ShortRepr:
     """Base of dataclasses with a one-line representation: type, and fields without defaults.
 
     It shows numbers and texts, the shapes of arrays, and the types of other objects.
@@ -100,7 +100,7 @@ def _usual(field: dataclasses.Field[Any], value: Any) -> bool:
     return isinstance(value, bool | int | float | str | tuple) and value == field.default
 
 
-class Displayed(ABC):
+class NotebookView(ABC):
     """Base of objects that a notebook shows as a picture with facts below."""
 
     @cached_property

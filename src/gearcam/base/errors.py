@@ -18,7 +18,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
-from gearcam.base.numerals import shown
+from gearcam.base.numerals import formatted
 
 
 class GearcamError(Exception):
@@ -104,7 +104,7 @@ ABOVE = 1.01
 
 
 @dataclass(frozen=True, kw_only=True)
-class Way:
+class Adjustment:
     """A change of a design that may remove an error; building it shows whether it does.
 
     Parameters
@@ -139,7 +139,7 @@ class InfeasibleError(GearcamError, ValueError):
         Unit of both.
     nearest : str
         What the numbers mean, or the rule. Not a tested remedy: `gearcam.remedies` finds those.
-    ways : sequence of Way
+    adjustments : sequence of Adjustment
         Changes of the design that may help.
     more_teeth : float
         Factor on the number of teeth that may help, as may a smaller range of the ratio; 0 if
@@ -165,22 +165,22 @@ class InfeasibleError(GearcamError, ValueError):
         limit: float | None = None,
         unit: str = "",
         nearest: str = "",
-        ways: Sequence[Way] = (),
+        adjustments: Sequence[Adjustment] = (),
         more_teeth: float = 0.0,
     ) -> None:
         self.what, self.where, self.nearest, self.unit = what, where, nearest, unit
-        self.ways, self.more_teeth = tuple(ways), more_teeth
+        self.adjustments, self.more_teeth = tuple(adjustments), more_teeth
         self.value, self.limit = value, limit
         text = f"{what} ({where})" if where else what
         numbers = ", ".join(
-            f"{name} {shown(number, 10)} {unit}".rstrip()
+            f"{name} {formatted(number, 10)} {unit}".rstrip()
             for name, number in (("value", value), ("limit", limit))
             if number is not None
         )
         super().__init__("; ".join(part for part in (text, numbers, nearest) if part))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        names = ("where", "value", "limit", "unit", "nearest", "ways", "more_teeth")
+        names = ("where", "value", "limit", "unit", "nearest", "adjustments", "more_teeth")
         return partial(type(self), self.what, **{name: getattr(self, name) for name in names}), ()
 
 
@@ -197,7 +197,7 @@ def beyond_limit(
     *,
     near: object = None,
     far: object = None,
-    ways: Sequence[Way] = (),
+    adjustments: Sequence[Adjustment] = (),
     unit: str | None = None,
     more_teeth: float = 0.0,
 ) -> InfeasibleError:
@@ -216,7 +216,7 @@ def beyond_limit(
     near, far : object
         The smallest and the largest change of the key that may help; with `far` alone the smallest
         is the limit. Without both there is none.
-    ways : sequence of Way
+    adjustments : sequence of Adjustment
         Other changes that may help, tried after that of the key.
     unit : str, optional
         Unit of value and limit; by default that in which the key ends.
@@ -230,9 +230,9 @@ def beyond_limit(
     key = where.rpartition(", ")[2]
     if far is not None:
         near = limit if near is None else near
-        ways = (Way(near={key: near}, far={key: far}), *ways)
+        adjustments = (Adjustment(near={key: near}, far={key: far}), *adjustments)
     elif near is not None:
-        ways = (Way(near={key: near}), *ways)
+        adjustments = (Adjustment(near={key: near}), *adjustments)
     return InfeasibleError(
         what,
         where=where,
@@ -240,7 +240,7 @@ def beyond_limit(
         limit=limit,
         unit=_unit_of(where) if unit is None else unit,
         nearest=note,
-        ways=ways,
+        adjustments=adjustments,
         more_teeth=more_teeth,
     )
 

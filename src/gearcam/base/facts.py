@@ -14,8 +14,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Final
 
-from gearcam.base.display import Brief, line, renderer
-from gearcam.base.numerals import shown
+from gearcam.base.display import ShortRepr, line, renderer
+from gearcam.base.numerals import formatted
 
 _UNITS: Final = {
     "_kg_m3": "kg/m3",
@@ -41,7 +41,7 @@ _LEAVES: Final = (("min", "max"), ("least", "mean"))
 
 
 @dataclass(frozen=True)
-class Fact(Brief):
+class Fact(ShortRepr):
     """A value with its meaning, limit and place.
 
     Parameters
@@ -123,7 +123,7 @@ def text_of(value: Any, noise: float = 0.0) -> str:
         return " : ".join(map(text_of, value))
     if isinstance(value, bool | str):
         return str(value)
-    return shown(0.0 if abs(value) < noise else value)
+    return formatted(0.0 if abs(value) < noise else value)
 
 
 class Facts(Mapping[str, Any]):
@@ -300,8 +300,8 @@ def _quantity(name: str, leaf: Any) -> NamedFact:
     unit = unit if fact.unit is None else fact.unit
     unit = "" if isinstance(fact.value, str) else unit  # words instead of a number
     meaning = fact.meaning or _label(last.removesuffix(end))
-    limit = "" if fact.at_least is None else f"at least {shown(fact.at_least)}"
-    limit = limit if fact.at_most is None else f"at most {shown(fact.at_most)}"
+    limit = "" if fact.at_least is None else f"at least {formatted(fact.at_least)}"
+    limit = limit if fact.at_most is None else f"at most {formatted(fact.at_most)}"
     return NamedFact(name, _bare(fact), unit, meaning, limit, fact.place, fact.noise, fact.text)
 
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from functools import wraps
 from typing import Any, Final, Literal, NamedTuple
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.base.numerals import settled, with_unit
 from gearcam.base.quantities import NUMBER, Param
 
@@ -22,7 +22,7 @@ Severity = Literal["note", "warning", "error"]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Finding(Brief):
+class Finding(ShortRepr):
     """The result of a check that the user should know.
 
     Parameters

@@ -27,7 +27,7 @@ _WHOLE: Final = 15
 """Length of the shortest text of a double up to which it needs no correction, characters."""
 
 
-def shown(value: float, digits: int = 6, scale: float = 0.0) -> str:
+def formatted(value: float, digits: int = 6, scale: float = 0.0) -> str:
     """Return a number as text with few significant digits.
 
     Parameters
@@ -48,7 +48,7 @@ def shown(value: float, digits: int = 6, scale: float = 0.0) -> str:
 
 def with_unit(value: float | None, unit: str) -> str:
     """Return a `value` with its `unit` as text; empty for None."""
-    return "" if value is None else f"{shown(value)} {unit}".rstrip()
+    return "" if value is None else f"{formatted(value)} {unit}".rstrip()
 
 
 def size_of(count: int) -> str:
@@ -107,4 +107,4 @@ def shortened(value: float, side: float, digits: int = 4) -> float:
 def rounded_down(value: float, digits: int = 6) -> str:
     """Return a positive `value` rounded down to `digits`, so that it keeps an upper limit."""
     step = 10.0 ** (math.floor(math.log10(value)) + 1 - digits)
-    return shown(math.floor(value / step * (1.0 + NOISE)) * step, digits)
+    return formatted(math.floor(value / step * (1.0 + NOISE)) * step, digits)

@@ -16,7 +16,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any, Final, Protocol
 
-from gearcam.base.numerals import shown
+from gearcam.base.numerals import formatted
 
 Breach = tuple[str, int | None, str, str]
 """A broken rule: field (empty for the table), index of an item, message, what is allowed."""
@@ -312,8 +312,10 @@ def _compared(how: str, name: str, other: str, why: str, part: float = 1.0) -> R
             and not values.missing(other)
             and not _COMPARED[how](value, part * limit)
         ):
-            share = f"{values.key(other)}/{shown(1.0 / part)}" if part != 1.0 else values.key(other)
-            size = f"{shown(part * limit)} {values.unit(other)}".rstrip()
+            share = (
+                f"{values.key(other)}/{formatted(1.0 / part)}" if part != 1.0 else values.key(other)
+            )
+            size = f"{formatted(part * limit)} {values.unit(other)}".rstrip()
             message = why.format(values.text(other))
             yield name, None, message, f"{how} {share} = {size}"
 

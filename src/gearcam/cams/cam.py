@@ -18,14 +18,14 @@ from typing import ClassVar
 
 import numpy as np
 
-from gearcam.base.display import Displayed, renderer
+from gearcam.base.display import NotebookView, renderer
 from gearcam.base.facts import Fact, Facts
 from gearcam.cams.measures import Extreme
 from gearcam.cams.wall import PitchMotion, Wall
 from gearcam.numeric.arrays import Array
 
 
-class Cam(Displayed):
+class Cam(NotebookView):
     """A cam made from a lift program and a follower; each form adds its own properties."""
 
     title: ClassVar[str]

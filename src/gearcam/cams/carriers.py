@@ -17,8 +17,8 @@ from typing import ClassVar, Protocol
 
 import numpy as np
 
-from gearcam.base.display import Brief
-from gearcam.base.numerals import shown
+from gearcam.base.display import ShortRepr
+from gearcam.base.numerals import formatted
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.jets import Jet, cos, sin
 
@@ -34,13 +34,15 @@ def unit(angle: Array | float) -> Plane:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Driver(Brief):
+class Driver(ShortRepr):
     """Name and unit of a cam's angle or travel in output.
 
     Parameters
     ----------
+    column : str
+        The name of its column.
     symbol, unit, per : str
-        Symbol and unit of angle or travel, as in names of columns; unit of the variable of
+        Symbol and unit of angle or travel; unit of the variable of
         derivatives.
     called : str
         Its name in words.
@@ -50,6 +52,7 @@ class Driver(Brief):
         Whole turn or travel, in the unit.
     """
 
+    column: str
     symbol: str
     unit: str
     per: str
@@ -57,14 +60,9 @@ class Driver(Brief):
     scale: float
     whole: float
 
-    @property
-    def column(self) -> str:
-        """The name of its column."""
-        return f"{self.symbol}_{self.unit}"
-
     def told(self, theta: float) -> str:
         """Return a driver position as text with its unit, with rounding shown as 0."""
-        return f"{shown(self.scale * theta, scale=self.whole)} {self.unit}"
+        return f"{formatted(self.scale * theta, scale=self.whole)} {self.unit}"
 
     def seen(self, theta: float) -> str:
         """Return a position as text."""
@@ -87,7 +85,7 @@ class Centred(Protocol):
         ...
 
 
-class Carrier(ABC, Brief):
+class Carrier(ABC, ShortRepr):
     """The motion of a cam, by a driver position x: rad of a turn, or mm of a travel."""
 
     rate: ClassVar[float]
@@ -165,6 +163,7 @@ class Rotating(Carrier):
     def driver(self) -> Driver:
         """Name and unit of the cam angle."""
         return Driver(
+            column="theta_deg",
             symbol="theta",
             unit="deg",
             per="rad",
@@ -219,7 +218,13 @@ class Sliding(Carrier):
     def driver(self) -> Driver:
         """Name and unit of the travel."""
         return Driver(
-            symbol="u", unit="mm", per="mm", called="travel", scale=1.0, whole=self.travel
+            column="travel_mm",
+            symbol="u",
+            unit="mm",
+            per="mm",
+            called="travel",
+            scale=1.0,
+            whole=self.travel,
         )
 
     def seen(self, ahead: Pair, at: Pair) -> Pair:  # noqa: ARG002

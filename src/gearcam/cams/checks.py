@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from gearcam.base.findings import Remark, check
-from gearcam.base.numerals import shortened, shown
+from gearcam.base.numerals import formatted, shortened
 from gearcam.base.quantities import ANGLE, LENGTH, Param
 from gearcam.cams.cam import Cam
 from gearcam.cams.followers import Follower
@@ -128,7 +128,7 @@ def _steep(motion: PitchMotion, kinds: tuple[str, ...], largest: float) -> Itera
         worst = max(found.low, found.high, key=lambda end: abs(end.value))
         angle = math.degrees(abs(worst.value))
         yield Remark(
-            f"The pressure angle on the {kind} reaches {shown(angle)} deg.",
+            f"The pressure angle on the {kind} reaches {formatted(angle)} deg.",
             _at(motion, f"{kind}, at {motion.carrier.driver.told(worst.theta)}"),
             angle,
             limit=math.degrees(largest),
@@ -161,8 +161,8 @@ def _undercut(wall: Wall, limit: float) -> Iterator[Remark]:
         inside = [pair for pair in left if _within(pair, low, high, wall.program.period)]
         left = [pair for pair in left if pair not in inside]
         lost = loss.value * follower.lever
-        angle = f" ({shown(math.degrees(loss.value), 4)} deg)" if follower.angular else ""
-        cut, much = _stretches(inside, told), f"{shown(lost, 4)} mm{angle}"
+        angle = f" ({formatted(math.degrees(loss.value), 4)} deg)" if follower.angular else ""
+        cut, much = _stretches(inside, told), f"{formatted(lost, 4)} mm{angle}"
         yield Remark(
             f"The {wall.called} is {cut}. After trimming it has a corner, on which the follower "
             f"rides from {told(low)} to {told(high)}: "
@@ -205,15 +205,15 @@ def _shocks(cam: Cam, order: int) -> Iterator[tuple[str, float, str]]:
             yield f"at {driver.told(jump.theta)}", by, unit
 
 
-@check("hard-shock", kind=KIND)
-def hard_shock(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+@check("velocity-jump", kind=KIND)
+def velocity_jump(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Warn of a knot at which the velocity jumps.
 
     Looks at: knots where the velocity jumps.
     """
     for where, by, unit in _shocks(cam, 1):
         yield Remark(
-            f"The velocity jumps by {shown(by)} {unit}: except at very low speed the follower "
+            f"The velocity jumps by {formatted(by)} {unit}: except at very low speed the follower "
             "strikes the cam or leaves it.",
             where,
             by,
@@ -221,15 +221,16 @@ def hard_shock(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
         )
 
 
-@check("soft-shock", kind=KIND, severity="note")
-def soft_shock(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+@check("acceleration-jump", kind=KIND, severity="note")
+def acceleration_jump(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Note a knot at which the acceleration jumps.
 
     Looks at: knots where the acceleration jumps.
     """
     for where, by, unit in _shocks(cam, 2):
         yield Remark(
-            f"The acceleration jumps by {shown(by)} {unit}: the follower vibrates at high speed.",
+            f"The acceleration jumps by {formatted(by)} {unit}: the follower vibrates at high "
+            "speed.",
             where,
             by,
             unit=unit,
@@ -253,9 +254,10 @@ def sharp_profile(cam: Cam, limit: float) -> Iterator[Remark]:
             base, hint = cam.least_base_radius, ""
             if base is not None:
                 base = shortened(base + limit, 1.0)
-                hint = f" With cam.base_radius_mm = {shown(base)} it keeps the limit."
+                hint = f" With cam.base_radius_mm = {formatted(base)} it keeps the limit."
             yield Remark(
-                f"The smallest convex radius of the {wall.called} is {shown(convex, 4)} mm.{hint}",
+                f"The smallest convex radius of the {wall.called} is {formatted(convex, 4)} "
+                f"mm.{hint}",
                 wall.called if wall.key else "",
                 value=convex,
             )
@@ -273,8 +275,9 @@ def coarse_rows(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     error = lead.program.errors[0] * lead.follower.lever
     if error > lead.tolerance:
         yield Remark(
-            f"Between the rows of its table the lift is known to {shown(error, 3)} mm, the profile "
-            f"is cut to {shown(lead.tolerance, 3)} mm: the rows are coarse, or they scatter.",
+            f"Between the rows of its table the lift is known to {formatted(error, 3)} mm, the "
+            f"profile is cut to {formatted(lead.tolerance, 3)} mm: the rows are coarse, or they "
+            "scatter.",
             "motion",
             error,
             limit=lead.tolerance,
@@ -295,10 +298,10 @@ def lost_motion(cam: Cam, limit: float) -> Iterator[Remark]:
     if found is None:
         return
     lost = found.value * lead.follower.lever
-    angle = f" ({shown(math.degrees(found.value), 4)} deg)" if lead.follower.angular else ""
+    angle = f" ({formatted(math.degrees(found.value), 4)} deg)" if lead.follower.angular else ""
     if lost > limit:
         yield Remark(
-            f"Between its walls the follower has {shown(lost, 4)} mm{angle} of lost motion.",
+            f"Between its walls the follower has {formatted(lost, 4)} mm{angle} of lost motion.",
             lead.carrier.driver.seen(found.theta),
             lost,
         )
@@ -312,8 +315,8 @@ def face_width(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """
     if cam.face_width is not None:
         yield Remark(
-            f"The contact moves up to {shown(0.5 * cam.face_width, 4)} mm from the middle of each "
-            f"face: faces must be wider than {shown(cam.face_width, 4)} mm.",
+            f"The contact moves up to {formatted(0.5 * cam.face_width, 4)} mm from the middle of "
+            f"each face: faces must be wider than {formatted(cam.face_width, 4)} mm.",
             value=cam.face_width,
             unit="mm",
         )
@@ -334,9 +337,9 @@ def other_profile(found: tuple[Wall, Followed], limit: float) -> Iterator[Remark
     worst, most = int(off.argmax()), _MISSED * (high - low)
     if off[worst] > most:
         yield Remark(
-            f"The lift differs by up to {shown(scale * float(off[worst]), 4)} {unit} from that of "
-            f"the design, {shown(scale * (high - low))} {unit}: the profile belongs to another "
-            "wall or another cam, or is in another frame.",
+            f"The lift differs by up to {formatted(scale * float(off[worst]), 4)} {unit} from that "
+            f"of the design, {formatted(scale * (high - low))} {unit}: the profile belongs to "
+            "another wall or another cam, or is in another frame.",
             _at(wall, f"at {wall.carrier.driver.told(float(seen.theta[worst]))}"),
             scale * float(off[worst]),
             unit=unit,

@@ -24,9 +24,9 @@ import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.base.errors import InfeasibleError, beyond_limit
-from gearcam.base.numerals import shown
+from gearcam.base.numerals import formatted
 from gearcam.cams.cam import Cam
 from gearcam.cams.disc import demand_standing
 from gearcam.cams.followers import Round
@@ -64,7 +64,7 @@ class SecondRoller:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class ConjugateCam(Brief, Cam):
+class ConjugateCam(ShortRepr, Cam):
     """Conjugate cams, in one frame.
 
     Parameters
@@ -176,5 +176,5 @@ def _out_of_place(key: str, value: float, near: float, far: float) -> Infeasible
     if not near < far:
         rule = "no value is possible: the arm swings too far"
         return beyond_limit(what, key, value, limit, rule)
-    rule = f"it must be between {shown(near)} and {shown(far)} {key.rpartition('_')[2]}"
+    rule = f"it must be between {formatted(near)} and {formatted(far)} {key.rpartition('_')[2]}"
     return beyond_limit(what, key, value, limit, rule, far=0.5 * (near + far))

@@ -20,7 +20,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.cams.carriers import Carrier
 from gearcam.cams.contact import Contact
 from gearcam.cams.followers import Follower
@@ -37,7 +37,7 @@ _GRAIN = 2.0
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class CamCurve(Brief):
+class CamCurve(ShortRepr):
     """An untrimmed curve of a cam: its pitch curve, a parallel of that, or the envelope of a face.
 
     Parameters
@@ -123,7 +123,7 @@ class CamCurve(Brief):
 
 
 @dataclass(frozen=True, eq=False)
-class ProfileSegments(Brief):
+class ProfileSegments(ShortRepr):
     """Sweeps and jumps in order; fulfils `gearcam.numeric.sampling.Curves`.
 
     Parameters

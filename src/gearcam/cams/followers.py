@@ -50,7 +50,7 @@ from typing import ClassVar, Self
 
 import numpy as np
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.base.errors import beyond_limit
 from gearcam.base.numerals import rounded_down
 from gearcam.cams.carriers import Carrier, Pair, unit
@@ -75,7 +75,7 @@ Disc = tuple[complex, float]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Follower(Brief, ABC):
+class Follower(ShortRepr, ABC):
     """A follower in the fixed frame.
 
     Parameters

@@ -18,7 +18,7 @@ import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.base.errors import InfeasibleError, beyond_limit
 from gearcam.cams.cam import Cam
 from gearcam.cams.disc import clears_axis, demand_standing
@@ -30,7 +30,7 @@ from gearcam.laws.program import Program
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class GrooveCam(Brief, Cam):
+class GrooveCam(ShortRepr, Cam):
     """A groove cam.
 
     Parameters

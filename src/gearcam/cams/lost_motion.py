@@ -15,7 +15,7 @@ from functools import cached_property
 
 import numpy as np
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.cams.carriers import unit
 from gearcam.cams.curve import ProfileSegments, segments
 from gearcam.cams.followers import Round
@@ -42,7 +42,7 @@ _APART = 1e-9
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Rest(Brief):
+class Rest(ShortRepr):
     """A roller pressed against a wall.
 
     Parameters

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.cams.contact import Contact
 from gearcam.cams.curve import CamCurve, ProfileSegments
 from gearcam.laws.program import Program
@@ -48,7 +48,7 @@ class Extreme:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Range(Brief):
+class Range(ShortRepr):
     """The smallest value of a quantity, `low`, and the largest, `high`."""
 
     low: Extreme
@@ -196,7 +196,7 @@ def over_the_end(
 
 
 @dataclass(frozen=True, kw_only=True)
-class Size(Brief):
+class Size(ShortRepr):
     """The size of a profile.
 
     Parameters

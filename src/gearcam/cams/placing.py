@@ -19,8 +19,8 @@ from __future__ import annotations
 
 import math
 
-from gearcam.base.errors import InfeasibleError, Way, beyond_limit
-from gearcam.base.numerals import shown
+from gearcam.base.errors import Adjustment, InfeasibleError, beyond_limit
+from gearcam.base.numerals import formatted
 from gearcam.cams.followers import Arm, FlatArm, FlatStem, Follower, Round, Stem
 from gearcam.cams.spec import CamSpec, FollowerSpec
 
@@ -124,7 +124,7 @@ def _arm(pivot: float, arm: float, radius: float, size: float) -> Arm:
         what, parts = "the arm cannot reach the prime circle", "arm and pivot"
         key, least = "follower.pivot_distance_mm", abs(arm - size)
         near = least if pivot <= least else arm + size
-        way = Way(near={key: near}, far={key: max(arm, size)})
+        way = Adjustment(near={key: near}, far={key: max(arm, size)})
         raise _out_of_reach(what, "cam.prime_radius_mm", parts, size, low, high, way)
     return follower.starting_at(size)
 
@@ -132,22 +132,28 @@ def _arm(pivot: float, arm: float, radius: float, size: float) -> Arm:
 def _swinging_face(pivot: float, offset: float, size: float) -> FlatArm:
     if not abs(size + offset) < pivot:
         what, parts = "the face cannot touch the base circle", "pivot and face offset"
-        low, high, way = -pivot - offset, pivot - offset, Way(far={"follower.face_offset_mm": 0.0})
+        low, high, way = (
+            -pivot - offset,
+            pivot - offset,
+            Adjustment(far={"follower.face_offset_mm": 0.0}),
+        )
         raise _out_of_reach(what, "cam.base_radius_mm", parts, size, low, high, way)
     return FlatArm(start=0.0, pivot=pivot, offset=offset).starting_at(size)
 
 
 def _out_of_reach(
-    what: str, key: str, parts: str, size: float, low: float, high: float, way: Way
+    what: str, key: str, parts: str, size: float, low: float, high: float, way: Adjustment
 ) -> InfeasibleError:
     """Return the error for a size outside the range that the parts allow."""
     least = max(low, 0.0)
-    rule = f"{parts} allow sizes between {shown(least)} and {shown(high)} mm"
-    ways = (way,)
+    rule = f"{parts} allow sizes between {formatted(least)} and {formatted(high)} mm"
+    adjustments = (way,)
     if high > 0.0:  # from the limit that the size exceeds to the middle of the allowed range
         near = least if size <= least else high
-        ways = (Way(near={key: near}, far={key: 0.5 * (least + high)}), way)
-    return beyond_limit(what, key, size, low if size <= low else high, rule, ways=ways)
+        adjustments = (Adjustment(near={key: near}, far={key: 0.5 * (least + high)}), way)
+    return beyond_limit(
+        what, key, size, low if size <= low else high, rule, adjustments=adjustments
+    )
 
 
 def _given(value: float | None, what: str) -> float:

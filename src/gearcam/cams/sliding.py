@@ -21,7 +21,7 @@ from functools import cached_property
 
 import numpy as np
 
-from gearcam.base.display import Brief, renderer
+from gearcam.base.display import ShortRepr, renderer
 from gearcam.base.errors import InfeasibleError, beyond_limit
 from gearcam.cams.cam import Cam
 from gearcam.cams.carriers import Sliding
@@ -40,7 +40,7 @@ _FAR = 3.0
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class SlidingCam(Brief, Cam):
+class SlidingCam(ShortRepr, Cam):
     """A translating cam.
 
     Parameters

@@ -18,7 +18,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.cams.trim import crossing_chords
 from gearcam.cams.wall import OVERSAMPLING, Wall
 from gearcam.numeric.arrays import Array, Plane
@@ -39,7 +39,7 @@ Stretch = tuple[tuple[Run, ...], Array]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Plate(Brief):
+class Plate(ShortRepr):
     """The plate from which a translating cam is cut, mm, in the cam's frame.
 
     Parameters

@@ -16,8 +16,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Final
 
-from gearcam.base.display import Brief
-from gearcam.base.numerals import shown
+from gearcam.base.display import ShortRepr
+from gearcam.base.numerals import formatted
 from gearcam.base.quantities import ANGLE, LENGTH, LONGEST, TEXT, param
 
 KIND: Final = "cams"
@@ -60,7 +60,7 @@ def _aside(*, doc: str) -> Any:
 
 
 @dataclass(frozen=True, kw_only=True)
-class FollowerSpec(Brief):
+class FollowerSpec(ShortRepr):
     """A follower: its contact element, and how it is guided.
 
     Examples
@@ -193,7 +193,7 @@ class FollowerSpec(Brief):
 
 
 @dataclass(frozen=True, kw_only=True)
-class CamSpec(Brief):
+class CamSpec(ShortRepr):
     """A cam: its form, its size, its direction of turning.
 
     Examples
@@ -306,5 +306,5 @@ def size_problems(follower: FollowerSpec, cam: CamSpec) -> Iterator[Problem]:
         rule = "one of prime_radius_mm and base_radius_mm"
         yield "base_radius", None, "is given beside prime_radius_mm", rule
     elif prime is not None and prime <= follower.radius:
-        rule = f"above the follower's radius of {shown(follower.radius)} mm"
+        rule = f"above the follower's radius of {formatted(follower.radius)} mm"
         yield "prime_radius", None, "is not larger than the follower's radius", rule

@@ -18,8 +18,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gearcam.base.display import Brief
-from gearcam.base.errors import InfeasibleError, Way, beyond_limit
+from gearcam.base.display import ShortRepr
+from gearcam.base.errors import Adjustment, InfeasibleError, beyond_limit
 from gearcam.cams.curve import ProfileSegments
 from gearcam.cams.measures import over_the_end
 from gearcam.numeric.arrays import Array, Plane
@@ -74,7 +74,7 @@ _ROUNDING = 4.0 * np.finfo(float).eps
 
 
 @dataclass(frozen=True, kw_only=True)
-class Corner(Brief):
+class Corner(ShortRepr):
     """A corner left by trimming.
 
     Parameters
@@ -212,9 +212,12 @@ def trimmed(
     if segments.curve.program.open:
         run, runs = _RUNS * abs(segments.curve.inset), ("cam.run_in_mm", "cam.run_out_mm")
         what = "the wall is undercut at the beginning or end of its travel and cannot be trimmed"
-        ways = (Way(near=dict.fromkeys(runs, 0.0), far=dict.fromkeys(runs, run)),)
+        adjustments = (Adjustment(near=dict.fromkeys(runs, 0.0), far=dict.fromkeys(runs, run)),)
         raise InfeasibleError(
-            what, where="[cam]", nearest="use longer run_in_mm and run_out_mm", ways=ways
+            what,
+            where="[cam]",
+            nearest="use longer run_in_mm and run_out_mm",
+            adjustments=adjustments,
         )
     what = "the profile has too many self-intersections: the trimmed profile cannot be determined"
     raise InfeasibleError(what, where="[cam]", nearest="its pieces do not join to one closed line")

@@ -20,7 +20,7 @@ from functools import cached_property
 
 import numpy as np
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.base.facts import Fact
 from gearcam.cams.carriers import ROTATING, Carrier
 from gearcam.cams.contact import Contact
@@ -44,7 +44,7 @@ OVERSAMPLING = 8
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class PitchMotion(Brief):
+class PitchMotion(ShortRepr):
     """The motion of a follower with a lift, on a cam.
 
     Parameters

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.base.facts import NamedFact, lined_up
 from gearcam.compare.variants import Variant
 from gearcam.console import wrapped
@@ -17,7 +17,7 @@ _CELL = 40
 
 
 @dataclass(frozen=True, kw_only=True)
-class Row(Brief):
+class Row(ShortRepr):
     """A row of the table: one fact of all variants.
 
     Parameters

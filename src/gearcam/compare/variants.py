@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from gearcam import build
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.base.errors import DesignError, GearcamError, Problem
 from gearcam.designs import Design, load
 from gearcam.designs.design import path_of
@@ -29,7 +29,7 @@ Settings = Mapping[str, Sequence[Any]]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Variant(Brief):
+class Variant(ShortRepr):
     """A design with its result.
 
     Parameters

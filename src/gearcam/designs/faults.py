@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from gearcam.base.errors import Problem
-from gearcam.base.numerals import shown
+from gearcam.base.numerals import formatted
 from gearcam.base.quantities import Param
 from gearcam.designs.lines import Path
 from gearcam.designs.slips import did_you_mean, nearest
@@ -180,19 +180,19 @@ def bounds(entry: Key) -> str:
     made = entry.param
     unit = f" {made.quantity.unit}" if made.quantity.unit else ""
     least = made.least or made.ge
-    low = f"from {shown(least, 10)}" if least is not None else ""
-    low = f"above {shown(made.gt, 10)}" if made.gt is not None else low
-    high = f"to {shown(made.le, 10)}" if made.le is not None else ""
-    high = f"below {shown(made.lt, 10)}" if made.lt is not None else high
+    low = f"from {formatted(least, 10)}" if least is not None else ""
+    low = f"above {formatted(made.gt, 10)}" if made.gt is not None else low
+    high = f"to {formatted(made.le, 10)}" if made.le is not None else ""
+    high = f"below {formatted(made.lt, 10)}" if made.lt is not None else high
     if low and high:
         joint = " and " if made.gt is not None and made.lt is not None else " "
         return f"{low}{joint}{_upper(high, low)}{unit}"
     if not low and not high:
         return f"in{unit}" if unit else ""
     if made.ge is not None:
-        low = f"of at least {shown(made.ge, 10)}"
+        low = f"of at least {formatted(made.ge, 10)}"
     if made.le is not None:
-        high = f"of at most {shown(made.le, 10)}"
+        high = f"of at most {formatted(made.le, 10)}"
     return f"{low}{high}{unit}"
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Final
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.base.quantities import ANGLE, FINEST, LENGTH, TEXT, allowance, param
 from gearcam.base.rules import distinct, excluded
 
@@ -35,7 +35,7 @@ def pose_param(word: str, doc: str) -> Any:
 
 
 @dataclass(frozen=True, kw_only=True)
-class OutputSpec(Brief):
+class OutputSpec(ShortRepr):
     """Which files are written, and how exact; each kind of design adds its own fields.
 
     Parameters

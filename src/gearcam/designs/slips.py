@@ -13,7 +13,7 @@ from functools import lru_cache
 from itertools import islice
 from typing import Any, Final
 
-from gearcam.base.numerals import shown
+from gearcam.base.numerals import formatted
 from gearcam.base.quantities import ANGLE, LENGTH
 from gearcam.designs.table import Key
 
@@ -211,7 +211,7 @@ def _unit_words(key: str, entry: Key) -> str:
     what = "angles" if quantity is ANGLE else "lengths"
     basis, factor = _UNITS.get(unit, ("", 1.0))
     if basis == quantity.unit and factor != 1.0:
-        return f" ({what} are in {basis}: 1 {unit} = {shown(factor, 8)} {basis})"
+        return f" ({what} are in {basis}: 1 {unit} = {formatted(factor, 8)} {basis})"
     return f" ({what} are in {quantity.unit}, and their keys end in {quantity.suffix})"
 
 

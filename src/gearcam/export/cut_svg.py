@@ -25,7 +25,7 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from gearcam.base.numerals import decimal, shown
+from gearcam.base.numerals import decimal, formatted
 from gearcam.export.dxf import CURVE_PART
 from gearcam.export.svg import arc_data
 from gearcam.numeric.arcs import fit_closed
@@ -92,7 +92,7 @@ def cut_svg(drawings: Sequence[Drawing], title: str, kerf: float = 0.0) -> bytes
     low, high = box(kept) + np.array([[-MARGIN], [MARGIN]])
     wide, tall = (decimal(float(size), 4) for size in np.ceil((high - low) * 1e4) / 1e4)
     size = f'width="{wide}mm" height="{tall}mm" viewBox="0 0 {wide} {tall}"'
-    told = f"; paths are moved by half the kerf of {shown(kerf)} mm" if kerf else ""
+    told = f"; paths are moved by half the kerf of {formatted(kerf)} mm" if kerf else ""
     # y = 0 of the paths is the upper edge of the sheet
     shift = -np.array([low[0], high[1]])
     words = f"<desc>1:1 in mm; first engrave blue lines, then cut red lines{told}</desc>"

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
 
-from gearcam.base.numerals import shown
+from gearcam.base.numerals import formatted
 from gearcam.numeric.arcs import fit_closed
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.contour import Contour
@@ -219,7 +219,7 @@ def _splines(contour: Contour, style: DxfStyle) -> Iterator[tuple[Array, Array]]
         gap = float(np.hypot(*(spline.poles[-1] - following.poles[0])))
         if gap > style.tolerance:
             raise ValueError(
-                f"smooth pieces of an outline do not join: a gap of {shown(gap, 3)} mm"
+                f"smooth pieces of an outline do not join: a gap of {formatted(gap, 3)} mm"
             )
         yield contour.moved(np.vstack([spline.poles[:-1], following.poles[:1]])), spline.knots
 

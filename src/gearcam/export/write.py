@@ -3,7 +3,7 @@
 The folder is created if it is missing, and locked: a second build waits. All files are first
 written into a temporary folder in it; then old files are moved there and new ones into place, the
 summary last. If a move fails, all are undone; an interruption waits until the end. Files that the
-*previous summary* lists and this build no longer writes are *stale* and removed, so that nobody
+*previous summary* lists and this build no longer writes are *outdated* and removed, so that nobody
 cuts one. Temporary folders of writers that were killed are removed by the next writer. Files are
 not forced to the disk (fsync, which would double the time of writing, 40 ms for eleven files), so a
 power failure may lose them.
@@ -32,7 +32,7 @@ from typing import Any, Final
 
 from gearcam.base.errors import WriteError
 from gearcam.base.interrupts import unbroken
-from gearcam.base.numerals import shown
+from gearcam.base.numerals import formatted
 from gearcam.base.reading import read
 
 SUMMARY: Final = "summary.json"
@@ -61,7 +61,7 @@ Make = Callable[[Mapping[str, str]], Mapping[str, bytes]]
 def write_all(
     directory: str | os.PathLike[str], make: Make, *, name: str = "", keep: bool = False
 ) -> tuple[str, ...]:
-    """Write files into a folder, all or none, and remove stale ones.
+    """Write files into a folder, all or none, and remove outdated ones.
 
     Parameters
     ----------
@@ -72,12 +72,12 @@ def write_all(
     name : str
         Name of a folder in it for the files; it must not be a link.
     keep : bool
-        Whether stale files stay, as for a summary without a build.
+        Whether outdated files stay, as for a summary without a build.
 
     Returns
     -------
     tuple of str
-        The stale files that were removed.
+        The outdated files that were removed.
 
     Raises
     ------
@@ -97,13 +97,13 @@ def write_all(
             before = previous_files(folder)
             files = make(before)
             _fill(stage, folder, files)
-            stale = [] if keep else [old for old in before if old not in files]
+            outdated = [] if keep else [old for old in before if old not in files]
             with unbroken():
-                _move(stage, folder, files, stale)
+                _move(stage, folder, files, outdated)
     except OSError as error:
         place = error.filename or folder
         raise WriteError(f"cannot write to {place}: {error.strerror or error}") from error
-    return tuple(stale)
+    return tuple(outdated)
 
 
 def is_plain(name: str) -> bool:
@@ -112,7 +112,7 @@ def is_plain(name: str) -> bool:
 
 
 def previous_files(folder: str | os.PathLike[str]) -> dict[str, str]:
-    """Return the existing files that the summary in a folder lists, current and stale.
+    """Return the existing files that the summary in a folder lists, current and outdated.
 
     Parameters
     ----------
@@ -132,7 +132,7 @@ def previous_files(folder: str | os.PathLike[str]) -> dict[str, str]:
         return {}
     found: dict[str, Any] = {}
     own = isinstance(content, dict) and isinstance(content.get("format"), int)
-    for key in ("files", "stale") if own else ():
+    for key in ("files", "outdated") if own else ():
         listed = content.get(key)
         found |= listed if isinstance(listed, dict) else {}
     return {
@@ -208,7 +208,7 @@ def _lock(folder: Path) -> Iterator[bool]:
                 locked = True
             except BlockingIOError as error:
                 if time.monotonic() > end:
-                    words = f"another gearcam has been writing to it for {shown(_PATIENCE)} s"
+                    words = f"another gearcam has been writing to it for {formatted(_PATIENCE)} s"
                     raise OSError(errno.EBUSY, words, str(folder)) from error
                 time.sleep(_PAUSE)
             except OSError:  # a network file system may have no locks
@@ -240,8 +240,8 @@ def _fill(stage: Path, folder: Path, files: Mapping[str, bytes]) -> None:
             (stage / name).write_bytes(content)
 
 
-def _move(stage: Path, folder: Path, files: Collection[str], stale: Sequence[str]) -> None:
-    """Move stale and old files away and new ones into place, or undo all if that fails."""
+def _move(stage: Path, folder: Path, files: Collection[str], outdated: Sequence[str]) -> None:
+    """Move outdated and old files away and new ones into place, or undo all if that fails."""
     old = stage / ".old"
     moves: list[tuple[Path, Path]] = []
 
@@ -252,8 +252,8 @@ def _move(stage: Path, folder: Path, files: Collection[str], stale: Sequence[str
 
     try:
         old.mkdir()
-        # if case does not matter, a stale name may be that of a new file: stale ones go first
-        for name in (*stale, *sorted(files, key=SUMMARY.__eq__)):
+        # if case does not matter, a outdated name may be that of a new file: outdated ones go first
+        for name in (*outdated, *sorted(files, key=SUMMARY.__eq__)):
             if os.path.lexists(folder / name):
                 move(folder / name, old / name)
             if name in files:

@@ -1,6 +1,6 @@
 """The checks of a gear pair: of its law and centrodes, then of its teeth.
 
-A check takes a `Subject` and yields findings. Values and limits of findings are in the units of
+A check takes a `CheckedPair` and yields findings. Values and limits of findings are in the units of
 design files.
 """
 
@@ -12,11 +12,11 @@ from collections.abc import Iterator
 import numpy as np
 
 from gearcam.base.findings import ROUNDING, Remark, Severity
-from gearcam.base.numerals import rounded_down, shown
+from gearcam.base.numerals import formatted, rounded_down
 from gearcam.base.quantities import ANGLE, COUNT, LENGTH, NUMBER, Param
 from gearcam.gears.cutter import Cutter
 from gearcam.gears.pair import Gear
-from gearcam.gears.subject import CONTACT_RATIO, Subject, pair_check
+from gearcam.gears.subject import CONTACT_RATIO, CheckedPair, pair_check
 from gearcam.laws.ratio.span import angle_text
 
 _POINTED = 1e-9
@@ -95,7 +95,7 @@ def _straight_depth(cutter: Cutter) -> float:
 @pair_check(
     "closure", limit=("closure", Param(ANGLE, ge=0, le=1, doc="largest closure error"), CLOSURE)
 )
-def closure(subject: Subject, limit: float) -> Iterator[Remark]:
+def closure(subject: CheckedPair, limit: float) -> Iterator[Remark]:
     """Warn if the law does not close exactly, as its ratios have too few digits.
 
     Beyond 1e-6 rad the design is refused.
@@ -114,7 +114,7 @@ def closure(subject: Subject, limit: float) -> Iterator[Remark]:
 @pair_check(
     "ratio-positive", limit=("ratio_swing", Param(NUMBER, gt=1, doc="largest i21 or 1/i21"), 10.0)
 )
-def ratio_positive(subject: Subject, limit: float) -> Iterator[Remark]:
+def ratio_positive(subject: CheckedPair, limit: float) -> Iterator[Remark]:
     """Warn if the ratio comes close to zero or becomes very large.
 
     Looks at: the largest ratio and the inverse of the smallest, relative to the mean.
@@ -126,8 +126,8 @@ def ratio_positive(subject: Subject, limit: float) -> Iterator[Remark]:
     for place, value, swing in ((low_place, low, 1.0 / low), (high_place, high, high)):
         if swing > limit:
             yield Remark(
-                f"The ratio is {shown(value)} here: one wheel hardly turns, and its centrode comes "
-                "close to the shaft of the other.",
+                f"The ratio is {formatted(value)} here: one wheel hardly turns, and its centrode "
+                "comes close to the shaft of the other.",
                 angle_text(place),
                 swing,
             )
@@ -137,7 +137,7 @@ def ratio_positive(subject: Subject, limit: float) -> Iterator[Remark]:
     "ratio-continuity",
     limit=("ratio_continuity", Param(COUNT, ge=1, le=3, doc="least order of continuity"), 1.0),
 )
-def ratio_continuity(subject: Subject, limit: float) -> Iterator[Remark]:
+def ratio_continuity(subject: CheckedPair, limit: float) -> Iterator[Remark]:
     """Warn of a knot at which a derivative of the ratio jumps, up to the order of the limit.
 
     Looks at: the order to which the ratio is continuous at its knots.
@@ -162,7 +162,7 @@ def ratio_continuity(subject: Subject, limit: float) -> Iterator[Remark]:
     ),
     severity="note",
 )
-def concave(subject: Subject, limit: float) -> Iterator[Remark]:
+def concave(subject: CheckedPair, limit: float) -> Iterator[Remark]:
     """Note a concave part of a centrode: no rack or hob can cut that wheel.
 
     Looks at: the radius of concave parts of the centrodes, except those of a ring.
@@ -174,7 +174,7 @@ def concave(subject: Subject, limit: float) -> Iterator[Remark]:
         if cutter.kind == "pinion" and radius < limit:
             yield Remark(
                 "The centrode is concave here: no rack or hob can cut this wheel. Its fillets are "
-                f"those of a pinion cutter with up to {shown(cutter.teeth, 3)} teeth.",
+                f"those of a pinion cutter with up to {formatted(cutter.teeth, 3)} teeth.",
                 f"wheel {gear.wheel}, {angle_text(place)}",
                 radius,
                 limit=limit if limit < _ANY_RADIUS else math.inf,
@@ -186,7 +186,7 @@ def concave(subject: Subject, limit: float) -> Iterator[Remark]:
     limit=("convex_radius", Param(NUMBER, gt=0, doc="least convex radius, in modules"), 2.5),
     unit="modules",
 )
-def sharp(subject: Subject, limit: float) -> Iterator[Remark]:
+def sharp(subject: CheckedPair, limit: float) -> Iterator[Remark]:
     """Warn of a sharp bend of a centrode, where teeth have hardly any root.
 
     Looks at: the smallest convex radius of the centrodes.
@@ -196,7 +196,7 @@ def sharp(subject: Subject, limit: float) -> Iterator[Remark]:
         modules = radius / subject.pair.module
         if modules < limit * (1.0 - ROUNDING):
             yield Remark(
-                f"The centrode has a radius of only {shown(radius)} mm here. "
+                f"The centrode has a radius of only {formatted(radius)} mm here. "
                 f"{subject.with_teeth(limit / modules)} the limit is kept.",
                 f"wheel {gear.wheel}, {angle_text(place)}",
                 modules,
@@ -204,7 +204,7 @@ def sharp(subject: Subject, limit: float) -> Iterator[Remark]:
 
 
 @pair_check("concave-teeth", limit=_CUTTER_TEETH, unit="teeth")
-def concave_teeth(subject: Subject, limit: float) -> Iterator[Remark]:
+def concave_teeth(subject: CheckedPair, limit: float) -> Iterator[Remark]:
     """Warn of a concave part into which only a pinion cutter with few teeth fits.
 
     Looks at: the number of teeth of the largest pinion cutter that fits into the concave parts.
@@ -214,14 +214,14 @@ def concave_teeth(subject: Subject, limit: float) -> Iterator[Remark]:
         if count < limit and not gear.ring:
             yield Remark(
                 "The teeth are large for this concave part, which has a radius of "
-                f"{shown(radius)} mm. {subject.with_teeth(limit / count)} the limit is kept.",
+                f"{formatted(radius)} mm. {subject.with_teeth(limit / count)} the limit is kept.",
                 f"wheel {gear.wheel}, {angle_text(place)}",
                 count,
             )
 
 
-@pair_check("cutter-small", limit=_CUTTER_TEETH, severity="note", unit="teeth")
-def cutter_small(subject: Subject, limit: float) -> Iterator[Remark]:
+@pair_check("small-cutter", limit=_CUTTER_TEETH, severity="note", unit="teeth")
+def small_cutter(subject: CheckedPair, limit: float) -> Iterator[Remark]:
     """Note that the pinion cutter of a ring has few teeth.
 
     Looks at: the number of teeth of the pinion cutter of a ring.
@@ -245,7 +245,7 @@ def cutter_small(subject: Subject, limit: float) -> Iterator[Remark]:
         math.radians(50.0),
     ),
 )
-def pressure_angle(subject: Subject, limit: float) -> Iterator[Remark]:
+def pressure_angle(subject: CheckedPair, limit: float) -> Iterator[Remark]:
     """Warn of a tooth force that loads the bearings more than it turns the wheel.
 
     Looks at: the angle between the tooth force and the motion of the pitch point, driving forward
@@ -260,7 +260,7 @@ def pressure_angle(subject: Subject, limit: float) -> Iterator[Remark]:
         )
         yield Remark(
             f"The tooth force {does}: the slope of the centrode adds to the rack's pressure angle "
-            f"of {shown(math.degrees(subject.pair.rack.pressure_angle))} deg.",
+            f"of {formatted(math.degrees(subject.pair.rack.pressure_angle))} deg.",
             "; ".join(where),
             math.degrees(largest),
         )
@@ -274,7 +274,7 @@ def pressure_angle(subject: Subject, limit: float) -> Iterator[Remark]:
         math.radians(10.0),
     ),
 )
-def self_crossing(subject: Subject, limit: float) -> Iterator[Remark]:
+def self_crossing(subject: CheckedPair, limit: float) -> Iterator[Remark]:
     """Warn of an open wheel whose ends nearly meet; a wheel whose ends meet is refused.
 
     Looks at: the angle between the ends of an open wheel.
@@ -297,7 +297,7 @@ def self_crossing(subject: Subject, limit: float) -> Iterator[Remark]:
     "acceleration",
     limit=("acceleration_ratio", Param(NUMBER, gt=0, doc="largest d(i21)/dphi1"), 2.0),
 )
-def acceleration(subject: Subject, limit: float) -> Iterator[Remark]:
+def acceleration(subject: CheckedPair, limit: float) -> Iterator[Remark]:
     """Warn of a large acceleration of the driven wheel at constant speed of the driver.
 
     Looks at: `d(i21)/dphi1`, the acceleration of the driven wheel divided by the square of the
@@ -315,7 +315,7 @@ def acceleration(subject: Subject, limit: float) -> Iterator[Remark]:
 
 
 @pair_check("remote-cutter", unit="mm")
-def remote_cutter(subject: Subject, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+def remote_cutter(subject: CheckedPair, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Warn of a pinion cutter that would cut another part of the wheel too.
 
     Looks at: the distance of the pinion cutter from parts of the wheel that it does not cut.
@@ -351,7 +351,7 @@ def remote_cutter(subject: Subject, limit: float) -> Iterator[Remark]:  # noqa: 
 
 
 @pair_check("undercut", limit=CONTACT_RATIO, severity=("warning", "error"), unit="teeth")
-def undercut(subject: Subject, limit: float) -> Iterator[Remark]:
+def undercut(subject: CheckedPair, limit: float) -> Iterator[Remark]:
     """Warn of undercut flanks.
 
     An error if there are phases without contact of flanks, or if the remaining contact ratio is
@@ -362,11 +362,11 @@ def undercut(subject: Subject, limit: float) -> Iterator[Remark]:
     ratio = subject.contact_ratio
     driven = subject.driven
     severity: Severity = "warning" if driven and ratio >= limit else "error"
-    left = f"the least remaining contact ratio is {shown(ratio, 4)}"
+    left = f"the least remaining contact ratio is {formatted(ratio, 4)}"
     if not driven:
         left += ", and there are phases in which no flanks touch"
     elif ratio < limit:
-        left += f", below the limit {shown(limit, 4)}"
+        left += f", below the limit {formatted(limit, 4)}"
     for gear in subject.gears:
         teeth = gear.profile.undercut_teeth
         if not teeth:
@@ -379,9 +379,8 @@ def undercut(subject: Subject, limit: float) -> Iterator[Remark]:
         if below.any():
             slope = math.sin(gear.toothing.cutter.alpha) * math.cos(gear.toothing.cutter.alpha)
             lost = float((flanks.lowest + gear.toothing.cutter.reach)[below].max()) * slope
-            message = (
-                f"Undercut removes up to {shown(lost, 4)} mm of these flanks at the root; {left}."
-            )
+            depth = formatted(lost, 4)
+            message = f"Undercut removes up to {depth} mm of these flanks at the root; {left}."
         yield Remark(
             f"{message} {subject.with_teeth(factor)} this wheel has no undercut.",
             f"wheel {gear.wheel}, teeth {tooth_ranges(teeth)}",
@@ -396,7 +395,7 @@ def undercut(subject: Subject, limit: float) -> Iterator[Remark]:
     limit=("tip_thickness", Param(NUMBER, ge=0, doc="least tip thickness, in modules"), 0.2),
     unit="modules",
 )
-def thin_tip(subject: Subject, limit: float) -> Iterator[Remark]:
+def thin_tip(subject: CheckedPair, limit: float) -> Iterator[Remark]:
     """Warn of teeth with thin or pointed tips.
 
     Looks at: the thickness of the teeth at their tips.
@@ -419,7 +418,7 @@ def thin_tip(subject: Subject, limit: float) -> Iterator[Remark]:
     severity="note",
     unit="addenda",
 )
-def short_flank(subject: Subject, limit: float) -> Iterator[Remark]:
+def short_flank(subject: CheckedPair, limit: float) -> Iterator[Remark]:
     """Note flanks that end well below the addendum curve.
 
     Looks at: the height at which flanks end.
@@ -441,7 +440,7 @@ def short_flank(subject: Subject, limit: float) -> Iterator[Remark]:
     limit=("tip_pass", Param(LENGTH, ge=0, doc="least margin by which tips pass each other"), 0.0),
     severity=("error", "warning"),
 )
-def tips_collide(subject: Subject, limit: float) -> Iterator[Remark]:
+def tips_collide(subject: CheckedPair, limit: float) -> Iterator[Remark]:
     """Report tip interference of an internal pair: tips that collide outside the mesh.
 
     A warning if they pass each other by less than the limit.
@@ -455,7 +454,8 @@ def tips_collide(subject: Subject, limit: float) -> Iterator[Remark]:
     if found.margin < 0.0:
         message = (
             "Tips collide outside the mesh: as it enters or leaves the ring, a tip corner of wheel "
-            f"1 overlaps a tooth of the ring by {shown(-found.margin)} mm along the pitch curve."
+            f"1 overlaps a tooth of the ring by {formatted(-found.margin)} mm along the pitch "
+            "curve."
         )
     if found.margin < -0.5 * subject.pair.toothings[1].pitch:  # no tooth is as wide
         message = (
@@ -475,7 +475,7 @@ def tips_collide(subject: Subject, limit: float) -> Iterator[Remark]:
     limit=("rim_thickness", Param(NUMBER, ge=0, doc="least rim, in modules"), 2.7),
     unit="modules",
 )
-def thin_rim(subject: Subject, limit: float) -> Iterator[Remark]:
+def thin_rim(subject: CheckedPair, limit: float) -> Iterator[Remark]:
     """Warn of a thin rim; the default limit is 1.2 depths of a standard tooth.
 
     Looks at: the metal between bore and root, or outside the roots of a ring.
@@ -488,8 +488,10 @@ def thin_rim(subject: Subject, limit: float) -> Iterator[Remark]:
             what, hint = "between bore and root", more
             if gear.ring:
                 what = "outside the roots"
-                across = shown(2.0 * (gear.largest_radius + least), 12)
-                hint = f"ring.rim_mm = {shown(least, 12)} keeps the limit, or for a round outside "
+                across = formatted(2.0 * (gear.largest_radius + least), 12)
+                hint = (
+                    f"ring.rim_mm = {formatted(least, 12)} keeps the limit, or for a round outside "
+                )
                 hint += f"ring.outer_diameter_mm = {across}"
             elif largest >= 0.5 * given:
                 hint = (
@@ -497,7 +499,7 @@ def thin_rim(subject: Subject, limit: float) -> Iterator[Remark]:
                     "limit"
                 )
             yield Remark(
-                f"The rim {what} is {shown(rim)} mm thick; {hint}.",
+                f"The rim {what} is {formatted(rim)} mm thick; {hint}.",
                 f"wheel {gear.wheel}",
                 rim / subject.pair.module,
             )
@@ -508,7 +510,7 @@ def thin_rim(subject: Subject, limit: float) -> Iterator[Remark]:
     limit=("backlash", Param(LENGTH, ge=0, doc="least backlash that is not reported"), 0.01),
     severity="note",
 )
-def no_backlash(subject: Subject, limit: float) -> Iterator[Remark]:
+def no_backlash(subject: CheckedPair, limit: float) -> Iterator[Remark]:
     """Note that the wheels have no backlash.
 
     Looks at: the backlash between flanks, including that of `blank.clearance_mm`.

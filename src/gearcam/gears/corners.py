@@ -23,7 +23,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.gears.flank import Toothing
 from gearcam.gears.track import Frames
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
@@ -121,7 +121,7 @@ def highest_corners(
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class _Paths(Brief):
+class _Paths(ShortRepr):
     """Paths of corners in the mate's frame, over a window of roll on either side of their flanks.
 
     Windows of neighbouring teeth are one pitch apart and share most of their roll positions.
@@ -277,11 +277,11 @@ class _Paths(Brief):
         return body
 
     @cached_property
-    def _centrode(self) -> PolarCurve:
-        return PolarCurve(self.mate, 0.0)
+    def _centrode(self) -> RadialCurve:
+        return RadialCurve(self.mate, 0.0)
 
 
-class PolarCurve:
+class RadialCurve:
     """A parallel of a centrode in polar coordinates; its angle rises with the driver angle.
 
     It is approximate: to sort points of ring pairs.

@@ -14,7 +14,7 @@ from functools import cached_property
 
 import numpy as np
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.base.errors import beyond_limit
 from gearcam.gears.spec import BasicRack
 from gearcam.numeric.arrays import Array
@@ -34,7 +34,7 @@ _LAND = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True)
-class Cutter(Brief):
+class Cutter(ShortRepr):
     """Dimensions of a cutter, mm (see `choose_cutter`).
 
     Parameters

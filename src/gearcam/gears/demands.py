@@ -10,8 +10,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from gearcam.base.errors import Way, beyond_limit
-from gearcam.base.numerals import rounded_down, shown
+from gearcam.base.errors import Adjustment, beyond_limit
+from gearcam.base.numerals import formatted, rounded_down
 from gearcam.gears.flank import Toothing
 from gearcam.gears.spec import BasicRack, Finish, PairSpec, Rack, RingSpec
 from gearcam.gears.tips import find_tips
@@ -109,20 +109,28 @@ def _widest_tip(alpha: float) -> float:
 def _demand_rack(rack: BasicRack, largest: float) -> None:
     """Refuse a rack without clearance, or whose tooth tip has no land."""
     depth = rack.dedendum
-    angle = f"a pressure angle of {shown(math.degrees(rack.pressure_angle))} deg"
+    angle = f"a pressure angle of {formatted(math.degrees(rack.pressure_angle))} deg"
     if depth < rack.addendum:
         what = "the dedendum is less than the addendum: teeth would hit the mate's roots"
         note = "the limit is the addendum"
         near = _short(rack.addendum / _SHALLOW)
-        ways = (Way(near={"rack.addendum": _short(_SHALLOW * depth)}),)
-        raise beyond_limit(what, "rack.dedendum", depth, rack.addendum, note, near=near, ways=ways)
+        adjustments = (Adjustment(near={"rack.addendum": _short(_SHALLOW * depth)}),)
+        raise beyond_limit(
+            what, "rack.dedendum", depth, rack.addendum, note, near=near, adjustments=adjustments
+        )
     if _largest_tip(rack) < 0.0:
         deepest = _deepest(rack.pressure_angle, 0.0)
         what = "the rack's tooth becomes pointed before it reaches the dedendum"
         note = f"the limit is the depth where its flanks meet, at {angle}"
-        ways = (Way(near={"rack.addendum": _short(0.7 * deepest)}),)
+        adjustments = (Adjustment(near={"rack.addendum": _short(0.7 * deepest)}),)
         raise beyond_limit(
-            what, "rack.dedendum", depth, deepest, note, near=_short(0.9 * deepest), ways=ways
+            what,
+            "rack.dedendum",
+            depth,
+            deepest,
+            note,
+            near=_short(0.9 * deepest),
+            adjustments=adjustments,
         )
     if rack.tip_radius > largest * (1.0 + _ROUNDING):
         what = "the tip radius is too large: it leaves the rack's teeth no land"
@@ -158,7 +166,7 @@ def demand_shift(rack: BasicRack, spec: PairSpec, module: float) -> None:
     most = _MOST_BACKLASH * thinnest * module
     if spec.backlash > most:
         what = "the backlash is too large: it leaves no teeth"
-        note = f"the limit is for a module of {shown(module)} mm"
+        note = f"the limit is for a module of {formatted(module)} mm"
         raise beyond_limit(what, "pair.backlash_mm", spec.backlash, most, note, far=0.0)
 
 
@@ -191,7 +199,7 @@ def demand_clearance(
         most = min(0.5 * half * math.cos(alpha), height)
         if wheel.clearance > most:
             what = "the clearance is too large: it leaves no teeth"
-            note = f"the limit is for a module of {shown(module)} mm"
+            note = f"the limit is for a module of {formatted(module)} mm"
             raise beyond_limit(
                 what, f"blank.clearance_mm[{number}]", wheel.clearance, most, note, far=0.0
             )
@@ -222,8 +230,13 @@ def demand_ring(spec: PairSpec) -> None:
             f"the ring must be wheel 2: use teeth = {counts} with the inverse law, ratio 1/i as "
             "a function of phi2"
         )
-    ways = (Way(near={"pair.teeth": counts}), Way(near={"pair.type": "external"}))
-    raise beyond_limit(what, "pair.teeth[1]", float(z2), float(z1), nearest, ways=ways)
+    adjustments = (
+        Adjustment(near={"pair.teeth": counts}),
+        Adjustment(near={"pair.type": "external"}),
+    )
+    raise beyond_limit(
+        what, "pair.teeth[1]", float(z2), float(z1), nearest, adjustments=adjustments
+    )
 
 
 def demand_rim(ring: RingSpec, roots: float, module: float, limit: float) -> None:
@@ -250,7 +263,7 @@ def demand_rim(ring: RingSpec, roots: float, module: float, limit: float) -> Non
         where = "wheel 2, ring.outer_diameter_mm"
         note = (
             "the limit is the circle through the deepest root; "
-            f"{shown(2.0 * (roots + limit))} mm leave a rim of {shown(limit)} mm"
+            f"{formatted(2.0 * (roots + limit))} mm leave a rim of {formatted(limit)} mm"
         )
         raise beyond_limit(
             what, where, ring.outer_diameter, 2.0 * roots, note, near=2.0 * (roots + limit)
@@ -316,7 +329,7 @@ def demand_cutters(first: Toothing, second: Toothing) -> None:
         limit = least if drives else 1.0
         note = (
             "the value is the smallest concave radius, the limit the least for this "
-            f"module; the flanks allow a contact ratio of at most {shown(bound, 4)}"
+            f"module; the flanks allow a contact ratio of at most {formatted(bound, 4)}"
             if drives
             else "the value is the largest contact ratio that any cutter could give"
         )

@@ -14,7 +14,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from gearcam.base.errors import InfeasibleError, Way, beyond_limit
+from gearcam.base.errors import Adjustment, InfeasibleError, beyond_limit
 from gearcam.gears.flank import Curve, Rows, Toothing
 from gearcam.gears.spec import RingSpec
 from gearcam.gears.tips import TipEnds
@@ -152,15 +152,15 @@ def body_runs(
         ways = toothing.track.rotation(np.array([0.0, toothing.track.around]))
         travel = math.degrees(ways[1] - ways[0])
         limit = travel * (2.0 * math.pi - _GAP) / span
-        out = [Way(near={key: limit / _MORE}, far={key: 0.8 * limit})]
+        out = [Adjustment(near={key: limit / _MORE}, far={key: 0.8 * limit})]
         if toothing.wheel == 1:  # a spiral, or a knot that is solved, follows the driven wheel
-            out.append(Way(far={"law.driven_travel_deg": 0.8 * limit}))
+            out.append(Adjustment(far={"law.driven_travel_deg": 0.8 * limit}))
         what = f"the ends of the {name} meet behind its shaft"
         where = f"wheel {toothing.wheel}"
         note = f"the value is the travel of the {name}; its end teeth need the rest"
         more_teeth = travel / limit if travel < _WHOLE else 0.0
         raise beyond_limit(
-            what, where, travel, limit, note, ways=out, unit="deg", more_teeth=more_teeth
+            what, where, travel, limit, note, adjustments=out, unit="deg", more_teeth=more_teeth
         )
     hub = radius * inner / np.abs(inner)
     chords = max(2, math.ceil(sweep / math.sqrt(8.0 * tolerance / radius)))
@@ -185,7 +185,10 @@ def _outside(ring: RingSpec, roots: float, faces: float, module: float) -> float
         what = "the outside can follow the roots of a closed ring only"
         note = 'use outer = "round" for an open ring'
         raise InfeasibleError(
-            what, where="ring.outer", nearest=note, ways=(Way(near={"ring.outer": "round"}),)
+            what,
+            where="ring.outer",
+            nearest=note,
+            adjustments=(Adjustment(near={"ring.outer": "round"}),),
         )
     rim, least = ring.least_rim(roots, module), max(_BELOW * module, faces - roots)
     if rim >= least:

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from gearcam.gears.flank import Toothing
 from gearcam.gears.outline import Flanks
 from gearcam.gears.rolling import Rolling
-from gearcam.gears.subject import Subject
+from gearcam.gears.subject import CheckedPair
 from gearcam.gears.track import Frames
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.perturbation import EPS, Perturb, largest_changes
@@ -54,12 +54,12 @@ class _PerturbedRatio(Piecewise):
         return list(self.perturb(found, off + _ROUNDINGS * np.abs(found)))
 
 
-def pair_errors(subject: Subject) -> tuple[float, float, float]:
+def pair_errors(subject: CheckedPair) -> tuple[float, float, float]:
     """Return the errors of a pair's main numbers.
 
     Parameters
     ----------
-    subject : Subject
+    subject : CheckedPair
         The pair as built.
 
     Returns

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.gears.cutter import Cutter
 from gearcam.gears.track import Frames, Track, Wheel
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
@@ -38,7 +38,7 @@ class Curve(IntEnum):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Toothing(Brief):
+class Toothing(ShortRepr):
     """A track with its cutter and tooth positions.
 
     Parameters
@@ -160,7 +160,7 @@ class Toothing(Brief):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Rows(Brief):
+class Rows(ShortRepr):
     """Segments of the outline, one per row, in order of rising s.
 
     Parameters
@@ -286,7 +286,7 @@ def _tip_center(cutter: Cutter, frames: Frames, x: Array, w: complex) -> Plane:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class WheelCurves(Brief):
+class WheelCurves(ShortRepr):
     """The rows of a wheel, as `gearcam.numeric.sampling.Curves` over the driver angle, rad.
 
     Parameters

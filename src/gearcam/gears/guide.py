@@ -14,14 +14,14 @@ from typing import ClassVar
 
 import numpy as np
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.laws.ratio.base import RatioLaw
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.pose import Pose
 
 
 @dataclass(frozen=True, kw_only=True)
-class Guide(Brief, ABC):
+class Guide(ShortRepr, ABC):
     """Guide of the driven element; points relative to it are complex numbers in mm.
 
     Parameters

@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.gears.flank import Toothing
 from gearcam.gears.guide import Guide
 from gearcam.gears.track import Frames, Track, Wheel
@@ -40,7 +40,7 @@ _FREE = np.array([[1, 2, 3], [0, 2, 3], [0, 1, 3]])
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Mounting(Brief):
+class Mounting(ShortRepr):
     """Two mounted wheels, and the side of their flanks.
 
     Parameters
@@ -100,7 +100,7 @@ class FlankPositions(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Normals(Brief):
+class Normals(ShortRepr):
     """Normals of n driver's flanks and of n driven flanks, in the mounted pair.
 
     Parameters

@@ -12,9 +12,9 @@ from functools import cached_property
 
 import numpy as np
 
-from gearcam.base.display import Brief
-from gearcam.base.errors import InfeasibleError, Way, beyond_limit
-from gearcam.base.numerals import shown
+from gearcam.base.display import ShortRepr
+from gearcam.base.errors import Adjustment, InfeasibleError, beyond_limit
+from gearcam.base.numerals import formatted
 from gearcam.base.tolerances import Tolerances
 from gearcam.gears.corners import highest_corners
 from gearcam.gears.ends import body_runs, cut_ends
@@ -42,7 +42,7 @@ _AT_TIP = 1e-12
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Flanks(Brief):
+class Flanks(ShortRepr):
     """All flanks of a wheel and their ends: sigma = +1 of all teeth formed, then sigma = -1.
 
     Parameters
@@ -74,7 +74,7 @@ class Flanks(Brief):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Outline(Brief):
+class Outline(ShortRepr):
     """A wheel's outline.
 
     Parameters
@@ -375,7 +375,7 @@ def _crossing(reason: str, size: float) -> str:
     kind, _, place = reason.rstrip("]").partition("[")
     if not place:
         return "its outline touches itself"
-    x, y = (shown(float(word), 4, size) for word in place.split())
+    x, y = (formatted(float(word), 4, size) for word in place.split())
     return f"{kind.lower()} at x = {x}, y = {y} mm"
 
 
@@ -396,7 +396,7 @@ def _demand_shaft(outline: Outline) -> None:
     where = angle_text(float(around[radii.argmin()]))
     note = (
         "the value is the module; at the limit the roots reach the shaft, where the "
-        f"centrode comes within {shown(radius)} mm of it"
+        f"centrode comes within {formatted(radius)} mm of it"
     )
     raise beyond_limit(what, where, module, largest, note, unit="mm", more_teeth=module / largest)
 
@@ -459,10 +459,14 @@ def outside(ring: Outline, rim: float) -> Contour:
 
 def _refusal(why: str, rim: float, most: float) -> InfeasibleError:
     """Return the error for a parallel; `most` is the largest rim the curvature allows, if any."""
-    ways = [Way(near={"ring.outer": "round"})]
+    adjustments = [Adjustment(near={"ring.outer": "round"})]
     bent = 0.0 < most < math.inf
     if bent:
-        ways.insert(0, Way(near={"ring.rim_mm": 0.99 * most}, far={"ring.rim_mm": 0.1 * most}))
+        adjustments.insert(
+            0, Adjustment(near={"ring.rim_mm": 0.99 * most}, far={"ring.rim_mm": 0.1 * most})
+        )
     what = f"the outside of the ring cannot follow its roots: {why}"
     note = "at the limit the outside gets a corner" if bent else ""
-    return beyond_limit(what, "ring.rim_mm", rim, most if bent else None, note, ways=ways)
+    return beyond_limit(
+        what, "ring.rim_mm", rim, most if bent else None, note, adjustments=adjustments
+    )

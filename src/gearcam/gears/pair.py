@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from gearcam.base.display import Brief, Displayed, renderer
+from gearcam.base.display import NotebookView, ShortRepr, renderer
 from gearcam.base.errors import InfeasibleError, beyond_limit
 from gearcam.base.facts import Fact, Facts
-from gearcam.base.numerals import shown
+from gearcam.base.numerals import formatted
 from gearcam.base.tolerances import Tolerances
 from gearcam.gears.cutter import choose_cutter, ring_pinions
 from gearcam.gears.demands import demand_clearance, demand_cutters, demand_shift, settle_rack
@@ -51,7 +51,7 @@ COARSEST = 1.0 / 50.0
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class GearPair(Brief):
+class GearPair(ShortRepr):
     """Two centrodes with their cutters and tooth positions.
 
     Parameters
@@ -120,7 +120,7 @@ class GearPair(Brief):
             limit = low if fine else high
             what = f"the chord tolerance is too {'fine' if fine else 'coarse'} for this module"
             where = "output.chord_tolerance_mm"
-            note = f"the limit is for the module {shown(self.module)} mm"
+            note = f"the limit is for the module {formatted(self.module)} mm"
             raise beyond_limit(
                 what, where, asked, limit, note, near=(1.001 if fine else 0.999) * limit
             )
@@ -128,7 +128,7 @@ class GearPair(Brief):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Gear(Brief, Displayed):
+class Gear(ShortRepr, NotebookView):
     """One wheel of a pair.
 
     Parameters

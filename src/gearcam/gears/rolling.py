@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.base.tolerances import Tolerances
 from gearcam.gears.guide import Guide, RingShaft, Shaft, Slideway
 from gearcam.gears.track import ArcLength, Frames, Track, Wheel
@@ -33,7 +33,7 @@ _MARGIN = 2.0
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Rolling(Brief):
+class Rolling(ShortRepr):
     """The pair of centrodes of a wheel and its mate.
 
     Parameters

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from gearcam.base.errors import beyond_limit
-from gearcam.base.numerals import shown
+from gearcam.base.numerals import formatted
 from gearcam.gears.flank import Curve, Rows, Toothing
 from gearcam.gears.tips import ROUGH, TipEnds, cross, flank_at, flank_crossings, near
 from gearcam.gears.track import Frames
@@ -85,7 +85,7 @@ def round_tips(toothing: Toothing, rows: Rows, tips: TipEnds) -> tuple[Rows, Arr
         )
         largest = float(f"{largest * (1.0 - _INSIDE):.6g}")
         what = "the tip rounding is too large: it leaves no flank above the pitch curve"
-        note = f"use a radius up to {shown(largest)} mm"
+        note = f"use a radius up to {formatted(largest)} mm"
         raise beyond_limit(
             what, f"wheel {toothing.wheel}, blank.tip_rounding_mm", toothing.rounding, largest, note
         )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.base.quantities import ANGLE, COUNT, LENGTH, LONGEST, NUMBER, TEXT, param
 from gearcam.base.rules import exactly_one, excludes, only_with
 
@@ -124,7 +124,7 @@ class StepsSpec:
 
 
 @dataclass(frozen=True, kw_only=True)
-class PairSpec(Brief):
+class PairSpec(ShortRepr):
     """Size and teeth of a pair: centre distance or module is given, the other is solved.
 
     Examples

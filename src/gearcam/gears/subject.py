@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.base.findings import ROUNDING, check
 from gearcam.base.quantities import NUMBER, Param
 from gearcam.gears.contact import COAST, DRIVE, FlankPairs, flank_pairs
@@ -30,7 +30,7 @@ CONTACT_RATIO = ("contact_ratio", Param(NUMBER, ge=1, le=3, doc="least contact r
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Subject(Brief):
+class CheckedPair(ShortRepr):
     """A built pair, with what its checks need.
 
     Parameters

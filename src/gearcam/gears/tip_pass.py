@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gearcam.gears.corners import PolarCurve
+from gearcam.gears.corners import RadialCurve
 from gearcam.gears.flank import Toothing
 from gearcam.gears.outline import Outline
 from gearcam.gears.tips import feet
@@ -85,7 +85,7 @@ def tip_pass(wheel: Outline, ring: Outline) -> TipPass:
     TipPass
         For closed wheels the first of those that repeat with the lobes.
     """
-    own, edge = wheel.toothing, PolarCurve(ring.toothing, ring.toothing.cutter.addendum)
+    own, edge = wheel.toothing, RadialCurve(ring.toothing, ring.toothing.cutter.addendum)
     corners = _corners(wheel, ring.toothing)
     stays = _follow(own, ring.toothing, corners, edge)
     margins, angles, crosses = _margins(own, ring, corners.points, edge, stays)
@@ -120,7 +120,7 @@ def _corners(wheel: Outline, mate: Toothing) -> _Corners:
     )
 
 
-def _follow(own: Toothing, mate: Toothing, corners: _Corners, edge: PolarCurve) -> Stays:
+def _follow(own: Toothing, mate: Toothing, corners: _Corners, edge: RadialCurve) -> SpaceIntervals:
     """Trace corners over half a turn to both sides of the middle of their tooth.
 
     Corners of an open wheel are traced over its whole travel.
@@ -132,13 +132,13 @@ def _follow(own: Toothing, mate: Toothing, corners: _Corners, edge: PolarCurve) 
     phi = own.track.angle(s if own.closed else np.clip(s, 0.0, own.length))
     here, there = own.frames(phi, curved=False), mate.frames(phi, curved=False)
     turn = there.t * np.conj(here.t)
-    rolls = Rolls(phi, turn, there.p - turn * here.p)
+    rolls = RollStates(phi, turn, there.p - turn * here.p)
     first = np.tile(_ROLLS * np.arange(each), 2)
     return find_stays(rolls, corners.points, first, count, edge)
 
 
 def _margins(
-    own: Toothing, ring: Outline, points: Plane, edge: PolarCurve, stays: Stays
+    own: Toothing, ring: Outline, points: Plane, edge: RadialCurve, stays: SpaceIntervals
 ) -> tuple[Array, Array, Mask]:
     """Return margins, mm, driver angles, rad, and a mask of height crossings, for all ends, (2n,).
 
@@ -176,7 +176,7 @@ def _margins(
 
 
 def _feet(
-    own: Toothing, mate: Toothing, edge: PolarCurve, points: Plane | complex, phi: Array
+    own: Toothing, mate: Toothing, edge: RadialCurve, points: Plane | complex, phi: Array
 ) -> tuple[Array, Array]:
     """Return arc lengths of the feet of corners on the ring's centrode, and heights, mm."""
     here, there = own.frames(phi, curved=False), mate.frames(phi, curved=False)
@@ -186,7 +186,7 @@ def _feet(
     return base.s, np.real(np.conj(mate.turn * base.t) * (path - base.p))
 
 
-class Rolls(NamedTuple):
+class RollStates(NamedTuple):
     """A wheel and its ring at rolls, in order, (n,) each.
 
     Parameters
@@ -202,7 +202,7 @@ class Rolls(NamedTuple):
     shift: Plane
 
 
-class Stays(NamedTuple):
+class SpaceIntervals(NamedTuple):
     """Ends of the intervals that corners spend between the ring's teeth, one entry per end.
 
     `corner` is the corner's number; `deep` is a driver angle, rad, inside, and `edge` one just
@@ -214,12 +214,14 @@ class Stays(NamedTuple):
     edge: Array
 
 
-def find_stays(rolls: Rolls, points: Plane, first: Ints, count: int, edge: PolarCurve) -> Stays:
+def find_stays(
+    rolls: RollStates, points: Plane, first: Ints, count: int, edge: RadialCurve
+) -> SpaceIntervals:
     """Return the ends of all intervals in which corners are inside the ring.
 
     Parameters
     ----------
-    rolls : Rolls
+    rolls : RollStates
         Possible roll positions.
     points : (n,) complex array, mm
         The corners, in the wheel's frame.
@@ -227,12 +229,12 @@ def find_stays(rolls: Rolls, points: Plane, first: Ints, count: int, edge: Polar
         First roll of each.
     count : int
         Number of rolls of each.
-    edge : PolarCurve
+    edge : RadialCurve
         The ring's tips.
 
     Returns
     -------
-    Stays
+    SpaceIntervals
         By corner, then in order.
     """
     found: list[tuple[int, int, int]] = []
@@ -252,4 +254,4 @@ def find_stays(rolls: Rolls, points: Plane, first: Ints, count: int, edge: Polar
             deep = low + int(inside.argmax())
             found += [(block + corner, deep, end) for end in ends]
     corner, deep, end = np.array(found, dtype=int).reshape(-1, 3).T
-    return Stays(corner, rolls.phi[first[corner] + deep], rolls.phi[first[corner] + end])
+    return SpaceIntervals(corner, rolls.phi[first[corner] + deep], rolls.phi[first[corner] + end])

@@ -9,7 +9,7 @@ from functools import partial
 
 import numpy as np
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.gears.flank import Toothing
 from gearcam.gears.track import Frames
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
@@ -39,7 +39,7 @@ _Way = Callable[[Array, Frames], tuple[Plane, Plane]]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class TipEnds(Brief):
+class TipEnds(ShortRepr):
     """Upper ends of flanks, one entry per flank.
 
     Parameters

@@ -25,7 +25,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.chebyshev import Expansion
 from gearcam.numeric.hermite import hermite_cubic
@@ -99,7 +99,7 @@ class LeastRadius(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class ArcLength(Brief):
+class ArcLength(ShortRepr):
     """Arc length over a parameter, and its inverse.
 
     Parameters
@@ -176,7 +176,7 @@ class ArcLength(Brief):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Track(Brief, ABC):
+class Track(ShortRepr, ABC):
     """A curve along which teeth are placed (see above).
 
     Parameters

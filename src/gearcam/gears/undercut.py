@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.gears.flank import Toothing
 from gearcam.numeric.arrays import Array, Ints
 from gearcam.numeric.roots import bracketed_root
@@ -34,7 +34,7 @@ _ANGLE = 1e-14
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Undercut(Brief):
+class Undercut(ShortRepr):
     """Cusps at which flanks turn back on themselves, one entry per flank.
 
     Parameters

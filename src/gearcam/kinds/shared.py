@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Final
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.base.quantities import COUNT, TEXT, param
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ PAGE: Final = "accuracy.html"
 
 
 @dataclass(frozen=True, kw_only=True)
-class AccuracySpec(Brief):
+class AccuracySpec(ShortRepr):
     """Stages to measure, and the number of runs of each level.
 
     Examples

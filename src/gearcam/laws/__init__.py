@@ -1,7 +1,7 @@
 """Laws of the transmission ratio, motion laws and lift programs.
 
-The registries `gearcam.laws.ratio.base.LAWS` and `gearcam.laws.rises.base.RISES` load a law when
-it is used. Depends on numpy only.
+The registries `gearcam.laws.ratio.base.LAWS` and `gearcam.laws.motion.base.MOTION_LAWS` load a law
+when it is used. Depends on numpy only.
 
 The parameters of ratio laws are attributes: ``gearcam.laws.Ellipse(eccentricity=0.3)``.
 

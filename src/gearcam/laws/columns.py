@@ -11,9 +11,9 @@ from typing import Any, Final
 
 import numpy as np
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.base.errors import InfeasibleError
-from gearcam.base.numerals import shown
+from gearcam.base.numerals import formatted
 from gearcam.base.reading import UnreadableError, read
 from gearcam.base.rules import Breach
 from gearcam.numeric.arrays import Array
@@ -39,7 +39,7 @@ class ColumnsError(ValueError):
 
 
 @dataclass(frozen=True, kw_only=True)
-class CsvRows(Brief):
+class CsvRows(ShortRepr):
     """The rows of a CSV file, without comments and empty lines.
 
     Parameters
@@ -92,7 +92,7 @@ class CsvRows(Brief):
         return np.array(numbers).reshape(-1, len(names)), lines
 
 
-class FromFile(Brief):
+class FromFile(ShortRepr):
     """Parameters of a table, in the design itself or in a CSV file, which is read once."""
 
     file: str | None
@@ -260,7 +260,7 @@ def close_angles(angles: Array) -> Iterator[tuple[int, str, str]]:
 
 def degrees(angle: float) -> str:
     """Return an angle, rad, as text in degrees."""
-    return f"{shown(math.degrees(angle), 10)} deg"
+    return f"{formatted(math.degrees(angle), 10)} deg"
 
 
 def _with_points(rows: CsvRows) -> CsvRows:

@@ -26,7 +26,7 @@ from typing import Any, Final
 import numpy as np
 
 from gearcam.base.errors import GearcamError
-from gearcam.base.numerals import shown
+from gearcam.base.numerals import formatted
 from gearcam.laws.entry import VARIABLE
 from gearcam.numeric.jets import FUNCTIONS
 
@@ -277,7 +277,7 @@ def _check_number(word: str, column: int) -> None:
             "this number is too large", column=column, allowed="numbers up to 1.8e308"
         )
     if word.isdigit() and word != "0" and word.startswith("0"):
-        hint = f"write {shown(float(word))}"
+        hint = f"write {formatted(float(word))}"
         raise FormulaError(f"the number {word} begins with a zero", column=column, hint=hint)
 
 
@@ -356,7 +356,7 @@ def _constant(function: Function, operands: Sequence[Operand], column: int) -> f
 def _check_exponent(value: Operand, column: int) -> None:
     if isinstance(value, float) and abs(value) > MAX_EXPONENT:
         raise FormulaError(
-            f"exponent {shown(value)} is too large",
+            f"exponent {formatted(value)} is too large",
             column=column,
-            allowed=f"exponents from {shown(-MAX_EXPONENT)} to {shown(MAX_EXPONENT)}",
+            allowed=f"exponents from {formatted(-MAX_EXPONENT)} to {formatted(MAX_EXPONENT)}",
         )

@@ -19,7 +19,7 @@ from typing import Any, Final
 import numpy as np
 
 from gearcam.base.errors import InfeasibleError
-from gearcam.base.numerals import shown
+from gearcam.base.numerals import formatted
 from gearcam.laws.entry import Axis, Function, Functions
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.chebyshev import Expansion, NotSmoothError, expand
@@ -290,9 +290,8 @@ class _Sample:
         fourth = np.diff(self(beside.ravel()).reshape(beside.shape), 4, axis=1) / math.sqrt(70.0)
         scatter = float(np.median(np.sqrt((fourth**2).mean(axis=1)))) / (self.scale or 1.0)
         if scatter > _SCATTER:
-            what = (
-                f"is not smooth anywhere: its values scatter by {shown(scatter)} times the largest"
-            )
+            times = formatted(scatter)
+            what = f"is not smooth anywhere: its values scatter by {times} times the largest"
             remedy, place = self.axis.remedy, float(spots[0])
             raise self.refusal(what, place, value=scatter, limit=_SCATTER, nearest=remedy)
         return scatter

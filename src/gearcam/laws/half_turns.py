@@ -15,7 +15,7 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.laws.displacement import Deviation
 from gearcam.laws.phases_of_lift import (
     TURN,
@@ -36,7 +36,7 @@ HALF: Final = 0.5 * TURN
 
 
 @dataclass(frozen=True)
-class _Opposite(Brief):
+class _Opposite(ShortRepr):
     """The lift half a turn after that of a `function`: a total less its value."""
 
     function: Callable[..., Jet]

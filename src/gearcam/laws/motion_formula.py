@@ -14,7 +14,7 @@ from typing import Final
 import numpy as np
 
 from gearcam.base.errors import InfeasibleError, beyond_limit
-from gearcam.base.numerals import shown
+from gearcam.base.numerals import formatted
 from gearcam.base.quantities import LONGEST, TEXT, param
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import TYPED, Axis
@@ -36,7 +36,7 @@ _WHERE: Final = "motion.lift"
 _AXIS: Final = Axis(
     name="the lift",
     high=TURN,
-    place=lambda x: f"{_WHERE}, theta = {shown(math.degrees(x))} deg",
+    place=lambda x: f"{_WHERE}, theta = {formatted(math.degrees(x))} deg",
     variable=_VARIABLE,
     remedy="for such values use a motion table, whose curve has no corners",
 )

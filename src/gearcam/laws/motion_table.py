@@ -14,7 +14,7 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.base.numerals import shown
+from gearcam.base.numerals import formatted
 from gearcam.base.quantities import ANGLE, FINEST, LENGTH, LONGEST, TEXT, Param, Row, param
 from gearcam.base.rules import Breach
 from gearcam.base.tolerances import Tolerances
@@ -142,7 +142,7 @@ class MotionTable(FromFile):
         scale, unit = (_DEG, "deg") if oscillating else (1.0, "mm")
 
         def text(value: float) -> str:
-            return f"{shown(value / scale, 10)} {unit}"
+            return f"{formatted(value / scale, 10)} {unit}"
 
         largest = math.pi if oscillating else LONGEST
         for row in np.flatnonzero(np.abs(lift) > largest).tolist():

@@ -2,11 +2,12 @@
 
 The *lift* is a length for translating followers and an angle for oscillating ones (``lift_mm``,
 ``lift_deg``). A phase covers an angle of a cam that turns or a length, its *travel*, of one that
-slides (``angle_deg``, ``way_mm``). A *rise* goes up by its lift with a motion law, a *return* comes
-down with one (to lift zero if no lift is given), in a *dwell* the follower rests, and a *segment*
-goes from the end state of the phase before it to a given lift, velocity and acceleration, so that
-phases join without a dwell. The angle of one phase may be ``"rest"``: the remainder of the turn.
-For some cams the phases may fill *half a turn*; the second half is then the opposite of the first.
+slides (``angle_deg``, ``travel_mm``). A *rise* goes up by its lift with a motion law, a *return*
+comes down with one (to lift zero if no lift is given), in a *dwell* the follower rests, and a
+*segment* goes from the end state of the phase before it to a given lift, velocity and acceleration,
+so that phases join without a dwell. The angle of one phase may be ``"rest"``: the remainder of the
+turn. For some cams the phases may fill *half a turn*; the second half is then the opposite of the
+first.
 
 Refused when the design is read: phases that do not fill a turn, a rest without an angle, programs
 that end at another lift than they begin with. The program of a cam that slides is *open*: its
@@ -22,8 +23,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Final, Literal
 
-from gearcam.base.display import Brief
-from gearcam.base.numerals import shown
+from gearcam.base.display import ShortRepr
+from gearcam.base.numerals import formatted
 from gearcam.base.quantities import (
     ANGLE,
     ANGLE_PER_RAD,
@@ -57,7 +58,7 @@ _SPAN: Final[dict[str, Any]] = {
     "doc": "cam angle of the phase, or the rest of the turn",
     "when": ("turning",),
     "other": Param(
-        LENGTH, word="way", gt=0, le=LONGEST, example=60, doc="travel of a translating cam"
+        LENGTH, word="travel", gt=0, le=LONGEST, example=60, doc="travel of a translating cam"
     ),
 }
 """Parameter for the angle, or the travel, of a phase."""
@@ -78,13 +79,13 @@ class DwellPhase:
 
 
 @dataclass(frozen=True, kw_only=True)
-class RisePhase(Brief):
+class RisePhase(ShortRepr):
     """The follower rises with a motion law.
 
     Parameters
     ----------
     law : object
-        Parameters of a motion law, such as `gearcam.rises.Cycloidal`.
+        Parameters of a motion law, such as `gearcam.motion_laws.Cycloidal`.
     angle : float or "rest"
         Cam angle, rad; of a cam that slides its travel, mm.
     lift : float or None
@@ -93,7 +94,7 @@ class RisePhase(Brief):
     Examples
     --------
     >>> import gearcam as gc
-    >>> gc.RisePhase(angle=2.0, law=gc.rises.Cycloidal(), lift=10.0)
+    >>> gc.RisePhase(angle=2.0, law=gc.motion_laws.Cycloidal(), lift=10.0)
     RisePhase(angle=2, lift=10, law=Cycloidal)
     """
 
@@ -120,7 +121,7 @@ class ReturnPhase(RisePhase):
     Examples
     --------
     >>> import gearcam as gc
-    >>> gc.ReturnPhase(angle=2.0, law=gc.rises.Polynomial345())
+    >>> gc.ReturnPhase(angle=2.0, law=gc.motion_laws.Polynomial345())
     ReturnPhase(angle=2, law=Polynomial345)
     """
 
@@ -135,7 +136,7 @@ def _rate(
 
 
 @dataclass(frozen=True, kw_only=True)
-class SegmentPhase(Brief):
+class SegmentPhase(ShortRepr):
     """The follower goes to a lift, with given velocity and acceleration at its end.
 
     In mm, mm/rad and mm/rad^2, or, if the follower oscillates, in rad, rad/rad and rad/rad^2.
@@ -292,7 +293,7 @@ def program_problems(
 
 
 def _turn_problems(phases: Sequence[Phase], turn: float) -> Iterator[Problem]:
-    angles, whole = angles_of(phases, turn), shown(math.degrees(turn))
+    angles, whole = angles_of(phases, turn), formatted(math.degrees(turn))
     miss = turn - sum(angles)
     rests = [number for number, phase in enumerate(phases) if phase.angle == "rest"]
     for number in rests[1:]:
@@ -301,13 +302,13 @@ def _turn_problems(phases: Sequence[Phase], turn: float) -> Iterator[Problem]:
     if rests:
         left = angles[rests[0]]
         if left <= TURN_MISS:
-            others = shown(math.degrees(turn - left), 10)
+            others = formatted(math.degrees(turn - left), 10)
             message = f"the other phases take {others} deg, which leaves nothing"
             yield rests[0], "angle", message, f"less than {whole} deg in the others"
     elif abs(miss) > TURN_MISS:
         last = math.degrees(miss + angles[-1])
-        hint = f"; the last phase would take {shown(last, 10)} deg" if last > 0 else ""
-        message = f"the phases take {shown(math.degrees(turn - miss), 10)} deg"
+        hint = f"; the last phase would take {formatted(last, 10)} deg" if last > 0 else ""
+        message = f"the phases take {formatted(math.degrees(turn - miss), 10)} deg"
         yield None, "", message, f'{whole} deg in all, or "rest" for one of them{hint}'
 
 
@@ -320,7 +321,7 @@ def _way_problems(phases: Sequence[Phase]) -> Iterator[Problem]:
     least = whole * 1e-6
     for number, way in ways.items():
         if way < least:
-            rule = f"at least {shown(least)} mm of {shown(whole)} mm"
+            rule = f"at least {formatted(least)} mm of {formatted(whole)} mm"
             yield number, "angle", "the phase is too short: it would be a jump", rule
 
 
@@ -342,4 +343,4 @@ def _closure_problems(
     elif closed and abs(lifts[-1]) > _LIFT_MISS * largest:
         end = math.degrees(lifts[-1]) if unit == "deg" else lifts[-1]
         rule = "the lift 0, as at the start of the turn"
-        yield None, "", f"the program ends at a lift of {shown(end, 10)} {unit}", rule
+        yield None, "", f"the program ends at a lift of {formatted(end, 10)} {unit}", rule

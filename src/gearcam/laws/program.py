@@ -18,10 +18,12 @@ from typing import Any
 
 import numpy as np
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.displacement import EXACT, JUMP, Deviation, Displacement, Jump
+from gearcam.laws.motion.base import MotionFunction
+from gearcam.laws.motion.pieces import from_both_ends
 from gearcam.laws.phases_of_lift import (
     TURN,
     DwellPhase,
@@ -34,8 +36,6 @@ from gearcam.laws.phases_of_lift import (
     levels,
     program_problems,
 )
-from gearcam.laws.rises.base import Rise
-from gearcam.laws.rises.pieces import from_both_ends
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.hermite import hermite_quintics
 from gearcam.numeric.jets import Jet, Value, polynomial
@@ -43,7 +43,7 @@ from gearcam.numeric.piecewise import Piece, Piecewise, extremes_among, piecewis
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Survey(Brief):
+class Survey(ShortRepr):
     """A lift and its derivatives up to the fourth at many places, computed once.
 
     Parameters
@@ -63,7 +63,7 @@ class Survey(Brief):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Program(Brief, Displacement):
+class Program(ShortRepr, Displacement):
     """The lift of a follower over a turn, repeated, or over a travel.
 
     Angles and derivatives in rad are in mm over a travel.
@@ -315,7 +315,9 @@ def _ends(phases: Sequence[Phase], *, closed: bool, half: bool) -> tuple[Array, 
     return angles, heights
 
 
-def _end_state(phase: Phase, place: _Place, rises: Mapping[Any, Rise]) -> tuple[float, float]:
+def _end_state(
+    phase: Phase, place: _Place, rises: Mapping[Any, MotionFunction]
+) -> tuple[float, float]:
     """Return velocity and acceleration at the end of a phase, which its law defines."""
     match phase:
         case SegmentPhase():
@@ -327,7 +329,7 @@ def _end_state(phase: Phase, place: _Place, rises: Mapping[Any, Rise]) -> tuple[
 
 
 @dataclass(frozen=True)
-class _Placed(Brief):
+class _Placed(ShortRepr):
     """A scaled law, ``base + scale*S((theta - origin)/width)``; phases of one law share it."""
 
     law: Callable[..., Jet]
@@ -354,13 +356,13 @@ class _Place:
     def rise(self) -> float:
         return self.top - self.base
 
-    def law(self, rise: Rise) -> tuple[float, float, float, float]:
+    def law(self, rise: MotionFunction) -> tuple[float, float, float, float]:
         """Return origin, width, base and scale of a law (see `_Placed`)."""
         if rise.mirrored and self.rise < 0.0:  # a return is the law run backwards
             return self.end, self.start - self.end, self.top, -self.rise
         return self.start, self.end - self.start, self.base, self.rise
 
-    def pieces(self, rise: Rise) -> Iterator[tuple[float, Piece]]:
+    def pieces(self, rise: MotionFunction) -> Iterator[tuple[float, Piece]]:
         """Yield the pieces of a law, each with its end angle."""
         origin, width, base, scale = self.law(rise)
         inner = np.sort(origin + width * rise.function.knots[1:-1]).tolist()
@@ -369,16 +371,16 @@ class _Place:
             parameters = (origin, 1.0 / width, base, scale, *part.parameters)
             yield end, Piece(_Placed(part.function), parameters=parameters)
 
-    def cuts(self, rise: Rise) -> Array:
+    def cuts(self, rise: MotionFunction) -> Array:
         """Return the angles at which a law bends sharply."""
         origin, width, *_ = self.law(rise)
         return origin + width * np.array(rise.cuts)
 
-    def errors(self, rise: Rise) -> Array:
+    def errors(self, rise: MotionFunction) -> Array:
         """Return the errors of a law and of its first three derivatives."""
         return abs(self.rise) * np.array(rise.errors) / (self.end - self.start) ** np.arange(4)
 
-    def end_state(self, rise: Rise) -> tuple[float, float]:
+    def end_state(self, rise: MotionFunction) -> tuple[float, float]:
         """Return velocity and acceleration of a law at the end."""
         _, width, _, scale = self.law(rise)
         ends = (len(rise.function.pieces), -1) if width > 0.0 else (0, 1)

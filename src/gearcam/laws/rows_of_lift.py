@@ -24,9 +24,9 @@ import numpy as np
 
 from gearcam.laws.displacement import Deviation
 from gearcam.laws.entry import TYPED
+from gearcam.laws.motion.pieces import from_both_ends, spline
 from gearcam.laws.phases_of_lift import TURN, PlacedPhase
 from gearcam.laws.program import Program
-from gearcam.laws.rises.pieces import from_both_ends, spline
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.least_jerk import coefficients, ring_slopes, smoothed_ring
 from gearcam.numeric.piecewise import Piecewise, extremes, piecewise

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from typing import Protocol
 
 from gearcam.base.findings import Remark, Severity, check
-from gearcam.base.numerals import shown
+from gearcam.base.numerals import formatted
 from gearcam.gears.contact import DRIVE, FlankPairs
 from gearcam.gears.subject import CONTACT_RATIO
 from gearcam.gears.subject import KIND as PAIR_KIND
@@ -36,7 +36,9 @@ class Sided(Protocol):
 def ranges_text(ranges: list[tuple[float, float]]) -> str:
     """Return ranges of driver angles, rad, as text in degrees; with the number of those omitted."""
     degrees = [(math.degrees(a), math.degrees(b)) for a, b in ranges[:_SHOWN]]
-    named = [f"{shown(a)}" if a == b else f"{shown(a)} to {shown(b)}" for a, b in degrees]
+    named = [
+        f"{formatted(a)}" if a == b else f"{formatted(a)} to {formatted(b)}" for a, b in degrees
+    ]
     more = f" and {len(ranges) - _SHOWN} more" if len(ranges) > _SHOWN else ""
     return f"phi1 = {', '.join(named)} deg{more}"
 
@@ -80,8 +82,8 @@ def contact_ratio(subject: Sided, limit: float) -> Iterator[Remark]:
             apart = max(stretch.apart for stretch in found)
             message = (
                 f"No flanks touch at {arcs_text(found)}{_repeats(pairs)}. There tooth edges drive: "
-                f"they scrape, and the driven wheel is up to {shown(apart, 3)} mm off its position "
-                "along the pitch curve."
+                f"they scrape, and the driven wheel is up to {formatted(apart, 3)} mm off its "
+                "position along the pitch curve."
             )
         elif found:
             message = (

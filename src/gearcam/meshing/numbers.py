@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from gearcam.base.facts import extent
-from gearcam.base.numerals import shown
+from gearcam.base.numerals import formatted
 from gearcam.gears.contact import DRIVE
 from gearcam.meshing.edges import known_to
 from gearcam.meshing.study import Meshing
@@ -136,8 +136,8 @@ def without_harmonics(meshing: Meshing, touching: Mask) -> str:
         return "in some phases nothing touches"
     if meshing.asked < LEAST_STEPS * teeth * round(turns):
         return (
-            f"{shown(meshing.asked / (teeth * turns), 3)} steps per tooth, needed: {LEAST_STEPS}; "
-            f"steps = {LEAST_STEPS * teeth * round(turns)}"
+            f"{formatted(meshing.asked / (teeth * turns), 3)} steps per tooth, needed: "
+            f"{LEAST_STEPS}; steps = {LEAST_STEPS * teeth * round(turns)}"
         )
     return ""
 

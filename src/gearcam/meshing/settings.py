@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.base.quantities import ANGLE, COUNT, LENGTH, LONGEST, param
 from gearcam.base.rules import above, distinct, excluded
 
@@ -14,7 +14,7 @@ KIND = "meshing"
 
 
 @dataclass(frozen=True, kw_only=True)
-class MeshingSpec(Brief):
+class MeshingSpec(ShortRepr):
     """Phases of the driver, overclosure, and mounted centre distance.
 
     The phases divide the range from `start` to `end` into `steps` equal parts, without its end;

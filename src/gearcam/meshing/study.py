@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from gearcam.base.errors import ABOVE, InfeasibleError, beyond_limit
-from gearcam.base.numerals import shown
+from gearcam.base.numerals import formatted
 from gearcam.gears.contact import COAST, DRIVE, FlankPairs, flank_pairs
 from gearcam.gears.outline import Outline
 from gearcam.gears.pair import FINEST, Gear, GearPair
@@ -287,8 +287,8 @@ def phases(spec: MeshingSpec, pairs: FlankPairs) -> Array:
     """
     first, last = stretch(spec, pairs)
     if not last > first:
-        what = f"the study ends at {shown(np.degrees(last))} deg before it begins"
-        note = f"give a start below {shown(np.degrees(last))} deg"
+        what = f"the study ends at {formatted(np.degrees(last))} deg before it begins"
+        note = f"give a start below {formatted(np.degrees(last))} deg"
         raise InfeasibleError(what, where="meshing.from_deg", nearest=note)
     phi1 = np.linspace(first, last, spec.steps, endpoint=not pairs.closed)
     if not pairs.closed:
@@ -308,7 +308,7 @@ def phases(spec: MeshingSpec, pairs: FlankPairs) -> Array:
         angles = np.degrees(track.angle(0.5 * (start + end)))
         note = (
             "they are in contact near phi1 = "
-            + ", ".join(f"{shown(angle, 4)}" for angle in angles)
+            + ", ".join(f"{formatted(angle, 4)}" for angle in angles)
             + " deg; use more steps or another range"
         )
         raise InfeasibleError(
@@ -324,7 +324,7 @@ def _demand_travel(first: float, last: float, travel: float) -> None:
         what = "the study leaves the travel of the pair"
         where = f"meshing.{'from' if early else 'to'}_deg"
         limit = 0.0 if early else float(np.degrees(travel))
-        note = f"the travel lies between 0 and {shown(np.degrees(travel), 8)} deg"
+        note = f"the travel lies between 0 and {formatted(np.degrees(travel), 8)} deg"
         raise beyond_limit(what, where, float(np.degrees(first if early else last)), limit, note)
 
 
@@ -344,12 +344,12 @@ def _outlines(
     reason = (
         "the overlap would be lost in rounding"
         if lost > many
-        else f"outlines that resolve the overlap would need {shown(chords, 2)} chords"
+        else f"outlines that resolve the overlap would need {formatted(chords, 2)} chords"
     )
     least = float(np.degrees(spec.overclosure)) * max(lost, many)
     what, note = (
         f"the overclosure is too small: {reason}",
-        f"{shown(ABOVE * least, 3)} deg is enough",
+        f"{formatted(ABOVE * least, 3)} deg is enough",
     )
     raise beyond_limit(
         what, "meshing.overclosure_deg", float(np.degrees(spec.overclosure)), least, note
@@ -375,7 +375,7 @@ def _distance(pair: GearPair, spec: MeshingSpec) -> float:
             "mesh"
         )
         limit = least if spec.center_distance <= least else most
-        note = f"use a distance between {shown(least)} and {shown(most)} mm"
+        note = f"use a distance between {formatted(least)} and {formatted(most)} mm"
         raise beyond_limit(what, "meshing.center_distance_mm", spec.center_distance, limit, note)
     return math.copysign(spec.center_distance, pair.shift)
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.base.errors import DesignError, Problem
-from gearcam.base.numerals import shown
+from gearcam.base.numerals import formatted
 from gearcam.numeric.arrays import Array
 
 _SHOWN = 60
@@ -103,7 +103,7 @@ def angles(
     """
     rule = f"a number or a one-dimensional array of numbers, {unit}"
     if np.isfinite(high - low):
-        rule += f", from {shown(low)} to {shown(high)}"
+        rule += f", from {formatted(low)} to {formatted(high)}"
     try:
         found = np.atleast_1d(np.asarray(values, dtype=np.float64))
     except (TypeError, ValueError):
@@ -112,7 +112,7 @@ def angles(
         raise refused(f"has the shape {found.shape}", name, values, rule)
     wrong = found[~((found >= low - slack) & (found <= high + slack) & np.isfinite(found))]
     if wrong.size:
-        raise refused(f"{shown(wrong[0])} is out of range", name, values, rule)
+        raise refused(f"{formatted(wrong[0])} is out of range", name, values, rule)
     return np.clip(found, low, high)
 
 

@@ -16,7 +16,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.base.errors import GearcamError
 from gearcam.numeric.arrays import Array
 
@@ -49,7 +49,7 @@ class NotSmoothError(GearcamError, ValueError):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Expansion(Brief):
+class Expansion(ShortRepr):
     """A function given by Chebyshev coefficients on consecutive intervals.
 
     Parameters

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.moments import Moments, curve_moments
 from gearcam.numeric.pose import UNMOVED, Pose
@@ -27,7 +27,7 @@ Fitted = TypeVar("Fitted")
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Run(Brief):
+class Run(ShortRepr):
     """A smooth piece of a curve between two corners.
 
     Parameters
@@ -65,7 +65,7 @@ class Run(Brief):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Contour(Brief):
+class Contour(ShortRepr):
     """A closed, counter-clockwise curve.
 
     Parameters

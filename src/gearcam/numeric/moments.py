@@ -15,7 +15,7 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.bulges import as_complex, bulge_pieces, on_arcs
 from gearcam.numeric.hermite import hermite_arms, hermite_cubic
@@ -38,7 +38,7 @@ _SAFE: Final = 1.5
 
 
 @dataclass(frozen=True, kw_only=True)
-class Moments(Brief):
+class Moments(ShortRepr):
     """Integrals over a region, about the origin; regions add and subtract.
 
     Parameters

@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.numeric.arrays import Array, Ints
 from gearcam.numeric.chebyshev import FIRST_CUTS, Expansion, expand
 from gearcam.numeric.jets import Jet
@@ -48,7 +48,7 @@ the allocator returns them to the system."""
 
 
 @dataclass(frozen=True, eq=False)
-class Piece(Brief):
+class Piece(ShortRepr):
     """A smooth piece, with its integral where that has a closed form.
 
     Parameters
@@ -72,7 +72,7 @@ class Piece(Brief):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Piecewise(Brief):
+class Piecewise(ShortRepr):
     """A function of one variable made of pieces, smooth between knots.
 
     Parameters

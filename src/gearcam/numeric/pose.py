@@ -11,11 +11,11 @@ from typing import Any, Final
 
 import numpy as np
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 
 
 @dataclass(frozen=True)
-class Pose(Brief):
+class Pose(ShortRepr):
     """A turn about the origin of the body's own frame, then a shift; or n of both, as arrays.
 
     Parameters

@@ -17,9 +17,9 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.base.errors import ABOVE, beyond_limit
-from gearcam.base.numerals import shown
+from gearcam.base.numerals import formatted
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.bulges import as_pairs
 from gearcam.numeric.contour import Run
@@ -125,7 +125,7 @@ class _Chords(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Sampler(Brief):
+class Sampler(ShortRepr):
     """Curves with the density of points that a tolerance needs.
 
     Parameters
@@ -236,7 +236,7 @@ class Sampler(Brief):
         if count > self.most:
             limit = self.tolerance * (count / self.most) ** 2
             key = "output.chord_tolerance_mm"
-            what = f"the curve would need {shown(count, 2)} chords"
+            what = f"the curve would need {formatted(count, 2)} chords"
             note = f"at the limit there are about {self.most:.0f}"
             raise beyond_limit(what, key, self.tolerance, limit, note, near=ABOVE * limit)
 
@@ -388,7 +388,7 @@ class Sampler(Brief):
 
 
 @dataclass(frozen=True, eq=False)
-class Dense(Brief):
+class Dense(ShortRepr):
     """Points of curves in order, with the ends of runs.
 
     Parameters

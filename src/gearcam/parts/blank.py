@@ -19,8 +19,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, fields, make_dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar, Final, get_type_hints
 
-from gearcam.base.display import Brief
-from gearcam.base.numerals import shown
+from gearcam.base.display import ShortRepr
+from gearcam.base.numerals import formatted
 from gearcam.base.quantities import (
     ANGLE,
     COUNT,
@@ -69,7 +69,7 @@ def _count(*, doc: str, le: int) -> Any:
 
 
 @dataclass(frozen=True, kw_only=True)
-class WheelBlank(Brief):
+class WheelBlank(ShortRepr):
     """Bore, hub, holes, marks and edges of one wheel, mm and rad; 0 or None means none.
 
     Examples
@@ -173,10 +173,10 @@ class WheelBlank(Brief):
         """Yield what is wrong by reading: field, None, message, allowed."""
         half, reach = 0.5 * self.bore, 2.0 * self.bore_reach
         if self.bore and self.bore_flat and not half < self.bore_flat < self.bore:
-            rule = f"above {shown(half)} and below the bore's {shown(self.bore)} mm"
+            rule = f"above {formatted(half)} and below the bore's {formatted(self.bore)} mm"
             yield "bore_flat", None, "the flat is not within the bore", rule
         if self.hub_diameter and self.hub_diameter <= reach:
-            rule = f"above {shown(reach)} mm, the diameter across the bore"
+            rule = f"above {formatted(reach)} mm, the diameter across the bore"
             yield "hub_diameter", None, "the bore is as large as the hub", rule
 
 
@@ -210,7 +210,7 @@ else:
     )
 
 
-class Blank(Brief, _BothWheels):
+class Blank(ShortRepr, _BothWheels):
     """Bores, hubs, holes, marks and edges of both wheels, each value given once or driver first.
 
     Examples

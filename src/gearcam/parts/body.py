@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol, cast
 
 import numpy as np
 
-from gearcam.base.display import Brief, Displayed, renderer
+from gearcam.base.display import NotebookView, ShortRepr, renderer
 from gearcam.base.facts import Facts
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.contour import Contour
@@ -54,7 +54,7 @@ class Body(Protocol):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Opening(Brief):
+class Opening(ShortRepr):
     """An opening right through a part.
 
     Parameters
@@ -80,7 +80,7 @@ class Opening(Brief):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Layer(Brief):
+class Layer(ShortRepr):
     """A prism: the region within `edge` less `openings`, from z = `low` to `high`, mm."""
 
     edge: Edge
@@ -134,7 +134,7 @@ class Hub:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Mark(Brief):
+class Mark(ShortRepr):
     """A round dimple in the upper face.
 
     Parameters
@@ -159,7 +159,7 @@ class Mark(Brief):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Part(Brief, Displayed):
+class Part(ShortRepr, NotebookView):
     """A body built from layers: a plate, stepped or not, with a hub.
 
     Parameters

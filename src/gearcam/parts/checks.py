@@ -1,6 +1,6 @@
 """The checks of parts: thin walls, wide kerfs and tools that are too large.
 
-Importing this module registers them. A check takes a `PartsSubject` and yields findings.
+Importing this module registers them. A check takes a `CheckedParts` and yields findings.
 """
 
 from __future__ import annotations
@@ -11,9 +11,9 @@ from functools import cached_property
 from math import inf
 from typing import Any
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.base.findings import ROUNDING, Remark, check
-from gearcam.base.numerals import decimal, shown
+from gearcam.base.numerals import decimal, formatted
 from gearcam.base.quantities import LENGTH, Param
 from gearcam.parts.blank import KIND
 from gearcam.parts.body import Part
@@ -25,7 +25,7 @@ _FINE = 0.01
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class PartsSubject(Brief):
+class CheckedParts(ShortRepr):
     """The parts of a pair, or a cam, for checks.
 
     Parameters
@@ -60,7 +60,7 @@ def _tools(part: Part) -> ToolLimits:
 
 
 @check("thin-wall", kind=KIND, limit=("wall", Param(LENGTH, ge=0, doc="least wall"), 1.0))
-def thin_wall(subject: PartsSubject, limit: float) -> Iterator[Remark]:
+def thin_wall(subject: CheckedParts, limit: float) -> Iterator[Remark]:
     """Warn of thin walls.
 
     Looks at: walls between openings, between openings and the outline or the edge of the hub,
@@ -72,7 +72,9 @@ def thin_wall(subject: PartsSubject, limit: float) -> Iterator[Remark]:
             continue
         width, what = min(walls)
         if width < limit * (1.0 - ROUNDING):
-            yield Remark(f"The wall between the {what} is {shown(width, 4)} mm thick.", name, width)
+            yield Remark(
+                f"The wall between the {what} is {formatted(width, 4)} mm thick.", name, width
+            )
 
 
 def _walls(part: Part) -> Iterator[tuple[float, str]]:
@@ -121,7 +123,7 @@ def _apart(one: Any, other: Any) -> float:
 
 
 @check("wide-kerf", kind=KIND, severity=("warning", "error"), unit="mm")
-def wide_kerf(subject: PartsSubject, _: float) -> Iterator[Remark]:
+def wide_kerf(subject: CheckedParts, _: float) -> Iterator[Remark]:
     """Warn of a kerf that is too wide for an inner corner or a slot, so that metal is left.
 
     An error if metal is left on flanks of teeth.
@@ -134,8 +136,8 @@ def wide_kerf(subject: PartsSubject, _: float) -> Iterator[Remark]:
             continue
         left = "leaves metal there, also on flanks" if uncut else "leaves metal there"
         yield Remark(
-            f"A kerf of {shown(subject.kerf, 4)} mm is too wide for {_tightest(tools)}, which has "
-            f"room for {shown(tools.diameter, 4)} mm: the cutter {left}.",
+            f"A kerf of {formatted(subject.kerf, 4)} mm is too wide for {_tightest(tools)}, which "
+            f"has room for {formatted(tools.diameter, 4)} mm: the cutter {left}.",
             name,
             subject.kerf,
             severity="error" if uncut else "warning",
@@ -144,12 +146,12 @@ def wide_kerf(subject: PartsSubject, _: float) -> Iterator[Remark]:
 
 
 @check(
-    "large-tool",
+    "tool-too-large",
     kind=KIND,
     limit=("tool_diameter", Param(LENGTH, ge=0, doc="diameter of the tool at hand"), 0.3),
     severity="note",
 )
-def large_tool(subject: PartsSubject, limit: float) -> Iterator[Remark]:
+def tool_too_large(subject: CheckedParts, limit: float) -> Iterator[Remark]:
     """Note a tool or wire that is too large to reach all of an outline.
 
     The default limit is a wire of 0.25 mm with its spark gap.
@@ -170,7 +172,9 @@ def _largest(diameter: float) -> str:
     """Return how large a round tool may be, mm."""
     if not diameter:
         return "No round tool reaches all of the outline"
-    return f"A round tool of up to {shown(diameter, 4)} mm in diameter reaches all of the outline"
+    return (
+        f"A round tool of up to {formatted(diameter, 4)} mm in diameter reaches all of the outline"
+    )
 
 
 def _tightest(tools: ToolLimits) -> str:

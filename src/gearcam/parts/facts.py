@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from gearcam.base.facts import Fact
-from gearcam.base.numerals import shown
+from gearcam.base.numerals import formatted
 
 if TYPE_CHECKING:
     from gearcam.parts.body import Part
@@ -32,7 +32,7 @@ def size_fact(extents: Sequence[float], name: str) -> Fact:
         Shown to hundredths of a millimetre.
     """
     meaning = f"overall size of {name}" if name else "overall size"
-    text = " x ".join(shown(round(one, 2), 9) for one in extents)
+    text = " x ".join(formatted(round(one, 2), 9) for one in extents)
     return Fact([float(one) for one in extents], meaning, text=text, shown=True)
 
 

@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from gearcam.base.errors import Way
+from gearcam.base.errors import Adjustment
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank
 from gearcam.parts.body import Hub, Mark, Part, Recess
@@ -128,7 +128,7 @@ def _demand_within(hub: Hub, contours: Sequence[Contour | Circle], work: Workpie
             value=hub.diameter,
             limit=room,
             nearest="at the limit they touch",
-            ways=(Way(near={key: room}, far={key: 0.5 * room}),),
+            adjustments=(Adjustment(near={key: room}, far={key: 0.5 * room}),),
         )
 
 
@@ -148,10 +148,10 @@ def _demand_marks(part: Part, blank: WheelBlank, work: Workpiece) -> None:
                 value=mark.diameter,
                 limit=max(0.0, 2.0 * room),
                 nearest="the limit is the free space around its centre",
-                ways=(
-                    Way(near=_between_bolts(blank, work)),
-                    Way(near={"blank.mark_diameter_mm": 1.9 * room} if room > 0.0 else {}),
-                    Way(near={"blank.timing_marks": False}),
+                adjustments=(
+                    Adjustment(near=_between_bolts(blank, work)),
+                    Adjustment(near={"blank.mark_diameter_mm": 1.9 * room} if room > 0.0 else {}),
+                    Adjustment(near={"blank.timing_marks": False}),
                 ),
             )
 

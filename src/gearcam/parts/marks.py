@@ -11,8 +11,8 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.base.errors import Way, beyond_limit
-from gearcam.base.numerals import shown
+from gearcam.base.errors import Adjustment, beyond_limit
+from gearcam.base.numerals import formatted
 from gearcam.parts.body import Mark
 
 MARK_DIAMETER: Final = 0.4
@@ -91,20 +91,28 @@ def timing_mark(
         told = "outside" if way > 0.0 else "circle around bore, keyway and hub"
         nearest = f"the value is the {told}, the limit the root there"
         what = f"no room for a timing mark between {between}"
-        where = f"direction {shown(math.degrees(direction))} deg"
+        where = f"direction {formatted(math.degrees(direction))} deg"
         limit = 2 * root if root > 0.0 else None
         note = nearest if root > 0.0 else "the roots of the teeth reach the axis there"
-        ways = (Way(near={"blank.timing_marks": False}),)
+        adjustments = (Adjustment(near={"blank.timing_marks": False}),)
         raise beyond_limit(
-            what, where, 2 * end if root > 0.0 else None, limit, note, ways=ways, unit="mm"
+            what,
+            where,
+            2 * end if root > 0.0 else None,
+            limit,
+            note,
+            adjustments=adjustments,
+            unit="mm",
         )
     largest = RIM_PART * rim
     if diameter is not None and diameter > largest:
         what = f"the timing mark is too large for the rim between {between}"
-        where = f"direction {shown(math.degrees(direction))} deg, blank.mark_diameter_mm"
+        where = f"direction {formatted(math.degrees(direction))} deg, blank.mark_diameter_mm"
         note = "the limit is a third of the rim"
-        ways = (Way(near={"blank.timing_marks": False}),)
-        raise beyond_limit(what, where, diameter, largest, note, near=0.99 * largest, ways=ways)
+        adjustments = (Adjustment(near={"blank.timing_marks": False}),)
+        raise beyond_limit(
+            what, where, diameter, largest, note, near=0.99 * largest, adjustments=adjustments
+        )
     diameter = diameter or min(MARK_DIAMETER * module, largest)
     gap = min(MARK_GAP * module, RIM_PART * rim)
     radius = pitch_radius + way * (dedendum_mm + gap + 0.5 * diameter) / lean

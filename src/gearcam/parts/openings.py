@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.errors import Adjustment, InfeasibleError
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank
@@ -281,10 +281,12 @@ def _no_room(
         if limit:
             nearest = "the limit is the free space around its centre"
     told = f"{opening.name} {what}"
-    ways = [Way(far={work.key(key): small}) for word, key, small in _SMALLER if word in told]
+    adjustments = [
+        Adjustment(far={work.key(key): small}) for word, key, small in _SMALLER if word in told
+    ]
     if "bolt" in told:
-        ways += [
-            Way(far={work.key(key): times * place})
+        adjustments += [
+            Adjustment(far={work.key(key): times * place})
             for key, place in places.items()
             for times in (_NEARER, _FARTHER)
         ]
@@ -293,7 +295,7 @@ def _no_room(
         value=value,
         limit=limit,
         nearest=nearest,
-        ways=ways,
+        adjustments=adjustments,
     )
 
 
@@ -310,7 +312,7 @@ def _slot(blank: WheelBlank, solid: Polygon, work: Workpiece, chord: float) -> O
             "blank.stop_pin_mm",
             value=blank.stop_pin,
             nearest="only wheels of an open law (driven_travel_deg) have a stop",
-            ways=(Way(near={work.key("stop_pin_mm"): 0.0}),),
+            adjustments=(Adjustment(near={work.key("stop_pin_mm"): 0.0}),),
         )
     start = 0.0 if work.wheel == 1 else math.pi - work.travel
     wide = blank.widened
@@ -324,8 +326,8 @@ def _slot(blank: WheelBlank, solid: Polygon, work: Workpiece, chord: float) -> O
             value=blank.stop_pin,
             limit=room,
             nearest="the limit is the widest slot that fits",
-            ways=(
-                Way(
+            adjustments=(
+                Adjustment(
                     near={work.key("stop_pin_mm"): room}, far={work.key("stop_pin_mm"): 0.1 * room}
                 ),
             ),
@@ -424,9 +426,9 @@ def _no_lightening(
         f"lightening hole {number} has no room between hub and rim",
         value=least - core,
         nearest="the value is the distance between hub or bore and the nearest root",
-        ways=(
-            Way(near={"blank.rim_mm": 0.5 * rim}),
-            Way(far={work.key("hub_diameter_mm"): 0.0}),
-            Way(near={work.key("lightening_holes"): 0}),
+        adjustments=(
+            Adjustment(near={"blank.rim_mm": 0.5 * rim}),
+            Adjustment(far={work.key("hub_diameter_mm"): 0.0}),
+            Adjustment(near={work.key("lightening_holes"): 0}),
         ),
     )

@@ -17,8 +17,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from gearcam.base.errors import InfeasibleError, Way
-from gearcam.base.numerals import rounded_down, shown
+from gearcam.base.errors import Adjustment, InfeasibleError
+from gearcam.base.numerals import formatted, rounded_down
 from gearcam.numeric.arrays import Mask, Plane
 from gearcam.numeric.bulges import as_complex, as_pairs
 from gearcam.numeric.contour import Contour, Run
@@ -173,11 +173,11 @@ def sized(make: Callable[[float], Contour], size: float, where: str, what: str) 
             else:
                 low = tried
         key = where.rpartition(", ")[2]
-        note = f"a {what} of {shown(low, 3)} mm leaves one" if low else "leave it out"
-        ways = (Way(near={key: low} if low else {}, far={key: 0.0}),)
+        note = f"a {what} of {formatted(low, 3)} mm leaves one" if low else "leave it out"
+        adjustments = (Adjustment(near={key: low} if low else {}, far={key: 0.0}),)
         what = f"this {what} leaves no simple outline"
         raise InfeasibleError(
-            what, where=where, value=size, unit="mm", nearest=note, ways=ways
+            what, where=where, value=size, unit="mm", nearest=note, adjustments=adjustments
         ) from None
 
 

@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.base.errors import Way
-from gearcam.base.numerals import rounded_down, shown
+from gearcam.base.errors import Adjustment
+from gearcam.base.numerals import formatted, rounded_down
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank
@@ -91,11 +91,13 @@ def demand_bolts(
     rooms = _rooms(blank, solid, circles)
     best, most = float(circles[rooms.argmax()]), float(rooms.max()) - taken
     diameter, circle = work.key("bolt_diameter_mm"), work.key("bolt_circle_mm")
-    ways = [Way(near={circle: best})] if most >= blank.bolt_diameter else []
+    adjustments = [Adjustment(near={circle: best})] if most >= blank.bolt_diameter else []
     if room > taken:
-        ways.append(Way(near={diameter: _SHARE * (room - taken)}))
+        adjustments.append(Adjustment(near={diameter: _SHARE * (room - taken)}))
     elif most > 0.0:
-        ways.append(Way(near={circle: best, diameter: min(blank.bolt_diameter, _SHARE * most)}))
+        adjustments.append(
+            Adjustment(near={circle: best, diameter: min(blank.bolt_diameter, _SHARE * most)})
+        )
     hole, reach = _hole(solid), 0.5 * wide + wall
     if hole is not None:
         roots = float(np.hypot(*np.array(hole.exterior.coords).T).max())
@@ -104,21 +106,23 @@ def demand_bolts(
         if 0.5 * across + reach > low:
             moved = {} if clears else {circle: across}
             radius = (0.5 * across + reach) / _SHARE
-            ways.append(Way(near={**moved, **outside(radius)}))
+            adjustments.append(Adjustment(near={**moved, **outside(radius)}))
             if far - low > work.sagitta:  # not round: the least radius is smaller
-                ways[-1] = replace(ways[-1], far={**moved, **outside(radius + far - low)})
-    ways.append(Way(near={work.key("bolts"): 0}))
-    roomiest = f"no bolt circle keeps walls of {shown(wall)} mm: a larger rim in [ring] may"
+                adjustments[-1] = replace(
+                    adjustments[-1], far={**moved, **outside(radius + far - low)}
+                )
+    adjustments.append(Adjustment(near={work.key("bolts"): 0}))
+    roomiest = f"no bolt circle keeps walls of {formatted(wall)} mm: a larger rim in [ring] may"
     if most > 0.0:
-        roomiest = f"a bolt circle of {shown(best)} mm allows up to {rounded_down(most, 4)} mm"
-    told = f"the limit leaves walls of {shown(wall)} mm on both sides; " if room > taken else ""
+        roomiest = f"a bolt circle of {formatted(best)} mm allows up to {rounded_down(most, 4)} mm"
+    told = f"the limit leaves walls of {formatted(wall)} mm on both sides; " if room > taken else ""
     raise work.refusal(
         "the bolt holes do not lie in the rim of the ring",
         "blank.bolt_diameter_mm",
         value=blank.bolt_diameter,
         limit=room - taken if room > taken else None,
         nearest=f"{told}{roomiest}",
-        ways=ways,
+        adjustments=adjustments,
     )
 
 

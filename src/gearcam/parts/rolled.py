@@ -19,7 +19,7 @@ from typing import Final
 import numpy as np
 
 from gearcam.base.errors import InfeasibleError
-from gearcam.base.numerals import shown
+from gearcam.base.numerals import formatted
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.bulges import as_complex, as_pairs
 from gearcam.numeric.contour import Contour, Run
@@ -264,5 +264,5 @@ def too_far(contour: Contour, radius: float) -> InfeasibleError:
     """Return the refusal of a disc of `radius`, mm, on a `contour`."""
     side = "outside" if radius > 0 else "inside"
     what = f"a disc of this radius that rolls {side} leaves no simple outline"
-    where = f"an outline of {shown(np.ptp(contour.vertices[:, 0]))} mm"
+    where = f"an outline of {formatted(np.ptp(contour.vertices[:, 0]))} mm"
     return InfeasibleError(what, where=where, value=abs(radius), unit="mm")

@@ -14,7 +14,7 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.bulges import (
     arc_centers,
@@ -35,7 +35,7 @@ _DENSE: Final = 1 / 40
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Circle(Brief):
+class Circle(ShortRepr):
     """A full circle.
 
     Parameters
@@ -94,7 +94,7 @@ class Circle(Brief):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Loop(Brief):
+class Loop(ShortRepr):
     """A closed chain of straight lines and arcs, counter-clockwise.
 
     Parameters

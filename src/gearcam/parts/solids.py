@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from gearcam.base.errors import GearcamError, MissingExtraError
-from gearcam.base.numerals import shown
+from gearcam.base.numerals import formatted
 from gearcam.numeric.arrays import Array, Ints
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.pose import Pose
@@ -175,8 +175,8 @@ def demand_volume(part: Part, volume: float, allowed: float) -> None:
     missed = abs(volume - part.volume)
     if missed > allowed:
         raise SolidError(
-            f"{part.name}: the solid's volume is {shown(missed, 3)} mm3 off,"
-            f" the tolerance explains {shown(allowed, 3)} mm3"
+            f"{part.name}: the solid's volume is {formatted(missed, 3)} mm3 off,"
+            f" the tolerance explains {formatted(allowed, 3)} mm3"
         )
 
 

@@ -19,7 +19,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.bulges import as_complex
 from gearcam.numeric.contour import Contour
@@ -54,7 +54,7 @@ _FINER: Final = np.linspace(-1.5, 1.5, 121)
 
 
 @dataclass(frozen=True, kw_only=True)
-class ToolLimits(Brief):
+class ToolLimits(ShortRepr):
     """Limits of a round tool.
 
     Parameters

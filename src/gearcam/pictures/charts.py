@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from gearcam.base.errors import MissingExtraError
-from gearcam.base.numerals import shown
+from gearcam.base.numerals import formatted
 from gearcam.numeric.arrays import Array
 
 if TYPE_CHECKING:
@@ -146,7 +146,7 @@ class Chart:
             ax.plot(line.x, line.y, label=line.label, **(_dots(len(line.x)) if line.dots else {}))
         low, high = self.range
         for limit in self.limits:
-            text = f"{limit.label}: {shown(limit.value)}"
+            text = f"{limit.label}: {formatted(limit.value)}"
             if low <= limit.value <= high:
                 ax.axhline(limit.value, color="0.35", ls="--", lw=1.0, label=text)
             else:

@@ -23,9 +23,9 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.base.errors import beyond_limit
-from gearcam.base.numerals import shown
+from gearcam.base.numerals import formatted
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.pose import UNMOVED, Pose
@@ -79,7 +79,7 @@ CROSS_SIZE: Final = 0.04
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Path(Brief):
+class Path(ShortRepr):
     """A polyline: points (n, 2), mm; if closed, the first is not repeated."""
 
     points: Array
@@ -87,7 +87,7 @@ class Path(Brief):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Cross(Brief):
+class Cross(ShortRepr):
     """An upright cross: its `center` (2,), mm, and its whole `size`, mm."""
 
     center: Array
@@ -98,7 +98,7 @@ Shape = Contour | Circle | Loop | Path | Cross
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Feature(Brief):
+class Feature(ShortRepr):
     """A `shape` on a `layer`; `metal` if the part lies inside it, as inside an outline."""
 
     layer: str
@@ -112,7 +112,7 @@ class Feature(Brief):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Drawing(Brief):
+class Drawing(ShortRepr):
     """A `name` and its `features`, in drawing order."""
 
     name: str
@@ -260,10 +260,10 @@ def _path(feature: Feature, kerf: float, tolerance: float, where: str) -> Shape:
         case Circle(center=center, diameter=diameter):
             x, y = center.tolist()
             what = (
-                f"the {feature.kind.lower()} at x = {shown(x)}, y = {shown(y)} mm is not wider "
-                "than the kerf"
+                f"the {feature.kind.lower()} at x = {formatted(x)}, y = {formatted(y)} mm is not "
+                "wider than the kerf"
             )
-            note = f"a kerf below {shown(diameter)} mm, or a larger {feature.kind.lower()}"
+            note = f"a kerf below {formatted(diameter)} mm, or a larger {feature.kind.lower()}"
             raise beyond_limit(what, where, kerf, diameter, note)
         case Loop() as loop:
             inner = loop.contour(tolerance)

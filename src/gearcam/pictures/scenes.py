@@ -19,7 +19,7 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.bulges import as_complex
 from gearcam.numeric.pose import Pose
@@ -38,7 +38,7 @@ _DIRECTIONS: Final = 180
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class MovingBody(Brief):
+class MovingBody(ShortRepr):
     """A rigid body of a scene.
 
     Parameters
@@ -64,7 +64,7 @@ class MovingBody(Brief):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class ContactPoints(Brief):
+class ContactPoints(ShortRepr):
     """Points of contact of two bodies in the fixed frame.
 
     Parameters
@@ -88,7 +88,7 @@ class ContactPoints(Brief):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Scene(Brief):
+class Scene(ShortRepr):
     """Moving bodies over a cycle of the driver.
 
     Parameters

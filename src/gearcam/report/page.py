@@ -14,7 +14,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
-from gearcam.base.numerals import shown, size_of
+from gearcam.base.numerals import formatted, size_of
 from gearcam.report.data import chart_data, scene_data
 from gearcam.results.advice import Remedies, remedies
 
@@ -228,7 +228,7 @@ def _errors(result: Result, facts: Facts) -> Iterator[tuple[str, str]]:
     for label, names in result.main_errors:
         rows = (facts.quantity(f"accuracy.{name}") for name in names)
         largest = max(rows, key=lambda one: one.value)
-        yield label, f"{shown(largest.value, 2)} {largest.unit}".rstrip()
+        yield label, f"{formatted(largest.value, 2)} {largest.unit}".rstrip()
 
 
 @cache
@@ -242,7 +242,7 @@ def _templates() -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    templates.filters["shown"] = shown
+    templates.filters["shown"] = formatted
     return templates
 
 

@@ -13,10 +13,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.base.errors import DesignError, GearcamError, Problem
 from gearcam.base.facts import Fact, lined_up
-from gearcam.base.numerals import shown
+from gearcam.base.numerals import formatted
 from gearcam.designs.design import Design
 from gearcam.designs.faults import show
 from gearcam.designs.slips import did_you_mean
@@ -36,7 +36,7 @@ _FITTED: Final = 3
 
 
 @dataclass(frozen=True, kw_only=True)
-class Rung(Brief):
+class Rung(ShortRepr):
     """One level of a stage, measured.
 
     Parameters
@@ -68,7 +68,7 @@ class Rung(Brief):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Accuracy(Brief):
+class Accuracy(ShortRepr):
     """The accuracy of a result, measured.
 
     Parameters
@@ -115,18 +115,18 @@ class Accuracy(Brief):
         for stage, ladder in self.ladders.items():
             order = self.order(stage)
             told = "rounding" if order is None else f"order {order:.2f}"
-            yield f"{stage}: error of {ladder.measured}; {told}, expected {shown(ladder.order)}"
+            yield f"{stage}: error of {ladder.measured}; {told}, expected {formatted(ladder.order)}"
             rows = [(ladder.refined, "", "error", "order", "time", "points")]
             for rung in self.of(stage):
                 error = f"{rung.error:.2e} {ladder.unit}".rstrip()
                 fell = "" if rung.order is None else f"{rung.order:.2f}"
                 times = f"{1e3 * rung.seconds:.3f} ms"
                 mark = "*" if rung.own else ""
-                rows.append((shown(rung.level), mark, error, fell, times, str(rung.points)))
+                rows.append((formatted(rung.level), mark, error, fell, times, str(rung.points)))
             yield from (f"  {row}" for row in lined_up(_right(rows)))
             for (whose, level), why in self.refused.items():
                 if whose == stage:
-                    yield f"  {shown(level)}: left out: {why}"
+                    yield f"  {formatted(level)}: left out: {why}"
         for (whose, _), why in self.refused.items():
             if whose not in self.ladders:
                 yield f"{whose}: left out: {why}"

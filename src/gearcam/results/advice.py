@@ -31,8 +31,8 @@ from gearcam.base.changes import (
     tidy,
     together,
 )
-from gearcam.base.display import Brief
-from gearcam.base.errors import DesignError, InfeasibleError, Way
+from gearcam.base.display import ShortRepr
+from gearcam.base.errors import Adjustment, DesignError, InfeasibleError
 from gearcam.designs.design import Design, document_of, value_at
 from gearcam.results.kind import kind_of
 
@@ -55,7 +55,7 @@ _STEP: Final = 1.0 / 40.0
 
 
 @dataclass(frozen=True, kw_only=True)
-class Remedy(Brief):
+class Remedy(ShortRepr):
     """A change with which a design was built without errors.
 
     Parameters
@@ -103,7 +103,7 @@ class Remedy(Brief):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Remedies(Brief):
+class Remedies(ShortRepr):
     """The result of a search for remedies.
 
     Parameters
@@ -164,7 +164,7 @@ def _sought(
             errors = [finding for finding in result.checked if finding.severity == "error"]
         except InfeasibleError as error:
             refusal = error
-    elif not refusal.ways and not refusal.more_teeth:
+    elif not refusal.adjustments and not refusal.more_teeth:
         with suppress(InfeasibleError):
             _ = result.checked
             return Remedies()  # a study was refused, not the design
@@ -225,7 +225,7 @@ class Advice:
 
     def seek(self, search: Search, refusal: InfeasibleError | None) -> None:
         """Guide a `search` for remedies of a `refusal`, or of findings that are errors."""
-        search.follow(refusal.ways if refusal else ())
+        search.follow(refusal.adjustments if refusal else ())
 
     def hopeless(self, result: Any) -> bool:  # noqa: ARG002
         """Return whether a changed `result` is known not to help before it is built completely."""
@@ -333,7 +333,7 @@ class Search:
             )
         )
 
-    def along(self, way: Way) -> bool:
+    def along(self, way: Adjustment) -> bool:
         """Find the smallest change along a way; return whether there is one."""
         if self.over():
             return False
@@ -403,16 +403,16 @@ class Search:
                 self.seen[text_of(both)] = {"warning": remedy.remaining}
                 self.keep(both, less)
 
-    def follow(self, ways: Iterable[Way]) -> None:
-        """Follow `ways`, each for one wheel and, where that does not help, for both.
+    def follow(self, adjustments: Iterable[Adjustment]) -> None:
+        """Follow `adjustments`, each for one wheel and, where that does not help, for both.
 
-        Where a changed design is refused for another reason, its ways are followed too.
+        Where a changed design is refused for another reason, its adjustments are followed too.
         """
-        for way in ways:
+        for way in adjustments:
             if self.along(way):
                 continue
             if (both := for_both(way)) is not None:
                 self.along(both)
             elif way.near and not self.over() and self.left(tidy(way.near)) is None:
-                for other in self.second.ways if self.second else ():
+                for other in self.second.adjustments if self.second else ():
                     self.along(joined(way.near, other))

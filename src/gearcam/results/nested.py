@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 
-from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.errors import Adjustment, InfeasibleError
 from gearcam.base.findings import Finding
 
 
@@ -22,7 +22,7 @@ def within(key: str) -> Iterator[None]:
     Raises
     ------
     InfeasibleError
-        With the key in its place and in the keys of its ways.
+        With the key in its place and in the keys of its adjustments.
     """
     try:
         yield
@@ -34,9 +34,11 @@ def within(key: str) -> Iterator[None]:
             limit=error.limit,
             unit=error.unit,
             nearest=error.nearest,
-            ways=[
-                Way(near=_keyed(key, way.near), far=_keyed(key, way.far), doubling=way.doubling)
-                for way in error.ways
+            adjustments=[
+                Adjustment(
+                    near=_keyed(key, way.near), far=_keyed(key, way.far), doubling=way.doubling
+                )
+                for way in error.adjustments
             ],
         ) from error
 

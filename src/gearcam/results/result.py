@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final, Self
 
 from numpy.typing import ArrayLike
 
-from gearcam.base.display import Displayed, cut, renderer
+from gearcam.base.display import NotebookView, cut, renderer
 from gearcam.base.errors import GearcamError
 from gearcam.base.facts import Fact, Facts
 from gearcam.base.findings import Finding, in_order
@@ -30,7 +30,7 @@ from gearcam.designs.design import hash_of, summary_of
 from gearcam.numeric.arguments import one_of, refused
 from gearcam.numeric.columns import Columns
 from gearcam.results.kind import Kind, Study, kind_of
-from gearcam.results.written import Written, demand_formats, versions
+from gearcam.results.written import BuildOutput, demand_formats, versions
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -59,7 +59,7 @@ _OF_STUDIES: Final = ("_studied", "_running", "facts", "findings", "design_hash"
 """What a result with other studies computes anew."""
 
 
-class Result(Displayed):
+class Result(NotebookView):
     """The result of a design, computed on demand.
 
     Parameters
@@ -450,10 +450,10 @@ class Result(Displayed):
         }
         return replace(scene, contacts=contacts)
 
-    def check(self, directory: str | Path = "output") -> Written:
+    def check(self, directory: str | Path = "output") -> BuildOutput:
         """Run the checks and write the summary only; the files of an earlier build are kept.
 
-        The summary lists those made from another version of the design under ``stale``.
+        The summary lists those made from another version of the design under ``outdated``.
 
         Parameters
         ----------
@@ -462,7 +462,7 @@ class Result(Displayed):
 
         Returns
         -------
-        Written
+        BuildOutput
             With the summary as its only file.
         """
         return self.put(directory, {}, self.facts, self.findings, keep=True)
@@ -472,7 +472,7 @@ class Result(Displayed):
         directory: str | Path = "output",
         files: Sequence[str] | None = None,
         progress: Progress | None = None,
-    ) -> Written:
+    ) -> BuildOutput:
         """Write the files of the design into ``directory/NAME/``, all or none.
 
         Parameters
@@ -486,7 +486,7 @@ class Result(Displayed):
 
         Returns
         -------
-        Written
+        BuildOutput
             With the files written, and those of the previous build that were removed.
 
         Raises
@@ -534,7 +534,7 @@ class Result(Displayed):
         findings: Sequence[Finding],
         *,
         keep: bool,
-    ) -> Written:
+    ) -> BuildOutput:
         """Write files and the summary, all or none.
 
         Parameters
@@ -550,7 +550,7 @@ class Result(Displayed):
 
         Returns
         -------
-        Written
+        BuildOutput
         """
         import json
 
@@ -561,16 +561,16 @@ class Result(Displayed):
 
         def complete(before: Mapping[str, str]) -> dict[str, bytes]:
             hashes = {**(before if keep else {}), **dict.fromkeys(contents, own)}
-            stale = {name: old for name, old in hashes.items() if old != own}
-            about = {"files": {name: own for name in hashes if name not in stale}}
-            more = {"stale": stale} if stale else {}
+            outdated = {name: old for name, old in hashes.items() if old != own}
+            about = {"files": {name: own for name in hashes if name not in outdated}}
+            more = {"outdated": outdated} if outdated else {}
             summary.update(self.document(facts, findings, {**about, **more}))
             text = json.dumps(summary, indent=2, ensure_ascii=False, allow_nan=False)
             return {**contents, SUMMARY: (text + "\n").encode()}
 
         name = self.design.name
         removed = write_all(directory, complete, name=name, keep=keep)
-        return Written(
+        return BuildOutput(
             directory=Path(directory) / name,
             files=(*contents, SUMMARY),
             removed=removed,
@@ -585,7 +585,7 @@ def _nothing(_: Scene) -> dict[str, ContactPoints]:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class StudyResult(Displayed):
+class StudyResult(NotebookView):
     """The outcome of a study of a result.
 
     Parameters
@@ -684,7 +684,7 @@ class StudyResult(Displayed):
         """Return the content of ``summary.json`` without files (see `Result.to_dict`)."""
         return self.result.document(self.facts, self.findings)
 
-    def write(self, directory: str | Path = "output") -> Written:
+    def write(self, directory: str | Path = "output") -> BuildOutput:
         """Write its files and the summary; the files of a build are kept.
 
         Parameters
@@ -694,7 +694,7 @@ class StudyResult(Displayed):
 
         Returns
         -------
-        Written
+        BuildOutput
             With the files and the summary.
 
         Raises

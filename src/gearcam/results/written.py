@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.base.errors import DesignError, Problem
 from gearcam.base.facts import Facts
 from gearcam.base.findings import Finding
@@ -19,7 +19,7 @@ from gearcam.version import __version__
 
 
 @dataclass(frozen=True, kw_only=True)
-class Written(Brief):
+class BuildOutput(ShortRepr):
     """The files that a command has written.
 
     Parameters

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.facts import Facts
-from gearcam.base.numerals import shown
+from gearcam.base.numerals import formatted
 from gearcam.numeric.arrays import Array
 from gearcam.pictures.drawings import Path
 from gearcam.sheets.board import Board
@@ -62,7 +62,7 @@ PROJECTION: Final = "first angle"
 
 def scale_words(scale: float) -> str:
     """Return a `scale` as text, such as 1:2."""
-    return f"{shown(scale)}:1" if scale >= 1.0 else f"1:{shown(1.0 / scale)}"
+    return f"{formatted(scale)}:1" if scale >= 1.0 else f"1:{formatted(1.0 / scale)}"
 
 
 def area_of(paper: str) -> Box:
@@ -102,8 +102,8 @@ def choose(size: ArrayLike, room: ArrayLike, rows: int) -> tuple[str, float]:
         if fits and not (long and paper == "A4"):
             found.append((paper, fits[0]))
     if not found:
-        what = f"views of {shown(size[0])} x {shown(size[1])} mm do not fit on a sheet"
-        note = f"the smallest scale is 1 : {shown(1.0 / min(SCALES))}"
+        what = f"views of {formatted(size[0])} x {formatted(size[1])} mm do not fit on a sheet"
+        note = f"the smallest scale is 1 : {formatted(1.0 / min(SCALES))}"
         raise InfeasibleError(what, where="output.files", nearest=note)
     return max(found, key=lambda one: min(one[1], 1.0))
 
@@ -113,7 +113,7 @@ def sheet_rows(facts: Facts, names: Sequence[str]) -> dict[str, str]:
     known = {one.name: one for one in facts.quantities()}
     found = [known[name] for name in names if name in known]
     return {
-        one.meaning: " : ".join(shown(part, _FEW) for part in one.value) + f" {one.unit}"
+        one.meaning: " : ".join(formatted(part, _FEW) for part in one.value) + f" {one.unit}"
         if isinstance(one.value, list)
         else one.text
         for one in found

@@ -17,7 +17,7 @@ from typing import Final, Literal
 
 import numpy as np
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.base.numerals import decimal
 from gearcam.numeric.arrays import Array
 from gearcam.pictures.drawings import OUTER_WALL, OUTLINE, THROUGH, Feature
@@ -75,7 +75,7 @@ def text_width(text: str, height: float = HEIGHT) -> float:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Text(Brief):
+class Text(ShortRepr):
     """A line of text.
 
     Parameters
@@ -100,7 +100,7 @@ class Text(Brief):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class LinearDimension(Brief):
+class LinearDimension(ShortRepr):
     """A linear dimension: the distance of two points along x or y.
 
     Parameters
@@ -137,7 +137,7 @@ class LinearDimension(Brief):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class RoundDimension(Brief):
+class RoundDimension(ShortRepr):
     """A diameter or a radius.
 
     Parameters
@@ -193,7 +193,7 @@ Dimension = LinearDimension | RoundDimension
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class DrawnDimension(Brief):
+class DrawnDimension(ShortRepr):
     """A drawn dimension: `lines` (2, 2) and arrow `heads` (3, 2), mm, and its `text`."""
 
     lines: tuple[Array, ...]
@@ -202,7 +202,7 @@ class DrawnDimension(Brief):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Sheet(Brief):
+class Sheet(ShortRepr):
     """A workshop drawing.
 
     Parameters

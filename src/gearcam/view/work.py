@@ -161,7 +161,7 @@ def _first(text: str, changes: Values, last: str, shown: Callable[[Values], Repl
                 return shown({**changes, **more})
             except (DesignError, InfeasibleError) as error:
                 refusals.append(error)
-    for way in (way for error in refusals for way in getattr(error, "ways", ())):
+    for way in (way for error in refusals for way in getattr(error, "adjustments", ())):
         near = _items(way.near)
         if near and last not in near and near.keys() <= found.keys():
             own = equals(found, last, changes[last]) if len(refusals) > 1 else {}

@@ -183,10 +183,10 @@ def any_rack(d: LawDraw) -> tuple[Law, Counts]:
     return shape, (d.whole(14, d.most_teeth), d.whole(6, d.most_teeth))
 
 
-Written = Callable[[Any, Any], Any]
+BuildOutput = Callable[[Any, Any], Any]
 """A formula with the library of its functions: numpy, or `witness.exact`; doubles stay exact."""
 
-PHI2: tuple[tuple[str, Written, Written, tuple[int, int]], ...] = (
+PHI2: tuple[tuple[str, BuildOutput, BuildOutput, tuple[int, int]], ...] = (
     # text, phi2, its derivative, teeth
     (
         "phi1 - 0.08*sin(2*phi1)",
@@ -213,7 +213,7 @@ PHI2: tuple[tuple[str, Written, Written, tuple[int, int]], ...] = (
         (40, 80),
     ),
 )
-OTHERS: tuple[tuple[str, str, Written, tuple[int, int], int], ...] = (
+OTHERS: tuple[tuple[str, str, BuildOutput, tuple[int, int], int], ...] = (
     # what, text, itself, teeth, mate
     ("ratio", "1 + 0.3*cos(phi1)", lambda x, m: 1 + 0.3 * m.cos(x), (61, 61), 1),
     (
@@ -252,7 +252,7 @@ OTHERS: tuple[tuple[str, str, Written, tuple[int, int], int], ...] = (
 )
 
 
-def exact_formula(what: str, function: Written, teeth: tuple[int, int], mate: int) -> Any:
+def exact_formula(what: str, function: BuildOutput, teeth: tuple[int, int], mate: int) -> Any:
     """Return what makes the exact law of a formula."""
     common = math.gcd(*teeth)
     period, advance = turn_of(teeth[0] // common), turn_of(teeth[1] // common)
@@ -273,7 +273,7 @@ def formula_cases() -> Iterator[ExactCase]:
     rows += [(what, text, one, one, teeth, mate) for what, text, one, teeth, mate in OTHERS]
     for what, text, written, ratio, teeth, mate in rows:
 
-        def function(x: Any, written: Written = written) -> Any:
+        def function(x: Any, written: BuildOutput = written) -> Any:
             return written(x, np)
 
         for given in (text, function):

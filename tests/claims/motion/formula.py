@@ -1,4 +1,4 @@
-"""What the motion laws of `gearcam.laws.rises.formula` must give, and random ones."""
+"""What the motion laws of `gearcam.laws.motion.formula` must give, and random ones."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from claims.claim import MotionClaim, MotionClaims
 from claims.motion.polynomials import of_quintic
-from gearcam.laws.rises.formula import FormulaRise
+from gearcam.laws.motion.formula import FormulaRise
 from random_designs.draw import Draw
 from random_designs.law_draw import Law
 

@@ -1,4 +1,4 @@
-"""What the motion laws of `gearcam.laws.rises.points` must give, and random ones."""
+"""What the motion laws of `gearcam.laws.motion.points` must give, and random ones."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 
 from claims.claim import MotionClaim, MotionClaims
 from claims.motion.polynomials import of_quintic
-from gearcam.laws.rises.points import BSplineRise, TableRise
+from gearcam.laws.motion.points import BSplineRise, TableRise
 from random_designs.draw import Draw, short
 from random_designs.law_draw import Law
 

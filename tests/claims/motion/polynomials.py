@@ -1,4 +1,4 @@
-"""What the motion laws of `gearcam.laws.rises.polynomials` must give, and random ones."""
+"""What the motion laws of `gearcam.laws.motion.polynomials` must give, and random ones."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ import math
 from dataclasses import replace
 
 from claims.claim import MotionClaim, MotionClaims
-from gearcam.laws.rises.base import RiseParameters
-from gearcam.laws.rises.polynomials import (
+from gearcam.laws.motion.base import MotionLawParameters
+from gearcam.laws.motion.polynomials import (
     Polynomial,
     Polynomial23,
     Polynomial345,
@@ -20,7 +20,7 @@ from random_designs.law_draw import Law
 
 
 def _claim(
-    parameters: RiseParameters,
+    parameters: MotionLawParameters,
     powers: dict[int, float],
     peaks: tuple[float, float, float],
     order: int,
@@ -78,7 +78,7 @@ def polynomial() -> tuple[MotionClaim, ...]:
     return (line, leaving, _claim(dwells, smooth, (2.1875, 84 * math.sqrt(5) / 25, 52.5), 3))
 
 
-def of_quintic(parameters: RiseParameters) -> MotionClaim:
+def of_quintic(parameters: MotionLawParameters) -> MotionClaim:
     """Return what is claimed of ``10*x^3 - 15*x^4 + 6*x^5``, whatever makes it."""
     return MotionClaim(
         parameters=parameters,

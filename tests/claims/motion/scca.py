@@ -1,11 +1,11 @@
-"""What the motion laws of `gearcam.laws.rises.scca` must give, and random ones."""
+"""What the motion laws of `gearcam.laws.motion.scca` must give, and random ones."""
 
 from __future__ import annotations
 
 import math
 
 from claims.claim import MotionClaim, MotionClaims
-from gearcam.laws.rises.scca import ModifiedSine, ModifiedTrapezoid, Scca
+from gearcam.laws.motion.scca import ModifiedSine, ModifiedTrapezoid, Scca
 from random_designs.draw import Draw, short
 from random_designs.law_draw import Law
 

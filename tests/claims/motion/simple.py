@@ -1,11 +1,11 @@
-"""What the motion laws of `gearcam.laws.rises.simple` must give, and random ones."""
+"""What the motion laws of `gearcam.laws.motion.simple` must give, and random ones."""
 
 from __future__ import annotations
 
 import math
 
 from claims.claim import MotionClaim, MotionClaims
-from gearcam.laws.rises.simple import (
+from gearcam.laws.motion.simple import (
     ConstantAcceleration,
     ConstantVelocity,
     Cycloidal,

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 import gearcam
-from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.errors import Adjustment, InfeasibleError
 from gearcam.base.facts import Fact, Facts, extent
 from gearcam.base.findings import Finding, in_order
 from gearcam.base.quantities import ANGLE, LENGTH, nested, param
@@ -115,7 +115,7 @@ class SliderCrank(Result):
     def pin(self, places: Array) -> tuple[Plane, Plane]:
         """The pin at places of the driver, and its derivative by the driver's angle or travel."""
         drive, crank = self.design.drive, self.design.crank
-        over = places if drive.cam is not None and "u_mm" in self.driven.motion() else None
+        over = places if drive.cam is not None and "travel_mm" in self.driven.motion() else None
         with within(self.at):
             found = self.driven.motion(np.radians(places) if over is None else over)
         _, moved, rate, *_ = found.values()
@@ -146,7 +146,11 @@ class SliderCrank(Result):
                 value=rod.length,
                 limit=least,
                 unit="mm",
-                ways=(Way(near={"rod.length_mm": 1.01 * least}, far={"rod.length_mm": 4 * least}),),
+                adjustments=(
+                    Adjustment(
+                        near={"rod.length_mm": 1.01 * least}, far={"rod.length_mm": 4 * least}
+                    ),
+                ),
             )
         angle = np.arcsin(height / rod.length)
         along = pin.real + rod.length * np.cos(angle)

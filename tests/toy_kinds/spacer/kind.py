@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.errors import Adjustment, InfeasibleError
 from gearcam.base.facts import Fact, Facts
 from gearcam.base.findings import Finding
 from gearcam.base.quantities import LENGTH, NUMBER, param
@@ -62,7 +62,7 @@ class Spacer(Result):
                 value=ring.width,
                 limit=ring.bore,
                 unit="mm",
-                ways=(Way(near={"ring.width_mm": ring.bore}),),
+                adjustments=(Adjustment(near={"ring.width_mm": ring.bore}),),
             )
         angle = np.linspace(0.0, 2.0 * np.pi, 90, endpoint=False)
         radius = 0.5 * ring.bore + ring.width

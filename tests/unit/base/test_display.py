@@ -18,7 +18,7 @@ import pytest
 
 import gearcam
 from gearcam import kinds
-from gearcam.base.display import Brief, line, word
+from gearcam.base.display import ShortRepr, line, word
 from gearcam.console import all_lines
 from gearcam.designs import loads
 from gearcam.laws.ratio.ellipse import Ellipse
@@ -84,7 +84,7 @@ def test_everything_that_is_reached_shows_itself_in_one_line(name: str) -> None:
 
 def test_an_object_is_its_type_and_its_fields_but_for_defaults() -> None:
     @dataclass(frozen=True)
-    class Made(Brief):
+    class Made(ShortRepr):
         name: str
         size: float
         points: Any
@@ -96,7 +96,7 @@ def test_an_object_is_its_type_and_its_fields_but_for_defaults() -> None:
     class More(Made):
         last: Any = None
 
-    made = Made("a", 1.0 / 3.0, np.zeros((5, 2)), Brief, other=5)
+    made = Made("a", 1.0 / 3.0, np.zeros((5, 2)), ShortRepr, other=5)
     assert repr(made) == "Made(name='a', size=0.333333, points=array(5, 2), other=5)"
     assert repr(More("a", 2.0, np.zeros(2), made, last=(1, 2.5))) == (
         "More(name='a', size=2, points=array(2,), last=(1, 2.5), inner=Made)"

@@ -6,9 +6,9 @@ from typing import Any
 
 import pytest
 
-from gearcam.base.errors import Way, beyond_limit
+from gearcam.base.errors import Adjustment, beyond_limit
 
-OTHER = Way(near={"rack.addendum": 1})
+OTHER = Adjustment(near={"rack.addendum": 1})
 
 
 @pytest.mark.parametrize(
@@ -32,17 +32,24 @@ def test_the_text_has_the_place_the_numbers_and_the_note() -> None:
     assert str(error) == (
         "too large (wheel 2, ring.rim_mm); value 2 mm, limit 1 mm; the limit is the root"
     )
-    assert error.ways == ()
+    assert error.adjustments == ()
 
 
 @pytest.mark.parametrize(
     ("changes", "way"),
     [
-        ({"near": 0.9}, Way(near={"ring.rim_mm": 0.9})),
-        ({"far": 0.0}, Way(near={"ring.rim_mm": 1.0}, far={"ring.rim_mm": 0.0})),
-        ({"near": 0.9, "far": 0.1}, Way(near={"ring.rim_mm": 0.9}, far={"ring.rim_mm": 0.1})),
+        ({"near": 0.9}, Adjustment(near={"ring.rim_mm": 0.9})),
+        ({"far": 0.0}, Adjustment(near={"ring.rim_mm": 1.0}, far={"ring.rim_mm": 0.0})),
+        (
+            {"near": 0.9, "far": 0.1},
+            Adjustment(near={"ring.rim_mm": 0.9}, far={"ring.rim_mm": 0.1}),
+        ),
     ],
 )
-def test_the_change_is_that_of_the_key_and_comes_first(changes: dict[str, Any], way: Way) -> None:
-    error = beyond_limit("too large", "wheel 2, ring.rim_mm", 2.0, 1.0, ways=(OTHER,), **changes)
-    assert error.ways == (way, OTHER)
+def test_the_change_is_that_of_the_key_and_comes_first(
+    changes: dict[str, Any], way: Adjustment
+) -> None:
+    error = beyond_limit(
+        "too large", "wheel 2, ring.rim_mm", 2.0, 1.0, adjustments=(OTHER,), **changes
+    )
+    assert error.adjustments == (way, OTHER)

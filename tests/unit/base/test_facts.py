@@ -113,7 +113,7 @@ def test_names_of_files_are_found_with_their_dots(tmp_path: Path) -> None:
     assert errors.keys() == {"gear1.dxf", "gear2.dxf", "pair.dxf"}
     assert [written.facts[f"accuracy.dxf_mm.{name}"] for name in errors] == [*errors.values()]
     assert all(name in written.facts for name in written.facts)
-    assert repr(written).startswith("Written(")
+    assert repr(written).startswith("BuildOutput(")
 
 
 def test_an_extent_is_both_ends_in_another_unit() -> None:

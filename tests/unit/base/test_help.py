@@ -14,7 +14,7 @@ from gearcam.base.quantities import ANGLE, COUNT, LENGTH, Param, described, para
 
 MADE = {
     f"{home.__name__}.{name}": getattr(home, name)
-    for home in (gc, gc.laws, gc.rises)
+    for home in (gc, gc.laws, gc.motion_laws)
     for name in dir(home)
     if inspect.isclass(getattr(home, name)) and dataclasses.is_dataclass(getattr(home, name))
 }

@@ -11,7 +11,7 @@ import pytest
 
 from arch import rules
 from gearcam.base.findings import Finding
-from gearcam.base.numerals import decimal, exact, rounded_down, settled, shown, tree
+from gearcam.base.numerals import decimal, exact, formatted, rounded_down, settled, tree
 from gearcam.export.table import table_bytes
 
 
@@ -56,10 +56,10 @@ def test_a_third_stays_a_third() -> None:
 
 
 def test_people_see_no_signed_zero_and_no_idle_zeros() -> None:
-    assert [shown(value) for value in (60.0, -0.0, 1.25, 123456.789)] == [
+    assert [formatted(value) for value in (60.0, -0.0, 1.25, 123456.789)] == [
         "60", "0", "1.25", "123457",
     ]  # fmt: skip
-    assert [shown(1 / 3, digits) for digits in (2, 10)] == ["0.33", "0.3333333333"]
+    assert [formatted(1 / 3, digits) for digits in (2, 10)] == ["0.33", "0.3333333333"]
     assert [decimal(value) for value in (60.0, -1e-9, 1.25, 0.12349)] == [
         "60",
         "0",
@@ -73,7 +73,7 @@ def test_noise_is_nothing_where_the_scale_is_known() -> None:
     assert settled(-1.19522e-14, 0.9) == 0.0
     assert settled(-1.19522e-14, 0.0) == -1.19522e-14
     assert settled(1e-9, 1.0) == 1e-9
-    assert shown(-1.19522e-14, scale=0.9) == "0"
+    assert formatted(-1.19522e-14, scale=0.9) == "0"
     made = Finding(code="c", severity="note", message="m", value=-1.19522e-14, limit=0.9)
     assert made.value == 0.0
     assert Finding(code="c", severity="note", message="m", value=1e-14).value == 1e-14

@@ -329,20 +329,20 @@ def test_shocks_are_told_at_their_angles(kind: str) -> None:
     unit = "deg" if swings else "mm"
     hard = cam(kind, "constant-velocity", 12.0, STEEP)
     speed = 12.0 / math.radians(60.0)
-    found = findings(hard, "hard-shock")
+    found = findings(hard, "velocity-jump")
     assert [one.where for one in found] == ["at 0 deg", "at 60 deg", "at 150 deg", "at 210 deg"]
     assert [one.value for one in found] == pytest.approx([speed, -speed, -speed, speed])
     assert {(one.severity, one.unit) for one in found} == {("warning", f"{unit}/rad")}
-    assert findings(hard, "soft-shock") == []
+    assert findings(hard, "acceleration-jump") == []
     soft = cam(kind, "harmonic", 12.0, STEEP)
     jump = 0.5 * math.pi**2 * 12.0 / math.radians(60.0) ** 2
-    found = findings(soft, "soft-shock")
+    found = findings(soft, "acceleration-jump")
     assert [one.where for one in found] == ["at 0 deg", "at 60 deg", "at 150 deg", "at 210 deg"]
     assert [one.value for one in found] == pytest.approx([jump, jump, -jump, -jump])
     assert {(one.severity, one.unit) for one in found} == {("note", f"{unit}/rad2")}
-    assert findings(soft, "hard-shock") == []
+    assert findings(soft, "velocity-jump") == []
     smooth = cam(kind, "cycloidal", 12.0, STEEP)
-    assert findings(smooth, "hard-shock") == findings(smooth, "soft-shock") == []
+    assert findings(smooth, "velocity-jump") == findings(smooth, "acceleration-jump") == []
 
 
 @pytest.mark.parametrize(("size", "speaks"), [(3e-9, True), (0.3e-9, False)])
@@ -357,7 +357,7 @@ def test_a_shock_counts_from_a_billionth_of_the_peak(size: float, speaks: bool) 
     ]
     made = make_cam(program(phases), follower_of("flat"))
     assert made.program.peaks[0] == pytest.approx(1.875 * lift / b, rel=1e-6)
-    assert bool(findings(made, "hard-shock")) == speaks
+    assert bool(findings(made, "velocity-jump")) == speaks
 
 
 @pytest.mark.parametrize(("kind", "lever"), [("roller", 1.0), ("swinging roller", 90.0)])
@@ -386,7 +386,7 @@ def test_a_quiet_cam_has_no_findings() -> None:
 def test_every_check_of_cams_is_covered() -> None:
     codes = {code for kind, code in CHECKS if kind == KIND}
     tried = {name.split()[0] for name in EDGES} | {
-        *("sharp-profile", "hard-shock", "soft-shock", "coarse-rows"),
+        *("sharp-profile", "velocity-jump", "acceleration-jump", "coarse-rows"),
         "lost-motion",  # in test_groove_cams.py
         "face-width",  # in test_yoke_cams.py
     }

@@ -98,9 +98,9 @@ def plate(way: float, tolerance: float) -> dict[str, Any]:
         "kind": "cam",
         "name": "plate",
         "motion": [
-            {"type": "rise", "law": "3-4-5", "way_mm": way, "lift_deg": 15.0},
-            {"type": "dwell", "way_mm": way},
-            {"type": "return", "law": "3-4-5", "way_mm": way},
+            {"type": "rise", "law": "3-4-5", "travel_mm": way, "lift_deg": 15.0},
+            {"type": "dwell", "travel_mm": way},
+            {"type": "return", "law": "3-4-5", "travel_mm": way},
         ],
         "follower": {
             "type": "point",

@@ -272,7 +272,7 @@ def test_a_base_radius_is_the_prime_radius_less_the_roller() -> None:
     few(
         [
             ("tappet", {"output.motion_step_deg": 1e-6}),
-            ("translating_cam", {"output.way_step_mm": 1e-3, "cam.run_out_mm": 1200.0}),
+            ("translating_cam", {"output.travel_step_mm": 1e-3, "cam.run_out_mm": 1200.0}),
         ]
     ),
 )

@@ -105,7 +105,7 @@ def test_a_plate_jams_on_its_way_back_too(tmp_path: Path) -> None:
     """What is a return as it slides forth lifts the follower as it slides back."""
     document: Any = plate() | {"blank": {"height_mm": 60}}
     document["cam"]["walls"] = "lower"
-    document["motion"][2]["way_mm"] = 12
+    document["motion"][2]["travel_mm"] = 12
     found = [one for one in steep(document, tmp_path) if one.code == "jamming"]
     assert [one.where.split(",")[0] for one in found] == ["return"]
 

@@ -174,14 +174,14 @@ name = "knife"
 type = "rise"
 law = "{law}"
 lift_mm = {lift}
-way_mm = {way}
+travel_mm = {way}
 [[motion]]
 type = "dwell"
-way_mm = 20
+travel_mm = 20
 [[motion]]
 type = "return"
 law = "{law}"
-way_mm = {way}
+travel_mm = {way}
 [follower]
 type = "point"
 [cam]
@@ -276,7 +276,8 @@ def steep(seed: int, radius: float) -> tuple[dict[str, Any], float, list[Any], f
 def test_a_small_face_on_an_arm_feels_no_more_of_the_chords_than_is_told(
     seeds: Sequence[int], radius: float
 ) -> None:
-    """Both ways: where the curve is below steep chords the arm comes down farther than up."""
+    """Both adjustments: where the curve is below steep chords the arm comes down farther than "
+    "up."""
     assert sum(demand_told(*steep(seed, radius)) for seed in seeds) >= len(seeds) // 3
 
 

@@ -38,7 +38,7 @@ TREE = {"size_mm": Fact(40.0, "centre distance"), "module_mm": 2.0, "teeth": [20
 
 
 @dataclass
-class Written:
+class BuildOutput:
     directory: Path
     files: tuple[str, ...] = ()
     removed: tuple[str, ...] = ()
@@ -76,7 +76,7 @@ class Result:
             return (made["warning"],)
         return (made["error"], made["warning"]) if self.outcome == "error" else ()
 
-    def _write(self, directory: str, names: tuple[str, ...]) -> Written:
+    def _write(self, directory: str, names: tuple[str, ...]) -> BuildOutput:
         raised = {
             "impossible": InfeasibleError(
                 "the phases do not close", where="law.ratios", value=350, limit=360, unit="deg",
@@ -92,13 +92,13 @@ class Result:
         folder.mkdir(parents=True, exist_ok=True)
         for name in names:
             (folder / name).write_text("x" * 1234)
-        return Written(folder, names, ("old.stl",), findings=self.findings)
+        return BuildOutput(folder, names, ("old.stl",), findings=self.findings)
 
-    def write(self, directory: str, files: Any = None, progress: Any = None) -> Written:
+    def write(self, directory: str, files: Any = None, progress: Any = None) -> BuildOutput:
         self.calls.append(("write", directory, files, progress))
         return self._write(directory, ("gear1_outline.csv", "summary.json"))
 
-    def check(self, directory: str) -> Written:
+    def check(self, directory: str) -> BuildOutput:
         self.calls.append(("check", directory))
         return self._write(directory, ("summary.json",))
 

@@ -8,8 +8,8 @@ import pytest
 
 from gearcam.cli import main
 from gearcam.laws.entry import SOURCES
+from gearcam.laws.motion.base import MOTION_LAWS
 from gearcam.laws.ratio.base import LAWS
-from gearcam.laws.rises.base import RISES
 
 
 def test_laws_shows_every_law_with_keys_continuity_and_source(
@@ -24,7 +24,7 @@ def test_laws_shows_every_law_with_keys_continuity_and_source(
         assert " ".join(law.source.split()) in flat
     assert "knots_deg" in out
     assert "from 0 to below 1" in flat
-    for name, rise in RISES.items():
+    for name, rise in MOTION_LAWS.items():
         assert f'    law = "{name}"\n' in out.partition("Motion laws of cams")[2]
         assert " ".join(rise.source.split()) in flat
 
@@ -34,7 +34,7 @@ def test_laws_ends_with_author_title_place_and_year_of_every_source_cited(
 ) -> None:
     assert main(["laws"]) == 0
     listed = capsys.readouterr().out.partition("\nSources\n")[2]
-    cited = [entry.source for entry in (*LAWS.values(), *RISES.values())]
+    cited = [entry.source for entry in (*LAWS.values(), *MOTION_LAWS.values())]
     own = ("by definition", "classical; ", "quintics ")
     for citation in cited:
         (author,) = [name for name in (*SOURCES, *own) if citation.startswith(name)]

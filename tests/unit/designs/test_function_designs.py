@@ -17,13 +17,13 @@ import pytest
 import gearcam
 from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.base.tolerances import DEFAULT
+from gearcam.laws.motion.formula import FormulaRise
+from gearcam.laws.motion.simple import Cycloidal
 from gearcam.laws.program import make_program
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.laws.ratio.formula import Formula, RackLaw
 from gearcam.laws.ratio.position import MotionLaw
 from gearcam.laws.ratio.span import ONE_LOBE, Lobes
-from gearcam.laws.rises.formula import FormulaRise
-from gearcam.laws.rises.simple import Cycloidal
 from helpers_cams import back, dwell, rise
 from helpers_processes import Bent, swing
 
@@ -162,7 +162,7 @@ def test_a_corner_is_refused_with_its_angle_and_a_remedy_that_works() -> None:
         FormulaRise(formula=parabolas).build(DEFAULT)
     assert 'law "table"' in no.value.nearest
     x = np.linspace(0.0, 1.0, 41)
-    rows = gc.rises.TableRise(x=tuple(x), y=tuple(parabolas(x)))
+    rows = gc.motion_laws.TableRise(x=tuple(x), y=tuple(parabolas(x)))
     assert abs(rows.build(DEFAULT).function(0.3) - 0.18) < 1e-6
     with pytest.raises(InfeasibleError, match=r"must give 1 at x = 1 .*value 2.*divide by 2"):
         FormulaRise(formula=lambda x: 2 * x**3).build(DEFAULT)
@@ -241,11 +241,11 @@ def test_files_are_made_and_the_summary_names_the_function(tmp_path: Path) -> No
     assert summary["design"]["law"] == law
     assert "Python function" in summary["accuracy"]["how"]["driven_angle_rad"]
     assert len(written.files) > 2
-    assert not result.check(tmp_path).summary.get("stale")
+    assert not result.check(tmp_path).summary.get("outdated")
     others = [pair(Formula(phi2=given)) for given in (swing, Bent(0.6), TEXT)]
     hashes = {gc.build(other).design_hash for other in others}
     assert len(hashes | {result.design_hash}) == 4
-    assert set(gc.build(others[1]).check(tmp_path).summary["stale"]) == set(summary["files"])
+    assert set(gc.build(others[1]).check(tmp_path).summary["outdated"]) == set(summary["files"])
 
 
 def test_the_error_of_a_function_is_told() -> None:

@@ -23,9 +23,9 @@ from gearcam.designs.schema import schema
 from gearcam.designs.template import template
 from gearcam.kinds.cam.motion import WITH_LAW, phase_table, rise_table, turn_tables
 from gearcam.kinds.gear_pair.design import law_table
+from gearcam.laws.motion.base import MOTION_LAWS
 from gearcam.laws.phases_of_lift import PHASES
 from gearcam.laws.ratio.base import LAWS
-from gearcam.laws.rises.base import RISES
 from helpers_pairs import PROFILES
 
 FILES = sorted(PROFILES.glob("*.toml"))
@@ -90,7 +90,7 @@ def test_every_key_is_described_and_no_other_is_allowed(
             expected[name] = {"type", *phase_table(name).entries}
             continue
         assert set(definitions.pop(name)["properties"]) == {"law"}  # what chooses among these:
-        for law in RISES:
+        for law in MOTION_LAWS:
             keys = {"type", "law", *phase_table(name).entries, *rise_table(law).entries}
             expected[f"{name}-{law}"] = keys
     assert {name: set(made["properties"]) for name, made in definitions.items()} == expected

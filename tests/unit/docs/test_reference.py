@@ -15,8 +15,8 @@ from gearcam.base.findings import CHECKS
 from gearcam.base.quantities import REQUIRED
 from gearcam.kinds.cam.motion import rise_table
 from gearcam.kinds.gear_pair.design import law_table
+from gearcam.laws.motion.base import MOTION_LAWS
 from gearcam.laws.ratio.base import LAWS
-from gearcam.laws.rises.base import RISES
 from gearcam.results.kind import KINDS
 from helpers_pairs import PROFILES
 
@@ -93,7 +93,7 @@ def test_no_cell_is_empty() -> None:
         assert not re.search(r"_MISSING|\bNone\b|\bnan\b|object at", text), name
 
 
-@pytest.mark.parametrize("entries", [LAWS, RISES], ids=["laws", "rises"])
+@pytest.mark.parametrize("entries", [LAWS, MOTION_LAWS], ids=["laws", "rises"])
 def test_examples_of_laws_can_be_read(entries: Mapping[str, object]) -> None:
     """As TOML, with every key that must be given."""
     page, known, key = (
@@ -112,7 +112,7 @@ def test_peaks_of_known_laws() -> None:
     """Closed forms: Norton, table of peaks of standard motion programs."""
     known = {"cycloidal": ("2", "6.283", "39.48"), "3-4-5": ("1.875", "5.774", "60")}
     known |= {"harmonic": ("1.571", "4.935", "infinite"), "4-5-6-7": ("2.188", "7.513", "52.5")}
-    assert {name: reference.peaks(RISES[name]) for name in known} == known
+    assert {name: reference.peaks(MOTION_LAWS[name]) for name in known} == known
 
 
 def test_severities_of_checks_are_those_of_their_code() -> None:

@@ -258,7 +258,7 @@ def test_previous_files_are_those_that_are_there(tmp_path: Path) -> None:
     listed = {
         "format": 1,
         "files": {"a.dxf": "1", "gone.dxf": "1", "summary.json": "1", "wrong.dxf": 1},
-        "stale": {"b.dxf": "2", "c.dxf": None, "folder": "2"},
+        "outdated": {"b.dxf": "2", "c.dxf": None, "folder": "2"},
     }
     for name in ("a.dxf", "b.dxf", "c.dxf", "mine.txt", "wrong.dxf"):
         (tmp_path / name).write_bytes(b"")

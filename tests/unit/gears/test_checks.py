@@ -14,7 +14,7 @@ from mpmath import ellipe
 from gearcam.base.findings import CHECKS, Finding
 from gearcam.gears.checks import remote_cutter, undercut
 from gearcam.gears.spec import Rack, RingSpec
-from gearcam.gears.subject import KIND, Subject
+from gearcam.gears.subject import KIND, CheckedPair
 from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.laws.ratio.composite import Fourier
 from gearcam.laws.ratio.constant import Constant
@@ -150,7 +150,7 @@ CASES = [
     ),
     Case("self-crossing", "warning", lambda: door(1e-9), lambda: door(-1e-9)),
     Case("concave-teeth", "warning", lambda: shaped(1.0001), lambda: shaped(0.9999)),
-    Case("cutter-small", "note", lambda: shaper(11.999), lambda: shaper(12.0)),
+    Case("small-cutter", "note", lambda: shaper(11.999), lambda: shaper(12.0)),
     Case("sharp", "warning", lambda: bending(2.499), lambda: bending(2.501)),
     Case(
         "undercut", "warning", lambda: job(Constant(), (17, 60)), lambda: job(Constant(), (18, 60))
@@ -233,7 +233,7 @@ def test_a_pinion_cutter_that_reaches_a_remote_tooth_names_both() -> None:
     )
     pair = replace(made.pair, toothings=(large, made.pair.toothings[1]))
     gears = (replace(gear, pair=pair), made.gear2)
-    subject = Subject(pair=pair, gears=gears, bores=(None, None))
+    subject = CheckedPair(pair=pair, gears=gears, bores=(None, None))
     (found,) = remote_cutter(subject, math.nan)
     assert found.severity == "warning"
     numbers = [int(word) for word in found.where.replace(",", "").split() if word.isdigit()]
@@ -273,7 +273,7 @@ def test_flanks_that_carry_long_enough_but_not_everywhere_are_held_against_nothi
 
 def test_undercut_that_leaves_a_phase_undriven_is_an_error() -> None:
     made = job(Constant(), (17, 60))
-    subject = Subject(pair=made.pair, gears=made.gears, bores=(None, None))
+    subject = CheckedPair(pair=made.pair, gears=made.gears, bores=(None, None))
     ratio = subject.contact_ratio
     (warning,) = undercut(subject, ratio - 1e-6)
     (error,) = undercut(subject, ratio + 1e-6)
@@ -301,7 +301,7 @@ def test_the_fewest_teeth_without_undercut_are_named() -> None:
 def test_contact_ratio_of_circular_wheels_is_the_textbooks() -> None:
     """Contact ratio from tip and base circles; both sides, every flank."""
     made = job(Constant(), (24, 36))
-    subject = Subject(pair=made.pair, gears=made.gears, bores=(None, None))
+    subject = CheckedPair(pair=made.pair, gears=made.gears, bores=(None, None))
     alpha, r1, r2 = math.radians(20), 12.0, 18.0
 
     def tip(r: float) -> float:

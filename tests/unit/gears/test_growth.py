@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 import shapely
 
-from gearcam.gears.corners import PolarCurve
-from gearcam.gears.tip_pass import Rolls, Stays, find_stays, tip_pass
+from gearcam.gears.corners import RadialCurve
+from gearcam.gears.tip_pass import RollStates, SpaceIntervals, find_stays, tip_pass
 from gearcam.laws.ratio.centrodes import LogSpiral
 from gearcam.laws.ratio.constant import Constant
 from gearcam.laws.ratio.ellipse import Ellipse
@@ -69,8 +69,8 @@ def test_vertices_spread_anew_are_not_fewer_than_curvature_asks_for() -> None:
 
 
 def every_roll(
-    rolls: Rolls, points: np.ndarray, first: np.ndarray, count: int, edge: PolarCurve
-) -> Stays:
+    rolls: RollStates, points: np.ndarray, first: np.ndarray, count: int, edge: RadialCurve
+) -> SpaceIntervals:
     """Stays by looking at all corners at all rolls."""
     found = []
     for corner, point in enumerate(points):
@@ -84,7 +84,7 @@ def every_roll(
                 deep = stay[depth[stay].argmax()]
                 found += [(corner, deep, end) for end in ends or [stay[depth[stay].argmin()]]]
     corner, deep, end = np.array(found).T
-    return Stays(corner, rolls.phi[first[corner] + deep], rolls.phi[first[corner] + end])
+    return SpaceIntervals(corner, rolls.phi[first[corner] + deep], rolls.phi[first[corner] + end])
 
 
 @pytest.mark.parametrize(
@@ -102,7 +102,7 @@ def test_corners_are_seen_wherever_they_come_into_a_ring(
 ) -> None:
     from gearcam.gears import tip_pass as room
 
-    def compared(*given: Any) -> Stays:
+    def compared(*given: Any) -> SpaceIntervals:
         found, all_of_them = find_stays(*given), every_roll(*given)
         for one, other in zip(found, all_of_them, strict=True):
             np.testing.assert_array_equal(one, other)

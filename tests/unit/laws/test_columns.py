@@ -14,10 +14,10 @@ from gearcam import build, load
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.tolerances import DEFAULT
 from gearcam.laws.columns import ColumnsError, FromFile, read_rows, tables_in
+from gearcam.laws.motion.points import TableRise
 from gearcam.laws.ratio.formula import Formula
 from gearcam.laws.ratio.span import ONE_LOBE
 from gearcam.laws.ratio.table import TableLaw
-from gearcam.laws.rises.points import TableRise
 from helpers_sampling import few
 
 POINTS = "x,y\n0,0\n0.25,0.125\n0.75,0.875\n1,1\n"

@@ -11,6 +11,7 @@ import mpmath
 import numpy as np
 import pytest
 
+from gearcam.laws.motion.base import ClosedForm
 from gearcam.laws.phases_of_lift import (
     PHASES,
     Phase,
@@ -19,7 +20,6 @@ from gearcam.laws.phases_of_lift import (
     SegmentPhase,
 )
 from gearcam.laws.program import Program
-from gearcam.laws.rises.base import ClosedForm
 from gearcam.numeric.piecewise import Piece, Piecewise, piecewise
 from helpers_cams import TURN, back, dwell, program, rise, there_and_back
 

@@ -10,16 +10,16 @@ import pytest
 
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.tolerances import DEFAULT
+from gearcam.laws.motion.base import MOTION_LAWS
 from gearcam.laws.phases_of_lift import ReturnPhase, RisePhase, SegmentPhase, program_problems
 from gearcam.laws.program import make_program
-from gearcam.laws.rises.base import RISES
 from helpers_cams import there_and_back
 
 
 def test_an_open_program_ends_where_its_way_does() -> None:
     """Its phases take parts of a way, it may end anywhere, and nothing joins its ends."""
-    up = RisePhase(angle=30.0, law=RISES["constant-velocity"].parameters(), lift=6.0)
-    down = ReturnPhase(angle=10.0, law=RISES["cycloidal"].parameters(), lift=2.0)
+    up = RisePhase(angle=30.0, law=MOTION_LAWS["constant-velocity"].parameters(), lift=6.0)
+    down = ReturnPhase(angle=10.0, law=MOTION_LAWS["cycloidal"].parameters(), lift=2.0)
     made = make_program([up, down], DEFAULT, closed=False)
     assert not made.closed
     assert made.period == 40.0
@@ -38,7 +38,7 @@ def test_an_open_program_ends_where_its_way_does() -> None:
 
 def test_every_way_that_is_wrong_is_told() -> None:
     angles = ("rest", 20.0, 1e-6, "rest", 1e-4)
-    law = RISES["constant-velocity"].parameters()
+    law = MOTION_LAWS["constant-velocity"].parameters()
     phases = [RisePhase(angle=angle, law=law, lift=1.0) for angle in angles]
     told = list(program_problems(phases, oscillating=False, closed=False))
     jump, rest = (
@@ -50,7 +50,7 @@ def test_every_way_that_is_wrong_is_told() -> None:
 
 
 def test_an_open_program_begins_at_rest_before_a_segment() -> None:
-    end = ReturnPhase(angle=1.0, law=RISES["constant-velocity"].parameters())
+    end = ReturnPhase(angle=1.0, law=MOTION_LAWS["constant-velocity"].parameters())
     made = make_program([SegmentPhase(angle=1.0, to=5.0), end], DEFAULT, closed=False)
     assert made.derivatives(np.array([0.0]), 2)[1][0] == pytest.approx(0.0, abs=1e-12)
 

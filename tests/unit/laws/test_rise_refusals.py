@@ -13,11 +13,11 @@ from gearcam.base.tolerances import DEFAULT
 from gearcam.designs.table import table_of
 from gearcam.designs.validate import faults_of, rule_faults
 from gearcam.laws.columns import ColumnsError, read_rows
-from gearcam.laws.rises.base import RISES
-from gearcam.laws.rises.formula import FormulaRise
-from gearcam.laws.rises.points import BSplineRise, TableRise
-from gearcam.laws.rises.polynomials import Polynomial
-from gearcam.laws.rises.scca import Scca
+from gearcam.laws.motion.base import MOTION_LAWS
+from gearcam.laws.motion.formula import FormulaRise
+from gearcam.laws.motion.points import BSplineRise, TableRise
+from gearcam.laws.motion.polynomials import Polynomial
+from gearcam.laws.motion.scca import Scca
 
 EVEN = (0.0, 0.25, 0.5, 0.75, 1.0)
 
@@ -45,14 +45,14 @@ def only(parameters: Any) -> tuple[str, int | None, str, str]:
     ],
 )
 def test_numbers_out_of_range_are_told(law: str, key: str, value: float, allowed: str) -> None:
-    known = table_of("motion", RISES[law].parameters)
+    known = table_of("motion", MOTION_LAWS[law].parameters)
     faults = [f for f in faults_of(known, {key: value}, home=lambda _: "") if f.path[-1] == key]
     assert [fault.message for fault in faults] == [f"{value} is out of range"]
     assert faults[0].allowed == allowed
 
 
 def test_every_rise_can_be_read_from_a_file() -> None:
-    for entry in RISES.values():
+    for entry in MOTION_LAWS.values():
         known = table_of("motion", entry.parameters)
         for claim in MOTION_CLAIMS[entry.name].values:
             written = known.outward(vars(claim.parameters))

@@ -16,11 +16,11 @@ from mpmath import mp
 from numpy.typing import NDArray
 
 from claims.shown_rise import ShownRise, shown
-from gearcam.laws.rises.base import ClosedForm
-from gearcam.laws.rises.formula import FormulaRise
-from gearcam.laws.rises.pieces import from_both_ends, lag
-from gearcam.laws.rises.points import BSplineRise, TableRise
-from gearcam.laws.rises.polynomials import (
+from gearcam.laws.motion.base import ClosedForm
+from gearcam.laws.motion.formula import FormulaRise
+from gearcam.laws.motion.pieces import from_both_ends, lag
+from gearcam.laws.motion.points import BSplineRise, TableRise
+from gearcam.laws.motion.polynomials import (
     Polynomial,
     Polynomial23,
     Polynomial345,
@@ -29,8 +29,8 @@ from gearcam.laws.rises.polynomials import (
     Polynomial56789,
     of_least_degree,
 )
-from gearcam.laws.rises.scca import ModifiedSine, ModifiedTrapezoid, Scca
-from gearcam.laws.rises.simple import (
+from gearcam.laws.motion.scca import ModifiedSine, ModifiedTrapezoid, Scca
+from gearcam.laws.motion.simple import (
     ConstantAcceleration,
     Cycloidal,
     Harmonic,

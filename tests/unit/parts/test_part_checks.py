@@ -53,7 +53,7 @@ def test_the_tool_at_hand_is_compared_with_the_sharpest_fillet() -> None:
     assert 2 * 0.38 < limits.diameter < 2.0
     for part, speaks in ((0.999, False), (1.001, True)):
         limit = {"tool_diameter": part * limits.diameter}
-        heard = found("large-tool", limits=limit, density=(1.0, 1.0))
+        heard = found("tool-too-large", limits=limit, density=(1.0, 1.0))
         assert any(finding.where == "wheel 1" for finding in heard) == speaks
 
 

@@ -129,7 +129,7 @@ def test_no_rim_no_mark() -> None:
     with pytest.raises(InfeasibleError, match="reach the axis there") as caught:
         timing_mark(6.2, 0.0, 5.0, 6.25, 10.0)
     assert (caught.value.value, caught.value.limit) == (None, None)
-    assert [way.near for way in caught.value.ways] == [{"blank.timing_marks": False}]
+    assert [way.near for way in caught.value.adjustments] == [{"blank.timing_marks": False}]
 
 
 def test_circle_points_keep_the_sagitta() -> None:

@@ -161,7 +161,7 @@ def test_one_value_for_both_wheels_is_the_drivers() -> None:
 
 def nearest(refused: InfeasibleError, made: Any, way: int = 0) -> GearPairResult:
     """Follow the way that a refusal names."""
-    return gearcam.build(made.with_(dict(refused.ways[way].near)))
+    return gearcam.build(made.with_(dict(refused.adjustments[way].near)))
 
 
 def test_an_outside_that_reaches_the_roots_is_refused() -> None:
@@ -223,7 +223,7 @@ def test_bolts_outside_the_rim_are_refused(circle: float, diameter: float, wall:
     )
     with pytest.raises(InfeasibleError, match="rim of the ring") as refused:
         _ = gearcam.build(design).parts
-    for number in range(len(refused.value.ways) - 1):
+    for number in range(len(refused.value.adjustments) - 1):
         made = nearest(refused.value, design, number)
         assert len(made.parts[1].openings) == 4
         assert "thin-wall" not in codes(made)
@@ -269,7 +269,7 @@ def test_a_thin_rim_of_a_ring_is_found_and_cured() -> None:
 def test_the_cutter_of_a_ring_is_noted_where_it_is_small() -> None:
     for teeth, expected in ((11.99, True), (12.0, False)):
         made = ring_job(ring=RingSpec(cutter_teeth=teeth))
-        assert ("cutter-small" in codes(made)) == expected
+        assert ("small-cutter" in codes(made)) == expected
         assert not codes(made) & {"concave", "concave-teeth"}
         assert made.facts.document["gears"][1]["cutter_teeth"] == pytest.approx(teeth, rel=1e-14)
 
@@ -278,7 +278,7 @@ def test_a_small_cutter_of_a_wheel_is_no_cutter_of_a_ring() -> None:
     law = Formula(r1="1 + 0.25*cos(2*phi1)")
     found = codes(job(law, (40, 40), limits={"cutter_teeth": 90.0}))
     assert "concave-teeth" in found
-    assert "cutter-small" not in found
+    assert "small-cutter" not in found
 
 
 def test_the_largest_tool_of_a_ring_is_that_of_its_hole() -> None:

@@ -16,11 +16,11 @@ import pytest
 
 import gearcam as gc
 from gearcam.base.errors import (
+    Adjustment,
     DesignError,
     InfeasibleError,
     MissingExtraError,
     Problem,
-    Way,
     WriteError,
 )
 from gearcam.base.tolerances import Tolerances
@@ -111,7 +111,7 @@ ERRORS = (
     DesignError([Problem("is wrong", "a.toml", 3, "law.type", 1, "this", "that"), Problem("too")]),
     InfeasibleError(
         "cannot be", where="here", value=1.0, limit=2.0, unit="mm", nearest="no",
-        ways=[Way(near={"pair.x": 0.1})], more_teeth=1.5,
+        adjustments=[Adjustment(near={"pair.x": 0.1})], more_teeth=1.5,
     ),
     MissingExtraError("STEP files", "step"),
     MissingExtraError("solids", packages="one two"),
@@ -169,7 +169,7 @@ def test_names_at_the_top_are_shown_and_brought_in_when_asked_for() -> None:
         *names
     }
     assert {"Ellipse", "Phases"} <= {*dir(gc.laws)}
-    assert "Cycloidal" in dir(gc.rises)
+    assert "Cycloidal" in dir(gc.motion_laws)
     with pytest.raises(AttributeError, match="gearcam has no Gearpair"):
         gc.Gearpair  # noqa: B018  # pyright: ignore
     with pytest.raises(AttributeError, match="there is no law Elipse"):
@@ -188,9 +188,9 @@ def test_a_design_is_made_of_what_the_top_gives() -> None:
 
 
 ANY: Any = gc
-UP = ANY.RisePhase(angle=2.0, law=ANY.rises.Cycloidal(), lift=0.2)
+UP = ANY.RisePhase(angle=2.0, law=ANY.motion_laws.Cycloidal(), lift=0.2)
 PHASES = [UP, ANY.SegmentPhase(angle=1.0, to=0.1, velocity=-0.05), ANY.ReturnPhase(
-    angle="rest", law=ANY.rises.Polynomial345()
+    angle="rest", law=ANY.motion_laws.Polynomial345()
 )]  # fmt: skip
 SLIDING = ANY.FollowerSpec(type="roller", roller_radius=6.0)
 SWINGING = ANY.FollowerSpec(
@@ -227,8 +227,10 @@ def test_a_phase_says_each_thing_once_in_the_unit_of_its_follower() -> None:
 
 def test_lists_and_arrays_become_tuples_of_plain_numbers() -> None:
     x = np.linspace(0.0, 1.0, 5)
-    law = ANY.rises.TableRise(x=x, y=[0.0, 0.1, 0.5, 0.9, np.float64(1.0)])
-    design = cam([replace(UP, law=law), ANY.ReturnPhase(angle="rest", law=ANY.rises.Cycloidal())])
+    law = ANY.motion_laws.TableRise(x=x, y=[0.0, 0.1, 0.5, 0.9, np.float64(1.0)])
+    design = cam(
+        [replace(UP, law=law), ANY.ReturnPhase(angle="rest", law=ANY.motion_laws.Cycloidal())]
+    )
     assert design.motion[0].law.x == (0.0, 0.25, 0.5, 0.75, 1.0)
     assert type(design.motion[0].law.y[4]) is float
     assert gc.build(design).program.range == pytest.approx((0.0, 0.2))

@@ -19,7 +19,7 @@ from gearcam.cli import main
 from gearcam.console import remedy_lines, wrapped
 from gearcam.gears.checks import largest_module
 from gearcam.gears.demands import contact_bound
-from gearcam.gears.subject import Subject
+from gearcam.gears.subject import CheckedPair
 from gearcam.gears.track import LeastRadius
 from gearcam.laws.ratio.constant import Constant
 from gearcam.laws.ratio.ellipse import Ellipse
@@ -153,7 +153,7 @@ def test_the_next_smaller_change_does_not_do(name: str, folder: Path) -> None:
 )
 def test_remedies_are_short_and_nearly_the_least(name: str, folder: Path) -> None:
     found = search(name, folder).found
-    # one way out is told once, though a refusal and the usual ways both name it
+    # one way out is told once, though a refusal and the usual adjustments both name it
     assert len({tuple(remedy.changes) for remedy in found}) == len(found)
     for remedy in found:
         for key, value in remedy.changes.items():
@@ -339,7 +339,7 @@ def test_of_a_kerf_that_closes_a_keyway_the_widest_is_told(folder: Path) -> None
     design = pair(CIRCLE, [12, 12], blank=keyed, output={"files": ["dxf"], "kerf_mm": 3.5})
     with pytest.raises(InfeasibleError, match="this kerf leaves no simple outline") as caught:
         job_of(design, folder).files("dxf")
-    ((way,),) = [caught.value.ways]
+    ((way,),) = [caught.value.adjustments]
     assert 2.9 < way.near["output.kerf_mm"] < 3.0  # type: ignore[operator]  # of a keyway of 3 mm
     assert job_of(followed(design, way.near), folder).files("dxf")
 
@@ -390,7 +390,7 @@ def test_flanks_alone_know_how_far_the_mates_of_shifted_teeth_go(x: float) -> No
 def test_flanks_alone_bound_the_contact_ratio_and_refuse_what_cannot_drive(folder: Path) -> None:
     for document in (NAIL, UNDER):
         made = job_of(document, folder)
-        subject = Subject(pair=made.pair, gears=made.gears, bores=(None, None))
+        subject = CheckedPair(pair=made.pair, gears=made.gears, bores=(None, None))
         assert subject.contact_ratio <= contact_bound(*made.pair.toothings) + 1e-9
     tight = {"type": "phases", "knots_deg": [0, 60, 360], "ratios": [1.8, 0.2, 1.8]}
     with pytest.raises(InfeasibleError, match="in contact for less than one pitch") as caught:

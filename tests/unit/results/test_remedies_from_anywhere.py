@@ -163,7 +163,10 @@ def test_only_the_wheel_that_cannot_take_its_bore_is_named(tmp_path: Path) -> No
         assert error.where == f"wheel {wheel}, blank.bore_diameter_mm[{wheel - 1}]"
         assert "both" not in error.nearest
     error = refusal(bored(CIRCLE, [20, 24], [60, 50]), tmp_path)
-    assert set(error.ways[0].near) == {"blank.bore_diameter_mm[0]", "blank.bore_diameter_mm[1]"}
+    assert set(error.adjustments[0].near) == {
+        "blank.bore_diameter_mm[0]",
+        "blank.bore_diameter_mm[1]",
+    }
 
 
 def test_where_the_law_brings_the_root_to_the_axis_its_place_is_named(tmp_path: Path) -> None:
@@ -199,7 +202,7 @@ def test_ratios_that_close_a_law_are_those_of_the_file(name: str, tmp_path: Path
     law, teeth, named = CLOSING[name]
     error = refusal(pair(law, teeth), tmp_path)
     assert error.nearest == f"it closes with {' or '.join(named)}"
-    for way in error.ways:
+    for way in error.adjustments:
         _ = job_of(followed(pair(law, teeth), dict(way.near)), tmp_path).law
 
 

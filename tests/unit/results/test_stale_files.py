@@ -134,7 +134,7 @@ def test_files_are_told_by_the_table_that_their_law_has_read(tmp_path: Path) -> 
     (tmp_path / "points.csv").write_text(TABLE.replace("1.1", "1.2"), encoding="utf-8")
     assert job.write(tmp_path, files=["csv"]).summary["hash"] == before
     again = gearcam.load(tmp_path / "sample.toml")
-    assert set(build(again).check(tmp_path).summary["stale"].values()) == {before}
+    assert set(build(again).check(tmp_path).summary["outdated"].values()) == {before}
 
 
 def test_a_cam_is_told_by_the_points_that_its_rise_has_read(tmp_path: Path) -> None:
@@ -182,7 +182,7 @@ class Desk:
         found = json.loads((self.folder / "summary.json").read_text("utf-8"))
         assert found["hash"] == design_hash(self.text)
         there = {place.name for place in self.folder.iterdir()} - {"summary.json", "mine.txt"}
-        assert {*found["files"], *found.get("stale", {})} == there
+        assert {*found["files"], *found.get("outdated", {})} == there
         return found
 
 
@@ -195,7 +195,7 @@ def test_files_of_the_design_as_it_is_are_not_stale(tmp_path: Path) -> None:
     assert desk.run("build")["files"] == dict.fromkeys({*OUTLINES, "pair.svg"}, now)
     desk.edit("steps = 12", "steps = 24")
     for found in (desk.run("check"), desk.run("mesh"), desk.run("check")):
-        assert "stale" not in found
+        assert "outdated" not in found
         assert set(found["files"].values()) == {now}
     assert "meshing.csv" in found["files"]
 
@@ -208,7 +208,7 @@ def test_a_check_names_the_files_of_another_state(
     assert "outdated" not in capsys.readouterr().out
     desk.edit("[22, 22]", "[24, 24]")
     checked = desk.run("check")
-    assert (checked["files"], checked["stale"]) == ({}, built["files"])
+    assert (checked["files"], checked["outdated"]) == ({}, built["files"])
     told = " ".join(capsys.readouterr().out.split())
     names = ", ".join(built["files"])
     assert f"outdated: {names}: made from another version of the design; build again" in told
@@ -223,15 +223,15 @@ def test_a_study_is_new_and_the_build_stale_and_later_the_study_too(tmp_path: Pa
     desk.edit("eccentricity = 0.2", "eccentricity = 0.21")
     meshed = desk.run("mesh")
     assert meshed["files"] == {"meshing.csv": meshed["hash"]}
-    assert meshed["stale"] == dict.fromkeys(OUTLINES, first)
+    assert meshed["outdated"] == dict.fromkeys(OUTLINES, first)
     desk.edit("eccentricity = 0.21", "eccentricity = 0.22")
     stale = {**dict.fromkeys(OUTLINES, first), "meshing.csv": meshed["hash"]}
-    assert desk.run("check")["stale"] == stale
+    assert desk.run("check")["outdated"] == stale
     again = desk.run("mesh")
     assert again["files"] == {"meshing.csv": again["hash"]}
-    assert again["stale"] == dict.fromkeys(OUTLINES, first)
+    assert again["outdated"] == dict.fromkeys(OUTLINES, first)
     built = desk.run("build", "--only", "csv")
-    assert "stale" not in built
+    assert "outdated" not in built
     assert set(built["files"]) == OUTLINES
 
 
@@ -243,7 +243,7 @@ def test_a_followed_profile_is_new_and_the_cam_stale(tmp_path: Path) -> None:
     desk.edit("prime_radius_mm = 40", "prime_radius_mm = 41")
     followed = desk.run("follow", str(profile))
     assert followed["files"] == {"followed.csv": followed["hash"]}
-    assert followed["stale"] == first["files"]
+    assert followed["outdated"] == first["files"]
 
 
 def test_a_file_that_was_deleted_is_not_listed(tmp_path: Path) -> None:

@@ -31,7 +31,7 @@ WATCHED = {
     "gearcam.gears.rolling": ("roll",),
     "gearcam.gears.outline": ("build_outline",),
     "gearcam.gears.contact": ("FlankPairs.arcs",),
-    "gearcam.gears.subject": ("Subject.sides",),
+    "gearcam.gears.subject": ("CheckedPair.sides",),
     "gearcam.meshing.contact": ("contacts",),
     "gearcam.meshing.edges": ("touches",),
     "gearcam.meshing.patches": ("patches",),
@@ -176,7 +176,7 @@ def view(name: str, _: Path) -> None:
     assert not show((PROFILES / f"{name}.toml").read_bytes(), f"{name}.toml")["error"]
 
 
-PAIR = {"roll": 1, "facts": 1, "build_outline": 2, "Sampler.chords": 2, "Subject.sides": 1}
+PAIR = {"roll": 1, "facts": 1, "build_outline": 2, "Sampler.chords": 2, "CheckedPair.sides": 1}
 SUMMARY = {"hash_of": 1, "summary_of": 1}
 BOTH_SIDES = {"FlankPairs.arcs": 2}
 CHARTED = {"contacts": 2, "contact_rows": 2, "centrode_columns": 1, "scene_data": 1}

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.errors import Adjustment, InfeasibleError
 from gearcam.base.findings import limit_of
 from gearcam.base.numerals import shortened
 from gearcam.cams.checks import KIND
@@ -60,10 +60,10 @@ class CamAdvice(Advice):
         return bool(design.motion != other.motion)
 
 
-def _walled(search: Search, refusal: InfeasibleError) -> Iterator[Way]:
-    """Yield the ways of a refusal; a bore begins where it leaves a wall that is thick enough."""
+def _walled(search: Search, refusal: InfeasibleError) -> Iterator[Adjustment]:
+    """Yield the adjustments of a refusal; a bore begins where its wall is thick enough."""
     wall = 2.0 * limit_of(PARTS_KIND, "thin-wall", search.result.design.limits)
-    for way in refusal.ways:
+    for way in refusal.adjustments:
         bore = [*way.far] == ["blank.bore_diameter_mm"] and not way.near
         if bore and refusal.limit is not None and wall < 0.9 * refusal.limit:
             yield replace(way, near={"blank.bore_diameter_mm": refusal.limit - wall})
@@ -71,7 +71,7 @@ def _walled(search: Search, refusal: InfeasibleError) -> Iterator[Way]:
             yield way
 
 
-def _of_errors(search: Search) -> Iterator[Way]:
+def _of_errors(search: Search) -> Iterator[Adjustment]:
     """Yield the smallest radii without jamming, and for a flat face with the least profile radius.
 
     The radius of a profile below a flat face is ``base + s + s''``, 0 at the border of undercut.
@@ -79,22 +79,24 @@ def _of_errors(search: Search) -> Iterator[Way]:
     result: Any = search.result
     if "jamming" in search.codes:
         least = [gentler(result, "jamming", number) for number in range(len(result.cam.motions))]
-        yield Way(near={key: size for changes in least for key, size in (changes or {}).items()})
+        yield Adjustment(
+            near={key: size for changes in least for key, size in (changes or {}).items()}
+        )
     if "undercut" in search.codes and (base := result.cam.least_base_radius) is not None:
         base += limit_of(KIND, "sharp-profile", result.design.limits)
-        yield Way(near=grown(search.document, "cam.base_radius_mm", shortened(base, 1.0)))
+        yield Adjustment(near=grown(search.document, "cam.base_radius_mm", shortened(base, 1.0)))
 
 
-def _sizes(search: Search) -> Iterator[Way]:
-    """Yield ways to a larger cam, a smaller roller and smaller lifts."""
+def _sizes(search: Search) -> Iterator[Adjustment]:
+    """Yield adjustments to a larger cam, a smaller roller and smaller lifts."""
     document, far = search.document, _LARGER * _reach(search)
     larger = ("cam.prime_radius_mm", "cam.base_radius_mm", "cam.prime_radius2_mm")
     for key in (*larger, "follower.roller_distance_mm"):
         if 0.0 < (value_at(document, key) or 0.0) < far:
-            yield Way(far=grown(document, key, far), doubling=True)
+            yield Adjustment(far=grown(document, key, far), doubling=True)
     for key in ("follower.roller_radius_mm", "follower.roller2_radius_mm"):
         if given := value_at(document, key):
-            yield Way(far={key: _SMALLER * given}, doubling=True)
+            yield Adjustment(far={key: _SMALLER * given}, doubling=True)
     motion = document["motion"]
     lifts = {
         f"motion[{number}].{key}": _SMALLER * value
@@ -103,7 +105,7 @@ def _sizes(search: Search) -> Iterator[Way]:
         if key.startswith(("lift_", "to_", "velocity_", "acceleration_")) and value
     }
     if lifts:
-        yield Way(far=lifts, doubling=True)
+        yield Adjustment(far=lifts, doubling=True)
 
 
 def _reach(search: Search) -> float:

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from gearcam.cams.followers import Follower
     from gearcam.cams.wall import PitchMotion, Wall
     from gearcam.parts.body import Part
-    from gearcam.parts.checks import PartsSubject
+    from gearcam.parts.checks import CheckedParts
     from gearcam.pictures.drawings import Drawing
     from gearcam.results.result import Progress, StudyResult
 
@@ -117,15 +117,15 @@ class CamResult(PartsResult):
         theta : float or (n,) array, rad, optional
             Cam angles, any number of turns. The default is that of ``motion.csv``: a turn in steps
             of the design's ``output.motion_step_deg``, both ends. For a translating cam travels,
-            mm, from 0 to the whole travel, in steps of ``output.way_step_mm``.
+            mm, from 0 to the whole travel, in steps of ``output.travel_step_mm``.
 
         Returns
         -------
         Columns
-            ``theta_deg``, for a translating cam ``u_mm``; ``lift_mm`` and its derivatives by theta
-            ``velocity_mm_per_rad``, ``acceleration_mm_per_rad2`` and ``jerk_mm_per_rad3`` (for an
-            oscillating follower ``lift_deg``, ``velocity_deg_per_rad`` and so on, for a translating
-            cam ``velocity_mm_per_mm`` and so on); ``pressure_angle_deg``, signed;
+            ``theta_deg``, for a translating cam ``travel_mm``; ``lift_mm`` and its derivatives by
+            theta ``velocity_mm_per_rad``, ``acceleration_mm_per_rad2`` and ``jerk_mm_per_rad3``
+            (for an oscillating follower ``lift_deg``, ``velocity_deg_per_rad`` and so on, for a
+            translating cam ``velocity_mm_per_mm`` and so on); ``pressure_angle_deg``, signed;
             ``rho_pitch_mm`` and ``rho_profile_mm``, radii of curvature of pitch curve and profile
             before trimming: positive where convex, infinite where straight; where the pitch curve
             is convex and the profile undercut, that of the profile is negative. At a knot the
@@ -275,10 +275,10 @@ class CamResult(PartsResult):
         -------
         Columns
             A row for each angle whose point is left by trimming; at other angles the follower rests
-            on a corner. ``theta_deg`` or ``u_mm``; ``x_mm``, ``y_mm`` in the cam's frame; ``nx``,
-            ``ny``, outward unit normal of the metal; ``fixed_x_mm``, ``fixed_y_mm``, the same point
-            in the fixed frame: its rows are the path of contact. Where the velocity jumps, the
-            point after the jump is returned.
+            on a corner. ``theta_deg`` or ``travel_mm``; ``x_mm``, ``y_mm`` in the cam's frame;
+            ``nx``, ``ny``, outward unit normal of the metal; ``fixed_x_mm``, ``fixed_y_mm``, the
+            same point in the fixed frame: its rows are the path of contact. Where the velocity
+            jumps, the point after the jump is returned.
 
         Raises
         ------
@@ -317,12 +317,12 @@ class CamResult(PartsResult):
         return self.contours[0]
 
     @cached_property
-    def part_subject(self) -> PartsSubject:
+    def part_subject(self) -> CheckedParts:
         """Input of the checks of parts."""
-        from gearcam.parts.checks import PartsSubject
+        from gearcam.parts.checks import CheckedParts
 
         parts = self.parts
-        return PartsSubject(
+        return CheckedParts(
             parts=parts,
             names=tuple(part.name for part in parts),
             kerf=self.design.output.kerf,

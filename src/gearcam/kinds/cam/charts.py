@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from gearcam.base.findings import limit_of
-from gearcam.base.numerals import shown
+from gearcam.base.numerals import formatted
 from gearcam.cams.checks import KIND, pressure_limit
 from gearcam.kinds.cam.build import pressure_column, rho_column
 from gearcam.parts import checks  # noqa: F401  (its checks register themselves)
@@ -97,10 +97,10 @@ def _curvature(result: CamResult) -> Chart:
     bent = bent[np.isfinite(bent) & (bent > 0.0)]
     usual = _TIMES * float(np.percentile(bent, 90)) if bent.size else 0.0
     largest = max(usual, 1.0 / radius if radius else 0.0)
-    tool = limit_of(PARTS_KIND, "large-tool", result.design.limits)
+    tool = limit_of(PARTS_KIND, "tool-too-large", result.design.limits)
     limits = []
     if tool and any(math.isfinite(wall.profile_radius[1]) for wall in result.cam.walls):
-        label = f"concave limit for a tool of {shown(tool)} mm"
+        label = f"concave limit for a tool of {formatted(tool)} mm"
         limits.append(Limit(label=label, value=-2.0 / tool))
     rollers = {one.side / one.follower.radius: one for one in result.cam.walls if radius}
     for value, wall in rollers.items():

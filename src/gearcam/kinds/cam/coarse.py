@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.findings import Finding
-from gearcam.base.numerals import shortened, shown
+from gearcam.base.numerals import formatted, shortened
 from gearcam.kinds.cam.motion import turn_tables
 from gearcam.laws.motion_table import MotionTable
 
@@ -48,11 +48,11 @@ def _remedies(result: CamResult, finding: Finding) -> Iterator[str]:
             except InfeasibleError:  # a tolerance as large as the lift
                 break
             if program.errors[0] * lever <= lead.tolerance:
-                yield f"With motion.{entry.key} = {shown(size)} the scatter is averaged out."
+                yield f"With motion.{entry.key} = {formatted(size)} the scatter is averaged out."
                 break
     coarser = shortened(error, 1.0, 2)
     if coarser <= COARSEST:
         yield (
-            f"With output.chord_tolerance_mm = {shown(coarser)} the profile is cut only as finely "
-            "as the lift is known."
+            f"With output.chord_tolerance_mm = {formatted(coarser)} the profile is cut only as "
+            "finely as the lift is known."
         )

@@ -18,8 +18,8 @@ from gearcam.kinds.cam.motion import (
     summary,
     turn_tables,
 )
+from gearcam.laws.motion.base import MOTION_LAWS
 from gearcam.laws.phases_of_lift import PHASES
-from gearcam.laws.rises.base import RISES
 
 _ROWS: Final = "motion-table"
 _FORMULA: Final = "motion-formula"
@@ -31,13 +31,13 @@ _SHOWN: Final = ("file", "smoothing_tolerance_mm")
 
 def schema() -> tuple[dict[str, Any], dict[str, Any]]:
     """Return the schema of the motion and its definitions."""
-    words = told((name, entry.doc) for name, entry in RISES.items())
+    words = told((name, entry.doc) for name, entry in MOTION_LAWS.items())
     phases = chosen("type", PHASES, "the phase", lambda name: name)
     made: dict[str, Any] = {}
     for name in PHASES:
         if name in WITH_LAW:
-            made[name] = chosen("law", RISES, words, f"{name}-{{}}".format)
-            made |= {f"{name}-{law}": _phase_schema(name, law) for law in RISES}
+            made[name] = chosen("law", MOTION_LAWS, words, f"{name}-{{}}".format)
+            made |= {f"{name}-{law}": _phase_schema(name, law) for law in MOTION_LAWS}
         else:
             made[name] = _phase_schema(name)
     made |= {_ROWS: _rows_schema(), _FORMULA: _formula_schema()}
@@ -119,7 +119,7 @@ def lines(example: Sequence[Mapping[str, Any]], note: str) -> Iterator[str]:
     yield ""
     yield "# Other laws of rises and returns, with example values:"
     used = {phase["law"] for phase in example if "law" in phase}
-    for name, entry in RISES.items():
+    for name, entry in MOTION_LAWS.items():
         if name not in used:
             yield from law_comment("law", name, entry, rise_table(name))
 
@@ -130,11 +130,13 @@ def _phase(given: Mapping[str, Any], mark: str = "") -> Iterator[str]:
     yield f"{mark}[[motion]]"
     yield key_line("type", given["type"], summary(PHASES[given["type"]]), mark)
     if law:
-        yield key_line("law", law, RISES[law].doc, mark)
+        yield key_line("law", law, MOTION_LAWS[law].doc, mark)
     yield from entry_lines(phase_table(given["type"], law), given)
 
 
 def laws() -> tuple[str, list[Listed]]:
     """Return a heading and the motion laws of cams."""
-    found = [listed(entry, f'law = "{name}"', rise_table(name)) for name, entry in RISES.items()]
+    found = [
+        listed(entry, f'law = "{name}"', rise_table(name)) for name, entry in MOTION_LAWS.items()
+    ]
     return "Motion laws of cams: rises and returns, in the tables [[motion]]", found

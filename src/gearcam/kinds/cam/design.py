@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from functools import lru_cache, partial
 from typing import TYPE_CHECKING, Any, Final
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.base.errors import DesignError, Problem
 from gearcam.base.quantities import ANGLE, COUNT, FINEST, LENGTH, LONGEST, TEXT, param
 from gearcam.base.registry import classes_in, name_of
@@ -31,8 +31,8 @@ from gearcam.kinds.cam.blank import CamBlank
 from gearcam.kinds.cam.forms.base import SLIDING, form_faults
 from gearcam.kinds.cam.motion import examine_motion, motion_of, whole_turns
 from gearcam.kinds.shared import AccuracySpec
+from gearcam.laws.motion.base import MOTION_LAWS
 from gearcam.laws.phases_of_lift import PHASES, RisePhase
-from gearcam.laws.rises.base import RISES
 from gearcam.parts.blank import WheelBlank
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ _BLANK_WORDS: Final = {
 
 
 @dataclass(frozen=True, kw_only=True)
-class FollowSpec(Brief):
+class FollowSpec(ShortRepr):
     """A given profile, of which the study ``follow`` computes the follower's motion.
 
     Examples
@@ -121,12 +121,12 @@ class CamOutputSpec(OutputSpec):
     motion_step: float = param(
         ANGLE, default=math.radians(1), gt=0, le=90, doc="step of the cam angle in motion.csv"
     )
-    way_step: float | None = param(
+    travel_step: float | None = param(
         LENGTH, default=None, gt=0, le=LONGEST,
         example=1, doc="step of a translating cam's travel in motion.csv; 1 mm if left out",
     )  # fmt: skip
     place: float | None = param(
-        LENGTH, default=None, ge=0, le=LONGEST, word="u",
+        LENGTH, default=None, ge=0, le=LONGEST, word="travel",
         example=0, doc="travel of a translating cam in the assembly drawing; 0 if left out",
     )  # fmt: skip
     inspection_points: int = param(
@@ -203,8 +203,8 @@ class CamDesign(Design):
             return
         for number, phase in enumerate(self.motion):
             yield f"motion[{number}]", phase, tuple(PHASES.values())
-            if isinstance(phase, RisePhase) and not name_of(RISES, phase.law):
-                yield f"motion[{number}].law", phase.law, tuple(classes_in(RISES).values())
+            if isinstance(phase, RisePhase) and not name_of(MOTION_LAWS, phase.law):
+                yield f"motion[{number}].law", phase.law, tuple(classes_in(MOTION_LAWS).values())
 
 
 def _unmarked(blank: WheelBlank, source: str) -> CamBlank:

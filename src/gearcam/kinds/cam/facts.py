@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from gearcam.base.facts import Fact, Facts, extent
 from gearcam.base.findings import limit_of
-from gearcam.base.numerals import shown
+from gearcam.base.numerals import formatted
 from gearcam.cams.checks import KIND, pressure_limit
 from gearcam.kinds.cam.wall_facts import ends_of
 from gearcam.parts.facts import part_facts
@@ -71,7 +71,7 @@ def _deviation(program: Program, scale: float, unit: str) -> Fact | None:
     """Return the largest distance of a smoothed lift from the rows of its table."""
     if program.deviation is None:
         return None
-    place = f"at {shown(math.degrees(program.deviation.theta), scale=360.0)} deg"
+    place = f"at {formatted(math.degrees(program.deviation.theta), scale=360.0)} deg"
     value, meaning = scale * program.deviation.value, "largest distance from the given points"
     return Fact(value, meaning, place=place, unit=unit, shown=True)
 

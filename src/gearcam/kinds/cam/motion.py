@@ -1,8 +1,8 @@
 """The motion of a cam: an array ``[[motion]]`` of phases, or a table ``[motion]`` of the turn.
 
 Each phase has the keys of its type and of its law. A rise and a return have a ``law`` of the
-registry `gearcam.laws.rises.base.RISES`, whose parameters are further keys of the phase. The whole
-turn is given by a formula, ``lift``, or by rows.
+registry `gearcam.laws.motion.base.MOTION_LAWS`, whose parameters are further keys of the phase. The
+whole turn is given by a formula, ``lift``, or by rows.
 """
 
 from __future__ import annotations
@@ -21,8 +21,8 @@ from gearcam.designs.slips import misspelt
 from gearcam.designs.table import Table, table_of
 from gearcam.designs.validate import faults_of, made_of, told_faults
 from gearcam.kinds.cam.forms.base import form_of
+from gearcam.laws.motion.base import MOTION_LAWS
 from gearcam.laws.phases_of_lift import PHASES, Phase, RisePhase, fill_half, program_problems
-from gearcam.laws.rises.base import RISES
 
 if TYPE_CHECKING:
     from gearcam.laws.motion_formula import MotionFormula
@@ -77,7 +77,7 @@ def phase_table(name: str, law: str = "") -> Table:
 
 def rise_table(law: str) -> Table:
     """Return the table of a law's parameters."""
-    return table_of(TITLE, RISES[law].parameters)
+    return table_of(TITLE, MOTION_LAWS[law].parameters)
 
 
 def summary(phase: type) -> str:
@@ -110,7 +110,7 @@ def examine_motion(
         found.faults.append(Fault((TITLE,), "is a single table", raw, rule, hint))
     elif isinstance(raw, Mapping) and "sliding" in given:
         message = "is given over a turn, but the cam slides"
-        found.faults.append(Fault((TITLE,), message, raw, f"[[{TITLE}]] with way_mm"))
+        found.faults.append(Fault((TITLE,), message, raw, f"[[{TITLE}]] with travel_mm"))
     elif isinstance(raw, Mapping):
         _examine_turn(raw, given, found, home)
     elif not isinstance(raw, list) or not raw:
@@ -188,7 +188,7 @@ def _phase(
     choices, law, make = ["type"], "", PHASES[name]
     if name in WITH_LAW:
         choices.append("law")
-        law, _ = chosen(at, raw, "law", "a law of rises and returns", RISES, found)
+        law, _ = chosen(at, raw, "law", "a law of rises and returns", MOTION_LAWS, found)
     rest = {key: value for key, value in raw.items() if key not in choices}
     own, known = phase_table(name), phase_table(name, law)
     wrong = list(_wrong_units(known, rest, at, given))
@@ -203,7 +203,9 @@ def _phase(
     ]
     phase, problems = None, list[Fault]()
     if law:
-        parameters, problems = made_of(rise_table(law), RISES[law].parameters, rest, faults, at)
+        parameters, problems = made_of(
+            rise_table(law), MOTION_LAWS[law].parameters, rest, faults, at
+        )
         make = partial(make, law=parameters)
     elif name in WITH_LAW:
         make = partial(make, law=None)
@@ -240,7 +242,7 @@ def _follower_known(given: Circumstances) -> bool:
 
 
 def _asked(key: str) -> bool:
-    return any(key in rise_table(law).entries for law in RISES)
+    return any(key in rise_table(law).entries for law in MOTION_LAWS)
 
 
 def _examine_program(
@@ -291,7 +293,7 @@ def motion_of(motion: Motion, given: Circumstances) -> list[dict[str, Any]] | di
     for phase in motion:
         name = names[type(phase)]
         table: dict[str, Any] = {"type": name}
-        law = name_of(RISES, phase.law) if isinstance(phase, RisePhase) else ""
+        law = name_of(MOTION_LAWS, phase.law) if isinstance(phase, RisePhase) else ""
         if law:
             table |= {"law": law}
         table |= phase_table(name).bound(given).document(phase)
@@ -308,7 +310,7 @@ def homes() -> dict[str, str]:
         for key in phase_table(name).entries:
             by_phase.setdefault(key, []).append(name)
     by_law: dict[str, list[str]] = {}
-    for law in RISES:
+    for law in MOTION_LAWS:
         for key in rise_table(law).entries:
             by_law.setdefault(key, []).append(law)
     found = {key: f"with law = {quoted(laws)}" for key, laws in by_law.items()}

@@ -11,7 +11,7 @@ import numpy as np
 
 from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.base.findings import CHECKS, Finding, limit_of
-from gearcam.base.numerals import shortened, shown
+from gearcam.base.numerals import formatted, shortened
 from gearcam.cams.checks import KIND, driven
 from gearcam.designs.design import document_of, value_at
 
@@ -145,7 +145,7 @@ def _sentence(result: CamResult, code: str, number: int) -> str:
     """Return what keeps the limit of a check, in words."""
     changes = gentler(result, code, number)
     if changes is not None:
-        told = " and ".join(f"{key} = {shown(value, 10)}" for key, value in changes.items())
+        told = " and ".join(f"{key} = {formatted(value, 10)}" for key, value in changes.items())
         return f"The smallest cam that keeps the limit has {told}."
     motion = result.cam.motions[number]
     follower = motion.follower
@@ -156,8 +156,8 @@ def _sentence(result: CamResult, code: str, number: int) -> str:
     unless = ", or another arm or pivot distance" if follower.angular else ""
     unless = ", or a smaller offset" if follower.aside else unless
     return (
-        f"No prime radius up to {shown(_MOST * _need(motion), 3)} mm keeps the limit: it takes a "
-        f"larger angle or a smaller lift{unless}."
+        f"No prime radius up to {formatted(_MOST * _need(motion), 3)} mm keeps the limit: it takes "
+        f"a larger angle or a smaller lift{unless}."
     )
 
 

@@ -51,9 +51,9 @@ def even_angles(output: CamOutputSpec, driver: Driver, program: Program) -> Arra
         If there are more than a million.
     """
     turn, slides = program.period, program.open
-    step = output.way_step or _WAY_STEP if slides else output.motion_step
+    step = output.travel_step or _WAY_STEP if slides else output.motion_step
     if step < turn / _MOST:
-        key = f"output.{'way_step' if slides else 'motion_step'}_{driver.unit}"
+        key = f"output.{'travel_step' if slides else 'motion_step'}_{driver.unit}"
         least = turn / _MOST * driver.scale
         what = f"tables would have more than {_MOST:.0f} rows"
         note = "the limit is the smallest step"

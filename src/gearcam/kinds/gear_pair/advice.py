@@ -9,7 +9,7 @@ from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
-from gearcam.base.errors import InfeasibleError, Way
+from gearcam.base.errors import Adjustment, InfeasibleError
 from gearcam.base.findings import limit_of
 from gearcam.designs.design import value_at
 from gearcam.gears.subject import KIND
@@ -34,7 +34,10 @@ _USUAL: Final = 1.5
 _TIMES: Final = (1, 2, 4)
 """Multiples of the wheel's teeth that are tried with a larger ring."""
 
-_EDGES: Final = (Way(far={"blank.tip_rounding_mm": 0.0}), Way(far={"blank.clearance_mm": 0.0}))
+_EDGES: Final = (
+    Adjustment(far={"blank.tip_rounding_mm": 0.0}),
+    Adjustment(far={"blank.clearance_mm": 0.0}),
+)
 """Ways to edges without rounding and clearance."""
 
 _LOW: Final = 0.3
@@ -69,7 +72,9 @@ class PairAdvice(Advice):
         if collide and not lowered and (times is None or times > _USUAL):
             _shorter(search, times)
             search.found.sort(key=_count)
-        search.follow([*(refusal.ways if refusal else ()), *_others(search, refusal, factor)])
+        search.follow(
+            [*(refusal.adjustments if refusal else ()), *_others(search, refusal, factor)]
+        )
         if all(key.startswith("law.") for remedy in search.found for key in remedy.changes):
             any(search.along(way) for way in _larger_ring(search))
 
@@ -122,12 +127,12 @@ def _more_teeth(search: Search, factor: float) -> float | None:
     return high / common
 
 
-def _others(search: Search, refusal: InfeasibleError | None, factor: float) -> Iterator[Way]:
-    """Yield ways other than more teeth and those that a refusal names."""
+def _others(search: Search, refusal: InfeasibleError | None, factor: float) -> Iterator[Adjustment]:
+    """Yield adjustments other than more teeth and those that a refusal names."""
     yield from _usual_cutter(search)
     if refusal is None:
         yield from _of_errors(search)
-    elif not refusal.ways and not factor:
+    elif not refusal.adjustments and not factor:
         yield from _other_ratios(search)
         yield from _EDGES
     if factor or search.result.design.pair.type == "internal":
@@ -135,7 +140,7 @@ def _others(search: Search, refusal: InfeasibleError | None, factor: float) -> I
         yield from milder(search.result.design.law, z1 / z2)
 
 
-def _lower(search: Search) -> Iterator[Way]:
+def _lower(search: Search) -> Iterator[Adjustment]:
     """Yield the largest addendum with which tips clear each other at the given tooth counts."""
     result: Any = search.result
     limit = limit_of(KIND, "tips-collide", result.design.limits)
@@ -153,7 +158,7 @@ def _lower(search: Search) -> Iterator[Way]:
     while high - low > 1 and not search.over():
         middle = (low + high) // 2
         low, high = (middle, high) if passes(middle * _FINE) else (low, middle)
-    yield Way(near={"rack.addendum": low * _FINE})
+    yield Adjustment(near={"rack.addendum": low * _FINE})
 
 
 def _shorter(search: Search, times: float | None) -> None:
@@ -185,16 +190,16 @@ def _shorter(search: Search, times: float | None) -> None:
         search.keep(stub(high), stub(low) if low >= common else None)
 
 
-def _larger_ring(search: Search) -> Iterator[Way]:
+def _larger_ring(search: Search) -> Iterator[Adjustment]:
     """Yield rings with the next multiple of the wheel's teeth, which have more room."""
     pair = search.result.design.pair
     z1, z2 = pair.teeth
     if pair.type == "internal" and z1 < z2:
         for times in _TIMES:
-            yield Way(near={"pair.teeth": [times * z1, (z2 // z1 + 1) * times * z1]})
+            yield Adjustment(near={"pair.teeth": [times * z1, (z2 // z1 + 1) * times * z1]})
 
 
-def _usual_cutter(search: Search) -> Iterator[Way]:
+def _usual_cutter(search: Search) -> Iterator[Adjustment]:
     """Yield the cutter that a ring has by default."""
     result: Any = search.result
     ring = result.design.ring
@@ -204,28 +209,28 @@ def _usual_cutter(search: Search) -> Iterator[Way]:
     with suppress(InfeasibleError):
         cutter = type(result)(free, result.tolerances).pair.toothings[1].cutter
         if cutter.kc:
-            yield Way(near={"ring.cutter_teeth": round(cutter.teeth, 3)})
+            yield Adjustment(near={"ring.cutter_teeth": round(cutter.teeth, 3)})
 
 
-def _other_ratios(search: Search) -> Iterator[Way]:
+def _other_ratios(search: Search) -> Iterator[Adjustment]:
     """Yield the nearest tooth numbers with a whole-number ratio."""
     pair = search.result.design.pair
     (z1, z2), internal = pair.teeth, pair.type == "internal"
-    yield Way(near={"pair.teeth": [z1, max(1 + internal, round(z2 / z1)) * z1]})
+    yield Adjustment(near={"pair.teeth": [z1, max(1 + internal, round(z2 / z1)) * z1]})
     if not internal:  # a ring has more teeth than its wheel
-        yield Way(near={"pair.teeth": [max(1, round(z1 / z2)) * z2, z2]})
+        yield Adjustment(near={"pair.teeth": [max(1, round(z1 / z2)) * z2, z2]})
 
 
-def _of_errors(search: Search) -> Iterator[Way]:
-    """Yield ways for findings of a pair that are errors."""
+def _of_errors(search: Search) -> Iterator[Adjustment]:
+    """Yield adjustments for findings of a pair that are errors."""
     addendum = value_at(search.document, "rack.addendum")
     if search.codes & _OF_TEETH and addendum is not None and addendum < 1.0:
-        yield Way(far={"rack.addendum": 1.0})
+        yield Adjustment(far={"rack.addendum": 1.0})
     if search.codes & _OF_TEETH:
         if search.document["pair"]["x"]:
-            yield Way(far={"pair.x": 0.0})
+            yield Adjustment(far={"pair.x": 0.0})
         yield from _EDGES
     if "wide-kerf" in search.codes:
         kerfs = [one for one in search.result.checked if one.code == "wide-kerf"]
         widest = min(one.limit for one in kerfs if one.limit is not None)
-        yield Way(near={"output.kerf_mm": widest}, far={"output.kerf_mm": 0.0})
+        yield Adjustment(near={"output.kerf_mm": widest}, far={"output.kerf_mm": 0.0})

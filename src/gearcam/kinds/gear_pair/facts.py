@@ -11,9 +11,9 @@ import numpy as np
 
 from gearcam.base.facts import Fact, Facts, extent
 from gearcam.base.findings import limit_of
-from gearcam.base.numerals import shown
+from gearcam.base.numerals import formatted
 from gearcam.gears.pair import gear_tree
-from gearcam.gears.subject import KIND, Subject
+from gearcam.gears.subject import KIND, CheckedPair
 from gearcam.laws.ratio.span import angle_text
 from gearcam.meshing.drive_checks import side_name
 from gearcam.parts.facts import part_facts, size_fact
@@ -94,7 +94,7 @@ def _rack(result: GearPairResult) -> Tree:
 
     def height(name: str) -> Fact:
         gave = name in yielded
-        place = f"changed from the default {shown(yielded[name])}" if gave else ""
+        place = f"changed from the default {formatted(yielded[name])}" if gave else ""
         return Fact(getattr(rack, name), place=place, unit="modules", shown=gave)
 
     return {
@@ -153,7 +153,7 @@ def _parted(result: GearPairResult) -> str:
         return ""
     given = result.design.pair.backlash
     more = result.subject.backlash - given
-    return f"backlash_mm {shown(given)} + {shown(more)} from clearance_mm"
+    return f"backlash_mm {formatted(given)} + {formatted(more)} from clearance_mm"
 
 
 def _contact_ratios(sides: tuple[FlankPairs, ...], limit: float) -> Iterator[tuple[str, Fact]]:
@@ -193,7 +193,7 @@ def _tip_pass(result: GearPairResult) -> Fact | None:
     )
 
 
-def _rim(subject: Subject, limit: float) -> Fact | None:
+def _rim(subject: CheckedPair, limit: float) -> Fact | None:
     rims = [(rim, gear.wheel) for rim, gear in subject.rims]
     if not rims:
         return None
@@ -255,7 +255,7 @@ def meshing_facts(numbers: Mapping[str, Any]) -> Tree:
             error["peak_to_peak"], "transmission error, peak to peak", unit=unit, shown=True
         )
         if not peak.value:
-            peak = replace(peak, place=f"known to {shown(least, 1)} {unit}")
+            peak = replace(peak, place=f"known to {formatted(least, 1)} {unit}")
         known = Fact(least, "transmission error, known to", unit=unit)
         tree["transmission_error"] = error | {"known_to": known, "peak_to_peak": peak}
         if "no_harmonics" in error:

@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from gearcam.base.errors import InfeasibleError, Way, beyond_limit
+from gearcam.base.errors import Adjustment, InfeasibleError, beyond_limit
 from gearcam.base.findings import limit_of
-from gearcam.base.numerals import shown
+from gearcam.base.numerals import formatted
 from gearcam.gears.outline import outside
 from gearcam.gears.pair import Gear
 from gearcam.gears.spec import RIM
@@ -19,7 +19,7 @@ from gearcam.numeric.columns import Columns
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import KIND as PARTS_KIND
 from gearcam.parts.body import Mark, Part
-from gearcam.parts.checks import PartsSubject
+from gearcam.parts.checks import CheckedParts
 from gearcam.parts.make import make_part
 from gearcam.parts.marks import timing_mark
 from gearcam.parts.openings import Workpiece, solid_of
@@ -117,10 +117,17 @@ def _ring(gears: list[Gear], design: GearPairDesign) -> Part:
 def _crossing_chords(rim: float, tolerance: float, larger: dict[str, object]) -> InfeasibleError:
     """Return the error for a rim, mm, that is too thin for the chord tolerance."""
     key = "output.chord_tolerance_mm"
-    what = f"the rim of the ring, {shown(rim)} mm, is too thin for the chord tolerance of its edges"
+    size = formatted(rim)
+    what = f"the rim of the ring, {size} mm, is too thin for the chord tolerance of its edges"
     note = "the limit is a quarter of the rim"
     return beyond_limit(
-        what, key, tolerance, rim / _CHORDS, note, near=rim / _CHORDS, ways=(Way(near=larger),)
+        what,
+        key,
+        tolerance,
+        rim / _CHORDS,
+        note,
+        near=rim / _CHORDS,
+        adjustments=(Adjustment(near=larger),),
     )
 
 
@@ -149,11 +156,11 @@ def _mark(
     )
 
 
-def parts_subject(parts: tuple[Part, Part], gears: tuple[Gear, Gear], kerf: float) -> PartsSubject:
+def parts_subject(parts: tuple[Part, Part], gears: tuple[Gear, Gear], kerf: float) -> CheckedParts:
     """Return the input of checks of `parts`, with the reach on `gears` of a cutter, `kerf` mm."""
     pairs = zip(parts, gears, strict=True)
     uncut = tuple(bool(kerf) and _uncut(part, gear, kerf) for part, gear in pairs)
-    return PartsSubject(parts=parts, kerf=kerf, uncut=uncut)
+    return CheckedParts(parts=parts, kerf=kerf, uncut=uncut)
 
 
 def _uncut(part: Part, gear: Gear, kerf: float) -> bool:

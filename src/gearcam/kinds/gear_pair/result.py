@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING, Literal, get_args
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearcam.base.errors import InfeasibleError, Way, beyond_limit
+from gearcam.base.errors import Adjustment, InfeasibleError, beyond_limit
 from gearcam.base.findings import Finding, in_order, limit_of, run_checks
-from gearcam.base.numerals import shown
+from gearcam.base.numerals import formatted
 from gearcam.gears import checks  # noqa: F401  (its checks register themselves)
 from gearcam.gears.demands import demand_rim, demand_ring
 from gearcam.gears.pair import Gear, GearPair, leads, lobes_of, make_gear, make_pair, stepped
 from gearcam.gears.spec import Finish
-from gearcam.gears.subject import KIND, Subject
+from gearcam.gears.subject import KIND, CheckedPair
 from gearcam.gears.track import Wheel
 from gearcam.kinds.gear_pair.design import GearPairDesign
 from gearcam.kinds.gear_pair.tables import (
@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from gearcam.gears.contact import FlankPairs
     from gearcam.numeric.pose import Pose
     from gearcam.parts.body import Part
-    from gearcam.parts.checks import PartsSubject
+    from gearcam.parts.checks import CheckedParts
     from gearcam.pictures.drawings import Drawing, Path
     from gearcam.sheets.sheet import Sheet
 
@@ -195,19 +195,21 @@ class GearPairResult(PartsResult):
         where = f"wheel {gear.wheel}, {names[0]}"
         if len(wheels) > 1:
             where = f"wheels 1 and 2, {key}"
-            nearest.append(f"both take less than {shown(limits[worst])} mm")
+            nearest.append(f"both take less than {formatted(limits[worst])} mm")
             if own[0] == own[1]:
                 names, near, limits = [key], [min(near)], [limits[worst]]
         if own != bores:
             nearest.append("limits hold for the circle around bore and keyway")
         what = "the bore reaches the root of the teeth"
-        ways = (
-            Way(
+        adjustments = (
+            Adjustment(
                 near=dict(zip(names, near, strict=True)),
                 far={name: 0.1 * limit for name, limit in zip(names, limits, strict=True)},
             ),
         )
-        return beyond_limit(what, where, bores[worst], min(limits), "; ".join(nearest), ways=ways)
+        return beyond_limit(
+            what, where, bores[worst], min(limits), "; ".join(nearest), adjustments=adjustments
+        )
 
     @property
     def gears(self) -> tuple[Gear, Gear]:
@@ -238,22 +240,22 @@ class GearPairResult(PartsResult):
         return in_order(found)
 
     @cached_property
-    def subject(self) -> Subject:
+    def subject(self) -> CheckedPair:
         """Input of the checks of teeth; for stepped wheels the lowest step."""
         return self._subject(self.gears)
 
-    def _subject(self, gears: tuple[Gear, Gear]) -> Subject:
+    def _subject(self, gears: tuple[Gear, Gear]) -> CheckedPair:
         rim = None
         if gears[1].ring:
             rim = self.design.ring.least_rim(gears[1].largest_radius, self.pair.module)
-        return Subject(pair=gears[0].pair, gears=gears, bores=self.bores, rim=rim)
+        return CheckedPair(pair=gears[0].pair, gears=gears, bores=self.bores, rim=rim)
 
-    def _gear_findings(self, subject: Subject) -> tuple[Finding, ...]:
+    def _gear_findings(self, subject: CheckedPair) -> tuple[Finding, ...]:
         with self.stage("checks"):
             return run_checks(KIND, subject, self.design.limits)
 
     @cached_property
-    def parts_subject(self) -> PartsSubject:
+    def parts_subject(self) -> CheckedParts:
         """Input of the checks of parts."""
         from gearcam.kinds.gear_pair.parts import parts_subject
 
@@ -340,7 +342,7 @@ class GearPairResult(PartsResult):
 
         design, pose = self.design, self.design.output.pose
         rows = {"law": design.law_type, **sheet_rows(self.facts, PAIR_ROWS)}
-        rows["drawn at phi1"] = f"{shown(math.degrees(pose))} deg"
+        rows["drawn at phi1"] = f"{formatted(math.degrees(pose))} deg"
         radius = float(abs(self.pair.rolling.tracks[0].frames(np.array([pose])).p[0]))
         pair = pair_sheet(self.drawing, self.pair.shift, rows, design.name, pitch_radius=radius)
         return *super().sheets, pair
@@ -585,12 +587,12 @@ def _room(gear: Gear) -> str:
     """Return how wide the bore of a wheel may be, and why its root comes so near to the axis."""
     ends = gear.pair.law.ratio_range
     (place, ratio), (_, other) = ends if gear.wheel == 1 else reversed(ends)
-    room = f"wheel {gear.wheel} takes less than {shown(2.0 * gear.least_radius)} mm"
+    room = f"wheel {gear.wheel} takes less than {formatted(2.0 * gear.least_radius)} mm"
     if math.isclose(ratio, other, rel_tol=_WHOLE):
         return room
     return (
         f"{room}: its teeth come nearest to the axis at {angle_text(place)}, where the law's ratio "
-        f"is {shown(ratio)}"
+        f"is {formatted(ratio)}"
     )
 
 
@@ -600,7 +602,7 @@ def _demand_reached(pose: float, law: RatioLaw) -> None:
         return
     key, limit = "output.phi1_deg", math.degrees(min(max(pose, 0.0), law.period))
     what = "the drawing angle lies outside the driver's travel"
-    note = f"the driver turns from 0 to {shown(math.degrees(law.period))} deg"
+    note = f"the driver turns from 0 to {formatted(math.degrees(law.period))} deg"
     raise beyond_limit(
         what, key, math.degrees(pose), limit, note, far=0.5 * math.degrees(law.period)
     )

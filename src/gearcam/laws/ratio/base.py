@@ -17,9 +17,9 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearcam.base.display import Brief
-from gearcam.base.errors import InfeasibleError, Way, beyond_limit
-from gearcam.base.numerals import shown
+from gearcam.base.display import ShortRepr
+from gearcam.base.errors import Adjustment, InfeasibleError, beyond_limit
+from gearcam.base.numerals import formatted
 from gearcam.base.quantities import params_of
 from gearcam.base.registry import Registry
 from gearcam.base.tolerances import Tolerances
@@ -43,7 +43,7 @@ _SWING: Final = 1e6
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class RatioLaw(Brief, Displacement):
+class RatioLaw(ShortRepr, Displacement):
     """The ratio over one lobe or the travel of an open pair, and phi2, its integral.
 
     Parameters
@@ -204,8 +204,8 @@ LAWS: Final[Registry[LawEntry]] = Registry(
 """Ratio laws by name."""
 
 
-def milder(parameters: Any, mean: float) -> Iterator[Way]:
-    """Yield ways to a law whose ratio swings less.
+def milder(parameters: Any, mean: float) -> Iterator[Adjustment]:
+    """Yield adjustments to a law whose ratio swings less.
 
     A law says it in its own method ``milder(mean)``, or parameters by their value of `constant_at`.
 
@@ -218,7 +218,7 @@ def milder(parameters: Any, mean: float) -> Iterator[Way]:
 
     Yields
     ------
-    Way
+    Adjustment
         A change of the law's keys.
     """
     if hasattr(parameters, "milder"):
@@ -229,7 +229,7 @@ def milder(parameters: Any, mean: float) -> Iterator[Way]:
         if given.constant_at is not None
     }
     if far:
-        yield Way(far=far)
+        yield Adjustment(far=far)
 
 
 def make_law(
@@ -287,12 +287,14 @@ def make_law(
         )
         limit = math.degrees(lobes.advance)
         note = (
-            f"over {shown(math.degrees(lobes.period), 10)} deg of the driver the driven "
+            f"over {formatted(math.degrees(lobes.period), 10)} deg of the driver the driven "
             f"wheel turns by the value; {asks} for the limit"
         )
-        ways = () if lobes.closed else (Way(near={"law.driven_travel_deg": travelled}),)
+        adjustments = (
+            () if lobes.closed else (Adjustment(near={"law.driven_travel_deg": travelled}),)
+        )
         raise InfeasibleError(
-            what, value=travelled, limit=limit, unit="deg", nearest=note, ways=ways
+            what, value=travelled, limit=limit, unit="deg", nearest=note, adjustments=adjustments
         )
     return law
 
@@ -303,7 +305,7 @@ def _demand_positive(ratio: Piecewise, cells: Array) -> None:
         what = "the ratio must stay positive: the driven wheel would stand still or turn back"
         raise beyond_limit(what, angle_text(place), smallest, 0.0)
     if not largest <= _SWING * smallest:
-        what = f"the ratio swings between {shown(smallest)} and {shown(largest)}"
+        what = f"the ratio swings between {formatted(smallest)} and {formatted(largest)}"
         note = "the largest is at most a million times the smallest"
         raise beyond_limit(what, angle_text(top), largest / smallest, _SWING, note)
 
@@ -317,7 +319,8 @@ def _demand_c1(law: RatioLaw) -> None:
             if not math.isfinite(jump.before + jump.after):
                 raise InfeasibleError(f"the {name} has no value", where=place)
             what = (
-                f"the {name} {'is not periodic' if ends else 'jumps'}: it is {shown(jump.before)} "
-                f"before {place} and {shown(jump.after)} {'at 0 deg' if ends else 'after it'}"
+                f"the {name} {'is not periodic' if ends else 'jumps'}: it is "
+                f"{formatted(jump.before)} before {place} and {formatted(jump.after)} "
+                f"{'at 0 deg' if ends else 'after it'}"
             )
             raise InfeasibleError(what, where=place)

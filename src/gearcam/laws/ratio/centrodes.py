@@ -10,8 +10,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TypeVar
 
-from gearcam.base.display import Brief
-from gearcam.base.errors import Way, beyond_limit
+from gearcam.base.display import ShortRepr
+from gearcam.base.errors import Adjustment, beyond_limit
 from gearcam.base.quantities import ANGLE, COUNT, NUMBER, Solve, param
 from gearcam.base.rules import Breach, exactly_one
 from gearcam.base.tolerances import Tolerances
@@ -135,7 +135,7 @@ def _lobed(e: float, count: int, lobes: Lobes, tolerances: Tolerances) -> RatioL
 
 
 @dataclass(frozen=True, kw_only=True)
-class LogSpiral(Brief):
+class LogSpiral(ShortRepr):
     """``r1 = r1(0)*exp(c*phi1)``; the centrode of the mate is a spiral of the same c.
 
     While the radius of the driver grows, that of an external mate shrinks, that of a ring grows.
@@ -185,14 +185,14 @@ class LogSpiral(Brief):
                 rule = "a number; one of the two ratios of a closed pair is solved at most"
                 yield "ratios", index, '"solve" is not possible here', rule
 
-    def milder(self, mean: float) -> Iterator[Way]:  # noqa: ARG002  (same signature for all)
-        """Yield ways to a closed spiral with a smaller swing; it has no constant ratio."""
+    def milder(self, mean: float) -> Iterator[Adjustment]:  # noqa: ARG002  (same signature for all)
+        """Yield adjustments to a closed spiral with a smaller swing; it has no constant ratio."""
         if self.return_angle is not None:
             first, last = self.ratios
             start = 1.0 / float(last) if first == "solve" else first
             far = {"law.ratios": [start**0.05, "solve"]}  # 1 itself is no spiral
-            yield Way(near={"law.ratios": [start, "solve"]}, far=far)
-            yield Way(far={"law.return_deg": 180.0})
+            yield Adjustment(near={"law.ratios": [start, "solve"]}, far=far)
+            yield Adjustment(far={"law.return_deg": 180.0})
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         """Return the law for `lobes`, to `tolerances`.
@@ -218,8 +218,8 @@ class LogSpiral(Brief):
         w = lobes.mate
         if w == RING:
             key = f"law.ratios[{int(end > start)}]"
-            ways = (Way(near={key: 1.0}, far={key: min(start, end)}),)
-            demand_below_one(max(start, end), key, ways=ways)
+            adjustments = (Adjustment(near={key: 1.0}, far={key: min(start, end)}),)
+            demand_below_one(max(start, end), key, adjustments=adjustments)
         first, rise = start / (1.0 + w * start), end - start
         # logarithms of (1 + w*u)'s and of u's quotient, exact for nearly equal ratios too
         growth = w * math.log1p(w * rise / (1.0 + w * start)) / driven
@@ -241,12 +241,17 @@ def _closed(
         )
     if abs(start * end - 1.0) > TYPED:
         what = "a closed spiral has equal centrodes: its ratios are k and 1/k"
-        ways = [
-            Way(near={"law.ratios[0]": 1.0 / end}),
-            Way(near={"law.ratios[1]": 1.0 / start}),
+        adjustments = [
+            Adjustment(near={"law.ratios[0]": 1.0 / end}),
+            Adjustment(near={"law.ratios[1]": 1.0 / start}),
         ]
         raise beyond_limit(
-            what, "law.ratios", start * end, 1.0, "this is the product of both ratios", ways=ways
+            what,
+            "law.ratios",
+            start * end,
+            1.0,
+            "this is the product of both ratios",
+            adjustments=adjustments,
         )
     half, joint = 0.5 * turn, 2.0 * math.pi - turn
     k = math.sqrt(end / start)

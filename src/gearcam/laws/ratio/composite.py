@@ -9,9 +9,9 @@ from itertools import zip_longest
 
 import numpy as np
 
-from gearcam.base.display import Brief
-from gearcam.base.errors import Way, beyond_limit
-from gearcam.base.numerals import shown
+from gearcam.base.display import ShortRepr
+from gearcam.base.errors import Adjustment, beyond_limit
+from gearcam.base.numerals import formatted
 from gearcam.base.quantities import (
     ANGLE,
     NARROWEST,
@@ -34,7 +34,7 @@ from gearcam.numeric.piecewise import Piece, piecewise
 
 
 @dataclass(frozen=True, kw_only=True)
-class Multispeed(Brief):
+class Multispeed(ShortRepr):
     """Constant ratios, each over an angle of the driver, joined by smooth transitions.
 
     A closed law ends with a transition to its first ratio; an open one (with `driven_travel`) ends
@@ -63,15 +63,15 @@ class Multispeed(Brief):
             yield "angles", None, message, "one angle for each ratio"
         for index, angle in enumerate(self.angles):
             if 0.0 < angle < NARROWEST:
-                rule = f"0, or at least {shown(NARROWEST_DEG)} deg"
+                rule = f"0, or at least {formatted(NARROWEST_DEG)} deg"
                 yield "angles", index, "this phase is too short", rule
         for index in [k for k, value in enumerate(self.ratios) if value == "solve"][1:2]:
             yield "ratios", index, 'more than one "solve"', 'one "solve"'
 
-    def milder(self, mean: float) -> Iterator[Way]:
+    def milder(self, mean: float) -> Iterator[Adjustment]:
         """Yield a way towards the ratio `mean` of a closed law (see `Phases.milder`)."""
         if self.driven_travel is None:
-            yield Way(far={"law.ratios": mean})
+            yield Adjustment(far={"law.ratios": mean})
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         """Return the law for `lobes`, to `tolerances`.
@@ -100,7 +100,7 @@ class Multispeed(Brief):
 
 
 @dataclass(frozen=True, kw_only=True)
-class ThreePhasePolynomial(Brief):
+class ThreePhasePolynomial(ShortRepr):
     """A cubic down to the lowest ratio, then two parabolas up again, 003 Table 2.6.
 
     The ratio starts at b with slope zero, is `lowest` = a at the second knot with slope zero, and
@@ -126,7 +126,7 @@ class ThreePhasePolynomial(Brief):
             If the knots do not span a lobe, or the lowest ratio is not below the mean.
         """
         if abs(self.knots[3] - lobes.period) > SAME:
-            what = f"the knots must span {shown(360 / lobes.n1)} deg for these tooth counts"
+            what = f"the knots must span {formatted(360 / lobes.n1)} deg for these tooth counts"
             value = math.degrees(self.knots[3])
             note = "the limit is one lobe"
             raise beyond_limit(
@@ -155,7 +155,7 @@ class ThreePhasePolynomial(Brief):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Fourier(Brief):
+class Fourier(ShortRepr):
     """Harmonics of a lobe: ``f = 1 + sum(a_k*cos(k*n1*phi1) + b_k*sin(k*n1*phi1))``.
 
     For the ratio ``i21 = (n1/n2)*f``. For phi2 the driven angle over the mean ratio is ``phi1``
@@ -199,9 +199,11 @@ class Fourier(Brief):
         if not smallest > 0.0:
             share = mean / (mean - smallest)
             what = "the ratio must stay positive: the driven wheel would stand still or turn back"
-            note = f"with all coefficients times {shown(share)} it would just be 0"
-            ways = (Way(far={"law.cosines": 0.0, "law.sines": 0.0}),)
-            raise beyond_limit(what, angle_text(place), smallest, 0.0, note, ways=ways)
+            note = f"with all coefficients times {formatted(share)} it would just be 0"
+            adjustments = (Adjustment(far={"law.cosines": 0.0, "law.sines": 0.0}),)
+            raise beyond_limit(
+                what, angle_text(place), smallest, 0.0, note, adjustments=adjustments
+            )
         return make_law(lobes, knots, pieces, tolerances)
 
 

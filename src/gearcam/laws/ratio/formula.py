@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gearcam.base.display import Brief
-from gearcam.base.errors import InfeasibleError, Way, beyond_limit
-from gearcam.base.numerals import shown
+from gearcam.base.display import ShortRepr
+from gearcam.base.errors import Adjustment, InfeasibleError, beyond_limit
+from gearcam.base.numerals import formatted
 from gearcam.base.quantities import TEXT, param
 from gearcam.base.rules import Breach, exactly_one
 from gearcam.base.tolerances import Tolerances
@@ -48,7 +48,7 @@ _PLACES_OF_LOBE = 257
 
 
 @dataclass(frozen=True, kw_only=True)
-class Formula(Brief):
+class Formula(ShortRepr):
     """Exactly one of three formulas; derivatives are exact, by Taylor arithmetic.
 
     In Python each may be a function of phi1, rad, or a tuple of a function and its first
@@ -133,7 +133,7 @@ def _demand_repeats(function: Callable[[Jet], Jet], name: str, lobes: Span) -> N
             place, wrong, right = (float(v[bad][0]) for v in (x, other, first))
             what = (
                 f"{name} is not periodic: it must repeat every "
-                f"{shown(math.degrees(lobes.period))} deg for these tooth counts"
+                f"{formatted(math.degrees(lobes.period))} deg for these tooth counts"
             )
             note = f"the limit is the value one lobe before; use functions of {lobes.n1}*phi1"
             raise beyond_limit(what, angle_text(place + lobe * lobes.period), wrong, right, note)
@@ -184,7 +184,7 @@ def from_phi2(
 
 
 @dataclass(frozen=True, kw_only=True)
-class RackLaw(Brief):
+class RackLaw(ShortRepr):
     """The centrode of the driver or the travel of the rack over a turn, at any scale.
 
     In Python either may be a function of phi1, rad, or a tuple with its first derivatives.
@@ -216,9 +216,9 @@ class RackLaw(Brief):
             If the radius is not finite, smooth, positive or periodic, or for an internal pair.
         """
         if lobes.mate == RING:
-            way = Way(near={"pair.type": "external"})
+            way = Adjustment(near={"pair.type": "external"})
             raise InfeasibleError(
-                "a rack cannot be an internal pair", where="pair.type", ways=(way,)
+                "a rack cannot be an internal pair", where="pair.type", adjustments=(way,)
             )
         turn = 2.0 * math.pi
         name = "r1" if self.travel is None else "travel"

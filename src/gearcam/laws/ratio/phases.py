@@ -15,9 +15,9 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.base.display import Brief
-from gearcam.base.errors import Way, beyond_limit
-from gearcam.base.numerals import shown
+from gearcam.base.display import ShortRepr
+from gearcam.base.errors import Adjustment, beyond_limit
+from gearcam.base.numerals import formatted
 from gearcam.base.quantities import (
     ANGLE,
     NARROWEST,
@@ -120,7 +120,7 @@ SMOOTH: Final = ("cosine", "cubic", "quintic")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Phases(Brief):
+class Phases(ShortRepr):
     """Ratios at knots over one turn (or one lobe); closure may give one ratio.
 
     With `driven_travel` the pair is open: first and last ratio may differ, and one ratio or one
@@ -156,10 +156,10 @@ class Phases(Brief):
         elif len(open_places) > 1:
             yield (*open_places[1], 'more than one "solve"', 'one "solve" among knots and ratios')
 
-    def milder(self, mean: float) -> Iterator[Way]:
+    def milder(self, mean: float) -> Iterator[Adjustment]:
         """Yield a way towards the ratio `mean`: a mixture of two laws that close closes too."""
         if self.driven_travel is None:
-            yield Way(far={"law.ratios": mean})
+            yield Adjustment(far={"law.ratios": mean})
 
     def _closed_problems(self) -> Iterator[tuple[str, int | None, str, str]]:
         for index, value in enumerate(self.knots):
@@ -203,7 +203,7 @@ def knot_problems(knots: RowOfSome) -> Iterator[tuple[str, int | None, str, str]
     given = [(k, value) for k, value in enumerate(knots) if value != "solve"]
     for (_, before), (index, value) in pairwise(given):
         if not value >= before + NARROWEST:
-            rule = f"at least {shown(NARROWEST_DEG)} deg more than the knot before"
+            rule = f"at least {formatted(NARROWEST_DEG)} deg more than the knot before"
             yield "knots", index, "knots must rise", rule
 
 
@@ -241,12 +241,18 @@ def one_lobe(
         if repeated and np.allclose(grid, knots, rtol=0, atol=SAME):
             return np.append(knots[:count], lobes.period), lobe + lobe[:1]
     spans = (
-        "360" if lobes.n1 == 1 else f"360 (repeating {lobes.n1} times) or {shown(360 / lobes.n1)}"
+        "360"
+        if lobes.n1 == 1
+        else f"360 (repeating {lobes.n1} times) or {formatted(360 / lobes.n1)}"
     )
     what = f"the knots must span {spans} deg for these tooth counts"
-    ways = (Way(near={"law.knots_deg": [360.0 / lobes.n1 * float(k / knots[-1]) for k in knots]}),)
+    adjustments = (
+        Adjustment(
+            near={"law.knots_deg": [360.0 / lobes.n1 * float(k / knots[-1]) for k in knots]}
+        ),
+    )
     span, note = math.degrees(knots[-1]), "the limit is one lobe"
-    raise beyond_limit(what, where, span, 360 / lobes.n1, note, unit="deg", ways=ways)
+    raise beyond_limit(what, where, span, 360 / lobes.n1, note, unit="deg", adjustments=adjustments)
 
 
 def arcs_law(
@@ -325,19 +331,32 @@ def _close(
             }
             note = (
                 "closure needs this value; it is positive with the other ratios multiplied "
-                f"by less than {shown(share)}"
+                f"by less than {formatted(share)}"
             )
-            ways = (Way(near=least, far=dict.fromkeys(least, lobes.advance / lobes.period)),)
+            adjustments = (
+                Adjustment(near=least, far=dict.fromkeys(least, lobes.advance / lobes.period)),
+            )
             raise beyond_limit(
-                "no positive ratio closes the law", f"law.{name}", closing, 0.0, note, ways=ways
+                "no positive ratio closes the law",
+                f"law.{name}",
+                closing,
+                0.0,
+                note,
+                adjustments=adjustments,
             )
     elif abs(rest) > tolerances.refusal:
-        nearest, ways = _closing_values(given, weights, rest, places)
+        nearest, adjustments = _closing_values(given, weights, rest, places)
         what = "the phases do not close: they turn the driven wheel by the value, not by the limit"
         where = "law.ratios"
         value = math.degrees(lobes.advance - rest)
         raise beyond_limit(
-            what, where, value, math.degrees(lobes.advance), nearest, ways=tuple(ways), unit="deg"
+            what,
+            where,
+            value,
+            math.degrees(lobes.advance),
+            nearest,
+            adjustments=tuple(adjustments),
+            unit="deg",
         )
     values = given.tolist()
     return [*values, values[0]] if lobes.closed else values, solved
@@ -345,12 +364,12 @@ def _close(
 
 def _closing_values(
     given: np.ndarray, weights: np.ndarray, rest: float, places: Sequence[int]
-) -> tuple[str, list[Way]]:
-    """Return which value each ratio of a file must have for the law to close, as text and ways.
+) -> tuple[str, list[Adjustment]]:
+    """Return the value that each ratio of a file needs for the law to close: text, adjustments.
 
     Only that ratio is changed, wherever it holds; values that are not positive are left out.
     """
-    lines, ways, left = [], [], set(range(len(given)))
+    lines, adjustments, left = [], [], set(range(len(given)))
     while left:
         group, same, size = {min(left)}, set[int](), 0
         while size < len(group):  # knots with one ratio, and ratios of one knot
@@ -361,11 +380,11 @@ def _closing_values(
         closing = float(given[min(group)] + rest / weights[sorted(group)].sum())
         if closing > 0.0:
             names = [f"ratios[{place}]" for place in sorted(same)]
-            lines.append(f"{' = '.join(names)} = {shown(closing, 10)}")
-            ways.append(Way(near={f"law.{name}": closing for name in names}))
+            lines.append(f"{' = '.join(names)} = {formatted(closing, 10)}")
+            adjustments.append(Adjustment(near={f"law.{name}": closing for name in names}))
     if not lines:
-        return "it does not close with any other value of a single ratio", ways
-    return f"it closes with {' or '.join(lines)}", ways
+        return "it does not close with any other value of a single ratio", adjustments
+    return f"it closes with {' or '.join(lines)}", adjustments
 
 
 def _solve_knot(
@@ -392,10 +411,11 @@ def _solve_knot(
         ways = sorted(math.degrees(driven(edge)) for edge in (low, high))
         key, nearest = "law.driven_travel_deg", ways[0 if math.degrees(travel) < ways[0] else 1]
         what = "no knot between its neighbours gives the driven wheel its travel"
-        note = f"the knots allow {shown(ways[0], 10)} to {shown(ways[1], 10)} deg, both excluded"
+        least, most = (formatted(way, 10) for way in ways)
+        note = f"the knots allow {least} to {most} deg, both excluded"
         where, change = f"law.knots_deg[{index}]", {key: 0.5 * (ways[0] + ways[1])}
-        way = Way(near={key: nearest}, far=change)
-        raise beyond_limit(what, where, math.degrees(travel), nearest, note, ways=(way,))
+        way = Adjustment(near={key: nearest}, far=change)
+        raise beyond_limit(what, where, math.degrees(travel), nearest, note, adjustments=(way,))
     return filled(place), {f"knots_deg[{index}]": math.degrees(place)}
 
 

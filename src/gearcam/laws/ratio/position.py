@@ -9,9 +9,9 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.base.errors import InfeasibleError, beyond_limit
-from gearcam.base.numerals import shown
+from gearcam.base.numerals import formatted
 from gearcam.base.quantities import NUMBER, TEXT, param
 from gearcam.base.rules import Breach, exactly_one, excludes, needs
 from gearcam.base.tolerances import Tolerances
@@ -26,7 +26,7 @@ _TWO_WAYS: Final = "y with x_from and x_to, or slide with rod"
 
 
 @dataclass(frozen=True, kw_only=True)
-class MotionLaw(Brief):
+class MotionLaw(ShortRepr):
     """The position y(x) of the driven element, or of a slide that the driven crank moves.
 
     With y the driver turns in proportion to x and the driven wheel in proportion to y: ``phi1 =
@@ -91,7 +91,7 @@ class MotionLaw(Brief):
             name="y",
             low=min(start, end),
             high=max(start, end),
-            place=lambda x: f"x = {shown(x, 10)}",
+            place=lambda x: f"x = {formatted(x, 10)}",
             variable="x",
         )
         shape = function_of(self.y or "", axis, tolerances.expansion)

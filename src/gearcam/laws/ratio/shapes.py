@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.base.errors import beyond_limit
 from gearcam.base.quantities import COUNT, NUMBER, Row, param
 from gearcam.base.tolerances import Tolerances
@@ -22,7 +22,7 @@ from gearcam.numeric.roots import bracketed_root
 
 
 @dataclass(frozen=True, kw_only=True)
-class BSplineLaw(Brief):
+class BSplineLaw(ShortRepr):
     """The radius as a closed uniform cubic B-spline of control values over phi1.
 
     Control value k belongs to the angle ``k/n`` of a lobe; the curve stays within neighbouring
@@ -50,7 +50,7 @@ class BSplineLaw(Brief):
 
 
 @dataclass(frozen=True, kw_only=True)
-class RoundedPolygon(Brief):
+class RoundedPolygon(ShortRepr):
     """A regular polygon whose corners are arcs; phi1 = 0 at the middle of a side.
 
     With the corner radius c and the distance h of a side from the shaft, both over the centre

@@ -15,8 +15,8 @@ from typing import Any, ClassVar, Final
 
 import numpy as np
 
-from gearcam.base.errors import InfeasibleError, Way, beyond_limit
-from gearcam.base.numerals import shown
+from gearcam.base.errors import Adjustment, InfeasibleError, beyond_limit
+from gearcam.base.numerals import formatted
 from gearcam.base.quantities import ANGLE, param
 from gearcam.base.rules import together
 from gearcam.laws.entry import NO_JUMPS
@@ -148,9 +148,14 @@ def demand_lobes(given: tuple[int, int] | None, lobes: Lobes) -> int:
             f"they are {given[0]}/{given[1]} and {lobes.n1}/{lobes.n2}; the tooth counts "
             f"need [{lobes.n1}, {lobes.n2}] or a multiple"
         )
-        ways = [Way(near={"law.lobes": both}) for both in counts]
+        adjustments = [Adjustment(near={"law.lobes": both}) for both in counts]
         raise beyond_limit(
-            what, "law.lobes", given[0] / given[1], lobes.n1 / lobes.n2, note, ways=ways
+            what,
+            "law.lobes",
+            given[0] / given[1],
+            lobes.n1 / lobes.n2,
+            note,
+            adjustments=adjustments,
         )
     return given[0]
 
@@ -192,7 +197,7 @@ def demand_travels(span: Span) -> None:
     if not (span.closed or span.mate == RACK or 1.0 / _LARGEST <= mean <= _LARGEST):
         limit = math.degrees(span.period) * (1.0 / _LARGEST if mean < 1.0 else _LARGEST)
         what = "one wheel turns so little compared with the other that it would be a rack"
-        note = f"one turns at most {shown(_LARGEST)} times as far as the other"
+        note = f"one turns at most {formatted(_LARGEST)} times as far as the other"
         raise beyond_limit(
             what, key, math.degrees(span.advance), limit, note, far=math.degrees(span.period)
         )
@@ -201,14 +206,14 @@ def demand_travels(span: Span) -> None:
         what = "a ring must turn less than its wheel"
         where = "pair.teeth" if span.closed else key
         note = "the limit is the travel of the driver"
-        ways = () if span.closed else (Way(near={key: most}, far={key: 0.1 * most}),)
+        adjustments = () if span.closed else (Adjustment(near={key: most}, far={key: 0.1 * most}),)
         raise beyond_limit(
-            what, where, math.degrees(span.advance), most, note, ways=ways, unit="deg"
+            what, where, math.degrees(span.advance), most, note, adjustments=adjustments, unit="deg"
         )
 
 
 def demand_below_one(
-    largest: float, where: str, mean: float = 1.0, ways: Sequence[Way] = ()
+    largest: float, where: str, mean: float = 1.0, adjustments: Sequence[Adjustment] = ()
 ) -> None:
     """Refuse an internal pair whose ratio is not below 1.
 
@@ -220,7 +225,7 @@ def demand_below_one(
         Place of the largest ratio.
     mean : float
         Mean ratio of a closed law, for the message; 1 if unknown.
-    ways : sequence of Way
+    adjustments : sequence of Adjustment
         Changes of the design that may help.
 
     Raises
@@ -231,13 +236,13 @@ def demand_below_one(
     if not largest < 1.0:
         nearest = "the wheel would be as large as its ring"
         if mean < 1.0:
-            share = shown((1.0 - mean) / (largest - mean))
+            share = formatted((1.0 - mean) / (largest - mean))
             nearest += (
-                f"; about the mean of {shown(mean)}, which closure needs, the ratio may swing "
+                f"; about the mean of {formatted(mean)}, which closure needs, the ratio may swing "
                 f"by less than {share} times as much"
             )
         what = "the ratio of an internal pair must stay below 1"
-        raise beyond_limit(what, where, largest, 1.0, nearest, ways=ways)
+        raise beyond_limit(what, where, largest, 1.0, nearest, adjustments=adjustments)
 
 
 def span_of(lobes: Lobes, driver_travel: float | None, driven_travel: float | None) -> Span:
@@ -309,7 +314,7 @@ def open_travel(wheel: str) -> Any:
 
 def angle_text(angle: float) -> str:
     """Return a driver angle, rad, as a place for messages."""
-    return f"phi1 = {shown(round(math.degrees(angle), 6) + 0.0)} deg"
+    return f"phi1 = {formatted(round(math.degrees(angle), 6) + 0.0)} deg"
 
 
 def continued(ratio: Piecewise, pieces: list[Piece], mate: int) -> tuple[Array, list[Piece]]:

@@ -23,6 +23,7 @@ from gearcam.kinds.cam.blank import CamBlank
 from gearcam.kinds.cam.design import CamDesign, CamOutputSpec
 from gearcam.kinds.cam.motion import phase_table, rise_table, turn_tables
 from gearcam.kinds.gear_pair.studies import MESH
+from gearcam.laws.motion.base import MOTION_LAWS
 from gearcam.laws.phases_of_lift import (
     PHASES,
     DwellPhase,
@@ -31,7 +32,6 @@ from gearcam.laws.phases_of_lift import (
     RisePhase,
     SegmentPhase,
 )
-from gearcam.laws.rises.base import RISES
 from gearcam.parts.blank import WheelBlank
 from helpers_files import FLAT, ROLLER, SWINGING, changed, read
 
@@ -42,7 +42,7 @@ def phases_of(design: CamDesign) -> tuple[Phase, ...]:
 
 
 def shape(law: str) -> Any:
-    return RISES[law].parameters()
+    return MOTION_LAWS[law].parameters()
 
 
 def test_the_plate_cam_with_a_roller_is_read() -> None:
@@ -118,7 +118,7 @@ def _made(raw: dict[str, Any]) -> Phase:
     values = phase_table(raw["type"]).inward(rest)
     if "law" in raw:
         own = rise_table(raw["law"]).inward(rest)
-        values["law"] = RISES[raw["law"]].parameters(**own)
+        values["law"] = MOTION_LAWS[raw["law"]].parameters(**own)
     return PHASES[raw["type"]](**values)
 
 
@@ -225,7 +225,7 @@ def test_the_template_shows_every_phase_and_every_law() -> None:
         assert re.search(rf'^(# )?type = "{name}" +#', text, re.MULTILINE)
         for key in phase_table(name).entries:
             assert re.search(rf"^(# )?{key} = ", text, re.MULTILINE), key
-    for law in RISES:
+    for law in MOTION_LAWS:
         (part,) = re.findall(
             rf'^# law = "{law}"(.*?)(?:^#?$|\Z)', text, re.MULTILINE | re.DOTALL
         ) or [""]

@@ -109,7 +109,7 @@ def test_a_pivot_out_of_reach_is_moved(pivot: float, other: float) -> None:
     result = gearcam.build(read(FILE).with_({"follower.pivot_distance_mm": pivot}))
     with pytest.raises(InfeasibleError, match="cannot reach the prime circle") as caught:
         _ = result.cam
-    (_, way) = caught.value.ways
+    (_, way) = caught.value.adjustments
     assert way.near == {"follower.pivot_distance_mm": other}
     search = Search(result, None, frozenset(), 60.0)
     assert search.along(way)

@@ -115,7 +115,7 @@ def test_an_unknown_key_is_answered_with_those_of_the_form() -> None:
     for table, key, known, foreign in (
         ("cam", "foo", "roller_clearance_mm", "run_in_mm"),
         ("follower", "foo", "roller2_radius_mm", "pivot_height_mm"),
-        ("output", "foo", "motion_step_deg", "way_step_mm"),
+        ("output", "foo", "motion_step_deg", "travel_step_mm"),
     ):
         with pytest.raises(DesignError) as caught:
             FILE_DESIGN.with_({f"{table}.{key}": 1})
@@ -246,7 +246,7 @@ def test_a_tool_wider_than_the_groove_is_told(tool: float, count: int) -> None:
     result = gearcam.build(
         read(FILE, ("[output]", f"[limits]\ntool_diameter_mm = {tool}\n[output]"))
     )
-    assert [one.code for one in result.findings].count("large-tool") == count
+    assert [one.code for one in result.findings].count("tool-too-large") == count
 
 
 def test_a_bore_that_reaches_the_groove_is_refused() -> None:

@@ -72,7 +72,7 @@ def test_a_profile_is_followed() -> None:
     difference = study.columns["difference"]
     assert np.abs(difference).max() < 2e-4
     assert study.columns["error"].max() < 0.02  # the plate's corners are no curve
-    assert "u_mm" in study.columns
+    assert "travel_mm" in study.columns
 
 
 def test_the_kerf_of_a_groove_that_goes_through() -> None:
@@ -126,7 +126,7 @@ def straight(follower: dict[str, Any], cam: dict[str, Any], **motion: float) -> 
 
 def test_a_plate_of_a_few_points_is_followed() -> None:
     arm = {"type": "point", "motion": "oscillating", "arm_mm": 50, "pivot_distance_mm": 50}
-    result = straight(arm, {}, lift_deg=0.09, way_mm=60)
+    result = straight(arm, {}, lift_deg=0.09, travel_mm=60)
     outline = result.cam.walls[0].outline
     assert len(outline) < 8
     study = result.follow(outline)
@@ -135,7 +135,7 @@ def test_a_plate_of_a_few_points_is_followed() -> None:
 
 def test_a_straight_pitch_curve_has_no_radius() -> None:
     roller = {"type": "roller", "roller_radius_mm": 7.5}
-    result = straight(roller, {"thickness_mm": 5, "walls": "both"}, lift_mm=3, way_mm=300)
+    result = straight(roller, {"thickness_mm": 5, "walls": "both"}, lift_mm=3, travel_mm=300)
     json.dumps(result.facts.document, allow_nan=False)
     assert [part.outline.shape[1] for part in result.parts] == [2]
 
@@ -159,7 +159,7 @@ def test_the_way_of_a_tool() -> None:
 def test_the_picture_stands_where_it_is_asked() -> None:
     result = built(PLATE)
     with pytest.raises(InfeasibleError, match="beyond the travel of the cam") as caught:
-        built(PLATE, ("u_mm = 80", "u_mm = 171")).files("svg")
+        built(PLATE, ("travel_mm = 80", "travel_mm = 171")).files("svg")
     assert caught.value.limit == pytest.approx(170.0)
     drawing = result.form.picture(result)
     x = reach(drawing.features[0].shape)[:, 0]

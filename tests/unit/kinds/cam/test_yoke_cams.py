@@ -118,7 +118,7 @@ def test_half_turns_that_are_not_opposite_are_refused_with_a_half_that_is() -> N
     assert error.value == pytest.approx(off[worst], abs=1e-8)
     assert f"at {at[worst]:.3f}"[:7] in error.where
     assert "rise 120 deg, dwell 60 deg" in error.nearest
-    (way,) = error.ways
+    (way,) = error.adjustments
     built = gearcam.build(result.design.with_(way.near))
     assert built.findings[0].code == "face-width"
     (remedy, *_) = gearcam.remedies(result, patience=30.0).found
@@ -150,7 +150,7 @@ def test_tables_and_formulas_of_a_turn_need_opposite_half_turns_too() -> None:
     with pytest.raises(InfeasibleError, match="are not opposite") as caught:
         _ = gearcam.build(loads(bad)).cam
     assert abs(caught.value.value or 0.0) == pytest.approx(2e-5, rel=1e-2)
-    assert caught.value.ways == ()
+    assert caught.value.adjustments == ()
     assert gearcam.build(loads(bad.replace("1e-5", "4e-7"))).cam.facts
 
 

@@ -52,7 +52,7 @@ PLATE: Final[Keys] = {
 SLIDING: Final = ("translating",)
 """Names of the forms that slide, known without loading them."""
 
-OWN_OUTPUT: Final = ("pose", "place", "motion_step", "way_step")
+OWN_OUTPUT: Final = ("pose", "place", "motion_step", "travel_step")
 """Keys of ``[output]`` that only some forms have."""
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from gearcam.base.errors import beyond_limit
 from gearcam.base.facts import Fact
-from gearcam.base.numerals import shown
+from gearcam.base.numerals import formatted
 from gearcam.cams.disc import CHORD_TOLERANCE
 from gearcam.cams.groove import GrooveCam, make_groove
 from gearcam.cams.placing import make_round_follower
@@ -55,7 +55,7 @@ class Groove(Form):
             yield Fault(("follower", "roller2_radius_mm"), message, follower.roller_radius, rule)
         if cam.groove_depth >= cam.thickness:
             message = f"{show(cam.groove_depth)}: the groove would have no floor"
-            rule = f"below the thickness of {shown(cam.thickness)} mm"
+            rule = f"below the thickness of {formatted(cam.thickness)} mm"
             yield Fault(("cam", "groove_depth_mm"), message, cam.groove_depth, rule)
         blank, output = parts.get("blank"), parts.get("output")
         if blank is not None and blank.clearance:

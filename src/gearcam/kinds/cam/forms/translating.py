@@ -11,7 +11,7 @@ import numpy as np
 
 from gearcam.base.errors import beyond_limit
 from gearcam.base.facts import Fact
-from gearcam.base.numerals import shown
+from gearcam.base.numerals import formatted
 from gearcam.cams.placing import make_follower_over_plate
 from gearcam.cams.sliding import SlidingCam, make_sliding
 from gearcam.cams.wall import CHORD_TOLERANCE
@@ -55,11 +55,11 @@ class Translating(Form):
             "length", "height", "bolts", "bolt_diameter", "bolt_spacing", "bolt_height", "density",
             "clearance",
         ),
-        "output": ("place", "way_step"),
+        "output": ("place", "travel_step"),
     }  # fmt: skip
     needs: ClassVar[Keys] = {"blank": ("height",)}
     rows = (
-        "cam.way_mm", "cam.run_in_mm", "cam.run_out_mm", "cam.axis_deg", "cam.pivot_height_mm",
+        "cam.travel_mm", "cam.run_in_mm", "cam.run_out_mm", "cam.axis_deg", "cam.pivot_height_mm",
         "cam.groove.width_mm", "cam.groove.depth_mm", "cam.roller_clearance_mm", "cam.lost_motion",
     )  # fmt: skip
 
@@ -170,14 +170,14 @@ class Translating(Form):
 
     def leading(self, result: CamResult) -> str:  # noqa: ARG002
         """Return which of its sizes stands in the headline."""
-        return "way_mm"
+        return "travel_mm"
 
     def sizes(self, result: CamResult) -> dict[str, Any]:
         """Return its sizes, as facts."""
         given, cam = result.design, _cam(result)
         swings, plate = given.follower.oscillating, cam.plate
         return {
-            "way_mm": Fact(cam.way, "travel"),
+            "travel_mm": Fact(cam.way, "travel"),
             "run_in_mm": given.cam.run_in or None,
             "run_out_mm": given.cam.run_out or None,
             "axis_deg": math.degrees(given.follower.axis or 0.0) or None,
@@ -231,7 +231,7 @@ def _groove_faults(follower: Any, cam: Any, blank: Any, output: Any) -> Iterator
         yield Fault(("follower", "type"), message, follower.type, '"roller"')
     if cam.groove_depth is not None and cam.groove_depth >= cam.thickness:
         message = f"{show(cam.groove_depth)}: the groove would have no floor"
-        rule = f"below the thickness of {shown(cam.thickness)} mm; a through slot if left out"
+        rule = f"below the thickness of {formatted(cam.thickness)} mm; a through slot if left out"
         yield Fault(("cam", "groove_depth_mm"), message, cam.groove_depth, rule)
     if cam.side is not None and cam.groove_depth is None:
         message = f"{show(cam.side)}: the groove goes through the plate"
@@ -341,7 +341,12 @@ def _demand_reached(place: float, way: float) -> None:
     if place > way:
         what = "the assembly drawing is beyond the travel of the cam"
         raise beyond_limit(
-            what, "output.u_mm", place, way, "the limit is its whole travel, included", near=way
+            what,
+            "output.travel_mm",
+            place,
+            way,
+            "the limit is its whole travel, included",
+            near=way,
         )
 
 

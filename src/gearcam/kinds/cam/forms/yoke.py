@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 import numpy as np
 
-from gearcam.base.errors import Way, beyond_limit
+from gearcam.base.errors import Adjustment, beyond_limit
 from gearcam.base.facts import Fact
-from gearcam.base.numerals import shown
+from gearcam.base.numerals import formatted
 from gearcam.cams.disc import YokeCam, make_yoke
 from gearcam.designs.faults import Fault, show
 from gearcam.kinds.cam.forms.base import FORMS, PLATE, Keys
@@ -102,18 +102,18 @@ def _demand_opposite(program: Program, motion: Motion) -> None:
         return
     rule = "half a turn later the lift must be the total lift less the present one; phases of half "
     rule += "a turn, 180 deg, are enough"
-    ways: tuple[Way, ...] = ()
+    adjustments: tuple[Adjustment, ...] = ()
     half = agreeing(motion) if isinstance(motion, Sequence) else ()
     if half:
         from gearcam.kinds.cam.motion import motion_of
 
         phases: Any = motion_of(half, ("translating", "turning"))
-        told = ", ".join(f"{one['type']} {shown(one['angle_deg'])} deg" for one in phases)
+        told = ", ".join(f"{one['type']} {formatted(one['angle_deg'])} deg" for one in phases)
         rule += f", and these agree best with the first half: {told}"
-        ways = (Way(near={"motion": phases}),)
+        adjustments = (Adjustment(near={"motion": phases}),)
     what = "the two half turns of a yoke's lift are not opposite to each other"
-    where = f"motion, at {shown(math.degrees(off.theta))} deg"
-    raise beyond_limit(what, where, off.value, _MISS, rule, ways=ways, unit="mm")
+    where = f"motion, at {formatted(math.degrees(off.theta))} deg"
+    raise beyond_limit(what, where, off.value, _MISS, rule, adjustments=adjustments, unit="mm")
 
 
 FORMS.register(Yoke())

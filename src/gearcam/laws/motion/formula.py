@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.base.errors import beyond_limit
-from gearcam.base.numerals import shown
+from gearcam.base.numerals import formatted
 from gearcam.base.quantities import TEXT, param
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import TYPED, Axis, LawEntry
@@ -19,7 +19,7 @@ from gearcam.laws.formula import (
     formula_problems,
     function_of,
 )
-from gearcam.laws.rises.base import RISES, Rise
+from gearcam.laws.motion.base import MOTION_LAWS, MotionFunction
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import Piece, piecewise
 
@@ -28,7 +28,7 @@ _WHERE: Final = "motion.formula"
 _AXIS: Final = Axis(
     name="S",
     high=1.0,
-    place=lambda x: f"{_WHERE}, x = {shown(round(x, 5))}",
+    place=lambda x: f"{_WHERE}, x = {formatted(round(x, 5))}",
     variable=_VARIABLE,
     remedy='for such values use the law "table", whose curve has no corners',
 )
@@ -36,7 +36,7 @@ _NAMES: Final = ("S", "its velocity S'", "its acceleration S''", "its jerk S'''"
 
 
 @dataclass(frozen=True, kw_only=True)
-class FormulaRise(Brief):
+class FormulaRise(ShortRepr):
     """S as a formula in x, which is phi; derivatives are exact, by Taylor arithmetic.
 
     In Python it may be a function, or a tuple of a function and its first derivatives.
@@ -50,7 +50,7 @@ class FormulaRise(Brief):
         """Yield what is wrong by reading: field, index, message, allowed."""
         yield from formula_problems("formula", self.formula, _VARIABLE)
 
-    def build(self, tolerances: Tolerances) -> Rise:
+    def build(self, tolerances: Tolerances) -> MotionFunction:
         """Return the rise, to `tolerances`.
 
         Raises
@@ -63,13 +63,13 @@ class FormulaRise(Brief):
         start, end = (float(v) for v in shape(Jet.variable([0.0, 1.0], 0)).derivatives()[0])
         for place, value in ((0.0, start), (1.0, end)):
             if not abs(value - place) <= TYPED:
-                what = f"the formula must give {shown(place)} at x = {shown(place)}"
+                what = f"the formula must give {formatted(place)} at x = {formatted(place)}"
                 raise beyond_limit(
                     what, _WHERE, value, place, _from_corner_to_corner(self.formula, start, end)
                 )
         scale = 1.0 / (end - start)
         piece = Piece(lambda x: (shape(x) - start) * scale)
-        return Rise(
+        return MotionFunction(
             function=piecewise([0.0, 1.0], [piece]),
             cuts=cuts[1:-1].tolist(),
             errors=errors_of(shape),
@@ -86,7 +86,7 @@ def _from_corner_to_corner(formula: Given, start: float, end: float) -> str:
     return f"this one does: {top}/({end - start:.17g})"
 
 
-RISES.register(
+MOTION_LAWS.register(
     LawEntry(
         name="formula",
         example=FormulaRise(formula="x - sin(2*pi*x)/(2*pi)"),

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from gearcam.base.quantities import NUMBER, param
 from gearcam.laws.entry import LawEntry
-from gearcam.laws.rises.base import NARROWEST, RISES, ClosedForm
-from gearcam.laws.rises.pieces import from_half, lag, reflected
+from gearcam.laws.motion.base import MOTION_LAWS, NARROWEST, ClosedForm
+from gearcam.laws.motion.pieces import from_half, lag, reflected
 from gearcam.numeric.jets import Jet, sin
 from gearcam.numeric.piecewise import Piece, Piecewise, piecewise
 
@@ -134,7 +134,7 @@ class TrapezoidalAcceleration(ClosedForm):
         return from_half([rising, (flat, constant), (q, falling)])
 
 
-RISES.register(
+MOTION_LAWS.register(
     LawEntry(
         name="constant-velocity",
         example=ConstantVelocity(),

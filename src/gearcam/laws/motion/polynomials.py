@@ -16,8 +16,8 @@ import numpy as np
 
 from gearcam.base.quantities import NUMBER, Row, param
 from gearcam.laws.entry import LawEntry
-from gearcam.laws.rises.base import RISES, ClosedForm
-from gearcam.laws.rises.pieces import about, from_both_ends
+from gearcam.laws.motion.base import MOTION_LAWS, ClosedForm
+from gearcam.laws.motion.pieces import about, from_both_ends
 from gearcam.numeric.piecewise import Piecewise, piecewise
 
 _MOST: Final = 8
@@ -135,7 +135,7 @@ class Polynomial3456(_TwoEnded):
     end = (0.0, -6.0, 0.0)
 
 
-RISES.register(
+MOTION_LAWS.register(
     LawEntry(
         name="2-3",
         example=Polynomial23(),

@@ -4,7 +4,7 @@ A rise gives the lift over the whole lift, S, over the cam angle over the whole 
 from 0 to 1; S', S'' and S''' are its velocity, acceleration and jerk. A lift program scales it to
 a phase of the cam and mirrors it for a return. Every rise is a piecewise analytic function with
 exact derivatives, made from its *parameters*, a frozen dataclass with the method
-``build(tolerances)``; ``RISES.register`` adds it to the registry.
+``build(tolerances)``; ``MOTION_LAWS.register`` adds it to the registry.
 
 Source: 000 section 3.3.2, eqs. (3.3)-(3.5).
 """
@@ -16,7 +16,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Final, Protocol
 
-from gearcam.base.display import Brief
+from gearcam.base.display import ShortRepr
 from gearcam.base.registry import Registry
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.displacement import EXACT
@@ -28,7 +28,7 @@ NARROWEST: Final = 1e-4
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Rise:
+class MotionFunction:
     """A rise on the unit square: S over phi in [0, 1], from 0 to 1.
 
     Parameters
@@ -49,15 +49,15 @@ class Rise:
     errors: tuple[float, ...] = EXACT
 
 
-class RiseParameters(Protocol):
+class MotionLawParameters(Protocol):
     """Parameters of a rise."""
 
-    def build(self, tolerances: Tolerances) -> Rise:
+    def build(self, tolerances: Tolerances) -> MotionFunction:
         """Return the rise, to `tolerances`, or raise `InfeasibleError`."""
         ...
 
 
-class ClosedForm(Brief, ABC):
+class ClosedForm(ShortRepr, ABC):
     """Parameters of a rise whose function is a closed form without tolerance."""
 
     mirrored: ClassVar[bool] = False
@@ -66,9 +66,9 @@ class ClosedForm(Brief, ABC):
     def function(self) -> Piecewise:
         """S over phi."""
 
-    def build(self, tolerances: Tolerances) -> Rise:  # noqa: ARG002  (same signature for all)
+    def build(self, tolerances: Tolerances) -> MotionFunction:  # noqa: ARG002  (same signature for all)
         """Return the rise."""
-        return Rise(function=self.function(), mirrored=self.mirrored)
+        return MotionFunction(function=self.function(), mirrored=self.mirrored)
 
 
 _HOMES: Final = {
@@ -86,9 +86,9 @@ _HOMES: Final = {
     "points": ("b-spline", "table"),
     "formula": ("formula",),
 }
-"""The laws of each module, by their names in design files; `laws.rises` names their classes."""
+"""The laws of each module, by their names in design files; `laws.motion` names their classes."""
 
-RISES: Final[Registry[LawEntry]] = Registry(
-    "rise", {f"gearcam.laws.rises.{home}": names for home, names in _HOMES.items()}
+MOTION_LAWS: Final[Registry[LawEntry]] = Registry(
+    "rise", {f"gearcam.laws.motion.{home}": names for home, names in _HOMES.items()}
 )
 """Motion laws by name."""

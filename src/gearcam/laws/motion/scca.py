@@ -15,11 +15,11 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from gearcam.base.numerals import shown
+from gearcam.base.numerals import formatted
 from gearcam.base.quantities import NUMBER, param
 from gearcam.laws.entry import TYPED, LawEntry
-from gearcam.laws.rises.base import NARROWEST, RISES, ClosedForm
-from gearcam.laws.rises.pieces import from_half, lag
+from gearcam.laws.motion.base import MOTION_LAWS, NARROWEST, ClosedForm
+from gearcam.laws.motion.pieces import from_half, lag
 from gearcam.numeric.jets import Jet, sin
 from gearcam.numeric.piecewise import Piecewise
 
@@ -38,13 +38,13 @@ class Scca(ClosedForm):
         """Yield what is wrong by reading: field, index, message, allowed."""
         for name in ("b", "c", "d"):
             if 0.0 < getattr(self, name) < NARROWEST:
-                rule = f"0, or at least {shown(NARROWEST)}"
+                rule = f"0, or at least {formatted(NARROWEST)}"
                 yield name, None, "this sector is too narrow", rule
         total = self.b + self.c + self.d
         if abs(total - 1.0) > TYPED:
             last = 1.0 - self.b - self.c
-            hint = f"; with this b and c, d is {shown(last, 10)}" if last >= 0.0 else ""
-            yield "d", None, f"b + c + d is {shown(total, 10)}", f"b + c + d = 1{hint}"
+            hint = f"; with this b and c, d is {formatted(last, 10)}" if last >= 0.0 else ""
+            yield "d", None, f"b + c + d is {formatted(total, 10)}", f"b + c + d = 1{hint}"
 
     def function(self) -> Piecewise:
         """S of the three sectors of the first half."""
@@ -101,7 +101,7 @@ class ModifiedSine(ClosedForm):
         return scca(0.25, 0.0, 0.75)
 
 
-RISES.register(
+MOTION_LAWS.register(
     LawEntry(
         name="scca",
         example=Scca(b=0.2, c=0.5, d=0.3),

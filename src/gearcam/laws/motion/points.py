@@ -10,14 +10,14 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.base.numerals import shown
+from gearcam.base.numerals import formatted
 from gearcam.base.quantities import COUNT, NUMBER, TEXT, Row, param
 from gearcam.base.rules import Breach, exactly_one
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.columns import FromFile, demand
 from gearcam.laws.entry import TYPED, LawEntry
-from gearcam.laws.rises.base import RISES, ClosedForm, Rise
-from gearcam.laws.rises.pieces import about, spline
+from gearcam.laws.motion.base import MOTION_LAWS, ClosedForm, MotionFunction
+from gearcam.laws.motion.pieces import about, spline
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.least_jerk import chain_slopes, coefficients
 from gearcam.numeric.piecewise import Piecewise
@@ -57,8 +57,8 @@ class BSplineRise(ClosedForm):
             return
         for index, place, corner in ((0, "first", 0.0), (count - 1, "last", 1.0)):
             if self.control[index] != corner:
-                message = f"the {place} control value is not {shown(corner)}"
-                yield "control", index, message, f"{shown(corner)}"
+                message = f"the {place} control value is not {formatted(corner)}"
+                yield "control", index, message, f"{formatted(corner)}"
 
     def function(self) -> Piecewise:
         """S over phi, exact polynomials between the knots."""
@@ -132,7 +132,7 @@ class TableRise(FromFile):
             return self.rows.columns(("x", "y"))
         return np.array([self.x, self.y], dtype=float).T, []
 
-    def build(self, tolerances: Tolerances) -> Rise:  # noqa: ARG002  (a spline is in closed form)
+    def build(self, tolerances: Tolerances) -> MotionFunction:  # noqa: ARG002  (a spline is in closed form)
         """Return the rise.
 
         Raises
@@ -144,7 +144,7 @@ class TableRise(FromFile):
         points = self.points[0].copy()
         points[0], points[-1] = (0.0, 0.0), (1.0, 1.0)
         ends = self.start, self.end
-        return Rise(function=_through(points, *ends), errors=_errors(points, *ends))
+        return MotionFunction(function=_through(points, *ends), errors=_errors(points, *ends))
 
 
 def _problems(points: Array) -> Iterator[Breach]:
@@ -155,10 +155,10 @@ def _problems(points: Array) -> Iterator[Breach]:
         for row, place, corner in ((0, "first", 0.0), (len(points) - 1, "last", 1.0)):
             value = float(points[row, column])
             if abs(value - corner) > TYPED:
-                message = f"the {place} {name} is {shown(value, 10)}, not {shown(corner)}"
+                message = f"the {place} {name} is {formatted(value, 10)}, not {formatted(corner)}"
                 yield name, row, message, "x and y from 0 to 1: shares of the angle and of the lift"
     for row in np.flatnonzero(np.diff(points[:, 0]) < _CLOSEST)[:1]:
-        rule = f"each x at least {shown(_CLOSEST)} above the one before"
+        rule = f"each x at least {formatted(_CLOSEST)} above the one before"
         yield "x", int(row) + 1, "x does not rise", rule
 
 
@@ -187,7 +187,7 @@ def _errors(
     return tuple(np.max(changes, axis=0).tolist())
 
 
-RISES.register(
+MOTION_LAWS.register(
     LawEntry(
         name="b-spline",
         example=BSplineRise(control=(0.0, 0.0, 0.0, 1.0, 1.0, 1.0), degree=5),

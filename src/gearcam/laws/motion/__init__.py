@@ -1,0 +1,47 @@
+"""Motion laws: S over phi on the unit square, in the registry `motion.base.MOTION_LAWS`.
+
+Their parameters are attributes: ``gearcam.motion_laws.Cycloidal()``.
+
+Examples
+--------
+>>> import gearcam as gc
+>>> gc.motion_laws.Cycloidal()
+Cycloidal()
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from gearcam.base.registry import classes_in, lazy_names
+
+if TYPE_CHECKING:
+    from gearcam.laws.motion.formula import FormulaRise as FormulaRise
+    from gearcam.laws.motion.points import BSplineRise as BSplineRise
+    from gearcam.laws.motion.points import TableRise as TableRise
+    from gearcam.laws.motion.polynomials import Polynomial as Polynomial
+    from gearcam.laws.motion.polynomials import Polynomial23 as Polynomial23
+    from gearcam.laws.motion.polynomials import Polynomial345 as Polynomial345
+    from gearcam.laws.motion.polynomials import Polynomial3456 as Polynomial3456
+    from gearcam.laws.motion.polynomials import Polynomial4567 as Polynomial4567
+    from gearcam.laws.motion.polynomials import Polynomial56789 as Polynomial56789
+    from gearcam.laws.motion.scca import ModifiedSine as ModifiedSine
+    from gearcam.laws.motion.scca import ModifiedTrapezoid as ModifiedTrapezoid
+    from gearcam.laws.motion.scca import Scca as Scca
+    from gearcam.laws.motion.simple import ConstantAcceleration as ConstantAcceleration
+    from gearcam.laws.motion.simple import ConstantVelocity as ConstantVelocity
+    from gearcam.laws.motion.simple import Cycloidal as Cycloidal
+    from gearcam.laws.motion.simple import Harmonic as Harmonic
+    from gearcam.laws.motion.simple import SineTrapezoidalVelocity as SineTrapezoidalVelocity
+    from gearcam.laws.motion.simple import TrapezoidalAcceleration as TrapezoidalAcceleration
+    from gearcam.laws.motion.simple import TrapezoidalVelocity as TrapezoidalVelocity
+
+
+def _classes() -> dict[str, type]:
+    from gearcam.laws.motion.base import MOTION_LAWS
+
+    return classes_in(MOTION_LAWS)
+
+
+if not TYPE_CHECKING:  # type checkers then find misspelt names
+    __getattr__, __dir__ = lazy_names("there is no rise", _classes)
