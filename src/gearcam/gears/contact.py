@@ -1,9 +1,19 @@
-"""Which flanks of a pair are in contact, and when: as designed, and as mounted.
+"""Which flanks of a pair are in contact, when and where: as designed, and as mounted.
 
 A *side* is the `sigma` of the driver's flanks: -1 drives (the driver turns by ``-phi1``), +1 holds
 back. The pairs of flanks of a side are numbered by j, the driver's tooth counted from 0 over all
-turns; an open pair has only those that lie in both blanks. `gearcam.gears.normals` has the
-equations of contact.
+turns; an open pair has only those that lie in both blanks.
+
+Two flanks touch at a common normal, with zero distance along it. A flank's normal at roll s passes
+through the pitch point of that roll, for any position `sf`: the flanks of one side are parallel
+curves, involutes of one base curve. At a phase of the driver three equations (equal directions of
+the normals, and two coordinates) give the rolls of both wheels at which a pair touches, and the
+*lead* of the driven wheel, the angle by which it is ahead of its nominal position. As designed the
+rolls are equal and the lead is 0. The lead is the same for all pairs of evenly spaced flanks: they
+touch together at any centre distance.
+
+Positions are those of the mounted pair, as complex numbers: O1 at 0, O2 at the centre distance
+along x, for a ring at the opposite side. A rack has no O2; its lead is a travel in mm.
 
 Nothing is refused: flanks that cannot touch form no pair. Depends on flanks and tracks.
 """
@@ -13,14 +23,17 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearcam.gears.normals import Mounting, touch
-from gearcam.gears.track import WHEELS, Wheel
-from gearcam.numeric.arrays import Array, Ints, Mask
+from gearcam.base.display import ShortRepr
+from gearcam.gears.flank import Toothing
+from gearcam.gears.rolling import Guide
+from gearcam.gears.track import WHEELS, Frames, Track, Wheel
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane
+from gearcam.numeric.roots import damped_newton, solve
 
 if TYPE_CHECKING:  # generating wheels needs more than numpy
     from gearcam.gears.outline import Flanks
@@ -39,18 +52,57 @@ _ONE = 1e-12
 _ALIKE = 1e-9
 """Contact ratios closer than this are equal: rounding separates what symmetry makes equal."""
 
+_SMALL = 1e-7
+"""Step, in pitches, after which the next one is below rounding."""
+
+_MISS = 1e-9
+"""Largest residual of the equations, in pitches and rad."""
+
+_FAR = 3.0
+"""Largest distance, in pitches, of a roll from the nominal one in a pair of teeth that mesh."""
+
+_FREE = np.array([[1, 2, 3], [0, 2, 3], [0, 1, 3]])
+"""Indices of the unknowns of phase, both rolls and lead, by which of the first three is known."""
+
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class FlankPairs(Mounting):
-    """The pairs of flanks of one side, numbered by j.
+class FlankPairs(ShortRepr):
+    """The pairs of flanks of one side of two mounted wheels, numbered by j.
 
     Parameters
     ----------
+    toothings : (Toothing, Toothing)
+        Driver and driven wheel.
+    guide : Guide
+        Guide of the driven wheel.
+    side : {-1, +1}
+        sigma of the driver's flanks.
+    distance : float, mm
+        Mounted position of the driven frame along x: the centre distance, negative for a ring;
+        for a rack the offset from its design position.
     flanks : (Flanks, Flanks)
         The finished flanks of both wheels.
     """
 
+    toothings: tuple[Toothing, Toothing]
+    guide: Guide
+    side: int
+    distance: float
     flanks: tuple[Flanks, Flanks]
+
+    @property
+    def track(self) -> Track:
+        """The driver's track; the driven one shares its parameter and arc length."""
+        return self.toothings[0].track
+
+    @property
+    def pitch(self) -> float:
+        """Pitch, mm."""
+        return self.toothings[0].pitch
+
+    def sigma(self, wheel: Wheel) -> int:
+        """Return sigma of a wheel's flanks."""
+        return self.side if wheel == 1 else -self.side
 
     @property
     def closed(self) -> bool:
@@ -223,7 +275,7 @@ def flank_pairs(gears: tuple[Gear, Gear], side: int, distance: float | None = No
     side : {-1, +1}
         `DRIVE` or `COAST`.
     distance : float, mm, optional
-        Mounted distance (see `Mounting`); by default the design distance.
+        Mounted distance (see `FlankPairs`); by default the design distance.
 
     Returns
     -------
@@ -237,3 +289,185 @@ def flank_pairs(gears: tuple[Gear, Gear], side: int, distance: float | None = No
         side=side,
         distance=first.pair.shift if distance is None else distance,
     )
+
+
+class FlankPositions(NamedTuple):
+    """Positions of pairs of flanks: arrays of one shape.
+
+    Parameters
+    ----------
+    phi1 : array, rad
+        Phase of the driver.
+    one, two : arrays, rad
+        Rolls of driver and driven wheel, as driver angles.
+    lead : array, rad
+        Angle by which the driven wheel is ahead of its nominal position; for a rack mm of travel.
+    """
+
+    phi1: Array
+    one: Array
+    two: Array
+    lead: Array
+
+    def take(self, index: Ints | Mask) -> FlankPositions:
+        """Return some of them, by `index`."""
+        return FlankPositions(*(values[index] for values in self))
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Normals(ShortRepr):
+    """Normals of n driver's flanks and of n driven flanks, in the mounted pair.
+
+    Parameters
+    ----------
+    frames : (Frames, Frames)
+        At the rolls of driver and driven wheel.
+    foot : (2, n) complex array, mm
+        Pitch points of these rolls.
+    normal : (2, n) complex array
+        Unit normals of the flanks.
+    equations : (3, n) array, rad and mm
+        Angle between the normals; distance of the flanks along the driver's, and across it.
+    slopes : (3, 4, n) array
+        Their derivatives by phase, roll of the driver, roll of the driven wheel (as driver
+        angles) and lead.
+    """
+
+    frames: tuple[Frames, Frames]
+    foot: Plane
+    normal: Plane
+    equations: Array
+    slopes: Array
+
+    def take(self, index: Ints | Mask) -> Normals:
+        """Return some of them, by `index`."""
+        first, second = self.frames
+        return Normals(
+            frames=(first.some(index), second.some(index)),
+            foot=self.foot[:, index],
+            normal=self.normal[:, index],
+            equations=self.equations[:, index],
+            slopes=self.slopes[..., index],
+        )
+
+    @property
+    def rates(self) -> Array:
+        """Derivatives of both rolls (as driver angles) and the lead by the phase, (3, n)."""
+        return -solve(self.slopes[:, _FREE[0]], self.slopes[:, 0])
+
+
+def normals(
+    pairs: FlankPairs, positions: FlankPositions, separation: Array, motion: Array | None = None
+) -> Normals:
+    """Return normals of both wheels' flanks, and the residuals of the equations of contact.
+
+    Parameters
+    ----------
+    pairs : FlankPairs
+        The wheels and the side.
+    positions : FlankPositions
+        Positions of n pairs.
+    separation : (n,) array, mm
+        sf2 - sf1.
+    motion : (2, n) array, optional
+        `Guide.motion` at the phases, if already computed.
+
+    Returns
+    -------
+    Normals
+
+    Notes
+    -----
+    With n the driver's unit normal and P the pitch points, flanks touch where the normals are
+    parallel and ``conj(n)*(P2 - P1) + (s1 - s2 + sf2 - sf1)*cos(alpha) = 0``. Derivatives by s
+    from ``dn/ds = +-1j*kappa*n`` (+ on wheel 1) and ``dP/ds = T``.
+    """
+    phi1, one, two, lead = positions
+    first, second = (
+        toothing.frames(angle) for toothing, angle in zip(pairs.toothings, (one, two), strict=True)
+    )
+    guide, alpha = pairs.guide, pairs.toothings[0].cutter.alpha
+    cosine, turned = math.cos(alpha), np.exp(-1j * phi1)
+    n1, n2 = (
+        toothing.normals(frames, pairs.sigma(toothing.wheel))
+        for toothing, frames in zip(pairs.toothings, (first, second), strict=True)
+    )
+    nominal, ratio = guide.motion(phi1) if motion is None else motion
+    stand = guide.pose(nominal + lead)
+    back = stand.rotation
+    foot1, n1 = first.p * turned, n1 * turned
+    foot2, n2, tangent2 = second.p * back + stand.shift, n2 * back, second.t * back
+    carried, turns = guide.carried(foot2), guide.turns
+    foot2 = foot2 + pairs.distance
+    across = np.conj(n1) * (foot2 - foot1)
+    aligned = np.conj(n2) * n1
+    distance = across.real + (first.s - second.s + separation) * cosine
+    by_lead = np.conj(n1) * carried
+    by_one = -1j * (first.kappa * across + pairs.side * math.sin(alpha))
+    by_two = np.conj(n1) * tangent2 - cosine
+    # the driver turns by -phi1, the driven wheel as by the lead
+    by_phase = 1j * np.conj(n1) * foot2 + ratio * by_lead
+    angle = [
+        -aligned.real * (1.0 + turns * ratio),
+        aligned.real * first.kappa * first.speed,
+        aligned.real * second.kappa * second.speed,
+        -aligned.real * turns,
+    ]
+    moves = [by_phase, by_one * first.speed, by_two * second.speed, by_lead]
+    return Normals(
+        frames=(first, second),
+        foot=np.stack([foot1, foot2]),
+        normal=np.stack([n1, n2]),
+        equations=np.stack([aligned.imag, distance, across.imag]),
+        slopes=np.stack([np.stack(angle), np.real(moves), np.imag(moves)]),
+    )
+
+
+def touch(
+    pairs: FlankPairs,
+    start: Array,
+    separation: Array,
+    known: Ints | int = 0,
+    limits: tuple[Array, Array] | None = None,
+) -> tuple[FlankPositions, Normals, Mask]:
+    """Find where flanks touch.
+
+    Parameters
+    ----------
+    pairs : FlankPairs
+        The wheels and the side.
+    start : (n,) array, rad
+        The known one: the phase, or the roll of a wheel as driver angle. The search begins with
+        all three equal, as designed.
+    separation : (n,) array, mm
+        sf2 - sf1.
+    known : int or (n,) int array
+        Which one is known: 0 the phase, 1 the driver's roll, 2 the driven wheel's.
+    limits : ((n,) array, (n,) array), optional
+        If the phase is known: driver angles, rad, that bound both rolls.
+
+    Returns
+    -------
+    positions : FlankPositions
+        Solutions by Newton's method, with steps of half a pitch at most.
+    at : Normals
+        The normals there.
+    found : (n,) bool array
+        Whether it converged to a contact within `_FAR` pitches of the nominal roll.
+    """
+    every = np.stack([start, start, start, np.zeros(start.shape)])
+    free, rows = _FREE[np.broadcast_to(known, start.shape)].T, np.arange(start.size)
+    scale = pairs.track.frames(start, curved=False).speed / pairs.pitch
+    motion = None if np.any(known) else pairs.guide.motion(start)
+
+    def evaluate(x: Array, some: Ints) -> tuple[Normals, Array, Array]:
+        every[free[:, some], some] = x
+        given = motion if motion is None else motion[:, some]
+        at = normals(pairs, FlankPositions(*every[:, some]), separation[some], given)
+        return at, at.equations, at.slopes[:, free[:, some], np.arange(some.size)]
+
+    _, at = damped_newton(evaluate, every[free, rows], scale, _SMALL, limits)
+    found = np.abs(at.equations[0]) <= _MISS
+    found &= np.abs(at.equations[1:]).max(axis=0) <= _MISS * pairs.pitch
+    found &= np.abs(every[:3] - start).max(axis=0) * scale <= _FAR
+    return FlankPositions(*every), at, found

@@ -17,13 +17,20 @@ from gearcam.base.errors import Adjustment, InfeasibleError, beyond_limit
 from gearcam.base.numerals import formatted
 from gearcam.base.tolerances import Tolerances
 from gearcam.gears.corners import highest_corners
-from gearcam.gears.ends import body_runs, cut_ends
 from gearcam.gears.flank import Curve, Rows, Toothing, WheelCurves
+from gearcam.gears.flank_ends import (
+    TipEnds,
+    Undercut,
+    feet,
+    find_cusps,
+    find_tips,
+    flank_crossings,
+    near,
+)
+from gearcam.gears.open_ends import body_runs, cut_ends
 from gearcam.gears.rounding import round_tips
 from gearcam.gears.spaces import ROWS_PER_TOOTH, entangled, regular_rows, untangle
 from gearcam.gears.spec import RingSpec
-from gearcam.gears.tips import TipEnds, feet, find_tips, flank_crossings, near
-from gearcam.gears.undercut import Undercut, find_cusps
 from gearcam.laws.ratio.span import angle_text
 from gearcam.numeric.arrays import Array, Ints, Mask
 from gearcam.numeric.bulges import as_pairs

@@ -15,9 +15,9 @@ from gearcam.base.facts import Fact, Facts
 from gearcam.base.numerals import formatted
 from gearcam.base.tolerances import Tolerances
 from gearcam.gears.cutter import choose_cutter, ring_pinions
-from gearcam.gears.demands import demand_clearance, demand_cutters, demand_shift, settle_rack
 from gearcam.gears.flank import Toothing
 from gearcam.gears.outline import Outline, build_outline
+from gearcam.gears.rack_limits import demand_clearance, demand_cutters, demand_shift, settle_rack
 from gearcam.gears.rolling import Rolling, roll
 from gearcam.gears.spec import BasicRack, Finish, PairSpec, Rack, RingSpec, StepsSpec
 from gearcam.gears.track import Wheel

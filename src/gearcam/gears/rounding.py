@@ -19,7 +19,7 @@ import numpy as np
 from gearcam.base.errors import beyond_limit
 from gearcam.base.numerals import formatted
 from gearcam.gears.flank import Curve, Rows, Toothing
-from gearcam.gears.tips import ROUGH, TipEnds, cross, flank_at, flank_crossings, near
+from gearcam.gears.flank_ends import ROUGH, TipEnds, cross, flank_at, flank_crossings, near
 from gearcam.gears.track import Frames
 from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.roots import largest_fitting

@@ -14,8 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from gearcam.gears.flank import Curve, Rows, Toothing, WheelCurves
-from gearcam.gears.tips import ROUGH, TipEnds, near
-from gearcam.gears.undercut import Undercut
+from gearcam.gears.flank_ends import ROUGH, TipEnds, Undercut, near
 from gearcam.numeric.arrays import Array, Ints
 from gearcam.numeric.crossings import (
     Branch,

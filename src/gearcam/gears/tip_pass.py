@@ -18,9 +18,9 @@ import numpy as np
 
 from gearcam.gears.corners import RadialCurve
 from gearcam.gears.flank import Toothing
+from gearcam.gears.flank_ends import feet
 from gearcam.gears.outline import Outline
-from gearcam.gears.tips import feet
-from gearcam.numeric.arrays import Array, Ints, Mask, Plane
+from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.roots import bracketed_root
 
 _ROLLS = 4
@@ -28,9 +28,6 @@ _ROLLS = 4
 
 _ANGLE = 1e-14
 """Tolerance of a crossing, in turns of the driver: feet are no more exact."""
-
-_NEAR = 1e-6
-"""Part of a turn over which a corner's path is taken as straight where it crosses a height."""
 
 _DIGITS = 9
 """Digits by which margins, in pitches, are compared: of equal ones the first is reported."""
@@ -52,16 +49,12 @@ class TipPass(NamedTuple):
         Its side: 1 where s is larger, else -1.
     phi1 : float, rad
         Driver angle.
-    slope : float
-        Movement of the corner along the centrode per unit of movement away from it; 0 for a
-        passage at a fixed angle.
     """
 
     margin: float
     tooth: int
     sigma: float
     phi1: float
-    slope: float = 0.0
 
 
 class _Corners(NamedTuple):
@@ -88,22 +81,16 @@ def tip_pass(wheel: Outline, ring: Outline) -> TipPass:
     own, edge = wheel.toothing, RadialCurve(ring.toothing, ring.toothing.cutter.addendum)
     corners = _corners(wheel, ring.toothing)
     stays = _follow(own, ring.toothing, corners, edge)
-    margins, angles, crosses = _margins(own, ring, corners.points, edge, stays)
+    margins, angles = _margins(own, ring, corners.points, edge, stays)
     if not np.isfinite(margins).any():
         return TipPass(math.inf, 0, 0.0, 0.0)
     worst = int(np.argmin(np.round(margins / own.pitch, _DIGITS)))
     corner, phi1 = stays.corner[worst % len(stays.corner)], float(angles[worst])
-    slope = 0.0
-    if crosses[worst]:
-        beside = phi1 + _NEAR * own.track.around * np.array([-1.0, 1.0])
-        along, height = _feet(own, ring.toothing, edge, corners.points[corner], beside)
-        slope = abs(float(np.diff(along)[0] / np.diff(height)[0]))
     return TipPass(
         float(margins[worst]),
         int(corners.tooth[corner]),
         float(corners.sigma[corner]),
         phi1 % own.track.around if own.closed else phi1,
-        slope,
     )
 
 
@@ -139,8 +126,8 @@ def _follow(own: Toothing, mate: Toothing, corners: _Corners, edge: RadialCurve)
 
 def _margins(
     own: Toothing, ring: Outline, points: Plane, edge: RadialCurve, stays: SpaceIntervals
-) -> tuple[Array, Array, Mask]:
-    """Return margins, mm, driver angles, rad, and a mask of height crossings, for all ends, (2n,).
+) -> tuple[Array, Array]:
+    """Return margins, mm, and driver angles, rad, for all ends, (2n,).
 
     First relative to the tooth before the space, with its flank sigma = 1, then to the one after.
     """
@@ -172,11 +159,11 @@ def _margins(
     margin = side * (seen(phi)[0] - mate.track.arc_length(tips.foot[index]))
     if mate.closed:
         margin = (margin + 0.5 * mate.length) % mate.length - 0.5 * mate.length
-    return np.where(meets, margin, math.inf), phi, crosses
+    return np.where(meets, margin, math.inf), phi
 
 
 def _feet(
-    own: Toothing, mate: Toothing, edge: RadialCurve, points: Plane | complex, phi: Array
+    own: Toothing, mate: Toothing, edge: RadialCurve, points: Plane, phi: Array
 ) -> tuple[Array, Array]:
     """Return arc lengths of the feet of corners on the ring's centrode, and heights, mm."""
     here, there = own.frames(phi, curved=False), mate.frames(phi, curved=False)

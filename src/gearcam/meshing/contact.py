@@ -10,8 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearcam.gears.contact import FlankPairs
-from gearcam.gears.normals import FlankPositions, normals, touch
+from gearcam.gears.contact import FlankPairs, FlankPositions, normals, touch
 from gearcam.gears.track import WHEELS
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 
@@ -215,7 +214,7 @@ def contact_columns(found: Contacts, distance: float) -> dict[str, Array]:
     found : Contacts
         The points.
     distance : float, mm
-        Mounted distance (see `Mounting`).
+        Mounted distance (see `FlankPairs`).
 
     Returns
     -------

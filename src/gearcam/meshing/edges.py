@@ -1,10 +1,10 @@
 """First contact: how far the driven wheel can turn until flanks or their ends, the edges, touch.
 
-Where flanks share a tangent, `gearcam.gears.normals` solves for it directly. This module is for
+Where flanks share a tangent, `gearcam.gears.contact` solves for it directly. This module is for
 phases in which none do, and for wheels whose teeth are not evenly spaced.
 
 With wheel 1 held at a phase, points of a driver's flank and of its mate are compared at equal
-heights relative to the guide of the driven wheel (see `gearcam.gears.guide`): the angle between
+heights relative to the guide of the driven wheel (see `gearcam.gears.rolling`): the angle between
 them is the turn that brings these points together; for a rack, the travel. The extreme over the
 common range of heights is the first contact of the pair, where the flanks share a tangent or at the
 end of one of them (an edge). The driven wheel lies between the largest of these turns on the
@@ -21,8 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearcam.gears.contact import FlankPairs
-from gearcam.gears.normals import touch
+from gearcam.gears.contact import FlankPairs, touch
 from gearcam.gears.track import WHEELS
 from gearcam.meshing.contact import Contacts
 from gearcam.meshing.placed_flanks import PlacedFlanks

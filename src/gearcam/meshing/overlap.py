@@ -69,7 +69,7 @@ class Turning:
     driver, driven : HalfTeeth
         The wheels.
     distance : float, mm
-        Mounted distance (see `Mounting`).
+        Mounted distance (see `FlankPairs`).
     moved : float, mm
         Offset of the teeth along the centrodes, for a step of stepped wheels.
     """

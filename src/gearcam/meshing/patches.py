@@ -16,8 +16,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearcam.gears.contact import FlankPairs
-from gearcam.gears.normals import FlankPositions, Normals, normals
+from gearcam.gears.contact import FlankPairs, FlankPositions, Normals, normals
 from gearcam.gears.track import WHEELS, Wheel
 from gearcam.meshing.contact import outermost, sought
 from gearcam.meshing.placed_flanks import PlacedFlanks

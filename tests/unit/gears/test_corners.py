@@ -14,8 +14,8 @@ from gearcam.gears import corners
 from gearcam.gears.corners import highest_corners
 from gearcam.gears.cutter import Cutter
 from gearcam.gears.flank import Toothing
+from gearcam.gears.flank_ends import find_tips
 from gearcam.gears.outline import Outline, build_outline
-from gearcam.gears.tips import find_tips
 from gearcam.laws.ratio.centrodes import LogSpiral
 from gearcam.numeric.arrays import Array, Mask
 from helpers_built import fresh

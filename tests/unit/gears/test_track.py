@@ -14,10 +14,10 @@ from numpy.typing import ArrayLike
 from gearcam.base.tolerances import DEFAULT
 from gearcam.gears.cutter import choose_cutter
 from gearcam.gears.flank import Toothing
+from gearcam.gears.flank_ends import cross
 from gearcam.gears.outline import build_outline
 from gearcam.gears.rolling import roll
 from gearcam.gears.spec import BasicRack
-from gearcam.gears.tips import cross
 from gearcam.gears.track import ArcLength, Frames, Track
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.laws.ratio.span import Lobes

@@ -18,7 +18,7 @@ from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.cli import main
 from gearcam.console import remedy_lines, wrapped
 from gearcam.gears.checks import largest_module
-from gearcam.gears.demands import contact_bound
+from gearcam.gears.rack_limits import contact_bound
 from gearcam.gears.subject import CheckedPair
 from gearcam.gears.track import LeastRadius
 from gearcam.laws.ratio.constant import Constant

@@ -80,7 +80,7 @@ class PairAdvice(Advice):
 
     def hopeless(self, result: Any) -> bool:
         """Return whether the flanks of a `result` alone exclude a contact ratio of 1."""
-        from gearcam.gears.demands import contact_bound
+        from gearcam.gears.rack_limits import contact_bound
 
         return contact_bound(*result.pair.toothings) < 1.0
 

@@ -17,8 +17,8 @@ from gearcam.base.errors import Adjustment, InfeasibleError, beyond_limit
 from gearcam.base.findings import Finding, in_order, limit_of, run_checks
 from gearcam.base.numerals import formatted
 from gearcam.gears import checks  # noqa: F401  (its checks register themselves)
-from gearcam.gears.demands import demand_rim, demand_ring
 from gearcam.gears.pair import Gear, GearPair, leads, lobes_of, make_gear, make_pair, stepped
+from gearcam.gears.rack_limits import demand_rim, demand_ring
 from gearcam.gears.spec import Finish
 from gearcam.gears.subject import KIND, CheckedPair
 from gearcam.gears.track import Wheel

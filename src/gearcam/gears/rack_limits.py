@@ -13,9 +13,8 @@ import numpy as np
 from gearcam.base.errors import Adjustment, beyond_limit
 from gearcam.base.numerals import formatted, rounded_down
 from gearcam.gears.flank import Toothing
+from gearcam.gears.flank_ends import find_cusps, find_tips
 from gearcam.gears.spec import BasicRack, Finish, PairSpec, Rack, RingSpec
-from gearcam.gears.tips import find_tips
-from gearcam.gears.undercut import find_cusps
 from gearcam.numeric.arrays import Array
 
 _TIP_PART = 0.95

@@ -16,8 +16,8 @@ import numpy as np
 
 from gearcam.base.errors import Adjustment, InfeasibleError, beyond_limit
 from gearcam.gears.flank import Curve, Rows, Toothing
+from gearcam.gears.flank_ends import TipEnds
 from gearcam.gears.spec import RingSpec
-from gearcam.gears.tips import TipEnds
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.bulges import as_complex, as_pairs
 from gearcam.numeric.contour import Run
