@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import ClassVar, Protocol
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
@@ -22,8 +22,8 @@ from gearcam.base.numerals import formatted
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.jets import Jet, cos, sin
 
-Pair = tuple[Jet | float, Jet | float]
-"""Real and imaginary part of a vector."""
+Pair = tuple[Any, Any]
+"""Real and imaginary part of a vector: jets, arrays or floats."""
 
 
 def unit(angle: Array | float) -> Plane:

@@ -46,7 +46,7 @@ import cmath
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, replace
-from typing import ClassVar, Self
+from typing import Any, ClassVar, Self, TypeVar
 
 import numpy as np
 
@@ -66,6 +66,9 @@ _STANDSTILL = 1e-7
 """Least relative difference of a face's downward speed from the cam's: below it the contact is a
 million pivot distances away, or stays at one point."""
 
+
+Values = TypeVar("Values", Jet, Array)
+"""Jets, or numbers alone."""
 
 Line = tuple[complex, ...]
 """Points of an open line, mm."""
@@ -408,25 +411,24 @@ class Round(Follower):
         """Return positions (n,) with the centre at heights, mm."""
 
     @abstractmethod
-    def axes(self, p: Jet) -> tuple[Pair, Pair]:
+    def axes(self, p: Jet | Array) -> tuple[Pair, Pair]:
         """Return ``i*conj(t)`` and ``conj(t)*C`` for the centre C and the direction t."""
 
-    def _moving(self, carrier: Carrier, p: Jet, ds: Jet) -> tuple[Jet, Jet]:
+    def _moving(self, carrier: Carrier, p: Values, ds: Values) -> tuple[Values, Values]:
         """Return A and B (see the module)."""
         a, b = carrier.seen(*self.axes(p))
-        return a if isinstance(a, Jet) else 0.0 * p + a, b + self.lever * ds
+        across: Any = 0.0 * p + a if isinstance(a, float) else a
+        return across, b + self.lever * ds
 
     def contact(self, carrier: Carrier, p: Jet, ds: Jet, inset: float) -> Contact:
         """Return the contact (see `Follower.contact`)."""
         across, against = self._moving(carrier, p, ds)
-        a, b, a_slope, b_slope = (
-            across.shortened(),
-            against.shortened(),
-            across.differentiated(),
-            against.differentiated(),
-        )
+        a, b = across.shortened(), against.shortened()
         square = a * a + b * b
-        turning = (carrier.rate - self.spin * ds.shortened()) - (a * b_slope - b * a_slope) / square
+        turning = (b * across.differentiated() - a * against.differentiated()) / square
+        turning = turning + carrier.rate
+        if self.spin:
+            turning = turning - self.spin * ds.shortened()
         speed = sqrt(square)
         return Contact(
             across=b,
@@ -441,23 +443,23 @@ class Round(Follower):
         self, carrier: Carrier, x: Array, p: Array, ds: Array, inset: float
     ) -> tuple[Plane, Plane]:
         """Return points and tangents (see `Follower.trace`)."""
-        a, b = (jet.c[0] for jet in self._moving(carrier, Jet([p]), Jet([ds])))
+        a, b = self._moving(carrier, p, ds)
         tangents = (a + 1j * b) / np.hypot(a, b) * unit(self.lean(p) - carrier.rate * x)
         return carrier.under(x, self.centre(p)) - 1j * inset * tangents, tangents
 
     def jump(self, carrier: Carrier, p: Array, ds: Array) -> Array:
         """Return the parameter of a jump (see `Follower.jump`)."""
-        a, b = (jet.c[0] for jet in self._moving(carrier, Jet([p]), Jet([ds])))
+        a, b = self._moving(carrier, p, ds)
         return np.arctan(b / np.abs(a))
 
     def velocity(self, carrier: Carrier, p: Array, jump: Array) -> Array:
         """Return the velocities in a jump (see `Follower.velocity`)."""
-        a, b = (jet.c[0] for jet in self._moving(carrier, Jet([p]), Jet([np.zeros_like(p)])))
+        a, b = self._moving(carrier, p, np.zeros_like(p))
         return (np.abs(a) * np.tan(jump) - b) / self.lever
 
     def jump_speed(self, carrier: Carrier, p: Array, inset: float) -> Array:
         """Return the speed around the centre (see `Follower.jump_speed`)."""
-        return inset * np.sign(self._moving(carrier, Jet([p]), Jet([np.zeros_like(p)]))[0].c[0])
+        return inset * np.sign(self._moving(carrier, p, np.zeros_like(p))[0])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -521,7 +523,7 @@ class Stem(Round):
         """Return the tilt."""
         return self.tilt
 
-    def axes(self, p: Jet) -> tuple[Pair, Pair]:
+    def axes(self, p: Jet | Array) -> tuple[Pair, Pair]:
         """Return ``exp(-i*tilt)`` and ``p - i*offset``."""
         return (math.cos(self.tilt), -math.sin(self.tilt)), (p, -self.offset)
 
@@ -656,7 +658,7 @@ class Arm(Round):
         """Return the angle of its direction from the y axis, rad."""
         return -self.hand * p
 
-    def axes(self, p: Jet) -> tuple[Pair, Pair]:
+    def axes(self, p: Jet | Array) -> tuple[Pair, Pair]:
         """Return ``exp(i*hand*p)``, and ``i*hand*arm - i*exp(i*hand*p)*pivot``.
 
         Of the angle itself: the centre's coordinates would lose the digits of the first part, whose

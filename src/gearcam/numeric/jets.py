@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from functools import lru_cache
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -62,7 +62,7 @@ class Jet:
 
     def differentiated(self) -> Jet:
         """Return the derivative, of one order less."""
-        return Jet([k * value for k, value in enumerate(self.c[1:], 1)])
+        return Jet([self.c[1], *(k * value for k, value in enumerate(self.c[2:], 2))])
 
     def shortened(self) -> Jet:
         """Return the same function, of one order less."""
@@ -227,8 +227,10 @@ def cos(x: Jet) -> Jet:
     return _oscillate(x, sine=False)
 
 
-def sin_cos(x: Jet) -> tuple[Jet, Jet]:
-    """Sine and cosine of a jet, in half the time of both."""
+def sin_cos(x: Jet | Array) -> tuple[Any, Any]:
+    """Sine and cosine of a jet, in half the time of both, or of an array."""
+    if not isinstance(x, Jet):
+        return np.sin(x), np.cos(x)
     f: list[Value] = [np.sin(x.c[0])]
     g: list[Value] = [np.cos(x.c[0])]
     for k in range(1, x.order + 1):
