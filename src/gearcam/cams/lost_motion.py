@@ -178,7 +178,7 @@ def largest_lost_motion(inner: Rest, outer: Rest) -> Extreme:
     x = places_between(np.append(kept[kept < last - apart], last))
     values, slopes = (found.reshape(x.shape) for found in missing(x.ravel()))
     best = int(values.argmax())
-    place, value = float(x.flat[best]), float(values.flat[best])
+    place, value = float(x.ravel()[best]), float(values.ravel()[best])
     # near a largest value a function lies below its tangents: few cells can contain it
     low, high, width = slopes[:, :-1], slopes[:, 1:], np.diff(x, axis=1)
     top = np.minimum(values[:, :-1] + low * width, values[:, 1:] - high * width)
