@@ -17,11 +17,12 @@ from gearcam.base.findings import CHECKS, Check
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import REQUIRED
 from gearcam.base.tolerances import DEFAULT
-from gearcam.cams.spec import FOLLOWERS, CamSpec, FollowerSpec
+from gearcam.cams.spec import FOLLOWERS
 from gearcam.cli import parsers
 from gearcam.commands import EXIT_CODES
 from gearcam.designs.table import Table
-from gearcam.kinds.cam.forms.base import FORMS, Form, form_keys
+from gearcam.designs.validate import made_of
+from gearcam.kinds.cam.forms.base import FORMS, VARIANTS
 from gearcam.kinds.cam.motion import WITH_LAW, phase_table, rise_table, summary, turn_tables
 from gearcam.kinds.gear_pair.design import law_table
 from gearcam.laws.entry import LawEntry
@@ -118,44 +119,44 @@ def motion_laws() -> Iterator[str]:
     )
 
 
+def follower_faults(form: str, kind: str, motion: str) -> list[Any]:
+    """Return the keys about which a follower of a form has faults if no other key is given."""
+    known, raw = VARIANTS.table("follower", form), {"type": kind, "motion": motion}
+    owner: Any = known.owner
+    return [fault.path[-1] for fault in made_of(known, owner, raw, (), ("follower",))[1]]
+
+
 def wanted(kind: str, motion: str) -> str:
     """Return the keys that a follower must be given: those that it misses where it has none."""
-    known = {one.name: key for key, one in KINDS["cam"].table("follower").entries.items()}
-    return listed(known[name] for name, *_ in FollowerSpec(type=kind, motion=motion).problems())
+    return listed(follower_faults(VARIANTS.default, kind, motion))
 
 
 def followers_of(form: str) -> tuple[str, str]:
     """Return the types of followers and the motions that a form of cams takes."""
-    cam = CamSpec(form=form, groove_depth=1.0)
     taken = {
         (kind, motion)
         for kind in FOLLOWERS
         for motion in ("translating", "oscillating")
-        if not {("follower", "type"), ("follower", "motion")}
-        & {
-            fault.path
-            for fault in FORMS[form].faults(
-                {"follower": FollowerSpec(type=kind, motion=motion), "cam": cam}
-            )
-        }
+        if not {"type", "motion"} & {*follower_faults(form, kind, motion)}
     }
     kinds, motions = ({pair[k] for pair in taken} for k in (0, 1))
     in_order = [kind for kind in FOLLOWERS if kind in kinds]
     return listed(in_order), listed(sorted(motions, reverse=True))
 
 
-def must(form: Form) -> Iterator[str]:
+def must(name: str) -> Iterator[str]:
     """Yield the keys that a form must be given besides those of every cam."""
-    for title, fields in form.needs.items():
-        entries = KINDS["cam"].table(title).entries.values()
-        yield from (f"{title}.{entry.key}" for entry in entries if entry.name in fields)
+    for title in VARIANTS.titles:
+        disc, own = (VARIANTS.table(title, form).entries for form in (VARIANTS.default, name))
+        yield from (
+            f"{title}.{key}" for key, entry in own.items() if entry.required and key not in disc
+        )
 
 
 def own_keys(name: str) -> Iterator[str]:
     """Yield the keys that a form takes and a disc does not."""
-    for title in KINDS["cam"].tables:
-        known = KINDS["cam"].table(title)
-        disc, own = (form_keys({"cam": {"form": one}}, known) for one in ("disc", name))
+    for title in VARIANTS.titles:
+        disc, own = (VARIANTS.table(title, form).entries for form in (VARIANTS.default, name))
         yield from (f"{title}.{key}" for key in own if key not in disc)
 
 
@@ -176,7 +177,7 @@ def followers() -> Iterator[str]:
     yield "## Forms"
     yield "`form` in the table `[cam]`:"
     rows = (
-        (code(name), form.doc, *followers_of(name), listed(must(form)), listed(own_keys(name)))
+        (code(name), form.doc, *followers_of(name), listed(must(name)), listed(own_keys(name)))
         for name, form in FORMS.items()
     )
     heads = ("`form`", "description", "followers", "motions", "required keys", "additional keys")
@@ -226,7 +227,8 @@ def ordered_kinds() -> Iterator[Kind]:
 
 def about(known: Table) -> str:
     """Return what a table is about: the first sentence of what is made from it."""
-    first = (known.owner.__doc__ or "").partition("\n")[0] if known.owner else ""
+    owner = known.owner or VARIANTS.table(known.title, VARIANTS.default).owner
+    first = (owner.__doc__ or "").partition("\n")[0] if owner else ""
     return re.sub(r"\s*\(see `\w+`\)|`", "", first)
 
 
@@ -241,7 +243,7 @@ def table_section(kind: Kind, title: str) -> Iterator[str]:
     if kind.name != "cam" or title == "limits":
         yield keys_of(known)
         return
-    takes = {name: form_keys({"cam": {"form": name}}, known) for name in FORMS}
+    takes = {name: kind.table_in({"cam": {"form": name}}, title).entries for name in FORMS}
     rows = (
         (*row, "all" if len(forms) == len(FORMS) else listed(forms))
         for row in key_rows(known.entries)

@@ -16,7 +16,7 @@ from gearcam.cams.lost_motion import Rest
 from gearcam.cams.measures import over_the_end
 from gearcam.cams.placing import make_follower_over_plate
 from gearcam.cams.sliding import SlidingCam, make_sliding
-from gearcam.cams.spec import FollowerSpec
+from gearcam.cams.spec import PlateFollower
 from gearcam.laws.phases_of_lift import DwellPhase, ReturnPhase, RisePhase
 from gearcam.laws.program import make_program
 from helpers_cams import law, there_and_back
@@ -47,7 +47,7 @@ RUN = 10.0
 
 
 def made(name: str = "upright", radius: float = 6.0, run: float = 0.0, **sizes: Any) -> SlidingCam:
-    spec = FollowerSpec(type="roller", roller_radius=radius, **FOLLOWERS[name])
+    spec = PlateFollower(type="roller", roller_radius=radius, **FOLLOWERS[name])
     lift = 0.2 if spec.oscillating else 15.0
     still = [DwellPhase(angle=run)] if run else []
     phases = [

@@ -15,7 +15,7 @@ from gearcam.base.errors import InfeasibleError
 from gearcam.base.tolerances import DEFAULT
 from gearcam.cams.placing import make_follower_over_plate
 from gearcam.cams.sliding import SlidingCam, make_sliding
-from gearcam.cams.spec import FollowerSpec
+from gearcam.cams.spec import PlateFollower
 from gearcam.laws.phases_of_lift import DwellPhase, SegmentPhase
 from gearcam.laws.program import make_program
 from helpers_cams import close
@@ -55,7 +55,7 @@ def made_of(design: Given) -> SlidingCam | InfeasibleError:
             replace(one, velocity=None, acceleration=None) if isinstance(one, SegmentPhase) else one
             for one in phases
         ]
-    spec = FollowerSpec(**follower)
+    spec = PlateFollower(**follower)
     share = way / sum(float(one.angle) for one in phases)
     phases = [replace(one, angle=float(one.angle) * share) for one in phases]
     before, after = ([DwellPhase(angle=run * way)] if run else [] for run in runs)

@@ -174,6 +174,11 @@ def allowance(*, doc: str) -> Any:
     return param(LENGTH, default=0.0, doc=doc, **bounds)
 
 
+def fixed(value: Any) -> Any:
+    """Return a field of a subclass that has one `value` only: it is no parameter there."""
+    return dataclasses.field(default=value, init=False)
+
+
 def params_of(owner: type) -> dict[str, Param]:
     """Return the parameters of a dataclass by field name, in order."""
     return {

@@ -22,7 +22,7 @@ import math
 from gearcam.base.errors import Adjustment, InfeasibleError, beyond_limit
 from gearcam.base.numerals import formatted
 from gearcam.cams.followers import Arm, FlatArm, FlatStem, Follower, Round, Stem
-from gearcam.cams.spec import CamSpec, FollowerSpec
+from gearcam.cams.spec import CamSpec, FollowerSpec, PlateFollower
 
 
 def make_follower(follower: FollowerSpec, cam: CamSpec) -> Follower:
@@ -87,12 +87,12 @@ def make_round_follower(follower: FollowerSpec, cam: CamSpec) -> Round:
     return Stem(start=0.0, radius=radius, offset=offset).starting_at(size)
 
 
-def make_follower_over_plate(follower: FollowerSpec) -> Round:
+def make_follower_over_plate(follower: PlateFollower) -> Round:
     """Return a round follower over a cam that slides.
 
     Parameters
     ----------
-    follower : FollowerSpec
+    follower : PlateFollower
         The follower.
 
     Returns
@@ -105,8 +105,8 @@ def make_follower_over_plate(follower: FollowerSpec) -> Round:
         If the arm does not reach the height of zero lift.
     """
     if not follower.oscillating:
-        return Stem(start=0.0, radius=follower.radius, tilt=follower.axis or 0.0)
-    arm, height = _given(follower.arm, "an arm"), follower.pivot_height or 0.0
+        return Stem(start=0.0, radius=follower.radius, tilt=follower.axis)
+    arm, height = _given(follower.arm, "an arm"), follower.pivot_height
     if not abs(height) < arm:
         what = f"the arm does not reach {'down' if height > 0.0 else 'up'} to zero lift"
         key, limit = "follower.pivot_height_mm", math.copysign(arm, height)

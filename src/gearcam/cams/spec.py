@@ -7,27 +7,25 @@ follower moves along ``+y`` at ``x = offset``; an *oscillating* one swings about
 
 Refused when a design is read: sizes that such a follower does not have, and missing ones.
 
-Depends on quantities only.
+Depends on quantities and rules only.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any, ClassVar, Final
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.numerals import formatted
-from gearcam.base.quantities import ANGLE, LENGTH, LONGEST, TEXT, param
+from gearcam.base.quantities import ANGLE, LENGTH, LONGEST, TEXT, fixed, param
+from gearcam.base.rules import Breach, Rule, exactly_one, excluded, needed_with, only_with
 
 KIND: Final = "cams"
 """The checks of cams."""
 
 FOLLOWED: Final = "followed profiles"
 """The checks of given profiles that a follower was put on."""
-
-Problem = tuple[str, int | None, str, str]
-"""Field, number of an item, what is wrong, what is allowed."""
 
 POINTED: Final = ("knife-edge", "point")
 """Two words for a follower without a radius."""
@@ -40,18 +38,24 @@ FOLLOWERS: Final = {
 }
 """What touches the cam."""
 
-_ROUND: Final = {"roller": "roller_radius", "domed": "dome_radius"}
-"""The radii of round followers."""
+
+SECOND_ROLLER: Final = (
+    "radius of the second roller: on the same pin, for the outer wall of a groove, or on the "
+    "second of conjugate cams; roller_radius_mm if left out"
+)
+ROLLER_CLEARANCE: Final = "width of a groove minus the roller's diameter"
+GROOVE_SIDE: Final = "face that a groove is cut into; front (+z) if left out"
+"""Meanings of keys that several forms have."""
 
 
-def _size(*, example: float | None = None, doc: str) -> Any:
-    """Return a length that a follower or cam may have."""
-    return param(LENGTH, default=None, gt=0, le=LONGEST, example=example, doc=doc)
+def positive_length(*, example: float | None = None, default: Any = None, doc: str) -> Any:
+    """Return the field of a length above 0; for `example`, `default` and `doc` see `param`."""
+    return param(LENGTH, default=default, gt=0, le=LONGEST, example=example, doc=doc)
 
 
-def _run(*, example: float | None = None, doc: str) -> Any:
-    """Return a length before or after the motion."""
-    return param(LENGTH, default=None, ge=0, le=LONGEST, example=example, doc=doc)
+def form_param(name: str) -> Any:
+    """Return the field of the form of a cam, which has this `name`."""
+    return param(TEXT, default=name, doc="the form of the cam")
 
 
 def _aside(*, doc: str) -> Any:
@@ -59,9 +63,32 @@ def _aside(*, doc: str) -> Any:
     return param(LENGTH, default=0.0, ge=-LONGEST, le=LONGEST, doc=doc)
 
 
+_NO_TYPE: Final = "does not apply to a {} follower"
+_NO_STEM: Final = "does not apply to a {} follower"
+_NO_ARM: Final = "does not apply to an {} follower"
+
+GUIDE_RULES: Final = (
+    only_with(("roller_radius",), "type", "roller", why=_NO_TYPE),
+    needed_with(("roller_radius",), "type", "roller", why="is missing for a {} follower"),
+    only_with(("dome_radius",), "type", "domed", why=_NO_TYPE),
+    needed_with(("dome_radius",), "type", "domed", why="is missing for a {} follower"),
+    only_with(("arm", "pivot_distance"), "motion", "oscillating", why=_NO_STEM),
+    needed_with(("pivot_distance",), "motion", "oscillating", why="is missing for an {} follower"),
+)
+"""Rules for the contact element and the guide of followers of all forms."""
+
+FACE_RULES: Final = (
+    only_with(("face_offset",), "motion", "oscillating", why=_NO_STEM),
+    only_with(("face_offset",), "type", "flat", why=_NO_TYPE),
+)
+"""Rules for the offset of a face."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class FollowerSpec(ShortRepr):
     """A follower: its contact element, and how it is guided.
+
+    Forms of cams with other followers have their own classes, such as `GrooveFollower`.
 
     Examples
     --------
@@ -81,66 +108,22 @@ class FollowerSpec(ShortRepr):
         choices=("translating", "oscillating"),
         doc="motion of the follower",
     )
-    roller_radius: float | None = _size(doc="radius of the roller")
-    roller2_radius: float | None = _size(
-        example=6,
-        doc="radius of the second roller: on the same pin, for the outer wall of a groove, or on "
-        "the second of conjugate cams; roller_radius_mm if left out",
+    roller_radius: float | None = positive_length(doc="radius of the roller")
+    dome_radius: float | None = positive_length(
+        example=60, doc="radius of the face of a domed follower"
     )
-    dome_radius: float | None = _size(example=60, doc="radius of the face of a domed follower")
     offset: float = _aside(
         doc="offset of a translating follower's line of motion from the cam's axis; a positive one "
         "lowers the pressure angle of the rise"
     )
-    arm: float | None = _size(
+    arm: float | None = positive_length(
         example=60, doc="distance from the pivot of an oscillating follower to its roller's centre"
     )
-    pivot_distance: float | None = _size(
+    pivot_distance: float | None = positive_length(
         example=70, doc="distance from the cam's axis to the pivot of an oscillating follower"
-    )
-    arm2: float | None = _size(
-        example=60,
-        doc="distance from the pivot to the roller on the second of conjugate cams; arm_mm if left "
-        "out",
-    )
-    roller_distance: float | None = _size(
-        example=85, doc="distance of the two rollers of a translating follower on conjugate cams"
-    )
-    arms_angle: float | None = param(
-        ANGLE,
-        default=None,
-        gt=0,
-        lt=360,
-        example=80,
-        doc="angle between the two arms of an oscillating follower on conjugate cams",
-    )
-    preload: float | None = param(
-        LENGTH,
-        default=None,
-        ge=0,
-        le=10,
-        example=0.02,
-        doc="how much closer than nominal the rollers of conjugate cams are mounted, so that "
-        "they are pressed apart when fitted; 0 if left out",
     )
     face_offset: float = _aside(
         doc="offset of the face of an oscillating flat follower from its pivot, towards the cam"
-    )
-
-    axis: float | None = param(
-        ANGLE, default=None, ge=-80, le=80,
-        example=10,
-        doc="inclination of a translating follower on a translating cam, towards the direction in "
-        "which the cam moves; 0 if left out",
-    )  # fmt: skip
-    pivot_height: float | None = param(
-        LENGTH,
-        default=None,
-        ge=-LONGEST,
-        le=LONGEST,
-        example=0,
-        doc="of an oscillating follower on a translating cam: height of its pivot above the "
-        "roller's centre at zero lift; 0 if left out",
     )
 
     @property
@@ -158,43 +141,69 @@ class FollowerSpec(ShortRepr):
         """Radius of its round face, mm; 0 of a point."""
         return self.roller_radius or self.dome_radius or 0.0
 
-    def problems(self) -> Iterator[Problem]:
+    rules = (
+        *GUIDE_RULES,
+        *FACE_RULES,
+        only_with(("offset",), "motion", "translating", why=_NO_ARM),
+    )
+
+    def problems(self) -> Iterator[Breach]:
         """Yield contradictions: field, index, message, what is allowed."""
-        for kind, name in _ROUND.items():
-            given = getattr(self, name) is not None
-            if given and self.type != kind:
-                yield (
-                    name,
-                    None,
-                    f"does not apply to a {self.type} follower",
-                    f'with type = "{kind}"',
-                )
-            if not given and self.type == kind:
-                yield name, None, f"is missing for a {kind} follower", "a radius above 0"
-        swinging = {"pivot_distance": True, "arm": not self.flat}
-        for name, asked in swinging.items():
-            given = getattr(self, name) is not None
-            if given and not self.oscillating:
-                yield (
-                    name,
-                    None,
-                    "does not apply to a translating follower",
-                    'with motion = "oscillating"',
-                )
-            elif given and not asked:
-                yield name, None, "does not apply to a flat follower", "leave it out"
-            elif self.oscillating and asked and not given:
-                yield name, None, "is missing for an oscillating follower", "a length above 0"
-        if self.offset and self.oscillating:
-            yield "offset", None, "does not apply to an oscillating follower", "leave it out"
-        if self.face_offset and not (self.flat and self.oscillating):
-            rule = "with an oscillating flat follower"
-            yield "face_offset", None, "applies to an oscillating flat follower only", rule
+        if self.flat and self.arm is not None:
+            yield "arm", None, "does not apply to a flat follower", "leave it out"
+        if self.oscillating and not self.flat and self.arm is None:
+            yield "arm", None, "is missing for an oscillating follower", "a length above 0"
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlateFollower(FollowerSpec):
+    """A round follower over a translating cam.
+
+    Parameters
+    ----------
+    offset, face_offset : float, mm
+        It has none.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.PlateFollower(type="roller", roller_radius=8.0, axis=0.1)
+    PlateFollower(type='roller', roller_radius=8, axis=0.1)
+    """
+
+    offset: float = fixed(0.0)
+    face_offset: float = fixed(0.0)
+    axis: float = param(
+        ANGLE,
+        default=0.0,
+        ge=-80,
+        le=80,
+        doc="inclination of a translating follower on a translating cam, towards the direction in "
+        "which the cam moves",
+    )
+    pivot_height: float = _aside(
+        doc="of an oscillating follower on a translating cam: height of its pivot above the "
+        "roller's centre at zero lift"
+    )
+
+    rules = (
+        *GUIDE_RULES,
+        excluded(
+            "type", "flat", why="over a translating cam a flat face envelops no profile",
+            allowed='"roller", "domed" or "point"',
+        ),
+        only_with(("axis",), "motion", "translating", why=_NO_ARM),
+        only_with(
+            ("pivot_height",), "motion", "oscillating", why="a translating follower has no pivot"
+        ),
+    )  # fmt: skip
 
 
 @dataclass(frozen=True, kw_only=True)
 class CamSpec(ShortRepr):
     """A cam: its form, its size, its direction of turning.
+
+    Forms with other sizes have their own classes, such as `GrooveSpec`.
 
     Examples
     --------
@@ -204,16 +213,11 @@ class CamSpec(ShortRepr):
     True
     """
 
-    form: str = param(
-        TEXT,
-        default="disc",
-        choices=("disc", "groove", "conjugate", "yoke", "translating"),
-        doc="the form of the cam",
-    )
-    prime_radius: float | None = _size(
+    form: str = form_param("disc")
+    prime_radius: float | None = positive_length(
         doc="prime radius: from the cam's axis to the centre of a round follower at zero lift"
     )
-    base_radius: float | None = _size(
+    base_radius: float | None = positive_length(
         example=34,
         doc="base radius: from the cam's axis to the profile at zero lift; give it instead of "
         "prime_radius_mm, and always with a flat follower",
@@ -225,47 +229,8 @@ class CamSpec(ShortRepr):
         choices=("ccw", "cw"),
         doc="direction in which the cam turns; cw is the mirror image of ccw",
     )
-    prime_radius2: float | None = _size(
-        example=45,
-        doc="from the axis to the centre of conjugate cams' second roller, at the highest lift",
-    )
-    gap: float | None = param(
-        LENGTH,
-        default=None,
-        ge=0,
-        le=LONGEST,
-        example=2,
-        doc="gap between conjugate cams; 0 if left out",
-    )
-    outer_diameter: float | None = _size(example=130, doc="diameter of the disc of a groove cam")
-    groove_depth: float | None = _size(example=6, doc="depth of a groove, less than the thickness")
-    roller_clearance: float | None = param(
-        LENGTH, default=None, ge=0, le=100,
-        example=0.05,
-        doc="width of a groove minus the roller's diameter; 0 if left out",
-    )  # fmt: skip
-    side: str | None = param(
-        TEXT, default=None, choices=("front", "back"),
-        example="front", doc="face that a groove is cut into; front (+z) if left out",
-    )  # fmt: skip
 
-    walls: str | None = param(
-        TEXT, default=None, choices=("lower", "both"),
-        example="lower",
-        doc="walls of a translating cam: the lower one (if left out), or both walls of a groove",
-    )  # fmt: skip
-    run_in: float | None = _run(
-        example=10, doc="length of a translating cam before its motion, at zero lift; 0 if left out"
-    )
-    run_out: float | None = _run(
-        example=10,
-        doc="length of a translating cam after its motion, at the last lift; 0 if left out",
-    )
-
-    @property
-    def runs(self) -> tuple[float, float]:
-        """Lengths of a translating cam before and after its motion, mm."""
-        return self.run_in or 0.0, self.run_out or 0.0
+    rules: ClassVar[tuple[Rule, ...]] = (exactly_one("prime_radius", "base_radius"),)
 
     @property
     def clockwise(self) -> bool:
@@ -273,7 +238,7 @@ class CamSpec(ShortRepr):
         return self.rotation == "cw"
 
 
-def size_problems(follower: FollowerSpec, cam: CamSpec) -> Iterator[Problem]:
+def size_problems(follower: FollowerSpec, cam: CamSpec) -> Iterator[Breach]:
     """Yield what is wrong with the size of a cam for its follower.
 
     Parameters
@@ -288,23 +253,11 @@ def size_problems(follower: FollowerSpec, cam: CamSpec) -> Iterator[Problem]:
     tuple
         Field of `cam`, None, message, allowed.
     """
-    prime, base = cam.prime_radius, cam.base_radius
+    prime = cam.prime_radius
     if follower.flat:
         if prime is not None:
-            yield (
-                "prime_radius",
-                None,
-                "does not apply to a flat follower, which has no centre",
-                "base_radius_mm instead",
-            )
-        elif base is None:
-            yield "base_radius", None, "is missing for a flat follower", "a radius above 0"
-    elif prime is None and base is None:
-        rule = "prime_radius_mm or base_radius_mm"
-        yield "prime_radius", None, "is missing", rule
-    elif prime is not None and base is not None:
-        rule = "one of prime_radius_mm and base_radius_mm"
-        yield "base_radius", None, "is given beside prime_radius_mm", rule
+            message = "does not apply to a flat follower, which has no centre"
+            yield "prime_radius", None, message, "base_radius_mm instead"
     elif prime is not None and prime <= follower.radius:
         rule = f"above the follower's radius of {formatted(follower.radius)} mm"
         yield "prime_radius", None, "is not larger than the follower's radius", rule

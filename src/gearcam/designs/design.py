@@ -27,7 +27,7 @@ from gearcam.designs.kind import KINDS
 from gearcam.designs.lines import Path
 from gearcam.designs.outputs import OutputSpec
 from gearcam.designs.reader import content_of, decoded, document_in, problems_of
-from gearcam.designs.table import settled
+from gearcam.designs.table import settled, table_of
 from gearcam.numeric.arguments import instance
 
 _PLACE: Final = re.compile("[0-9]{1,9}")
@@ -215,7 +215,7 @@ class Design:
 def _demand_types(design: Design) -> None:
     """Raise `DesignError` if a table, or what is nested in one, is not of its type."""
     kind = KINDS[design.kind]
-    owners = ((title, kind.table(title).owner) for title in kind.tables)
+    owners = ((title, kind.table_of(design, title).owner) for title in kind.tables)
     tables = [
         (at, part, (owner,))
         for title, owner in owners
@@ -256,7 +256,7 @@ def nested_designs(design: Design) -> Iterator[tuple[Path, Design]]:
     kind = KINDS[design.kind]
     for title in kind.tables:
         for at, part in _parts(design, title):
-            for key, entry in kind.table(title).entries.items():
+            for key, entry in kind.table_of(design, title).entries.items():
                 if entry.param.nested and (inner := getattr(part, entry.name)) is not None:
                     yield (*path_of(at), key), inner
 
@@ -279,9 +279,8 @@ def document_of(design: Design) -> dict[str, Any]:
     if kind.main:
         document[kind.main.title] = kind.main.document(design)
     for title in kind.tables:
-        known, made = kind.table(title), getattr(design, title)
-        several = title in kind.several
-        document[title] = [known.document(one) for one in made] if several else known.document(made)
+        tables = [table_of(title, type(one)).document(one) for _, one in _parts(design, title)]
+        document[title] = tables if title in kind.several else tables[0]
     if design.limits:
         known = {entry.name: entry for entry in kind.table("limits").entries.values()}
         document["limits"] = {

@@ -16,6 +16,7 @@ from pathlib import Path as FilePath
 from typing import Any, Final
 
 from gearcam.base.errors import DesignError
+from gearcam.base.quantities import REQUIRED
 from gearcam.base.reading import UnreadableError, read
 from gearcam.designs.faults import MISSING, TOO_DEEP, Fault, dotted, is_deep, quoted, show
 from gearcam.designs.kind import KINDS, DesignKind, Examined
@@ -97,7 +98,7 @@ def examine(document: Mapping[str, Any], *, stem: str = "", place: Place | None 
     if "limits" in document:  # the table loads the checks
         _examine_table(document, kind, "limits", found, place or Place())
     if kind.rules:
-        tables = {title: kind.table(title) for title in kind.tables}
+        tables = {title: kind.table_in(document, title) for title in kind.tables}
         found.faults += list(document_faults(tables, kind.rules, document, found.faults))
     found.faults += kind.problems(document, found)
     return found
@@ -245,11 +246,10 @@ def name_fault(name: Any) -> str:
 def _examine_table(
     document: Mapping[str, Any], kind: DesignKind, title: str, found: Examined, place: Place
 ) -> None:
-    known, several = kind.table(title), title in kind.several
-    listed = tuple(kind.listed(document, known) if known.owner else known.entries)
+    known, several = kind.table_in(document, title), title in kind.several
     if title not in document and title in kind.required:
         brackets = f"[[{title}]]" if several else f"[{title}]"
-        message, rule = f"the table {brackets} is missing", ", ".join(listed)
+        message, rule = f"the table {brackets} is missing", ", ".join(known.entries)
         found.faults.append(Fault((title,), message, allowed=rule))
         return
     raw = document.get(title, [] if several else {})
@@ -263,18 +263,42 @@ def _examine_table(
     if several:
         items = [((title, number), one) for number, one in enumerate(raw)]
     for at, given in items:
-        one, below = _with_designs(known, given, at, place)
-        faults = [*below, *faults_of(known, one, home=home, far=_other_home, at=at, listed=listed)]
+        one, foreign = _without_foreign(kind, document, title, given)
+        one, below = _with_designs(known, one, at, place)
+        faults = [*below, *faults_of(known, one, home=home, far=_other_home, at=at)]
         part, problems = None, list[Fault]()
         if isinstance(one, Mapping):
             part, problems = made_of(known, known.owner or dict, one, faults, at)
-        found.faults += [*faults, *problems]
+        found.faults += [*foreign, *faults, *problems]
         if part is not None and not faults:
             made.append(part)
     if several and len(made) == len(raw):
         found.parts[title] = tuple(made)
     elif not several and made:
         found.parts[title] = made[0]
+
+
+def _without_foreign(
+    kind: DesignKind, document: Mapping[str, Any], title: str, raw: Any
+) -> tuple[Any, list[Fault]]:
+    """Return a table without keys that other variants have, and the faults of those keys.
+
+    Where such a key has its default value it changes nothing: it is no fault.
+    """
+    variants, faults = kind.variants, list[Fault]()
+    if variants is None or title not in variants.titles or not isinstance(raw, Mapping):
+        return raw, faults
+    value = variants.meant(document)
+    known, kept = variants.table(title, value).entries, dict(raw)
+    for key in raw.keys() - known.keys():
+        owners = variants.owners(title, key)
+        if owners:
+            entry, given = variants.table(title, owners[0]).entries[key], kept.pop(key)
+            if entry.default in (None, REQUIRED) or given != entry.outward(entry.default):
+                message = f"{show(given)}: does not apply to {variants.called.format(value)}"
+                rule = f"with {variants.title}.{variants.key} = {quoted(owners)}"
+                faults.append(Fault((title, key), message, given, rule))
+    return kept, faults
 
 
 def _with_designs(known: Table, raw: Any, at: Path, place: Place) -> tuple[Any, list[Fault]]:

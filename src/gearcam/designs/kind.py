@@ -11,14 +11,15 @@ import importlib
 import math
 import pkgutil
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
-from typing import Any, Final
+from typing import Any, Final, Protocol
 
 from gearcam.base.findings import CHECKS
 from gearcam.base.rules import Rule
 from gearcam.designs.faults import Fault
-from gearcam.designs.table import Key, Table
+from gearcam.designs.slips import nearest
+from gearcam.designs.table import Key, Table, table_of
 
 _HOME: Final = "gearcam.kinds"
 
@@ -76,6 +77,78 @@ class Main:
         return f'<{type(self).__name__} "{self.title}">'
 
 
+class WithTables(Protocol):
+    """What `Variants` choose from, such as a form of cams."""
+
+    @property
+    def tables(self) -> Mapping[str, type]:
+        """The classes of tables, by title."""
+        ...
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Variants:
+    """Tables whose keys depend on the value of one key, such as the form of a cam.
+
+    Parameters
+    ----------
+    title, key : str
+        The table and its key that decide.
+    default : str
+        The value of the key where it is left out.
+    entries : mapping of str to WithTables
+        What the key chooses, by its values; those of the default are the bases of the others.
+    called : str
+        Name of an entry in messages, such as ``a {} cam``.
+    """
+
+    title: str
+    key: str
+    default: str
+    entries: Mapping[str, WithTables]
+    called: str
+
+    @property
+    def titles(self) -> tuple[str, ...]:
+        """Titles of the tables that depend on the key."""
+        return tuple(self.entries[self.default].tables)
+
+    def meant(self, document: Mapping[str, Any]) -> str:
+        """Return the value of the key in a `document`; the nearest one if it is misspelt."""
+        table = document.get(self.title)
+        value = table.get(self.key) if isinstance(table, Mapping) else None
+        near = nearest(value, self.entries) if isinstance(value, str) else ""
+        return near or self.default
+
+    def of(self, design: Any) -> str:
+        """Return the value of the key in a `design`."""
+        value = getattr(getattr(design, self.title), self.key, self.default)
+        return self.meant({self.title: {self.key: value}})
+
+    def table(self, title: str, value: str) -> Table:
+        """Return the table of a `title` for a `value` of the key."""
+        known = table_of(title, self.entries[value].tables[title])
+        if title != self.title:
+            return known
+        entry = known.entries[self.key]
+        entry = replace(entry, param=replace(entry.param, choices=tuple(self.entries)))
+        return Table(title, known.owner, {**known.entries, self.key: entry})
+
+    def union(self, title: str) -> Table:
+        """Return a table with the keys of all values, for descriptions."""
+        tables = [self.table(title, value) for value in (self.default, *self.entries)]
+        entries: dict[str, Key] = {}
+        for key, entry in (item for known in tables for item in known.entries.items()):
+            if entry.required and not all(key in known.entries for known in tables):
+                entry = replace(entry, default=None)
+            entries.setdefault(key, entry)
+        return Table(title, None, entries)  # no class has them all
+
+    def owners(self, title: str, key: str) -> list[str]:
+        """Return the values for which the table of a `title` has a `key`."""
+        return [value for value in self.entries if key in self.table(title, value).entries]
+
+
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class DesignKind:
     """How designs of one kind are read and described.
@@ -98,19 +171,16 @@ class DesignKind:
         The main part.
     tables : mapping of str to callable
         Functions that return the tables with fixed keys, by title, which is also the field name.
+    variants : Variants, optional
+        What decides on the keys of some tables.
     required : tuple of str
         Titles of tables that a file must have.
     several : tuple of str
         Titles of tables that a file gives once or more, in double brackets; a tuple in the design.
-    conditions : mapping of str to callable
-        Functions that return additions to the JSON schema of a table, by its title.
     rules : tuple of Rule
         Rules between tables; those between the keys of a table belong to its class.
     problems : callable
         ``problems(document, found)`` yields contradictions between tables that are computed.
-    listed : callable
-        ``listed(document, table)`` returns the keys of a table for messages about unknown keys and
-        missing tables.
     later : callable
         ``later(document)`` returns a fault for designs that are not supported, or None. No other
         fault is reported then.
@@ -136,12 +206,11 @@ class DesignKind:
     result: Callable[..., Any]
     main: Main | None = None
     tables: Mapping[str, Callable[[], Table]]
+    variants: Variants | None = None
     required: tuple[str, ...]
     several: tuple[str, ...] = ()
-    conditions: Mapping[str, Callable[[], dict[str, Any]]] = field(default_factory=dict)
     rules: tuple[Rule, ...] = ()
     problems: Callable[[Mapping[str, Any], Examined], Iterable[Fault]] = lambda *_: ()
-    listed: Callable[[Mapping[str, Any], Table], Iterable[str]] = lambda _, table: table.entries
     later: Callable[[Mapping[str, Any]], Fault | None] = lambda _: None
     formats: tuple[str, ...]
     check_modules: tuple[str, ...] = ()
@@ -164,13 +233,25 @@ class DesignKind:
         """Return a table by its title: one of `tables`, or ``limits``."""
         return self._limits() if title == "limits" else self.tables[title]()
 
+    def table_in(self, document: Mapping[str, Any], title: str) -> Table:
+        """Return a table by its title, with the keys that it may have in a `document`."""
+        if self.variants is None or title not in self.variants.titles:
+            return self.table(title)
+        return self.variants.table(title, self.variants.meant(document))
+
+    def table_of(self, design: Any, title: str) -> Table:
+        """Return a table by its title, with the keys that it may have in a `design`."""
+        if self.variants is None or title not in self.variants.titles:
+            return self.table(title)
+        return self.variants.table(title, self.variants.of(design))
+
     def tables_in(
         self, document: Mapping[str, Any]
     ) -> Iterator[tuple[tuple[str | int, ...], Table, Any]]:
         """Yield the path, the keys and the content of each table in a `document`, without main."""
         for title in (*self.tables, "limits"):
             if title in document:
-                raw, known = document[title], self.table(title)
+                raw, known = document[title], self.table_in(document, title)
                 if title in self.several and isinstance(raw, list):
                     yield from (((title, number), known, one) for number, one in enumerate(raw))
                 else:

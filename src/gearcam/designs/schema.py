@@ -6,13 +6,13 @@ Other rules, such as increasing knots and valid formulas, are checked only when 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any, Final
 
 from gearcam.base.quantities import REQUIRED
 from gearcam.base.rules import Keys, Rule
 from gearcam.designs.faults import description
-from gearcam.designs.kind import KINDS, DesignKind
+from gearcam.designs.kind import KINDS, DesignKind, Variants
 from gearcam.designs.table import Key, Table
 
 DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
@@ -115,11 +115,12 @@ def table_schema(known: Table, doc: str = "", **words: str) -> Schema:
         **({"required": required} if required else {}),
         "properties": {name: {"const": word} for name, word in words.items()}
         | {name: _property(key) for name, key in entries},
-        **_rules(getattr(known.owner, "rules", ()), _Keys({"": known})),
+        **_all_of(_rules_of(known)),
     }
 
 
 def _branch(kind: DesignKind, main: Schema) -> Schema:
+    tables = {f"{title}.": kind.table(title) for title in kind.tables}
     return {
         "type": "object",
         "description": kind.doc,
@@ -137,14 +138,30 @@ def _branch(kind: DesignKind, main: Schema) -> Schema:
             **({kind.main.title: main} if kind.main else {}),
         }
         | {title: {"$ref": f"#/$defs/{kind.name}-{title}"} for title in (*kind.tables, "limits")},
-        **_rules(kind.rules, _Keys({f"{title}.": kind.table(title) for title in kind.tables})),
+        **_all_of([*_rules(kind.rules, _Keys(tables)), *_variants(kind.variants)]),
     }
+
+
+def _variants(variants: Variants | None) -> Iterator[Schema]:
+    """Yield what tables may have and must have, for each variant."""
+    for value in variants.entries if variants else ():
+        rest = {} if value == variants.default else {"required": [variants.key]}
+        chosen = {"properties": {variants.key: {"const": value}}, **rest}
+        tables, required = {}, []
+        for title in variants.titles:
+            known = variants.table(title, value)
+            needed = [key for key, entry in known.entries.items() if entry.required]
+            keys = {"propertyNames": {"enum": [*known.entries]}, "required": needed}
+            tables[title] = {**keys, **_all_of(_rules_of(known))}
+            required += [title] if needed else []
+        yield {
+            "if": {"properties": {variants.title: chosen}, "required": [variants.title]},
+            "then": {"properties": tables, "required": required},
+        }
 
 
 def _titled(kind: DesignKind, title: str) -> Schema:
     made = table_schema(kind.table(title))
-    if title in kind.conditions:
-        made |= kind.conditions[title]()
     if title in kind.several:
         made = {"type": "array", "items": made}
     return made
@@ -192,10 +209,18 @@ def _zeros(entry: Key) -> list[Any]:
     return zeros if entry.param.zero_is_none else []
 
 
-def _rules(rules: Iterable[Rule], keys: Keys) -> Schema:
-    """Return the schema of `rules`, as far as a schema can say them."""
-    said = [schema for rule in rules if (schema := rule.schema(keys))]
-    return {"allOf": said} if said else {}
+def _all_of(schemas: list[Schema]) -> Schema:
+    return {"allOf": schemas} if schemas else {}
+
+
+def _rules(rules: Iterable[Rule], keys: Keys) -> list[Schema]:
+    """Return the schemas of `rules`, as far as a schema can say them."""
+    return [schema for rule in rules if (schema := rule.schema(keys))]
+
+
+def _rules_of(known: Table) -> list[Schema]:
+    """Return the schemas of the rules between the keys of a table."""
+    return _rules(getattr(known.owner, "rules", ()), _Keys({"": known}))
 
 
 def _property(key: Key) -> Schema:

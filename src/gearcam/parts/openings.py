@@ -207,7 +207,8 @@ def openings(
     if blank.stop_pin:
         chord = max((one.tolerance for one in contours if isinstance(one, Contour)), default=0.0)
         found.append(_slot(blank, solid, work, chord))
-    demand_apart(found, blank, solid, work)
+    bolts = {"bolt_circle_mm": blank.bolt_circle}
+    demand_apart(found, solid, work, bolts, hub=blank.hub_diameter, widening=blank.widening)
     if blank.lightening_holes:
         found += _lightening(wide, solid, found, work)
     return tuple(found)
@@ -215,10 +216,12 @@ def openings(
 
 def demand_apart(
     found: Sequence[Opening],
-    blank: WheelBlank,
     solid: Polygon,
     work: Workpiece,
-    places: Mapping[str, float] | None = None,
+    places: Mapping[str, float],
+    *,
+    hub: float = 0.0,
+    widening: float = 0.0,
 ) -> None:
     """Refuse openings that meet each other, the hub's edge or the outline.
 
@@ -226,15 +229,16 @@ def demand_apart(
     ----------
     found : sequence of Opening
         The openings.
-    blank : WheelBlank
-        With the hub, and the widening of bores.
     solid : shapely.Polygon
         The region they go through.
     work : Workpiece
         The part, for messages.
-    places : mapping of str to float, optional
-        Keys of ``[blank]`` that position the bolts, with their values, mm; by default those of a
-        bolt circle.
+    places : mapping of str to float
+        Keys of ``[blank]`` that position the bolts, with their values, mm.
+    hub : float, mm
+        Diameter of the hub; 0 without one.
+    widening : float, mm
+        By how much openings are wider than given.
 
     Raises
     ------
@@ -243,20 +247,19 @@ def demand_apart(
     """
     from shapely import Polygon
 
-    given = {"bolt_circle_mm": blank.bolt_circle} if places is None else places
     edges = [work.points(opening.shape) for opening in found]
     regions = [Polygon(edge) for edge in edges]
     # chords of openings that touch each other may be apart by this
     gap = 2.0 * work.sagitta
     for number, (opening, edge, region) in enumerate(zip(found, edges, regions, strict=True)):
         if not solid.contains(region) or solid.boundary.dwithin(region, gap):
-            raise _no_room(opening, solid, work.within, work, blank.widening, given)
+            raise _no_room(opening, solid, work.within, work, widening, places)
         away = np.hypot(*edge.T)
-        if blank.hub_diameter and away.min() <= 0.5 * blank.hub_diameter <= away.max():
-            raise _no_room(opening, solid, "the edge of the hub", work, blank.widening, given)
+        if hub and away.min() <= 0.5 * hub <= away.max():
+            raise _no_room(opening, solid, "the edge of the hub", work, widening, places)
         for other, second in zip(found[:number], regions[:number], strict=True):
             if region.dwithin(second, gap):
-                raise _no_room(opening, solid, f"the {other.name}", work, blank.widening, given)
+                raise _no_room(opening, solid, f"the {other.name}", work, widening, places)
 
 
 def _no_room(

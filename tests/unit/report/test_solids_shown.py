@@ -56,7 +56,7 @@ def test_wheels_stand_as_assembled() -> None:
 def test_cams_stand_at_their_heights() -> None:
     result = build("conjugate_cams")
     bodies = bodies_of(solids_shown(result)["view"])
-    heights = result.form.heights(result)
+    heights = result.form.heights()
     assert len({*heights}) == 2
     assert [body.bounds[0][2] for body in bodies.values()] == pytest.approx(heights)
 

@@ -15,8 +15,8 @@ from gearcam.base.findings import limit_of
 from gearcam.base.numerals import shortened
 from gearcam.cams.checks import KIND
 from gearcam.designs.design import value_at
-from gearcam.kinds.cam.design import CAM_FORMATS
 from gearcam.kinds.cam.pressed import gentler, grown
+from gearcam.kinds.cam.tables import CAM_FORMATS
 from gearcam.parts.checks import KIND as PARTS_KIND
 from gearcam.results.advice import Advice, kerf_paths
 
@@ -32,7 +32,7 @@ _SMALLER: Final = 0.01
 
 _ALSO: Final[Mapping[str, Callable[[Any], object]]] = {
     "csv": lambda result: result.angles,
-    "tool-path": lambda result: result.form.paths(result, result.design.output.tool_radius),
+    "tool-path": lambda result: result.form.paths(result.design.output.tool_radius),
     "dxf": kerf_paths,
     "cut-svg": kerf_paths,
     "curvature": lambda result: result.files("curvature"),

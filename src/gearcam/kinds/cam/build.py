@@ -7,17 +7,17 @@ from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.base.findings import Finding, in_order, run_checks
 from gearcam.cams.checks import KIND
-from gearcam.kinds.cam.blank import CamBlank
 from gearcam.kinds.cam.design import CamDesign
 from gearcam.kinds.cam.forms.base import FORMS, Form
 from gearcam.kinds.cam.steps import WHOLE, even_angles
+from gearcam.kinds.cam.tables import CamBlank
 from gearcam.laws.program import Program
 from gearcam.numeric.arguments import angles, one_of
 from gearcam.numeric.arrays import Array
@@ -68,19 +68,19 @@ class CamResult(PartsResult):
     def program(self) -> Program:
         """The lift over a turn."""
         with self.stage("program"):
-            return self.form.program(self.design, self.tolerances)
+            return self.form.program()
 
-    @property
-    def form(self) -> Form:
-        """The form of the cam."""
-        return FORMS[self.design.cam.form]
+    @cached_property
+    def form(self) -> Form[Any, Any, Any]:
+        """What is special to the form of the cam."""
+        return FORMS[self.design.form](self)
 
     @cached_property
     def cam(self) -> Cam:
         """The cam; its curves and measures are computed on demand."""
         program = self.program
         with self.stage("cam"):
-            return self.form.make(self.design, program)
+            return self.form.make(program)
 
     @property
     def follower(self) -> Follower:
@@ -153,7 +153,7 @@ class CamResult(PartsResult):
         if theta is None:
             return self.angles
         driver = self.driver
-        if not self.form.slides:
+        if not self.form.sliding:
             return angles("theta", theta)
         travel = self.program.period
         places = angles("theta", theta, 0.0, travel, WHOLE * travel, driver.unit)
@@ -180,15 +180,14 @@ class CamResult(PartsResult):
     def ordered(self) -> bool:
         """Whether the design needs a part: a blank, or files of parts."""
         plain = {"csv", "curvature", "inspection"}
-        blank = CamBlank()
-        return self.design.blank != blank or not set(self.design.output.files) <= plain
+        return self.design.blank != CamBlank() or not set(self.design.output.files) <= plain
 
     @cached_property
     def parts(self) -> tuple[Part, ...]:
         """The cam as one or several parts."""
         profiles = self.profiles  # a separate stage
         with self.stage("part"):
-            return self.form.parts(self) if profiles else ()
+            return self.form.parts() if profiles else ()
 
     @property
     def part(self) -> Part:
@@ -198,7 +197,7 @@ class CamResult(PartsResult):
     @property
     def plates(self) -> tuple[Drawing, ...]:
         """A drawing of each part with its curves, in its own frame."""
-        return tuple(self.form.drawings(self))
+        return self.form.drawings()
 
     @property
     def references(self) -> tuple[Drawing, ...]:
@@ -210,12 +209,12 @@ class CamResult(PartsResult):
     @property
     def assembly(self) -> str:
         """Stem of the files of the assembled cams; empty for a single part."""
-        return self.form.assembly
+        return "cams" if len(self.parts) > 1 else ""
 
     @property
     def poses(self) -> tuple[Pose, ...]:
         """Where each cam is on the shaft."""
-        return tuple(Pose(height=height) for height in self.form.heights(self))
+        return tuple(Pose(height=height) for height in self.form.heights())
 
     @property
     def profile_tolerance(self) -> float:
@@ -229,9 +228,7 @@ class CamResult(PartsResult):
 
     def rows_of(self, number: int) -> Sequence[str]:
         """Return the names of the facts in the table of a part's drawing, by its `number`."""
-        from gearcam.kinds.cam.drawn import rows_of
-
-        return rows_of(self, number)
+        return self.form.rows_of(number)
 
     @cached_property
     def error_rows(self) -> Estimates:
@@ -254,7 +251,7 @@ class CamResult(PartsResult):
     @cached_property
     def drawing(self) -> Drawing:
         """The assembled cam with its follower, at the angle of the design."""
-        return self.form.picture(self)
+        return self.form.picture()
 
     def wall(self, key: str | None) -> Wall:
         """Return the wall with a key; by default the first."""
@@ -309,7 +306,7 @@ class CamResult(PartsResult):
     @cached_property
     def contours(self) -> tuple[Contour, ...]:
         """The finished walls, with clearance, in the order of `Cam.walls`."""
-        return self.form.made(self) if self.ordered else self.profiles
+        return self.form.finished() if self.ordered else self.profiles
 
     @property
     def contour(self) -> Contour:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
@@ -31,18 +31,6 @@ from gearcam.pictures.drawings import (
     part_features,
     place,
 )
-
-if TYPE_CHECKING:
-    from gearcam.kinds.cam.build import CamResult
-
-_ROWS: Final = (
-    "cam.follower", "cam.roller_radius_mm", "cam.dome_radius_mm", "cam.pivot_distance_mm",
-    "cam.arm_mm", "cam.face_offset_mm", "cam.offset_mm", "motion.total_lift",
-    "cam.prime_radius_mm", "cam.base_radius_mm", "cam.rotation", "cam.pressure_angle_deg.rise_max",
-    "cam.pressure_angle_deg.return_max", "cam.profile.clearance_mm", "part.density_kg_m3",
-    "part.mass.mass_kg", "part.mass.centroid_mm", "part.mass.unbalance_g_mm",
-)  # fmt: skip
-"""Facts in the table of the drawing."""
 
 TOOL_RADIUS: Final = "output.tool_radius_mm"
 """The key of a cutter's radius."""
@@ -178,9 +166,3 @@ def grooved(
     edge = Circle(center=np.zeros(2), diameter=2.0 * part.contour.reach)
     blank, *others = drawing.features
     return replace(drawing, features=(replace(blank, shape=edge), *others))
-
-
-def rows_of(result: CamResult, number: int) -> list[str]:
-    """Return the names of the facts in the table of the drawing of part `number` of a `result`."""
-    other = f"{'base' if result.follower.has_centre else 'prime'}_radius_mm"
-    return [one for one in result.form.rows_of(number, _ROWS) if not one.endswith(other)]

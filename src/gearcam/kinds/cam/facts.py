@@ -38,7 +38,7 @@ def facts(result: CamResult) -> Facts:
     }
     follower = f"{design.follower.motion} {design.follower.type} follower"
     article = "an" if design.follower.oscillating else "a"
-    headline = ("motion.total_lift", f"cam.{result.form.leading(result)}")
+    headline = ("motion.total_lift", f"cam.{result.form.leading}")
     return Facts(tree, headline, f"{design.cam.form} cam for {article} {follower}")
 
 
@@ -78,7 +78,6 @@ def _deviation(program: Program, scale: float, unit: str) -> Fact | None:
 
 def _cam(result: CamResult) -> Tree:
     design, given = result.design, result.design.follower
-    takes = result.form.takes["follower"]
     return {
         "form": design.cam.form,
         "follower": f"{given.motion} {given.type}",
@@ -87,12 +86,11 @@ def _cam(result: CamResult) -> Tree:
         "pivot_distance_mm": given.pivot_distance,
         "arm_mm": given.arm,
         "face_offset_mm": given.face_offset or None,
-        "offset_mm": None if given.oscillating or "offset" not in takes else given.offset,
-        **result.form.sizes(result),
+        **result.form.sizes(),
         "thickness_mm": design.cam.thickness,
         "pressure_angle_deg": pressure(result, result.cam.motions[0]),
         "lost_motion": _lost_motion(result),
-        **result.form.facts(result),
+        **result.form.facts(),
     }
 
 

@@ -100,7 +100,7 @@ def _tool_path(result: CamResult, measured: Measured) -> Files:
     from gearcam.export.table import outline_bytes
     from gearcam.pictures.drawings import TOOL, Drawing, Feature, reach
 
-    paths = result.form.paths(result, result.design.output.tool_radius)
+    paths = result.form.paths(result.design.output.tool_radius)
     tables = {f"{name}.csv": outline_bytes(reach(path)) for name, path in paths.items()}
     drawings = [
         Drawing(name=name, features=(Feature(layer=TOOL, shape=path),))

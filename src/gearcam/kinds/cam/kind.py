@@ -6,24 +6,21 @@ from functools import partial
 from typing import Final
 
 from gearcam.base.registry import DeferredMapping, deferred
-from gearcam.cams.spec import FOLLOWED, CamSpec, FollowerSpec
+from gearcam.cams.spec import FOLLOWED
 from gearcam.cams.spec import KIND as CAM
 from gearcam.designs.kind import Main
 from gearcam.designs.table import table_of
 from gearcam.kinds.cam.design import (
-    CAM_FORMATS,
     NAME,
     CamDesign,
-    CamOutputSpec,
-    FollowSpec,
-    blank_table,
     examine_motion_of,
     later,
     motion_document,
     problems,
 )
-from gearcam.kinds.cam.forms.base import form_keys, form_schema
+from gearcam.kinds.cam.forms.base import VARIANTS, Form
 from gearcam.kinds.cam.motion import TITLE, homes
+from gearcam.kinds.cam.tables import CAM_FORMATS, FollowSpec
 from gearcam.kinds.shared import AccuracySpec
 from gearcam.parts.blank import KIND as PARTS
 from gearcam.results.kind import Kind
@@ -46,17 +43,13 @@ KIND: Final = Kind(
         laws=deferred(f"{_HERE}.describe:laws"),
     ),
     tables={
-        "follower": partial(table_of, "follower", FollowerSpec),
-        "cam": partial(table_of, "cam", CamSpec),
-        "blank": blank_table,
-        "output": partial(table_of, "output", CamOutputSpec),
+        **{title: partial(VARIANTS.union, title) for title in Form.tables},
         "follow": partial(table_of, "follow", FollowSpec),
         "accuracy": partial(table_of, "accuracy", AccuracySpec),
     },
+    variants=VARIANTS,
     required=("follower", "cam"),
-    conditions={"cam": partial(form_schema, "cam", CamSpec)},
     problems=problems,
-    listed=form_keys,
     later=later,
     formats=CAM_FORMATS,
     check_modules=("gearcam.cams.checks", "gearcam.parts.checks"),

@@ -20,11 +20,12 @@ from gearcam.designs.lines import Path
 from gearcam.designs.slips import misspelt
 from gearcam.designs.table import Table, table_of
 from gearcam.designs.validate import faults_of, made_of, told_faults
-from gearcam.kinds.cam.forms.base import form_of
+from gearcam.kinds.cam.forms.base import FORMS, VARIANTS
 from gearcam.laws.motion.base import MOTION_LAWS
 from gearcam.laws.phases_of_lift import PHASES, Phase, RisePhase, fill_half, program_problems
 
 if TYPE_CHECKING:
+    from gearcam.kinds.cam.forms.base import Form
     from gearcam.laws.motion_formula import MotionFormula
     from gearcam.laws.motion_table import MotionTable
 
@@ -119,7 +120,7 @@ def examine_motion(
     else:
         before = len(found.faults)
         phases = [_phase((TITLE, k), item, given, found, home) for k, item in enumerate(raw)]
-        _examine_program(phases, raw, given, found, half=form_of(document).half_turns)
+        _examine_program(phases, raw, given, found, half=_form(document).half_turns)
         if len(found.faults) == before:
             found.parts[TITLE] = tuple(phases)
 
@@ -129,7 +130,11 @@ def circumstances(document: Mapping[str, Any]) -> tuple[str, ...]:
     follower = document.get("follower", {})
     motion = follower.get("motion", "translating") if isinstance(follower, Mapping) else None
     known = (motion,) if motion in ("translating", "oscillating") else ()
-    return (*known, "sliding" if form_of(document).slides else "turning")
+    return (*known, "sliding" if _form(document).sliding else "turning")
+
+
+def _form(document: Mapping[str, Any]) -> type[Form[Any, Any, Any]]:
+    return FORMS[VARIANTS.meant(document)]
 
 
 def _by_rows() -> type[MotionTable]:

@@ -86,8 +86,8 @@ def gentler(result: CamResult, code: str, number: int = 0) -> dict[str, float] |
         changes = resized(result, number, shortened(found, 1.0))
         try:
             # another size has the same lift
-            other = result.form.make(result.design.with_(changes), result.program)
-            if not any(_steep(result, code, number, other)):
+            other = type(result)(result.design.with_(changes), result.tolerances)
+            if not any(_steep(result, code, number, other.form.make(result.program))):
                 return changes
         except (DesignError, InfeasibleError):
             return None

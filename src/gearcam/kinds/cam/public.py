@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from gearcam.cams.spec import CamSpec, FollowerSpec
-from gearcam.kinds.cam.blank import CamBlank
+from gearcam.cams.spec import CamSpec, FollowerSpec, PlateFollower
 from gearcam.kinds.cam.build import CamResult
-from gearcam.kinds.cam.design import CamDesign, CamOutputSpec, FollowSpec
+from gearcam.kinds.cam.design import CamDesign
+from gearcam.kinds.cam.forms.conjugate import ConjugateFollower, ConjugateSpec
+from gearcam.kinds.cam.forms.groove import GrooveFollower, GrooveSpec
+from gearcam.kinds.cam.forms.translating import PlateBlank, PlateOutput, PlateSpec
+from gearcam.kinds.cam.forms.yoke import YokeFollower, YokeSpec
+from gearcam.kinds.cam.tables import CamBlank, CamOutputSpec, FollowSpec
 from gearcam.kinds.shared import AccuracySpec
 from gearcam.laws.motion_formula import MotionFormula
 from gearcam.laws.motion_table import MotionTable
@@ -13,9 +17,11 @@ from gearcam.laws.phases_of_lift import DwellPhase, ReturnPhase, RisePhase, Segm
 from gearcam.parts.blank import WheelBlank
 
 __all__ = [
-    "AccuracySpec", "CamBlank", "CamDesign", "CamOutputSpec", "CamResult", "CamSpec", "DwellPhase",
-    "FollowSpec", "FollowerSpec", "MotionFormula", "MotionTable", "ReturnPhase", "RisePhase",
-    "SegmentPhase", "WheelBlank",
+    "AccuracySpec", "CamBlank", "CamDesign", "CamOutputSpec", "CamResult", "CamSpec",
+    "ConjugateFollower", "ConjugateSpec", "DwellPhase", "FollowSpec", "FollowerSpec",
+    "GrooveFollower", "GrooveSpec", "MotionFormula", "MotionTable", "PlateBlank", "PlateFollower",
+    "PlateOutput", "PlateSpec", "ReturnPhase", "RisePhase", "SegmentPhase", "WheelBlank",
+    "YokeFollower", "YokeSpec",
 ]  # fmt: skip
 
 PUBLIC = {name: globals()[name] for name in __all__}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -34,8 +34,8 @@ def scene(result: CamResult, places: int = PLACES) -> Scene:
     """
     motion = result.cam.motions[0]
     driver, carrier = motion.carrier.driver, motion.carrier
-    output = result.design.output
-    pose = output.pose if carrier.around else output.place or 0.0
+    output: Any = result.design.output
+    pose = output.pose if carrier.around else output.place
     theta = np.linspace(0.0, motion.program.period, places + 1)
     moving, drawn = (_pose(motion, at) for at in (theta, np.array([pose])))
     back = Pose(float(drawn.turn[0]), complex(drawn.shift[0])).inverse

@@ -18,9 +18,6 @@ if TYPE_CHECKING:
     from gearcam.kinds.cam.design import CamOutputSpec
     from gearcam.laws.program import Program
 
-_WAY_STEP: Final = 1.0
-"""Default step of a translating cam's travel, mm."""
-
 WHOLE: Final = 1e-9
 """Share of a step by which a turn may differ from whole steps, and share of a travel by which a
 position may exceed it: rounding."""
@@ -51,7 +48,7 @@ def even_angles(output: CamOutputSpec, driver: Driver, program: Program) -> Arra
         If there are more than a million.
     """
     turn, slides = program.period, program.open
-    step = output.travel_step or _WAY_STEP if slides else output.motion_step
+    step = output.travel_step if slides else output.motion_step
     if step < turn / _MOST:
         key = f"output.{'travel_step' if slides else 'motion_step'}_{driver.unit}"
         least = turn / _MOST * driver.scale

@@ -11,7 +11,7 @@ from gearcam.base.facts import Fact, extent
 
 if TYPE_CHECKING:
     from gearcam.cams.measures import Range
-    from gearcam.cams.wall import Wall
+    from gearcam.cams.wall import PitchMotion, Wall
     from gearcam.numeric.contour import Contour
 
 Tree = dict[str, Any]
@@ -88,13 +88,17 @@ def curvature(wall: Wall) -> Tree:
     }
 
 
+def start_angle(motion: PitchMotion) -> float | None:
+    """Return the angle at zero lift of an oscillating follower, deg."""
+    follower = motion.follower
+    return math.degrees(follower.start) if follower.angular else None
+
+
 def trimming(wall: Wall) -> Tree:
-    """Return where a `wall` is undercut, its start angle, and the lift lost by trimming."""
-    follower, corners, scale = wall.follower, bool(wall.corners), wall.carrier.driver.scale
-    swings = follower.angular
+    """Return where a `wall` is undercut, and the lift lost by trimming."""
+    corners, swings, scale = bool(wall.corners), wall.follower.angular, wall.carrier.driver.scale
     return {
         "undercut": [[scale * low, scale * high] for low, high in wall.undercut_ranges],
-        "start_angle_deg": math.degrees(follower.start) if swings else None,
         "lost_lift_deg": math.degrees(wall.shortfall) if corners and swings else None,
         "lost_lift_mm": wall.shortfall if corners and not swings else None,
     }

@@ -19,9 +19,9 @@ from gearcam.designs import document_of, load, loads
 from gearcam.designs.kind import KINDS
 from gearcam.designs.template import template
 from gearcam.designs.validate import faults_of
-from gearcam.kinds.cam.blank import CamBlank
 from gearcam.kinds.cam.design import CamDesign, CamOutputSpec
 from gearcam.kinds.cam.motion import phase_table, rise_table, turn_tables
+from gearcam.kinds.cam.tables import CamBlank
 from gearcam.kinds.gear_pair.studies import MESH
 from gearcam.laws.motion.base import MOTION_LAWS
 from gearcam.laws.phases_of_lift import (
@@ -185,7 +185,7 @@ def test_a_design_made_in_python_meets_the_same_rules() -> None:
     refused("instance of FollowerSpec", follower=3)
     refused("instance of CamBlank", blank=None)
     refused("instance of CamOutputSpec", output=None)
-    refused("blank.stop_pin: does not apply to a cam", blank=WheelBlank(stop_pin=2.0))
+    refused("blank.stop_pin: does not apply to a disc cam", blank=WheelBlank(stop_pin=2.0))
     refused("missing beside bolts", blank=WheelBlank(bolts=2))
     refused(r"limits\.no_such", limits={"no_such": 1.0})
     refused("out of range", cam=CamSpec(prime_radius=-1.0))

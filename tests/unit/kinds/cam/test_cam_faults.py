@@ -64,7 +64,7 @@ from helpers_files import FLAT, RISE, ROLLER, SWINGING, changed, only, problems,
             "cam.base_radius_mm",
             "is given beside prime_radius_mm",
         ),
-        ("prime_radius_mm = 30", "", 26, "cam.prime_radius_mm", "is missing"),
+        ("prime_radius_mm = 30", "", 26, "cam", "neither prime_radius_mm nor base_radius_mm"),
         (
             "prime_radius_mm = 30",
             "prime_radius_mm = 6",

@@ -37,7 +37,12 @@ ROLLERS = "preload_mm = 0.02"
         (FILE, PRIME2, "cam.prime_radius2_mm", "missing.*follower.arms_angle_deg"),
         (SLIDING, PRIME2, "cam.prime_radius2_mm", "missing.*follower.roller_distance_mm"),
         (FILE, (ROLLERS, "arms_angle_deg = 65"), "follower.arms_angle_deg", "is given beside"),
-        (FILE, (ROLLERS, "roller_distance_mm = 9"), "follower.roller_distance_mm", "arms_angle_d"),
+        (
+            FILE,
+            (ROLLERS, "roller_distance_mm = 9"),
+            "follower.roller_distance_mm",
+            "to an oscillating",
+        ),
         (SLIDING, (ROLLERS, "arms_angle_deg = 65"), "follower.arms_angle_deg", "not apply"),
         (SLIDING, (ROLLERS, "arm2_mm = 65"), "follower.arm2_mm", "not apply to a translating"),
         (FILE, ('"roller"\nmotion', '"point"\nmotion'), "follower.type", "drive two rollers"),
@@ -179,7 +184,7 @@ def test_files() -> None:
 
 def test_the_follower_goes_on_beyond_both_rollers() -> None:
     result = gearcam.build(read(SLIDING))
-    shapes = [one.shape for one in result.form.picture(result).features if one.layer == "FOLLOWER"]
+    shapes = [one.shape for one in result.form.picture().features if one.layer == "FOLLOWER"]
     up, down = (shape.points[:, 1] for shape in shapes if isinstance(shape, Path))
     assert up[1] > up[0] > 0.0 > down[0] > down[1]
 

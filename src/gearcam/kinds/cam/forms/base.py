@@ -1,159 +1,184 @@
-"""Forms of cams: the keys that a form takes, the cam it makes, its parts, drawings and facts.
+"""Forms of cams: the classes of their tables, and what is special to their cams.
 
-A *form* is an entry of `FORMS`, loaded when a design names it. It defines only what is special to
-it; all other code uses the walls, motions and parts of the cam that it has made, in their order,
-and never asks for the name of a form. The disc cam (`disc`) has what fits every cam whose walls are
-the outlines of plates.
-
-Refused when a design is read: keys of other forms, and missing ones.
+A *form* is a class in `FORMS`, loaded when a design names it; an instance looks at a result. It
+defines only what is special to it; all other code uses the walls, motions and parts of the cam that
+it has made, in their order, and never asks for the name of a form. The disc cam (`disc`) has what
+fits every cam whose walls are the outlines of plates.
 """
 
 from __future__ import annotations
 
-from abc import abstractmethod
+from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any, ClassVar, Final, Protocol
+from typing import TYPE_CHECKING, Any, ClassVar, Final, Generic, TypeVar, cast
 
 from gearcam.base.facts import Fact
 from gearcam.base.registry import Registry
-from gearcam.designs.faults import Fault, quoted, show
-from gearcam.designs.slips import nearest
-from gearcam.designs.table import Table, table_of
+from gearcam.cams.cam import Cam
+from gearcam.cams.spec import CamSpec, FollowerSpec, size_problems
+from gearcam.cams.wall import CHORD_TOLERANCE
+from gearcam.designs.faults import Fault
+from gearcam.designs.kind import Variants
+from gearcam.designs.table import table_of
+from gearcam.designs.validate import told_faults
+from gearcam.kinds.cam.tables import CamBlank, CamOutputSpec
 from gearcam.laws.program import Program, make_program
 
 if TYPE_CHECKING:
-    from gearcam.base.tolerances import Tolerances
-    from gearcam.cams.cam import Cam
     from gearcam.kinds.cam.build import CamResult
-    from gearcam.kinds.cam.design import CamDesign
     from gearcam.numeric.contour import Contour
     from gearcam.parts.body import Part
     from gearcam.pictures.drawings import Drawing, Path
 
-Keys = Mapping[str, tuple[str, ...]]
-"""Fields of parameters by the titles of their tables."""
+ROWS: Final = (
+    "cam.follower", "cam.roller_radius_mm", "cam.dome_radius_mm", "cam.pivot_distance_mm",
+    "cam.arm_mm", "cam.face_offset_mm", "cam.offset_mm", "motion.total_lift",
+    "cam.prime_radius_mm", "cam.base_radius_mm", "cam.rotation", "cam.pressure_angle_deg.rise_max",
+    "cam.pressure_angle_deg.return_max", "cam.profile.clearance_mm", "part.density_kg_m3",
+    "part.mass.mass_kg", "part.mass.centroid_mm", "part.mass.unbalance_g_mm",
+)  # fmt: skip
+"""Facts in the tables of all drawings."""
 
-PLATE: Final[Keys] = {
-    "follower": (
-        "type", "motion", "roller_radius", "dome_radius", "offset", "arm", "pivot_distance",
-        "face_offset",
-    ),
-    "cam": ("form", "prime_radius", "base_radius", "thickness", "rotation"),
-    "blank": (
-        "bore_diameter", "keyway_width", "keyway_depth", "keyway_angle", "bore_flat", "bolts",
-        "bolt_circle", "bolt_diameter", "bolt_angle", "hub_diameter", "hub_front", "hub_back",
-        "lightening_holes", "rim", "web", "density", "clearance", "clearance_bores",
-    ),
-    "output": ("pose", "motion_step"),
-}  # fmt: skip
-"""Keys of a plate that turns."""
-
-SLIDING: Final = ("translating",)
-"""Names of the forms that slide, known without loading them."""
-
-OWN_OUTPUT: Final = ("pose", "place", "motion_step", "travel_step")
-"""Keys of ``[output]`` that only some forms have."""
+C = TypeVar("C", bound=Cam)
+S = TypeVar("S", bound=CamSpec)
+F = TypeVar("F", bound=FollowerSpec)
 
 
-def plate_keys(cam: tuple[str, ...] = (), follower: tuple[str, ...] = ()) -> Keys:
-    """Return the keys of a plate that turns, and more of its `cam` and its `follower`."""
-    return PLATE | {"follower": (*PLATE["follower"], *follower), "cam": (*PLATE["cam"], *cam)}
+class Form(ABC, Generic[C, S, F]):
+    """A form of cams.
 
+    Parameters
+    ----------
+    result : CamResult
+        The result of a design of this form.
+    """
 
-class Form(Protocol):
-    """A form of cams: its name, and what is special to it."""
-
-    name: str
+    name: ClassVar[str]
     """As in a design file."""
 
-    doc: str
+    doc: ClassVar[str]
     """One line for people."""
 
-    takes: ClassVar[Keys] = PLATE
-    """Keys that it takes."""
+    tables: ClassVar[Mapping[str, type]] = {
+        "follower": FollowerSpec,
+        "cam": CamSpec,
+        "blank": CamBlank,
+        "output": CamOutputSpec,
+    }
+    """Classes of the tables of its designs, by title; they derive from those of a disc."""
 
-    needs: ClassVar[Keys] = {}
-    """Keys that it needs, besides those that every cam needs."""
+    sliding: ClassVar[bool] = False
+    """Whether the cam slides: its motion is given over a travel, not over a turn."""
 
     half_turns: ClassVar[bool] = False
     """Whether phases may fill half a turn; the other half is then its opposite."""
 
-    assembly: ClassVar[str] = ""
-    """Stem of the files of the assembly; empty for forms with one part."""
-
-    @property
-    def slides(self) -> bool:
-        """Whether it slides: its motion is given over a travel, not over a turn."""
-        return self.name in SLIDING
-
     rows: ClassVar[tuple[str, ...]] = ()
     """Facts of its own in the tables of its drawings."""
 
+    def __init__(self, result: CamResult) -> None:
+        self.result = result
+        self.design = result.design
+
     def __repr__(self) -> str:
-        return f"{type(self).__name__}()"
+        return f"{type(self).__name__}({self.result!r})"
 
-    def faults(self, parts: Mapping[str, Any]) -> Iterator[Fault]:  # noqa: ARG002
-        """Yield contradictions between the `parts` of a design, which are given by their titles."""
-        yield from ()
+    @property
+    def cam(self) -> C:
+        """The cam that it has made."""
+        return cast("C", self.result.cam)
 
-    def program(self, design: CamDesign, tolerances: Tolerances) -> Program:
-        """Return the lift that a `design` asks for, to `tolerances`."""
-        motion, swings = design.motion, design.follower.oscillating
+    @property
+    def given(self) -> S:
+        """The sizes of the cam in the design."""
+        return cast("S", self.design.cam)
+
+    @property
+    def follower(self) -> F:
+        """The follower in the design."""
+        return cast("F", self.design.follower)
+
+    @property
+    def chord_tolerance(self) -> float:
+        """Chord tolerance of the profile, mm."""
+        return self.design.output.chord_tolerance or CHORD_TOLERANCE
+
+    @classmethod
+    def faults(cls, parts: Mapping[str, Any], document: Mapping[str, Any]) -> Iterator[Fault]:
+        """Yield contradictions between the tables of a design.
+
+        Parameters
+        ----------
+        parts : mapping
+            What could be read of them, by title; at least follower and cam.
+        document : mapping
+            The tables as in the file.
+        """
+        problems = size_problems(parts["follower"], parts["cam"])
+        known = table_of("cam", cls.tables["cam"])
+        yield from told_faults(problems, known, document["cam"], ("cam",))
+
+    def program(self) -> Program:
+        """Return the lift that the design asks for."""
+        motion, swings = self.design.motion, self.follower.oscillating
         make = partial(make_program, motion) if isinstance(motion, Sequence) else motion.program
-        return make(tolerances, oscillating=swings)
+        return make(self.result.tolerances, oscillating=swings)
 
     @abstractmethod
-    def make(self, design: CamDesign, program: Program) -> Cam:
-        """Return the cam of a `design` and the lift that it asks for."""
+    def make(self, program: Program) -> C:
+        """Return the cam with the lift of a `program`."""
 
     @abstractmethod
-    def parts(self, result: CamResult) -> tuple[Part, ...]:
+    def parts(self) -> tuple[Part, ...]:
         """Return what is made, each with all that is ordered."""
 
     @abstractmethod
-    def made(self, result: CamResult) -> tuple[Contour, ...]:
+    def finished(self) -> tuple[Contour, ...]:
         """Return the walls on the finished parts, in the order of the walls."""
 
     @abstractmethod
-    def drawings(self, result: CamResult) -> tuple[Drawing, ...]:
+    def drawings(self) -> tuple[Drawing, ...]:
         """Return a drawing of each part in its own frame, for cutting."""
 
     @abstractmethod
-    def picture(self, result: CamResult) -> Drawing:
+    def picture(self) -> Drawing:
         """Return the cam assembled with its follower, at the angle of the design."""
 
     @abstractmethod
-    def paths(self, result: CamResult, radius: float | None) -> Mapping[str, Contour | Path]:
+    def paths(self, radius: float | None) -> Mapping[str, Contour | Path]:
         """Return paths of the centre of a cutter of a `radius`, mm, by the stems of their files."""
 
-    def rows_of(self, number: int, rows: tuple[str, ...]) -> tuple[str, ...]:  # noqa: ARG002
-        """Return the facts in the table of a part's drawing: `rows` of all forms, and its own."""
-        return (*rows, *self.rows)
+    def rows_of(self, number: int) -> Sequence[str]:  # noqa: ARG002
+        """Return the names of the facts in the table of a part's drawing, by its `number`."""
+        other = f"{'prime' if self.follower.flat else 'base'}_radius_mm"
+        return [name for name in (*ROWS, *self.rows) if not name.endswith(other)]
 
-    def heights(self, result: CamResult) -> tuple[float, ...]:
+    def heights(self) -> tuple[float, ...]:
         """Return the height of each part in the assembly, mm."""
-        return (0.0,) * len(result.parts)
+        return (0.0,) * len(self.result.parts)
 
-    def leading(self, result: CamResult) -> str:
-        """Return the name of the size for the headline, one of its `sizes`."""
-        return "prime_radius_mm" if result.follower.has_centre else "base_radius_mm"
+    @property
+    def leading(self) -> str:
+        """The name of the size for the headline, one of its `sizes`."""
+        return "base_radius_mm" if self.follower.flat else "prime_radius_mm"
 
-    def sizes(self, result: CamResult) -> dict[str, Any]:
+    def sizes(self) -> dict[str, Any]:
         """Return its sizes, as facts."""
-        follower = result.follower
+        follower = self.result.follower
         return {
-            "rotation": Fact(result.design.cam.rotation, "cam turns"),
+            "offset_mm": None if self.follower.oscillating else self.follower.offset,
+            "rotation": Fact(self.given.rotation, "cam turns"),
             "prime_radius_mm": follower.prime_radius,
             "base_radius_mm": follower.prime_radius - follower.radius,
         }
 
     @abstractmethod
-    def facts(self, result: CamResult) -> dict[str, Any]:
+    def facts(self) -> dict[str, Any]:
         """Return the facts of the cam beyond follower, size and pressure angles."""
 
 
-FORMS: Registry[Form] = Registry(
+FORMS: Registry[type[Form[Any, Any, Any]]] = Registry(
     "a form of cams",
     {
         "gearcam.kinds.cam.forms.disc": ("disc",),
@@ -166,95 +191,7 @@ FORMS: Registry[Form] = Registry(
 """The forms by name, each loaded when it is asked for."""
 
 
-def form_of(document: Mapping[str, Any]) -> Form:
-    """Return the form that a `document` names or nearly names, else the disc."""
-    cam = document.get("cam")
-    name = cam.get("form") if isinstance(cam, Mapping) else None
-    return FORMS[(nearest(name, FORMS) if isinstance(name, str) else "") or "disc"]
-
-
-def form_keys(document: Mapping[str, Any], table: Table) -> list[str]:
-    """Return the keys of a `table` that the form of a `document` may be given."""
-    form = form_of(document)
-    return [key for key, entry in table.entries.items() if _takes(form, table.title, entry.name)]
-
-
-def _takes(form: Form, title: str, name: str) -> bool:
-    """Whether a form may be given a field of a table."""
-    if title == "output" and name not in OWN_OUTPUT:
-        return True
-    return title not in form.takes or name in form.takes[title]
-
-
-def form_faults(name: str, parts: Mapping[str, Any], owners: Mapping[str, type]) -> Iterator[Fault]:
-    """Yield what is wrong with the keys of a form, or else what the form itself finds wrong.
-
-    Parameters
-    ----------
-    name : str
-        Of the form.
-    parts : mapping
-        Parameters that could be read, by the titles of their tables.
-    owners : mapping
-        Their classes.
-
-    Yields
-    ------
-    Fault
-    """
-    if not {"follower", "cam"} <= parts.keys():
-        return
-    form = FORMS[name]
-    found = [
-        fault
-        for title, owner in owners.items()
-        if title in parts
-        for fault in _key_faults(form, title, table_of(title, owner), parts[title])
-    ]
-    yield from found or form.faults(parts)
-
-
-def _key_faults(form: Form, title: str, known: Table, made: Any) -> Iterator[Fault]:
-    needs = form.needs.get(title, ())
-    for key, entry in known.entries.items():
-        value = getattr(made, entry.name)
-        if value is None and entry.name in needs:
-            yield Fault((title, key), f"is missing for a {form.name} cam", allowed=entry.param.doc)
-        elif value not in (None, entry.default) and not _takes(form, title, entry.name):
-            value = entry.outward(value)
-            owners = [one for one in FORMS if _takes(FORMS[one], title, entry.name)]
-            rule = f"with cam.form = {quoted(owners)}"
-            yield Fault(
-                (title, key), f"{show(value)}: does not apply to a {form.name} cam", value, rule
-            )
-
-
-def form_schema(title: str, owner: type) -> dict[str, Any]:
-    """Return the JSON schema's rules for the keys of a table that depend on the form.
-
-    Parameters
-    ----------
-    title : str
-        Of the table; it has the key ``form``.
-    owner : type
-        The class of its parameters.
-
-    Returns
-    -------
-    dict
-    """
-    entries = table_of(title, owner).entries.items()
-    default = next(entry.default for _, entry in entries if entry.name == "form")
-    rules = []
-    for name, form in FORMS.items():
-        given: dict[str, Any] = {"properties": {"form": {"const": name}}}
-        if name != default:  # the form that counts where none is given
-            given["required"] = ["form"]
-        takes, needs = form.takes[title], form.needs.get(title, ())
-        required = [key for key, entry in entries if entry.name in needs]
-        foreign = [{"required": [key]} for key, entry in entries if entry.name not in takes]
-        then = {"required": required, **({"not": {"anyOf": foreign}} if foreign else {})}
-        rules.append({"if": given, "then": then})
-    sizes = [{"required": ["prime_radius_mm"]}, {"required": ["base_radius_mm"]}]
-    slides = {"required": ["form"], "properties": {"form": {"enum": list(SLIDING)}}}
-    return {"allOf": rules, "oneOf": [*sizes, slides]}
+VARIANTS: Final = Variants(
+    title="cam", key="form", default="disc", entries=FORMS, called="a {} cam"
+)
+"""The tables that depend on the form."""

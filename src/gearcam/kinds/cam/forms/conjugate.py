@@ -3,32 +3,33 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
-from dataclasses import replace
-from typing import TYPE_CHECKING, Any
-
-import numpy as np
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from gearcam.base.facts import Fact
+from gearcam.base.quantities import ANGLE, LENGTH, LONGEST, param
+from gearcam.base.rules import Breach, only_with
 from gearcam.cams.conjugate import ConjugateCam, SecondRoller, make_conjugate
-from gearcam.cams.disc import CHORD_TOLERANCE
 from gearcam.cams.placing import make_round_follower
-from gearcam.designs.faults import Fault, show
+from gearcam.cams.spec import (
+    SECOND_ROLLER,
+    CamSpec,
+    FollowerSpec,
+    form_param,
+    positive_length,
+)
+from gearcam.designs.faults import Fault
 from gearcam.kinds.cam.facts import pressure
-from gearcam.kinds.cam.forms.base import FORMS, plate_keys
-from gearcam.kinds.cam.forms.disc import TOOL_PATH, Disc, plate_part
-from gearcam.kinds.cam.wall_facts import curvature, size, trimming
+from gearcam.kinds.cam.forms.base import FORMS, Form
+from gearcam.kinds.cam.forms.disc import TOOL_PATH, Plates
+from gearcam.kinds.cam.wall_facts import curvature, size, start_angle, trimming
 
 if TYPE_CHECKING:
-    from gearcam.cams.spec import CamSpec, FollowerSpec
-    from gearcam.kinds.cam.build import CamResult
-    from gearcam.kinds.cam.design import CamDesign
     from gearcam.laws.program import Program
     from gearcam.numeric.contour import Contour
     from gearcam.parts.body import Part
     from gearcam.pictures.drawings import Drawing
-
-_SECOND = ("roller2_radius", "arm2", "roller_distance", "arms_angle", "preload")
 
 _OF_SECOND = (
     "prime_radius_mm", "base_radius_mm", "roller_radius_mm", "arm_mm",
@@ -37,176 +38,229 @@ _OF_SECOND = (
 """Facts of the second cam that replace those of the first in the table of its drawing."""
 
 
-class Conjugate(Disc):
+@dataclass(frozen=True, kw_only=True)
+class ConjugateFollower(FollowerSpec):
+    """A follower with two rollers, one on each of conjugate cams.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.ConjugateFollower(type="roller", roller_radius=8.0, roller_distance=90.0)
+    ConjugateFollower(type='roller', roller_radius=8, roller_distance=90)
+    """
+
+    roller2_radius: float | None = positive_length(example=6, doc=SECOND_ROLLER)
+    arm2: float | None = positive_length(
+        example=60,
+        doc="distance from the pivot to the roller on the second of conjugate cams; arm_mm if left "
+        "out",
+    )
+    roller_distance: float | None = positive_length(
+        example=85, doc="distance of the two rollers of a translating follower on conjugate cams"
+    )
+    arms_angle: float | None = param(
+        ANGLE,
+        default=None,
+        gt=0,
+        lt=360,
+        example=80,
+        doc="angle between the two arms of an oscillating follower on conjugate cams",
+    )
+    preload: float = param(
+        LENGTH,
+        default=0.0,
+        ge=0,
+        le=10,
+        doc="how much closer than nominal the rollers of conjugate cams are mounted, so that "
+        "they are pressed apart when fitted",
+    )
+
+    rules = (
+        *FollowerSpec.rules,
+        only_with(
+            ("arms_angle", "arm2"), "motion", "oscillating", why="does not apply to a {} follower"
+        ),
+        only_with(
+            ("roller_distance",), "motion", "translating", why="does not apply to an {} follower"
+        ),
+    )
+
+    @property
+    def apart(self) -> float | None:
+        """Distance of the rollers, mm, or angle between their arms, rad, if it is given."""
+        return self.arms_angle if self.oscillating else self.roller_distance
+
+    @property
+    def apart_key(self) -> str:
+        """The key of this distance or angle."""
+        return "arms_angle_deg" if self.oscillating else "roller_distance_mm"
+
+    def second(self, prime: float | None) -> SecondRoller:
+        """Return the second roller, with the `prime` radius of its cam, mm, if that is given."""
+        return SecondRoller(
+            radius=self.roller2_radius or self.radius,
+            arm=(self.arm2 or self.arm or 0.0) if self.oscillating else 0.0,
+            prime=prime,
+            apart=self.apart,
+            preload=self.preload,
+        )
+
+    def problems(self) -> Iterator[Breach]:
+        """Yield contradictions: field, index, message, what is allowed."""
+        yield from super().problems()
+        if self.type != "roller":
+            yield "type", None, "conjugate cams drive two rollers", '"roller"'
+
+
+@dataclass(frozen=True, kw_only=True)
+class ConjugateSpec(CamSpec):
+    """Conjugate cams: two plates on one shaft.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.ConjugateSpec(prime_radius=40.0, prime_radius2=45.0, gap=2.0)
+    ConjugateSpec(form='conjugate', prime_radius=40, prime_radius2=45, gap=2)
+    """
+
+    form: str = form_param("conjugate")
+    prime_radius2: float | None = positive_length(
+        example=45,
+        doc="from the axis to the centre of conjugate cams' second roller, at the highest lift",
+    )
+    gap: float = param(LENGTH, default=0.0, ge=0, le=LONGEST, doc="gap between conjugate cams")
+
+
+class Conjugate(Plates[ConjugateCam, ConjugateSpec, ConjugateFollower]):
     """Two plates, each with one wall."""
 
     name = "conjugate"
     doc = "two plates on one shaft, each with a roller of one follower"
-    takes = plate_keys(cam=("prime_radius2", "gap"), follower=_SECOND)
-    assembly = "cams"
+    tables: ClassVar[Mapping[str, type]] = {
+        **Form.tables,
+        "follower": ConjugateFollower,
+        "cam": ConjugateSpec,
+    }
     rows = ("cam.roller_distance_mm", "cam.arms_angle_deg", "cam.preload_mm")
 
-    def faults(self, parts: Mapping[str, Any]) -> Iterator[Fault]:
-        """Yield what is wrong with the two rollers of the follower."""
-        follower, cam = parts["follower"], parts["cam"]
-        if follower.type != "roller":
-            message = f"{show(follower.type)}: conjugate cams drive two rollers"
-            yield Fault(("follower", "type"), message, follower.type, '"roller"')
-        own, other = ("arms_angle", "roller_distance")[:: 1 if follower.oscillating else -1]
-        keys = {"arms_angle": "arms_angle_deg", "roller_distance": "roller_distance_mm"}
-        article = "an oscillating" if follower.oscillating else "a translating"
-        if getattr(follower, other) is not None:
-            message = f"does not apply to {article} follower"
-            yield Fault(("follower", keys[other]), message, allowed=f"{keys[own]} instead")
-        if follower.arm2 is not None and not follower.oscillating:
-            message = "does not apply to a translating follower"
-            yield Fault(("follower", "arm2_mm"), message, allowed='with motion = "oscillating"')
-        yield from _place_faults(cam.prime_radius2, getattr(follower, own), keys[own])
+    @classmethod
+    def faults(cls, parts: Mapping[str, Any], document: Mapping[str, Any]) -> Iterator[Fault]:
+        """Yield contradictions between the tables of a design (see `Form.faults`)."""
+        yield from super().faults(parts, document)
+        prime, follower = parts["cam"].prime_radius2, parts["follower"]
+        if prime is None and follower.apart is None:
+            rule = f"cam.prime_radius2_mm or follower.{follower.apart_key}"
+            yield Fault(("cam", "prime_radius2_mm"), "is missing for a conjugate cam", allowed=rule)
+        elif prime is not None and follower.apart is not None:
+            rule = f"one of cam.prime_radius2_mm and follower.{follower.apart_key}"
+            message = "is given beside cam.prime_radius2_mm"
+            yield Fault(("follower", follower.apart_key), message, allowed=rule)
 
-    def make(self, design: CamDesign, program: Program) -> ConjugateCam:
+    def make(self, program: Program) -> ConjugateCam:
         """Return the cams."""
-        follower, cam = design.follower, design.cam
         return make_conjugate(
             program,
-            make_round_follower(follower, cam),
-            _second(follower, cam),
-            clockwise=cam.clockwise,
-            tolerance=design.output.chord_tolerance or CHORD_TOLERANCE,
+            make_round_follower(self.follower, self.given),
+            self.follower.second(self.given.prime_radius2),
+            clockwise=self.given.clockwise,
+            tolerance=self.chord_tolerance,
         )
 
-    def parts(self, result: CamResult) -> tuple[Part, ...]:
+    def parts(self) -> tuple[Part, ...]:
         """Return both plates in one frame, with hubs on their outer faces only."""
-        thickness = result.design.cam.thickness
-        blank = result.design.blank
-        hubs = ({"hub_front": 0.0}, {"hub_back": 0.0})
-        own = [replace(blank, **outer) for outer in hubs]
-        bare = {"hub_diameter": 0.0}
+        blanks = [replace(self.design.blank, **{inner: 0.0}) for inner in ("hub_front", "hub_back")]
         return tuple(
-            plate_part(
-                result,
+            self.plate(
                 f"cam{wall.key}",
                 profile,
-                thickness,
-                each if each.hub_front or each.hub_back else replace(each, **bare),
+                blank if blank.hub_front or blank.hub_back else replace(blank, hub_diameter=0.0),
             )
-            for wall, profile, each in zip(result.cam.walls, result.profiles, own, strict=True)
+            for wall, profile, blank in zip(
+                self.cam.walls, self.result.profiles, blanks, strict=True
+            )
         )
 
-    def heights(self, result: CamResult) -> tuple[float, ...]:
+    def heights(self) -> tuple[float, ...]:
         """Return 0 and the height of the second plate, which is above the first one and the gap."""
-        cam = result.design.cam
-        return 0.0, cam.thickness + (cam.gap or 0.0)
+        return 0.0, self.given.thickness + self.given.gap
 
-    def drawings(self, result: CamResult) -> tuple[Drawing, ...]:
+    def drawings(self) -> tuple[Drawing, ...]:
         """Return each plate with its pitch curve and prime circle."""
         from gearcam.kinds.cam.drawn import plate
 
-        rows = zip(result.parts, result.cam.walls, _primes(result), strict=True)
+        rows = zip(self.result.parts, self.cam.walls, self.primes, strict=True)
         return tuple(plate(part, wall, prime=prime) for part, wall, prime in rows)
 
-    def picture(self, result: CamResult) -> Drawing:
+    @property
+    def primes(self) -> tuple[float, float]:
+        """Prime radii of both cams, mm; the second is that at the highest lift."""
+        return self.cam.first.follower.prime_radius, self.cam.prime2
+
+    def picture(self) -> Drawing:
         """Return both plates, turned, with their follower."""
         from gearcam.kinds.cam.drawn import follower, plate
         from gearcam.pictures.drawings import CENTER, FOLLOWER, Drawing
 
-        pose = result.design.output.pose
-        reach = max(float(np.hypot(*one.vertices.T).max()) for one in result.profiles)
+        pose = self.design.output.pose
         plates, others = [], []
-        for part, wall, prime in zip(result.parts, result.cam.walls, _primes(result), strict=True):
+        for part, wall, prime in zip(self.result.parts, self.cam.walls, self.primes, strict=True):
             side = -1.0 if wall.clockwise else 1.0
-            shapes = follower(wall, pose, reach)
-            for one in plate(part, wall, shapes, angle=side * pose, prime=prime).features:
-                if one.layer in (CENTER, FOLLOWER):
-                    others.append(one)
+            shapes = follower(wall, pose, self.reach)
+            for feature in plate(part, wall, shapes, angle=side * pose, prime=prime).features:
+                if feature.layer in (CENTER, FOLLOWER):
+                    others.append(feature)
                 else:
-                    plates.append(replace(one, layer=f"{part.name.upper()}_{one.layer}"))
-        return Drawing(name=self.assembly, features=(*plates, *others))
+                    plates.append(replace(feature, layer=f"{part.name.upper()}_{feature.layer}"))
+        return Drawing(name="cams", features=(*plates, *others))
 
-    def paths(self, result: CamResult, radius: float | None) -> Mapping[str, Contour]:
+    def paths(self, radius: float | None) -> Mapping[str, Contour]:
         """Return the path around each plate; the cutter's default `radius` is the roller's."""
         from gearcam.kinds.cam.drawn import cutter_way
 
         return {
             f"{TOOL_PATH}_{wall.key}": cutter_way(part.contour, radius or wall.follower.radius)
-            for wall, part in zip(result.cam.walls, result.parts, strict=True)
+            for wall, part in zip(self.cam.walls, self.result.parts, strict=True)
         }
 
-    def facts(self, result: CamResult) -> dict[str, Any]:
+    def facts(self) -> dict[str, Any]:
         """Return the place of the second roller, and both cams."""
-        cam, design = _cam(result), result.design
-        second, swings = cam.second.follower, cam.first.follower.angular
-        clearance = design.blank.clearance
-        told = [
+        cam, swings = self.cam, self.follower.oscillating
+        second = cam.second.follower
+        first_facts, second_facts = (
             {
                 "curvature": curvature(wall),
+                "start_angle_deg": start_angle(wall),
                 **trimming(wall),
-                "profile": size(wall, made, clearance),
+                "profile": size(wall, finished, self.design.blank.clearance),
             }
-            for wall, made in zip(cam.walls, result.contours, strict=True)
-        ]
+            for wall, finished in zip(cam.walls, self.result.contours, strict=True)
+        )
         own = {
             "prime_radius_mm": Fact(cam.prime2, "prime radius"),
             "base_radius_mm": Fact(cam.prime2 - second.radius, "base radius"),
             "roller_radius_mm": second.radius,
             "arm_mm": second.lever if swings else None,
-            "pressure_angle_deg": pressure(result, cam.second),
+            "pressure_angle_deg": pressure(self.result, cam.second),
         }
+        distance = Fact(cam.apart, "distance between the centres of the rollers", shown=True)
+        angle = Fact(math.degrees(cam.apart), "angle between the arms", unit="deg", shown=True)
         return {
-            "gap_mm": design.cam.gap or 0.0,
-            "roller_distance_mm": None
-            if swings
-            else Fact(cam.apart, "distance between the centres of the rollers", shown=True),
-            "arms_angle_deg": Fact(
-                math.degrees(cam.apart), "angle between the arms", unit="deg", shown=True
-            )
-            if swings
-            else None,
-            "preload_mm": design.follower.preload or None,
-            "cam1": told[0],
-            "cam2": own | told[1],
+            "gap_mm": self.given.gap,
+            "roller_distance_mm": None if swings else distance,
+            "arms_angle_deg": angle if swings else None,
+            "preload_mm": self.follower.preload or None,
+            "cam1": first_facts,
+            "cam2": own | second_facts,
         }
 
-    def rows_of(self, number: int, rows: tuple[str, ...]) -> tuple[str, ...]:
+    def rows_of(self, number: int) -> Sequence[str]:
         """Return the facts in the table of a plate's drawing."""
         cam, own = f"cam.cam{number + 1}.", [f"cam.{name}" for name in _OF_SECOND]
-        found = [
-            name.replace("cam.", cam) if name in own and number else name
-            for name in (name.replace("cam.profile.", f"{cam}profile.") for name in rows)
-        ]
-        return (*(name.replace("part.", f"part.{number}.") for name in found), *self.rows)
+        names = (name.replace("cam.profile.", f"{cam}profile.") for name in super().rows_of(number))
+        own_names = (
+            name.replace("cam.", cam) if name in own and number else name for name in names
+        )
+        return [name.replace("part.", f"part.{number}.") for name in own_names]
 
 
-def _place_faults(prime: float | None, apart: float | None, key: str) -> Iterator[Fault]:
-    if prime is None and apart is None:
-        rule = f"cam.prime_radius2_mm or follower.{key}"
-        yield Fault(("cam", "prime_radius2_mm"), "is missing for a conjugate cam", allowed=rule)
-    elif prime is not None and apart is not None:
-        rule = f"one of cam.prime_radius2_mm and follower.{key}"
-        yield Fault(("follower", key), "is given beside cam.prime_radius2_mm", allowed=rule)
-
-
-def _second(follower: FollowerSpec, cam: CamSpec) -> SecondRoller:
-    swings = follower.oscillating
-    return SecondRoller(
-        radius=follower.roller2_radius or follower.radius,
-        arm=(follower.arm2 or follower.arm or 0.0) if swings else 0.0,
-        prime=cam.prime_radius2,
-        apart=follower.arms_angle if swings else follower.roller_distance,
-        preload=follower.preload or 0.0,
-    )
-
-
-def _cam(result: CamResult) -> ConjugateCam:
-    """Return the cams, which are of this form."""
-    cam = result.cam
-    if not isinstance(cam, ConjugateCam):
-        raise TypeError(f"{cam!r} is not a pair of conjugate cams")
-    return cam
-
-
-def _primes(result: CamResult) -> tuple[float, float]:
-    cam = _cam(result)
-    return cam.first.follower.prime_radius, cam.prime2
-
-
-FORMS.register(Conjugate())
+FORMS.register(Conjugate)

@@ -8,15 +8,13 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from gearcam.base.facts import Fact
-from gearcam.cams.disc import CHORD_TOLERANCE, DiscCam, make_cam
+from gearcam.cams.disc import DiscCam, make_cam
 from gearcam.cams.placing import make_follower
-from gearcam.kinds.cam.forms.base import FORMS, Form
-from gearcam.kinds.cam.wall_facts import curvature, ends_of, size, trimming
+from gearcam.cams.spec import CamSpec, FollowerSpec
+from gearcam.kinds.cam.forms.base import FORMS, C, F, Form, S
+from gearcam.kinds.cam.wall_facts import curvature, ends_of, size, start_angle, trimming
 
 if TYPE_CHECKING:
-    from gearcam.cams.cam import Cam
-    from gearcam.kinds.cam.build import CamResult
-    from gearcam.kinds.cam.design import CamDesign
     from gearcam.laws.program import Program
     from gearcam.numeric.contour import Contour
     from gearcam.parts.blank import WheelBlank
@@ -34,16 +32,6 @@ _RIM_PART: Final = 2.0 / 3.0
 """Default rim outside lightening holes, in thicknesses."""
 
 
-def disc_cam(design: CamDesign, program: Program) -> DiscCam:
-    """Return the disc cam that a `design` asks for, its lift a `program`."""
-    return make_cam(
-        program,
-        make_follower(design.follower, design.cam),
-        clockwise=design.cam.clockwise,
-        tolerance=design.output.chord_tolerance or CHORD_TOLERANCE,
-    )
-
-
 def workpiece(name: str, thickness: float, within: str = "the outline") -> Workpiece:
     """Return the workpiece: `name`, `thickness` in mm, and the edge that openings stay `within`."""
     from gearcam.parts.openings import Workpiece
@@ -51,91 +39,95 @@ def workpiece(name: str, thickness: float, within: str = "the outline") -> Workp
     return Workpiece(name=name, rim=_RIM_PART * thickness, within=within)
 
 
-def plate_part(
-    result: CamResult,
-    name: str,
-    profile: Contour,
-    thickness: float,
-    blank: WheelBlank | None = None,
-) -> Part:
-    """Return a plate as a part: bore, hub, holes, moved edges.
+class Plates(Form[C, S, F]):
+    """A plate that turns, with one wall, its profile; what forms with several plates share."""
 
-    Parameters
-    ----------
-    result : CamResult
-        With the blank.
-    name : str
-        The stem of its files.
-    profile : Contour
-        Its edge before clearance.
-    thickness : float, mm
-        Of the plate.
-    blank : WheelBlank, optional
-        That of the design where left out.
+    def disc(self, program: Program) -> DiscCam:
+        """Return the disc cam for the follower of the design, its lift a `program`."""
+        return make_cam(
+            program,
+            make_follower(self.follower, self.given),
+            clockwise=self.given.clockwise,
+            tolerance=self.chord_tolerance,
+        )
 
-    Returns
-    -------
-    Part
-    """
-    from gearcam.parts.make import finished, make_part
+    def plate(self, name: str, profile: Contour, blank: WheelBlank) -> Part:
+        """Return a plate as a part, with bore, hub and holes, its edge moved by the clearance.
 
-    place = workpiece(name, thickness)
-    blank = blank or result.design.blank
-    return make_part(name, [finished(profile, blank, place)], thickness, blank, place)
+        Parameters
+        ----------
+        name : str
+            The stem of its files.
+        profile : Contour
+            Its edge before clearance.
+        blank : WheelBlank
+            Its blank.
+        """
+        from gearcam.parts.make import finished, make_part
 
+        thickness = self.given.thickness
+        place = workpiece(name, thickness)
+        return make_part(name, [finished(profile, blank, place)], thickness, blank, place)
 
-class Disc(Form):
-    """A plate with one wall, its profile."""
-
-    name = "disc"
-    doc = "a plate whose edge is the profile"
-
-    def make(self, design: CamDesign, program: Program) -> Cam:
-        """Return the cam."""
-        return disc_cam(design, program)
-
-    def parts(self, result: CamResult) -> tuple[Part, ...]:
+    def parts(self) -> tuple[Part, ...]:
         """Return the cam as its only part."""
-        return (plate_part(result, STEM, result.profile, result.design.cam.thickness),)
+        return (self.plate(STEM, self.result.profile, self.design.blank),)
 
-    def made(self, result: CamResult) -> tuple[Contour, ...]:
+    def finished(self) -> tuple[Contour, ...]:
         """Return the outlines of the parts."""
-        return tuple(part.contour for part in result.parts)
+        return tuple(part.contour for part in self.result.parts)
 
-    def drawings(self, result: CamResult) -> tuple[Drawing, ...]:
+    def drawings(self) -> tuple[Drawing, ...]:
         """Return each plate with its pitch curve and prime circle."""
         from gearcam.kinds.cam.drawn import plate
 
-        rows = zip(result.parts, result.cam.walls, strict=True)
+        rows = zip(self.result.parts, self.cam.walls, strict=True)
         return tuple(plate(part, wall) for part, wall in rows)
 
-    def picture(self, result: CamResult) -> Drawing:
+    def picture(self) -> Drawing:
         """Return the plate, turned, below its follower."""
         from gearcam.kinds.cam.drawn import follower, plate
 
-        (part,), (wall,), pose = result.parts, result.cam.walls, result.design.output.pose
-        reach = float(np.hypot(*result.profile.vertices.T).max())
+        (part,), (wall,), pose = self.result.parts, self.cam.walls, self.design.output.pose
         side = -1.0 if wall.clockwise else 1.0
-        return plate(part, wall, follower(wall, pose, reach), angle=side * pose)
+        return plate(part, wall, follower(wall, pose, self.reach), angle=side * pose)
 
-    def paths(self, result: CamResult, radius: float | None) -> Mapping[str, Contour]:
+    @property
+    def reach(self) -> float:
+        """Largest radius of the profiles, mm."""
+        return max(float(np.hypot(*one.vertices.T).max()) for one in self.result.profiles)
+
+    def paths(self, radius: float | None) -> Mapping[str, Contour]:
         """Return the path around the plate."""
         from gearcam.kinds.cam.drawn import cutter_way
 
-        return {TOOL_PATH: cutter_way(result.part.contour, radius or result.follower.radius)}
+        own = self.result.follower.radius
+        return {TOOL_PATH: cutter_way(self.result.part.contour, radius or own)}
 
-    def facts(self, result: CamResult) -> dict[str, Any]:
+    def facts(self) -> dict[str, Any]:
         """Return curvature, undercut and size of the profile."""
-        (wall,), (made,) = result.cam.walls, result.contours
+        (wall,), (finished,) = self.cam.walls, self.result.contours
         place = wall.contact_place
         return {
             "curvature": curvature(wall),
+            "start_angle_deg": start_angle(wall),
             **trimming(wall),
             "contact_mm": None
             if place is None
             else Fact(ends_of(place), "contact along the face", shown=True),
-            "profile": size(wall, made, result.design.blank.clearance),
+            "profile": size(wall, finished, self.design.blank.clearance),
         }
 
 
-FORMS.register(Disc())
+class Disc(Plates[DiscCam, CamSpec, FollowerSpec]):
+    """A plate with one wall."""
+
+    name = "disc"
+    doc = "a plate whose edge is the profile"
+
+    def make(self, program: Program) -> DiscCam:
+        """Return the cam."""
+        return self.disc(program)
+
+
+FORMS.register(Disc)

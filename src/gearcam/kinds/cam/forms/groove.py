@@ -2,134 +2,169 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from gearcam.base.errors import beyond_limit
 from gearcam.base.facts import Fact
-from gearcam.base.numerals import formatted
-from gearcam.cams.disc import CHORD_TOLERANCE
+from gearcam.base.quantities import LENGTH, REQUIRED, TEXT, param
+from gearcam.base.rules import Breach, below
 from gearcam.cams.groove import GrooveCam, make_groove
 from gearcam.cams.placing import make_round_follower
+from gearcam.cams.spec import (
+    GROOVE_SIDE,
+    ROLLER_CLEARANCE,
+    SECOND_ROLLER,
+    CamSpec,
+    FollowerSpec,
+    form_param,
+    positive_length,
+)
 from gearcam.designs.faults import Fault, show
-from gearcam.kinds.cam.forms.base import FORMS, Form, Keys, plate_keys
+from gearcam.kinds.cam.forms.base import FORMS, Form
 from gearcam.kinds.cam.forms.disc import STEM, TOOL_PATH, workpiece
-from gearcam.kinds.cam.wall_facts import curvature, size, trimming
+from gearcam.kinds.cam.wall_facts import curvature, size, start_angle, trimming
 
 if TYPE_CHECKING:
-    from gearcam.kinds.cam.build import CamResult
-    from gearcam.kinds.cam.design import CamDesign
     from gearcam.laws.program import Program
     from gearcam.numeric.contour import Contour
     from gearcam.parts.body import Part, Recess
     from gearcam.pictures.drawings import Drawing
 
-_OWN = ("outer_diameter", "groove_depth", "roller_clearance", "side")
+
+@dataclass(frozen=True, kw_only=True)
+class GrooveFollower(FollowerSpec):
+    """A roller in a groove, or two on one pin.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.GrooveFollower(type="roller", roller_radius=8.0, roller2_radius=6.0)
+    GrooveFollower(type='roller', roller_radius=8, roller2_radius=6)
+    """
+
+    roller2_radius: float | None = positive_length(example=6, doc=SECOND_ROLLER)
+
+    def problems(self) -> Iterator[Breach]:
+        """Yield contradictions: field, index, message, what is allowed."""
+        yield from super().problems()
+        if self.type != "roller":
+            yield "type", None, "a groove holds a roller", '"roller"'
+        if self.roller2_radius == self.roller_radius is not None:
+            message = "both rollers have this radius, but run in steps of the groove of different "
+            rule = "a different radius, or a single roller"
+            yield "roller2_radius", None, f"{message}width", rule
 
 
-class Groove(Form):
+@dataclass(frozen=True, kw_only=True)
+class GrooveSpec(CamSpec):
+    """A groove cam: a disc with a groove.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.GrooveSpec(prime_radius=40.0, outer_diameter=130.0, groove_depth=6.0)
+    GrooveSpec(form='groove', prime_radius=40, outer_diameter=130, groove_depth=6)
+    """
+
+    form: str = form_param("groove")
+    outer_diameter: float = positive_length(
+        default=REQUIRED, example=130, doc="diameter of the disc of a groove cam"
+    )
+    groove_depth: float = positive_length(
+        default=REQUIRED, example=6, doc="depth of a groove, less than the thickness"
+    )
+    roller_clearance: float = param(LENGTH, default=0.0, ge=0, le=100, doc=ROLLER_CLEARANCE)
+    side: str | None = param(
+        TEXT, default=None, choices=("front", "back"), example="front", doc=GROOVE_SIDE
+    )
+
+    rules = (
+        *CamSpec.rules,
+        below("groove_depth", "thickness", why="the groove would have no floor"),
+    )
+
+
+class Groove(Form[GrooveCam, GrooveSpec, GrooveFollower]):
     """A disc with two walls, those of its groove."""
 
     name = "groove"
     doc = "a disc with a groove that holds a roller from both sides"
-    takes = plate_keys(cam=_OWN, follower=("roller2_radius",))
-    needs: ClassVar[Keys] = {"cam": ("outer_diameter", "groove_depth")}
+    tables: ClassVar[Mapping[str, type]] = {
+        **Form.tables,
+        "follower": GrooveFollower,
+        "cam": GrooveSpec,
+    }
     rows = (
         "cam.outer_diameter_mm", "cam.groove.width_mm", "cam.groove.depth_mm",
         "cam.roller2_radius_mm", "cam.roller_clearance_mm", "cam.lost_motion",
     )  # fmt: skip
 
-    def faults(self, parts: Mapping[str, Any]) -> Iterator[Fault]:
-        """Yield what a groove cam cannot have."""
-        follower, cam = parts["follower"], parts["cam"]
-        if follower.type != "roller":
-            message = f"{show(follower.type)}: a groove holds a roller"
-            yield Fault(("follower", "type"), message, follower.type, '"roller"')
-        if follower.roller2_radius == follower.roller_radius:
-            message = f"{show(follower.roller2_radius)}: both rollers have this radius, but run in "
-            message += "steps of the groove of different width"
-            rule = "a different radius, or a single roller"
-            yield Fault(("follower", "roller2_radius_mm"), message, follower.roller_radius, rule)
-        if cam.groove_depth >= cam.thickness:
-            message = f"{show(cam.groove_depth)}: the groove would have no floor"
-            rule = f"below the thickness of {formatted(cam.thickness)} mm"
-            yield Fault(("cam", "groove_depth_mm"), message, cam.groove_depth, rule)
-        blank, output = parts.get("blank"), parts.get("output")
-        if blank is not None and blank.clearance:
-            message = f"{show(blank.clearance)}: the clearance of a groove is that of its roller"
-            rule = "cam.roller_clearance_mm instead"
-            yield Fault(("blank", "clearance_mm"), message, blank.clearance, rule)
-        if output is not None and output.kerf:
-            message = f"{show(output.kerf)}: not for a groove, which is milled"
-            yield Fault(("output", "kerf_mm"), message, output.kerf, "leave it out")
-        if output is not None and "cut-svg" in output.files:
-            message = "not for a groove, which is milled"
-            rule = "other files, such as dxf and tool-path"
-            yield Fault(("output", "files"), message, "cut-svg", rule)
+    @classmethod
+    def faults(cls, parts: Mapping[str, Any], document: Mapping[str, Any]) -> Iterator[Fault]:
+        """Yield contradictions between the tables of a design (see `Form.faults`)."""
+        yield from super().faults(parts, document)
+        yield from milled_faults(parts, "a groove")
 
-    def make(self, design: CamDesign, program: Program) -> GrooveCam:
+    def make(self, program: Program) -> GrooveCam:
         """Return the cam."""
-        cam = design.cam
         return make_groove(
             program,
-            make_round_follower(design.follower, cam),
-            clearance=cam.roller_clearance or 0.0,
-            radius2=design.follower.roller2_radius,
-            diameter=cam.outer_diameter or math.inf,
-            clockwise=cam.clockwise,
-            tolerance=design.output.chord_tolerance or CHORD_TOLERANCE,
+            make_round_follower(self.follower, self.given),
+            clearance=self.given.roller_clearance,
+            radius2=self.follower.roller2_radius,
+            diameter=self.given.outer_diameter,
+            clockwise=self.given.clockwise,
+            tolerance=self.chord_tolerance,
         )
 
-    def parts(self, result: CamResult) -> tuple[Part, ...]:
+    def parts(self) -> tuple[Part, ...]:
         """Return the disc with its groove; openings and hub keep within the inner wall."""
         from gearcam.parts.make import make_part
         from gearcam.parts.shapes import Circle
 
-        cam, thickness = result.design.cam, result.design.cam.thickness
-        disc = Circle(center=np.zeros(2), diameter=cam.outer_diameter or 0.0)
-        recesses = _recesses(result)
-        relief = _cam(result).relief
+        thickness, profiles, relief = self.given.thickness, self.result.profiles, self.cam.relief
+        disc = Circle(center=np.zeros(2), diameter=self.given.outer_diameter)
         within = [relief.contour] if relief is not None and relief.side > 0 else []
-        contour = disc.contour(result.profile.tolerance)
         return (
             make_part(
                 STEM,
-                [contour],
+                [disc.contour(self.result.profile.tolerance)],
                 thickness,
-                result.design.blank,
+                self.design.blank,
                 workpiece(STEM, thickness, within="the groove's inner wall"),
-                recesses=recesses,
-                room=[*within, result.profiles[0]],
+                recesses=self._recesses(),
+                room=[*within, profiles[0]],
             ),
         )
 
-    def made(self, result: CamResult) -> tuple[Contour, ...]:
+    def finished(self) -> tuple[Contour, ...]:
         """Return the walls, which are made as they are touched."""
-        return result.profiles
+        return self.result.profiles
 
-    def drawings(self, result: CamResult) -> tuple[Drawing, ...]:
+    def drawings(self) -> tuple[Drawing, ...]:
         """Return the disc with both walls and the pitch curve."""
         from gearcam.kinds.cam.drawn import grooved
 
-        return (grooved(result.part, result.cam.walls),)
+        return (grooved(self.result.part, self.cam.walls),)
 
-    def picture(self, result: CamResult) -> Drawing:
+    def picture(self) -> Drawing:
         """Return the disc, turned, with its follower in the groove."""
         from gearcam.kinds.cam.drawn import follower, grooved
 
-        (motion,), pose = result.cam.motions, result.design.output.pose
-        shapes = follower(motion, pose, result.part.contour.reach)
+        motion, part, pose = self.cam.motion, self.result.part, self.design.output.pose
+        shapes = follower(motion, pose, part.contour.reach)
         side = -1.0 if motion.clockwise else 1.0
-        return grooved(result.part, result.cam.walls, shapes, angle=side * pose)
+        return grooved(part, self.cam.walls, shapes, angle=side * pose)
 
-    def paths(self, result: CamResult, radius: float | None) -> Mapping[str, Contour]:
+    def paths(self, radius: float | None) -> Mapping[str, Contour]:
         """Return the pitch curve for a tool as wide as the groove, else a path along each wall."""
         from gearcam.kinds.cam.drawn import TOOL_RADIUS, cutter_way
 
-        cam = _cam(result)
+        cam = self.cam
         widest = 0.5 * cam.width
         if radius is not None and radius > widest:
             what = "the cutter is wider than the groove"
@@ -144,72 +179,86 @@ class Groove(Form):
             for wall in walls
         }
 
-    def facts(self, result: CamResult) -> dict[str, Any]:
+    def facts(self) -> dict[str, Any]:
         """Return sizes of the groove, its lost motion, and both walls."""
-        cam, given = _cam(result), result.design.cam
-        follower = cam.motion.follower
+        walls = zip(self.cam.walls, self.result.profiles, strict=True)
         return {
-            "outer_diameter_mm": Fact(given.outer_diameter, "diameter of the blank"),
-            "side": given.side or "front",
-            "roller2_radius_mm": result.design.follower.roller2_radius,
-            "roller_clearance_mm": given.roller_clearance or 0.0,
-            "start_angle_deg": math.degrees(follower.start) if follower.angular else None,
+            "outer_diameter_mm": Fact(self.given.outer_diameter, "diameter of the blank"),
+            "side": self.given.side or "front",
+            "roller2_radius_mm": self.follower.roller2_radius,
+            "roller_clearance_mm": self.given.roller_clearance,
+            "start_angle_deg": start_angle(self.cam.motion),
             "groove": {
-                "width_mm": Fact(cam.width, "width of the groove"),
-                "depth_mm": Fact(given.groove_depth, "depth of the groove"),
+                "width_mm": Fact(self.cam.width, "width of the groove"),
+                "depth_mm": Fact(self.given.groove_depth, "depth of the groove"),
                 **{
-                    wall.key: {"curvature": curvature(wall), **_trimmed(wall), **size(wall, made)}
-                    for wall, made in zip(cam.walls, result.profiles, strict=True)
+                    wall.key: {
+                        "curvature": curvature(wall),
+                        **trimming(wall),
+                        **size(wall, profile),
+                    }
+                    for wall, profile in walls
                 },
             },
         }
 
+    def _recesses(self) -> tuple[Recess, ...]:
+        """Return the groove: in one, or the deeper half for the smaller of two rollers."""
+        from gearcam.parts.body import Opening, Recess
 
-def _trimmed(wall: Any) -> dict[str, Any]:
-    return {name: value for name, value in trimming(wall).items() if name != "start_angle_deg"}
+        cam, thickness, depth = self.cam, self.given.thickness, self.given.groove_depth
+        inner, outer = self.result.profiles
+        front = self.given.side != "back"
 
+        def recess(low: float, high: float, edges: tuple[Contour, Contour], width: float) -> Recess:
+            island = Opening(kind="INNER", shape=edges[0], name="island")
+            ends = (thickness - high, thickness - low) if front else (low, high)
+            x, y = cam.inner.pitch_contour.vertices[0].tolist()
+            return Recess(
+                edge=edges[1],
+                openings=(island,),
+                low=ends[0],
+                high=ends[1],
+                front=front,
+                width=width,
+                place=(x, y),
+            )
 
-def _cam(result: CamResult) -> GrooveCam:
-    """Return the cam, which is one of this form."""
-    cam = result.cam
-    if not isinstance(cam, GrooveCam):
-        raise TypeError(f"{cam!r} is not a groove cam")
-    return cam
-
-
-def _recesses(result: CamResult) -> tuple[Recess, ...]:
-    """Return the groove: in one, or the deeper half for the smaller of two rollers."""
-    from gearcam.parts.body import Opening, Recess
-
-    cam, given = _cam(result), result.design.cam
-    inner, outer = result.profiles
-    thickness, depth = given.thickness, given.groove_depth or 0.0
-    front = given.side != "back"
-
-    def recess(low: float, high: float, edges: tuple[Contour, Contour], width: float) -> Recess:
-        island = Opening(kind="INNER", shape=edges[0], name="island")
-        ends = (thickness - high, thickness - low) if front else (low, high)
-        x, y = cam.inner.pitch_contour.vertices[0].tolist()
-        return Recess(
-            edge=edges[1],
-            openings=(island,),
-            low=ends[0],
-            high=ends[1],
-            front=front,
-            width=width,
-            place=(x, y),
+        if cam.relief is None:
+            return (recess(0.0, depth, (inner, outer), cam.width),)
+        wide, side = cam.relief.contour, cam.relief.side
+        upper = (wide, outer) if side > 0 else (inner, wide)
+        other = cam.outer if side > 0 else cam.inner
+        width = cam.relief.follower.radius + other.follower.radius
+        return (
+            recess(0.0, 0.5 * depth, upper, width),
+            recess(0.5 * depth, depth, (inner, outer), cam.width),
         )
 
-    if cam.relief is None:
-        return (recess(0.0, depth, (inner, outer), cam.width),)
-    wide, side = cam.relief.contour, cam.relief.side
-    upper = (wide, outer) if side > 0 else (inner, wide)
-    other = cam.outer if side > 0 else cam.inner
-    width = cam.relief.follower.radius + other.follower.radius
-    return (
-        recess(0.0, 0.5 * depth, upper, width),
-        recess(0.5 * depth, depth, (inner, outer), cam.width),
-    )
+
+def milled_faults(parts: Mapping[str, Any], groove: str) -> Iterator[Fault]:
+    """Yield the faults of a clearance, and of files for cutting out, with a groove.
+
+    Parameters
+    ----------
+    parts : mapping
+        The tables of a design.
+    groove : str
+        What is milled, in words; empty for a slot, which is cut out.
+    """
+    blank, output = parts.get("blank"), parts.get("output")
+    if blank is not None and blank.clearance:
+        message = f"{show(blank.clearance)}: the clearance of a groove is that of its roller"
+        rule = "cam.roller_clearance_mm instead"
+        yield Fault(("blank", "clearance_mm"), message, blank.clearance, rule)
+    if output is None or not groove:
+        return
+    if output.kerf:
+        message = f"{show(output.kerf)}: not for {groove}, which is milled"
+        yield Fault(("output", "kerf_mm"), message, output.kerf, "leave it out")
+    if "cut-svg" in output.files:
+        rule = "other files, such as dxf and tool-path"
+        yield Fault(("output", "files"), f"not for {groove}, which is milled", "cut-svg", rule)
 
 
-FORMS.register(Groove())
+FORMS.register(Groove)

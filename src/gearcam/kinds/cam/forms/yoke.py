@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar, Final
-
-import numpy as np
 
 from gearcam.base.errors import Adjustment, beyond_limit
 from gearcam.base.facts import Fact
 from gearcam.base.numerals import formatted
+from gearcam.base.quantities import fixed
+from gearcam.base.rules import excluded
 from gearcam.cams.disc import YokeCam, make_yoke
-from gearcam.designs.faults import Fault, show
-from gearcam.kinds.cam.forms.base import FORMS, PLATE, Keys
-from gearcam.kinds.cam.forms.disc import Disc, disc_cam
+from gearcam.cams.spec import FACE_RULES, GUIDE_RULES, CamSpec, FollowerSpec, form_param
+from gearcam.kinds.cam.forms.base import FORMS, Form
+from gearcam.kinds.cam.forms.disc import Plates
 from gearcam.laws.half_turns import agreeing, completed, miss
 from gearcam.laws.phases_of_lift import fill_half
 from gearcam.laws.program import Program, make_program
@@ -23,9 +23,6 @@ from gearcam.numeric.pose import Pose
 from gearcam.pictures.drawings import FOLLOWER, Feature, placed
 
 if TYPE_CHECKING:
-    from gearcam.base.tolerances import Tolerances
-    from gearcam.kinds.cam.build import CamResult
-    from gearcam.kinds.cam.design import CamDesign
     from gearcam.kinds.cam.motion import Motion
     from gearcam.pictures.drawings import Drawing
 
@@ -33,65 +30,97 @@ _MISS: Final = 1e-6
 """Largest deviation of two half turns from being opposite, mm: rounding of typed digits."""
 
 
-class Yoke(Disc):
+@dataclass(frozen=True, kw_only=True)
+class YokeFollower(FollowerSpec):
+    """A follower with two faces or two rollers, one on each side of the cam's axis.
+
+    Parameters
+    ----------
+    offset : float, mm
+        With one a cam cannot drive two rollers, and offset faces change nothing.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.YokeFollower(type="flat")
+    YokeFollower(type='flat')
+    """
+
+    offset: float = fixed(0.0)
+
+    rules = (
+        *GUIDE_RULES,
+        *FACE_RULES,
+        excluded(
+            "motion", "oscillating", why="a yoke is a translating follower", allowed='"translating"'
+        ),
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class YokeSpec(CamSpec):
+    """A yoke cam: a plate that its follower touches on both sides of the axis.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.YokeSpec(base_radius=30.0)
+    YokeSpec(form='yoke', base_radius=30)
+    """
+
+    form: str = form_param("yoke")
+
+
+class Yoke(Plates[YokeCam, YokeSpec, YokeFollower]):
     """A plate with one wall that is touched on both sides of its axis."""
 
     name = "yoke"
     doc = "a plate between two faces or rollers, of constant breadth or diameter"
-    # with an offset one cam cannot drive two rollers, and offset faces change nothing
-    takes: ClassVar[Keys] = {
-        **PLATE, "follower": tuple(name for name in PLATE["follower"] if name != "offset")
-    }  # fmt: skip
+    tables: ClassVar[Mapping[str, type]] = {
+        **Form.tables,
+        "follower": YokeFollower,
+        "cam": YokeSpec,
+    }
     half_turns = True
     rows = ("cam.breadth_mm", "cam.roller_distance_mm", "cam.face_width_mm")
 
-    def faults(self, parts: Mapping[str, Any]) -> Iterator[Fault]:
-        """Yield what is wrong with the follower of a yoke cam."""
-        follower = parts["follower"]
-        if follower.oscillating:
-            message = f"{show(follower.motion)}: a yoke is a translating follower"
-            rule = '"translating"'
-            yield Fault(("follower", "motion"), message, follower.motion, rule)
-
-    def program(self, design: CamDesign, tolerances: Tolerances) -> Program:
+    def program(self) -> Program:
         """Return the lift over a turn: half of it and its opposite, or two opposite half turns."""
-        motion = design.motion
+        motion = self.design.motion
         if isinstance(motion, Sequence) and fill_half(motion):
-            return completed(make_program(motion, tolerances, half=True))
-        made = super().program(design, tolerances)
-        _demand_opposite(made, motion)
-        return made
+            return completed(make_program(motion, self.result.tolerances, half=True))
+        program = super().program()
+        _demand_opposite(program, motion)
+        return program
 
-    def make(self, design: CamDesign, program: Program) -> YokeCam:
+    def make(self, program: Program) -> YokeCam:
         """Return the cam."""
-        return make_yoke(disc_cam(design, program))
+        return make_yoke(self.disc(program))
 
-    def picture(self, result: CamResult) -> Drawing:
+    def picture(self) -> Drawing:
         """Return the plate, turned, between the two sides of its follower."""
         from gearcam.kinds.cam.drawn import follower
 
-        (wall,), pose = result.cam.walls, result.design.output.pose
-        reach = float(np.hypot(*result.profile.vertices.T).max())
-        other = follower(wall, pose + math.pi, reach)
-        drawing = super().picture(result)
+        (wall,), pose = self.cam.walls, self.design.output.pose
+        other, drawing = follower(wall, pose + math.pi, self.reach), super().picture()
         second = (Feature(layer=FOLLOWER, shape=placed(shape, Pose(math.pi))) for shape in other)
         return replace(drawing, features=(*drawing.features, *second))
 
-    def facts(self, result: CamResult) -> dict[str, Any]:
+    def sizes(self) -> dict[str, Any]:
+        """Return its sizes, as facts; its follower has no offset."""
+        return {**super().sizes(), "offset_mm": None}
+
+    def facts(self) -> dict[str, Any]:
         """Return the facts of a disc cam, and the distance of both sides of the follower."""
-        cam, flat = result.cam, not result.follower.has_centre
-        if not isinstance(cam, YokeCam):
-            raise TypeError(f"{cam!r} is not a yoke cam")
+        cam, flat = self.cam, self.follower.flat
+        faces = Fact(cam.breadth, "distance between the faces", shown=True)
+        rollers = Fact(cam.breadth, "distance between the centres of the rollers", shown=True)
         return {
-            **super().facts(result),
-            "breadth_mm": Fact(cam.breadth, "distance between the faces", shown=True)
-            if flat
-            else None,
+            **super().facts(),
+            "breadth_mm": faces if flat else None,
             "face_width_mm": cam.face_width and Fact(cam.face_width, "least width of the faces"),
             "least_base_radius_mm": cam.least_base_radius,
-            "roller_distance_mm": None
-            if flat
-            else Fact(cam.breadth, "distance between the centres of the rollers", shown=True),
+            "roller_distance_mm": None if flat else rollers,
         }
 
 
@@ -116,4 +145,4 @@ def _demand_opposite(program: Program, motion: Motion) -> None:
     raise beyond_limit(what, where, off.value, _MISS, rule, adjustments=adjustments, unit="mm")
 
 
-FORMS.register(Yoke())
+FORMS.register(Yoke)
