@@ -153,19 +153,42 @@ def test_every_key_of_studies_is_described(tmp_path: Path) -> None:
     assert unknown({"accuracy": {}, "new_key": 1}, SUMMARY) == {"new_key"}  # a control
 
 
-@pytest.fixture
-def joint(monkeypatch: pytest.MonkeyPatch) -> Any:
-    """The law that docs/contributing.md adds, as a module that registers nothing."""
+def _added(name: str, number: int, monkeypatch: pytest.MonkeyPatch) -> Any:
+    """A law that docs/contributing.md adds, with its claims, as a module that registers nothing."""
     page = (rules.ROOT / "docs" / "contributing.md").read_text("utf-8")
-    block, claims = re.findall(r"^```python\n(.*?)^```$", page, re.DOTALL | re.MULTILINE)
-    name = "gearcam.laws.ratio.joint"
+    blocks = re.findall(r"^```python\n(.*?)^```$", page, re.DOTALL | re.MULTILINE)
+    block, claims = blocks[number : number + 2]
     module = types.ModuleType(name)
     monkeypatch.setitem(sys.modules, name, module)
-    kept = block.replace("LAWS.register(", "ENTRY = (")
-    exec(compile(kept, "joint.py", "exec"), vars(module))
-    assert module.ENTRY.name == "universal-joint"
+    kept = re.sub(r"^(MOTION_)?LAWS.register\(", "ENTRY = (", block, flags=re.MULTILINE)
+    exec(compile(kept, "law.py", "exec"), vars(module))
     exec(compile(claims, "claims.py", "exec"), vars(module))
+    assert list(module.CLAIMS) == [module.ENTRY.name]
     return module
+
+
+@pytest.fixture
+def joint(monkeypatch: pytest.MonkeyPatch) -> Any:
+    """The ratio law that docs/contributing.md adds."""
+    return _added("gearcam.laws.ratio.joint", 0, monkeypatch)
+
+
+def test_the_motion_law_of_the_contributing_page_is_the_double_harmonic(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    module = _added("gearcam.laws.motion.double", 2, monkeypatch)
+    rise = module.DoubleHarmonic().build(DEFAULT).function
+    phi = np.linspace(0.0, 1.0, 41)
+    expected = (1 - np.cos(np.pi * phi)) / 2 - (1 - np.cos(2 * np.pi * phi)) / 8
+    np.testing.assert_allclose(rise(phi), expected, atol=1e-15)
+    (claim,) = module.CLAIMS["double-harmonic"].values
+    for place, value in claim.values.items():
+        assert float(rise(place)) == pytest.approx(value, abs=1e-15)
+    velocity, acceleration = (
+        np.abs(d).max() for d in rise.derivatives(np.append(phi, 2 / 3), 2)[1:]
+    )
+    assert velocity == pytest.approx(claim.peak_velocity, rel=1e-14)
+    assert acceleration == pytest.approx(claim.peak_acceleration, rel=1e-14)
 
 
 def test_the_law_of_the_contributing_page_is_that_of_the_joint(joint: Any) -> None:
