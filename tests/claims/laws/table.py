@@ -102,7 +102,7 @@ def any_table(d: LawDraw) -> tuple[Law, Counts]:
 
 def exact_table(law: TableLaw, n: tuple[int, int], mate: int) -> Callable[[Any], Exact]:
     """The quintics of the table, from the pieces that the program made of its rows."""
-    kind, angles, values = law.points
+    kind, angles, values, _ = law.points
 
     def make(built: RatioLaw) -> Exact:
         from gearcam.numeric.shape_keeping import quintics
