@@ -292,3 +292,30 @@ def test_a_refusal_of_a_nested_design_has_its_place() -> None:
     assert all(
         key.startswith("drive.pair.") for way in caught.value.adjustments for key in way.near
     )
+
+
+@pytest.mark.usefixtures("toy")
+@pytest.mark.parametrize(
+    ("changes", "key"),
+    [
+        ({"law.eccentricity": 0.7, "pair.teeth": [12, 12]}, "drive.pair.pair.teeth"),  # more teeth
+        ({"pair.teeth": [9, 9], "rack.addendum": 0.7}, "drive.pair.pair.teeth"),  # a finding
+        (
+            {"blank.bore_diameter_mm": 60},
+            "drive.pair.blank.bore_diameter_mm",
+        ),  # as the refusal says
+    ],
+)
+def test_remedies_of_a_nested_design_are_those_of_its_kind(
+    changes: dict[str, object], key: str
+) -> None:
+    design = loads(slider_crank(str(PROFILES / "ellipse.toml")))
+    broken = design.with_({f"drive.pair.{name}": value for name, value in changes.items()})
+    result = gearcam.build(broken)
+    remedies = gearcam.remedies(result)
+    assert key in {name for remedy in remedies.found for name in remedy.changes}
+    assert remedies.builds > 0
+    for remedy in remedies.found:
+        assert remedy.design == broken.with_(remedy.changes)
+        findings = gearcam.build(remedy.design).checked
+        assert "error" not in {finding.severity for finding in findings}

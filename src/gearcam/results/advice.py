@@ -11,7 +11,7 @@ import math
 import time
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
@@ -35,6 +35,7 @@ from gearcam.base.display import ShortRepr
 from gearcam.base.errors import Adjustment, DesignError, InfeasibleError
 from gearcam.designs.design import Design, document_of, value_at
 from gearcam.results.kind import kind_of
+from gearcam.results.nested import keyed, nested_designs
 
 if TYPE_CHECKING:
     from gearcam.base.findings import Finding
@@ -160,10 +161,7 @@ def _sought(
     """Return what a search finds (see `remedies`), going on from what it finds unless `last`."""
     errors: list[Finding] = []
     if refusal is None:
-        try:
-            errors = [finding for finding in result.checked if finding.severity == "error"]
-        except InfeasibleError as error:
-            refusal = error
+        refusal, errors = _examined(result)
     elif not refusal.adjustments and not refusal.more_teeth:
         with suppress(InfeasibleError):
             _ = result.checked
@@ -171,7 +169,7 @@ def _sought(
     if refusal is None and not errors:
         return Remedies()
     search = Search(result, refusal, frozenset(error.code for error in errors), patience)
-    search.advice.seek(search, refusal)
+    search.seek()
     if not last:
         search.go_on()
     return Remedies(
@@ -185,6 +183,14 @@ def _sought(
         gave_up=search.gave_up,
         builds=search.builds,
     )
+
+
+def _examined(result: Result) -> tuple[InfeasibleError | None, list[Finding]]:
+    """Return why a design is refused, or its findings that are errors."""
+    try:
+        return None, [finding for finding in result.checked if finding.severity == "error"]
+    except InfeasibleError as error:
+        return error, []
 
 
 def kerf_paths(result: Any) -> object:
@@ -269,6 +275,18 @@ class Search:
         self.second: InfeasibleError | None = None
         self.seen: dict[str, dict[str, tuple[str, ...]]] = {}
 
+    def seek(self) -> None:
+        """Search as the advice of the kind knows; first, so for each nested design at fault."""
+        for key, design in nested_designs(self.result.design):
+            result: Result = kind_of(design).result(design, self.result.tolerances)
+            refusal, errors = _examined(result)
+            if refusal is not None or errors:
+                nested = _NestedSearch(self, key, result, refusal)
+                nested.seek()
+                nested.hand_over()
+        if not self.found:
+            self.advice.seek(self, self.refusal)
+
     @cached_property
     def document(self) -> dict[str, Any]:
         """The design as a document."""
@@ -287,6 +305,10 @@ class Search:
         self.tried |= dict.fromkeys(changes)
         return type(self.result)(design, self.result.tolerances)
 
+    def hopeless(self, other: Any) -> bool:
+        """Return whether a changed result is known not to help before it is built completely."""
+        return self.advice.hopeless(other)
+
     def left(self, changes: Changes) -> frozenset[str] | None:
         """Return the codes of all errors of the changed design; None if it is refused.
 
@@ -296,7 +318,7 @@ class Search:
         self.second = None
         try:
             other = self.changed(changes)
-            if self.advice.hopeless(other):
+            if self.hopeless(other):
                 return None
             findings = other.checked
             demand_files(other)
@@ -416,3 +438,41 @@ class Search:
             elif way.near and not self.over() and self.left(tidy(way.near)) is None:
                 for other in self.second.adjustments if self.second else ():
                     self.along(joined(way.near, other))
+
+
+class _NestedSearch(Search):
+    """The search for changes of a nested design with which the design around it has no errors.
+
+    Its changes and remedies are those of the nested design until it hands them over.
+    """
+
+    def __init__(
+        self, outer: Search, key: str, result: Result, refusal: InfeasibleError | None
+    ) -> None:
+        super().__init__(result, refusal, outer.codes, 0.0)
+        self.outer, self.key = outer, key
+
+    def over(self) -> bool:
+        """Return whether the outer search must end."""
+        return self.outer.over()
+
+    def changed(self, changes: Changes) -> Any:
+        """Return the result of the outer design with `changes` of the nested one; counted there."""
+        return self.outer.changed(keyed(self.key, changes))
+
+    def hopeless(self, other: Any) -> bool:  # noqa: ARG002
+        """Return False: what is known of the nested design says nothing of the `other` result."""
+        return False
+
+    def hand_over(self) -> None:
+        """Give the outer search what was found, as changes of its design."""
+        outer, key = self.outer, self.key
+        for changes in self.first:
+            outer.first.append(keyed(key, changes))
+            if text_of(changes) in self.seen:
+                outer.seen[text_of(keyed(key, changes))] = self.seen[text_of(changes)]
+        for remedy in self.found:
+            changes = keyed(key, remedy.changes)
+            design = outer.result.design.with_(changes)
+            less = keyed(key, remedy.less)
+            outer.found.append(replace(remedy, changes=changes, less=less, design=design))
