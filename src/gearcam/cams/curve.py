@@ -22,8 +22,7 @@ import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.cams.carriers import Carrier
-from gearcam.cams.contact import Contact
-from gearcam.cams.followers import Follower
+from gearcam.cams.followers import Contact, Follower
 from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.crossings import CurvePoint

@@ -54,7 +54,6 @@ from gearcam.base.display import ShortRepr
 from gearcam.base.errors import beyond_limit
 from gearcam.base.numerals import rounded_down
 from gearcam.cams.carriers import Carrier, Pair, unit
-from gearcam.cams.contact import Contact
 from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array, Mask, Plane
 from gearcam.numeric.jets import Jet, asin, atan, cos, sin_cos, sqrt
@@ -75,6 +74,38 @@ Line = tuple[complex, ...]
 
 Disc = tuple[complex, float]
 """Centre and radius, mm."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Contact:
+    """The contact at some cam angles, jets in theta.
+
+    Parameters
+    ----------
+    across, along : Jet
+        Velocities whose ratio is the tangent of the pressure angle.
+    turning : Jet
+        Angular rate of the profile's normal.
+    pitch_speed : Jet, mm/rad
+        Speed of the centre along the pitch curve; for a flat face equal to `speed`.
+    speed : Jet, mm/rad
+        Speed of the contact along the profile, negative where it is undercut.
+    place : Jet, mm
+        For a flat face: position of the contact along the face, from the parallel to the
+        follower's axis through the cam's axis, or from the pivot; zero for round followers.
+    """
+
+    across: Jet
+    along: Jet
+    turning: Jet
+    pitch_speed: Jet
+    speed: Jet
+    place: Jet
+
+    @property
+    def pressure(self) -> Jet:
+        """Signed pressure angle, rad."""
+        return atan(self.across / self.along)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -778,7 +809,7 @@ class Face(Follower):
         Returns
         -------
         across, along, place : Jet
-            See `gearcam.cams.contact.Contact`.
+            See `Contact`.
         """
 
     def contact(self, carrier: Carrier, p: Jet, ds: Jet, inset: float) -> Contact:  # noqa: ARG002

@@ -19,8 +19,8 @@ from gearcam.base.display import ShortRepr
 from gearcam.cams.carriers import unit
 from gearcam.cams.curve import ProfileSegments, segments
 from gearcam.cams.followers import Round
-from gearcam.cams.lost import resting
 from gearcam.cams.measures import Extreme
+from gearcam.cams.trim import resting
 from gearcam.cams.wall import Wall
 from gearcam.numeric.arrays import Array, Ints
 from gearcam.numeric.jets import Jet

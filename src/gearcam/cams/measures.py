@@ -15,8 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from gearcam.base.display import ShortRepr
-from gearcam.cams.contact import Contact
 from gearcam.cams.curve import CamCurve, ProfileSegments
+from gearcam.cams.followers import Contact
 from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet

@@ -5,6 +5,9 @@ another angle. The remaining profile bounds the region of positive winding numbe
 axis (see `gearcam.numeric.crossings`), and its corners are self-crossings of the curve. A loop of
 nanometres, which rounding hides, is cut out where it turns back.
 
+Between the cam angles of the two sides of a corner the follower touches only corners; its lift
+there has a closed form, and the largest lift that is lost is a root of a derivative.
+
 Refused: crossings that cannot be separated, and hundreds of undercut stretches.
 
 Depends on curve, measures and numeric.
@@ -20,8 +23,10 @@ import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import Adjustment, InfeasibleError, beyond_limit
-from gearcam.cams.curve import ProfileSegments
-from gearcam.cams.measures import over_the_end
+from gearcam.cams.carriers import Carrier
+from gearcam.cams.curve import CamCurve, ProfileSegments
+from gearcam.cams.followers import Follower
+from gearcam.cams.measures import Extreme, over_the_end
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.crossings import (
@@ -32,6 +37,8 @@ from gearcam.numeric.crossings import (
     remaining,
     rows_between,
 )
+from gearcam.numeric.jets import Jet
+from gearcam.numeric.piecewise import extremes
 from gearcam.numeric.sampling import Sampler
 
 _PROBES = 33
@@ -71,6 +78,10 @@ _JOINED = 0.1
 
 _ROUNDING = 4.0 * np.finfo(float).eps
 """Relative rounding of an angle at a crossing: a steep curve moves far by it."""
+
+
+_NARROWEST = 1e-9
+"""Angle, rad of a turn, below which rounding may exchange the two sides of a corner."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -354,3 +365,78 @@ def cut_out(
     index, start, end, corner = rows_between(segments, branches)
     kept = replace(segments.taken(index), start=start, end=end, corner=corner)
     return kept, tuple(corners)
+
+
+def resting(
+    follower: Follower, carrier: Carrier, point: complex, side: int = 1
+) -> Callable[[Jet], Jet]:
+    """Return the lift of a follower that rests on a point of the cam.
+
+    Parameters
+    ----------
+    follower : Follower
+        The follower.
+    carrier : Carrier
+        Motion of the cam.
+    point : complex, mm
+        In the cam's frame, turning counter-clockwise.
+    side : {1, -1}
+        Whether a round follower is above the point or pressed against it from below.
+
+    Returns
+    -------
+    callable
+        ``lift(theta) -> Jet``, mm or rad; nan where the point cannot be touched.
+    """
+
+    def lift(theta: Jet) -> Jet:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            position, room = follower.rest(*carrier.placed(theta, point), side=side)
+        missed = (room < 0.0) | ~np.isfinite(position.c[0])
+        s = position - follower.start
+        return Jet([np.where(missed, np.nan, value) for value in s.c])
+
+    return lift
+
+
+def lost_lift(curve: CamCurve, corner: Corner) -> Extreme:
+    """Return the largest lift lost at a corner, and its cam angle.
+
+    Parameters
+    ----------
+    curve : CamCurve
+        The untrimmed profile, turning counter-clockwise.
+    corner : Corner
+        Corner of the trimmed profile.
+
+    Returns
+    -------
+    Extreme
+        Cam angle, rad, and lift, mm or rad, not negative.
+
+    Raises
+    ------
+    InfeasibleError
+        If the follower cannot touch the corner anywhere.
+    """
+    program, side = curve.program, curve.lift_sign
+    start, end = corner.before, corner.after
+    rest = resting(curve.follower, curve.carrier, corner.point, side)
+    if end < start:
+        end += program.period
+    if end == start or end - start > program.period - _NARROWEST * program.grain:
+        return Extreme(theta=start, value=0.0)
+
+    def missing(theta: Array) -> list[Array]:
+        given = rest(Jet.variable(theta, 1)).derivatives()
+        return list(side * np.subtract(program.derivatives(theta, 1), given))
+
+    places, values = extremes(missing, program.cuts_between(start, end))
+    if np.isnan(values).all():
+        raise InfeasibleError(
+            "the follower cannot rest on a corner that trimming leaves",
+            where=curve.carrier.driver.told(start),
+            nearest="its arm or its pivot does not allow that position",
+        )
+    best = int(np.nanargmax(values))
+    return Extreme(theta=float(places[best]) % program.period, value=max(0.0, float(values[best])))

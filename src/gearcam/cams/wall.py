@@ -23,12 +23,17 @@ import numpy as np
 from gearcam.base.display import ShortRepr
 from gearcam.base.facts import Fact
 from gearcam.cams.carriers import ROTATING, Carrier
-from gearcam.cams.contact import Contact
 from gearcam.cams.curve import CamCurve, ProfileSegments, begun, segments
-from gearcam.cams.followers import Follower
-from gearcam.cams.lost import lost_lift
+from gearcam.cams.followers import Contact, Follower
 from gearcam.cams.measures import Extreme, Range, Size, over_the_end, range_of, size_of, undercut
-from gearcam.cams.trim import Corner, crossing_chords, star_shaped, trimmed, without_tiny_loops
+from gearcam.cams.trim import (
+    Corner,
+    crossing_chords,
+    lost_lift,
+    star_shaped,
+    trimmed,
+    without_tiny_loops,
+)
 from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.bulges import as_complex, as_pairs
@@ -128,7 +133,7 @@ class PitchMotion(ShortRepr):
 
     @cached_property
     def contact_place(self) -> Range | None:
-        """Range of the contact along a flat face, mm (see `gearcam.cams.contact.Contact`)."""
+        """Range of the contact along a flat face, mm (see `gearcam.cams.followers.Contact`)."""
         if self.follower.has_centre:
             return None
         return range_of(self.pitch_curve, lambda contact: contact.place, self._whole)

@@ -17,8 +17,8 @@ from gearcam.cams.checks import KIND
 from gearcam.cams.follow import follow
 from gearcam.cams.followers import Stem
 from gearcam.cams.groove import GrooveCam, make_groove
-from gearcam.cams.lost import resting
 from gearcam.cams.lost_motion import Rest
+from gearcam.cams.trim import resting
 from gearcam.laws.motion_formula import MotionFormula
 from gearcam.numeric.jets import Jet
 from helpers_cams import angles, back, follower_of, program, rise, there_and_back

@@ -11,10 +11,9 @@ import pytest
 from gearcam.base.errors import InfeasibleError
 from gearcam.cams.carriers import ROTATING
 from gearcam.cams.curve import CamCurve
-from gearcam.cams.lost import lost_lift, resting
 from gearcam.cams.placing import make_follower
 from gearcam.cams.spec import CamSpec, FollowerSpec
-from gearcam.cams.trim import Corner
+from gearcam.cams.trim import Corner, lost_lift, resting
 from gearcam.numeric.jets import Jet
 from helpers_cams import follower_of, there_and_back
 
