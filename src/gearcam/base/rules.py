@@ -7,14 +7,14 @@ computed from valid values is no rule: parameters find it in their method ``prob
 A value is *given* if it is written and differs from its default; 0 counts only where it does not
 mean that there is none. Values that are wrong by themselves are neither given nor missing.
 
-Knows nothing of tables and files: `Values` and `Keys` do.
+Knows nothing of tables and files: each rule gets its values, or its keys, by their names.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, Final, Protocol
+from typing import Any, Final
 
 from gearcam.base.numerals import formatted
 
@@ -24,51 +24,116 @@ Breach = tuple[str, int | None, str, str]
 Schema = dict[str, Any]
 
 
-class Values(Protocol):
-    """The values of a table, or of all tables by dotted names, as in a file."""
+@dataclass(frozen=True, kw_only=True)
+class Value:
+    """A value of a design as in its file.
 
-    def get(self, name: str) -> Any:
-        """Return a value or its default; None if there is none, or a wrong one."""
+    Parameters
+    ----------
+    key : str
+        Its key: ``module_mm``, or ``pair.module_mm`` among those of all tables.
+    text : str
+        Key and value as in a file: ``module_mm = 2``.
+    unit : str
+        Its unit; empty without one.
+    content : object
+        What is written; None if it is left out.
+    default : object
+        Its default; None without one.
+    zero_is_none : bool
+        Whether 0 means that there is none.
+    wrong : bool
+        Whether it is wrong by itself, or its key misspelt.
+    """
 
-    def given(self, name: str) -> bool:
-        """Return whether a right value is given."""
+    key: str
+    text: str
+    unit: str
+    content: Any
+    default: Any
+    zero_is_none: bool
+    wrong: bool
 
-    def written(self, name: str) -> bool:
-        """Return whether a value is written, right or wrong, and not as 0 for none."""
+    @property
+    def right(self) -> Any:
+        """The value or its default; None if there is none, or a wrong one."""
+        value = self.default if self.content is None else self.content
+        return None if self.wrong else value
 
-    def missing(self, name: str) -> bool:
-        """Return whether a value is left out, or is 0 and this means that there is none."""
+    @property
+    def given(self) -> bool:
+        """Whether a right value is given."""
+        return not self._is_none(self.right) and self.right != self.default
 
-    def key(self, name: str) -> str:
-        """Return the key of a field: ``module_mm``, or ``pair.module_mm`` for a dotted name."""
+    @property
+    def written(self) -> bool:
+        """Whether it is written, right or wrong, and not as 0 for none."""
+        return not self._is_none(self.content)
 
-    def unit(self, name: str) -> str:
-        """Return the unit of a field; empty without one."""
+    @property
+    def missing(self) -> bool:
+        """Whether it is left out, or is 0 and this means that there is none."""
+        return not self.wrong and self._is_none(self.right)
 
-    def text(self, name: str) -> str:
-        """Return key and value as in a file: ``module_mm = 2``."""
-
-
-class Keys(Protocol):
-    """The keys of a table, or of all tables by dotted names, for the schema."""
-
-    def given(self, name: str) -> Schema:
-        """Return the schema of tables in which a value is given."""
-
-    def written(self, name: str) -> Schema:
-        """Return the schema of tables in which a value is not missing."""
-
-    def value(self, name: str, schema: Schema, *, required: bool = False) -> Schema:
-        """Return the schema of tables whose value, if there is one, obeys a `schema`."""
-
-    def is_one_of(self, name: str, words: Iterable[Any]) -> Schema:
-        """Return the schema of tables in which a value or its default is one of some `words`."""
-
-    def both(self, name: str) -> bool:
-        """Return whether a field has a value for each of two wheels."""
+    def _is_none(self, value: Any) -> bool:
+        return value is None or (self.zero_is_none and _is_number(value) and value == 0)
 
 
-def _without(_: Keys) -> Schema:
+@dataclass(frozen=True, kw_only=True)
+class Field:
+    """A key for the schema of the table, or of the design, that it belongs to.
+
+    Parameters
+    ----------
+    path : tuple of str
+        The key, after the title of its table if the schema is that of a design.
+    default : object
+        Its default in a file; None without one.
+    none : tuple
+        Values that mean that there is none.
+    both : bool
+        Whether it has a value for each of two wheels.
+    """
+
+    path: tuple[str, ...]
+    default: Any
+    none: tuple[Any, ...]
+    both: bool
+
+    @property
+    def given(self) -> Schema:
+        """The schema of what gives it a value."""
+        return self._differs([self.default, *self.none])
+
+    @property
+    def written(self) -> Schema:
+        """The schema of what does not leave it out."""
+        return self._differs(self.none)
+
+    def is_one_of(self, words: Iterable[Any]) -> Schema:
+        """Return the schema of what gives it one of some `words`, or its default if this is one."""
+        values = list(words)
+        return self.obeys({"enum": values}, required=self.default not in values)
+
+    def obeys(self, schema: Schema, *, required: bool = False) -> Schema:
+        """Return the schema of what gives it a value of a `schema`, or none if not `required`."""
+        # of one table, or of a table in a design
+        for key in reversed(self.path):
+            schema = {"properties": {key: schema}} | ({"required": [key]} if required else {})
+        return schema
+
+    def _differs(self, values: Iterable[Any]) -> Schema:
+        single = [value for value in values if value is not None]
+        pairs = [[value, value] for value in single if self.both]
+        return self.obeys({"not": {"enum": [*single, *pairs]}} if single else {}, required=True)
+
+
+Values = Mapping[str, Value]
+Fields = Mapping[str, Field]
+"""Values and keys by the names of fields: of one table, or of all with dotted names."""
+
+
+def _without(_: Fields) -> Schema:
     return {}
 
 
@@ -79,13 +144,13 @@ class Rule:
     Parameters
     ----------
     breaches : callable
-        Yields what is wrong with some `Values`.
+        Yields what is wrong with some values.
     schema : callable
-        Returns its JSON schema for some `Keys`; empty if a schema cannot say it.
+        Returns its JSON schema for some keys; empty if a schema cannot say it.
     """
 
     breaches: Callable[[Values], Iterator[Breach]]
-    schema: Callable[[Keys], Schema] = _without
+    schema: Callable[[Fields], Schema] = _without
 
     def __repr__(self) -> str:
         return f"<Rule {self.breaches.__qualname__.partition('.')[0]}>"
@@ -103,15 +168,15 @@ def exactly_one(*names: str, note: str = "") -> Rule:
     """
 
     def breaches(values: Values) -> Iterator[Breach]:
-        allowed = f"exactly one of {_listed(map(values.key, names))}{note and f'; {note}'}"
-        written = [name for name in names if values.written(name)]
-        if all(map(values.missing, names)):
-            keys = " nor ".join(map(values.key, names))
+        allowed = f"exactly one of {_listed(_keys(values, *names))}{note and f'; {note}'}"
+        written = [name for name in names if values[name].written]
+        if all(values[name].missing for name in names):
+            keys = " nor ".join(_keys(values, *names))
             yield "", None, f"neither {keys} is given", allowed
         for name in written[1:]:
-            yield name, None, f"is given beside {values.text(written[0])}", allowed
+            yield name, None, f"is given beside {values[written[0]].text}", allowed
 
-    return Rule(breaches, lambda keys: {"oneOf": [keys.written(name) for name in names]})
+    return Rule(breaches, lambda keys: {"oneOf": [keys[name].written for name in names]})
 
 
 def needs(name: str, *others: str, one: bool = False, allowed: str = "") -> Rule:
@@ -130,16 +195,16 @@ def needs(name: str, *others: str, one: bool = False, allowed: str = "") -> Rule
     """
 
     def breaches(values: Values) -> Iterator[Breach]:
-        missing = [other for other in others if values.missing(other)]
-        if not values.given(name) or (one and len(missing) < len(others)):
+        missing = [other for other in others if values[other].missing]
+        if not values[name].given or (one and len(missing) < len(others)):
             return
-        rule = f"{values.key(name)} with {_listed(map(values.key, others), one=one)}"
+        rule = f"{values[name].key} with {_listed(_keys(values, *others), one=one)}"
         for other in missing[:1] if one else missing:
-            yield other, None, f"is missing beside {values.key(name)}", allowed or rule
+            yield other, None, f"is missing beside {values[name].key}", allowed or rule
 
-    def schema(keys: Keys) -> Schema:
-        wanted = {"anyOf" if one else "allOf": [keys.written(other) for other in others]}
-        return {"if": keys.given(name), "then": wanted}
+    def schema(keys: Fields) -> Schema:
+        wanted = {"anyOf" if one else "allOf": [keys[other].written for other in others]}
+        return {"if": keys[name].given, "then": wanted}
 
     return Rule(breaches, schema)
 
@@ -172,16 +237,16 @@ def excludes(name: str, *others: str, allowed: str = "") -> Rule:
     """
 
     def breaches(values: Values) -> Iterator[Breach]:
-        beside = [other for other in others if values.given(other)]
-        if values.given(name) and beside:
-            rule = _listed(map(values.key, (name, *others)), one=True)
-            yield name, None, f"is given beside {values.text(beside[0])}", allowed or rule
+        beside = [other for other in others if values[other].given]
+        if values[name].given and beside:
+            rule = _listed(_keys(values, name, *others), one=True)
+            yield name, None, f"is given beside {values[beside[0]].text}", allowed or rule
 
-    def schema(keys: Keys) -> Schema:
-        if any(map(keys.both, (name, *others))):
+    def schema(keys: Fields) -> Schema:
+        if any(keys[one].both for one in (name, *others)):
             return {}  # they may be those of different wheels
-        beside = {"anyOf": [keys.given(other) for other in others]}
-        return {"if": keys.given(name), "then": {"not": beside}}
+        beside = {"anyOf": [keys[other].given for other in others]}
+        return {"if": keys[name].given, "then": {"not": beside}}
 
     return Rule(breaches, schema)
 
@@ -203,17 +268,17 @@ def only_with(names: Iterable[str], key: str, *words: Any, why: str = "") -> Rul
     names = tuple(names)
 
     def breaches(values: Values) -> Iterator[Breach]:
-        value = values.get(key)
+        value = values[key].right
         if value is None or value in words:
             return
-        message = why.format(value) or f"does not apply with {values.text(key)}"
+        message = why.format(value) or f"does not apply with {values[key].text}"
         for name in names:
-            if values.given(name):
-                yield name, None, message, f"with {values.key(key)} = {_quoted(words)}"
+            if values[name].given:
+                yield name, None, message, f"with {values[key].key} = {_quoted(words)}"
 
-    def schema(keys: Keys) -> Schema:
-        foreign = {"anyOf": [keys.given(name) for name in names]}
-        return {"if": foreign, "then": keys.is_one_of(key, words)}
+    def schema(keys: Fields) -> Schema:
+        foreign = {"anyOf": [keys[name].given for name in names]}
+        return {"if": foreign, "then": keys[key].is_one_of(words)}
 
     return Rule(breaches, schema)
 
@@ -235,15 +300,15 @@ def needed_with(names: Iterable[str], key: str, *words: Any, why: str = "") -> R
     names = tuple(names)
 
     def breaches(values: Values) -> Iterator[Breach]:
-        value = values.get(key)
+        value = values[key].right
         message = why.format(value) or f"is missing with {key} = {_quoted([value])}"
         for name in names:
-            if value in words and values.missing(name):
-                yield name, None, message, f"needed with {values.key(key)} = {_quoted(words)}"
+            if value in words and values[name].missing:
+                yield name, None, message, f"needed with {values[key].key} = {_quoted(words)}"
 
-    def schema(keys: Keys) -> Schema:
-        needed = {"allOf": [keys.written(name) for name in names]}
-        return {"if": keys.is_one_of(key, words), "then": needed}
+    def schema(keys: Fields) -> Schema:
+        needed = {"allOf": [keys[name].written for name in names]}
+        return {"if": keys[key].is_one_of(words), "then": needed}
 
     return Rule(breaches, schema)
 
@@ -265,11 +330,11 @@ def excluded(name: str, value: Any, *, why: str, allowed: str, **beside: Any) ->
     wrong = {name: value, **beside}
 
     def breaches(values: Values) -> Iterator[Breach]:
-        if all(values.get(key) == one for key, one in wrong.items()):
+        if all(values[key].right == one for key, one in wrong.items()):
             yield name, None, why, allowed
 
-    def schema(keys: Keys) -> Schema:
-        return {"not": {"allOf": [keys.is_one_of(key, (one,)) for key, one in wrong.items()]}}
+    def schema(keys: Fields) -> Schema:
+        return {"not": {"allOf": [keys[key].is_one_of([one]) for key, one in wrong.items()]}}
 
     return Rule(breaches, schema)
 
@@ -286,13 +351,13 @@ def distinct(name: str, item: str) -> Rule:
     """
 
     def breaches(values: Values) -> Iterator[Breach]:
-        given = values.get(name)
+        given = values[name].right
         items = given if isinstance(given, list) else []
         for index, value in enumerate(items):
             if value in items[:index]:
                 yield name, index, "is listed twice", f"each {item} once"
 
-    return Rule(breaches, lambda keys: keys.value(name, {"uniqueItems": True}))
+    return Rule(breaches, lambda keys: keys[name].obeys({"uniqueItems": True}))
 
 
 _COMPARED: Final[dict[str, Callable[[float, float], bool]]] = {
@@ -304,19 +369,19 @@ _COMPARED: Final[dict[str, Callable[[float, float], bool]]] = {
 
 def _compared(how: str, name: str, other: str, why: str, part: float = 1.0) -> Rule:
     def breaches(values: Values) -> Iterator[Breach]:
-        value, limit = values.get(name), values.get(other)
+        value, limit = values[name].right, values[other].right
         if not _is_number(value) or not _is_number(limit):
             return
         if (
-            values.given(name)
-            and not values.missing(other)
+            values[name].given
+            and not values[other].missing
             and not _COMPARED[how](value, part * limit)
         ):
             share = (
-                f"{values.key(other)}/{formatted(1.0 / part)}" if part != 1.0 else values.key(other)
+                f"{values[other].key}/{formatted(1.0 / part)}" if part != 1.0 else values[other].key
             )
-            size = f"{formatted(part * limit)} {values.unit(other)}".rstrip()
-            message = why.format(values.text(other))
+            size = f"{formatted(part * limit)} {values[other].unit}".rstrip()
+            message = why.format(values[other].text)
             yield name, None, message, f"{how} {share} = {size}"
 
     return Rule(breaches)
@@ -361,6 +426,10 @@ def at_most(name: str, other: str, *, why: str = "is above {}", part: float = 1.
         Factor of the other value.
     """
     return _compared("at most", name, other, why, part)
+
+
+def _keys(values: Values, *names: str) -> list[str]:
+    return [values[name].key for name in names]
 
 
 def _is_number(value: Any) -> bool:

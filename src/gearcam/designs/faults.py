@@ -96,6 +96,15 @@ def dotted(path: Path) -> str:
     return text
 
 
+def short(value: Any) -> Any:
+    """Return a `value` with 20.0 as 20, and with six digits of numbers that have more."""
+    if isinstance(value, list):
+        return [short(item) for item in value]
+    if isinstance(value, float):
+        return int(value) if value.is_integer() else float(f"{value:.6g}")
+    return value
+
+
 def show(value: Any) -> str:
     """Return a value as in a design file, shortened."""
     if isinstance(value, bool):

@@ -6,14 +6,15 @@ Other rules, such as increasing knots and valid formulas, are checked only when 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections import ChainMap
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any, Final
 
 from gearcam.base.quantities import REQUIRED
-from gearcam.base.rules import Keys, Rule
+from gearcam.base.rules import Field, Fields, Rule
 from gearcam.designs.faults import description
 from gearcam.designs.kind import KINDS, DesignKind, Variants
-from gearcam.designs.table import Key, Table
+from gearcam.designs.table import Key, Table, default_of
 
 DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
 
@@ -120,7 +121,7 @@ def table_schema(known: Table, doc: str = "", **words: str) -> Schema:
 
 
 def _branch(kind: DesignKind, main: Schema) -> Schema:
-    tables = {f"{title}.": kind.table(title) for title in kind.tables}
+    fields = [_fields(kind.table(title), title) for title in kind.tables]
     return {
         "type": "object",
         "description": kind.doc,
@@ -138,7 +139,7 @@ def _branch(kind: DesignKind, main: Schema) -> Schema:
             **({kind.main.title: main} if kind.main else {}),
         }
         | {title: {"$ref": f"#/$defs/{kind.name}-{title}"} for title in (*kind.tables, "limits")},
-        **_all_of([*_rules(kind.rules, _Keys(tables)), *_variants(kind.variants)]),
+        **_all_of([*_rules(kind.rules, ChainMap(*fields)), *_variants(kind.variants)]),
     }
 
 
@@ -167,60 +168,32 @@ def _titled(kind: DesignKind, title: str) -> Schema:
     return made
 
 
-class _Keys:
-    """Keys for rules, by the names of their fields (see `gearcam.base.rules.Keys`)."""
-
-    def __init__(self, tables: Mapping[str, Table]) -> None:
-        self._entries = {
-            title + entry.name: (title[:-1], entry)
-            for title, known in tables.items()
-            for entry in known.entries.values()
-        }
-
-    def given(self, name: str) -> Schema:
-        entry = self._entries[name][1]
-        none = [entry.outward(entry.default)] if entry.default not in (None, REQUIRED) else []
-        return self._unlike(name, [*none, *_zeros(entry)])
-
-    def written(self, name: str) -> Schema:
-        return self._unlike(name, _zeros(self._entries[name][1]))
-
-    def value(self, name: str, schema: Schema, *, required: bool = False) -> Schema:
-        title, entry = self._entries[name]
-        found = {"properties": {entry.key: schema}} if schema else {}
-        found |= {"required": [entry.key]} if required else {}
-        if not title:
-            return found
-        return {"properties": {title: found}} | ({"required": [title]} if required else {})
-
-    def is_one_of(self, name: str, words: Iterable[Any]) -> Schema:
-        values, default = list(words), self._entries[name][1].default
-        return self.value(name, {"enum": values}, required=default not in values)
-
-    def both(self, name: str) -> bool:
-        return self._entries[name][1].param.both
-
-    def _unlike(self, name: str, values: list[Any]) -> Schema:
-        return self.value(name, {"not": {"enum": values}} if values else {}, required=True)
-
-
-def _zeros(entry: Key) -> list[Any]:
-    zeros = [0, [0, 0]] if entry.param.both else [0]
-    return zeros if entry.param.zero_is_none else []
+def _fields(known: Table, title: str = "") -> dict[str, Field]:
+    """Return the keys of a table for rules, those of a `title` with dotted names."""
+    start, above = (f"{title}.", (title,)) if title else ("", ())
+    return {
+        start + entry.name: Field(
+            path=(*above, key),
+            default=default_of(entry),
+            none=(0,) if entry.param.zero_is_none else (),
+            both=entry.param.both,
+        )
+        for key, entry in known.entries.items()
+    }
 
 
 def _all_of(schemas: list[Schema]) -> Schema:
     return {"allOf": schemas} if schemas else {}
 
 
-def _rules(rules: Iterable[Rule], keys: Keys) -> list[Schema]:
+def _rules(rules: Iterable[Rule], keys: Fields) -> list[Schema]:
     """Return the schemas of `rules`, as far as a schema can say them."""
     return [schema for rule in rules if (schema := rule.schema(keys))]
 
 
 def _rules_of(known: Table) -> list[Schema]:
     """Return the schemas of the rules between the keys of a table."""
-    return _rules(getattr(known.owner, "rules", ()), _Keys({"": known}))
+    return _rules(getattr(known.owner, "rules", ()), _fields(known))
 
 
 def _property(key: Key) -> Schema:

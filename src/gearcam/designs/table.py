@@ -140,6 +140,13 @@ class Table:
         )
 
 
+def default_of(key: Key) -> Any:
+    """Return the default of a key in the unit of the file, that of one wheel; None without one."""
+    if key.default is REQUIRED or key.default is None:
+        return None
+    return key.outward(key.default)[0] if key.param.both else key.outward(key.default)
+
+
 @lru_cache(maxsize=128)
 def table_of(title: str, owner: type) -> Table:
     """Return the table of a parameter dataclass.

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 from gearcam.base.quantities import REQUIRED
 from gearcam.designs.examine import name_fault
-from gearcam.designs.faults import description, show
+from gearcam.designs.faults import description, short, show
 from gearcam.designs.kind import KINDS, DesignKind
 from gearcam.designs.table import Key, Table
 
@@ -127,15 +127,6 @@ def law_comment(key: str, name: str, entry: Any, known: Table) -> Iterator[str]:
 def key_line(key: str, value: Any, words: str, mark: str = "") -> str:
     """Return ``key = value`` with `words` beside it, as a comment if its `mark` is ``# ``."""
     return mark + beside(f"{key} = {show(short(value))}", words, _COLUMN - len(mark))
-
-
-def short(value: Any) -> Any:
-    """Return a `value` with 20.0 as 20, and with six digits of numbers that have more."""
-    if isinstance(value, list):
-        return [short(item) for item in value]
-    if isinstance(value, float):
-        return int(value) if value.is_integer() else float(f"{value:.6g}")
-    return value
 
 
 def beside(text: str, words: str, column: int = _COLUMN) -> str:

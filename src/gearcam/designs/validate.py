@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
-from gearcam.base.quantities import REQUIRED
-from gearcam.base.rules import Breach, Rule
-from gearcam.designs.faults import Fault, allowed, is_of, list_fault, show, value_fault
+from gearcam.base.rules import Breach, Rule, Value
+from gearcam.designs.faults import Fault, allowed, list_fault, short, show, value_fault
 from gearcam.designs.lines import Path
 from gearcam.designs.slips import STRONG, hinted, key_hint, misspelt
-from gearcam.designs.table import Key, Table
+from gearcam.designs.table import Key, Table, default_of
 
 
 def faults_of(
@@ -85,83 +83,32 @@ def _of_value(key: Key, value: Any, path: Path) -> Iterator[Fault]:
     yield from (fault for fault in faults if fault)
 
 
-@dataclass(frozen=True)
-class _Written:
-    """A key for rules: its text, what it takes, what is written, and whether this is wrong."""
-
-    key: str
-    entry: Key
-    value: Any
-    wrong: bool
-
-
-class _Values:
-    """Values for rules, by the names of their fields (see `gearcam.base.rules.Values`)."""
-
-    def __init__(self, written: Mapping[str, _Written]) -> None:
-        self._written = written
-
-    def get(self, name: str) -> Any:
-        one = self._written[name]
-        value = _default(one.entry) if one.value is None else one.value
-        return None if one.wrong else value
-
-    def given(self, name: str) -> bool:
-        entry, value = self._written[name].entry, self.get(name)
-        return not _is_none(entry, value) and value != _default(entry)
-
-    def written(self, name: str) -> bool:
-        return not _is_none(self._written[name].entry, self._written[name].value)
-
-    def missing(self, name: str) -> bool:
-        one = self._written[name]
-        return not one.wrong and _is_none(one.entry, self.get(name))
-
-    def key(self, name: str) -> str:
-        return self._written[name].key
-
-    def unit(self, name: str) -> str:
-        return self._written[name].entry.param.quantity.unit
-
-    def text(self, name: str) -> str:
-        one = self._written[name]
-        value = _default(one.entry) if one.value is None else one.value
-        value = int(value) if isinstance(value, float) and value.is_integer() else value
-        return f"{one.key} = {show(value)}"
-
-
-def _default(entry: Key) -> Any:
-    """Return the default of a key as in a file, of one wheel; None without one."""
-    default = entry.default
-    if default is REQUIRED or default is None:
-        return None
-    return entry.outward(default)[0] if entry.param.both else entry.outward(default)
-
-
-def _is_none(entry: Key, value: Any) -> bool:
-    """Return whether a value is none: left out, or a 0 that means so."""
-    return value is None or (entry.param.zero_is_none and is_of(value, float) and value == 0)
-
-
-def _written_in(
+def _values(
     known: Table, raw: Any, faults: Iterable[Fault], at: Path, wheel: int = 0, title: str = ""
-) -> dict[str, _Written]:
-    """Return the keys of a table, in which there are `faults`, by the names of their fields."""
+) -> dict[str, Value]:
+    """Return the values of a table, in which there are `faults`, by the names of their fields."""
     wrong = {one.path[len(at) :] for one in faults if one.path[: len(at)] == at}
     table = raw if isinstance(raw, Mapping) else {}
     if wrong:
         wrong |= {(key,) for key in misspelt(table, known.entries)}
-    written: dict[str, _Written] = {}
+    values: dict[str, Value] = {}
     for key, entry in known.entries.items():
-        value = table.get(key)
+        if entry.name in values and key not in table:
+            continue  # of two keys of a field the one that is written
+        content, default = table.get(key), default_of(entry)
         path: Path = (key,)
-        if entry.param.both and isinstance(value, list):
-            value, path = value[wheel] if wheel < len(value) else None, (key, wheel)
-        is_wrong = not wrong.isdisjoint([(), (key,), path])
-        # of two keys of a field the one that is written
-        if entry.name not in written or key in table:
-            written[title + entry.name] = _Written(title + key, entry, value, is_wrong)
-    return written
+        if entry.param.both and isinstance(content, list):
+            content, path = content[wheel] if wheel < len(content) else None, (key, wheel)
+        values[title + entry.name] = Value(
+            key=title + key,
+            text=f"{title}{key} = {show(short(default) if content is None else content)}",
+            unit=entry.param.quantity.unit,
+            content=content,
+            default=default,
+            zero_is_none=entry.param.zero_is_none,
+            wrong=not wrong.isdisjoint([(), (key,), path]),
+        )
+    return values
 
 
 def rule_faults(known: Table, raw: Any, faults: Iterable[Fault], at: Path) -> Iterator[Fault]:
@@ -181,7 +128,7 @@ def rule_faults(known: Table, raw: Any, faults: Iterable[Fault], at: Path) -> It
     breaches = (
         (name, wheel if both and index is None else index, message, allowed)
         for wheel in range(1 + both)
-        for values in [_Values(_written_in(known, raw, faults, at, wheel))]
+        for values in [_values(known, raw, faults, at, wheel)]
         for rule in rules
         for name, index, message, allowed in rule.breaches(values)
     )
@@ -207,11 +154,11 @@ def document_faults(
     faults : iterable of Fault
         Faults found before.
     """
-    written: dict[str, _Written] = {}
+    values: dict[str, Value] = {}
     for title, known in tables.items():
-        written |= _written_in(known, document.get(title), faults, (title,), title=f"{title}.")
+        values |= _values(known, document.get(title), faults, (title,), title=f"{title}.")
     for rule in rules:
-        for name, *breach in rule.breaches(_Values(written)):
+        for name, *breach in rule.breaches(values):
             title, _, field = name.partition(".")
             yield from told_faults([(field, *breach)], tables[title], document[title], (title,))
 

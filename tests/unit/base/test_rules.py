@@ -12,7 +12,7 @@ from typing import Any
 import jsonschema
 import pytest
 
-from gearcam.base.quantities import LENGTH, TEXT, param
+from gearcam.base.quantities import COUNT, LENGTH, TEXT, param
 from gearcam.base.rules import (
     above,
     at_most,
@@ -164,6 +164,38 @@ def test_what_is_wrong_or_misspelt_breaks_no_rule(raw: dict[str, Any]) -> None:
     faults = list(faults_of(known, raw, home=lambda _: ""))
     assert faults
     assert not list(rule_faults(known, raw, faults, ("sample",)))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Both:
+    """Parameters with a value for each of two wheels."""
+
+    holes: tuple[int, int] = param(COUNT, default=(0, 0), ge=0, le=9, both=True)
+    size: tuple[float, float] = param(
+        LENGTH, default=(0, 0), ge=0, le=9, both=True, zero_is_none=True
+    )
+
+    rules = (needs("holes", "size"),)
+
+
+@pytest.mark.parametrize(
+    ("raw", "paths", "verdict"),
+    [
+        ({"holes": 0}, [], True),
+        ({"holes": [0, 0]}, [], True),
+        ({"holes": 2}, [("size_mm",)], False),
+        ({"holes": [2, 0], "size_mm": [0, 3]}, [("size_mm", 0)], True),
+        ({"holes": [2, 3], "size_mm": 3}, [], True),
+        ({"holes": [0, 3], "size_mm": [0, 3]}, [], True),
+    ],
+)
+def test_each_wheel_is_judged_by_itself(
+    raw: dict[str, Any], paths: list[tuple[Any, ...]], verdict: bool
+) -> None:
+    """A schema refuses only what misses a value for both wheels."""
+    known = table_of("sample", Both)
+    assert [one.path[1:] for one in rule_faults(known, raw, [], ("sample",))] == paths
+    assert jsonschema.Draft202012Validator(table_schema(known)).is_valid(raw) is verdict
 
 
 @dataclass(frozen=True, kw_only=True)

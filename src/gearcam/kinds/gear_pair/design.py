@@ -196,7 +196,7 @@ def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
 
 def _tooth_breaches(values: Values) -> Iterator[Breach]:
     """Yield the teeth to study that the driver does not have."""
-    teeth, counts = values.get("meshing.teeth"), values.get("pair.teeth")
+    teeth, counts = values["meshing.teeth"].right, values["pair.teeth"].right
     most = counts[0] if isinstance(counts, list) and counts else None
     for index, tooth in enumerate(teeth if isinstance(teeth, list) and _is_number(most) else ()):
         if _is_number(tooth) and tooth > most:
