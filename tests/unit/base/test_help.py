@@ -54,7 +54,10 @@ class Sample:
     turn: float | None = param(ANGLE, default=None, doc="CNC code; from it")
     count: int = param(COUNT, default=3, doc="phi1, a symbol")
     lift: float = param(
-        LENGTH, doc="how far (translating follower)", angular=Param(ANGLE, doc="how far")
+        LENGTH,
+        doc="how far (translating follower)",
+        when=("translating",),
+        other=Param(ANGLE, doc="how far"),
     )
 
 
