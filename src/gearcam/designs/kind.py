@@ -86,7 +86,7 @@ class WithTables(Protocol):
         ...
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Variants:
     """Tables whose keys depend on the value of one key, such as the form of a cam.
 
@@ -107,6 +107,9 @@ class Variants:
     default: str
     entries: Mapping[str, WithTables]
     called: str
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} of {self.title}.{self.key}>"
 
     @property
     def titles(self) -> tuple[str, ...]:
