@@ -93,6 +93,8 @@ class NamedFact:
         Wheel, tooth, or angle of the value.
     noise : float
         Smaller values are rounding noise.
+    shown : bool
+        Whether it is always shown.
     written : str
         The value as people read it, if the fact gives it.
     """
@@ -104,6 +106,7 @@ class NamedFact:
     limit: str
     place: str
     noise: float
+    shown: bool
     written: str = ""
 
     @property
@@ -193,9 +196,8 @@ class Facts(Mapping[str, Any]):
     @cached_property
     def headline(self) -> tuple[str, ...]:
         """The main quantities as phrases: ``("module 2 mm", "teeth 20 : 20")``."""
-        told = map(self.quantity, self._headline)
-        phrases = (f"{one.meaning} {one.text}" for one in told)
-        return (self._title, *phrases) if self._title else tuple(phrases)
+        phrases = [f"{one.meaning} {one.text}" for one in map(self.quantity, self._headline)]
+        return tuple([self._title, *phrases] if self._title else phrases)
 
     @cached_property
     def document(self) -> dict[str, Any]:
@@ -209,29 +211,31 @@ class Facts(Mapping[str, Any]):
             raise KeyError(name) from None
 
     def __iter__(self) -> Iterator[str]:
-        return (quantity.name for quantity in self.quantities())
+        return iter(self._named)
 
     def __len__(self) -> int:
-        return sum(1 for _ in self)
+        return len(self._named)
+
+    @cached_property
+    def _named(self) -> dict[str, NamedFact]:
+        return {name: _quantity(name, fact) for name, fact in _leaves(self._tree)}
 
     def quantities(self) -> Iterator[NamedFact]:
         """Yield all quantities in the order of the tree."""
-        return (_quantity(name, fact) for name, fact in _leaves(self._tree))
+        return iter(self._named.values())
 
     def shown(self) -> Iterator[NamedFact]:
         """Yield the quantities that are always shown."""
-        for name, fact in _leaves(self._tree):
-            if isinstance(fact, Fact) and fact.shown:
-                yield _quantity(name, fact)
+        return (one for one in self.quantities() if one.shown)
 
-    def told(self) -> Iterator[NamedFact]:
+    def leading(self) -> Iterator[NamedFact]:
         """Yield the quantities of the headline, then the others that are always shown."""
         yield from map(self.quantity, self._headline)
         yield from (one for one in self.shown() if one.name not in self._headline)
 
     def quantity(self, name: str) -> NamedFact:
         """Return the quantity with a dotted `name`."""
-        return next(_quantity(path, fact) for path, fact in _leaves(self._tree) if path == name)
+        return self._named[name]
 
     def record(self) -> dict[str, float | str]:
         """Return all quantities as plain numbers and texts by dotted names (`Result.record`)."""
@@ -302,7 +306,8 @@ def _quantity(name: str, leaf: Any) -> NamedFact:
     meaning = fact.meaning or _label(last.removesuffix(end))
     limit = "" if fact.at_least is None else f"at least {formatted(fact.at_least)}"
     limit = limit if fact.at_most is None else f"at most {formatted(fact.at_most)}"
-    return NamedFact(name, _bare(fact), unit, meaning, limit, fact.place, fact.noise, fact.text)
+    place, noise = fact.place, fact.noise
+    return NamedFact(name, _bare(fact), unit, meaning, limit, place, noise, fact.shown, fact.text)
 
 
 def _label(name: str) -> str:

@@ -60,7 +60,7 @@ def rows(variants: Sequence[Variant], *, every: bool = False) -> tuple[Row, ...]
     if not made:
         return ()
     told = [
-        {fact.name: fact for fact in (one.facts.quantities() if every else one.facts.told())}
+        {fact.name: fact for fact in (one.facts.quantities() if every else one.facts.leading())}
         for one in made
     ]
     names = dict.fromkeys(name for facts in told for name in facts)

@@ -55,7 +55,10 @@ _framed = deferred("gearcam.report.file:framed")
 """Returns the page of a result for a notebook; named like the renderer of `gearcam.base.display`,
 since the report is made from results."""
 
-_OF_STUDIES: Final = ("_studied", "_running", "facts", "findings", "design_hash", "sought", "sizes")
+_OF_STUDIES: Final = (
+    "_studied", "_running", "_drawn", "design_facts", "facts", "findings", "design_hash", "sought",
+    "sizes",
+)  # fmt: skip
 """What a result with other studies computes anew."""
 
 
@@ -87,6 +90,7 @@ class Result(NotebookView):
         self.timings: dict[str, float] = {}
         self.sizes: dict[str, int] = {}  # bytes of the files built so far
         self._studied: dict[str, StudyResult] = {}
+        self._drawn: dict[str, Chart | None] = {}
         self._running: set[str] = set()  # studies that are being computed
         self.sought: dict[float, Any] = {}  # remedies found, by the patience of the search
 
@@ -362,8 +366,14 @@ class Result(NotebookView):
     @property
     def charts(self) -> tuple[str, ...]:
         """Names that `chart` and `plot` accept; `InfeasibleError` if it cannot be made."""
-        own = (name for name, make in self.kind.charts.items() if make(self) is not None)
-        return (*own, *self._study_charts)
+        names = (name for name in self.kind.charts if self._chart(name) is not None)
+        return (*names, *self._study_charts)
+
+    def _chart(self, name: str) -> Chart | None:
+        """Return a chart of the kind, drawn once; None where it would say nothing."""
+        if name not in self._drawn:
+            self._drawn[name] = self.kind.charts[name](self)
+        return self._drawn[name]
 
     @property
     def _study_charts(self) -> dict[str, Chart]:
@@ -392,12 +402,12 @@ class Result(NotebookView):
         InfeasibleError
             If the design cannot be made.
         """
-        makers, more = self.kind.charts, self._study_charts
-        known = one_of("name", name, (*makers, *more))
-        made = more[known] if known in more else makers[known](self)
-        if made is None:
+        more = self._study_charts
+        known = one_of("name", name, (*self.kind.charts, *more))
+        chart = more[known] if known in more else self._chart(known)
+        if chart is None:
             raise refused("there is no such chart here", "name", name, ", ".join(self.charts))
-        return made
+        return chart
 
     def plot(self, name: str, ax: Axes | None = None) -> Axes:
         """Draw a chart with matplotlib and return its axes.

@@ -69,6 +69,15 @@ def test_its_charts_are_charts_of_the_result(asked: Any, plain: Any) -> None:
         gearcam.build(plain).chart("mesh.transmission_error")
 
 
+def test_a_chart_is_drawn_once_for_each_setting(asked: Any) -> None:
+    """The patches of the design depend on the overclosure of the study."""
+    chart = asked.chart("contact_patch")
+    assert asked.chart("contact_patch") is chart
+    other = asked.mesh(overclosure_deg=0.1).result.chart("contact_patch")
+    assert "0.1 deg" in other.title
+    assert other.title != chart.title
+
+
 def test_its_charts_are_drawn_when_they_are_read(
     plain: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
