@@ -39,6 +39,9 @@ class Registry(Mapping[str, E], Generic[E]):
         self._homes = {name: module for module, names in homes.items() for name in names}
         self._entries: dict[str, E] = {}
 
+    def __repr__(self) -> str:
+        return f"<Registry, each entry {self._what}>"
+
     def register(self, *entries: E) -> None:
         """Add entries.
 
