@@ -156,7 +156,7 @@ def test_where_no_radius_helps_something_else_is_named(
 
 
 def test_only_steep_cams_are_searched(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("gearcam.kinds.cam.pressed.explained", None)
+    monkeypatch.setattr("gearcam.kinds.cam.hints.hinted", None)
     document = cam(ROLLER, {"prime_radius_mm": 60})
     assert gearcam.build(job_of(document, tmp_path).design).findings == ()
     assert np.degrees(job_of(document, tmp_path).cam.motions[0].pressure("rise").largest) < 30

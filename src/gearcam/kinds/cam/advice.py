@@ -15,7 +15,7 @@ from gearcam.base.findings import limit_of
 from gearcam.base.numerals import shortened
 from gearcam.cams.checks import KIND
 from gearcam.designs.design import value_at
-from gearcam.kinds.cam.pressed import gentler, grown
+from gearcam.kinds.cam.hints import gentler, grown
 from gearcam.kinds.cam.tables import CAM_FORMATS
 from gearcam.parts.checks import KIND as PARTS_KIND
 from gearcam.results.advice import Advice, kerf_paths

@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gearcam.base.errors import ABOVE, beyond_limit
 from gearcam.base.findings import Finding, in_order, run_checks
 from gearcam.cams.checks import KIND
 from gearcam.kinds.cam.design import CamDesign
 from gearcam.kinds.cam.forms.base import FORMS, Form
-from gearcam.kinds.cam.steps import WHOLE, even_angles
 from gearcam.kinds.cam.tables import CamBlank
 from gearcam.laws.program import Program
 from gearcam.numeric.arguments import angles, one_of
@@ -37,6 +38,16 @@ if TYPE_CHECKING:
     from gearcam.parts.checks import CheckedParts
     from gearcam.pictures.drawings import Drawing
     from gearcam.results.result import Progress, StudyResult
+
+_WHOLE: Final = 1e-9
+"""Share of a step by which a turn may differ from whole steps, and share of a travel by which a
+position may exceed it: rounding."""
+
+_HINTED: Final = ("pressure-angle", "jamming", "coarse-rows")
+"""Findings whose messages name values that help."""
+
+_MOST_STEPS: Final = 1e6
+"""Largest number of steps of a table."""
 
 
 class CamResult(PartsResult):
@@ -106,8 +117,26 @@ class CamResult(PartsResult):
 
     @property
     def angles(self) -> Array:
-        """The cam angles of tables, (n,) rad: a turn in steps of the design, both ends."""
-        return even_angles(self.design.output, self.driver, self.program)
+        """The cam angles of tables, rad, in steps of the design, both ends; or travels, mm.
+
+        Raises
+        ------
+        InfeasibleError
+            If there are more than a million.
+        """
+        output: Any = self.design.output
+        period, driver = self.program.period, self.driver
+        step = output.travel_step if self.form.sliding else output.motion_step
+        if step < (least := period / _MOST_STEPS):
+            key = f"output.{'travel' if self.form.sliding else 'motion'}_step_{driver.unit}"
+            what, scale = f"tables would have more than {_MOST_STEPS:.0f} rows", driver.scale
+            note, near = "the limit is the smallest step", ABOVE * least * scale
+            value, limit, unit = step * scale, least * scale, driver.unit
+            raise beyond_limit(what, key, value, limit, note, near=near, unit=unit)
+        places: Array = step * np.arange(math.floor(period / step + _WHOLE) + 1.0)
+        if self.form.sliding:  # its end does not coincide with its beginning
+            places = np.append(places[places < period * (1.0 - _WHOLE)], period)
+        return places
 
     def motion(self, theta: ArrayLike | None = None) -> Columns:
         """Return the exact motion of the follower, pressure angle and radii of curvature.
@@ -156,7 +185,7 @@ class CamResult(PartsResult):
         if not self.form.sliding:
             return angles("theta", theta)
         travel = self.program.period
-        places = angles("theta", theta, 0.0, travel, WHOLE * travel, driver.unit)
+        places = angles("theta", theta, 0.0, travel, _WHOLE * travel, driver.unit)
         return np.minimum(places, travel)
 
     def motion_at(self, theta: Array) -> Columns:
@@ -332,16 +361,10 @@ class CamResult(PartsResult):
         cam = self.cam
         with self.stage("checks"):
             found = run_checks(KIND, cam, self.design.limits)
-            if any(one.code in ("pressure-angle", "jamming") for one in found):
-                from gearcam.kinds.cam.pressed import explained
+            if any(one.code in _HINTED for one in found):
+                from gearcam.kinds.cam.hints import hinted
 
-                found = explained(self, found)
-            if any(one.code == "coarse-rows" for one in found):
-                from gearcam.kinds.cam.coarse import helped
-
-                found = tuple(
-                    helped(self, one) if one.code == "coarse-rows" else one for one in found
-                )
+                found = hinted(self, found)
         if self.ordered:
             subject = self.part_subject
             with self.stage("checks"):

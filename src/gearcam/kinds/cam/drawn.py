@@ -11,7 +11,7 @@ import numpy as np
 from gearcam.base.errors import InfeasibleError
 from gearcam.cams.wall import PitchMotion, Wall
 from gearcam.numeric.contour import Contour
-from gearcam.numeric.pose import Pose
+from gearcam.numeric.pose import UNMOVED, Pose
 from gearcam.parts.body import Part
 from gearcam.parts.parallel import moved, sized
 from gearcam.parts.shapes import Circle
@@ -67,27 +67,27 @@ def cutter_way(edge: Contour, radius: float, *, side: int = 1) -> Contour:
 
 def cam_drawing(
     part: Part,
-    pitch: Contour | None,
-    prime_radius: float,
+    pitch: Contour | Path | None,
+    prime_radius: float | None,
     follower: Sequence[Shape] = (),
     *,
-    angle: float = 0.0,
+    pose: Pose = UNMOVED,
     outline: str = PROFILE,
 ) -> Drawing:
-    """Return the drawing of a turned cam with its pitch curve, prime circle and follower.
+    """Return the drawing of a moved cam with its pitch curve, prime circle and follower.
 
     Parameters
     ----------
     part : Part
         The cam.
-    pitch : Contour or None
+    pitch : Contour, Path or None
         Its pitch curve, in the part's frame; None if that is the profile.
-    prime_radius : float, mm
-        Radius of the prime circle; for a flat follower of the base circle.
+    prime_radius : float, mm, or None
+        Radius of the prime circle, for a flat follower of the base circle; None without one.
     follower : sequence of Shape
         The follower in its position; may be empty.
-    angle : float, rad
-        Rotation of the cam, counter-clockwise.
+    pose : Pose
+        Where the cam is.
     outline : str
         Layer of the part's outline.
 
@@ -96,12 +96,13 @@ def cam_drawing(
     Drawing
         With the name of the part.
     """
-    turning = list(part_features(part, outline=outline))
+    moving = list(part_features(part, outline=outline))
     if pitch is not None:
-        turning.append(Feature(layer=PITCH, shape=pitch))
-    features = list(place(turning, Pose(angle)))
-    circle = Circle(center=np.zeros(2), diameter=2.0 * prime_radius)
-    features.append(Feature(layer=PRIME, shape=circle))
+        moving.append(Feature(layer=PITCH, shape=pitch))
+    features = list(place(moving, pose))
+    if prime_radius is not None:
+        circle = Circle(center=np.zeros(2), diameter=2.0 * prime_radius)
+        features.append(Feature(layer=PRIME, shape=circle))
     features += [Feature(layer=FOLLOWER, shape=shape) for shape in follower]
     cross = Cross(center=np.zeros(2), size=CROSS_SIZE * float(np.ptp(part.contour.vertices)))
     features.append(Feature(layer=CENTER, shape=cross))
@@ -119,7 +120,7 @@ def plate(
     """Return a drawing of a plate, its outline a wall, with the pitch curve (see `cam_drawing`)."""
     prime = wall.follower.prime_radius if prime is None else prime
     pitch = None if wall.pitch_contour is part.contour else wall.pitch_contour
-    return cam_drawing(part, pitch, prime, follower, angle=angle)
+    return cam_drawing(part, pitch, prime, follower, pose=Pose(angle))
 
 
 def follower(motion: PitchMotion, theta: float, reach: float) -> list[Shape]:
@@ -161,7 +162,7 @@ def grooved(
 ) -> Drawing:
     """Return a drawing of a disc with a groove, whose first wall is inside (see `cam_drawing`)."""
     pitch, least = walls[0].pitch_contour, walls[0].follower.prime_radius
-    drawing = cam_drawing(part, pitch, least, follower, angle=angle, outline=BLANK)
+    drawing = cam_drawing(part, pitch, least, follower, pose=Pose(angle), outline=BLANK)
     # a circle stays a circle in files
     edge = Circle(center=np.zeros(2), diameter=2.0 * part.contour.reach)
     blank, *others = drawing.features

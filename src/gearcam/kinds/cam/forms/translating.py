@@ -228,22 +228,21 @@ class Translating(Form[SlidingCam, PlateSpec, PlateFollower]):
         """Travel in the assembly drawing, mm."""
         return cast("PlateOutput", self.design.output).place
 
-    def _phases(self) -> list[Phase]:
-        """Return the phases of the design with its run before and after."""
-        motion = cast("Sequence[Phase]", self.design.motion)
-        before, after = ([DwellPhase(angle=run)] if run else [] for run in self.given.runs)
-        return [*before, *motion, *after]
-
     def program(self) -> Program:
         """Return the lift over the travel, with its run before and after."""
+        motion = cast("Sequence[Phase]", self.design.motion)
+        before, after = ([DwellPhase(angle=run)] if run else [] for run in self.given.runs)
         swings = self.follower.oscillating
-        return make_program(
-            self._phases(), self.result.tolerances, oscillating=swings, closed=False
-        )
+        phases = [*before, *motion, *after]
+        return make_program(phases, self.result.tolerances, oscillating=swings, closed=False)
 
     def make(self, program: Program) -> SlidingCam:
         """Return the cam."""
-        _demand_reached(self.place, program.period)
+        travel = program.period
+        if self.place > travel:
+            what = "the assembly drawing is beyond the travel of the cam"
+            rule, key = "the limit is its whole travel, included", "output.travel_mm"
+            raise beyond_limit(what, key, self.place, travel, rule, near=travel)
         return make_sliding(
             program,
             make_follower_over_plate(self.follower),
@@ -384,52 +383,27 @@ class Translating(Form[SlidingCam, PlateSpec, PlateFollower]):
             },
         }
 
-    def _drawing(self, follower: Sequence[Shape] = (), way: float = 0.0) -> Drawing:
-        """Return the plate with its pitch curve, moved by `way` below a follower."""
-        from gearcam.pictures.drawings import (
-            BLANK,
-            CENTER,
-            CROSS_SIZE,
-            FOLLOWER,
-            GROOVE,
-            OUTER_WALL,
-            PITCH,
-            PROFILE,
-            Cross,
-            Drawing,
-            Feature,
-            Path,
-            part_features,
-            place,
-        )  # fmt: skip
+    def _drawing(self, follower: Sequence[Shape] = (), travel: float = 0.0) -> Drawing:
+        """Return the plate with its pitch curve, moved by its travel below a follower."""
+        from gearcam.kinds.cam.drawn import cam_drawing
+        from gearcam.pictures.drawings import BLANK, GROOVE, OUTER_WALL, PROFILE, Path
 
-        part, cam = self.result.part, self.cam
-        moving = [
-            replace(one, layer=GROOVE) if one.layer == OUTER_WALL else one
-            for one in part_features(part, outline=PROFILE if cam.groove is None else BLANK)
-        ]
-        if cam.motion.follower.radius:
-            moving.append(
-                Feature(layer=PITCH, shape=Path(points=cam.lower.pitch_line, closed=False))
-            )
-        features = list(place(moving, Pose(shift=way)))
-        features += [Feature(layer=FOLLOWER, shape=shape) for shape in follower]
-        size = CROSS_SIZE * float(np.ptp(part.contour.vertices))
-        features.append(Feature(layer=CENTER, shape=Cross(center=np.zeros(2), size=size)))
-        return Drawing(name=part.name, features=tuple(features))
-
-
-def _demand_reached(place: float, way: float) -> None:
-    """Refuse a place of the assembly drawing, mm, beyond the travel of the cam."""
-    if place > way:
-        what = "the assembly drawing is beyond the travel of the cam"
-        raise beyond_limit(
-            what,
-            "output.travel_mm",
-            place,
-            way,
-            "the limit is its whole travel, included",
-            near=way,
+        cam = self.cam
+        pitch = Path(points=cam.lower.pitch_line, closed=False)
+        drawing = cam_drawing(
+            self.result.part,
+            pitch if cam.motion.follower.radius else None,
+            None,
+            follower,
+            pose=Pose(shift=travel),
+            outline=PROFILE if cam.groove is None else BLANK,
+        )
+        return replace(
+            drawing,
+            features=tuple(
+                replace(one, layer=GROOVE) if one.layer == OUTER_WALL else one
+                for one in drawing.features
+            ),
         )
 
 

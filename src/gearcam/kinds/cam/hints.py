@@ -1,10 +1,11 @@
-"""The smallest radius of a cam with which a limit of its pressure angle is kept."""
+"""What helps against findings of a cam: a larger radius, smoother rows, longer chords."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
+from functools import cache, partial
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -14,14 +15,13 @@ from gearcam.base.findings import CHECKS, Finding, limit_of
 from gearcam.base.numerals import formatted, shortened
 from gearcam.cams.checks import KIND, driven
 from gearcam.designs.design import document_of, value_at
+from gearcam.kinds.cam.motion import turn_tables
+from gearcam.laws.motion_table import MotionTable
 
 if TYPE_CHECKING:
     from gearcam.cams.cam import Cam
     from gearcam.cams.wall import PitchMotion
     from gearcam.kinds.cam.build import CamResult
-
-PRESSED: Final = ("pressure-angle", "jamming")
-"""Findings about pressure angles."""
 
 _MOST: Final = 100.0
 """Largest radius that is tried, over what the follower needs: its lift, roller and offset."""
@@ -33,8 +33,20 @@ _CLOSER: Final = 1.0 + 1e-4
 """Factor of the least radius that a follower needs."""
 
 
-def explained(result: CamResult, findings: tuple[Finding, ...]) -> tuple[Finding, ...]:
-    """Return findings; those about pressure angles name the smallest radius that lifts them.
+_COARSEST: Final = 1.0
+"""Largest chord tolerance of a cam, mm."""
+
+_SCATTERED: Final = 4.0
+"""Between a quarter and half of the rows the error falls by more than this if the lift is smooth,
+and hardly at all if the rows scatter."""
+
+_SHARES: Final = (0.4, 0.5, 0.65, 0.8, 1.0)
+"""Smoothing tolerances that are tried, over the error: the farthest of scattered rows is about 0.4
+of it beside the lift, and a much larger tolerance takes more from the lift than scatter did."""
+
+
+def hinted(result: CamResult, findings: tuple[Finding, ...]) -> tuple[Finding, ...]:
+    """Return findings; their messages say with which values they disappear.
 
     Parameters
     ----------
@@ -43,16 +55,20 @@ def explained(result: CamResult, findings: tuple[Finding, ...]) -> tuple[Finding
     findings : tuple of Finding
         Of its checks.
     """
-    told: dict[tuple[str, int], str] = {}
-    made = []
-    for finding in findings:
-        if finding.code in PRESSED:
-            case = finding.code, _motion_of(result, finding)
-            if case not in told:
-                told[case] = _sentence(result, *case)
-            finding = replace(finding, message=f"{finding.message} {told[case]}")
-        made.append(finding)
-    return tuple(made)
+    sentence = cache(partial(_sentence, result))  # several findings may be about one motion
+    hints: Mapping[str, Callable[[Finding], Iterable[str]]] = {
+        "coarse-rows": lambda finding: _smoother(result, finding),
+        **dict.fromkeys(
+            ("pressure-angle", "jamming"),
+            lambda finding: [sentence(finding.code, _motion_of(result, finding))],
+        ),
+    }
+    return tuple(
+        replace(one, message=" ".join([one.message, *hints[one.code](one)]))
+        if one.code in hints
+        else one
+        for one in findings
+    )
 
 
 def gentler(result: CamResult, code: str, number: int = 0) -> dict[str, float] | None:
@@ -63,7 +79,7 @@ def gentler(result: CamResult, code: str, number: int = 0) -> dict[str, float] |
     result : CamResult
         Of the cam.
     code : str
-        One of `PRESSED`.
+        ``pressure-angle`` or ``jamming``.
     number : int
         Which of the cam's motions.
 
@@ -207,3 +223,30 @@ def _least(result: CamResult, motion: PitchMotion, code: str, limit: float) -> f
         return None
     least = follower.distance(low)
     return least if least <= _MOST * _need(motion) else None
+
+
+def _smoother(result: CamResult, finding: Finding) -> Iterator[str]:
+    """Yield values with which the rows of a motion table are not coarser than the profile."""
+    table, lead, error = result.design.motion, result.cam.motions[0], finding.value or 0.0
+    if isinstance(table, MotionTable) and lead.program.fall < _SCATTERED:
+        oscillating, lever = lead.follower.angular, lead.follower.lever
+        entries = turn_tables()[0].bound([result.design.follower.motion]).entries.values()
+        entry = next(one for one in entries if one.name == "smoothing_tolerance")
+        given = 2.0 * (table.smoothing_tolerance or 0.0)
+        asked = (entry.outward(max(share * error / lever, given)) for share in _SHARES)
+        sizes = {shortened(size, 1.0, 2) for size in asked}
+        for size in sorted(sizes):
+            smoother = replace(table, smoothing_tolerance=entry.inward(size))
+            try:  # what is left of the error is computed, not assumed
+                program = smoother.program(result.tolerances, oscillating=oscillating)
+            except InfeasibleError:  # a tolerance as large as the lift
+                break
+            if program.errors[0] * lever <= lead.tolerance:
+                yield f"With motion.{entry.key} = {formatted(size)} the scatter is averaged out."
+                break
+    coarser = shortened(error, 1.0, 2)
+    if coarser <= _COARSEST:
+        yield (
+            f"With output.chord_tolerance_mm = {formatted(coarser)} the profile is cut only as "
+            "finely as the lift is known."
+        )
