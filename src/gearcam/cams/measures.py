@@ -133,7 +133,7 @@ def undercut(curve: CamCurve) -> list[tuple[float, float]]:
     def speed(theta: Array) -> list[Array]:
         return curve.contact(theta).speed.derivatives()
 
-    seen = curve.contact_of(survey.found).speed.derivatives()
+    seen = curve.contact_of(survey.values).speed.derivatives()
     if _stays_positive(survey.places, *seen):
         return found
     places, values = extremes_among(speed, survey.places, *seen)

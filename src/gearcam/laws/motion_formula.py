@@ -27,8 +27,7 @@ from gearcam.laws.formula import (
     values_of,
 )
 from gearcam.laws.phases_of_lift import TURN
-from gearcam.laws.program import Program
-from gearcam.laws.rows_of_lift import stretches_of
+from gearcam.laws.program import Program, stretches_of
 from gearcam.numeric.piecewise import Piece, piecewise
 
 _VARIABLE: Final = "theta"

@@ -1,7 +1,17 @@
 """Motion tables: the lift of a follower over a turn of the cam, by rows of angle and lift.
 
-`gearcam.laws.rows_of_lift` makes a curve through the rows or a smoothed one. Refused by reading:
-angles that do not rise or do not fill the turn, a lift that does not repeat or is constant.
+Refused by reading: angles that do not rise or do not fill the turn, a lift that does not repeat or
+is constant.
+
+Without a tolerance the lift is the closed curve through the rows with the least integral of the
+squared jerk: quintics between rows, C4 everywhere, whose error falls with the sixth power of the
+step for a smooth motion. Measured rows are noisy, and the jerk of a curve through them is that of
+the noise. With a tolerance the lift is the smoothing spline, which balances the same jerk against
+the distances from the rows. Its cutoff is the lowest at which no row is farther away than the
+tolerance, so that noise is averaged by one rule over the whole turn. (The curve of least jerk
+within the tolerance would be smoother, but runs along the tolerance and flattens every peak.)
+
+Source: C. de Boor, A Practical Guide to Splines, chapter XIV (the smoothing spline).
 """
 
 from __future__ import annotations
@@ -26,11 +36,14 @@ from gearcam.laws.columns import (
     degrees,
     demand,
 )
+from gearcam.laws.displacement import Deviation
 from gearcam.laws.entry import TYPED
+from gearcam.laws.motion.pieces import from_both_ends, spline
 from gearcam.laws.phases_of_lift import TURN
-from gearcam.laws.program import Program
-from gearcam.laws.rows_of_lift import program_of_rows
+from gearcam.laws.program import Program, stretches_of
 from gearcam.numeric.arrays import Array
+from gearcam.numeric.least_jerk import coefficients, ring_slopes, smoothed_ring
+from gearcam.numeric.piecewise import Piecewise, piecewise
 
 _FEWEST: Final = 6
 _MOST: Final = 3600
@@ -42,6 +55,14 @@ _OPEN: Final = 1.5
 left out leaves one step."""
 
 _DEG: Final = math.radians(1.0)
+
+_PER_WAVE: Final = 6
+"""Rows of a smoothed lift that are kept for each wave at the cutoff: the error of the curve through
+them is below a hundredth of the tolerance and included in the estimates."""
+
+_BESIDE: Final = np.array([2.0, 4.0, 4.0, 4.0])
+"""Safety factor: errors are measured midway between rows and may be twice as large near a row where
+a derivative jumps; derivatives are compared with a curve that has errors too."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -171,7 +192,8 @@ class MotionTable(FromFile):
         Returns
         -------
         Program
-            See `gearcam.laws.rows_of_lift.program_of_rows`.
+            Knots are the ends of the turn and the rows; of a smoothed lift only as many rows as
+            needed.
 
         Raises
         ------
@@ -184,7 +206,7 @@ class MotionTable(FromFile):
             spread = 0.5 * abs(float(lift[-1] - lift[0]))
             lift[0] = 0.5 * (lift[0] + lift[-1])
             theta, lift = theta[:-1], lift[:-1]
-        return program_of_rows(theta, lift, self.smoothing_tolerance or 0.0, spread)
+        return _program_of_rows(theta, lift, self.smoothing_tolerance or 0.0, spread)
 
 
 def _columns(oscillating: bool) -> tuple[str, str]:
@@ -208,3 +230,127 @@ def _angle_problems(theta: Array) -> Iterator[Breach]:
         state = f"the rows go from {degrees(theta[0])} to {degrees(theta[-1])}"
         rule = "rows over the whole turn; the last one, at 360 deg, may be left out"
         yield "theta", None, state, rule
+
+
+def _program_of_rows(theta: Array, lift: Array, tolerance: float, spread: float) -> Program:
+    """Return the program of rows in a turn, to a tolerance, mm or rad; 0 for a curve through them.
+
+    The `spread` is half the difference of first and last row, whose mean is the lift at the start.
+    """
+    values, cutoff, deviation, step = lift, 0.5 * len(theta), None, 1
+    if tolerance:
+        apart = np.append(spread, np.zeros(len(theta) - 1))
+        values, cutoff = _smoothed(theta, lift, apart, tolerance)
+        step = _step(theta, cutoff)
+        off = values - lift
+        far = int(np.argmax(np.abs(off) + apart))
+        value = math.copysign(abs(off[far]) + apart[far], off[far])
+        deviation = Deviation(theta=float(theta[far]), value=value)
+    curve = _curve(theta[::step], values[::step])
+    level = max(tolerance, TYPED * float(np.ptp(lift)))
+    errors, fall = _errors(theta[::step], values[::step])
+    return Program(
+        lift=curve,
+        stretches=stretches_of(curve, theta, values, level, cutoff),
+        cuts=curve.knots,
+        errors=errors,
+        fall=fall,
+        deviation=deviation,
+        given=np.column_stack([theta, lift]) if tolerance else None,
+    )
+
+
+def _smoothed(theta: Array, lift: Array, apart: Array, tolerance: float) -> tuple[Array, float]:
+    """Return the smoothest lifts within a tolerance, and their cutoff, 1/rad."""
+    low, high = 1.0, 2.0 * len(theta)  # one wave per turn; a quarter of a step
+    smoothest, cutoff = lift, high
+    while high > low * 1.01:
+        middle = math.sqrt(low * high)
+        values, step = smoothed_ring(theta, lift, TURN, middle), _step(theta, middle)
+        if step > 1:
+            values = _between(theta[::step], values[::step], theta)
+        if float((np.abs(values - lift) + apart).max()) <= tolerance:
+            smoothest, cutoff, high = values, middle, middle
+        else:
+            low = middle
+    return smoothest, cutoff
+
+
+def _step(theta: Array, cutoff: float) -> int:
+    """Return of how many rows one is enough to tell waves at a cutoff."""
+    return max(1, int(len(theta) / (_PER_WAVE * cutoff)))
+
+
+def _quintics(theta: Array, lift: Array) -> tuple[Array, tuple[Array, Array]]:
+    """Return the knots of the closed curve through rows, the last a turn on, and its coefficients.
+
+    These are of the distance from the knots before, and from those behind (see `coefficients`).
+    """
+    x, y = np.append(theta, theta[0] + TURN), np.append(lift, lift[0])
+    slopes = ring_slopes(theta, lift, TURN)
+    return x, coefficients(x, y, np.concatenate([slopes, slopes[:1]]), ring=True)
+
+
+def _between(theta: Array, lift: Array, places: Array, order: int = 0) -> Array:
+    """Return the closed curve through rows at places, at most a turn behind the first row.
+
+    With its derivatives up to an order it is an (order + 1, n) array, else (n,).
+    """
+    x, (left, _) = _quintics(theta, lift)
+    index = np.searchsorted(theta, places, side="right") - 1
+    distance, powers = (places - x[index])[:, None], left[index]
+    derivatives = []
+    for _ in range(order + 1):
+        count = np.arange(powers.shape[1])
+        derivatives.append((powers * distance**count).sum(axis=1))
+        powers = (powers * count)[:, 1:]
+    return np.array(derivatives) if order else derivatives[0]
+
+
+def _curve(theta: Array, lift: Array) -> Piecewise:
+    """Return the closed curve of quintics through rows, cut at the ends of the turn."""
+    x, both = _quintics(theta, lift)
+    curve = spline(x, *both)
+    if theta[0] == 0.0:
+        return curve
+    left, right = (side[-1].tolist() for side in both)
+    over = from_both_ends(left, right, float(x[-2]) - TURN, float(x[-1]) - TURN)
+    return piecewise(np.concatenate([[0.0], theta, [TURN]]), [over, *curve.pieces])
+
+
+def _errors(theta: Array, lift: Array) -> tuple[tuple[float, ...], float]:
+    """Estimate errors of the curve between rows, and of its derivatives, by curves through fewer.
+
+    Curves through every second row miss the rows between by so much, those through every fourth by
+    more. By what it falls between these, which the smoothness of the motion decides, it is taken to
+    fall again. The worst of all choices of rows counts, as a jump of a derivative may lie anywhere.
+    Of derivatives, which rows do not tell, the curve through all of them takes their place: what
+    curves through fewer miss of it is seen between the rows as well.
+
+    Returns the errors, and by what that of the lift falls from rows twice as far apart.
+    """
+    two, four = (
+        np.max([_missed(theta, lift, step, first) for first in range(step)], axis=0)
+        for step in (2, 4)
+    )
+    narrowest = float(np.diff(theta, append=theta[0] + TURN).min())
+    rounding = 4.0 * np.finfo(float).eps * float(np.abs(lift).max()) / narrowest ** np.arange(4)
+    falls = np.clip(four / np.maximum(two, rounding), 1.0, 2.0 ** (6 - np.arange(4)))
+    return tuple((_BESIDE * two / falls + rounding).tolist()), float(falls[0])
+
+
+def _missed(theta: Array, lift: Array, step: int, first: int) -> Array:
+    """Return by how much a curve through every `step`-th row misses lift and derivatives.
+
+    The lift in the middle rows between, derivatives of the curve through all rows everywhere.
+    """
+    angles, values = np.roll(theta, -first), np.roll(lift, -first)
+    angles = angles[0] + (angles - angles[0]) % TURN
+    middle = slice(step // 2, None, step)
+    lifts = _between(angles[::step], values[::step], angles[middle]) - values[middle]
+    widths = np.diff(angles, append=angles[0] + TURN)
+    places = (angles[:, None] + widths[:, None] * [0.0, 0.25, 0.5, 0.75]).ravel()
+    fewer, all_rows = (_between(angles[::k], values[::k], places, 3) for k in (step, 1))
+    missed = np.abs(fewer - all_rows).max(axis=1)
+    missed[0] = np.abs(lifts).max()
+    return missed

@@ -10,10 +10,11 @@ Source: 000 section 3.3, eqs. (3.3)-(3.5).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
+from itertools import groupby, pairwise
 from typing import Any
 
 import numpy as np
@@ -39,7 +40,14 @@ from gearcam.laws.phases_of_lift import (
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.hermite import hermite_quintics
 from gearcam.numeric.jets import Jet, Value, polynomial
-from gearcam.numeric.piecewise import Piece, Piecewise, extremes_among, piecewise, places_between
+from gearcam.numeric.piecewise import (
+    Piece,
+    Piecewise,
+    extremes,
+    extremes_among,
+    piecewise,
+    places_between,
+)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -50,14 +58,14 @@ class Survey(ShortRepr):
     ----------
     places : (n, k) array, rad
         Places in every interval between cuts, both ends included.
-    found : (5, n, k) array
+    values : (5, n, k) array
         Lift and derivatives there.
     before, after : (m, 5) arrays
         The same on both sides of each knot but the last.
     """
 
     places: Array
-    found: Array
+    values: Array
     before: Array
     after: Array
 
@@ -134,7 +142,7 @@ class Program(ShortRepr, Displacement):
 
     def sides(self, cuts: Sequence[Array]) -> tuple[Array, Array]:
         """Return the ends of stretches between `cuts`, rad, and lift, s' and s'' from within."""
-        low, high = np.hstack([[own[:-1], own[1:]] for own in cuts])
+        low, high = np.hstack([[part[:-1], part[1:]] for part in cuts])
         periods, middle = self.within(0.5 * (low + high))
         index = np.tile(np.searchsorted(self.knots[1:-1], middle), 2)
         ends = np.concatenate([low, high])
@@ -162,11 +170,11 @@ class Program(ShortRepr, Displacement):
         index = np.concatenate([pieces, pieces, owner])
         places[:, 0], places[:, -1] = self.cuts[:-1], self.cuts[1:]
         theta = np.concatenate([self.knots[1:], self.knots[:-1], places.ravel()])
-        found = self.lift.on_pieces(index, theta, 4)
-        before, after, inside = np.split(found, [len(pieces), 2 * len(pieces)], axis=1)
+        values = self.lift.on_pieces(index, theta, 4)
+        before, after, inside = np.split(values, [len(pieces), 2 * len(pieces)], axis=1)
         return Survey(
             places=places,
-            found=inside.reshape(5, *places.shape),
+            values=inside.reshape(5, *places.shape),
             before=before.T[pieces - 1],
             after=after.T,
         )
@@ -178,9 +186,9 @@ class Program(ShortRepr, Displacement):
         def values(theta: Array) -> list[Array]:
             return self.lift.derivatives(theta, order + 1)[order:]
 
-        _, inside = extremes_among(values, survey.places, *survey.found[order : order + 2])
-        found = np.concatenate([inside, survey.before[:, order], survey.after[:, order]])
-        return float(found.min()), float(found.max())
+        _, inside = extremes_among(values, survey.places, *survey.values[order : order + 2])
+        all_values = np.concatenate([inside, survey.before[:, order], survey.after[:, order]])
+        return float(all_values.min()), float(all_values.max())
 
     @cached_property
     def range(self) -> tuple[float, float]:
@@ -192,7 +200,7 @@ class Program(ShortRepr, Displacement):
         """The lowest derivative that jumps at each knot; both ends of the turn are one knot."""
         survey = self.survey
         # a sixth of the places gives the size of derivatives well enough
-        inside = np.abs(survey.found[..., 5:-5:6]).max(axis=(1, 2))
+        inside = np.abs(survey.values[..., 5:-5:6]).max(axis=(1, 2))
         at_knots = np.abs([survey.before, survey.after]).max(axis=(0, 1))
         scales = np.maximum(inside, at_knots)[:4]
         # a knot is rounded: a derivative on its wrong side is off by its slope times the rounding
@@ -219,6 +227,82 @@ class Program(ShortRepr, Displacement):
     def continuity(self) -> int:
         """Order of continuity over the turn, 0 to 3; 3 means at least 3."""
         return min((jump.order for jump in self.jumps), default=4) - 1
+
+
+def stretches_of(
+    lift: Piecewise, theta: Array, values: Array, level: float, cutoff: float
+) -> tuple[PlacedPhase, ...]:
+    """Return rises, returns and dwells; one that goes on over the end of the turn is cut there.
+
+    Parameters
+    ----------
+    lift : Piecewise
+        The curve.
+    theta, values : (n,) arrays
+        Places of it, rad, and lifts there.
+    level : float, mm or rad
+        What a lift may change by in a dwell.
+    cutoff : float, 1/rad
+        Wave number above which the curve has none.
+
+    Returns
+    -------
+    tuple of PlacedPhase
+    """
+    runs = _runs(theta, values, level, cutoff)
+    turns = [
+        _turning(lift, theta, (first, row), sign) if sign * before else float(theta[row])
+        for (before, first), (sign, row) in zip([runs[-1], *runs], runs, strict=False)
+    ]
+    names = {1: "rise", -1: "return", 0: "dwell"}
+    kinds, first = [names[sign] for sign, _ in runs], int(np.argmin(turns))
+    kinds, turns = kinds[first:] + kinds[:first], turns[first:] + turns[:first]
+    bounds = zip([kinds[-1], *kinds], [0.0, *turns], [*turns, TURN], strict=True)
+    return tuple(
+        PlacedPhase(kind=kind, start=start, end=end) for kind, start, end in bounds if end > start
+    )
+
+
+def _runs(theta: Array, values: Array, level: float, cutoff: float) -> list[tuple[int, int]]:
+    """Return what the lift does, 1, -1 or 0, and from which row on, in a ring.
+
+    It stands still where it changes by less than the level in a phase of 1 of waves at the cutoff,
+    over half such a wave and two steps at least, and by no more than twice the level in all.
+    """
+    steps, widths = np.diff(values, append=values[0]), np.diff(theta, append=theta[0] + TURN)
+    still = np.abs(steps) <= level * np.minimum(cutoff * widths, 1.0)
+    signs = np.where(still & (not still.all()), 0.0, np.sign(steps)).astype(int)
+    begin = int(np.flatnonzero(signs * (signs - np.roll(signs, 1)))[0])
+    runs: list[tuple[int, int]] = []
+    for sign, group in groupby(np.roll(np.arange(len(steps)), -begin), key=signs.__getitem__):
+        run = np.array(list(group))
+        change = np.cumsum(steps[run])
+        short = len(run) < 2 or widths[run].sum() < math.pi / cutoff
+        if sign == 0 and short:
+            continue  # it turns, or goes on
+        if sign == 0 and np.abs(change).max() > 2.0 * level:
+            sign = int(np.sign(change[-1]))
+        if not runs or runs[-1][0] != sign:
+            runs.append((int(sign), int(run[0])))
+    if runs[0][0] == runs[-1][0]:
+        return runs[1:]
+    return runs
+
+
+def _turning(lift: Piecewise, theta: Array, rows: tuple[int, int], sign: int) -> float:
+    """Return where a lift is extreme, rad, that comes from one row and goes from another."""
+    first, last = rows
+    row = theta[np.arange(first - 1, last + 2 + len(theta) * (last < first)) % len(theta)]
+    near = np.unwrap(row, period=TURN)
+
+    def function(x: Array) -> list[Array]:
+        return lift.derivatives(x % TURN, 1)
+
+    places, values = extremes(function, near)
+    place = float(places[np.argmin(sign * values)])
+    nearest = float(near[np.abs(near - place).argmin()])
+    # extremes are known to half the digits
+    return (nearest if abs(nearest - place) < 1e-9 else place) % TURN
 
 
 def make_program(

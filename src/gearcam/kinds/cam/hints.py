@@ -213,7 +213,7 @@ def _least(result: CamResult, motion: PitchMotion, code: str, limit: float) -> f
     middles = survey.places.mean(axis=1)
     ends = [pair for kind in kinds for pair in motion.program.phases(kind)]
     inside = np.any([(low < middles) & (middles < high) for low, high in ends], axis=0)
-    lift, speed = survey.found[:2, inside].reshape(2, -1)
+    lift, speed = survey.values[:2, inside].reshape(2, -1)
     if follower.below:  # below the axis it stands nearest at the highest lift
         lift, bottom = top - lift, 0.0
     low, high = follower.least_start(limit, lift, speed)
