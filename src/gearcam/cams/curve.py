@@ -71,8 +71,11 @@ class CamCurve(ShortRepr):
 
     @property
     def rounded(self) -> bool:
-        """Whether it runs on where the velocity jumps (see `Follower.rounded`)."""
-        return self.follower.rounded(self.inset)
+        """Whether it runs on where the velocity jumps, on an arc or along a face.
+
+        A pitch curve has a corner there.
+        """
+        return self.inset != 0.0 or not self.follower.has_centre
 
     def contact(self, theta: Array, order: int = 1) -> Contact:
         """Return the contact at cam angles.

@@ -56,7 +56,7 @@ from gearcam.base.numerals import rounded_down
 from gearcam.cams.carriers import Carrier, Pair, unit
 from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array, Mask, Plane
-from gearcam.numeric.jets import Jet, asin, atan, cos, sin_cos, sqrt
+from gearcam.numeric.jets import Jet, asin, atan, sin_cos, sqrt
 
 _UPRIGHT = 0.5 * math.pi
 """Largest angle, rad, of an arm over a cam that slides, and of a face from the line of centres."""
@@ -123,16 +123,16 @@ class Follower(ShortRepr, ABC):
     start: float
     radius: float = 0.0
 
-    angular: ClassVar[bool]
+    angular: ClassVar[bool] = False
     """Whether positions and lifts are angles."""
 
     has_centre: ClassVar[bool]
     """Whether it has a centre, which traces a pitch curve."""
 
-    pressure_limit: ClassVar[float]
+    pressure_limit: ClassVar[float] = math.radians(30.0)
     """Largest recommended pressure angle, rad."""
 
-    jamming_limit: ClassVar[float]
+    jamming_limit: ClassVar[float] = math.radians(65.0)
     """Pressure angle from which friction blocks the follower, rad.
 
     A stem in a guide of length b that overhangs it by a jams at ``tan(alpha + rho) = 1/(mu*(1 +
@@ -149,9 +149,18 @@ class Follower(ShortRepr, ABC):
         return (math.degrees(1.0), "deg") if self.angular else (1.0, "mm")
 
     @property
-    @abstractmethod
     def lever(self) -> float:
         """Millimetres per unit of lift."""
+        return 1.0
+
+    @property
+    def spin(self) -> float:
+        """Turn of its direction per unit of position, rad."""
+        return 0.0
+
+    def lean(self, p: Array) -> Array | float:
+        """Return the angle of its direction from the y axis at positions (n,), rad."""
+        return self.spin * p
 
     @property
     def below(self) -> bool:
@@ -276,24 +285,12 @@ class Follower(ShortRepr, ABC):
         """Return the follower that is at a distance from the origin, mm, at zero lift."""
         return replace(self, start=float(self.on_circle(radius)))
 
-    def rounded(self, inset: float) -> bool:  # noqa: ARG002
-        """Return whether the curve at a depth runs on during a jump of the velocity.
-
-        It is an arc about the centre, or straight along a face; the pitch curve has a corner there.
-
-        Parameters
-        ----------
-        inset : float, mm
-            Depth below a round follower's centre.
-        """
-        return True
-
     @property
     def clear(self) -> float:
         """Largest radius of a cam about the origin that does not reach past its pivot, mm."""
         return math.inf
 
-    def behind(self, z: Plane, grow: Array | float) -> Mask:  # noqa: ARG002
+    def behind(self, z: Plane, grow: Array | float) -> Mask:
         """Return which discs lie where the follower cannot be.
 
         Inside a profile that is beyond the axis; over a cam that slides, beyond the pivot, where
@@ -306,7 +303,7 @@ class Follower(ShortRepr, ABC):
         grow : float or array, mm
             Their radii.
         """
-        return np.zeros(z.shape, dtype=np.bool_)
+        return np.full(z.shape, self.below) & (z.imag - grow > 0.0)
 
     def on_chord(self, z: Plane, chord: Plane, grow: Array | float) -> Array:  # noqa: ARG002
         """Return where between its ends it rests on a chord: 0 at the start, 1 at the end.
@@ -420,22 +417,9 @@ class Round(Follower):
     def with_end(self, radius: float, arm: float) -> Self:
         """Return the follower with an end of another radius, mm, and an arm unless 0."""
 
-    def rounded(self, inset: float) -> bool:
-        """Return whether there is a depth (see `Follower.rounded`)."""
-        return inset != 0.0
-
-    @property
-    @abstractmethod
-    def spin(self) -> float:
-        """Rotating of its direction per unit of position, rad."""
-
     @abstractmethod
     def centre(self, p: Array) -> Plane:
         """Return the centre, mm, at positions (n,)."""
-
-    @abstractmethod
-    def lean(self, p: Array) -> Array | float:
-        """Return the angle of its direction at positions (n,), rad, from that of the y axis."""
 
     @abstractmethod
     def on_level(self, height: Array) -> Array:
@@ -508,15 +492,7 @@ class Stem(Round):
     offset: float = 0.0
     tilt: float = 0.0
 
-    angular = False
     highest = math.inf
-    pressure_limit = math.radians(30.0)
-    jamming_limit = math.radians(65.0)
-
-    @property
-    def spin(self) -> float:
-        """Rotating of its direction per unit of position, rad."""
-        return 0.0
 
     @property
     def aside(self) -> float:
@@ -541,11 +517,6 @@ class Stem(Round):
         """Return the range of positions at zero lift (see `Follower.least_start`)."""
         return float((np.abs(velocity - self.offset) / math.tan(limit) - lift).max()), math.inf
 
-    @property
-    def lever(self) -> float:
-        """Millimetres per unit of lift."""
-        return 1.0
-
     def centre(self, p: Array) -> Plane:
         """Return the centre, mm."""
         return np.asarray(cmath.exp(1j * self.tilt) * (self.offset + 1j * p), dtype=np.complex128)
@@ -565,10 +536,6 @@ class Stem(Round):
     def distance(self, p: float) -> float:
         """Return the distance of its centre from the origin, mm."""
         return math.hypot(self.offset, p)
-
-    def behind(self, z: Plane, grow: Array | float) -> Mask:
-        """Return which discs lie above one below the axis (see `Follower.behind`)."""
-        return np.full(z.shape, self.below) & (z.imag - grow > 0.0)
 
     def on_chord(self, z: Plane, chord: Plane, grow: Array | float) -> Array:
         """Return the place between the ends (see `Follower.on_chord`)."""
@@ -678,16 +645,12 @@ class Arm(Round):
 
     @property
     def spin(self) -> float:
-        """Rotating of its direction per unit of position, rad."""
+        """Turn of its direction per unit of position, rad."""
         return -float(self.hand)
 
     def centre(self, p: Array) -> Plane:
         """Return the centre, mm."""
         return self.pivot - (self.hand * self.arm) * unit(-self.hand * p)
-
-    def lean(self, p: Array) -> Array:
-        """Return the angle of its direction from the y axis, rad."""
-        return -self.hand * p
 
     def axes(self, p: Jet | Array) -> tuple[Pair, Pair]:
         """Return ``exp(i*hand*p)``, and ``i*hand*arm - i*exp(i*hand*p)*pivot``.
@@ -730,7 +693,7 @@ class Arm(Round):
         """Return which discs lie beyond the pivot, or above the axis (see `Follower.behind`)."""
         if self.hand < 0:
             return z.real - self.pivot.real + self.radius + grow < 0.0
-        return np.full(z.shape, self.below) & (z.imag - grow > 0.0)
+        return super().behind(z, grow)
 
     def on_chord(self, z: Plane, chord: Plane, grow: Array | float) -> Array:
         """Return the place between the ends (see `Follower.on_chord`)."""
@@ -780,29 +743,19 @@ class Face(Follower):
     has_centre = False
 
     @abstractmethod
-    def line(self, p: Jet, ds: Jet) -> tuple[Jet, Jet, Jet]:
-        """Return the face as a line in the fixed frame.
-
-        Parameters
-        ----------
-        p, ds : Jet
-            Position and velocity of the follower.
-
-        Returns
-        -------
-        height, rise, turning : Jet
-            Distance from the origin, mm, its derivative, and the angular rate clockwise, rad per
-            unit of x.
-        """
+    def line(self, p: Values) -> tuple[Values, Values]:
+        """Return the distance of the face from the origin, mm, and its derivative by p."""
 
     @abstractmethod
-    def guided(self, p: Jet, turning: Jet, along: Jet) -> tuple[Jet, Jet, Jet]:
+    def guided(self, turning: Jet, slope: Jet, along: Jet) -> tuple[Jet, Jet, Jet]:
         """Return the velocities of the pressure angle, and the place of contact on the face.
 
         Parameters
         ----------
-        p, turning : Jet
-            Position, and angular rate of the face seen from the cam.
+        turning : Jet
+            Angular rate of the face seen from the cam, clockwise.
+        slope : Jet
+            Derivative of its distance from the origin by the position.
         along : Jet, mm
             Distance of the contact from the foot of the origin on the face.
 
@@ -814,11 +767,11 @@ class Face(Follower):
 
     def contact(self, carrier: Carrier, p: Jet, ds: Jet, inset: float) -> Contact:  # noqa: ARG002
         """Return the contact (see `Follower.contact`)."""
-        height, rise, clockwise = self.line(p, ds)
-        turning = carrier.rate + clockwise
-        reach = rise / turning
+        height, slope = self.line(p)
+        turning = carrier.rate - self.spin * ds
+        reach = slope * ds / turning
         turning = turning.shortened()
-        across, along, place = self.guided(p.shortened(), turning, reach.shortened())
+        across, along, place = self.guided(turning, slope.shortened(), reach.shortened())
         speed = height.shortened() * turning + reach.differentiated()
         return Contact(
             across=across,
@@ -838,13 +791,21 @@ class Face(Follower):
         inset: float,  # noqa: ARG002
     ) -> tuple[Plane, Plane]:
         """Return points and tangents (see `Follower.trace`)."""
-        height, rise, clockwise = (jet.c[0] for jet in self.line(Jet([p]), Jet([ds])))
+        height, slope = self.line(p)
         tangents = unit(self.lean(p) - carrier.rate * x)
-        return (rise / (carrier.rate + clockwise) + 1j * height) * tangents, tangents
+        return (slope * self.jump(carrier, p, ds) + 1j * height) * tangents, tangents
 
-    @abstractmethod
-    def lean(self, p: Array) -> Array | float:
-        """Return the angle of the face at positions (n,), rad, from that of the x axis."""
+    def jump(self, carrier: Carrier, p: Array, ds: Array) -> Array:  # noqa: ARG002
+        """Return the contact's distance from the foot over the slope (see `Follower.jump`)."""
+        return ds / (carrier.rate - self.spin * ds)
+
+    def velocity(self, carrier: Carrier, p: Array, jump: Array) -> Array:  # noqa: ARG002
+        """Return the velocities in a jump (see `Follower.velocity`)."""
+        return carrier.rate * jump / (1.0 + self.spin * jump)
+
+    def jump_speed(self, carrier: Carrier, p: Array, inset: float) -> Array:  # noqa: ARG002
+        """Return the derivative of the contact's distance (see `Follower.jump_speed`)."""
+        return self.line(p)[1]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -858,15 +819,6 @@ class FlatStem(Face):
     """
 
     offset: float = 0.0
-
-    angular = False
-    pressure_limit = Stem.pressure_limit
-    jamming_limit = Stem.jamming_limit
-
-    @property
-    def lever(self) -> float:
-        """Millimetres per unit of lift."""
-        return 1.0
 
     def distance(self, p: float) -> float:
         """Return the height of the face, mm."""
@@ -889,10 +841,6 @@ class FlatStem(Face):
         foot = complex(self.offset, p)
         return [(complex(-wide, p), complex(wide, p)), (foot, foot + 0.5j * reach)], []
 
-    def lean(self, p: Array) -> float:  # noqa: ARG002
-        """Return 0: the face is level."""
-        return 0.0
-
     def rest(
         self,
         x: Jet,  # noqa: ARG002
@@ -903,25 +851,13 @@ class FlatStem(Face):
         """Return the position on discs (see `Follower.rest`)."""
         return y + grow, np.ones(np.shape(y.c[0]))
 
-    def line(self, p: Jet, ds: Jet) -> tuple[Jet, Jet, Jet]:
-        """Return the face as a line (see `Face.line`)."""
-        return p, ds, 0.0 * ds
+    def line(self, p: Values) -> tuple[Values, Values]:
+        """Return the height and 1 (see `Face.line`)."""
+        return p, 0.0 * p + 1.0
 
-    def guided(self, p: Jet, turning: Jet, along: Jet) -> tuple[Jet, Jet, Jet]:
+    def guided(self, turning: Jet, slope: Jet, along: Jet) -> tuple[Jet, Jet, Jet]:  # noqa: ARG002
         """Return no pressure angle, and the contact where it is (see `Face.guided`)."""
-        return 0.0 * p, 0.0 * turning + 1.0, along
-
-    def jump(self, carrier: Carrier, p: Array, ds: Array) -> Array:  # noqa: ARG002
-        """Return the velocity itself (see `Follower.jump`)."""
-        return ds
-
-    def velocity(self, carrier: Carrier, p: Array, jump: Array) -> Array:  # noqa: ARG002
-        """Return the parameter itself (see `Follower.velocity`)."""
-        return jump
-
-    def jump_speed(self, carrier: Carrier, p: Array, inset: float) -> Array:  # noqa: ARG002
-        """Return 1, as the velocity is the place (see `Follower.jump_speed`)."""
-        return np.ones_like(p)
+        return 0.0 * along, 0.0 * along + 1.0, along
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -991,9 +927,10 @@ class FlatArm(Face):
         foot = self.pivot - self.offset * 1j * along
         return [(complex(self.pivot), foot, foot - along * (self.pivot + 0.4 * reach))], []
 
-    def lean(self, p: Array) -> Array:
-        """Return the angle of the face, rad."""
-        return -p
+    @property
+    def spin(self) -> float:
+        """Turn of the face per unit of position, rad."""
+        return -1.0
 
     def rest(
         self,
@@ -1009,31 +946,19 @@ class FlatArm(Face):
         turn = Jet([np.where(face > far.c[0], np.inf, turn.c[0]), *turn.c[1:]])
         return seen + turn, np.asarray(far.c[0] + face)
 
-    def line(self, p: Jet, ds: Jet) -> tuple[Jet, Jet, Jet]:
+    def line(self, p: Values) -> tuple[Values, Values]:
         """Return the face as a line (see `Face.line`)."""
-        s, c = sin_cos(p)
-        return self.pivot * s - self.offset, self.pivot * c * ds, ds
+        sine, cosine = sin_cos(p)
+        return self.pivot * sine - self.offset, self.pivot * cosine
 
-    def guided(self, p: Jet, turning: Jet, along: Jet) -> tuple[Jet, Jet, Jet]:  # noqa: ARG002
+    def guided(self, turning: Jet, slope: Jet, along: Jet) -> tuple[Jet, Jet, Jet]:  # noqa: ARG002
         """Return the distance of the contact from the pivot's foot (see `Face.guided`).
 
         That is ``d*cos(p) - along``, in a form that keeps all digits if the face falls nearly as
         fast as the cam turns.
         """
-        place = self.pivot * cos(p) / turning
+        place = slope / turning
         return 0.0 * place - self.offset, place, place
-
-    def jump(self, carrier: Carrier, p: Array, ds: Array) -> Array:  # noqa: ARG002
-        """Return the place of contact over its distance at rest (see `Follower.jump`)."""
-        return ds / (carrier.rate + ds)
-
-    def velocity(self, carrier: Carrier, p: Array, jump: Array) -> Array:  # noqa: ARG002
-        """Return the velocities in a jump (see `Follower.velocity`)."""
-        return carrier.rate * jump / (1.0 - jump)
-
-    def jump_speed(self, carrier: Carrier, p: Array, inset: float) -> Array:  # noqa: ARG002
-        """Return the length of the face to the pivot's foot (see `Follower.jump_speed`)."""
-        return self.pivot * np.cos(p)
 
 
 def _demand_within(
