@@ -15,7 +15,7 @@ import os
 import pickle
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import InitVar, dataclass, field, fields
+from dataclasses import InitVar, dataclass, field, fields, is_dataclass
 from functools import cached_property
 from typing import Any, ClassVar, Final, Self
 
@@ -90,6 +90,9 @@ class Design:
             for item in fields(self):
                 object.__setattr__(self, item.name, settled(getattr(self, item.name)))
         self._settle()
+        variants = KINDS[self.kind].variants
+        for title in variants.titles if variants else ():
+            object.__setattr__(self, title, _suiting(self, title))
         if not examined:
             _demand_types(self)
             faults = examine(document_of(self)).faults
@@ -210,6 +213,27 @@ class Design:
     def _wanted(self) -> Iterable[Wanted]:
         """Return the allowed types of fields whose types depend on a registry."""
         return ()
+
+
+def _suiting(design: Design, title: str) -> Any:
+    """Return a table; one from whose class that of its variant is derived as an instance of it."""
+    kind, given = KINDS[design.kind], getattr(design, title)
+    wanted, own = kind.table_of(design, title).owner, type(given)
+    if wanted is None or wanted is own or not is_dataclass(own) or not issubclass(wanted, own):
+        return given
+    taken = {one.name for one in fields(wanted) if one.init}
+    values = {one: getattr(given, one.name) for one in fields(own)}
+    lost = [one for one in values if one.name not in taken and values[one] != one.default]
+    if lost and kind.variants:
+        what = f"does not apply to {kind.variants.called.format(kind.variants.of(design))}"
+        raise DesignError(
+            Problem(what, design.source, key=f"{title}.{one.name}", value=values[one])
+            for one in lost
+        )
+    try:
+        return wanted(**{one.name: values[one] for one in values if one.name in taken})
+    except TypeError:  # it needs more
+        return given
 
 
 def _demand_types(design: Design) -> None:

@@ -145,7 +145,9 @@ def _branch(kind: DesignKind, main: Schema) -> Schema:
 
 def _variants(variants: Variants | None) -> Iterator[Schema]:
     """Yield what tables may have and must have, for each variant."""
-    for value in variants.entries if variants else ():
+    if variants is None:
+        return
+    for value in variants.entries:
         rest = {} if value == variants.default else {"required": [variants.key]}
         chosen = {"properties": {variants.key: {"const": value}}, **rest}
         tables, required = {}, []

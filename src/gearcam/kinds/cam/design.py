@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
-from gearcam.base.errors import DesignError, Problem
 from gearcam.base.registry import classes_in, name_of
 from gearcam.cams.spec import POINTED, CamSpec, FollowerSpec
 from gearcam.designs.design import Design, Wanted
@@ -83,30 +81,6 @@ class CamDesign(Design):
     def _settle(self) -> None:
         if isinstance(self.motion, Sequence) and not isinstance(self.motion, str):
             object.__setattr__(self, "motion", tuple(self.motion))
-        for title, wanted in FORMS[self.form].tables.items():
-            object.__setattr__(self, title, self._suiting(title, wanted))
-
-    def _suiting(self, title: str, wanted: type) -> Any:
-        """Return a table; one of a class from which that of the form is derived, as the latter."""
-        given = getattr(self, title)
-        if type(given) is wanted or not dataclasses.is_dataclass(given):
-            return given
-        if not issubclass(wanted, type(given)):
-            return given
-        taken = {one.name for one in dataclasses.fields(wanted) if one.init}
-        values = {one: getattr(given, one.name) for one in dataclasses.fields(given)}
-        problems = [
-            Problem(f"does not apply to a {self.form} cam", self.source, None, key, value)
-            for one, value in values.items()
-            for key in (f"{title}.{one.name}",)
-            if one.name not in taken and value != one.default
-        ]
-        if problems:
-            raise DesignError(problems)
-        try:
-            return wanted(**{one.name: values[one] for one in values if one.name in taken})
-        except TypeError:  # it needs more
-            return given
 
     @property
     def form(self) -> str:

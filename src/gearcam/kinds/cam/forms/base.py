@@ -100,9 +100,19 @@ class Form(ABC, Generic[C, S, F]):
         return cast("F", self.design.follower)
 
     @property
+    def blank(self) -> Any:
+        """The blank in the design, of the class in `tables`."""
+        return self.design.blank
+
+    @property
+    def output(self) -> Any:
+        """What the design says of its output, of the class in `tables`."""
+        return self.design.output
+
+    @property
     def chord_tolerance(self) -> float:
         """Chord tolerance of the profile, mm."""
-        return self.design.output.chord_tolerance or CHORD_TOLERANCE
+        return self.output.chord_tolerance or CHORD_TOLERANCE
 
     @classmethod
     def faults(cls, parts: Mapping[str, Any], document: Mapping[str, Any]) -> Iterator[Fault]:

@@ -168,7 +168,7 @@ class Conjugate(Plates[ConjugateCam, ConjugateSpec, ConjugateFollower]):
 
     def parts(self) -> tuple[Part, ...]:
         """Return both plates in one frame, with hubs on their outer faces only."""
-        blanks = [replace(self.design.blank, **{inner: 0.0}) for inner in ("hub_front", "hub_back")]
+        blanks = [replace(self.blank, **{inner: 0.0}) for inner in ("hub_front", "hub_back")]
         return tuple(
             self.plate(
                 f"cam{wall.key}",
@@ -201,7 +201,7 @@ class Conjugate(Plates[ConjugateCam, ConjugateSpec, ConjugateFollower]):
         from gearcam.kinds.cam.drawn import follower, plate
         from gearcam.pictures.drawings import CENTER, FOLLOWER, Drawing
 
-        pose = self.design.output.pose
+        pose = self.output.pose
         plates, others = [], []
         for part, wall, prime in zip(self.result.parts, self.cam.walls, self.primes, strict=True):
             side = -1.0 if wall.clockwise else 1.0
@@ -231,7 +231,7 @@ class Conjugate(Plates[ConjugateCam, ConjugateSpec, ConjugateFollower]):
                 "curvature": curvature(wall),
                 "start_angle_deg": start_angle(wall),
                 **trimming(wall),
-                "profile": size(wall, finished, self.design.blank.clearance),
+                "profile": size(wall, finished, self.blank.clearance),
             }
             for wall, finished in zip(cam.walls, self.result.contours, strict=True)
         )

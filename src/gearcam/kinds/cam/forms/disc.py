@@ -71,7 +71,7 @@ class Plates(Form[C, S, F]):
 
     def parts(self) -> tuple[Part, ...]:
         """Return the cam as its only part."""
-        return (self.plate(STEM, self.result.profile, self.design.blank),)
+        return (self.plate(STEM, self.result.profile, self.blank),)
 
     def finished(self) -> tuple[Contour, ...]:
         """Return the outlines of the parts."""
@@ -88,7 +88,7 @@ class Plates(Form[C, S, F]):
         """Return the plate, turned, below its follower."""
         from gearcam.kinds.cam.drawn import follower, plate
 
-        (part,), (wall,), pose = self.result.parts, self.cam.walls, self.design.output.pose
+        (part,), (wall,), pose = self.result.parts, self.cam.walls, self.output.pose
         side = -1.0 if wall.clockwise else 1.0
         return plate(part, wall, follower(wall, pose, self.reach), angle=side * pose)
 
@@ -115,7 +115,7 @@ class Plates(Form[C, S, F]):
             "contact_mm": None
             if place is None
             else Fact(ends_of(place), "contact along the face", shown=True),
-            "profile": size(wall, finished, self.design.blank.clearance),
+            "profile": size(wall, finished, self.blank.clearance),
         }
 
 

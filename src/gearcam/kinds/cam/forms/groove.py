@@ -134,7 +134,7 @@ class Groove(Form[GrooveCam, GrooveSpec, GrooveFollower]):
                 STEM,
                 [disc.contour(self.result.profile.tolerance)],
                 thickness,
-                self.design.blank,
+                self.blank,
                 workpiece(STEM, thickness, within="the groove's inner wall"),
                 recesses=self._recesses(),
                 room=[*within, profiles[0]],
@@ -155,7 +155,7 @@ class Groove(Form[GrooveCam, GrooveSpec, GrooveFollower]):
         """Return the disc, turned, with its follower in the groove."""
         from gearcam.kinds.cam.drawn import follower, grooved
 
-        motion, part, pose = self.cam.motion, self.result.part, self.design.output.pose
+        motion, part, pose = self.cam.motion, self.result.part, self.output.pose
         shapes = follower(motion, pose, part.contour.reach)
         side = -1.0 if motion.clockwise else 1.0
         return grooved(part, self.cam.walls, shapes, angle=side * pose)

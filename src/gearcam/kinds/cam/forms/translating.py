@@ -205,7 +205,6 @@ class Translating(Form[SlidingCam, PlateSpec, PlateFollower]):
         "cam.travel_mm", "cam.run_in_mm", "cam.run_out_mm", "cam.axis_deg", "cam.pivot_height_mm",
         "cam.groove.width_mm", "cam.groove.depth_mm", "cam.roller_clearance_mm", "cam.lost_motion",
     )  # fmt: skip
-    leading = "travel_mm"
 
     @classmethod
     def faults(cls, parts: Mapping[str, Any], document: Mapping[str, Any]) -> Iterator[Fault]:  # noqa: ARG003
@@ -218,16 +217,6 @@ class Translating(Form[SlidingCam, PlateSpec, PlateFollower]):
             yield Fault(("follower", "type"), message, follower.type, '"roller"')
         yield from milled_faults(parts, "a groove with a floor" if cam.groove_depth else "")
 
-    @property
-    def blank(self) -> PlateBlank:
-        """The blank in the design."""
-        return cast("PlateBlank", self.design.blank)
-
-    @property
-    def place(self) -> float:
-        """Travel in the assembly drawing, mm."""
-        return cast("PlateOutput", self.design.output).place
-
     def program(self) -> Program:
         """Return the lift over the travel, with its run before and after."""
         motion = cast("Sequence[Phase]", self.design.motion)
@@ -239,10 +228,10 @@ class Translating(Form[SlidingCam, PlateSpec, PlateFollower]):
     def make(self, program: Program) -> SlidingCam:
         """Return the cam."""
         travel = program.period
-        if self.place > travel:
+        if self.output.place > travel:
             what = "the assembly drawing is beyond the travel of the cam"
             rule, key = "the limit is its whole travel, included", "output.travel_mm"
-            raise beyond_limit(what, key, self.place, travel, rule, near=travel)
+            raise beyond_limit(what, key, self.output.place, travel, rule, near=travel)
         return make_sliding(
             program,
             make_follower_over_plate(self.follower),
@@ -326,8 +315,8 @@ class Translating(Form[SlidingCam, PlateSpec, PlateFollower]):
 
         motion = self.cam.motion
         reach = 0.5 * float(np.ptp(self.result.profile.vertices))
-        shapes = follower(motion, self.place, reach)
-        return self._drawing(shapes, self.place)
+        shapes = follower(motion, self.output.place, reach)
+        return self._drawing(shapes, self.output.place)
 
     def paths(self, radius: float | None) -> Mapping[str, Contour | Path]:
         """Return the path around the plate, or through the groove."""
@@ -341,6 +330,11 @@ class Translating(Form[SlidingCam, PlateSpec, PlateFollower]):
         if abs(2.0 * radius - cam.width) <= _ROUNDING * cam.width:
             return {TOOL_PATH: Path(points=cam.lower.pitch_line, closed=False)}
         return {TOOL_PATH: cutter_way(cam.groove, radius, side=-1)}
+
+    @property
+    def leading(self) -> str:
+        """The name of the size for the headline."""
+        return "travel_mm"
 
     def sizes(self) -> dict[str, Any]:
         """Return its sizes, as facts."""

@@ -101,7 +101,7 @@ class Yoke(Plates[YokeCam, YokeSpec, YokeFollower]):
         """Return the plate, turned, between the two sides of its follower."""
         from gearcam.kinds.cam.drawn import follower
 
-        (wall,), pose = self.cam.walls, self.design.output.pose
+        (wall,), pose = self.cam.walls, self.output.pose
         other, drawing = follower(wall, pose + math.pi, self.reach), super().picture()
         second = (Feature(layer=FOLLOWER, shape=placed(shape, Pose(math.pi))) for shape in other)
         return replace(drawing, features=(*drawing.features, *second))
