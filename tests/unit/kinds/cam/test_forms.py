@@ -119,7 +119,7 @@ def test_what_another_form_does_not_have_is_refused_in_python() -> None:
             name="yoke", motion=MOTION, follower=follower, cam=gearcam.YokeSpec(prime_radius=40.0)
         )
     groove = gearcam.GrooveFollower(type="roller", roller_radius=6.0, roller2_radius=5.0)
-    with pytest.raises(gearcam.DesignError, match="roller2.*not apply to a disc"):
+    with pytest.raises(gearcam.DesignError, match=r"roller2.*not apply to a disc"):
         gearcam.CamDesign(
             name="disc", motion=MOTION, follower=groove, cam=gearcam.CamSpec(prime_radius=40.0)
         )
