@@ -92,13 +92,13 @@ def _dispatch(words: list[str]) -> int:
     )
     top.add_argument("--version", action="store_true", help="show the version and exit")
     top.add_argument("command", nargs="?", metavar="COMMAND", help="one of the commands below")
-    given = top.parse_args(words[:1])
-    if given.version:
+    options = top.parse_args(words[:1])
+    if options.version:
         from gearcam.version import __version__
 
         say(f"gearcam {__version__}")
         return GOOD
-    if given.command is not None:
+    if options.command is not None:
         refuse([unknown_word(word, "is not a command", docs)])
     top.print_help(sys.stderr)
     return WRONG

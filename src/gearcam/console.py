@@ -64,7 +64,7 @@ def finding_lines(findings: Sequence[Finding]) -> Iterator[str]:
         yield "findings: none"
         return
     yield "findings"
-    rows = [(one.severity, one.code, one.where, one.told, one.held) for one in findings]
+    rows = [(one.severity, one.code, one.where, one.text, one.limit_text) for one in findings]
     for row, finding in zip(lined_up(rows), findings, strict=True):
         yield f"  {row}"
         yield wrapped(finding.message, first="      ", rest="      ")
@@ -129,30 +129,30 @@ def infeasible_text(error: InfeasibleError) -> str:
     """Return why a design cannot be made, with value and limit, indented."""
     lines = [f"{error.what}, at {error.where}" if error.where else error.what]
     numbers = (("value", error.value), ("limit", error.limit))
-    shown = [
+    texts = [
         f"{name} {with_unit(number, error.unit)}" for name, number in numbers if number is not None
     ]
-    lines += [", ".join(shown)] if shown else []
+    lines += [", ".join(texts)] if texts else []
     lines += error.nearest.split("; ") if error.nearest else []
     return "\n".join(wrapped(line, first="  ", rest="      ") for line in lines)
 
 
-def remedy_lines(found: Remedies) -> Iterator[str]:
+def remedy_lines(remedies: Remedies) -> Iterator[str]:
     """Yield the remedies that a search has found, and whether it was complete."""
-    if found.found:
-        many = len(found.found) > 1
+    if remedies.found:
+        many = len(remedies.found) > 1
         yield f"{'each of these changes' if many else 'this change'} was built without errors:"
-    for remedy in found.found:
+    for remedy in remedies.found:
         yield wrapped(f"{remedy.text}  {remedy.notes}".rstrip(), first="  ", rest="      ")
-    for text, codes in ({} if found.found else found.nearly).items():
+    for text, codes in ({} if remedies.found else remedies.nearly).items():
         words = f"with {text} it can be made, but has errors: {', '.join(codes)}"
         yield wrapped(words, first="", rest="  ")
-    nearly = " ".join(found.nearly)
-    keys = ", ".join(key for key in found.tried if f"{key} = " not in nearly)
-    if found.gave_up:
-        sought = "more remedies" if found.found else "a remedy"
-        yield f"the search for {sought} was ended after {found.builds} designs"
-    elif keys and not found.found:
+    nearly = " ".join(remedies.nearly)
+    keys = ", ".join(key for key in remedies.tried if f"{key} = " not in nearly)
+    if remedies.gave_up:
+        sought = "more remedies" if remedies.found else "a remedy"
+        yield f"the search for {sought} was ended after {remedies.builds} designs"
+    elif keys and not remedies.found:
         yield wrapped(f"no remedy was found by changing {keys}", first="", rest="  ")
 
 

@@ -38,7 +38,10 @@ def doubts(result: GearPairResult) -> Iterator[tuple[str, str]]:
         found = study(gears, MeshingSpec(steps=_STEPS))
         for one in run_checks(KIND, found, result.design.limits):
             if one.severity == "error":
-                yield one.code, f"step {number}: {one.message} {one.where}, {one.told}, {one.held}"
+                yield (
+                    one.code,
+                    f"step {number}: {one.message} {one.where}, {one.text}, {one.limit_text}",
+                )
         told = numbers(found)["contact_ratio"]["min"]
         if number == 1 and told < result.contact_ratio - _SAME:
             yield "contact-ratio", f"studied {told}, built {result.contact_ratio}"

@@ -42,8 +42,8 @@ def joined(changes: Changes, way: Adjustment) -> Adjustment:
 
 def together(changes: Changes, more: Changes) -> Changes:
     """Return `changes` with `more` of them; a list that these change as a whole has its items."""
-    own = {key: one for key, one in changes.items() if key.partition("[")[0] not in more}
-    return {**own, **more}
+    kept = {key: one for key, one in changes.items() if key.partition("[")[0] not in more}
+    return {**kept, **more}
 
 
 def for_both(way: Adjustment) -> Adjustment | None:

@@ -46,9 +46,9 @@ class ShortRepr:
     def __repr__(self) -> str:
         fields = dataclasses.fields(self)  # pyright: ignore[reportArgumentType]
         values = ((field, getattr(self, field.name)) for field in fields if field.repr)
-        told = [(one.name, word(value)) for one, value in values if not _usual(one, value)]
-        told.sort(key=lambda pair: pair[1][:1].isupper())  # numbers and texts before objects
-        return line(type(self).__name__, [f"{name}={text}" for name, text in told if text])
+        texts = [(one.name, word(value)) for one, value in values if not _usual(one, value)]
+        texts.sort(key=lambda pair: pair[1][:1].isupper())  # numbers and texts before objects
+        return line(type(self).__name__, [f"{name}={text}" for name, text in texts if text])
 
 
 def line(name: str, words: Sequence[str]) -> str:

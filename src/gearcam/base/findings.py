@@ -62,12 +62,12 @@ class Finding(ShortRepr):
             object.__setattr__(self, "value", settled(self.value, self.limit))
 
     @property
-    def told(self) -> str:
+    def text(self) -> str:
         """The value with its unit, as text."""
         return with_unit(self.value, self.unit)
 
     @property
-    def held(self) -> str:
+    def limit_text(self) -> str:
         """The limit that the value violates, as text: ``at most 30 deg``."""
         if self.value is None or self.limit is None:
             return ""
@@ -175,22 +175,22 @@ def check(
     unit = unit or quantity.unit
     severities = (severity,) if isinstance(severity, str) else severity
 
-    def finding(found: Remark, own: float) -> Finding:
-        bound = own / quantity.factor if math.isnan(found.limit) else found.limit
+    def finding(remark: Remark, limit: float) -> Finding:
+        bound = limit / quantity.factor if math.isnan(remark.limit) else remark.limit
         return Finding(
             code=code,
-            severity=found.severity or severities[0],
-            message=found.message,
-            value=found.value,
-            limit=bound if found.value is not None and math.isfinite(bound) else None,
-            unit="" if found.value is None else found.unit or unit,
-            where=found.where,
+            severity=remark.severity or severities[0],
+            message=remark.message,
+            value=remark.value,
+            limit=bound if remark.value is not None and math.isfinite(bound) else None,
+            unit="" if remark.value is None else remark.unit or unit,
+            where=remark.where,
         )
 
     def register(look: Look) -> Run:
         @wraps(look)
-        def run(subject: Any, own: float) -> Iterator[Finding]:
-            return (finding(found, own) for found in look(subject, own))
+        def run(subject: Any, value: float) -> Iterator[Finding]:
+            return (finding(remark, value) for remark in look(subject, value))
 
         for one in (kind,) if isinstance(kind, str) else kind:
             if (one, code) in CHECKS:
@@ -218,8 +218,8 @@ def limit_of(kind: str, code: str, limits: Mapping[str, float]) -> float:
     float
         The limit set by the design, else the default, in internal units; nan without a limit.
     """
-    known = CHECKS[kind, code].limit
-    return float("nan") if known is None else limits.get(known[0], known[2])
+    limit = CHECKS[kind, code].limit
+    return float("nan") if limit is None else limits.get(limit[0], limit[2])
 
 
 def run_checks(kind: str, subject: Any, limits: Mapping[str, float]) -> tuple[Finding, ...]:
@@ -239,14 +239,14 @@ def run_checks(kind: str, subject: Any, limits: Mapping[str, float]) -> tuple[Fi
     tuple of Finding
         Errors first, then warnings, then notes.
     """
-    found: list[Finding] = []
+    findings: list[Finding] = []
     for entry in CHECKS.values():
         if entry.kind == kind:
-            found += entry.run(subject, limit_of(kind, entry.code, limits))
-    return in_order(found)
+            findings += entry.run(subject, limit_of(kind, entry.code, limits))
+    return in_order(findings)
 
 
-def in_order(found: Iterable[Finding]) -> tuple[Finding, ...]:
+def in_order(findings: Iterable[Finding]) -> tuple[Finding, ...]:
     """Return findings with errors first, then warnings, then notes."""
     order = ("error", "warning", "note")
-    return tuple(sorted(found, key=lambda finding: order.index(finding.severity)))
+    return tuple(sorted(findings, key=lambda finding: order.index(finding.severity)))

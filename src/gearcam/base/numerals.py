@@ -88,13 +88,13 @@ def exact(value: float) -> float:
     return near if abs(near - value) <= ULPS * math.ulp(value) else value
 
 
-def tree(made: Any) -> Any:
-    """Return nested dicts and lists with each double replaced by `exact` of it."""
-    if isinstance(made, dict):
-        return {key: tree(value) for key, value in made.items()}
-    if isinstance(made, list | tuple):
-        return [tree(value) for value in made]
-    return exact(made) if isinstance(made, float) else made
+def tree(value: Any) -> Any:
+    """Return nested dicts and lists, a `value`, with each double replaced by `exact` of it."""
+    if isinstance(value, dict):
+        return {key: tree(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [tree(item) for item in value]
+    return exact(value) if isinstance(value, float) else value
 
 
 def shortened(value: float, side: float, digits: int = 4) -> float:

@@ -212,11 +212,11 @@ def described(owner: type) -> type:
         The same class.
     """
     doc = inspect.cleandoc(owner.__doc__ or "")
-    told = ", ".join(re.findall(r"^(\w[\w, ]*) : ", doc, re.MULTILINE)).split(", ")
+    documented = ", ".join(re.findall(r"^(\w[\w, ]*) : ", doc, re.MULTILINE)).split(", ")
     entries = [
         f"{field.name} : {_type_of(field)}\n    {_sentence(field.metadata['param'].doc)}"
         for field in (dataclasses.fields(owner) if dataclasses.is_dataclass(owner) else ())
-        if "param" in field.metadata and field.name not in told
+        if "param" in field.metadata and field.name not in documented
     ]
     if entries:
         head, title, examples = doc.partition("\n\nExamples\n")
@@ -227,11 +227,11 @@ def described(owner: type) -> type:
 
 def _type_of(field: dataclasses.Field[Any]) -> str:
     """Return type, unit and default of a parameter as text."""
-    kind, made = field.type, field.metadata["param"]
+    kind, parameter = field.type, field.metadata["param"]
     words = [kind.__name__ if isinstance(kind, type) else str(kind)]
     for alias, text in _ALIASES.items():
         words = [re.sub(alias, text, word) for word in words]
-    quantities = (made.quantity, *((made.other.quantity,) if made.other else ()))
+    quantities = (parameter.quantity, *((parameter.other.quantity,) if parameter.other else ()))
     words += [" or ".join(one.unit.replace("deg", "rad") for one in quantities if one.unit)]
     if field.default is not REQUIRED:
         words.append("optional" if field.default is None else f"default {field.default!r}")

@@ -39,12 +39,12 @@ def read(file: str | os.PathLike[str], most: int) -> bytes:
         system refuses.
     """
     try:
-        found = os.stat(file)  # noqa: PTH116 (a path would make an empty name a folder)
-        if stat.S_ISDIR(found.st_mode):
+        status = os.stat(file)  # noqa: PTH116 (a path would make an empty name a folder)
+        if stat.S_ISDIR(status.st_mode):
             raise UnreadableError("this is a folder, not a file")
-        if not stat.S_ISREG(found.st_mode):
+        if not stat.S_ISREG(status.st_mode):
             raise UnreadableError("this is a pipe or a device, not a file")
-        if found.st_size <= most:
+        if status.st_size <= most:
             with open(file, "rb") as stream:  # noqa: PTH123
                 content = stream.read(most + 1)  # the size may be unknown, or the file may grow
             if len(content) <= most:
@@ -57,5 +57,5 @@ def read(file: str | os.PathLike[str], most: int) -> bytes:
         raise UnreadableError(f"cannot be read: {error.strerror or error}") from error
     except ValueError as error:
         raise UnreadableError("this is not a possible file name") from error
-    told = f"has {size_of(found.st_size)}" if found.st_size > most else "is larger"
-    raise UnreadableError(f"{told}, but files of at most {size_of(most)} are read")
+    size = f"has {size_of(status.st_size)}" if status.st_size > most else "is larger"
+    raise UnreadableError(f"{size}, but files of at most {size_of(most)} are read")

@@ -56,32 +56,32 @@ def rows(variants: Sequence[Variant], *, every: bool = False) -> tuple[Row, ...]
     tuple of Row
         Facts in order, then the codes of findings by severity.
     """
-    made = [one.result for one in variants if one.refusal is None]
-    if not made:
+    results = [one.result for one in variants if one.refusal is None]
+    if not results:
         return ()
-    told = [
+    columns = [
         {fact.name: fact for fact in (one.facts.quantities() if every else one.facts.leading())}
-        for one in made
+        for one in results
     ]
-    names = dict.fromkeys(name for facts in told for name in facts)
-    found = []
+    names = dict.fromkeys(name for facts in columns for name in facts)
+    findings = []
     for severity in _SEVERITIES:
         codes = [
-            dict.fromkeys(f.code for f in one.findings if f.severity == severity) for one in made
+            dict.fromkeys(f.code for f in one.findings if f.severity == severity) for one in results
         ]
         cells = tuple(", ".join(some) or "none" for some in codes)
-        found.append(Row(name=f"findings.{severity}", meaning=f"{severity}s", cells=cells))
-    made_of = (_row([facts.get(name) for facts in told]) for name in names)
-    return (*(row for row in made_of if any(row.cells)), *found)
+        findings.append(Row(name=f"findings.{severity}", meaning=f"{severity}s", cells=cells))
+    made_of = (_row([facts.get(name) for facts in columns]) for name in names)
+    return (*(row for row in made_of if any(row.cells)), *findings)
 
 
 def _row(facts: Sequence[NamedFact | None]) -> Row:
-    known = [one for one in facts if one is not None]
-    limits = {one.limit for one in known}
+    there = [one for one in facts if one is not None]
+    limits = {one.limit for one in there}
     common = limits.pop() if len(limits) == 1 else ""
     return Row(
-        name=known[0].name,
-        meaning=known[0].meaning,
+        name=there[0].name,
+        meaning=there[0].meaning,
         cells=tuple("" if one is None else _cell(one, common) for one in facts),
         limit=common,
     )

@@ -52,21 +52,21 @@ class Variant(ShortRepr):
 
 def settings_of(texts: Sequence[str]) -> dict[str, list[Any]]:
     """Return the settings in `texts` as typed; raise `DesignError` if one cannot be read."""
-    made: dict[str, list[Any]] = {}
+    settings: dict[str, list[Any]] = {}
     for text in texts:
         key, equals, words = (part.strip() for part in text.partition("="))
         values = _values(words)
         if not (path_of(key) and equals):
             raise _wrong(f"{show(text)} is not KEY=VALUE,...")
-        if key in made:
+        if key in settings:
             raise _wrong(f"{key} is set twice", "all values of a key in one list")
         if not values:
             raise _wrong(f"{key} has no value")
         twice = [one for k, one in enumerate(values) if one in values[:k]]
         if twice:
             raise _wrong(f"{key}: {show(twice[0])} is listed twice", "each value once")
-        made[key] = values
-    return made
+        settings[key] = values
+    return settings
 
 
 def _values(words: str) -> list[Any]:
@@ -157,15 +157,15 @@ def _combinations(settings: Settings) -> Iterator[tuple[str, dict[str, Any]]]:
 
 def _changed(wanted: Sequence[tuple[Design, Mapping[str, Any]]]) -> list[Design]:
     """Return the changed designs; raise `DesignError` with all mistakes, each once."""
-    made, problems = [], {}
+    designs, problems = [], {}
     for design, changes in wanted:
         try:
-            made.append(design.with_(changes) if changes else design)
+            designs.append(design.with_(changes) if changes else design)
         except DesignError as error:
             problems |= {str(one): one for one in error.problems}
     if problems:
         raise DesignError(problems.values())
-    return made
+    return designs
 
 
 def _built(label: str, design: Design) -> Variant:

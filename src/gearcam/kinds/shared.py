@@ -71,16 +71,16 @@ def _measure(result: Result, progress: Progress | None) -> StudyResult:
     from gearcam.results.result import StudyResult
 
     settings: AccuracySpec = result.design.accuracy
-    found = accuracy(result, settings.stage, settings.repeat, progress)
-    lines = tuple(found.lines())
+    outcome = accuracy(result, settings.stage, settings.repeat, progress)
+    lines = tuple(outcome.lines())
     title = f"{result.design.name}, error against run time"
     return StudyResult(
         result=result,
         study=accuracy_study(),
         file=TABLE,
-        table=found.columns,
-        group=found.facts,
-        drawn=lambda: {chart.title: chart for chart in found.charts},
-        pages={PAGE: charts_page(title, found.charts, "\n".join(lines))},
+        table=outcome.columns,
+        group=outcome.facts,
+        drawn=lambda: {chart.title: chart for chart in outcome.charts},
+        pages={PAGE: charts_page(title, outcome.charts, "\n".join(lines))},
         lines=lines,
     )

@@ -157,8 +157,8 @@ def _flat(points: Plane) -> list[float | None]:
 
 def _digits(values: Array) -> list[float | None]:
     """Return values, rounded to the decimals that the largest needs."""
-    known = np.abs(values[np.isfinite(values)])
-    size = float(known.max(initial=0.0))
+    sizes = np.abs(values[np.isfinite(values)])
+    size = float(sizes.max(initial=0.0))
     return _rounded(values, _DIGITS - math.ceil(math.log10(size)) if size else 0)
 
 
@@ -170,7 +170,7 @@ def _significant(values: Array) -> list[float | None]:
 
 
 def _rounded(values: Array, decimals: int) -> list[float | None]:
-    made = np.round(np.asarray(values, dtype=float), decimals) + 0.0  # no -0
-    if np.isfinite(made).all():
-        return made.tolist()
-    return [value if math.isfinite(value) else None for value in made.tolist()]
+    rounded = np.round(np.asarray(values, dtype=float), decimals) + 0.0  # no -0
+    if np.isfinite(rounded).all():
+        return rounded.tolist()
+    return [value if math.isfinite(value) else None for value in rounded.tolist()]

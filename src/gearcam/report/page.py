@@ -116,7 +116,7 @@ def charts_page(title: str, charts: Sequence[Chart], text: str) -> bytes:
         HTML, UTF-8, including scripts, styles and data.
     """
     data = [chart_data(chart.title, chart, "") for chart in charts]
-    told = {
+    values = {
         "title": title,
         "text": text,
         "data": _embedded({"title": title, "charts": data}),
@@ -124,7 +124,7 @@ def charts_page(title: str, charts: Sequence[Chart], text: str) -> bytes:
         "script": _own(*_CHARTS, "blocks.js", "charts_page.js"),
         "licence": _own("uPlot/LICENSE"),
     }
-    return rendered("charts.html", told).encode()
+    return rendered("charts.html", values).encode()
 
 
 def document(
@@ -199,7 +199,7 @@ def blocks(
     dict of str to str
     """
     facts = result.facts.with_groups(measured)
-    told = {
+    values = {
         "title": result.design.name,
         "facts": facts,
         "findings": result.findings,
@@ -208,18 +208,18 @@ def blocks(
         "files": {name: size_of(size) for name, size in result.sizes.items()},
         "errors": [*_errors(result, facts)],
     }
-    return {name: rendered(f"{name}.html", told) for name in names}
+    return {name: rendered(f"{name}.html", values) for name in names}
 
 
-def rendered(name: str, told: Mapping[str, Any]) -> str:
-    """Return the HTML of a template in this folder, by `name`, filled with the values in `told`."""
-    return _templates().get_template(name).render(told)
+def rendered(name: str, values: Mapping[str, Any]) -> str:
+    """Return the HTML of a template in this folder, by `name`, filled with `values`."""
+    return _templates().get_template(name).render(values)
 
 
 def verdict(findings: tuple[Finding, ...]) -> tuple[str, str]:
     """Return the worst severity of `findings`, note if there are none, and the verdict."""
-    found = {one.severity for one in findings}
-    worst = next((one for one in _VERDICTS if one in found), "note")
+    severities = {one.severity for one in findings}
+    worst = next((one for one in _VERDICTS if one in severities), "note")
     return worst, _VERDICTS[worst]
 
 

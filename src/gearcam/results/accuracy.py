@@ -100,9 +100,9 @@ class Accuracy(ShortRepr):
 
         None if fewer than two rungs are above rounding or have different numbers of points.
         """
-        found = [rung for rung in self.of(stage) if rung.error > self.ladders[stage].rounding]
+        rungs = [rung for rung in self.of(stage) if rung.error > self.ladders[stage].rounding]
         points, errors = np.log(
-            [(float(rung.points), rung.error) for rung in found[-_FITTED:]] or [(1.0, 1.0)]
+            [(float(rung.points), rung.error) for rung in rungs[-_FITTED:]] or [(1.0, 1.0)]
         ).T
         if np.ptp(points) == 0.0:
             return None
@@ -114,8 +114,9 @@ class Accuracy(ShortRepr):
         yield f"error against run time, {runs}; * as used by gearcam"
         for stage, ladder in self.ladders.items():
             order = self.order(stage)
-            told = "rounding" if order is None else f"order {order:.2f}"
-            yield f"{stage}: error of {ladder.measured}; {told}, expected {formatted(ladder.order)}"
+            slope = "rounding" if order is None else f"order {order:.2f}"
+            slope += f", expected {formatted(ladder.order)}"
+            yield f"{stage}: error of {ladder.measured}; {slope}"
             rows = [(ladder.refined, "", "error", "order", "time", "points")]
             for rung in self.of(stage):
                 error = f"{rung.error:.2e} {ladder.unit}".rstrip()
@@ -172,14 +173,14 @@ class Accuracy(ShortRepr):
 
     def _chart(self, stage: str) -> Chart:
         ladder, rungs = self.ladders[stage], self.of(stage)
-        own = [rung for rung in rungs if rung.own]
+        used = [rung for rung in rungs if rung.own]
 
         def line(label: str, some: Sequence[Rung], dots: bool) -> Line:
             x, y = np.array([(rung.seconds, rung.error) for rung in some]).T
             return Line(label=label, x=x, y=y, dots=dots)
 
         lines = [line("error", rungs, False), line(f"levels: {ladder.refined}", rungs, True)]
-        lines += [line("as used by gearcam", own, True)] if own else []
+        lines += [line("as used by gearcam", used, True)] if used else []
         what = f"error of {ladder.measured}, {ladder.unit}".removesuffix(", ")
         return Chart(title=stage, x="run time, s", y=what, lines=tuple(lines), log="xy")
 
@@ -203,21 +204,21 @@ def stages_of(design: Design, asked: Sequence[str] | None = None) -> tuple[str, 
     DesignError
         If the kind has no such stage; the message lists those that it has.
     """
-    known = tuple(KINDS[design.kind].ladders)
-    if asked is None and known:
-        return known
+    stages = tuple(KINDS[design.kind].ladders)
+    if asked is None and stages:
+        return stages
     problems = []
     every = {name for kind in KINDS.values() for name in kind.ladders}
     for name in dict.fromkeys(asked or ("",)):
-        if name not in known:
+        if name not in stages:
             what = f" of designs of kind {design.kind}" if name in every else ""
             message = f"{show(name)} is not a stage{what}" if name else "no stage is listed"
-            hint = "" if name in every else did_you_mean(name, known)
-            allowed = ", ".join(known) or f"none of designs of kind {design.kind}"
+            hint = "" if name in every else did_you_mean(name, stages)
+            allowed = ", ".join(stages) or f"none of designs of kind {design.kind}"
             problems.append(Problem(message, key="accuracy.stage", allowed=allowed, hint=hint))
     if problems:
         raise DesignError(problems)
-    return tuple(name for name in known if name in (asked or ()))
+    return tuple(name for name in stages if name in (asked or ()))
 
 
 def accuracy(
@@ -260,13 +261,13 @@ def accuracy(
     2.0
     """
     count, names = whole("repeat", repeat, 1), stages_of(result.design, stages)
-    made = result.kind.ladders
+    makers = result.kind.ladders
     first: dict[tuple[str, float], tuple[float, int]] = {}
     refused: dict[tuple[str, float], str] = {}
     ladders: dict[str, Ladder] = {}
     for name in names:
         try:
-            ladders[name] = made[name](result)
+            ladders[name] = makers[name](result)
         except GearcamError as error:
             if len(names) == 1 or not ladders:
                 raise

@@ -99,8 +99,8 @@ class Remedy(ShortRepr):
             "changes the motion" if self.moves else "",
             f"{count} warnings remain" if count > 1 else "1 warning remains" if count else "",
         ]
-        told = "; ".join(note for note in notes if note)
-        return f"({told})" if told else ""
+        text = "; ".join(note for note in notes if note)
+        return f"({text})" if text else ""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -371,9 +371,9 @@ class Search:
                 return True
             if not way.far:
                 self.first.append(first)
-        known = any(ahead(remedy.changes, near, way.far) for remedy in self.found)
+        better = any(ahead(remedy.changes, near, way.far) for remedy in self.found)
         least = self._doubled if way.doubling else self._least
-        return bool(way.far) and not known and least(near, way.far)
+        return bool(way.far) and not better and least(near, way.far)
 
     def _least(self, near: Changes, far: Changes) -> bool:
         """Find the smallest change between two ends; return whether there is one."""

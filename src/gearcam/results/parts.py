@@ -207,11 +207,11 @@ def part_files(texts: Mapping[str, str]) -> dict[str, Callable[..., Files]]:
     dict of str to FileMaker
         By format, each with the text in its docstring.
     """
-    made = {}
+    makers = {}
     for name, text in texts.items():
-        made[name] = partial(_MAKERS[name])
-        made[name].__doc__ = f"Return the files {name}.\n{text}"
-    return made
+        makers[name] = partial(_MAKERS[name])
+        makers[name].__doc__ = f"Return the files {name}.\n{text}"
+    return makers
 
 
 def dxf_files(result: PartsResult, drawings: Sequence[Drawing], measured: Measured) -> Files:
@@ -304,13 +304,14 @@ def _step(result: PartsResult, _: Measured) -> Files:
     from gearcam.numeric.pose import UNMOVED
 
     parts, assembly, close = result.parts, result.assembly, _STEP_PART * result.profile_tolerance
-    made: dict[Part, Any] = {}
+    shapes: dict[Part, Any] = {}
     files = {
-        f"{part.name}.step": step_bytes([(part, UNMOVED)], part.name, close, made) for part in parts
+        f"{part.name}.step": step_bytes([(part, UNMOVED)], part.name, close, shapes)
+        for part in parts
     }
     if assembly:
         placed = list(zip(parts, result.poses, strict=True))
-        files[f"{assembly}.step"] = step_bytes(placed, assembly, close, made)
+        files[f"{assembly}.step"] = step_bytes(placed, assembly, close, shapes)
     return files
 
 

@@ -131,7 +131,7 @@ class Result(NotebookView):
         """Return the findings of `studies`, and of the design what they do not repeat, in order."""
         repeated = {code for one in studies for code in one.study.repeats}
         kept = (one for one in self.checked if one.code not in repeated)
-        return in_order((*kept, *(found for one in studies for found in one.found)))
+        return in_order((*kept, *(finding for one in studies for finding in one.study_findings)))
 
     @property
     def studies(self) -> dict[str, StudyResult]:
@@ -164,15 +164,15 @@ class Result(NotebookView):
             If the design, or its study, is impossible.
         """
         entry = self.kind.studies[one_of("name", name, (*self.kind.studies,))]
-        found = self._studied.get(name)
-        if found is None or found.interrupted:
+        outcome = self._studied.get(name)
+        if outcome is None or outcome.interrupted:
             entry.demand(self.design)
             self._running.add(name)
             try:
-                found = self._studied[name] = entry.compute(self, progress)
+                outcome = self._studied[name] = entry.compute(self, progress)
             finally:
                 self._running.discard(name)
-        return found
+        return outcome
 
     def with_settings(self, title: str, settings: Mapping[str, object]) -> Self:
         """Return the result with other settings of a study; finished stages are kept.
@@ -210,10 +210,10 @@ class Result(NotebookView):
 
     def _shared(self, design: Any) -> Self:
         """Return the result of a design that differs in its studies only, with all stages done."""
-        made = type(self)(design, self.tolerances)
-        known = {name: one for name, one in vars(self).items() if name not in _OF_STUDIES}
-        vars(made).update(known | {"design": design, "timings": dict(self.timings)})
-        return made
+        result = type(self)(design, self.tolerances)
+        shared = {name: one for name, one in vars(self).items() if name not in _OF_STUDIES}
+        vars(result).update(shared | {"design": design, "timings": dict(self.timings)})
+        return result
 
     def picture(self) -> str:
         """Return the picture of the file kind ``svg``, or why there is none, as SVG text."""
@@ -232,8 +232,8 @@ class Result(NotebookView):
                 return _framed(self)
         except GearcamError as error:
             return renderer().refusal(self.design.name, error)
-        told = [f"{one.severity}, {one.code}: {one.message} {one.where}" for one in findings]
-        return renderer().page(self.picture(), facts, told)
+        lines = [f"{one.severity}, {one.code}: {one.message} {one.where}" for one in findings]
+        return renderer().page(self.picture(), facts, lines)
 
     @cached_property
     def design_hash(self) -> str:
@@ -456,7 +456,9 @@ class Result(NotebookView):
             return None
         more = [one.overlay(scene) for one in self.studies.values()]
         contacts = {
-            name: points for found in (scene.contacts, *more) for name, points in found.items()
+            name: points
+            for contacts in (scene.contacts, *more)
+            for name, points in contacts.items()
         }
         return replace(scene, contacts=contacts)
 
@@ -523,10 +525,10 @@ class Result(NotebookView):
         measured: dict[str, Any] = {}
         for name in studies:
             tell(name)
-            found = self.study(name, tell)
-            if found.interrupted:
+            outcome = self.study(name, tell)
+            if outcome.interrupted:
                 raise KeyboardInterrupt
-            contents |= found.files
+            contents |= outcome.files
         for kind in kinds:
             tell(kind)
             with self.stage(kind):
@@ -566,13 +568,13 @@ class Result(NotebookView):
 
         from gearcam.export.write import SUMMARY, write_all
 
-        own = self.design_hash
+        version = self.design_hash
         summary: dict[str, Any] = {}
 
         def complete(before: Mapping[str, str]) -> dict[str, bytes]:
-            hashes = {**(before if keep else {}), **dict.fromkeys(contents, own)}
-            outdated = {name: old for name, old in hashes.items() if old != own}
-            about = {"files": {name: own for name in hashes if name not in outdated}}
+            hashes = {**(before if keep else {}), **dict.fromkeys(contents, version)}
+            outdated = {name: old for name, old in hashes.items() if old != version}
+            about = {"files": {name: version for name in hashes if name not in outdated}}
             more = {"outdated": outdated} if outdated else {}
             summary.update(self.document(facts, findings, {**about, **more}))
             text = json.dumps(summary, indent=2, ensure_ascii=False, allow_nan=False)
@@ -610,7 +612,7 @@ class StudyResult(NotebookView):
         Columns by name, with the unit at the end of the name.
     group : mapping
         Its facts.
-    found : tuple of Finding
+    study_findings : tuple of Finding
         Its findings.
     drawn : callable
         ``drawn()`` returns its `charts`; called when they are first read.
@@ -636,7 +638,7 @@ class StudyResult(NotebookView):
     file: str
     table: Mapping[str, ArrayLike]
     group: Mapping[str, Any]
-    found: tuple[Finding, ...] = ()
+    study_findings: tuple[Finding, ...] = ()
     drawn: Callable[[], Mapping[str, Chart]] = dict
     overlay: Callable[[Scene], Mapping[str, ContactPoints]] = _nothing
     pages: Mapping[str, bytes] = field(default_factory=dict)

@@ -71,7 +71,7 @@ def demand_formats(design: Design, kinds: Sequence[str] | None) -> tuple[str, ..
     DesignError
         If a kind of file is not available; the message lists those that are.
     """
-    known = KINDS[design.kind].formats
+    formats = KINDS[design.kind].formats
     asked = design.output.files if kinds is None else kinds
     wanted = (asked,) if isinstance(asked, str) else tuple(asked)
     problems = [
@@ -80,10 +80,10 @@ def demand_formats(design: Design, kinds: Sequence[str] | None) -> tuple[str, ..
             file=design.source,
             key="output.files",
             value=kind,
-            allowed=", ".join(known),
+            allowed=", ".join(formats),
         )
         for kind in wanted
-        if kind not in known
+        if kind not in formats
     ]
     if problems:
         raise DesignError(problems)
@@ -92,9 +92,9 @@ def demand_formats(design: Design, kinds: Sequence[str] | None) -> tuple[str, ..
 
 def versions() -> dict[str, str]:
     """Return the versions of gearcam, Python and the numerical libraries loaded so far."""
-    found = {"gearcam": __version__, "python": platform.python_version()}
+    numbers = {"gearcam": __version__, "python": platform.python_version()}
     for name in ("numpy", "shapely", "ezdxf", "manifold3d", "trimesh"):
         module = sys.modules.get(name)
         if module is not None and hasattr(module, "__version__"):
-            found[name] = str(module.__version__)
-    return found
+            numbers[name] = str(module.__version__)
+    return numbers

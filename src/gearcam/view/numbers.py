@@ -62,9 +62,9 @@ def sliders(text: str, reads: Callable[[str], bool]) -> list[dict[str, Any]]:
         For each number that can be changed alone or together with its `equals`: ``key``, ``doc``,
         ``unit``, ``value``, ``low``, ``high``, ``step``, ``integer``.
     """
-    document, found = document_in(text, ""), numbers(text)
-    made = []
-    for key, value in found.items():
+    document, values = document_in(text, ""), numbers(text)
+    sliders = []
+    for key, value in values.items():
         entry = _entry(document, path_of(key))
         if entry is None:
             continue
@@ -73,12 +73,12 @@ def sliders(text: str, reads: Callable[[str], bool]) -> list[dict[str, Any]]:
         def fits(end: float, key: str = key) -> bool:
             alone = {key: end}
             return any(
-                reads(replaced(text, alone | more)) for more in ({}, equals(found, key, end))
+                reads(replaced(text, alone | more)) for more in ({}, equals(values, key, end))
             )
 
         low, high = (_within(value, end, step, entry, fits) for end in (low, high))
         if low < high:
-            made.append(
+            sliders.append(
                 {
                     "key": key,
                     "doc": entry.param.doc,
@@ -90,7 +90,7 @@ def sliders(text: str, reads: Callable[[str], bool]) -> list[dict[str, Any]]:
                     "integer": entry.base is int,
                 }
             )
-    return made
+    return sliders
 
 
 def span(entry: Key, value: float) -> tuple[float, float, float]:
@@ -108,35 +108,35 @@ def span(entry: Key, value: float) -> tuple[float, float, float]:
     low, high, step : float
         The allowed range, or from half to twice the value if that is too wide.
     """
-    made, whole = entry.param, entry.base is int
-    low = max((one for one in (made.ge, made.gt) if one is not None), default=-math.inf)
-    high = min((one for one in (made.le, made.lt) if one is not None), default=math.inf)
-    room = _ROOM.get(made.quantity.unit, 0.5)
+    param, whole = entry.param, entry.base is int
+    low = max((one for one in (param.ge, param.gt) if one is not None), default=-math.inf)
+    high = min((one for one in (param.le, param.lt) if one is not None), default=math.inf)
+    room = _ROOM.get(param.quantity.unit, 0.5)
     if high - low > _WIDE * abs(value):
         ends = sorted((0.5 * value, 2.0 * value)) if value else (-room, room)
         near = (value - 2.0, value + 2.0) if whole else ends
         low, high = max(low, min(ends[0], near[0])), min(high, max(ends[1], near[1]))
     step = 1.0 if whole else 10.0 ** math.floor(math.log10((high - low) / _STEPS or 1.0))
-    low = low + step if low == made.gt else low
-    high = high - step if high == made.lt else high
+    low = low + step if low == param.gt else low
+    high = high - step if high == param.lt else high
     low = step * math.ceil(low / step - _GRAIN)
     high = step * math.floor(high / step + _GRAIN)
     return min(tidy(low), value), max(tidy(high), value), tidy(step)
 
 
-def equals(found: Values, key: str, value: float) -> dict[str, float]:
-    """Return the new `value` for the numbers that are equal to `key` in the same list.
+def equals(values: Values, key: str, new: float) -> dict[str, float]:
+    """Return the `new` value for the numbers that are equal to `key` in the same list.
 
     Such as the first and last ratio of a closed law, or the teeth of two equal wheels: one must not
     change without the other.
 
     Parameters
     ----------
-    found : mapping of str to float
+    values : mapping of str to float
         Numbers of the file.
     key : str
         One of them.
-    value : float
+    new : float
         New value of `key`.
 
     Returns
@@ -148,9 +148,9 @@ def equals(found: Values, key: str, value: float) -> dict[str, float]:
     if not isinstance(path[-1], int):
         return {}
     return {
-        other: value
-        for other, there in found.items()
-        if other != key and path_of(other)[:-1] == path[:-1] and there == found[key]
+        other: new
+        for other, there in values.items()
+        if other != key and path_of(other)[:-1] == path[:-1] and there == values[key]
     }
 
 
@@ -196,13 +196,13 @@ def _entry(document: Mapping[str, Any], path: Path) -> Key | None:
         raw = document[kind.main.title]
         if rest and isinstance(rest[0], int):
             raw, rest = raw[rest[0]], rest[1:]
-        known = kind.main.table(raw)
+        table = kind.main.table(raw)
     elif title in (*kind.tables, "limits"):
-        known = kind.table(str(title))
+        table = kind.table(str(title))
         rest = rest[1:] if title in kind.several else rest
     else:
         return None
-    return known.entries.get(str(rest[0])) if rest else None
+    return table.entries.get(str(rest[0])) if rest else None
 
 
 def _within(

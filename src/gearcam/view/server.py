@@ -162,14 +162,14 @@ class Handler(BaseHTTPRequestHandler):
         """Answer a request by its route if it can come from the page itself."""
         origin = self.headers.get("Origin")
         hosts = self.headers.get_all("Host") or []
-        own = {f"http://{host}" for host in self._home.hosts}
+        origins = {f"http://{host}" for host in self._home.hosts}
         before = f"/{self._home.token}/"
         path = self.requestline.split()[1]  # as sent: `path` is without double slashes
         start, name = path[: len(before)], path[len(before) :]
         alike = secrets.compare_digest(start.encode("utf-8", "replace"), before.encode())
         if len(hosts) != 1 or hosts[0] not in self._home.hosts:
             self._refuse(HTTPStatus.FORBIDDEN, "requests to this host are not answered")
-        elif origin is not None and origin not in own:
+        elif origin is not None and origin not in origins:
             self._refuse(HTTPStatus.FORBIDDEN, "requests from other pages are not answered")
         elif not alike or name not in routes:
             self._refuse(HTTPStatus.NOT_FOUND, "there is no such page")
@@ -180,17 +180,17 @@ class Handler(BaseHTTPRequestHandler):
         session, state = self._home.session, self._home.session.state
         if state.document is None:
             # texts are inserted by its script
-            live = json.dumps({"file": session.file, **state.told}).replace("<", "\\u003c")
-            made = Template(_FIRST.read_text(encoding="utf-8")).substitute(live=live).encode()
+            live = json.dumps({"file": session.file, **state.message}).replace("<", "\\u003c")
+            content = Template(_FIRST.read_text(encoding="utf-8")).substitute(live=live).encode()
         else:
-            told = {name: value for name, value in state.told.items() if name != "document"}
-            made = page(
-                state.document, live={"token": self._home.token, "file": session.file, **told}
+            more = {name: value for name, value in state.message.items() if name != "document"}
+            content = page(
+                state.document, live={"token": self._home.token, "file": session.file, **more}
             )
-        self._send(made, _HTML)
+        self._send(content, _HTML)
 
     def _document(self) -> None:
-        self._send(_as_json(self._home.session.state.told))
+        self._send(_as_json(self._home.session.state.message))
 
     def _events(self) -> None:
         """Send the number of each new state until the page is closed."""
@@ -202,10 +202,10 @@ class Handler(BaseHTTPRequestHandler):
         session, number = self._home.session, -1
         while not session.ended:
             state = session.wait(number, _PULSE)
-            told = f"data: {state.number}\n\n" if state.number != number else ": nothing new\n\n"
+            event = f"data: {state.number}\n\n" if state.number != number else ": nothing new\n\n"
             number = state.number
             try:
-                self.wfile.write(told.encode())
+                self.wfile.write(event.encode())
                 self.wfile.flush()
             except OSError:
                 return

@@ -61,7 +61,7 @@ class State:
     error: str = ""
 
     @property
-    def told(self) -> dict[str, Any]:
+    def message(self) -> dict[str, Any]:
         """The state as sent to a page."""
         return {
             "number": self.number,
@@ -244,10 +244,10 @@ class Session:
         RequestError
             If the file has changed since, would not be a valid design, or cannot be written.
         """
-        values, made = _values(asked.get("changes"), self.state), asked.get("made")
+        values, version = _values(asked.get("changes"), self.state), asked.get("made")
         try:
             content = content_of(self.file)
-            if _hash(content) != made:
+            if _hash(content) != version:
                 raise RequestError(
                     f"nothing was written: {self.file} has changed since the page was loaded"
                 )
@@ -296,9 +296,9 @@ def _values(changes: Any, state: State) -> dict[str, float]:
     """Return the numbers by key that a page has sent, or raise `RequestError`."""
     if not isinstance(changes, Mapping) or not changes:
         raise RequestError("changes: not numbers by key")
-    known = numbers(state.text) if state.text else {}
+    values = numbers(state.text) if state.text else {}
     for key, value in changes.items():
-        if key not in known:
+        if key not in values:
             raise RequestError(f"changes: {key} is not a number of the file")
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise RequestError(f"{key}: not a number")

@@ -73,15 +73,15 @@ class Watch:
     def _mark(self, name: str) -> _Mark | None:
         """Return time, size and hash of a file; the hash anew only if it may have changed."""
         try:
-            found = Path(name).stat()
+            status = Path(name).stat()
         except (OSError, ValueError):
             return None
         before = self._marks.get(name)
-        same = before is not None and before[:2] == (found.st_mtime_ns, found.st_size)
-        if before is not None and same and time.time() - found.st_mtime > _FRESH:
+        same = before is not None and before[:2] == (status.st_mtime_ns, status.st_size)
+        if before is not None and same and time.time() - status.st_mtime > _FRESH:
             return before
-        held = hashlib.sha256(_content(name, columns.LARGEST) or b"").hexdigest()
-        return found.st_mtime_ns, found.st_size, held
+        digest = hashlib.sha256(_content(name, columns.LARGEST) or b"").hexdigest()
+        return status.st_mtime_ns, status.st_size, digest
 
 
 def tables(content: bytes, file: str, before: list[str], outer: tuple[str, ...] = ()) -> list[str]:
@@ -106,16 +106,16 @@ def tables(content: bytes, file: str, before: list[str], outer: tuple[str, ...] 
         document = document_in(decoded(content, file), file)
     except DesignError:
         return before
-    named = [value for path, value in leaves(document) if path[-1] == "file"]
-    found = [os.fspath(Path(file).parent / one) for one in named if isinstance(one, str) and one]
+    files = [value for path, value in leaves(document) if path[-1] == "file"]
+    names = [os.fspath(Path(file).parent / one) for one in files if isinstance(one, str) and one]
     around = (*outer, file)
     inner = (value for _, _, value in nested_in(document) if isinstance(value, str) and value)
     for name in (os.fspath(Path(file).parent / one) for one in inner):
-        found.append(name)
+        names.append(name)
         below = _content(name, reader.LARGEST) if len(around) <= MOST_NESTED else None
         if below and name not in around:
-            found += tables(below, name, [], around)
-    return list(dict.fromkeys(found))
+            names += tables(below, name, [], around)
+    return list(dict.fromkeys(names))
 
 
 def _content(name: str, most: int) -> bytes | None:

@@ -67,7 +67,7 @@ def show(content: bytes | None, file: str) -> Reply:
         the design cannot be made.
     """
 
-    def made() -> Reply:
+    def answer() -> Reply:
         text = _text(content, file)
         design = loads(text, file=file)
 
@@ -80,12 +80,12 @@ def show(content: bytes | None, file: str) -> Reply:
 
         return {"document": document(build(design)), "sliders": sliders(text, reads)}
 
-    return _told(made, file)
+    return _reply(answer, file)
 
 
 def show_draft(content: bytes | None, file: str) -> Reply:
     """Return a draft of the design with this `content` of its `file`."""
-    return _told(lambda: {"document": _draft(loads(_text(content, file), file=file))}, file)
+    return _reply(lambda: {"document": _draft(loads(_text(content, file), file=file))}, file)
 
 
 def seek(text: str, file: str) -> Reply:
@@ -105,7 +105,7 @@ def seek(text: str, file: str) -> Reply:
         ``changes`` of each remedy.
     """
 
-    def made() -> Reply:
+    def answer() -> Reply:
         sought = remedies(build(loads(text, file=file)))
         found = [
             {"text": one.text, "notes": one.notes, "changes": dict(one.changes)}
@@ -113,7 +113,7 @@ def seek(text: str, file: str) -> Reply:
         ]
         return {"lines": "\n".join(remedy_lines(sought)), "found": found}
 
-    return _told(made, file)
+    return _reply(answer, file)
 
 
 def follow(text: str, file: str, changes: Values, last: str, exact: bool) -> bytes:
@@ -142,31 +142,31 @@ def follow(text: str, file: str, changes: Values, last: str, exact: bool) -> byt
         A reply as JSON, with all ``changes`` that were made.
     """
 
-    def shown(values: Values) -> Reply:
+    def answer(values: Values) -> Reply:
         design = loads(replaced(text, values), file=file)
-        made = document(build(design)) if exact else _draft(design)
-        return {"document": made, "changes": dict(values)}
+        content = document(build(design)) if exact else _draft(design)
+        return {"document": content, "changes": dict(values)}
 
-    reply = _told(lambda: _first(text, changes, last, shown), file)
+    reply = _reply(lambda: _first(text, changes, last, answer), file)
     return json.dumps(reply, ensure_ascii=False, allow_nan=False, separators=(",", ":")).encode()
 
 
-def _first(text: str, changes: Values, last: str, shown: Callable[[Values], Reply]) -> Reply:
+def _first(text: str, changes: Values, last: str, answer: Callable[[Values], Reply]) -> Reply:
     """Return the reply for the changes alone or, if refused, together with required ones."""
-    found = numbers(text)
+    values = numbers(text)
     refusals: list[DesignError | InfeasibleError] = []
-    for more in ({}, equals(found, last, changes[last])):
+    for more in ({}, equals(values, last, changes[last])):
         if more or not refusals:
             try:
-                return shown({**changes, **more})
+                return answer({**changes, **more})
             except (DesignError, InfeasibleError) as error:
                 refusals.append(error)
     for way in (way for error in refusals for way in getattr(error, "adjustments", ())):
         near = _items(way.near)
-        if near and last not in near and near.keys() <= found.keys():
-            own = equals(found, last, changes[last]) if len(refusals) > 1 else {}
+        if near and last not in near and near.keys() <= values.keys():
+            equal = equals(values, last, changes[last]) if len(refusals) > 1 else {}
             try:
-                return shown({**changes, **own, **near})
+                return answer({**changes, **equal, **near})
             except (DesignError, InfeasibleError):
                 break
     raise refusals[0]
@@ -174,11 +174,11 @@ def _first(text: str, changes: Values, last: str, shown: Callable[[Values], Repl
 
 def _items(near: Mapping[str, Any]) -> dict[str, Any]:
     """Return changes with one key for each item of a list, numbers rounded."""
-    made: dict[str, Any] = {}
+    changes: dict[str, Any] = {}
     for key, value in near.items():
         items = enumerate(value) if isinstance(value, list | tuple) else ()
-        made |= {f"{key}[{k}]": item for k, item in items} or {key: value}
-    return {key: tidy(one) if isinstance(one, float) else one for key, one in made.items()}
+        changes |= {f"{key}[{k}]": item for k, item in items} or {key: value}
+    return {key: tidy(one) if isinstance(one, float) else one for key, one in changes.items()}
 
 
 def _draft(design: Design) -> Reply:
@@ -195,7 +195,7 @@ def _text(content: bytes | None, file: str) -> str:
     return decoded(content_of(file) if content is None else content, file)
 
 
-def _told(work: Callable[[], Reply], file: str) -> Reply:
+def _reply(work: Callable[[], Reply], file: str) -> Reply:
     """Return the reply of `work`, or the error as the command line prints it."""
     try:
         return {"error": "", **work()}

@@ -100,7 +100,8 @@ def _weigh(result: Any, _: Any) -> StudyResult:
         file="weight.csv",
         table={"mass_g_per_mm": [mass]},
         group={"mass_g_per_mm": Fact(mass, "mass of a thickness of 1 mm", unit="g", shown=True)},
-        found=(Finding(code="light", severity="warning", message="It is light."),) * (mass < 0.1),
+        study_findings=(Finding(code="light", severity="warning", message="It is light."),)
+        * (mass < 0.1),
         drawn=lambda: {
             "mass": Chart(
                 title="Mass", x="x", y="g", lines=(Line(label="it", x=_ONE[0], y=_ONE[1]),)

@@ -267,7 +267,7 @@ def test_flanks_that_carry_long_enough_but_not_everywhere_are_held_against_nothi
     assert found.severity == "error"
     assert found.value is not None
     assert found.value > 1.1
-    assert found.held == ""
+    assert found.limit_text == ""
     assert "No flanks touch" in found.message
 
 

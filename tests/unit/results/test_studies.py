@@ -131,7 +131,7 @@ def test_a_finding_that_the_study_repeats_is_given_once(plain: Any) -> None:
     for one in (result, low):
         found = [finding for finding in one.findings if finding.code == "contact-ratio"]
         assert found
-        assert found == [f for f in one.study("mesh").found if f.code == "contact-ratio"]
+        assert found == [f for f in one.study("mesh").study_findings if f.code == "contact-ratio"]
 
 
 def test_the_hash_depends_on_what_is_asked_for(plain: Any, asked: Any) -> None:

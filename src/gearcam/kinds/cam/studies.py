@@ -37,7 +37,12 @@ def follow(
         limits = result.design.limits
         columns, facts, found = followed(chosen, vertices, bulges, result.angles, limits)
     return StudyResult(
-        result=result, study=FOLLOW, file="followed.csv", table=columns, group=facts, found=found
+        result=result,
+        study=FOLLOW,
+        file="followed.csv",
+        table=columns,
+        group=facts,
+        study_findings=found,
     )
 
 

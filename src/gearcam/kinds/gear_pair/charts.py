@@ -118,8 +118,8 @@ def _contact_ratio(result: GearPairResult) -> Chart:
     limit = limit_of(KIND, "contact-ratio", result.design.limits)
     lines = []
     for side, label in zip((DRIVE, COAST), _SIDES.values(), strict=True):
-        own = table["side"] == side
-        x, y = (table[name][own].astype(float) for name in ("tooth1", "contact_ratio"))
+        rows = table["side"] == side
+        x, y = (table[name][rows].astype(float) for name in ("tooth1", "contact_ratio"))
         lines.append(Line(label=label, x=x, y=y, dots=True))
     return Chart(
         title="Contact ratio of each pair of teeth, as designed",
@@ -174,9 +174,9 @@ def _contact_patch(result: GearPairResult) -> Chart:
 
 def _transmission_error(result: GearPairResult) -> Chart:
     leads = []
-    for side, found in result.touching.items():
+    for side, points in result.touching.items():
         pairs = result.flanks_of(side)
-        leads.append((pairs, first_touch(pairs, result.phases, found)[0]))
+        leads.append((pairs, first_touch(pairs, result.phases, points)[0]))
     return transmission_chart(result, "as designed", result.phases, leads)
 
 

@@ -39,6 +39,8 @@ def lines(example: Mapping[str, Any], note: str) -> Iterator[str]:
 
 def laws() -> tuple[str, list[Listed]]:
     """Return a heading and the laws of gear pairs."""
-    found = [listed(entry, f'law.type = "{name}"', law_table(name)) for name, entry in LAWS.items()]
+    listings = [
+        listed(entry, f'law.type = "{name}"', law_table(name)) for name, entry in LAWS.items()
+    ]
     head = "Laws of gear pairs: the ratio, in the table [law]; all but rack work with a ring too"
-    return head, found
+    return head, listings

@@ -69,8 +69,8 @@ _POINTS: Final = 720
 
 def wheel_rows(number: int) -> tuple[str, ...]:
     """Return the names of the facts in the table of a wheel's drawing, by its `number`."""
-    own = [f"gears.{number}.{name}" for name in _GEAR_ROWS]
-    return (f"gears.{number}.teeth", "pair.module_mm", *_RACK_ROWS, *own)
+    rows = [f"gears.{number}.{name}" for name in _GEAR_ROWS]
+    return (f"gears.{number}.teeth", "pair.module_mm", *_RACK_ROWS, *rows)
 
 
 def centrode_path(gear: Gear, end: float) -> Path:

@@ -43,35 +43,35 @@ def facts(result: GearPairResult) -> Facts:
 
 
 def _pair(result: GearPairResult) -> Tree:
-    pair, given = result.pair, result.design.pair
+    pair, spec = result.pair, result.design.pair
     (_, low), (_, high) = pair.law.ratio_range
     size, solved = pair.center_distance, dict(pair.law.solved)
-    own: Tree = {
+    size_facts: Tree = {
         "center_distance_mm": Fact(size, "centre distance"),
         "ratio": Fact(extent(low, high), "ratio i21", shown=True),
     }
     if pair.on_rack:
-        own = {
+        size_facts = {
             "travel_per_turn_mm": Fact(size * pair.law.lobes.advance, "rack travel per turn"),
             "radius_mm": Fact(extent(low, high, size), "pitch radius", shown=True),
         }
         solved["mm_per_unit_of_r1"] = size
-    elif given.center_distance is None:
+    elif spec.center_distance is None:
         solved["center_distance_mm"] = size
     else:
         solved["module_mm"] = pair.module
     return {
-        "type": None if pair.on_rack else given.type,
+        "type": None if pair.on_rack else spec.type,
         "module_mm": Fact(pair.module, "module"),
         "teeth": list(pair.teeth),
-        "face_width_mm": given.face_width,
-        "x": Fact(given.x, "profile shift", unit="modules"),
-        "backlash_mm": given.backlash,
+        "face_width_mm": spec.face_width,
+        "x": Fact(spec.x, "profile shift", unit="modules"),
+        "backlash_mm": spec.backlash,
         "rack": _rack(result),
         "assembly": Fact("along the axis", "the wheel goes into its ring", shown=True)
         if pair.internal
         else None,
-        **own,
+        **size_facts,
         "solved": {
             name: _solved(name, value, shown=name in pair.law.solved)
             for name, value in solved.items()
@@ -151,22 +151,21 @@ def _parted(result: GearPairResult) -> str:
     """Return in words which part of the backlash comes from clearance, if any."""
     if not any(result.design.blank.wheel(number).clearance for number in (1, 2)):
         return ""
-    given = result.design.pair.backlash
-    more = result.subject.backlash - given
-    return f"backlash_mm {formatted(given)} + {formatted(more)} from clearance_mm"
+    backlash = result.design.pair.backlash
+    more = result.subject.backlash - backlash
+    return f"backlash_mm {formatted(backlash)} + {formatted(more)} from clearance_mm"
 
 
 def _contact_ratios(sides: tuple[FlankPairs, ...], limit: float) -> Iterator[tuple[str, Fact]]:
     """Yield the contact ratio of each side; one line is shown if both are equal."""
-    found = []
+    rows = []
     for pairs in reversed(sides):
         ratios = pairs.contact_ratios
-        found.append((pairs, {"least": float(ratios.min()), "mean": float(ratios.mean())}))
+        rows.append((pairs, {"least": float(ratios.min()), "mean": float(ratios.mean())}))
     alike = all(
-        math.isclose(found[0][1][name], found[1][1][name], rel_tol=1e-9)
-        for name in ("least", "mean")
+        math.isclose(rows[0][1][name], rows[1][1][name], rel_tol=1e-9) for name in ("least", "mean")
     )
-    for number, (pairs, value) in enumerate(found):
+    for number, (pairs, value) in enumerate(rows):
         side = side_name(pairs)
         yield (
             side.rpartition(" ")[2],
@@ -181,14 +180,14 @@ def _contact_ratios(sides: tuple[FlankPairs, ...], limit: float) -> Iterator[tup
 
 
 def _tip_pass(result: GearPairResult) -> Fact | None:
-    found = result.subject.tip_pass
-    if found is None:
+    tip_pass = result.subject.tip_pass
+    if tip_pass is None:
         return None
     return Fact(
-        found.margin,
+        tip_pass.margin,
         "distance by which tips pass outside the mesh",
         at_least=limit_of(KIND, "tips-collide", result.design.limits),
-        place=f"wheel 1, tooth {found.tooth}, {angle_text(found.phi1)}",
+        place=f"wheel 1, tooth {tip_pass.tooth}, {angle_text(tip_pass.phi1)}",
         shown=True,
     )
 
@@ -256,16 +255,16 @@ def meshing_facts(numbers: Mapping[str, Any]) -> Tree:
         )
         if not peak.value:
             peak = replace(peak, place=f"known to {formatted(least, 1)} {unit}")
-        known = Fact(least, "transmission error, known to", unit=unit)
-        tree["transmission_error"] = error | {"known_to": known, "peak_to_peak": peak}
+        least_error = Fact(least, "transmission error, known to", unit=unit)
+        tree["transmission_error"] = error | {"known_to": least_error, "peak_to_peak": peak}
         if "no_harmonics" in error:
             missing = Fact(error["no_harmonics"], "no harmonics, because of", shown=True)
             tree["transmission_error"]["no_harmonics"] = missing
         elif error["harmonics"]:
             largest = max(error["harmonics"], key=lambda one: one["amplitude"])
             words = f"largest harmonic, {largest['order']} per turn"
-            found = Fact(largest["amplitude"], words, unit=unit, shown=True)
-            tree["transmission_error"]["largest_harmonic"] = found
+            harmonic = Fact(largest["amplitude"], words, unit=unit, shown=True)
+            tree["transmission_error"]["largest_harmonic"] = harmonic
     return tree
 
 

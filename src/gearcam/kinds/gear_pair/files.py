@@ -23,8 +23,8 @@ def _tables(result: GearPairResult, _: Measured) -> Files:
     """
     from gearcam.export.table import outline_bytes, table_bytes
 
-    found = result.centrodes()
-    centrodes = {name: values for name, values in found.items() if name not in POINTS}
+    columns = result.centrodes()
+    centrodes = {name: values for name, values in columns.items() if name not in POINTS}
     files = {f"{gear.name}_outline.csv": outline_bytes(gear.outline) for gear in result.gears}
     return files | {"centrodes.csv": table_bytes(centrodes)}
 

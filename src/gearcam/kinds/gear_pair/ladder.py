@@ -106,8 +106,8 @@ def _outline(result: GearPairResult) -> Ladder:
 
 
 def _solid(result: GearPairResult) -> Ladder:
-    own, levels = _tolerances(result)
-    return solid_ladder(result, own, levels[:-1])
+    used, levels = _tolerances(result)
+    return solid_ladder(result, used, levels[:-1])
 
 
 def _contact(result: GearPairResult) -> Ladder:
@@ -117,22 +117,22 @@ def _contact(result: GearPairResult) -> Ladder:
 
     gears, chords = result.gears, result.pair.chord_tolerance(None)
     setup = mount(gears, replace(result.design.meshing, steps=_PHASES))
-    own = min(SHARE * setup.penetration, chords)
+    used = min(SHARE * setup.penetration, chords)
 
     def make(tolerance: float) -> tuple[Array, int]:
         profiles = [replace(gear.profile, tolerance=tolerance) for gear in gears]
         driver, driven = map(half_teeth, profiles)
         turning = replace(setup.turning, driver=driver, driven=driven)
-        found = run(replace(setup, turning=turning))
-        rows = found.columns
+        meshing = run(replace(setup, turning=turning))
+        rows = meshing.columns
         phase = np.asarray(rows["step"], dtype=np.int64)
-        areas = np.bincount(phase, np.ma.filled(rows["area_mm2"], 0.0), len(found.phi1))
+        areas = np.bincount(phase, np.ma.filled(rows["area_mm2"], 0.0), len(meshing.phi1))
         return areas.astype(np.float64), sum(len(profile.points) for profile in profiles)
 
     return limit_ladder(
-        own,
+        used,
         make,
-        levels=[part * own for part in COARSER[:4]],
+        levels=[part * used for part in COARSER[:4]],
         measured="overlap of a phase",
         unit="mm2",
         beyond=1.0 / 16.0,
@@ -142,8 +142,8 @@ def _contact(result: GearPairResult) -> Ladder:
 def _tolerances(result: GearPairResult) -> tuple[float, list[float]]:
     """Return the chord tolerance of the design, mm, and those of a ladder around it."""
     pair = result.pair
-    own = pair.chord_tolerance(result.design.output.chord_tolerance)
-    return own, tolerances_around(own, FINEST * pair.module / 64.0, COARSEST * pair.module)
+    used = pair.chord_tolerance(result.design.output.chord_tolerance)
+    return used, tolerances_around(used, FINEST * pair.module / 64.0, COARSEST * pair.module)
 
 
 LADDERS: Final[Ladders] = {

@@ -167,8 +167,8 @@ def _uncut(part: Part, gear: Gear, kerf: float) -> bool:
     """Return whether a cutter cannot reach some point of a wheel's finished flanks."""
     from gearcam.parts.parallel import touches
 
-    found = gear.flank_points(_PLACES)
-    points, normals = as_complex(found.points), as_complex(found.normals)
+    table = gear.flank_points(_PLACES)
+    points, normals = as_complex(table.points), as_complex(table.normals)
     return not touches(part.contour, points, normals, 0.5 * kerf).all()
 
 

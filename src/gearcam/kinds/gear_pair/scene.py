@@ -90,14 +90,14 @@ def _contacts(result: GearPairResult, phi1: Array, side: Side) -> ContactPoints:
     """Return points of contact on one side of the driver's teeth, from charts if computed."""
     pairs, at = result.flanks_of(side), np.arange(len(phi1))
     if len(phi1) == CENTRODE_POINTS + 1:
-        found, at = result.touching[side], np.searchsorted(result.phases, phi1)
+        touching, at = result.touching[side], np.searchsorted(result.phases, phi1)
     else:
-        found = contacts(pairs, phi1)
-    own = np.isin(found.step, at)
-    j, first = found.pair[own], [gear.profile.teeth[0][0] for gear in result.gears]
+        touching = contacts(pairs, phi1)
+    chosen = np.isin(touching.step, at)
+    j, first = touching.pair[chosen], [gear.profile.teeth[0][0] for gear in result.gears]
     return ContactPoints(
-        start=np.searchsorted(found.step[own], np.append(at, at[-1] + 1)),
-        point=found.point[own],
-        force=found.force[own],
+        start=np.searchsorted(touching.step[chosen], np.append(at, at[-1] + 1)),
+        point=touching.point[chosen],
+        force=touching.force[chosen],
         teeth=np.column_stack([pairs.tooth(1, j), pairs.tooth(2, j)]) - first + 1,
     )

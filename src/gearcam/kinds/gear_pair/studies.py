@@ -40,7 +40,7 @@ def _mesh(result: GearPairResult, progress: Progress | None) -> StudyResult:
     if not meshing.blocks:
         raise KeyboardInterrupt
     with result.stage("checks"):
-        found = run_checks(KIND, meshing, design.limits)
+        findings = run_checks(KIND, meshing, design.limits)
     done = f"{len(meshing.phi1)} of {meshing.asked} steps"
     return StudyResult(
         result=result,
@@ -48,7 +48,7 @@ def _mesh(result: GearPairResult, progress: Progress | None) -> StudyResult:
         file="meshing.csv",
         table=meshing.columns,
         group=meshing_facts(numbers(meshing)),
-        found=found,
+        study_findings=findings,
         drawn=partial(_charts, result, meshing),
         overlay=_contacts(meshing),
         interrupted="" if meshing.complete else done,
@@ -67,8 +67,8 @@ def _charts(result: GearPairResult, meshing: Meshing) -> dict[str, Chart]:
         charts["transmission_error"] = transmission_chart(
             result, "as mounted", meshing.phi1, [(setup.pairs[setup.side], lead)]
         )
-    own = np.flatnonzero(meshing.on_side)
-    own = own[np.argsort(rows["phi1_deg"][own], kind="stable")]
+    rows_of_side = np.flatnonzero(meshing.on_side)
+    rows_of_side = rows_of_side[np.argsort(rows["phi1_deg"][rows_of_side], kind="stable")]
     table = {"area_mm2": "overlap of the outlines", "predicted_mm2": "from the exact flanks"}
     charts["contact_patch"] = Chart(
         title="Contact patches of pairs of teeth, as mounted",
@@ -77,8 +77,8 @@ def _charts(result: GearPairResult, meshing: Meshing) -> dict[str, Chart]:
         lines=tuple(
             Line(
                 label=label,
-                x=np.asarray(rows["phi1_deg"])[own],
-                y=np.ma.filled(rows[name], np.nan)[own],
+                x=np.asarray(rows["phi1_deg"])[rows_of_side],
+                y=np.ma.filled(rows[name], np.nan)[rows_of_side],
                 dots=True,
             )
             for name, label in table.items()
@@ -89,9 +89,9 @@ def _charts(result: GearPairResult, meshing: Meshing) -> dict[str, Chart]:
 
 def _contacts(meshing: Meshing) -> Callable[[Scene], dict[str, ContactPoints]]:
     """Return the function that gives the points of contact as mounted at the places of a scene."""
-    found = [block.contacts for block in meshing.blocks]
-    step = [block.first + one.step for block, one in zip(meshing.blocks, found, strict=True)]
-    columns = (step, *([getattr(one, name) for one in found] for name in ("point", "force")))
+    contacts = [block.contacts for block in meshing.blocks]
+    step = [block.first + one.step for block, one in zip(meshing.blocks, contacts, strict=True)]
+    columns = (step, *([getattr(one, name) for one in contacts] for name in ("point", "force")))
     return partial(_at_places, np.degrees(meshing.phi1), *map(np.concatenate, columns))
 
 

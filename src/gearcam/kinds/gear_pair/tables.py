@@ -62,24 +62,24 @@ def motion_columns(pair: GearPair, phi1: Array) -> Columns:
     return Columns(columns)
 
 
-def contact_rows(pair: GearPair, pairs: FlankPairs, phi1: Array, found: Contacts) -> Columns:
-    """Return the table of contacts `found` for flanks `pairs` of a `pair` at `phi1`, rad."""
+def contact_rows(pair: GearPair, pairs: FlankPairs, phi1: Array, points: Contacts) -> Columns:
+    """Return the table of contact `points` of flanks `pairs` of a `pair` at `phi1`, rad."""
     guide = pair.rolling.guide
     moved = np.degrees(guide.nominal(phi1)) if guide.turns else guide.nominal(phi1)
     return Columns(
         {
-            "phi1_deg": np.degrees(phi1)[found.step],
-            "phi2_deg" if guide.turns else "travel_mm": moved[found.step],
-            "tooth1": pairs.tooth(1, found.pair),
-            "tooth2": pairs.tooth(2, found.pair),
-            "side": np.full(found.pair.shape, pairs.side),
-            "pairs": np.bincount(found.step, minlength=len(phi1))[found.step],
-            "x_mm": found.point.real,
-            "y_mm": found.point.imag,
-            "force_x": found.force.real,
-            "force_y": found.force.imag,
-            **contact_columns(found, pairs.distance),
-            f"lag_{guide.unit}": -found.lead,
+            "phi1_deg": np.degrees(phi1)[points.step],
+            "phi2_deg" if guide.turns else "travel_mm": moved[points.step],
+            "tooth1": pairs.tooth(1, points.pair),
+            "tooth2": pairs.tooth(2, points.pair),
+            "side": np.full(points.pair.shape, pairs.side),
+            "pairs": np.bincount(points.step, minlength=len(phi1))[points.step],
+            "x_mm": points.point.real,
+            "y_mm": points.point.imag,
+            "force_x": points.force.real,
+            "force_y": points.force.imag,
+            **contact_columns(points, pairs.distance),
+            f"lag_{guide.unit}": -points.lead,
         }
     )
 
