@@ -215,7 +215,7 @@ def beyond_limit(
         What the numbers mean, or the rule.
     near, far : object
         The smallest and the largest change of the key that may help; with `far` alone the smallest
-        is the limit. Without both there is none.
+        is the limit. Without both there is none. A mapping has changes of other keys.
     adjustments : sequence of Adjustment
         Other changes that may help, tried after that of the key.
     unit : str, optional
@@ -227,12 +227,15 @@ def beyond_limit(
     -------
     InfeasibleError
     """
-    key = where.rpartition(", ")[2]
-    if far is not None:
-        near = limit if near is None else near
-        adjustments = (Adjustment(near={key: near}, far={key: far}), *adjustments)
-    elif near is not None:
-        adjustments = (Adjustment(near={key: near}), *adjustments)
+    if far is not None and near is None and not isinstance(far, Mapping):
+        near = limit
+    if near is not None or far is not None:
+        key = where.rpartition(", ")[2]
+        first, last = (
+            change if isinstance(change, Mapping) else {} if change is None else {key: change}
+            for change in (near, far)
+        )
+        adjustments = (Adjustment(near=first, far=last), *adjustments)
     return InfeasibleError(
         what,
         where=where,

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator, Sequence
 import numpy as np
 
 from gearcam.base.errors import InfeasibleError
+from gearcam.base.rules import Breach
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.displacement import EXACT
 from gearcam.laws.entry import NO_JUMPS, VARIABLE, Axis, Functions
@@ -23,9 +24,7 @@ Given = str | Functions
 """A formula, as text or as functions."""
 
 
-def formula_problems(
-    name: str, given: Given, variable: str = VARIABLE
-) -> Iterator[tuple[str, int | None, str, str]]:
+def formula_problems(name: str, given: Given, variable: str = VARIABLE) -> Iterator[Breach]:
     """Yield the faults of the formula of a law, for its ``problems`` (see `parse`)."""
     try:
         if isinstance(given, str):

@@ -16,6 +16,7 @@ import numpy as np
 from gearcam.base.errors import InfeasibleError, beyond_limit
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import LONGEST, TEXT, param
+from gearcam.base.rules import Breach
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import TYPED, Axis
 from gearcam.laws.formula import (
@@ -64,11 +65,11 @@ class MotionFormula:
         doc="formula in theta, rad, such as 5*(1 - cos(theta)), in mm, or rad if oscillating",
     )
 
-    def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
+    def problems(self) -> Iterator[Breach]:
         """Yield what is wrong by reading: field, index, message, allowed."""
         yield from formula_problems("lift", self.lift, _VARIABLE)
 
-    def turn_problems(self, *, oscillating: bool) -> Iterator[tuple[str, int | None, str, str]]:  # noqa: ARG002  (signature as of a table)
+    def turn_problems(self, *, oscillating: bool) -> Iterator[Breach]:  # noqa: ARG002  (signature as of a table)
         """Yield nothing: a formula suits followers of either kind."""
         yield from ()
 

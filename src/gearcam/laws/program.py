@@ -482,8 +482,9 @@ class _Place:
         first, last = np.array([start, end]) * [width, width**2]
         first *= -1.0 if opposite else 1.0
         ends = np.array([(0.0, 0.0, *first), (1.0, self.rise, *last)])
-        seen = np.array([(0.0, self.rise, *last), (1.0, 0.0, *first)]) * [1, 1, -1, 1]  # from there
-        left, right = (hermite_quintics(*rows.T)[0] for rows in (ends, seen))
+        # as seen from the end
+        reverse = np.array([(0.0, self.rise, *last), (1.0, 0.0, *first)]) * [1, 1, -1, 1]
+        left, right = (hermite_quintics(*rows.T)[0] for rows in (ends, reverse))
         both = from_both_ends(left.tolist(), (right * (-1.0) ** np.arange(6)).tolist(), 0.0, 1.0)
         parameters = (self.start, 1.0 / width, self.base, 1.0, *both.parameters)
         return Piece(_Placed(both.function), parameters=parameters)

@@ -10,6 +10,7 @@ from gearcam.base.display import ShortRepr
 from gearcam.base.errors import beyond_limit
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import TEXT, param
+from gearcam.base.rules import Breach
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import TYPED, Axis, LawEntry
 from gearcam.laws.formula import (
@@ -46,7 +47,7 @@ class FormulaRise(ShortRepr):
         TEXT, function=True, doc="lift over x from 0 to 1, such as x**3*(10 - 15*x + 6*x**2)"
     )
 
-    def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
+    def problems(self) -> Iterator[Breach]:
         """Yield what is wrong by reading: field, index, message, allowed."""
         yield from formula_problems("formula", self.formula, _VARIABLE)
 

@@ -15,6 +15,7 @@ from typing import Final
 import numpy as np
 
 from gearcam.base.quantities import NUMBER, Row, param
+from gearcam.base.rules import Breach
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.motion.base import MOTION_LAWS, ClosedForm
 from gearcam.laws.motion.pieces import about, from_both_ends
@@ -86,7 +87,7 @@ class Polynomial(_TwoEnded):
         doc="S', S'', S''', ... at the end, as many as needed",
     )
 
-    def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
+    def problems(self) -> Iterator[Breach]:
         """Yield what is wrong by reading: field, index, message, allowed."""
         for name in ("start", "end"):
             count = len(getattr(self, name))

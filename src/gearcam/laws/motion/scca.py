@@ -17,6 +17,7 @@ from dataclasses import dataclass
 
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import NUMBER, param
+from gearcam.base.rules import Breach
 from gearcam.laws.entry import TYPED, LawEntry
 from gearcam.laws.motion.base import MOTION_LAWS, NARROWEST, ClosedForm
 from gearcam.laws.motion.pieces import from_half, lag
@@ -34,7 +35,7 @@ class Scca(ClosedForm):
     )
     d: float = param(NUMBER, ge=0, le=1, doc="width of the cosine sector in the middle")
 
-    def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
+    def problems(self) -> Iterator[Breach]:
         """Yield what is wrong by reading: field, index, message, allowed."""
         for name in ("b", "c", "d"):
             if 0.0 < getattr(self, name) < NARROWEST:

@@ -96,7 +96,7 @@ class RatioLaw(ShortRepr, Displacement):
     @cached_property
     def jumps(self) -> tuple[Jump, ...]:
         """Knots at which the ratio or one of its derivatives up to the third jumps."""
-        last, found = len(self.ratio.knots) - 1, []
+        last, jumps = len(self.ratio.knots) - 1, []
         for knot, continuity in enumerate(self.ratio.continuity, start=1):
             inner = knot < last if self.closed else 1 < knot < last - 1
             if continuity < 3 and (inner or (self.closed and knot == last)):
@@ -104,8 +104,8 @@ class RatioLaw(ShortRepr, Displacement):
                 before = self.ratio.side(knot, -1, order)[order]
                 after = self.ratio.side(knot % last, 1, order)[order]
                 place = float(self.ratio.knots[knot % last])
-                found.append(Jump(theta=place, order=order + 1, before=before, after=after))
-        return tuple(found)
+                jumps.append(Jump(theta=place, order=order + 1, before=before, after=after))
+        return tuple(jumps)
 
     def knots_between(self, low: Array, high: Array) -> tuple[Ints, Array]:
         """Return the knots in intervals of the driver angle.
@@ -176,8 +176,8 @@ class RatioLaw(ShortRepr, Displacement):
         Twice the difference from a quadrature of the ratio, since both are rounded, plus the
         closure error of a solved law, the expansion error of a Python function, and rounding.
         """
-        known = isinstance(self.driven, Expansion)
-        grid = self.driven.knots if known else expand(self.ratio, self.knots, 0.0).knots
+        expanded = isinstance(self.driven, Expansion)
+        grid = self.driven.knots if expanded else expand(self.ratio, self.knots, 0.0).knots
         inside = grid[(grid >= 0.0) & (grid <= self.period)]
         measured = 2.0 * missed(self.driven, self.ratio, inside) + abs(float(self.driven(0.0)))
         solved = abs(self.closure_error) if self.solved else 0.0
@@ -290,12 +290,8 @@ def make_law(
             f"over {formatted(math.degrees(lobes.period), 10)} deg of the driver the driven "
             f"wheel turns by the value; {asks} for the limit"
         )
-        adjustments = (
-            () if lobes.closed else (Adjustment(near={"law.driven_travel_deg": travelled}),)
-        )
-        raise InfeasibleError(
-            what, value=travelled, limit=limit, unit="deg", nearest=note, adjustments=adjustments
-        )
+        near = None if lobes.closed else {"law.driven_travel_deg": travelled}
+        raise beyond_limit(what, "", travelled, limit, note, near=near, unit="deg")
     return law
 
 

@@ -218,8 +218,7 @@ class LogSpiral(ShortRepr):
         w = lobes.mate
         if w == RING:
             key = f"law.ratios[{int(end > start)}]"
-            adjustments = (Adjustment(near={key: 1.0}, far={key: min(start, end)}),)
-            demand_below_one(max(start, end), key, adjustments=adjustments)
+            demand_below_one(max(start, end), key, far=min(start, end))
         first, rise = start / (1.0 + w * start), end - start
         # logarithms of (1 + w*u)'s and of u's quotient, exact for nearly equal ratios too
         growth = w * math.log1p(w * rise / (1.0 + w * start)) / driven
@@ -241,18 +240,9 @@ def _closed(
         )
     if abs(start * end - 1.0) > TYPED:
         what = "a closed spiral has equal centrodes: its ratios are k and 1/k"
-        adjustments = [
-            Adjustment(near={"law.ratios[0]": 1.0 / end}),
-            Adjustment(near={"law.ratios[1]": 1.0 / start}),
-        ]
-        raise beyond_limit(
-            what,
-            "law.ratios",
-            start * end,
-            1.0,
-            "this is the product of both ratios",
-            adjustments=adjustments,
-        )
+        note, product = "this is the product of both ratios", start * end
+        near, other = {"law.ratios[0]": 1.0 / end}, Adjustment(near={"law.ratios[1]": 1.0 / start})
+        raise beyond_limit(what, "law.ratios", product, 1.0, note, near=near, adjustments=(other,))
     half, joint = 0.5 * turn, 2.0 * math.pi - turn
     k = math.sqrt(end / start)
     growth = math.log(k) / joint

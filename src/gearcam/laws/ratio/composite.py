@@ -23,6 +23,7 @@ from gearcam.base.quantities import (
     Solve,
     param,
 )
+from gearcam.base.rules import Breach
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.formula import derivative
@@ -56,7 +57,7 @@ class Multispeed(ShortRepr):
     shape: str = param(TEXT, default="quintic", choices=SMOOTH, doc="shape of the transitions")
     driven_travel: float | None = open_travel("driven wheel")
 
-    def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
+    def problems(self) -> Iterator[Breach]:
         """Yield what is wrong by reading: field, index, message, allowed."""
         if len(self.angles) != len(self.ratios):
             message = f"{len(self.angles)} angles for {len(self.ratios)} ratios"
@@ -113,7 +114,7 @@ class ThreePhasePolynomial(ShortRepr):
     )
     lowest: float = param(NUMBER, gt=0, doc="i21 at the second knot, below the mean ratio")
 
-    def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
+    def problems(self) -> Iterator[Breach]:
         """Yield what is wrong by reading: field, index, message, allowed."""
         yield from knot_problems(self.knots)
 
@@ -200,10 +201,8 @@ class Fourier(ShortRepr):
             share = mean / (mean - smallest)
             what = "the ratio must stay positive: the driven wheel would stand still or turn back"
             note = f"with all coefficients times {formatted(share)} it would just be 0"
-            adjustments = (Adjustment(far={"law.cosines": 0.0, "law.sines": 0.0}),)
-            raise beyond_limit(
-                what, angle_text(place), smallest, 0.0, note, adjustments=adjustments
-            )
+            far = {"law.cosines": 0.0, "law.sines": 0.0}
+            raise beyond_limit(what, angle_text(place), smallest, 0.0, note, far=far)
         return make_law(lobes, knots, pieces, tolerances)
 
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from gearcam.base.display import ShortRepr
-from gearcam.base.errors import Adjustment, InfeasibleError, beyond_limit
+from gearcam.base.errors import InfeasibleError, beyond_limit
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import TEXT, param
 from gearcam.base.rules import Breach, exactly_one
@@ -216,10 +216,8 @@ class RackLaw(ShortRepr):
             If the radius is not finite, smooth, positive or periodic, or for an internal pair.
         """
         if lobes.mate == RING:
-            way = Adjustment(near={"pair.type": "external"})
-            raise InfeasibleError(
-                "a rack cannot be an internal pair", where="pair.type", adjustments=(way,)
-            )
+            what = "a rack cannot be an internal pair"
+            raise beyond_limit(what, "pair.type", None, None, near="external")
         turn = 2.0 * math.pi
         name = "r1" if self.travel is None else "travel"
         axis = Axis(name=name, high=turn, place=angle_text)

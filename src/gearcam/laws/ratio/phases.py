@@ -28,6 +28,7 @@ from gearcam.base.quantities import (
     Solve,
     param,
 )
+from gearcam.base.rules import Breach
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
@@ -142,7 +143,7 @@ class Phases(ShortRepr):
     )
     driven_travel: float | None = open_travel("driven wheel")
 
-    def problems(self) -> Iterator[tuple[str, int | None, str, str]]:
+    def problems(self) -> Iterator[Breach]:
         """Yield what is wrong by reading: field, index, message, allowed."""
         if len(self.knots) != len(self.ratios):
             message = f"{len(self.ratios)} ratios for {len(self.knots)} knots"
@@ -161,7 +162,7 @@ class Phases(ShortRepr):
         if self.driven_travel is None:
             yield Adjustment(far={"law.ratios": mean})
 
-    def _closed_problems(self) -> Iterator[tuple[str, int | None, str, str]]:
+    def _closed_problems(self) -> Iterator[Breach]:
         for index, value in enumerate(self.knots):
             if value == "solve":
                 rule = (
@@ -196,7 +197,7 @@ class Phases(ShortRepr):
         return arcs_law(arc, knots, self.ratios, span, tolerances, solved)
 
 
-def knot_problems(knots: RowOfSome) -> Iterator[tuple[str, int | None, str, str]]:
+def knot_problems(knots: RowOfSome) -> Iterator[Breach]:
     """Yield the faults of `knots`, rad: field, index, message, allowed."""
     if knots[0] != 0.0:
         yield "knots", 0, "the first knot is not 0", "0"
@@ -240,19 +241,12 @@ def one_lobe(
         repeated = len(grid) == len(knots) and lobe * repeats + lobe[:1] == list(ratios)
         if repeated and np.allclose(grid, knots, rtol=0, atol=SAME):
             return np.append(knots[:count], lobes.period), lobe + lobe[:1]
-    spans = (
-        "360"
-        if lobes.n1 == 1
-        else f"360 (repeating {lobes.n1} times) or {formatted(360 / lobes.n1)}"
-    )
+    lobe = formatted(360 / lobes.n1)
+    spans = lobe if lobes.n1 == 1 else f"360 (repeating {lobes.n1} times) or {lobe}"
     what = f"the knots must span {spans} deg for these tooth counts"
-    adjustments = (
-        Adjustment(
-            near={"law.knots_deg": [360.0 / lobes.n1 * float(k / knots[-1]) for k in knots]}
-        ),
-    )
+    near = {"law.knots_deg": [360.0 / lobes.n1 * float(k / knots[-1]) for k in knots]}
     span, note = math.degrees(knots[-1]), "the limit is one lobe"
-    raise beyond_limit(what, where, span, 360 / lobes.n1, note, unit="deg", adjustments=adjustments)
+    raise beyond_limit(what, where, span, 360 / lobes.n1, note, unit="deg", near=near)
 
 
 def arcs_law(
@@ -333,30 +327,15 @@ def _close(
                 "closure needs this value; it is positive with the other ratios multiplied "
                 f"by less than {formatted(share)}"
             )
-            adjustments = (
-                Adjustment(near=least, far=dict.fromkeys(least, lobes.advance / lobes.period)),
-            )
-            raise beyond_limit(
-                "no positive ratio closes the law",
-                f"law.{name}",
-                closing,
-                0.0,
-                note,
-                adjustments=adjustments,
-            )
+            far = dict.fromkeys(least, lobes.advance / lobes.period)
+            what, where = "no positive ratio closes the law", f"law.{name}"
+            raise beyond_limit(what, where, closing, 0.0, note, near=least, far=far)
     elif abs(rest) > tolerances.refusal:
         nearest, adjustments = _closing_values(given, weights, rest, places)
         what = "the phases do not close: they turn the driven wheel by the value, not by the limit"
-        where = "law.ratios"
-        value = math.degrees(lobes.advance - rest)
+        value, limit = math.degrees(lobes.advance - rest), math.degrees(lobes.advance)
         raise beyond_limit(
-            what,
-            where,
-            value,
-            math.degrees(lobes.advance),
-            nearest,
-            adjustments=tuple(adjustments),
-            unit="deg",
+            what, "law.ratios", value, limit, nearest, adjustments=adjustments, unit="deg"
         )
     values = given.tolist()
     return [*values, values[0]] if lobes.closed else values, solved
@@ -413,9 +392,8 @@ def _solve_knot(
         what = "no knot between its neighbours gives the driven wheel its travel"
         least, most = (formatted(way, 10) for way in ways)
         note = f"the knots allow {least} to {most} deg, both excluded"
-        where, change = f"law.knots_deg[{index}]", {key: 0.5 * (ways[0] + ways[1])}
-        way = Adjustment(near={key: nearest}, far=change)
-        raise beyond_limit(what, where, math.degrees(travel), nearest, note, adjustments=(way,))
+        where, near, far = f"law.knots_deg[{index}]", {key: nearest}, {key: 0.5 * sum(ways)}
+        raise beyond_limit(what, where, math.degrees(travel), nearest, note, near=near, far=far)
     return filled(place), {f"knots_deg[{index}]": math.degrees(place)}
 
 

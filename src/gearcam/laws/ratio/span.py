@@ -8,7 +8,7 @@ the centrode has no corner.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Final
@@ -148,15 +148,9 @@ def demand_lobes(given: tuple[int, int] | None, lobes: Lobes) -> int:
             f"they are {given[0]}/{given[1]} and {lobes.n1}/{lobes.n2}; the tooth counts "
             f"need [{lobes.n1}, {lobes.n2}] or a multiple"
         )
-        adjustments = [Adjustment(near={"law.lobes": both}) for both in counts]
-        raise beyond_limit(
-            what,
-            "law.lobes",
-            given[0] / given[1],
-            lobes.n1 / lobes.n2,
-            note,
-            adjustments=adjustments,
-        )
+        ratio, limit = given[0] / given[1], lobes.n1 / lobes.n2
+        others = [Adjustment(near={"law.lobes": both}) for both in counts]
+        raise beyond_limit(what, "law.lobes", ratio, limit, note, adjustments=others)
     return given[0]
 
 
@@ -204,16 +198,13 @@ def demand_travels(span: Span) -> None:
     if span.mate == RING and not span.advance < span.period:
         most = math.degrees(span.period)
         what = "a ring must turn less than its wheel"
-        where = "pair.teeth" if span.closed else key
-        note = "the limit is the travel of the driver"
-        adjustments = () if span.closed else (Adjustment(near={key: most}, far={key: 0.1 * most}),)
-        raise beyond_limit(
-            what, where, math.degrees(span.advance), most, note, adjustments=adjustments, unit="deg"
-        )
+        where, far = ("pair.teeth", None) if span.closed else (key, 0.1 * most)
+        note, value = "the limit is the travel of the driver", math.degrees(span.advance)
+        raise beyond_limit(what, where, value, most, note, far=far, unit="deg")
 
 
 def demand_below_one(
-    largest: float, where: str, mean: float = 1.0, adjustments: Sequence[Adjustment] = ()
+    largest: float, where: str, mean: float = 1.0, far: float | None = None
 ) -> None:
     """Refuse an internal pair whose ratio is not below 1.
 
@@ -225,8 +216,8 @@ def demand_below_one(
         Place of the largest ratio.
     mean : float
         Mean ratio of a closed law, for the message; 1 if unknown.
-    adjustments : sequence of Adjustment
-        Changes of the design that may help.
+    far : float, optional
+        The largest change of the key `where` that may help.
 
     Raises
     ------
@@ -242,7 +233,7 @@ def demand_below_one(
                 f"by less than {share} times as much"
             )
         what = "the ratio of an internal pair must stay below 1"
-        raise beyond_limit(what, where, largest, 1.0, nearest, adjustments=adjustments)
+        raise beyond_limit(what, where, largest, 1.0, nearest, far=far)
 
 
 def span_of(lobes: Lobes, driver_travel: float | None, driven_travel: float | None) -> Span:

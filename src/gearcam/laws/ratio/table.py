@@ -11,7 +11,7 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.base.errors import Adjustment, InfeasibleError, beyond_limit
+from gearcam.base.errors import InfeasibleError, beyond_limit
 from gearcam.base.quantities import ANGLE, NUMBER, TEXT, Row, param
 from gearcam.base.rules import Breach, exactly_one
 from gearcam.base.tolerances import Tolerances
@@ -134,11 +134,10 @@ class TableLaw(FromFile):
         if unit:
             value, limit = math.degrees(value), math.degrees(limit)
         if self.rows is not None:
-            where, adjustments = f"{place}, {'last' if row else 'first'} {column}", ()
-        else:
-            where = f"{place}[{row % len(self.points[1])}]"
-            adjustments = (Adjustment(near={where: limit}),)
-        return beyond_limit(what, where, value, limit, nearest, adjustments=adjustments, unit=unit)
+            where = f"{place}, {'last' if row else 'first'} {column}"
+            return beyond_limit(what, where, value, limit, nearest, unit=unit)
+        where = f"{place}[{row % len(self.points[1])}]"
+        return beyond_limit(what, where, value, limit, nearest, near=limit, unit=unit)
 
 
 def _problems(_: str, angles: Array, __: Array) -> Iterator[Breach]:
