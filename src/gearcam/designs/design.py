@@ -306,10 +306,10 @@ def document_of(design: Design) -> dict[str, Any]:
         tables = [table_of(title, type(one)).document(one) for _, one in _parts(design, title)]
         document[title] = tables if title in kind.several else tables[0]
     if design.limits:
-        known = {entry.name: entry for entry in kind.table("limits").entries.values()}
+        limits = {entry.name: entry for entry in kind.table("limits").entries.values()}
         document["limits"] = {
-            known[name].key if name in known else name: known[name].outward(value)
-            if name in known
+            limits[name].key if name in limits else name: limits[name].outward(value)
+            if name in limits
             else value
             for name, value in design.limits.items()
         }
@@ -380,10 +380,10 @@ def design(document: Mapping[str, Any], source: str = "") -> Any:
         With all mistakes, each with its key.
     """
     plain = document if is_deep(document) else _plain(document)  # examine refuses what is deep
-    found = examine(plain)
-    if found.faults:
-        raise DesignError(fault.problem(source) for fault in found.faults)
-    return KINDS[plain["kind"]].design(source=source, examined=True, **found.parts)
+    outcome = examine(plain)
+    if outcome.faults:
+        raise DesignError(fault.problem(source) for fault in outcome.faults)
+    return KINDS[plain["kind"]].design(source=source, examined=True, **outcome.parts)
 
 
 def load(path: str | os.PathLike[str]) -> Design:
@@ -429,10 +429,10 @@ def loads(text: str, *, file: str = "") -> Design:
         With all mistakes, each with its line.
     """
     document = document_in(text, file)
-    found = examine_file(document, file)
-    if found.faults:
-        raise DesignError(problems_of(found.faults, text, file))
-    return KINDS[document["kind"]].design(source=file, examined=True, **found.parts)
+    outcome = examine_file(document, file)
+    if outcome.faults:
+        raise DesignError(problems_of(outcome.faults, text, file))
+    return KINDS[document["kind"]].design(source=file, examined=True, **outcome.parts)
 
 
 def _plain(value: Any) -> Any:
@@ -480,8 +480,7 @@ def hash_of(design: Design) -> str:
         for step in path[:-1]:
             place = place[step]
         place[path[-1]] = hash_of(inner)
-    made = _with_rows(document, design)
-    text = json.dumps(made, sort_keys=True, default=lambda _: design._token)
+    text = json.dumps(_with_rows(document, design), sort_keys=True, default=lambda _: design._token)
     return hashlib.sha256(text.encode()).hexdigest()[:HASH_DIGITS]
 
 

@@ -24,7 +24,7 @@ from gearcam.designs.lines import Path, line_at, lines_of
 from gearcam.designs.reader import LARGEST, decoded, document_in, find_tables
 from gearcam.designs.slips import STRONG, SURE, did_you_mean, hinted, key_hint, nearest
 from gearcam.designs.table import Key, Table
-from gearcam.designs.validate import document_faults, faults_of, made_of
+from gearcam.designs.validate import document_faults, faults_of, parameters_of
 
 _NAME = re.compile(r"\w[\w.-]*")
 _NAME_RULE: Final = (
@@ -75,33 +75,33 @@ def examine(document: Mapping[str, Any], *, stem: str = "", place: Place | None 
     Examined
         Faults, and the fields of the design for valid parts.
     """
-    found = Examined()
+    outcome = Examined()
     if is_deep(document):
-        found.faults.append(Fault((), TOO_DEEP))
-        return found
+        outcome.faults.append(Fault((), TOO_DEEP))
+        return outcome
     kind = _meant_kind(document)
     if kind is None:
-        found.faults += _kind_faults(document)
-        return found
+        outcome.faults += _kind_faults(document)
+        return outcome
     later = kind.later(document)
     if later is not None:
-        found.faults.append(later)
-        return found
-    found.faults += _kind_faults(document)
-    found.faults += _top_faults(document, kind)
-    _examine_name(document, stem, found)
+        outcome.faults.append(later)
+        return outcome
+    outcome.faults += _kind_faults(document)
+    outcome.faults += _top_faults(document, kind)
+    _examine_name(document, stem, outcome)
     if kind.main:
-        kind.main.examine(document, found)
+        kind.main.examine(document, outcome)
     for title in kind.tables:
-        _examine_table(document, kind, title, found, place or Place())
-    found.parts["limits"] = {}
+        _examine_table(document, kind, title, outcome, place or Place())
+    outcome.parts["limits"] = {}
     if "limits" in document:  # the table loads the checks
-        _examine_table(document, kind, "limits", found, place or Place())
+        _examine_table(document, kind, "limits", outcome, place or Place())
     if kind.rules:
         tables = {title: kind.table_in(document, title) for title in kind.tables}
-        found.faults += list(document_faults(tables, kind.rules, document, found.faults))
-    found.faults += kind.problems(document, found)
-    return found
+        outcome.faults += list(document_faults(tables, kind.rules, document, outcome.faults))
+    outcome.faults += kind.problems(document, outcome)
+    return outcome
 
 
 def examine_file(document: dict[str, Any], file: str, outer: tuple[str, ...] = ()) -> Examined:
@@ -142,8 +142,8 @@ def home_of(kind: DesignKind, key: str) -> str:
     """Return a hint that says where a misplaced key belongs in this kind; else an empty text."""
     homes: dict[str, str] = {}
     for title in kind.tables:  # the first of several tables is the likeliest
-        for known in kind.table(title).entries:
-            homes.setdefault(known, f"this key belongs under [{title}]")
+        for name in kind.table(title).entries:
+            homes.setdefault(name, f"this key belongs under [{title}]")
     homes |= dict.fromkeys(
         ("kind", "name"), "this key belongs at the top of the file, above all tables"
     )
@@ -207,21 +207,21 @@ def _other_kind(title: str) -> str:
     return f"this table belongs to kind = {quoted(owners)}" if owners else ""
 
 
-def _examine_name(document: Mapping[str, Any], stem: str, found: Examined) -> None:
+def _examine_name(document: Mapping[str, Any], stem: str, outcome: Examined) -> None:
     name = document.get("name", stem)
     fault = name_fault(name)
     if not fault:
-        found.parts["name"] = name
+        outcome.parts["name"] = name
     elif "name" in document:
         hint = _free_name(name) if isinstance(name, str) else ""
-        found.faults.append(Fault(("name",), f"{show(name)} {fault}", name, _NAME_RULE, hint))
+        outcome.faults.append(Fault(("name",), f"{show(name)} {fault}", name, _NAME_RULE, hint))
     else:
         message = (
             "is missing" if not stem else f"is missing, and the file name {show(stem)} {fault}"
         )
         hint = _free_name(stem)
         hint = f"add {hint}" if hint else ""
-        found.faults.append(Fault(("name",), message, allowed=_NAME_RULE, hint=hint))
+        outcome.faults.append(Fault(("name",), message, allowed=_NAME_RULE, hint=hint))
 
 
 def _free_name(name: str) -> str:
@@ -244,38 +244,40 @@ def name_fault(name: Any) -> str:
 
 
 def _examine_table(
-    document: Mapping[str, Any], kind: DesignKind, title: str, found: Examined, place: Place
+    document: Mapping[str, Any], kind: DesignKind, title: str, outcome: Examined, place: Place
 ) -> None:
-    known, several = kind.table_in(document, title), title in kind.several
+    table, several = kind.table_in(document, title), title in kind.several
     if title not in document and title in kind.required:
         brackets = f"[[{title}]]" if several else f"[{title}]"
-        message, rule = f"the table {brackets} is missing", ", ".join(known.entries)
-        found.faults.append(Fault((title,), message, allowed=rule))
+        message, rule = f"the table {brackets} is missing", ", ".join(table.entries)
+        outcome.faults.append(Fault((title,), message, allowed=rule))
         return
     raw = document.get(title, [] if several else {})
     if several and not isinstance(raw, list):
         hint = f"write it in double brackets, once for each: [[{title}]]"
-        found.faults.append(Fault((title,), f"{show(raw)} is not a list of tables", raw, "", hint))
+        outcome.faults.append(
+            Fault((title,), f"{show(raw)} is not a list of tables", raw, "", hint)
+        )
         return
     home = partial(_elsewhere, kind)
-    made: list[Any] = []
+    parts: list[Any] = []
     items: list[tuple[Path, Any]] = [((title,), raw)]
     if several:
         items = [((title, number), one) for number, one in enumerate(raw)]
     for at, given in items:
         one, foreign = _without_foreign(kind, document, title, given)
-        one, below = _with_designs(known, one, at, place)
-        faults = [*below, *faults_of(known, one, home=home, far=_other_home, at=at)]
+        one, below = _with_designs(table, one, at, place)
+        faults = [*below, *faults_of(table, one, home=home, far=_other_home, at=at)]
         part, problems = None, list[Fault]()
         if isinstance(one, Mapping):
-            part, problems = made_of(known, known.owner or dict, one, faults, at)
-        found.faults += [*foreign, *faults, *problems]
+            part, problems = parameters_of(table, table.owner or dict, one, faults, at)
+        outcome.faults += [*foreign, *faults, *problems]
         if part is not None and not faults:
-            made.append(part)
-    if several and len(made) == len(raw):
-        found.parts[title] = tuple(made)
-    elif not several and made:
-        found.parts[title] = made[0]
+            parts.append(part)
+    if several and len(parts) == len(raw):
+        outcome.parts[title] = tuple(parts)
+    elif not several and parts:
+        outcome.parts[title] = parts[0]
 
 
 def _without_foreign(
@@ -289,8 +291,8 @@ def _without_foreign(
     if variants is None or title not in variants.titles or not isinstance(raw, Mapping):
         return raw, faults
     value = variants.meant(document)
-    known, kept = variants.table(title, value).entries, dict(raw)
-    for key in raw.keys() - known.keys():
+    entries, kept = variants.table(title, value).entries, dict(raw)
+    for key in raw.keys() - entries.keys():
         owners = variants.owners(title, key)
         if owners:
             entry, given = variants.table(title, owners[0]).entries[key], kept.pop(key)
@@ -301,10 +303,10 @@ def _without_foreign(
     return kept, faults
 
 
-def _with_designs(known: Table, raw: Any, at: Path, place: Place) -> tuple[Any, list[Fault]]:
+def _with_designs(table: Table, raw: Any, at: Path, place: Place) -> tuple[Any, list[Fault]]:
     """Return a table with its nested designs in place of documents and files, and their faults."""
-    made, faults = raw, list[Fault]()
-    for name, key in known.entries.items():
+    filled, faults = raw, list[Fault]()
+    for name, key in table.entries.items():
         value = raw.get(name) if key.param.nested and isinstance(raw, Mapping) else None
         if isinstance(value, str):
             design, more = _from_file(key, value, (*at, name), place)
@@ -314,8 +316,8 @@ def _with_designs(known: Table, raw: Any, at: Path, place: Place) -> tuple[Any, 
             continue
         faults += more
         if not more:
-            made = {**made, name: design}
-    return made, faults
+            filled = {**filled, name: design}
+    return filled, faults
 
 
 def _in_place(
@@ -327,10 +329,10 @@ def _in_place(
     if name not in kinds:
         message = "is missing" if name is MISSING else f"{show(name)} does not belong here"
         return None, [Fault((*at, "kind"), message, name, quoted(kinds), did_you_mean(name, kinds))]
-    found = examine({"kind": name, **value}, stem=str(at[-1]), place=place)
-    if found.faults:
-        return None, [_outward(fault, at, KINDS[name].titles) for fault in found.faults]
-    return KINDS[name].design(source=place.file, examined=True, **found.parts), []
+    outcome = examine({"kind": name, **value}, stem=str(at[-1]), place=place)
+    if outcome.faults:
+        return None, [_outward(fault, at, KINDS[name].titles) for fault in outcome.faults]
+    return KINDS[name].design(source=place.file, examined=True, **outcome.parts), []
 
 
 def _outward(fault: Fault, at: Path, titles: tuple[str, ...]) -> Fault:
@@ -372,27 +374,32 @@ def _from_file(key: Key, value: str, at: Path, place: Place) -> tuple[Any, list[
     name = document.get("kind")
     if isinstance(name, str) and name in KINDS and name not in key.param.nested:
         return refused(f"its design is of kind {show(name)}")
-    found = examine_file(document, file, place.outer)
-    if found.faults:
+    outcome = examine_file(document, file, place.outer)
+    if outcome.faults:
         lines = lines_of(text)
         return None, [
             one if one.file else replace(one, file=file, line=line_at(lines, one.path))
-            for one in found.faults
+            for one in outcome.faults
         ]
-    return KINDS[document["kind"]].design(source=file, examined=True, **found.parts), []
+    return KINDS[document["kind"]].design(source=file, examined=True, **outcome.parts), []
 
 
 def nested_in(document: Mapping[str, Any]) -> Iterator[tuple[Path, Key, Any]]:
     """Yield the path, the key and the value of each nested design in a `document`, as written."""
     kind = _meant_kind(document)
-    for at, known, raw in kind.tables_in(document) if kind else ():
-        for name, key in known.entries.items():
+    for at, table, raw in kind.tables_in(document) if kind else ():
+        for name, key in table.entries.items():
             if key.param.nested and isinstance(raw, Mapping) and name in raw:
                 yield (*at, name), key, raw[name]
 
 
 def chosen(
-    at: Path, raw: Mapping[str, Any], key: str, what: str, known: Mapping[str, Any], found: Examined
+    at: Path,
+    raw: Mapping[str, Any],
+    key: str,
+    what: str,
+    entries: Mapping[str, Any],
+    outcome: Examined,
 ) -> tuple[str, bool]:
     """Return the value of a key that selects an entry of a registry.
 
@@ -406,9 +413,9 @@ def chosen(
         The key, such as ``type``.
     what : str
         Word for an entry, with its article.
-    known : mapping
+    entries : mapping
         The registry.
-    found : Examined
+    outcome : Examined
         Receives a fault if there is no such entry.
 
     Returns
@@ -418,14 +425,14 @@ def chosen(
     right : bool
         Whether the value is correct.
     """
-    word, rule = raw.get(key), quoted(known)
-    if isinstance(word, str) and word in known:
+    word, rule = raw.get(key), quoted(entries)
+    if isinstance(word, str) and word in entries:
         return word, True
-    near = nearest(word, known) if isinstance(word, str) else ""
+    near = nearest(word, entries) if isinstance(word, str) else ""
     message = f"{show(word)} is not {what}" if key in raw else "is missing"
     hint = f"did you mean {near}?" if near else ""
     if not near and len(raw) > 1:
         hint = f"the other keys of this table are checked once its {key} is known"
     value = word if key in raw else MISSING
-    found.faults.append(Fault((*at, key), message, value, rule, hint))
+    outcome.faults.append(Fault((*at, key), message, value, rule, hint))
     return near, False

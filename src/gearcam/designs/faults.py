@@ -147,13 +147,13 @@ def allowed(entry: Key, *, item: bool = False) -> str:
     """
     if entry.length is None or item:
         return _single(entry)
-    made = entry.param
-    if made.both:
+    param = entry.param
+    if param.both:
         return f"{_single(entry)}, or two of them, driver first"
     if entry.length:
         count = f"{entry.length} "
-    elif made.min_length:
-        count = "one or more " if made.min_length == 1 else f"at least {made.min_length} "
+    elif param.min_length:
+        count = "one or more " if param.min_length == 1 else f"at least {param.min_length} "
     else:
         count = ""
     return f"a list of {count}{_plural(entry)}"
@@ -186,22 +186,22 @@ def quoted(words: Iterable[str]) -> str:
 
 def bounds(entry: Key) -> str:
     """Return the range of a value with its unit, as text; empty without one."""
-    made = entry.param
-    unit = f" {made.quantity.unit}" if made.quantity.unit else ""
-    least = made.least or made.ge
+    param = entry.param
+    unit = f" {param.quantity.unit}" if param.quantity.unit else ""
+    least = param.least or param.ge
     low = f"from {formatted(least, 10)}" if least is not None else ""
-    low = f"above {formatted(made.gt, 10)}" if made.gt is not None else low
-    high = f"to {formatted(made.le, 10)}" if made.le is not None else ""
-    high = f"below {formatted(made.lt, 10)}" if made.lt is not None else high
+    low = f"above {formatted(param.gt, 10)}" if param.gt is not None else low
+    high = f"to {formatted(param.le, 10)}" if param.le is not None else ""
+    high = f"below {formatted(param.lt, 10)}" if param.lt is not None else high
     if low and high:
-        joint = " and " if made.gt is not None and made.lt is not None else " "
+        joint = " and " if param.gt is not None and param.lt is not None else " "
         return f"{low}{joint}{_upper(high, low)}{unit}"
     if not low and not high:
         return f"in{unit}" if unit else ""
-    if made.ge is not None:
-        low = f"of at least {formatted(made.ge, 10)}"
-    if made.le is not None:
-        high = f"of at most {formatted(made.le, 10)}"
+    if param.ge is not None:
+        low = f"of at least {formatted(param.ge, 10)}"
+    if param.le is not None:
+        high = f"of at most {formatted(param.le, 10)}"
     return f"{low}{high}{unit}"
 
 

@@ -130,19 +130,19 @@ class Variants:
 
     def table(self, title: str, value: str) -> Table:
         """Return the table of a `title` for a `value` of the key."""
-        known = table_of(title, self.entries[value].tables[title])
+        table = table_of(title, self.entries[value].tables[title])
         if title != self.title:
-            return known
-        entry = known.entries[self.key]
+            return table
+        entry = table.entries[self.key]
         entry = replace(entry, param=replace(entry.param, choices=tuple(self.entries)))
-        return Table(title, known.owner, {**known.entries, self.key: entry})
+        return Table(title, table.owner, {**table.entries, self.key: entry})
 
     def union(self, title: str) -> Table:
         """Return a table with the keys of all values, for descriptions."""
         tables = [self.table(title, value) for value in (self.default, *self.entries)]
         entries: dict[str, Key] = {}
-        for key, entry in (item for known in tables for item in known.entries.items()):
-            if entry.required and not all(key in known.entries for known in tables):
+        for key, entry in (item for table in tables for item in table.entries.items()):
+            if entry.required and not all(key in table.entries for table in tables):
                 entry = replace(entry, default=None)
             entries.setdefault(key, entry)
         return Table(title, None, entries)  # no class has them all
@@ -254,11 +254,11 @@ class DesignKind:
         """Yield the path, the keys and the content of each table in a `document`, without main."""
         for title in (*self.tables, "limits"):
             if title in document:
-                raw, known = document[title], self.table_in(document, title)
+                raw, table = document[title], self.table_in(document, title)
                 if title in self.several and isinstance(raw, list):
-                    yield from (((title, number), known, one) for number, one in enumerate(raw))
+                    yield from (((title, number), table, one) for number, one in enumerate(raw))
                 else:
-                    yield (title,), known, raw
+                    yield (title,), table, raw
 
     def load_checks(self) -> None:
         """Import the modules that register checks."""
@@ -272,11 +272,11 @@ class DesignKind:
         for group in self.check_groups:
             for check in CHECKS.values():
                 if check.kind == group and check.limit is not None:
-                    name, made_of, default = check.limit
-                    key = made_of.key(name)
+                    name, param, default = check.limit
+                    key = param.key(name)
                     # nan: it depends on the design
-                    known = None if math.isnan(default) else default
-                    entries[key] = Key(name, key, made_of, float, None, "", known)
+                    value = None if math.isnan(default) else default
+                    entries[key] = Key(name, key, param, float, None, "", value)
         return Table("limits", None, entries)
 
 

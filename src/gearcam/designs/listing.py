@@ -45,8 +45,8 @@ def sources_of(groups: Iterable[tuple[str, list[Listed]]]) -> dict[str, str]:
     return {name: text for name, text in SOURCES.items() if any(name in one for one in cited)}
 
 
-def listed(entry: Any, line: str, known: Table) -> Listed:
-    """Return the list entry of a law from its `entry`, its `line` and its `known` keys."""
-    keys = ((key, description(item)) for key, item in known.entries.items())
+def listed(entry: Any, line: str, table: Table) -> Listed:
+    """Return the list entry of a law from its `entry`, its `line` and the `table` of its keys."""
+    keys = ((key, description(item)) for key, item in table.entries.items())
     rows = (*keys, ("continuity", entry.continuity), ("source", entry.source))
     return Listed(name=entry.name, doc=entry.doc, line=line, rows=rows)

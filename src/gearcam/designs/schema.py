@@ -78,11 +78,11 @@ def chosen(key: str, names: Iterable[str], words: str, home: Callable[[str], str
     -------
     dict
     """
-    known = list(names)
+    values = list(names)
     return {
         "required": [key],
-        "properties": {key: {"enum": known, "description": words}},
-        "allOf": [_when(key, name, {"$ref": f"#/$defs/{home(name)}"}) for name in known],
+        "properties": {key: {"enum": values, "description": words}},
+        "allOf": [_when(key, name, {"$ref": f"#/$defs/{home(name)}"}) for name in values],
     }
 
 
@@ -91,12 +91,12 @@ def told(names: Iterable[tuple[str, str]]) -> str:
     return "; ".join(f"{name}: {doc}" for name, doc in names)
 
 
-def table_schema(known: Table, doc: str = "", **words: str) -> Schema:
+def table_schema(table: Table, doc: str = "", **words: str) -> Schema:
     """Return the schema of a table.
 
     Parameters
     ----------
-    known : Table
+    table : Table
         The table.
     doc : str
         Its description.
@@ -107,7 +107,7 @@ def table_schema(known: Table, doc: str = "", **words: str) -> Schema:
     -------
     dict
     """
-    entries = known.entries.items()
+    entries = table.entries.items()
     required = [*words, *(name for name, key in entries if key.required)]
     return {
         "type": "object",
@@ -116,7 +116,7 @@ def table_schema(known: Table, doc: str = "", **words: str) -> Schema:
         **({"required": required} if required else {}),
         "properties": {name: {"const": word} for name, word in words.items()}
         | {name: _property(key) for name, key in entries},
-        **_all_of(_rules_of(known)),
+        **_all_of(_rules_of(table)),
     }
 
 
@@ -152,10 +152,10 @@ def _variants(variants: Variants | None) -> Iterator[Schema]:
         chosen = {"properties": {variants.key: {"const": value}}, **rest}
         tables, required = {}, []
         for title in variants.titles:
-            known = variants.table(title, value)
-            needed = [key for key, entry in known.entries.items() if entry.required]
-            keys = {"propertyNames": {"enum": [*known.entries]}, "required": needed}
-            tables[title] = {**keys, **_all_of(_rules_of(known))}
+            table = variants.table(title, value)
+            needed = [key for key, entry in table.entries.items() if entry.required]
+            keys = {"propertyNames": {"enum": [*table.entries]}, "required": needed}
+            tables[title] = {**keys, **_all_of(_rules_of(table))}
             required += [title] if needed else []
         yield {
             "if": {"properties": {variants.title: chosen}, "required": [variants.title]},
@@ -164,13 +164,11 @@ def _variants(variants: Variants | None) -> Iterator[Schema]:
 
 
 def _titled(kind: DesignKind, title: str) -> Schema:
-    made = table_schema(kind.table(title))
-    if title in kind.several:
-        made = {"type": "array", "items": made}
-    return made
+    schema = table_schema(kind.table(title))
+    return {"type": "array", "items": schema} if title in kind.several else schema
 
 
-def _fields(known: Table, title: str = "") -> dict[str, Field]:
+def _fields(table: Table, title: str = "") -> dict[str, Field]:
     """Return the keys of a table for rules, those of a `title` with dotted names."""
     start, above = (f"{title}.", (title,)) if title else ("", ())
     return {
@@ -180,7 +178,7 @@ def _fields(known: Table, title: str = "") -> dict[str, Field]:
             none=(0,) if entry.param.zero_is_none else (),
             both=entry.param.both,
         )
-        for key, entry in known.entries.items()
+        for key, entry in table.entries.items()
     }
 
 
@@ -193,9 +191,9 @@ def _rules(rules: Iterable[Rule], keys: Fields) -> list[Schema]:
     return [schema for rule in rules if (schema := rule.schema(keys))]
 
 
-def _rules_of(known: Table) -> list[Schema]:
+def _rules_of(table: Table) -> list[Schema]:
     """Return the schemas of the rules between the keys of a table."""
-    return _rules(getattr(known.owner, "rules", ()), _fields(known))
+    return _rules(getattr(table.owner, "rules", ()), _fields(table))
 
 
 def _property(key: Key) -> Schema:
@@ -211,16 +209,16 @@ def _property(key: Key) -> Schema:
 
 
 def _single(key: Key) -> Schema:
-    made = key.param
-    if made.nested:
-        designs = ({"$ref": f"#/$defs/{name}"} for name in made.nested)
+    param = key.param
+    if param.nested:
+        designs = ({"$ref": f"#/$defs/{name}"} for name in param.nested)
         return {"anyOf": [{"type": "string"}, *designs]}
-    if made.choices:
-        single: Schema = {"enum": list(made.choices)}
+    if param.choices:
+        single: Schema = {"enum": list(param.choices)}
     else:
-        bounds = {word: getattr(made, name) for name, word in _BOUNDS.items()}
-        bounds |= {"minimum": made.least} if made.least else {}
+        bounds = {word: getattr(param, name) for name, word in _BOUNDS.items()}
+        bounds |= {"minimum": param.least} if param.least else {}
         single = {"type": _TYPES[key.base]}
         single |= {word: bound for word, bound in bounds.items() if bound is not None}
-    other = key.literal or (0 if made.least else None)
+    other = key.literal or (0 if param.least else None)
     return single if other is None else {"anyOf": [single, {"const": other}]}

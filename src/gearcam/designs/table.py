@@ -133,10 +133,10 @@ class Table:
             if values.get(entry.name) is not None
         }
 
-    def document(self, made: Any) -> dict[str, Any]:
+    def document(self, parameters: Any) -> dict[str, Any]:
         """Return the content of the table for an instance of the owner."""
         return self.outward(
-            {item.name: getattr(made, item.name) for item in dataclasses.fields(made)}
+            {item.name: getattr(parameters, item.name) for item in dataclasses.fields(parameters)}
         )
 
 
@@ -165,31 +165,31 @@ def table_of(title: str, owner: type) -> Table:
     """
     hints = typing.get_type_hints(owner)
     defaults = {field.name: field.default for field in dataclasses.fields(owner)}
-    made = (
+    keys = (
         entry
-        for name, made_of in params_of(owner).items()
-        for entry in _entries(name, made_of, hints[name], defaults[name])
+        for name, param in params_of(owner).items()
+        for entry in _entries(name, param, hints[name], defaults[name])
     )
-    return Table(title, owner, {entry.key: entry for entry in made})
+    return Table(title, owner, {entry.key: entry for entry in keys})
 
 
-def _entries(name: str, made_of: Param, hint: Any, default: Any) -> Iterator[Key]:
-    entry = _entry(name, made_of, hint, default)
+def _entries(name: str, param: Param, hint: Any, default: Any) -> Iterator[Key]:
+    entry = _entry(name, param, hint, default)
     yield entry
-    if made_of.other:
-        first, *rest = made_of.when
-        other = replace(made_of.other, when=(OPPOSITES[first], *rest))
+    if param.other:
+        first, *rest = param.when
+        other = replace(param.other, when=(OPPOSITES[first], *rest))
         yield replace(entry, key=other.key(name), param=other, literal="")
 
 
-def _entry(name: str, made_of: Param, hint: Any, default: Any) -> Key:
+def _entry(name: str, param: Param, hint: Any, default: Any) -> Key:
     hint, literal = _split(hint)
     length: int | None = None
     if typing.get_origin(hint) is tuple:
         items = typing.get_args(hint)
         length = 0 if items[-1] is Ellipsis else len(items)
         hint, literal = _split(items[0])
-    return Key(name, made_of.key(name), made_of, hint, length, literal, default)
+    return Key(name, param.key(name), param, hint, length, literal, default)
 
 
 def _split(hint: Any) -> tuple[Any, str]:
@@ -224,6 +224,6 @@ def settled(part: Any) -> Any:
     if not dataclasses.is_dataclass(part) or isinstance(part, type):
         return part
     given = {item.name: getattr(part, item.name) for item in dataclasses.fields(part)}
-    made = {name: settled(value) for name, value in given.items()}
-    changed = {name: value for name, value in made.items() if value is not given[name]}
+    values = {name: settled(value) for name, value in given.items()}
+    changed = {name: value for name, value in values.items() if value is not given[name]}
     return replace(part, **changed) if changed else part

@@ -54,21 +54,21 @@ def _lines(kind: DesignKind, name: str, process: str) -> Iterator[str]:
         yield from kind.main.template(kind.example[title], kind.notes.get(title, ""))
     for title in (*kind.tables, "limits"):
         head = f"[[{title}]]" if title in kind.several else f"[{title}]"
-        known, note, added = kind.table(title), kind.notes.get(title, ""), more.get(title, {})
+        table, note, added = kind.table(title), kind.notes.get(title, ""), more.get(title, {})
         examples = kind.example.get(title, {})
         for given in examples if isinstance(examples, list) else [examples]:
-            yield from _table(head, known, {**given, **added}, note)
+            yield from _table(head, table, {**given, **added}, note)
 
 
-def _table(head: str, known: Table, given: Mapping[str, Any], note: str) -> Iterator[str]:
-    if known.entries:
+def _table(head: str, table: Table, given: Mapping[str, Any], note: str) -> Iterator[str]:
+    if table.entries:
         yield ""
         yield (beside(head, note) if note else head) if given else f"# {head}"
         designs = {key: one for key, one in given.items() if isinstance(one, Mapping)}
-        rest = {key: entry for key, entry in known.entries.items() if key not in designs}
-        yield from entry_lines(Table(known.title, known.owner, rest), given)
+        rest = {key: entry for key, entry in table.entries.items() if key not in designs}
+        yield from entry_lines(Table(table.title, table.owner, rest), given)
         for key, design in designs.items():
-            yield from _nested(f"{head.strip('[]')}.{key}", design, description(known.entries[key]))
+            yield from _nested(f"{head.strip('[]')}.{key}", design, description(table.entries[key]))
 
 
 def _nested(path: str, design: Mapping[str, Any], words: str = "") -> Iterator[str]:
@@ -92,9 +92,9 @@ def _is_table(value: Any) -> bool:
     return bool(tables) and all(isinstance(one, Mapping) for one in tables)
 
 
-def entry_lines(known: Table, given: Mapping[str, Any]) -> Iterator[str]:
-    """Yield a line for each key of a `known` table: those `given`, and the others as comments."""
-    for key, entry in known.entries.items():
+def entry_lines(table: Table, given: Mapping[str, Any]) -> Iterator[str]:
+    """Yield a line for each key of a `table`: those `given`, and the others as comments."""
+    for key, entry in table.entries.items():
         if key in given:
             yield key_line(key, given[key], description(entry))
         else:
@@ -112,12 +112,12 @@ def comment_line(entry: Key) -> str:
     return key_line(entry.key, value, description(entry), "# ")
 
 
-def law_comment(key: str, name: str, entry: Any, known: Table) -> Iterator[str]:
-    """Yield comments on a law, with the values of an example: `key`, `name`, `entry`, `known`."""
-    given = known.document(entry.example)
+def law_comment(key: str, name: str, entry: Any, table: Table) -> Iterator[str]:
+    """Yield comments on a law, with the values of an example: `key`, `name`, `entry`, `table`."""
+    given = table.document(entry.example)
     yield "#"
     yield key_line(key, name, entry.doc, "# ")
-    for key, item in known.entries.items():
+    for key, item in table.entries.items():
         if key in given:
             yield key_line(key, given[key], description(item), "# ")
         else:

@@ -45,15 +45,15 @@ def faults_of(
     """
     at = at or (table.title,)
     names = list(table.entries if listed is None else listed)
-    known = ", ".join(names) or "no keys"
-    told = {name: table.entries[name] for name in names if name in table.entries}
+    keys = ", ".join(names) or "no keys"
+    entries = {name: table.entries[name] for name in names if name in table.entries}
     if not isinstance(raw, Mapping):
-        rule, many = f"a table [{table.title}] with {known}", isinstance(raw, list)
+        rule, many = f"a table [{table.title}] with {keys}", isinstance(raw, list)
         hint = f"write it once, in single brackets: [{table.title}]" if many else ""
         yield Fault(at, f"{show(raw)} is not a table", raw, rule, hint)
         return
     missing = [name for name, key in table.entries.items() if key.required and name not in raw]
-    meant = misspelt(raw, told) if missing else ()
+    meant = misspelt(raw, entries) if missing else ()
     for name, key in table.entries.items():
         if name in raw:
             yield from _of_value(key, raw[name], (*at, name))
@@ -62,12 +62,12 @@ def faults_of(
     unknown = (name for name in raw if name not in table.entries)
 
     def hint_of(name: str) -> str:
-        near = key_hint(name, told, STRONG) or home(name)
-        return near or key_hint(name, told) or far(name)
+        near = key_hint(name, entries, STRONG) or home(name)
+        return near or key_hint(name, entries) or far(name)
 
     for name, hint in hinted(unknown, hint_of):
         message = f"unknown key (its value is {show(raw[name])})"
-        yield Fault((*at, name), message, raw[name], known, hint)
+        yield Fault((*at, name), message, raw[name], keys, hint)
 
 
 def _of_value(key: Key, value: Any, path: Path) -> Iterator[Fault]:
@@ -84,18 +84,18 @@ def _of_value(key: Key, value: Any, path: Path) -> Iterator[Fault]:
 
 
 def _values(
-    known: Table, raw: Any, faults: Iterable[Fault], at: Path, wheel: int = 0, title: str = ""
+    table: Table, raw: Any, faults: Iterable[Fault], at: Path, wheel: int = 0, title: str = ""
 ) -> dict[str, Value]:
     """Return the values of a table, in which there are `faults`, by the names of their fields."""
     wrong = {one.path[len(at) :] for one in faults if one.path[: len(at)] == at}
-    table = raw if isinstance(raw, Mapping) else {}
+    written = raw if isinstance(raw, Mapping) else {}
     if wrong:
-        wrong |= {(key,) for key in misspelt(table, known.entries)}
+        wrong |= {(key,) for key in misspelt(written, table.entries)}
     values: dict[str, Value] = {}
-    for key, entry in known.entries.items():
-        if entry.name in values and key not in table:
+    for key, entry in table.entries.items():
+        if entry.name in values and key not in written:
             continue  # of two keys of a field the one that is written
-        content, default = table.get(key), default_of(entry)
+        content, default = written.get(key), default_of(entry)
         path: Path = (key,)
         if entry.param.both and isinstance(content, list):
             content, path = content[wheel] if wheel < len(content) else None, (key, wheel)
@@ -111,28 +111,28 @@ def _values(
     return values
 
 
-def rule_faults(known: Table, raw: Any, faults: Iterable[Fault], at: Path) -> Iterator[Fault]:
+def rule_faults(table: Table, raw: Any, faults: Iterable[Fault], at: Path) -> Iterator[Fault]:
     """Yield the faults of broken rules between the keys of a table.
 
     Parameters
     ----------
-    known, raw, at
-        As for `told_faults`.
+    table, raw, at
+        As for `placed_faults`.
     faults : iterable of Fault
         Faults of single values in the table.
     """
-    rules: Sequence[Rule] = getattr(known.owner, "rules", ())
+    rules: Sequence[Rule] = getattr(table.owner, "rules", ())
     if not rules or not isinstance(raw, Mapping):
         return
-    both = any(entry.param.both for entry in known.entries.values())
+    both = any(entry.param.both for entry in table.entries.values())
     breaches = (
         (name, wheel if both and index is None else index, message, allowed)
         for wheel in range(1 + both)
-        for values in [_values(known, raw, faults, at, wheel)]
+        for values in [_values(table, raw, faults, at, wheel)]
         for rule in rules
         for name, index, message, allowed in rule.breaches(values)
     )
-    yield from told_faults(breaches, known, raw, at)
+    yield from placed_faults(breaches, table, raw, at)
 
 
 def document_faults(
@@ -155,61 +155,48 @@ def document_faults(
         Faults found before.
     """
     values: dict[str, Value] = {}
-    for title, known in tables.items():
-        values |= _values(known, document.get(title), faults, (title,), title=f"{title}.")
+    for title, table in tables.items():
+        values |= _values(table, document.get(title), faults, (title,), title=f"{title}.")
     for rule in rules:
         for name, *breach in rule.breaches(values):
             title, _, field = name.partition(".")
-            yield from told_faults([(field, *breach)], tables[title], document[title], (title,))
+            yield from placed_faults([(field, *breach)], tables[title], document[title], (title,))
 
 
-def told_faults(
-    told: Iterable[Breach], known: Table, raw: Mapping[str, Any], at: Path
+def placed_faults(
+    breaches: Iterable[Breach], table: Table, raw: Mapping[str, Any], at: Path
 ) -> Iterator[Fault]:
-    """Yield the faults for mistakes found by a parameter class, with keys and values.
+    """Yield the faults for broken rules and for problems of parameters, with keys and values.
 
     Parameters
     ----------
-    told : iterable of tuple
+    breaches : iterable of tuple
         See `gearcam.base.rules.Breach`.
-    known : Table
+    table : Table
         The table of the parameters.
     raw : mapping
         The table as in the file.
     at : tuple
         Path of the table.
     """
-    keys = {entry.name: entry.key for entry in known.entries.values()}
-    seen: set[Path] = set()
-    for name, index, message, rule in told:
+    keys = {entry.name: entry.key for entry in table.entries.values()}
+    places: set[Path] = set()
+    for name, index, message, rule in breaches:
         key = keys.get(name, "")
         value, path = raw.get(key), (*at, key) if key else at
-        single = not isinstance(value, list) and key and known.entries[key].param.both
+        single = not isinstance(value, list) and key and table.entries[key].param.both
         if index is not None and not single:
             path = (*at, key, index)
             if isinstance(value, list) and index < len(value):
                 value = value[index]
-        if path not in seen:  # report one value for both wheels once
-            seen.add(path)
-            shown = f"{show(value)}: {message}" if value is not None else message
-            yield Fault(path, shown, value, rule)
+        if path not in places:  # report one value for both wheels once
+            places.add(path)
+            text = f"{show(value)}: {message}" if value is not None else message
+            yield Fault(path, text, value, rule)
 
 
-def own_faults(made: Any, known: Table, raw: Mapping[str, Any], at: Path) -> Iterator[Fault]:
-    """Yield the mistakes that parameters find themselves (their optional method ``problems``).
-
-    Parameters
-    ----------
-    made : object
-        The parameters.
-    known, raw, at
-        As for `told_faults`.
-    """
-    yield from told_faults(getattr(made, "problems", tuple)(), known, raw, at)
-
-
-def made_of(
-    known: Table,
+def parameters_of(
+    table: Table,
     make: Callable[..., Any],
     raw: Mapping[str, Any],
     faults: Sequence[Fault],
@@ -221,7 +208,7 @@ def made_of(
 
     Parameters
     ----------
-    known : Table
+    table : Table
         Their table.
     make : callable
         Creates them from internal values by name.
@@ -234,24 +221,25 @@ def made_of(
 
     Returns
     -------
-    made : object
+    parameters : object
         The parameters; None if their values cannot be read.
     problems : list of Fault
         Mistakes that they find.
     """
     depth = len(at)
-    broken = list(rule_faults(known, raw, faults, at))
+    broken = list(rule_faults(table, raw, faults, at))
     here = [fault.path[depth:] for fault in faults if len(fault.path) > depth]
-    if any(len(path) == 1 and path[0] in known.entries for path in here):
+    if any(len(path) == 1 and path[0] in table.entries for path in here):
         return None, broken
     here += [fault.path[depth:] for fault in broken if fault.path != at]
-    wrong = {path[0] for path in here} | misspelt(raw if faults else {}, known.entries)
-    readable = {key: value for key, value in raw.items() if key in known.entries}
+    wrong = {path[0] for path in here} | misspelt(raw if faults else {}, table.entries)
+    readable = {key: value for key, value in raw.items() if key in table.entries}
     try:
-        made = make(**known.inward(readable))
-        problems = [p for p in own_faults(made, known, raw, at) if p.path[depth] not in wrong]
+        parameters = make(**table.inward(readable))
+        problems = getattr(parameters, "problems", tuple)()
+        found = [p for p in placed_faults(problems, table, raw, at) if p.path[depth] not in wrong]
     except (TypeError, ValueError, AttributeError, IndexError, KeyError):
         if not faults and not broken:
             raise
         return None, broken
-    return made, [*broken, *problems]
+    return parameters, [*broken, *found]

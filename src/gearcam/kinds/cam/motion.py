@@ -19,7 +19,7 @@ from gearcam.designs.kind import Examined
 from gearcam.designs.lines import Path
 from gearcam.designs.slips import misspelt
 from gearcam.designs.table import Table, table_of
-from gearcam.designs.validate import faults_of, made_of, told_faults
+from gearcam.designs.validate import faults_of, parameters_of, placed_faults
 from gearcam.kinds.cam.forms.base import FORMS, VARIANTS
 from gearcam.laws.motion.base import MOTION_LAWS
 from gearcam.laws.phases_of_lift import PHASES, Phase, RisePhase, fill_half, program_problems
@@ -171,10 +171,10 @@ def _examine_turn(
     found.faults += [*faults, *wrong]
     if wrong or not _follower_known(given):
         return
-    made, problems = made_of(known, owner, raw, faults, (TITLE,))
+    made, problems = parameters_of(known, owner, raw, faults, (TITLE,))
     if not faults and not problems:
         told = made.turn_problems(oscillating="oscillating" in given)
-        problems = list(told_faults(told, known, raw, (TITLE,)))
+        problems = list(placed_faults(told, known, raw, (TITLE,)))
         found.parts[TITLE] = made
     found.faults += problems
 
@@ -208,14 +208,14 @@ def _phase(
     ]
     phase, problems = None, list[Fault]()
     if law:
-        parameters, problems = made_of(
+        parameters, problems = parameters_of(
             rise_table(law), MOTION_LAWS[law].parameters, rest, faults, at
         )
         make = partial(make, law=parameters)
     elif name in WITH_LAW:
         make = partial(make, law=None)
     if not wrong:
-        phase, more = made_of(own, make, rest, faults, at)
+        phase, more = parameters_of(own, make, rest, faults, at)
         problems += more
     told = [*faults, *problems, *wrong]
     found.faults += [one for one in told if right or one.path[len(at)] in raw]
@@ -272,7 +272,9 @@ def _examine_program(
             found.faults.append(Fault((TITLE,), message, allowed=rule))
         elif phases[number] is not None:
             known = phase_table(raw[number]["type"]).bound(given)
-            faults = told_faults([(name, None, message, rule)], known, raw[number], (TITLE, number))
+            faults = placed_faults(
+                [(name, None, message, rule)], known, raw[number], (TITLE, number)
+            )
             meant = misspelt(raw[number], known.entries)  # the unknown key is reported instead
             found.faults += [one for one in faults if one.path[2] not in meant]
 

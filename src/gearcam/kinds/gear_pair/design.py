@@ -16,7 +16,7 @@ from gearcam.designs.faults import Fault, quoted, show
 from gearcam.designs.kind import KINDS, Examined
 from gearcam.designs.outputs import OutputSpec, pose_param, studies_param
 from gearcam.designs.table import Table, table_of
-from gearcam.designs.validate import faults_of, made_of
+from gearcam.designs.validate import faults_of, parameters_of
 from gearcam.gears.spec import PairSpec, Rack, RingSpec, StepsSpec
 from gearcam.kinds.shared import AccuracySpec
 from gearcam.laws.ratio.base import LAWS
@@ -146,7 +146,7 @@ def examine_law(document: Mapping[str, Any], found: Examined) -> None:
     if not right:  # what is missing is reported once the law is known
         found.faults += [one for one in faults if one.path[1] in rest]
         return
-    law, problems = made_of(known, LAWS[law_type].parameters, rest, faults, ("law",))
+    law, problems = parameters_of(known, LAWS[law_type].parameters, rest, faults, ("law",))
     found.faults += [*faults, *problems]
     if law is not None and not faults and not problems:
         found.parts["law"] = law

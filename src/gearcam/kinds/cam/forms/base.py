@@ -21,7 +21,7 @@ from gearcam.cams.wall import CHORD_TOLERANCE
 from gearcam.designs.faults import Fault
 from gearcam.designs.kind import Variants
 from gearcam.designs.table import table_of
-from gearcam.designs.validate import told_faults
+from gearcam.designs.validate import placed_faults
 from gearcam.kinds.cam.tables import CamBlank, CamOutputSpec
 from gearcam.laws.program import Program, make_program
 
@@ -127,7 +127,7 @@ class Form(ABC, Generic[C, S, F]):
         """
         problems = size_problems(parts["follower"], parts["cam"])
         known = table_of("cam", cls.tables["cam"])
-        yield from told_faults(problems, known, document["cam"], ("cam",))
+        yield from placed_faults(problems, known, document["cam"], ("cam",))
 
     def program(self) -> Program:
         """Return the lift that the design asks for."""
