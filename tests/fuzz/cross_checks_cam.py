@@ -45,7 +45,7 @@ def doubts(result: CamResult) -> Iterator[tuple[str, str]]:
         room = _room(wall, theta)
         worst = int((off - room).argmax())
         if off[worst] > room[worst]:
-            at = wall.carrier.driver.told(float(theta[worst]))
+            at = wall.carrier.driver.text(float(theta[worst]))
             words = f"{wall.called} {wall.key}: the lift at {at} differs by {off[worst]}"
             yield "lift", f"{words}, {room[worst]} {wall.follower.lift_unit[1]} are allowed"
 

@@ -60,13 +60,13 @@ class Driver(ShortRepr):
     scale: float
     whole: float
 
-    def told(self, theta: float) -> str:
+    def text(self, theta: float) -> str:
         """Return a driver position as text with its unit, with rounding shown as 0."""
         return f"{formatted(self.scale * theta, scale=self.whole)} {self.unit}"
 
-    def seen(self, theta: float) -> str:
+    def place(self, theta: float) -> str:
         """Return a position as text."""
-        return f"at {self.told(theta)}"
+        return f"at {self.text(theta)}"
 
 
 class Centred(Protocol):
@@ -89,7 +89,7 @@ class Carrier(ABC, ShortRepr):
     """The motion of a cam, by a driver position x: rad of a turn, or mm of a travel."""
 
     rate: ClassVar[float]
-    """Rotating of the fixed frame seen from the cam's, backwards, rad per unit of x."""
+    """Angle by which the fixed frame turns back in the cam's frame, rad per unit of x."""
 
     around: ClassVar[bool]
     """Whether profiles go around the origin."""
@@ -103,7 +103,7 @@ class Carrier(ABC, ShortRepr):
         """Name and unit of its angle or travel in output."""
 
     @abstractmethod
-    def seen(self, ahead: Pair, at: Pair) -> Pair:
+    def relative(self, ahead: Pair, at: Pair) -> Pair:
         """Return the velocity of a follower's centre at rest, seen from the cam.
 
         Parameters
@@ -172,8 +172,8 @@ class Rotating(Carrier):
             whole=360.0,
         )
 
-    def seen(self, ahead: Pair, at: Pair) -> Pair:  # noqa: ARG002
-        """Return ``conj(t)*C``, as ``U = -i*C`` (see `Carrier.seen`)."""
+    def relative(self, ahead: Pair, at: Pair) -> Pair:  # noqa: ARG002
+        """Return ``conj(t)*C``, as ``U = -i*C`` (see `Carrier.relative`)."""
         return at
 
     def under(self, x: Array, z: Plane) -> Plane:
@@ -227,8 +227,8 @@ class Sliding(Carrier):
             whole=self.travel,
         )
 
-    def seen(self, ahead: Pair, at: Pair) -> Pair:  # noqa: ARG002
-        """Return ``i*conj(t)``, as ``U = 1`` everywhere (see `Carrier.seen`)."""
+    def relative(self, ahead: Pair, at: Pair) -> Pair:  # noqa: ARG002
+        """Return ``i*conj(t)``, as ``U = 1`` everywhere (see `Carrier.relative`)."""
         return ahead
 
     def under(self, x: Array, z: Plane) -> Plane:

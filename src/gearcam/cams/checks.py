@@ -52,8 +52,8 @@ def driven(cam: Cam, motion: PitchMotion) -> tuple[str, ...]:
     """
     if motion.carrier.returns:
         return "rise", "return"
-    own = (wall for wall in cam.walls if motion in (wall, wall.of))
-    return tuple("rise" if wall.curve.lift_sign > 0 else "return" for wall in own)
+    walls = (wall for wall in cam.walls if motion in (wall, wall.of))
+    return tuple("rise" if wall.curve.lift_sign > 0 else "return" for wall in walls)
 
 
 def _at(motion: PitchMotion, place: str) -> str:
@@ -122,14 +122,14 @@ def jamming(cam: Cam, limit: float) -> Iterator[Remark]:
 def _steep(motion: PitchMotion, kinds: tuple[str, ...], largest: float) -> Iterator[Remark]:
     """Yield the phases of some kinds whose pressure angle exceeds the largest, rad."""
     for kind in kinds:
-        found = motion.pressure(kind)
-        if found is None or found.largest <= largest:
+        angles = motion.pressure(kind)
+        if angles is None or angles.largest <= largest:
             continue
-        worst = max(found.low, found.high, key=lambda end: abs(end.value))
+        worst = max(angles.low, angles.high, key=lambda end: abs(end.value))
         angle = math.degrees(abs(worst.value))
         yield Remark(
             f"The pressure angle on the {kind} reaches {formatted(angle)} deg.",
-            _at(motion, f"{kind}, at {motion.carrier.driver.told(worst.theta)}"),
+            _at(motion, f"{kind}, at {motion.carrier.driver.text(worst.theta)}"),
             angle,
             limit=math.degrees(largest),
         )
@@ -155,27 +155,27 @@ def undercut(cam: Cam, limit: float) -> Iterator[Remark]:
 
 def _undercut(wall: Wall, limit: float) -> Iterator[Remark]:
     left = wall.undercut_ranges
-    follower, told = wall.follower, wall.carrier.driver.told
+    follower, text = wall.follower, wall.carrier.driver.text
     for corner, loss in zip(wall.corners, wall.lost, strict=True):
         low, high = corner.before, corner.after
         inside = [pair for pair in left if _within(pair, low, high, wall.program.period)]
         left = [pair for pair in left if pair not in inside]
         lost = loss.value * follower.lever
         angle = f" ({formatted(math.degrees(loss.value), 4)} deg)" if follower.angular else ""
-        cut, much = _stretches(inside, told), f"{formatted(lost, 4)} mm{angle}"
+        cut, much = _stretches(inside, text), f"{formatted(lost, 4)} mm{angle}"
         yield Remark(
             f"The {wall.called} is {cut}. After trimming it has a corner, on which the follower "
-            f"rides from {told(low)} to {told(high)}: "
+            f"rides from {text(low)} to {text(high)}: "
             + (f"up to {much} of lift is lost." if wall.side > 0 else f"it goes {much} too far."),
-            _at(wall, f"at {told(loss.theta)}"),
+            _at(wall, f"at {text(loss.theta)}"),
             lost,
             severity="error" if lost > limit else "warning",
         )
     for pair in left:
-        cut = _stretches([pair], told)
+        cut = _stretches([pair], text)
         yield Remark(
             f"The {wall.called} is {cut}, so little that trimming loses no lift.",
-            _at(wall, f"at {told(pair[0])}"),
+            _at(wall, f"at {text(pair[0])}"),
         )
 
 
@@ -184,11 +184,11 @@ def _within(pair: tuple[float, float], low: float, high: float, turn: float) -> 
     return (pair[0] - low) % turn <= (high - low) % turn
 
 
-def _stretches(pairs: list[tuple[float, float]], told: Callable[[float], str]) -> str:
+def _stretches(pairs: list[tuple[float, float]], text: Callable[[float], str]) -> str:
     if not pairs:
         return "cut away by the follower at another angle"
     words = (
-        f"from {told(low)} to {told(high)}" if high > low else f"at {told(low)}"
+        f"from {text(low)} to {text(high)}" if high > low else f"at {text(low)}"
         for low, high in pairs
     )
     return "undercut " + " and ".join(words)
@@ -202,7 +202,7 @@ def _shocks(cam: Cam, order: int) -> Iterator[tuple[str, float, str]]:
     for jump in lead.program.jumps:
         if jump.order == order:
             by = scale * (jump.after - jump.before)
-            yield f"at {driver.told(jump.theta)}", by, unit
+            yield f"at {driver.text(jump.theta)}", by, unit
 
 
 @check("velocity-jump", kind=KIND)
@@ -294,15 +294,15 @@ def lost_motion(cam: Cam, limit: float) -> Iterator[Remark]:
 
     Looks at: how far the follower can move while the cam does not.
     """
-    found, lead = cam.lost_motion, cam.motions[0]
-    if found is None:
+    most, lead = cam.lost_motion, cam.motions[0]
+    if most is None:
         return
-    lost = found.value * lead.follower.lever
-    angle = f" ({formatted(math.degrees(found.value), 4)} deg)" if lead.follower.angular else ""
+    lost = most.value * lead.follower.lever
+    angle = f" ({formatted(math.degrees(most.value), 4)} deg)" if lead.follower.angular else ""
     if lost > limit:
         yield Remark(
             f"Between its walls the follower has {formatted(lost, 4)} mm{angle} of lost motion.",
-            lead.carrier.driver.seen(found.theta),
+            lead.carrier.driver.place(most.theta),
             lost,
         )
 
@@ -323,24 +323,24 @@ def face_width(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
 
 
 @check("other-profile", kind=FOLLOWED)
-def other_profile(found: tuple[Wall, Followed], limit: float) -> Iterator[Remark]:  # noqa: ARG001
+def other_profile(followed: tuple[Wall, Followed], limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Warn if a followed profile is probably not that of the design.
 
     The lift differs by more than a tenth from that of the design.
 
     Looks at: the difference between the lift of a followed profile and that of the design.
     """
-    wall, seen = found
+    wall, motion = followed
     low, high = wall.program.range
     scale, unit = wall.follower.lift_unit
-    off = np.abs(seen.lift - wall.program.derivatives(seen.theta, 0)[0])
+    off = np.abs(motion.lift - wall.program.derivatives(motion.theta, 0)[0])
     worst, most = int(off.argmax()), _MISSED * (high - low)
     if off[worst] > most:
         yield Remark(
             f"The lift differs by up to {formatted(scale * float(off[worst]), 4)} {unit} from that "
             f"of the design, {formatted(scale * (high - low))} {unit}: the profile belongs to "
             "another wall or another cam, or is in another frame.",
-            _at(wall, f"at {wall.carrier.driver.told(float(seen.theta[worst]))}"),
+            _at(wall, f"at {wall.carrier.driver.text(float(motion.theta[worst]))}"),
             scale * float(off[worst]),
             unit=unit,
             limit=scale * most,

@@ -89,18 +89,18 @@ class CamCurve(ShortRepr):
         """
         return self.contact_of(self.program.derivatives(theta, 2 + order), order)
 
-    def contact_of(self, found: Sequence[Array] | Array, order: int = 1) -> Contact:
+    def contact_of(self, lift: Sequence[Array] | Array, order: int = 1) -> Contact:
         """Return the contact from the lift and its derivatives.
 
         Parameters
         ----------
-        found : 3 + order arrays
+        lift : 3 + order arrays
             ``s, s', s'', ...``, mm or rad.
         order : int
             Of the jets, at most 2.
         """
         factors = (1.0, 1.0, 0.5, 1.0 / 6.0)[: order + 2]
-        s, ds = (Jet([f * found[k + j] for j, f in enumerate(factors)]) for k in range(2))
+        s, ds = (Jet([f * lift[k + j] for j, f in enumerate(factors)]) for k in range(2))
         follower = self.follower
         return follower.contact(self.carrier, s + follower.start, ds, self.inset)
 

@@ -35,7 +35,7 @@ class DiscCam(Wall, Cam):
     @property
     def least_base_radius(self) -> float | None:
         """Least base radius, mm, that is not undercut below a translating flat face."""
-        radius, back = self.face_radius, (one.after < one.before for one in self.program.hard)
+        radius, back = self.face_radius, (jump.after < jump.before for jump in self.program.hard)
         if radius is None or self.follower.angular or any(back):
             return None
         return self.follower.start - radius.low.value

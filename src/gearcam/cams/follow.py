@@ -131,16 +131,18 @@ def follow(
     angles = np.atleast_1d(np.asarray(theta, dtype=float))
     if follower.below == (side < 0):
         _demand_clear_pivot(profile, follower, carrier)
-        found = _rested(profile, follower, carrier, angles)
+        motion = _rested(profile, follower, carrier, angles)
     else:
         # mirrored, a cam that turns does so the other way
         sense = -1.0 if carrier.around else 1.0
         within = side < 0 and carrier.around  # metal to the right of its edge
         other = np.conj(profile.points)
         other = replace(profile, points=other if within else other[::-1].copy())
-        seen = _rested(other, follower.mirrored(), carrier, sense * angles)
-        found = replace(seen, theta=angles, lift=-seen.lift, contact=np.conj(seen.contact))
-    return found if carrier.around else replace(found, contact=-np.conj(found.contact))
+        mirrored = _rested(other, follower.mirrored(), carrier, sense * angles)
+        motion = replace(
+            mirrored, theta=angles, lift=-mirrored.lift, contact=np.conj(mirrored.contact)
+        )
+    return motion if carrier.around else replace(motion, contact=-np.conj(motion.contact))
 
 
 def _rested(
@@ -185,14 +187,14 @@ def _highest(
     (turn, shift), tolerance = pose, _ROUNDING * profile.size
     (number, chord, upper), lower = _candidates(profile, follower, (turn, shift), tolerance)
     start, step = profile.points[chord], profile.chords[chord]
-    z, way = turn[number] * start + shift[number], turn[number] * step
-    found, part = _on_chord(follower, z, way, 0.0, tolerance)
-    upper = np.maximum(upper, found)
+    z, steps = turn[number] * start + shift[number], turn[number] * step
+    positions, part = _on_chord(follower, z, steps, 0.0, tolerance)
+    upper = np.maximum(upper, positions)
     # even if a chord is not touched its curve may be: on a steep plate that of the next chord
     highest = np.full(len(angles), -np.inf)
     np.maximum.at(highest, number, upper)
-    touched = np.isfinite(found)
-    point, within, position = (start + part * step)[touched], number[touched], found[touched]
+    touched = np.isfinite(positions)
+    point, within, position = (start + part * step)[touched], number[touched], positions[touched]
     order = np.lexsort((position, within))
     last = np.searchsorted(within[order], np.arange(len(angles)), side="right")
     missed = np.diff(last, prepend=0) == 0
@@ -205,11 +207,11 @@ def _highest(
         )
     best = order[last - 1]
     rest = position[best]
-    np.maximum.at(lower, number, _certain(follower, z, way, profile.hollow[chord], tolerance))
+    np.maximum.at(lower, number, _certain(follower, z, steps, profile.hollow[chord], tolerance))
     free = np.isneginf(lower)
     np.logical_or.at(free, number, follower.radius < profile.hollow[chord])
     if free.any():
-        below = _left(follower, z, way, profile.hollow[chord], tolerance)
+        below = _left(follower, z, steps, profile.hollow[chord], tolerance)
         lower[free] = np.maximum(lower, _passed(rest, number, upper, below))[free]
     return rest, np.maximum(highest - rest, rest - lower), point[best]
 
@@ -261,13 +263,13 @@ def _on_chord(
     """
     ends = [_reached(follower, place, grow, tolerance) for place in (z, z + chord)]
     position, part = np.maximum(*ends), np.where(ends[0] >= ends[1], 0.0, 1.0)
-    way = follower.on_chord(z, chord, grow)
-    between = (way >= 0.0) & (way <= 1.0)
-    place = z + np.where(between, way, 0.0) * chord
+    share = follower.on_chord(z, chord, grow)
+    between = (share >= 0.0) & (share <= 1.0)
+    place = z + np.where(between, share, 0.0) * chord
     between &= ~follower.behind(place, grow)
     grown = np.broadcast_to(grow, z.shape)[between]
     position[between] = _rest(follower, place[between], grown)[0]
-    part[between] = way[between]
+    part[between] = share[between]
     return position, part
 
 
@@ -276,10 +278,10 @@ def _certain(follower: Follower, z: Plane, chord: Plane, depth: Array, tolerance
 
     -inf if the follower is smaller than the depth.
     """
-    found = np.full(z.shape, -np.inf)
+    positions = np.full(z.shape, -np.inf)
     wide = follower.radius >= depth
-    found[wide] = _on_chord(follower, z[wide], chord[wide], -depth[wide], tolerance)[0]
-    return found
+    positions[wide] = _on_chord(follower, z[wide], chord[wide], -depth[wide], tolerance)[0]
+    return positions
 
 
 def _left(follower: Follower, z: Plane, chord: Plane, depth: Array, tolerance: float) -> Array:
@@ -399,7 +401,7 @@ def _bent(turn: Array) -> Array:
     their neighbour.
     """
     besides = [np.roll(turn, step) for step in (-1, 1)]
-    return np.max([np.abs(turn), *(-np.sign(turn) * one for one in besides)], axis=0)
+    return np.max([np.abs(turn), *(-np.sign(turn) * angle for angle in besides)], axis=0)
 
 
 def _heights(length: Array, turn: Array) -> Array:

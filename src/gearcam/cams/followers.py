@@ -431,7 +431,7 @@ class Round(Follower):
 
     def _moving(self, carrier: Carrier, p: Values, ds: Values) -> tuple[Values, Values]:
         """Return A and B (see the module)."""
-        a, b = carrier.seen(*self.axes(p))
+        a, b = carrier.relative(*self.axes(p))
         across: Any = 0.0 * p + a if isinstance(a, float) else a
         return across, b + self.lever * ds
 
@@ -724,7 +724,7 @@ class Arm(Round):
 
     def rest(self, x: Jet, y: Jet, grow: Array | float = 0.0, side: int = 1) -> tuple[Jet, Array]:
         """Return the position on discs (see `Follower.rest`)."""
-        seen, far = _seen(self.hand * (self.pivot.real - x), y - self.pivot.imag)
+        angle, far = _polar(self.hand * (self.pivot.real - x), y - self.pivot.imag)
         reach = self.radius + grow
         # half the angle from the three sides: a round end may be tiny compared to the arm
         room = (reach - (far - self.arm)) * (reach + (far - self.arm))
@@ -733,7 +733,7 @@ class Arm(Round):
         beyond = Jet([np.where(overlaps, 1.0, beyond.c[0]), *beyond.c[1:]])
         turn = 2.0 * atan(sqrt(_at_least_0(room) / beyond))
         turn = Jet([np.where(overlaps, np.inf, turn.c[0]), *turn.c[1:]])
-        return seen + side * turn, np.asarray(room.c[0])
+        return angle + side * turn, np.asarray(room.c[0])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -940,11 +940,11 @@ class FlatArm(Face):
         side: int = 1,  # noqa: ARG002
     ) -> tuple[Jet, Array]:
         """Return the position on discs (see `Follower.rest`)."""
-        seen, far = _seen(self.pivot - x, y)
+        angle, far = _polar(self.pivot - x, y)
         face = self.offset + grow
         turn = asin(_within_1(face / far))
         turn = Jet([np.where(face > far.c[0], np.inf, turn.c[0]), *turn.c[1:]])
-        return seen + turn, np.asarray(far.c[0] + face)
+        return angle + turn, np.asarray(far.c[0] + face)
 
     def line(self, p: Values) -> tuple[Values, Values]:
         """Return the face as a line (see `Face.line`)."""
@@ -974,7 +974,7 @@ def _demand_within(
     raise beyond_limit(what, "motion", value, limit, note, unit="deg")
 
 
-def _seen(across: Jet, y: Jet) -> tuple[Jet, Jet]:
+def _polar(across: Jet, y: Jet) -> tuple[Jet, Jet]:
     """Return the angle of points seen from a pivot, rad, and their distance, mm."""
     far = sqrt(across * across + y * y)
     # an arctangent of half the angle stays finite at the height of the pivot

@@ -79,9 +79,9 @@ class GrooveCam(ShortRepr, Cam):
     @cached_property
     def lost_motion(self) -> Extreme:
         """Largest lost motion, mm or rad: free travel of the follower while the cam is at rest."""
-        one, other = self.rollers
+        inner, outer = self.rollers
         return largest_lost_motion(
-            Rest(wall=self.inner, roller=one), Rest(wall=self.outer, roller=other)
+            Rest(wall=self.inner, roller=inner), Rest(wall=self.outer, roller=outer)
         )
 
 

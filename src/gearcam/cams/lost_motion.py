@@ -94,14 +94,14 @@ class Rest(ShortRepr):
     @cached_property
     def _corners(self) -> Sequence[tuple[tuple[float, float], complex]]:
         """Corners, with the angles between which the roller rests on them."""
-        found, curve = [], self._centers.curve
+        corners, curve = [], self._centers.curve
         for corner in self.wall.corners:
             theta = np.array([corner.before, corner.after])
             s, ds = self.wall.program.derivatives(theta, 1)
             places = curve.trace(theta, s, ds)[0]
             before, after = curve.carrier.stand(self.roller, places, theta)[0].tolist()
-            found.append(((before, after), corner.point))
-        return found
+            corners.append(((before, after), corner.point))
+        return corners
 
     @cached_property
     def span(self) -> tuple[float, float]:

@@ -94,14 +94,14 @@ def range_of(
     # at the ends of cells each side is evaluated by its own piece, up to the knot itself
     _, states = curve.program.sides(cuts)
     at_ends = pick(curve.contact_of(states, 0)).c[0] + np.zeros(states.shape[1])
-    found = []
-    shares = np.cumsum([len(own) - 1 for own in cuts])[:-1]
-    for own, sides in zip(cuts, np.split(at_ends.reshape(2, -1), shares, axis=1), strict=True):
-        x = places_between(own)
+    candidates = []
+    shares = np.cumsum([len(places) - 1 for places in cuts])[:-1]
+    for places, sides in zip(cuts, np.split(at_ends.reshape(2, -1), shares, axis=1), strict=True):
+        x = places_between(places)
         values, slopes = (row.reshape(x.shape) for row in function(x.ravel()))
-        x[:, [0, -1]], values[:, [0, -1]] = np.stack([own[:-1], own[1:]], axis=1), sides.T
-        found.append(extremes_among(function, x, values, slopes))
-    theta, value = np.concatenate(found, axis=1)
+        x[:, [0, -1]], values[:, [0, -1]] = np.stack([places[:-1], places[1:]], axis=1), sides.T
+        candidates.append(extremes_among(function, x, values, slopes))
+    theta, value = np.concatenate(candidates, axis=1)
     low, high = (
         Extreme(theta=float(theta[k]), value=float(value[k]))
         for k in (value.argmin(), value.argmax())
@@ -128,26 +128,26 @@ def undercut(curve: CamCurve) -> list[tuple[float, float]]:
     survey = curve.program.survey
     side, hard = curve.lift_sign, curve.program.hard
     back = (jump.theta for jump in hard if side * (jump.after - jump.before) < 0.0)
-    found = [(theta, theta) for theta in back]
+    stretches = [(theta, theta) for theta in back]
 
     def speed(theta: Array) -> list[Array]:
         return curve.contact(theta).speed.derivatives()
 
-    seen = curve.contact_of(survey.values).speed.derivatives()
-    if _stays_positive(survey.places, *seen):
-        return found
-    places, values = extremes_among(speed, survey.places, *seen)
+    speeds = curve.contact_of(survey.values).speed.derivatives()
+    if _stays_positive(survey.places, *speeds):
+        return stretches
+    places, values = extremes_among(speed, survey.places, *speeds)
     before, after = values[:-1] < 0.0, values[1:] < 0.0
     low, high = places[:-1].copy(), places[1:].copy()
     whole = low < high  # not across a knot
     turns = whole & (before != after)
-    ends, known = (low[turns], high[turns]), (values[:-1][turns], values[1:][turns])
-    roots = bracketed_root(lambda t: speed(t)[0], *ends, _ROOT * curve.program.grain, known)
+    ends, signs = (low[turns], high[turns]), (values[:-1][turns], values[1:][turns])
+    roots = bracketed_root(lambda t: speed(t)[0], *ends, _ROOT * curve.program.grain, signs)
     low[turns & after] = roots[after[turns]]
     high[turns & before] = roots[before[turns]]
     kept = whole & (before | after) & (low < high)
-    found += zip(low[kept].tolist(), high[kept].tolist(), strict=True)
-    return _joined(sorted(found), _GAP * curve.program.grain)
+    stretches += zip(low[kept].tolist(), high[kept].tolist(), strict=True)
+    return _joined(sorted(stretches), _GAP * curve.program.grain)
 
 
 def _stays_positive(places: Array, values: Array, slopes: Array) -> bool:
@@ -230,14 +230,14 @@ def size_of(segments: ProfileSegments, nodes: int = _GAUSS, most: int = _MOST_CE
         Its error includes the difference from the result with half as many cells.
     """
     cells = _CELLS
-    found, _ = _integrals(segments, cells, nodes)
+    sizes, _ = _integrals(segments, cells, nodes)
     while True:
-        cells, before = 2 * cells, found
-        found, rounding = _integrals(segments, cells, nodes)
-        changes = np.abs(found - before)
-        if np.all(changes <= _AGREED * found) or cells >= most:
+        cells, before = 2 * cells, sizes
+        sizes, rounding = _integrals(segments, cells, nodes)
+        changes = np.abs(sizes - before)
+        if np.all(changes <= _AGREED * sizes) or cells >= most:
             break
-    perimeter, area = found.tolist()
+    perimeter, area = sizes.tolist()
     return Size(
         perimeter=perimeter,
         area=area,

@@ -283,8 +283,8 @@ def make_sliding(
     plate = _plate(motion, wide, height, length, groove)
 
     def wall(side: int, key: str, called: str) -> SlidingWall:
-        told = {"side": side, "of": motion, "key": key, "called": called}
-        return SlidingWall(follower=wide, plate=plate, **told, **common)
+        place = {"side": side, "of": motion, "key": key, "called": called}
+        return SlidingWall(follower=wide, plate=plate, **place, **common)
 
     if not groove:
         return SlidingCam(motion=motion, roller=follower, lower=wall(1, "", "profile"))
@@ -331,11 +331,11 @@ def _too_small(key: str, word: str, value: float, limit: float) -> InfeasibleErr
 
 def _turned(stretches: Sequence[Stretch]) -> list[Stretch]:
     """Return stretches in the opposite sense."""
-    made = []
+    turned = []
     for runs, vertices in stretches:
         back = tuple(run.reversed for run in reversed(runs))
-        made.append((back, np.vstack([back[0].points[:1], vertices[:0:-1]])))
-    return made
+        turned.append((back, np.vstack([back[0].points[:1], vertices[:0:-1]])))
+    return turned
 
 
 def straight(corners: Array) -> Stretch:
@@ -350,13 +350,13 @@ def straight(corners: Array) -> Stretch:
     -------
     Stretch
     """
-    made, alike = [], _ALIKE * float(np.ptp(corners, axis=0).max())
-    for one, two in pairwise(corners):
-        length = float(np.hypot(*(two - one)))
+    runs, alike = [], _ALIKE * float(np.ptp(corners, axis=0).max())
+    for start, end in pairwise(corners):
+        length = float(np.hypot(*(end - start)))
         if length > alike:
-            slope = (two - one) / length
-            made.append(Run(points=np.array([one, two]), tangents=np.array([slope, slope])))
-    return tuple(made), np.array([run.points[0] for run in made])
+            slope = (end - start) / length
+            runs.append(Run(points=np.array([start, end]), tangents=np.array([slope, slope])))
+    return tuple(runs), np.array([run.points[0] for run in runs])
 
 
 def arc(wall: Wall, center: complex, start: complex, turn: float) -> Stretch:

@@ -217,9 +217,9 @@ def trimmed(
         ]
         # too long chords may have missed a loop
         if len(rings) == 1 and _meets(segments, rings[0], chain, tolerance):
-            made = cut_out(segments, rings[0].branches) if rings[0].crossed else (segments, ())
-            if not _backwards(made[0], undercut):
-                return made
+            kept = cut_out(segments, rings[0].branches) if rings[0].crossed else (segments, ())
+            if not _backwards(kept[0], undercut):
+                return kept
     if segments.curve.program.open:
         run, runs = _RUNS * abs(segments.curve.inset), ("cam.run_in_mm", "cam.run_out_mm")
         what = "the wall is undercut at the beginning or end of its travel and cannot be trimmed"
@@ -435,7 +435,7 @@ def lost_lift(curve: CamCurve, corner: Corner) -> Extreme:
     if np.isnan(values).all():
         raise InfeasibleError(
             "the follower cannot rest on a corner that trimming leaves",
-            where=curve.carrier.driver.told(start),
+            where=curve.carrier.driver.text(start),
             nearest="its arm or its pivot does not allow that position",
         )
     best = int(np.nanargmax(values))

@@ -153,14 +153,14 @@ class PitchMotion(ShortRepr):
             where straight.
         """
         s, ds, d2s, d3s = self.program.derivatives(theta, 3)
-        found = self.pitch_curve.contact(theta, 0)
+        contact = self.pitch_curve.contact(theta, 0)
         return {
             "s": s,
             "ds": ds,
             "d2s": d2s,
             "d3s": d3s,
-            "pressure": found.pressure.c[0] + np.zeros_like(s),
-            "rho_pitch": _radii(found.pitch_speed, found.turning) + np.zeros_like(s),
+            "pressure": contact.pressure.c[0] + np.zeros_like(s),
+            "rho_pitch": _radii(contact.pitch_speed, contact.turning) + np.zeros_like(s),
         }
 
 
@@ -218,8 +218,8 @@ class Wall(PitchMotion):
         (n,) array
             Positive where the metal is convex, infinite where straight.
         """
-        found = self.curve.contact(theta, 0)
-        return self.side * _radii(found.speed, found.turning) + np.zeros_like(theta)
+        contact = self.curve.contact(theta, 0)
+        return self.side * _radii(contact.speed, contact.turning) + np.zeros_like(theta)
 
     @cached_property
     def profile_radius(self) -> tuple[float, float]:
@@ -230,8 +230,8 @@ class Wall(PitchMotion):
         if self.face_radius is not None:
             convex, concave = self.face_radius.low.value, math.inf
         else:
-            found, radius = self.pitch_curvature(), self.follower.radius
-            low, high = (found.low.value, found.high.value) if found else (0.0, 0.0)
+            whole, radius = self.pitch_curvature(), self.follower.radius
+            low, high = (whole.low.value, whole.high.value) if whole else (0.0, 0.0)
             if self.side < 0:
                 low, high = -high, -low
             convex = 1.0 / high - radius if high > 0.0 else math.inf
@@ -340,12 +340,12 @@ class Wall(PitchMotion):
     @cached_property
     def contour(self) -> Contour:
         """The profile, counter-clockwise, verified to be a simple curve around the axis."""
-        made = self._contour(self.sampler)
-        points = as_complex(made.vertices)
+        contour = self._contour(self.sampler)
+        points = as_complex(contour.vertices)
         seen_whole = bool(np.all((np.conj(points) * np.roll(points, -1)).imag > 0.0))
-        if not seen_whole and not made.polygon.is_valid:
+        if not seen_whole and not contour.polygon.is_valid:
             raise crossing_chords(self.called, self.sampler, self._contour)
-        return made
+        return contour
 
     @property
     def outline(self) -> Array:

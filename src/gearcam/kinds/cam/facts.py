@@ -121,7 +121,7 @@ def pressure(result: CamResult, motion: PitchMotion) -> Tree:
                 math.degrees(found.largest),
                 f"pressure angle, {kind}{whose}",
                 at_most=math.degrees(limit),
-                place=result.driver.seen(worst.theta),
+                place=result.driver.place(worst.theta),
                 unit="deg",
                 shown=found.largest > 0.0,
             )
@@ -135,7 +135,7 @@ def _lost_motion(result: CamResult) -> Fact | None:
     if lost is None:
         return None
     scale, unit = result.follower.lift_unit
-    place = result.driver.seen(lost.theta)
+    place = result.driver.place(lost.theta)
     return Fact(scale * lost.value, "lost motion", place=place, unit=unit, shown=True)
 
 

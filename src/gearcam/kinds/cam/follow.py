@@ -136,7 +136,7 @@ def followed(
         "largest_difference": Fact(
             float(difference[worst]),
             "largest difference from the lift of the design",
-            place=driver.seen(float(theta[worst])),
+            place=driver.place(float(theta[worst])),
             unit=unit,
             shown=True,
         ),
