@@ -209,10 +209,10 @@ def choose_cutter(
     )
     if not concave_curvature * module > _FLAT:
         return widened(straight, clearance)
-    made = [
+    cutters = [
         _blunt(replace(straight, kc=kc)) for kc in pinions or (_CONCAVE_MARGIN * concave_curvature,)
     ]
-    return widened(next((one for one in made if one.fits), made[-1]), clearance)
+    return widened(next((cutter for cutter in cutters if cutter.fits), cutters[-1]), clearance)
 
 
 def ring_pinions(

@@ -67,10 +67,10 @@ class TipEnds(ShortRepr):
 
     def replaced(self, which: Ints, ends: TipEnds) -> TipEnds:
         """Return these with the ends of flanks `which` replaced by `ends`."""
-        made = deepcopy(self)
-        made.phi[which], made.foot[which] = ends.phi, ends.foot
-        made.height[which], made.full[which] = ends.height, ends.full
-        return made
+        tips = deepcopy(self)
+        tips.phi[which], tips.foot[which] = ends.phi, ends.foot
+        tips.height[which], tips.full[which] = ends.height, ends.full
+        return tips
 
 
 def find_tips(toothing: Toothing, sf: Array, sigma: Array, highest: Array) -> TipEnds:

@@ -85,16 +85,16 @@ def _shortened(rows: Rows, start: float, end: float) -> Rows:
 
     A space that has lost its land is left uncut: its fillets already meet there.
     """
-    made = deepcopy(rows)
-    made.corner[0] = True
-    ends = (0, start, made.start, made.low), (-1, end, made.end, made.high)
+    chain = deepcopy(rows)
+    chain.corner[0] = True
+    ends = (0, start, chain.start, chain.low), (-1, end, chain.end, chain.high)
     for row, place, cut, height in ends:
         span = rows.end[row] - rows.start[row]
         if rows.kind[row] >= Curve.LAND and span > 0.0:
             share = min(max((place - rows.start[row]) / span, 0.0), 1.0)
             cut[row] = rows.start[row] + share * span
             height[row] = rows.low[row] + share * (rows.high[row] - rows.low[row])
-    return made
+    return chain
 
 
 def body_runs(

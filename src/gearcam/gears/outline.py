@@ -312,15 +312,15 @@ def _sharpen(toothing: Toothing, tips: TipEnds) -> TipEnds:
     pointed = np.flatnonzero(tips.foot[:z] <= tips.foot[z:])
     if pointed.size == 0:
         return tips
-    made, both = deepcopy(tips), np.stack([pointed, z + pointed])
+    ends, both = deepcopy(tips), np.stack([pointed, z + pointed])
     high, low = base = toothing.track.angle(sf[both])
     crossing, met = flank_crossings(toothing, sf[both], sigma[both], base, tips.phi[both])
-    made.phi[both[:, met]], made.full[both[:, met]] = crossing[:, met], False
-    frames = toothing.frames(made.phi[pointed])
+    ends.phi[both[:, met]], ends.full[both[:, met]] = crossing[:, met], False
+    frames = toothing.frames(ends.phi[pointed])
     points = toothing.flank_points(frames, sf[pointed], sigma[pointed])
     middle = feet(toothing, points, low, high, 0.5 * (low + high))
-    made.foot[both], made.height[both] = middle, np.abs(points - toothing.frames(middle).p)
-    return made
+    ends.foot[both], ends.height[both] = middle, np.abs(points - toothing.frames(middle).p)
+    return ends
 
 
 def _assemble(toothing: Toothing, rows: Rows, flanks: Flanks, spaces: Ints) -> tuple[Rows, Flanks]:
@@ -453,15 +453,15 @@ def outside(ring: Outline, rim: float) -> Contour:
     curves = WheelCurves(toothing=toothing, rows=rows)
     sampler = Sampler(curves=curves, tolerance=ring.tolerance)
     _, points, error = sampler.chords
-    made = Contour(
+    contour = Contour(
         dense=lambda: sampler.dense(ring.oversampling).runs(),
         vertices=as_pairs(points),
         tolerance=ring.tolerance,
         chord_error=error,
     )
-    if not made.polygon.is_valid:
+    if not contour.polygon.is_valid:
         raise _refusal("it would cross itself", rim, 0.0)
-    return made
+    return contour
 
 
 def _refusal(why: str, rim: float, most: float) -> InfeasibleError:

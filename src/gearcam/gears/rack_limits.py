@@ -73,18 +73,18 @@ def settle_rack(asked: Rack, x: float) -> BasicRack:
         room = shift + (asked.tip_radius or 0.0) / _TIP_PART
         wanted = usual.dedendum if usual.dedendum >= addendum else addendum / _SHALLOW
         dedendum = max(min(max(wanted, room), deepest), addendum)
-    made = BasicRack(
+    rack = BasicRack(
         pressure_angle=asked.pressure_angle, addendum=addendum, dedendum=dedendum, tip_radius=0.0
     )
-    largest = min(_largest_tip(made), _TIP_PART * (dedendum - shift))
+    largest = min(_largest_tip(rack), _TIP_PART * (dedendum - shift))
     tip = asked.tip_radius
     if tip is None:
         tip = min(usual.tip_radius, max(0.0, _SHARE * largest))
-    made = replace(made, tip_radius=tip)
+    rack = replace(rack, tip_radius=tip)
     # a default dedendum could be reduced as far as the tip radius needs
     free = asked.dedendum is None
-    _demand_rack(made, _widest_tip(asked.pressure_angle) if free else _largest_tip(made))
-    return made
+    _demand_rack(rack, _widest_tip(asked.pressure_angle) if free else _largest_tip(rack))
+    return rack
 
 
 def _deepest(alpha: float, tip_radius: float) -> float:

@@ -162,9 +162,9 @@ def _arcs(
     kept = np.ones(len(place), dtype=bool)
     kept[tops.tip[both[0]][tops.tip[both[0]] >= 0]] = False
     order = np.argsort(place, kind="stable")
-    made = Rows.joined([ends, arcs]).select(order[kept[order]])
-    made.corner[0] = True  # start of a chain without corners
-    return made, np.where(there, reach, np.nan)
+    chain = Rows.joined([ends, arcs]).select(order[kept[order]])
+    chain.corner[0] = True  # start of a chain without corners
+    return chain, np.where(there, reach, np.nan)
 
 
 def _moved_tip(
@@ -181,16 +181,16 @@ def _moved_tip(
 
 def _put_in(rows: Rows, tops: _Tops, sigma: Array, phi: Array, foot: Array, both: Ints) -> Rows:
     """Return the rows with flanks and tips cut back to the arcs."""
-    made, whole = deepcopy(rows), tops.row >= 0
+    cut, whole = deepcopy(rows), tops.row >= 0
     tips = whole & (tops.tip >= 0)
     tips[both] = False
-    ends = (-1, made.end, made.start, made.low), (1, made.start, made.end, made.high)
+    ends = (-1, cut.end, cut.start, cut.low), (1, cut.start, cut.end, cut.high)
     for side, own, edge, height in ends:
         at = np.flatnonzero(whole & (sigma == side))
         own[tops.row[at]] = phi[at] + tops.row_turn[at]
         at = np.flatnonzero(tips & (sigma == side))
         edge[tops.tip[at]] = foot[at] + tops.tip_turn[at]
         height[tops.tip[at]] = tops.height[at] + (foot[at] - tops.start[at]) * tops.slope[at]
-        made.corner[tops.tip[at]] = False
-    made.corner[tops.row[whole & (sigma > 0.0)]] = False
-    return made
+        cut.corner[tops.tip[at]] = False
+    cut.corner[tops.row[whole & (sigma > 0.0)]] = False
+    return cut

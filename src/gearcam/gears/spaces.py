@@ -79,10 +79,10 @@ def regular_rows(toothing: Toothing, tips: TipEnds) -> Rows:
     }
     columns = {}
     for name, values in table.items():
-        made = np.empty((count, ROWS_PER_TOOTH), np.result_type(*values))
+        column = np.empty((count, ROWS_PER_TOOTH), np.result_type(*values))
         for k, value in enumerate(values):
-            made[:, k] = value
-        columns[name] = made.ravel()
+            column[:, k] = value
+        columns[name] = column.ravel()
     return Rows(**columns)
 
 
@@ -133,16 +133,17 @@ def untangle(toothing: Toothing, rows: Rows, spaces: Ints) -> list[Rows]:
         For each space its remaining curves, followed by the tip.
     """
     curves, samples = WheelCurves(toothing=toothing, rows=rows), _SAMPLES
-    made: dict[int, Rows] = {}
+    untangled: dict[int, Rows] = {}
     left = spaces
     for _ in range(_DENSER + 1):
         if not left.size:
             break
         rings = [first for first, *_ in remaining(curves, _chains(curves, left, samples))]
-        made |= {int(k): _along(curves, int(k), ring) for k, ring in zip(left, rings, strict=True)}
+        for space, ring in zip(left.tolist(), rings, strict=True):
+            untangled[space] = _along(curves, space, ring)
         left = left[[ring.gap > ROUGH * near(toothing) for ring in rings]]
         samples = 2 * samples - 1
-    return [made[int(space)] for space in spaces]
+    return [untangled[int(space)] for space in spaces]
 
 
 def _along(curves: WheelCurves, space: int, ring: Ring) -> Rows:

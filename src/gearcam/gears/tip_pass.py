@@ -136,27 +136,27 @@ def _margins(
     deep, out = np.tile(stays.deep, 2), np.tile(stays.edge, 2)
     formed, side = len(mate.numbers), np.repeat([1.0, -1.0], len(stays.corner))
 
-    def seen(phi: Array) -> tuple[Array, Array]:
+    def feet_at(phi: Array) -> tuple[Array, Array]:
         return _feet(own, mate, edge, corner, phi)
 
-    start, low = seen(deep)
+    start, low = feet_at(deep)
     space = np.round((start - mate.moved) / mate.pitch).astype(int)
     tooth = np.where(side > 0.0, space, space + 1) - mate.numbers[0]
     meets = np.full(tooth.shape, mate.closed) | ((tooth >= 0) & (tooth < formed))
     index = np.where(side > 0.0, 0, formed) + tooth % formed
     height = tips.height[index]
-    low, high = low - height, seen(out)[1] - height
+    low, high = low - height, feet_at(out)[1] - height
     meets &= low < 0.0
     # a corner that never leaves is evaluated where it is nearest to leaving
     crosses = meets & (high > 0.0)
     phi = bracketed_root(
-        lambda x: np.where(crosses, seen(x)[1] - height, 0.0),
+        lambda x: np.where(crosses, feet_at(x)[1] - height, 0.0),
         np.where(crosses, deep, out),
         out,
         _ANGLE * mate.track.around,
         (np.where(crosses, low, 0.0), np.where(crosses, high, 0.0)),
     )
-    margin = side * (seen(phi)[0] - mate.track.arc_length(tips.foot[index]))
+    margin = side * (feet_at(phi)[0] - mate.track.arc_length(tips.foot[index]))
     if mate.closed:
         margin = (margin + 0.5 * mate.length) % mate.length - 0.5 * mate.length
     return np.where(meets, margin, math.inf), phi

@@ -14,7 +14,7 @@ from dataclasses import fields, replace
 from typing import Any, Final, Protocol, TypeVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from gearcam.numeric.arrays import Array
 
@@ -28,7 +28,7 @@ T = TypeVar("T")
 class Perturb(Protocol):
     """What changes the inputs of a trial."""
 
-    def __call__(self, values: ArrayLike, off: ArrayLike, /) -> Array:
+    def __call__(self, values: Array | float, off: Array | float, /) -> Array:
         """Return `values`, each changed by `off` up or down."""
         ...
 
@@ -49,11 +49,15 @@ def largest_changes(compute: Callable[[Perturb], Sequence[NDArray[Any]]]) -> lis
     """
     draw = np.random.default_rng(0)
 
-    def perturbed(values: ArrayLike, off: ArrayLike) -> Array:
-        shape = np.broadcast_shapes(np.shape(values), np.shape(off))
-        return np.asarray(values + np.where(draw.random(shape) < 0.5, -1.0, 1.0) * off)
+    def unperturbed(values: Array | float, _: Array | float) -> Array:
+        return np.asarray(values, dtype=np.float64)
 
-    exact = compute(lambda values, off: np.asarray(values))  # noqa: ARG005
+    def perturbed(values: Array | float, off: Array | float) -> Array:
+        shape = np.broadcast_shapes(np.shape(values), np.shape(off))
+        signs = np.where(draw.random(shape) < 0.5, -1.0, 1.0)
+        return np.asarray(values + signs * off, dtype=np.float64)
+
+    exact = compute(unperturbed)
     changes = [np.zeros(np.shape(values)) for values in exact]
     with np.errstate(divide="ignore", invalid="ignore"):
         for _ in range(_TRIALS):

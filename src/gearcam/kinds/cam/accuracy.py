@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from gearcam.cams.cam import Cam
     from gearcam.kinds.cam.build import CamResult
     from gearcam.laws.program import Program
-    from gearcam.numeric.arrays import Array, Ints
+    from gearcam.numeric.arrays import Array, Ints, Plane
     from gearcam.results.parts import Estimates
 
 _LENGTHS, _ANGLES, _COEFFICIENTS = 4.0 * EPS, 4.0 * EPS, 2.5 * EPS
@@ -68,7 +68,7 @@ def motion_errors(cam: Cam) -> tuple[float, float]:
     program = cam.walls[0].program
     index, theta = _places(program)
 
-    def compute(perturb: Perturb) -> list[Array]:
+    def compute(perturb: Perturb) -> list[Array | Plane]:
         places = perturb(theta, _ANGLES * theta)
         exact = program.lift.on_pieces(index, places, 1, lambda v: perturb(v, _COEFFICIENTS * v))
         s, ds = (perturb(*one) for one in zip(exact, program.errors[:2], strict=True))
