@@ -43,17 +43,17 @@ def error_rows(result: CamResult) -> Estimates:
         Estimate and method by name, without those of chords and files.
     """
     unknown = " and the lift by its interpolation error" if any(result.program.errors) else ""
-    lift, profile = motion_errors(result.cam)
+    lift, profile, swept = motion_errors(result.cam)
     name, scale = next(iter(result.cam.motions[0].motion_scales.items()))
     rows = {name: scale * lift, "profile_mm": profile}
     return {
         **{name: (off, _ROUNDED + unknown) for name, off in rows.items()},
-        **dict(_sizes(result, profile)),
+        **dict(_sizes(result, swept)),
     }
 
 
-def motion_errors(cam: Cam) -> tuple[float, float]:
-    """Return the errors of the lift, mm or rad, and of points of the profile, mm.
+def motion_errors(cam: Cam) -> tuple[float, float, list[float]]:
+    """Return the errors of lift and profiles.
 
     Parameters
     ----------
@@ -62,17 +62,19 @@ def motion_errors(cam: Cam) -> tuple[float, float]:
 
     Returns
     -------
-    lift, profile : float
-        Largest over the turn.
+    lift, profile : float, mm or rad, and mm
+        Largest error of the lift, and of points of profiles.
+    swept : list of float, mm^2
+        The area that the errors of each profile cover.
     """
-    program = cam.walls[0].program
+    program, curves = cam.walls[0].program, [wall.curve for wall in cam.walls]
     index, theta = _places(program)
+    traces = [curve.trace(theta, *program.lift.on_pieces(index, theta, 1)) for curve in curves]
 
     def compute(perturb: Perturb) -> list[Array | Plane]:
         places = perturb(theta, _ANGLES * theta)
         exact = program.lift.on_pieces(index, places, 1, lambda v: perturb(v, _COEFFICIENTS * v))
         s, ds = (perturb(*one) for one in zip(exact, program.errors[:2], strict=True))
-        curves = [wall.curve for wall in cam.walls]
         moved = [
             replace(
                 one,
@@ -81,10 +83,21 @@ def motion_errors(cam: Cam) -> tuple[float, float]:
             )
             for one in curves
         ]
-        return [s, *(one.trace(places, s, ds)[0] for one in moved)]
+        points = [one.trace(places, s, ds)[0] for one in moved]
+        # only what is across the profile changes its area
+        across = [
+            (np.conj(tangents) * profile).imag
+            for profile, (_, tangents) in zip(points, traces, strict=True)
+        ]
+        return [s, *points, *across]
 
-    lift, *profiles = (float(change.max()) for change in largest_changes(compute))
-    return lift, max(profiles)
+    lift, *of_walls = largest_changes(compute)
+    profiles, across = of_walls[: len(curves)], of_walls[len(curves) :]
+    swept = [
+        float(0.5 * (off[1:] + off[:-1]) @ np.abs(np.diff(points)))
+        for (points, _), off in zip(traces, across, strict=True)
+    ]
+    return float(lift.max()), max(float(off.max()) for off in profiles), swept
 
 
 def _places(program: Program) -> tuple[Ints, Array]:
@@ -98,16 +111,17 @@ def _places(program: Program) -> tuple[Ints, Array]:
     return np.repeat(index, counts), np.concatenate([np.linspace(*one) for one in stretches])
 
 
-def _sizes(result: CamResult, profile: float) -> Iterator[tuple[str, tuple[float, str]]]:
+def _sizes(result: CamResult, swept: list[float]) -> Iterator[tuple[str, tuple[float, str]]]:
     """Yield the errors of areas of walls before clearance, and of the volume of parts."""
+    walls = result.cam.walls
     if not result.design.blank.clearance:
-        how = "profile_mm over the whole profile, and quadrature with fewer cells"
-        for wall in result.cam.walls:
+        how = "errors of the profile all along it, and quadrature with fewer cells"
+        for wall, area in zip(walls, swept, strict=True):
             if wall.program.closed:
-                off = profile * wall.size.perimeter + wall.size.area_error
-                yield f"{wall.key}_area_mm2" if wall.key else "area_mm2", (off, how)
+                name = f"{wall.key}_area_mm2" if wall.key else "area_mm2"
+                yield name, (area + wall.size.area_error, how)
     if result.ordered and result.design.blank.density is not None:
-        walls = sum(wall.cubics_missed for wall in result.cam.walls)
-        off = max(quadrature_error(part) + part.width * walls for part in result.parts)
+        area = sum(swept) + sum(wall.cubics_missed for wall in walls)
+        off = max(quadrature_error(part) + part.width * area for part in result.parts)
         how = "cubics through dense points with halved steps on walls, with doubled steps on all "
-        yield "volume_mm3", (off, f"{how}edges; rounding")
+        yield "volume_mm3", (off, f"{how}edges; errors of the profile all along it")
