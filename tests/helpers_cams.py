@@ -204,19 +204,19 @@ def cam(
 
 def dense(made: DiscCam) -> Plane:
     """Return the points of the contour's runs, seen as if the cam turned counter-clockwise."""
-    points = np.concatenate([run.points @ [1.0, 1j] for run in made.contour.runs])
+    points = np.concatenate([run.points for run in made.contour.runs])
     return -np.conj(points) if made.clockwise else points
 
 
 def pieces_of(made: DiscCam) -> list[Plane]:
     """Return the points of each smooth piece, seen as if the cam turned counter-clockwise."""
-    runs = [run.points @ [1.0, 1j] for whole in made.contour.runs for run in whole.pieces]
+    runs = [run.points for whole in made.contour.runs for run in whole.pieces]
     return [-np.conj(points) for points in runs] if made.clockwise else runs
 
 
 def corners_of(made: DiscCam) -> Plane:
     """Return the vertices of the polygon, seen as if the cam turned counter-clockwise."""
-    points = made.contour.vertices @ [1.0, 1j]
+    points = made.contour.points
     return -np.conj(points) if made.clockwise else points
 
 

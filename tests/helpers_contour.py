@@ -84,9 +84,8 @@ def sample(curve: Curve, allowed: float) -> tuple[Run, np.ndarray]:
         chord = points[2::2] - points[:-2:2]
         bow = np.abs(np.imag((points[1::2] - points[:-2:2]) * np.conj(chord))) / np.abs(chord)
         if bow.max() <= allowed:
-            units = slopes[::2] / np.abs(slopes[::2])
-            kept = points[::2]
-            return Run(points=as_pairs(kept), tangents=as_pairs(units)), bow
+            units = np.exp(1j * np.angle(slopes[::2]))
+            return Run(points=points[::2], tangents=units), bow
         count = int(np.ceil(count * max(1.05, np.sqrt(bow.max() / allowed))))
 
 
@@ -110,16 +109,16 @@ def squashed(curve: Curve, squash: tuple[float, float], angle: float) -> Curve:
 
 def contour_of(pieces: list[Curve], tolerance: float) -> Contour:
     """Chain pieces into a contour; dense to 1/50 of the tolerance, vertices to the tolerance."""
-    runs, vertices, worst = [], [], 0.0
+    runs, points, worst = [], [], 0.0
     for piece in pieces:
         dense, _ = sample(piece, tolerance / 50)
         coarse, bow = sample(piece, tolerance)
         runs.append(dense)
-        vertices.append(coarse.points[:-1])
+        points.append(coarse.points[:-1])
         worst = max(worst, float(bow.max()))
     return Contour(
         dense=lambda: tuple(runs),
-        vertices=np.vstack(vertices),
+        points=np.concatenate(points),
         tolerance=tolerance,
         chord_error=worst,
     )
@@ -172,7 +171,7 @@ def plate(cut: list[Curve], half_mouth: float) -> Contour:
 
 def bore(diameter: float) -> tuple[Opening, ...]:
     """A round bore about the origin."""
-    return (Opening(kind="BORE", shape=Circle(center=np.zeros(2), diameter=diameter), name="bore"),)
+    return (Opening(kind="BORE", shape=Circle(center=0j, diameter=diameter), name="bore"),)
 
 
 def layers(drawing: Drawing) -> list[str]:

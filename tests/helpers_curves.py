@@ -3,24 +3,23 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from gearcam.numeric.arrays import Array, Plane
-from gearcam.numeric.bulges import as_complex, bulge_pieces, off_circle
+from gearcam.numeric.bulges import bulge_pieces, off_circle
 from gearcam.numeric.splines import Spline
 
 BLOCK = 24
 """Points whose distances are computed together."""
 
 
-def distances(points: Array, vertices: Array, bulges: Array, closed: bool = True) -> Array:
+def distances(targets: Plane, points: Plane, bulges: Array, closed: bool = True) -> Array:
     """Return the exact distance of each point to the nearest place of a bulge polyline.
 
     Parameters
     ----------
-    points : (n, 2) array, mm
+    targets : (n,) complex array, mm
         Any points; fast where neighbours in the array are neighbours in the plane.
-    vertices, bulges, closed
+    points, bulges, closed
         The polyline, as for `flatten_bulges`.
 
     Returns
@@ -33,12 +32,11 @@ def distances(points: Array, vertices: Array, bulges: Array, closed: bool = True
     Points are taken by blocks. A disc around a block and a disc around each piece bound their
     distance from both sides; only pieces that can be the nearest are computed.
     """
-    start, chord, bends = bulge_pieces(vertices, bulges, closed)
+    start, chord, bends = bulge_pieces(points, bulges, closed)
     real = chord != 0
     if real.any():
         start, chord, bends = start[real], chord[real], bends[real]
     middle, reach = start + 0.5 * chord, 0.5 * np.abs(chord) * np.maximum(1.0, np.abs(bends))
-    targets = as_complex(points)
     result = np.empty(len(targets))
     for first in range(0, len(targets), BLOCK):
         block = targets[first : first + BLOCK]
@@ -69,11 +67,11 @@ def _nearest(points: Plane, start: Plane, chord: Plane, bends: Array) -> Array:
     return np.where(beside, off_circle(local, bend), ends).min(axis=1)
 
 
-def cubics(spline: Spline) -> NDArray[np.float64]:
-    """Bezier points of the cubics of a spline with double knots, (k, 4, 2), mm."""
-    steps = np.diff(spline.breaks)[:, None]
+def cubics(spline: Spline) -> Plane:
+    """Bezier points of the cubics of a spline with double knots, (k, 4), complex, mm."""
+    steps = np.diff(spline.breaks)
     first, second = spline.poles[1:-1:2], spline.poles[2::2]
     share = steps[:-1] / (steps[:-1] + steps[1:])
     joints = second[:-1] + share * (first[1:] - second[:-1])
-    ends = np.vstack([spline.poles[:1], joints, spline.poles[-1:]])
+    ends = np.concatenate([spline.poles[:1], joints, spline.poles[-1:]])
     return np.stack([ends[:-1], first, second, ends[1:]], axis=1)

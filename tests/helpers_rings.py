@@ -22,6 +22,7 @@ from gearcam.kinds.gear_pair.design import GearPairDesign
 from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.laws.ratio.formula import Formula
 from gearcam.laws.ratio.phases import Phases
+from gearcam.numeric.arrays import as_pairs
 from helpers_built import built
 from helpers_pairs import job
 
@@ -235,7 +236,7 @@ def overlap(
     outlines, by polygons; those of the pair, or others.
     """
     both = outlines or (result.gear1.profile, result.gear2.profile)
-    wheel, hole = (shapely.Polygon(outline.points) for outline in both)
+    wheel, hole = (shapely.Polygon(as_pairs(outline.points)) for outline in both)
     error = max(outline.chord_error for outline in both)
     wheel = wheel.buffer(-TOUCH * error)
     z1, z2 = result.pair.teeth

@@ -34,10 +34,10 @@ def keyed_bore() -> Loop:
     x, y = half, math.sqrt(radius**2 - half**2)
     begin = math.atan2(y, -half)
     angles = np.linspace(begin, 2 * math.pi + math.atan2(y, half), 4)
-    arcs = radius * np.column_stack([np.cos(angles), np.sin(angles)])
-    vertices = np.vstack([arcs, [[x, top], [-x, top]]])
+    arcs = radius * np.exp(1j * angles)
+    points = np.append(arcs, [complex(x, top), complex(-x, top)])
     bend = math.tan((angles[1] - angles[0]) / 4)
-    return Loop(vertices=vertices, bulges=np.array([bend, bend, bend, 0.0, -DENT, 0.0]))
+    return Loop(points=points, bulges=np.array([bend, bend, bend, 0.0, -DENT, 0.0]))
 
 
 def keyed_area() -> float:
@@ -67,14 +67,14 @@ def one_run(contour: Contour, *, joints: bool = True, doubled: bool = False) -> 
     """The runs of a smooth outline as one, joints where they met, perhaps with a piece of 0 mm."""
     ends = np.cumsum([len(run.points) - 1 for run in contour.runs])[:-1].tolist()
     points, tangents = (
-        np.vstack([*(values[:-1] for values in each), each[-1][-1:]])
+        np.concatenate([*(values[:-1] for values in each), each[-1][-1:]])
         for each in (
             [run.points for run in contour.runs],
             [run.tangents for run in contour.runs],
         )
     )
     if doubled:
-        points, tangents = (np.insert(v, ends[0], v[ends[0]], axis=0) for v in (points, tangents))
+        points, tangents = (np.insert(v, ends[0], v[ends[0]]) for v in (points, tangents))
         ends = [ends[0], *(end + 1 for end in ends)]
     run = Run(points=points, tangents=tangents, joints=tuple(ends) if joints else ())
     return replace(contour, dense=lambda: (run,))
@@ -83,7 +83,7 @@ def one_run(contour: Contour, *, joints: bool = True, doubled: bool = False) -> 
 def pieces(contour: Contour) -> tuple[int, int]:
     """How many pieces are curved and how many straight: these have one tangent."""
     straight = [
-        bool(np.ptp(piece.tangents, axis=0).max() < 1e-9)
+        bool(np.abs(piece.tangents - piece.tangents[0]).max() < 1e-9)
         for run in contour.runs
         for piece in run.pieces
     ]
@@ -99,7 +99,7 @@ def spline_area(contour: Contour, tolerance: float) -> float:
     total = 0.0
     # all at once, as the file's: how many are fitted together decides on lengths that are tried
     for spline in fit_splines([piece for run in contour.runs for piece in run.pieces], tolerance):
-        x, y = np.moveaxis(cubics(spline), 2, 0)
+        x, y = cubics(spline).real, cubics(spline).imag
         swept = (x @ basis) * (np.diff(y) @ slopes) - (y @ basis) * (np.diff(x) @ slopes)
         total += 0.25 * float((swept @ weight).sum())
     return total

@@ -108,7 +108,7 @@ def patch() -> Case:
         return np.bincount(found.step, found.area, PHASES)
 
     def whole(tolerance: float) -> Any:
-        one, two = (profile.points @ [1, 1j] for profile in profiles(tolerance))
+        one, two = (profile.points for profile in profiles(tolerance))
         areas = []
         for angle in phi:
             turned = one * np.exp(-1j * (angle + ahead)), two * np.exp(1j * angle)

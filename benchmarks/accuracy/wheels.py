@@ -141,7 +141,7 @@ def areas() -> Case:
     """Return the case of the area inside the outline of the driver."""
 
     def area(tolerance: float) -> float:
-        return float(polygon_area(built(tolerance).gear1.outline))
+        return float(polygon_area(built(tolerance).gear1.profile.points))
 
     def cubics(tolerance: float) -> float:
         return float(built(tolerance).gear1.profile.contour.moments.area)

@@ -245,7 +245,7 @@ def test_the_pitch_curve_has_corners_at_shocks() -> None:
     runs = made.pitch_contour.runs
     knots = made.program.knots[:-1]
     corners, _ = made.pitch_curve.trace(knots, *made.program.derivatives(knots, 1))
-    starts = np.array([run.points[0] @ [1, 1j] for run in runs])
+    starts = np.array([run.points[0] for run in runs])
     assert len(runs) == 4
     off = np.abs(starts[:, None] - corners).min(axis=0)
     assert off.max() < 1e-12

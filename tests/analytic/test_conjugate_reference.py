@@ -170,7 +170,7 @@ def test_a_follower_finds_the_same_lift_on_both(kind: str, *, clockwise: bool) -
     theta, found = angles(60), []
     for wall in made.walls:
         # seen as if the cam turned counter-clockwise; below the axis, in a mirror, the other way
-        runs = [run.points @ [1.0, 1j] for whole in wall.contour.runs for run in whole.pieces]
+        runs = [run.points for whole in wall.contour.runs for run in whole.pieces]
         if clockwise:
             runs = [-np.conj(one) for one in runs]
         m, sign = sizes_of(wall.follower), -1.0 if wall.follower.below else 1.0

@@ -209,7 +209,7 @@ def test_a_roller_touches_where_its_circle_does(rotation: str) -> None:
     turn = np.exp(-1j * side * theta)
     np.testing.assert_allclose(found["nx"] + 1j * found["ny"], away * turn / 6.0, atol=1e-12)
     place = (found["fixed_x_mm"] + 1j * found["fixed_y_mm"]) * turn
-    np.testing.assert_allclose(found.points @ [1, 1j], place, atol=1e-12)
+    np.testing.assert_allclose(found.points, place, atol=1e-12)
     np.testing.assert_allclose(found.points[2], found.points[-1], atol=1e-12)
 
 

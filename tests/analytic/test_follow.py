@@ -14,7 +14,7 @@ import pytest
 from numpy.typing import NDArray
 
 from gearcam.cams.follow import Followed, follow
-from gearcam.numeric.bulges import as_complex, as_pairs, flatten_bulges
+from gearcam.numeric.bulges import flatten_bulges
 from helpers_cams import Sizes
 from helpers_sampling import few
 from witness.cam_sweep import Follower
@@ -201,22 +201,22 @@ def test_corners_without_points_are_cut_off_a_polygon() -> None:
 @pytest.mark.parametrize("name", FOLLOWERS)
 def test_two_arcs_are_a_circle(name: str) -> None:
     follower, exact = FOLLOWERS[name], on_circle(FOLLOWERS[name], THETA)
-    ends = as_pairs(np.array([MIDDLE + RADIUS, MIDDLE - RADIUS]))
+    ends = np.array([MIDDLE + RADIUS, MIDDLE - RADIUS])
     sagitta = 1e-4
     points = flatten_bulges(ends, np.ones(2), sagitta)
     chords = follow(points, follower.follower, THETA)
     off = in_mm(follower, chords, exact)
     assert 0.1 * sagitta < off < 5.0 * sagitta
-    assert in_mm(follower, smooth(follower, THETA, lapped(as_complex(points))), exact) < 1e-9
+    assert in_mm(follower, smooth(follower, THETA, lapped(points)), exact) < 1e-9
 
 
-def nose(base: float, tip: float, apart: float) -> tuple[Array, Array]:
-    """A cam of two arcs and two straight flanks: vertices and bulges."""
+def nose(base: float, tip: float, apart: float) -> tuple[Plane, Array]:
+    """A cam of two arcs and two straight flanks: corners and bulges."""
     beta = math.acos((base - tip) / apart)
     corners = [base * np.exp(-1j * beta), apart + tip * np.exp(-1j * beta)]
     corners += [np.conj(corner) for corner in reversed(corners)]
     bulges = [0.0, math.tan(beta / 2), 0.0, math.tan((math.pi - beta) / 2)]
-    return as_pairs(np.array(corners)), np.array(bulges)
+    return np.array(corners), np.array(bulges)
 
 
 def on_nose(base: float, tip: float, apart: float, radius: float, theta: Array) -> Array:
@@ -244,17 +244,17 @@ def on_nose(base: float, tip: float, apart: float, radius: float, theta: Array) 
 def test_arcs_and_straight_flanks(radius: float | None) -> None:
     """Jumps of the curvature, at points as a polyline has them."""
     shape = (30.0, 8.0, 35.0)
-    vertices, bulges = nose(*shape)
+    corners, bulges = nose(*shape)
     follower = Sizes(flat=radius is None, oscillating=False, start=30.0, radius=radius or 0.0)
     if radius is None:
         exact = np.maximum(shape[0], shape[2] * np.sin(THETA) + shape[1])
     else:
         exact = on_nose(*shape, radius, THETA)
-    points = flatten_bulges(vertices, bulges, 1e-4, least=8)
+    points = flatten_bulges(corners, bulges, 1e-4, least=8)
     lift = follow(points, follower.follower, THETA).lift
     assert -5e-4 < np.min(lift + 30.0 - exact) < -1e-6
     assert np.max(lift + 30.0 - exact) < 1e-11
-    z, corners = as_complex(points), as_complex(vertices)
+    z = points
     cuts = [int(np.abs(z - corner).argmin()) for corner in corners] + [len(z)]
     z = np.append(z, z[0])
     pieces = [z[low : high + 1] for low, high in pairwise(cuts)]

@@ -12,7 +12,7 @@ import pytest
 import gearcam
 from gearcam.numeric.contour import Contour, Run
 from gearcam.parts.tools import tool_limits
-from helpers_contour import arc, as_pairs, line, plate
+from helpers_contour import arc, line, plate
 
 
 def bowl(half: float, deep: float, steps: int) -> Contour:
@@ -20,14 +20,14 @@ def bowl(half: float, deep: float, steps: int) -> Contour:
     turn = -np.linspace(0.0, math.pi, steps + 1)
     slope = half * np.sin(turn) - 1j * deep * np.cos(turn)
     bottom = Run(
-        points=as_pairs(10j + half * np.cos(turn) + 1j * deep * np.sin(turn)),
-        tangents=as_pairs(slope / np.abs(slope)),
+        points=10j + half * np.cos(turn) + 1j * deep * np.sin(turn),
+        tangents=slope / np.abs(slope),
     )
     sides = plate([line(half + 20j, half + 10j), line(-half + 10j, -half + 20j)], half)
     runs = (*sides.runs[:4], bottom, *sides.runs[4:])
     return Contour(
         dense=lambda: runs,
-        vertices=np.vstack([run.points[:-1] for run in runs]),
+        points=np.concatenate([run.points[:-1] for run in runs]),
         tolerance=1e-3,
         chord_error=1e-3,
     )

@@ -28,9 +28,7 @@ EXACT = 1e-9
 
 
 def hole(x: float, y: float, diameter: float) -> Opening:
-    return Opening(
-        kind="HOLE", shape=Circle(center=np.array([x, y]), diameter=diameter), name="hole"
-    )
+    return Opening(kind="HOLE", shape=Circle(center=complex(x, y), diameter=diameter), name="hole")
 
 
 def cylinder(diameter: float, low: float, high: float, at: complex = 0j) -> np.ndarray:
@@ -78,7 +76,7 @@ def test_a_disc_with_everything() -> None:
         width=12.0,
         openings=(*bore(20.0), hole(30.0, -10.0, 9.0), hole(0.0, 14.0, 4.0)),
         hub=Hub(diameter=40.0, front=7.0, back=3.0),
-        marks=(Mark(center=np.array([-38.0, 2.0]), diameter=3.0, depth=0.5),),
+        marks=(Mark(center=complex(-38.0, 2.0), diameter=3.0, depth=0.5),),
     )
     wanted = cylinder(100.0, 0.0, 12.0) + cylinder(40.0, 12.0, 19.0) + cylinder(40.0, -3.0, 0.0)
     wanted -= cylinder(20.0, -3.0, 19.0) + cylinder(4.0, -3.0, 19.0, 14j)
@@ -182,7 +180,7 @@ def wheel(tolerance: float | None = None) -> Part:
         hub_diameter=22.0, hub_front=6.0, hub_back=2.0, bolts=3, bolt_circle=30.0,
         bolt_diameter=3.0, bolt_angle=0.3, clearance=0.05, clearance_bores=True,
     )  # fmt: skip
-    mark = Mark(center=np.array([0.0, -18.0]), diameter=1.5, depth=0.6)
+    mark = Mark(center=complex(0.0, -18.0), diameter=1.5, depth=0.6)
     return make_part(
         "g",
         [made.gear1.profile.contour],

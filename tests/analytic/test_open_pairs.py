@@ -161,7 +161,7 @@ def test_the_body_of_a_ring_s_sector_lies_outside_its_teeth(
         for height, metal in zip((-1.0, 1.0), solid, strict=True):
             x, y = np.stack([(frames.p + height * normal).real, (frames.p + height * normal).imag])
             assert shapely.contains_xy(shapely.Polygon(gear.outline), x, y) == metal
-    toothed = gear.profile.toothed @ [1, 1j]
+    toothed = gear.profile.toothed
     outside = 120.0 if rim is None else np.abs(toothed).max() + rim
     assert np.abs(points).max() == pytest.approx(outside, rel=1e-12)
     arc = points[np.abs(np.abs(points) - outside) < 1e-9]

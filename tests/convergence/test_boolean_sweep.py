@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from gearcam.numeric.arrays import as_pairs
 from helpers_sampling import few
 from helpers_witnessed import cut_points, kinematics, outline
 from witness import sweep
@@ -69,7 +70,7 @@ def test_a_difference_that_does_not_fall_is_seen() -> None:
 def test_the_tip_is_the_offset_of_the_centrode() -> None:
     """Over the tips, points lie at the addendum from the centrode, within the chord error."""
     rolling, basic = kinematics("ellipse")
-    points = outline("ellipse", 1).points
+    points = as_pairs(outline("ellipse", 1).points)
     for k in (1, 13):
         material = sweep.swept(rolling, 1, k, basic, 8000)
         mine = sweep.inside(points, rolling, 1, k, basic)

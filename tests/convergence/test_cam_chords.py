@@ -49,7 +49,7 @@ def test_vertices_grow_with_the_root_of_the_tolerance(kind: str) -> None:
 @pytest.mark.parametrize("kind", SMOOTH)
 def test_the_area_converges_with_the_square_of_the_vertices(kind: str) -> None:
     exact = at(kind, TOLERANCES[0]).size.area
-    errors = [polygon_area(at(kind, float(t)).contour.vertices) - exact for t in TOLERANCES]
+    errors = [polygon_area(at(kind, float(t)).contour.points) - exact for t in TOLERANCES]
     assert slope(counts(kind), errors) == pytest.approx(-2.0, abs=0.1)
 
 

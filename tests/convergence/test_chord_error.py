@@ -79,7 +79,7 @@ class Demand(NamedTuple):
 @cache
 def demand(name: str, wheel: Wheel) -> Demand:
     """Points that curvature asks for, by finite differences of the finest outline."""
-    steps = np.diff(finest(name, wheel).points @ [1, 1j], append=0)
+    steps = np.diff(finest(name, wheel).points, append=0)
     steps[-1] = complex(*(finest(name, wheel).points[0] - finest(name, wheel).points[-1]))
     turning = np.abs(np.angle(steps * np.conj(np.roll(steps, 1))))
     length = 0.5 * (np.abs(steps) + np.abs(np.roll(steps, 1)))
@@ -110,8 +110,7 @@ def test_no_chord_is_farther_off_than_the_tolerance(name: str, wheel: Wheel, par
     vertices = outline.sampler.chords[0]
     inner = np.linspace(0.0, 1.0, 42)[1:-1, None]
     curve = outline.sampler.at((vertices[:-1] + inner * np.diff(vertices)).ravel())[0]
-    start = outline.points[::-1] if wheel == 2 else outline.points
-    first = start @ [1, 1j]
+    first = outline.points[::-1] if wheel == 2 else outline.points
     chord = np.roll(first, -1) - first
     off = np.abs(np.imag(np.conj(chord) * (curve.reshape(40, -1) - first)) / np.abs(chord))
     assert off.max() <= tolerance

@@ -37,10 +37,8 @@ def doubts(result: CamResult) -> Iterator[tuple[str, str]]:
     """
     theta = result.program.period / _ANGLES * (np.arange(float(_ANGLES)) + 0.5)
     for wall, contour in zip(result.cam.walls, result.profiles, strict=True):
-        vertices = contour.vertices
-        columns, _, _ = followed(
-            wall, vertices, np.zeros(len(vertices)), theta, result.design.limits
-        )
+        bulges = np.zeros(len(contour.points))
+        columns, _, _ = followed(wall, contour.points, bulges, theta, result.design.limits)
         off = np.abs(columns["difference"])
         room = _room(wall, theta)
         worst = int((off - room).argmax())

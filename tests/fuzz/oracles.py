@@ -19,6 +19,7 @@ import numpy as np
 
 from fuzz.outcome import Failure
 from gearcam.base.errors import GearcamError, InfeasibleError
+from gearcam.numeric.arrays import as_pairs
 from gearcam.numeric.contour import Contour
 from gearcam.parts.body import Layer, Part
 from gearcam.results.written import BuildOutput
@@ -75,14 +76,15 @@ def _torn(part: Part) -> Iterator[Failure]:
     for layer in (*part.layers, *part.pockets):
         for edge in (one for one in layer.edges if isinstance(one, Contour)):
             ends = np.array([run.points[[0, -1]] for run in edge.runs])
-            gap = float(np.abs(np.roll(ends[:, 0], -1, axis=0) - ends[:, 1]).max())
+            gap = float(np.abs(np.roll(ends[:, 0], -1) - ends[:, 1]).max())
             if not gap <= _ROUNDING * edge.reach + _JOINED * part.tolerance:
                 words = f"{part.name}: curves of an edge end {gap} mm from the next"
                 yield Failure(kind="polygon", words=words, place="torn")
 
 
 def _rings(layer: Layer, tolerance: float) -> tuple[Any, list[Any]]:
-    return layer.edge.points(tolerance), [one.shape.points(tolerance) for one in layer.openings]
+    outer, *inner = (as_pairs(edge.polyline(tolerance)) for edge in layer.edges)
+    return outer, inner
 
 
 def _drawing_errors(parts: Iterable[Part], written: BuildOutput) -> Iterator[Failure]:

@@ -25,6 +25,7 @@ from gearcam.laws.ratio.constant import Constant
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.laws.ratio.formula import Formula
 from gearcam.laws.ratio.phases import Phases
+from gearcam.numeric.arrays import as_pairs
 from helpers_pairs import Assembly, explained, job
 from helpers_sampling import QUICK, few, rounded
 
@@ -115,14 +116,14 @@ def chain_gaps(outline: Outline) -> np.ndarray:
 
 def demand_outline(outline: Outline) -> None:
     """An outline is simple, counter-clockwise, of one piece, and keeps its tolerance."""
-    polygon = shapely.Polygon(outline.points)
+    polygon = shapely.Polygon(as_pairs(outline.points))
     assert polygon.is_valid, shapely.is_valid_reason(polygon)
     assert polygon.exterior.is_ccw
     assert chain_gaps(outline).max() <= 1e-8 * MODULE
     vertices = outline.sampler.chords[0]
     inner = np.linspace(0.0, 1.0, 14)[1:-1, None]
     curve = outline.sampler.at((vertices[:-1] + inner * np.diff(vertices)).ravel())[0]
-    first = (outline.points[::-1] if outline.toothing.wheel == 2 else outline.points) @ [1, 1j]
+    first = outline.points[::-1] if outline.toothing.wheel == 2 else outline.points
     chord = np.roll(first, -1) - first
     off = np.abs(np.imag(np.conj(chord) * (curve.reshape(12, -1) - first)) / np.abs(chord))
     assert off.max() <= outline.tolerance

@@ -34,9 +34,9 @@ TEETH = gear_contour(30, 2.0)
 ROUND = disc_contour(90.0)
 WIDTH = 8.0
 HOLE = Opening(
-    kind="HOLE", shape=Circle(center=np.array([0.0, 39.0]), diameter=4.0), name="bolt hole 1"
+    kind="HOLE", shape=Circle(center=complex(0.0, 39.0), diameter=4.0), name="bolt hole 1"
 )
-MARK = Mark(center=np.array([39.0, 0.0]), diameter=2.0, depth=0.5)
+MARK = Mark(center=complex(39.0, 0.0), diameter=2.0, depth=0.5)
 STYLE = DxfStyle(tolerance=1e-3)
 
 
@@ -180,4 +180,4 @@ def test_a_body_need_not_be_a_prism() -> None:
     assert found.mass == pytest.approx(cone.volume, rel=1e-14)
     assert found.centroid[2] == pytest.approx(5.0, rel=1e-14)
     with pytest.raises(TypeError, match="Circle makes no solid"):
-        solid(Circle(center=np.zeros(2), diameter=1.0))  # type: ignore[arg-type]
+        solid(Circle(center=0j, diameter=1.0))  # type: ignore[arg-type]

@@ -20,6 +20,7 @@ from gearcam.export.lettering import labelled, strokes, text_width
 from gearcam.export.nest import GAP, nested
 from gearcam.kinds.cam.build import CamResult
 from gearcam.kinds.gear_pair.result import GearPairResult
+from gearcam.numeric.arrays import as_pairs, bounds
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import Blank, WheelBlank
 from gearcam.parts.body import Mark, Part
@@ -123,7 +124,7 @@ def marked(contour: Contour, name: str = "gear1", **sizes: Any) -> Part:
         bore_diameter=20.0, keyway_width=6.0, keyway_depth=2.8, keyway_angle=0.7, bolts=1,
         bolt_circle=36.0, bolt_diameter=5.0, bolt_angle=2.0, stop_pin=3.0, **sizes,
     )  # fmt: skip
-    mark = Mark(center=np.array([0.0, 16.0]), diameter=1.2, depth=0.5)
+    mark = Mark(center=complex(0.0, 16.0), diameter=1.2, depth=0.5)
     place = Workpiece(name="wheel 1", wheel=1, rim=5.4, travel=0.8)
     return make_part(name, [contour], 5.0, blank, place, lambda: mark)
 
@@ -155,7 +156,7 @@ def test_one_part_is_drawn_in_its_size_and_not_mirrored(kerf: float) -> None:
         (got,) = sheet.regions(kind.lower())
         (opening,) = [one for one in part().openings if one.kind == kind]
         assert not isinstance(opening.shape, Contour)
-        edge = shapely.Polygon(opening.shape.points(1e-5))
+        edge = shapely.Polygon(as_pairs(opening.shape.polyline(1e-5)))
         demand_same(there(got), edge.buffer(-0.5 * kerf, quad_segs=256), tolerance)
         mirrored = shapely.affinity.scale(got, -1.0, origin=outer.centroid)
         assert there(mirrored).symmetric_difference(edge).area > 0.3 * edge.length
@@ -210,7 +211,7 @@ def test_curves_stay_within_the_tolerance(tolerance: float) -> None:
     )
     sheet = sheet_of(cut_svg([wheel_drawing(plain)], "one"))
     (line,) = sheet.lines
-    dense = np.vstack([run.points[:-1] for run in contour.runs])
+    dense = as_pairs(np.concatenate([run.points[:-1] for run in contour.runs]))
     shift = dense.min(axis=0) - np.array(line.region.bounds[:2])
     off = distances(dense - shift, line.region.boundary)
     allowed = 1.1 * tolerance + 2e-5  # of the chords of the arcs here, and of the shift
@@ -281,14 +282,13 @@ def test_names_without_room_stand_below() -> None:
 
 def test_letters_read_as_they_should() -> None:
     """A G opens to the right, a 4 has its corner at the left; every name of a part has letters."""
-    (g,) = strokes("G", 6.0, 10.0, 20.0)
-    assert g.min(axis=0) == pytest.approx((10.0, 20.0))
-    assert g.max(axis=0) == pytest.approx((14.0, 26.0))
+    (g,) = strokes("G", 6.0, 10.0 + 20.0j)
+    assert bounds(g) == pytest.approx((10.0 + 20.0j, 14.0 + 26.0j))
     for name in ("GEAR 1234567890", "STEP", "CAM"):
-        right = max(line[:, 0].max() for line in strokes(name, 3.0, 0.0, 0.0))
+        right = max(line.real.max() for line in strokes(name, 3.0, 0j))
         assert right <= text_width(name) * 3.0 + 1e-9
     with pytest.raises(KeyError):
-        strokes("Q", 1.0, 0.0, 0.0)
+        strokes("Q", 1.0, 0j)
 
 
 def test_what_has_no_outline_is_not_cut() -> None:

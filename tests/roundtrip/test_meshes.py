@@ -175,9 +175,9 @@ def test_nothing_and_folded_triangles_are_not_closed(triangles: np.ndarray) -> N
 def test_vertices_that_fall_together_in_single_precision_stay_closed(kind: str) -> None:
     """A square with a corner cut at 1e-7 mm: two vertices become one."""
     plain = square_contour(200.0)
-    corner = plain.vertices[0]
-    vertices = np.vstack([corner - [0, 1e-7], corner - [1e-7, 0], plain.vertices[1:]])
-    contour = Contour(dense=plain.dense, vertices=vertices, tolerance=1e-3, chord_error=1e-7)
+    corner = plain.points[0]
+    points = np.append([corner - 1e-7j, corner - 1e-7], plain.points[1:])
+    contour = Contour(dense=plain.dense, points=points, tolerance=1e-3, chord_error=1e-7)
     made = solid(Part(name="plate", contours=(contour,), width=10.0))
     assert len(made.vertices) == 10
     write, read = FORMATS[kind]
@@ -188,7 +188,7 @@ def test_vertices_that_fall_together_in_single_precision_stay_closed(kind: str) 
 
 
 def test_the_mark_is_blind_and_in_the_upper_face() -> None:
-    mark = Mark(center=np.array([10.0, 0.0]), diameter=3.0, depth=0.5)
+    mark = Mark(center=complex(10.0, 0.0), diameter=3.0, depth=0.5)
     plate = Part(
         name="p", contours=(square_contour(40.0),), openings=bore(8.0), width=6.0, marks=(mark,)
     )

@@ -21,6 +21,7 @@ from gearcam.gears.spec import RingSpec, StepsSpec
 from gearcam.kinds.gear_pair.design import PairOutputSpec
 from gearcam.kinds.gear_pair.files import FILES
 from gearcam.kinds.gear_pair.result import GearPairResult
+from gearcam.numeric.arrays import as_pairs
 from gearcam.numeric.pose import UNMOVED
 from gearcam.parts.blank import Blank
 from helpers_rings import WAIST, ring_job, turned
@@ -150,7 +151,7 @@ def test_solids_of_rings_are_closed_and_hollow(
     mesh.merge_vertices()
     assert mesh.is_watertight
     assert mesh.euler_number == 2 - 2 * (1 + len(part.openings))
-    outer = [shapely.Polygon(edge.points(1e-4)).area for edge in part.contours]
+    outer = [shapely.Polygon(as_pairs(edge.polyline(1e-4))).area for edge in part.contours]
     holes = [shapely.Polygon(gears[1].outline).area for gears in result.steps]
     area = float(np.mean(outer) - np.mean(holes)) - len(part.openings) * math.pi * 1.5**2
     (mark,) = part.marks
@@ -175,7 +176,7 @@ def test_inspection_points_look_to_the_shaft(waist: GearPairResult) -> None:
         here = (at["wheel"] == 2) & (at["step"] == step)
         assert here.sum() == 2 * 48 * 9
         metal = shapely.Polygon(
-            waist.parts[1].contours[0].points(1e-3), [waist.steps[step - 1][1].outline]
+            as_pairs(waist.parts[1].contours[0].polyline(1e-3)), [waist.steps[step - 1][1].outline]
         )
         points = np.column_stack([at["x_mm"], at["y_mm"]])[here]
         normals = np.column_stack([at["nx"], at["ny"]])[here]

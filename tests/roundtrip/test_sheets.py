@@ -20,13 +20,14 @@ from gearcam.export.dxf_read import measure_dxf, read_dxf
 from gearcam.export.sheet_dxf import sheet_dxf
 from gearcam.export.sheet_svg import sheet_svg
 from gearcam.kinds.gear_pair.drawings import pair_drawing, pair_sheet
+from gearcam.numeric.arrays import as_pairs
 from gearcam.numeric.pose import Pose
 from gearcam.parts.blank import WheelBlank
 from gearcam.parts.body import Hub, Mark, Opening, Part
 from gearcam.parts.make import make_part
 from gearcam.parts.openings import Workpiece
 from gearcam.parts.shapes import Circle
-from gearcam.pictures.drawings import Drawing
+from gearcam.pictures.drawings import Drawing, reach
 from gearcam.pictures.drawings import Path as Chain
 from gearcam.sheets import wheel_sheet
 from gearcam.sheets.sheet import Sheet
@@ -48,7 +49,7 @@ def keyed(bore: float = 40.0) -> Part:
         bore_diameter=bore, keyway_width=12.0, keyway_depth=3.3, keyway_angle=0.5, bolts=4,
         bolt_circle=56.0, bolt_diameter=6.6, hub_diameter=70.0, hub_front=15.0, hub_back=5.0,
     )  # fmt: skip
-    mark = Mark(center=np.array([70.0, 12.0]), diameter=2.0, depth=0.5)
+    mark = Mark(center=complex(70.0, 12.0), diameter=2.0, depth=0.5)
     made = make_part(
         "gear1",
         [gear_contour()],
@@ -59,7 +60,7 @@ def keyed(bore: float = 40.0) -> Part:
     )
     holes = [((10.0, 50.0), 20.0), ((-60.0, 3.0), 9.0)]
     more = [
-        Opening(kind="HOLE", shape=Circle(center=np.array(at), diameter=size), name="hole")
+        Opening(kind="HOLE", shape=Circle(center=complex(*at), diameter=size), name="hole")
         for at, size in holes
     ]
     return replace(made, openings=(*made.openings, *more))
@@ -83,14 +84,14 @@ def fine_points(part: Part) -> np.ndarray:
     """Points on the true curve, a hundred for each of its dense ones: arcs with their tangents."""
     found = []
     for run in edges(part)[-1].runs:
-        start, end = (points @ [1.0, 1j] for points in (run.points[:-1], run.points[1:]))
+        start, end = run.points[:-1], run.points[1:]
         way = end - start
         # the arc that leaves the first point along its tangent and meets the second
-        half = np.angle(way * np.conj(run.tangents[:-1] @ [1.0, 1j]))
+        half = np.angle(way * np.conj(run.tangents[:-1]))
         u = np.linspace(0.0, 1.0, 100, endpoint=False)[:, None]
         ratio = u * np.sinc(u * half / np.pi) / np.sinc(half / np.pi)
         found.append((start + way * ratio * np.exp(1j * half * (u - 1.0))).ravel())
-        found.append(run.points[-1:] @ [1.0, 1j])
+        found.append(run.points[-1:])
     values = np.concatenate(found)
     return np.column_stack([np.real(values), np.imag(values)])
 
@@ -148,7 +149,7 @@ def wheel(request: pytest.FixtureRequest) -> tuple[Part, list[float], Sheet]:
 
 def pair(phi: float = 0.3) -> Drawing:
     angle = np.linspace(0.0, 2 * np.pi, 400, endpoint=False)
-    ring = Chain(points=23.9 * np.column_stack([np.cos(angle), np.sin(angle)]))
+    ring = Chain(points=np.asarray(23.9 * np.exp(1j * angle), dtype=np.complex128))
     part = plain()
     poses = Pose(-phi), Pose(phi, 47.8)
     return pair_drawing([part, part], 47.8, [ring, ring], poses=poses)
@@ -312,8 +313,8 @@ def test_no_line_of_the_views_runs_through_the_text_of_a_dimension(sheets: list[
     """Linear dimensions stand outside the views; leaders are put where there is room."""
     for sheet in sheets:
         outline = [one for one in sheet.features if one.layer.endswith("OUTLINE")]
-        points = np.vstack([sheet.on_paper(one.shape.vertices) for one in outline])  # type: ignore[union-attr]
-        points = points * [1.0, -1.0] + [0.0, sheet.size[1]]
+        points = np.concatenate([sheet.on_paper(reach(one.shape)) for one in outline])
+        points = as_pairs(points) * [1.0, -1.0] + [0.0, sheet.size[1]]
         for words, (left, top, right, low) in boxes(root_of(sheet)):
             inside = (points > [left, top]).all(axis=1) & (points < [right, low]).all(axis=1)
             assert not inside.any(), words
@@ -321,9 +322,9 @@ def test_no_line_of_the_views_runs_through_the_text_of_a_dimension(sheets: list[
 
 def test_the_rows_of_the_table_line_up(sheets: list[Sheet]) -> None:
     for sheet in sheets:
-        texts = {text.text: sheet.on_paper(text.place[None, :])[0] for text in sheet.texts}
-        labels = np.array([texts[label] for label in FACTS])
-        values = np.array([texts[value] for value in FACTS.values()])
+        texts = {text.text: sheet.on_paper(np.array([text.place]))[0] for text in sheet.texts}
+        labels = as_pairs(np.array([texts[label] for label in FACTS]))
+        values = as_pairs(np.array([texts[value] for value in FACTS.values()]))
         assert np.ptp(labels[:, 0]) < 1e-9
         assert np.ptp(values[:, 0]) < 1e-9
         assert labels[:, 1] == pytest.approx(values[:, 1], abs=1e-9)

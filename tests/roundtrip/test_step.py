@@ -21,6 +21,7 @@ import pytest
 from gearcam.base.errors import GearcamError, MissingExtraError
 from gearcam.export import step, step_shapes
 from gearcam.export.step import step_bytes
+from gearcam.numeric.arrays import as_pairs
 from gearcam.numeric.contour import Run
 from gearcam.numeric.pose import UNMOVED, Pose
 from gearcam.numeric.splines import Spline, fit_splines
@@ -102,8 +103,8 @@ def test_a_piece_that_is_left_out_is_missed() -> None:
     contour = gear_contour(12, 5.0)
     first, second, *others = contour.runs
     joined = Run(
-        points=np.vstack([first.points[:-1], second.points]),
-        tangents=np.vstack([first.tangents[:-1], second.tangents]),
+        points=np.concatenate([first.points[:-1], second.points]),
+        tangents=np.concatenate([first.tangents[:-1], second.tangents]),
     )
     fewer = plate(replace(contour, dense=lambda: (joined, *others)))
     curved, straight = pieces(contour)
@@ -117,7 +118,7 @@ def test_faces_stay_whole_with_hub_marks_and_openings() -> None:
         contour,
         openings=bore(8.0),
         hub=Hub(diameter=20.0, front=3.0, back=2.0),
-        marks=(Mark(center=np.array([15.0, 0.0]), diameter=2.0, depth=0.5),),
+        marks=(Mark(center=complex(15.0, 0.0), diameter=2.0, depth=0.5),),
     )
     curved, straight = pieces(contour)
     # cylinders: bore, two hubs, mark; planes: two of the plate, two of the hubs, the mark's floor
@@ -150,9 +151,9 @@ def test_a_disc_is_within_its_tolerance() -> None:
 def test_hub_keyway_holes_and_mark_are_exact() -> None:
     keyed = Opening(kind="BORE", shape=keyed_bore(), name="bore")
     hole = Opening(
-        kind="HOLE", shape=Circle(center=np.array([-17.0, 15.0]), diameter=3.0), name="hole"
+        kind="HOLE", shape=Circle(center=complex(-17.0, 15.0), diameter=3.0), name="hole"
     )
-    mark = Mark(center=np.array([16.0, 15.0]), diameter=4.0, depth=0.5)
+    mark = Mark(center=complex(16.0, 15.0), diameter=4.0, depth=0.5)
     hub = Hub(diameter=30.0, front=4.0, back=3.0)
     part = plate(square_contour(40.0), openings=(keyed, hole), hub=hub, marks=(mark,))
     disc = math.pi * 15.0**2 - keyed_area()
@@ -171,7 +172,7 @@ def test_hub_keyway_holes_and_mark_are_exact() -> None:
 
 def test_the_mark_is_in_the_upper_face() -> None:
     bare = plate(square_contour(40.0))
-    marked = replace(bare, marks=(Mark(center=np.array([10.0, 0.0]), diameter=4.0, depth=1.0),))
+    marked = replace(bare, marks=(Mark(center=complex(10.0, 0.0), diameter=4.0, depth=1.0),))
     lost = math.pi * 4.0
     # the centre of mass moves away from what was taken at x = 10 and z = 5.5
     moved = read(marked).center - [0.0, 0.0, 3.0]
@@ -186,7 +187,7 @@ def test_steps_are_solids_of_one_product() -> None:
         width=10.0,
         openings=bore(8.0),
         hub=Hub(diameter=20.0, front=3.0, back=2.0),
-        marks=(Mark(center=np.array([14.0, 0.0]), diameter=2.0, depth=0.5),),
+        marks=(Mark(center=complex(14.0, 0.0), diameter=2.0, depth=0.5),),
     )
     data = written(part)
     below, above = read_step(data)
@@ -208,7 +209,7 @@ def test_steps_are_solids_of_one_product() -> None:
 
 
 def test_the_file_says_millimetres(gear: Part, gear_file: bytes, gear_solid: StepSolid) -> None:
-    dense = np.vstack([run.points for run in gear.contour.runs])
+    dense = as_pairs(np.concatenate([run.points for run in gear.contour.runs]))
     low, high = dense.min(axis=0), dense.max(axis=0)
     assert gear_solid.bounds[0] == pytest.approx([*low, 0.0], abs=1e-4)
     assert gear_solid.bounds[1] == pytest.approx([*high, 20.0], abs=1e-4)
@@ -223,7 +224,7 @@ def test_the_file_says_millimetres(gear: Part, gear_file: bytes, gear_solid: Ste
 
 
 def test_corners_stand_where_the_outline_has_them(gear: Part, gear_file: bytes) -> None:
-    ends = np.array([run.points[0] for run in gear.contour.runs])
+    ends = as_pairs(np.array([run.points[0] for run in gear.contour.runs]))
     found = corners(gear_file)
     for z in (0.0, 20.0):
         flat = found[np.abs(found[:, 2] - z) < 1e-12][:, :2]
@@ -233,9 +234,7 @@ def test_corners_stand_where_the_outline_has_them(gear: Part, gear_file: bytes) 
 
 
 def test_an_assembly_puts_parts_where_they_belong() -> None:
-    hole = Opening(
-        kind="HOLE", shape=Circle(center=np.array([12.0, 5.0]), diameter=6.0), name="hole"
-    )
+    hole = Opening(kind="HOLE", shape=Circle(center=complex(12.0, 5.0), diameter=6.0), name="hole")
     one, two = plate(disc_contour(20.0)), plate(square_contour(40.0), openings=(hole,))
     two = replace(two, name="gear2")
     angle, offset = 0.7, (80.0, -3.0)
@@ -377,7 +376,7 @@ def test_a_moved_pole_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_an_outline_that_a_hole_crosses_is_invalid() -> None:
-    circle = Circle(center=np.array([20.0, 0.0]), diameter=6.0)
+    circle = Circle(center=complex(20.0, 0.0), diameter=6.0)
     across = Opening(kind="HOLE", shape=circle, name="hole")
     with pytest.raises(SolidError, match="gear1: the solid is invalid"):
         written(plate(square_contour(40.0), openings=(across,)))
@@ -385,7 +384,7 @@ def test_an_outline_that_a_hole_crosses_is_invalid() -> None:
 
 @pytest.mark.parametrize(("diameter", "count"), [(50.0, 4), (60.0, 0)])
 def test_a_solid_in_pieces_or_none_is_refused(diameter: float, count: int) -> None:
-    mark = Mark(center=np.zeros(2), diameter=diameter, depth=7.0)
+    mark = Mark(center=0j, diameter=diameter, depth=7.0)
     with pytest.raises(SolidError, match=f"gear1: the solid consists of {count} pieces"):
         written(plate(square_contour(40.0), marks=(mark,)))
 

@@ -11,6 +11,7 @@ import pytest
 
 from gearcam.export.svg import svg_bytes
 from gearcam.kinds.gear_pair.drawings import pair_drawing
+from gearcam.numeric.arrays import as_complex
 from gearcam.parts.body import Part
 from gearcam.parts.marks import timing_mark
 from gearcam.pictures.drawings import Drawing, Path
@@ -26,7 +27,7 @@ SPACE = {"s": "http://www.w3.org/2000/svg"}
 def drawing() -> Drawing:
     contour = gear_contour(36, 5.0, squash=(1.0, 0.7))
     angle = np.linspace(0, 2 * np.pi, 400, endpoint=False)
-    centrode = Path(points=np.column_stack([90 * np.cos(angle), 63 * np.sin(angle)]))
+    centrode = Path(points=90 * np.cos(angle) + 63j * np.sin(angle))
     parts = [
         Part(
             name=f"gear{k + 1}", contours=(contour,), openings=bore(40.0), width=50.0,
@@ -57,8 +58,8 @@ def polygon(root: Any, name: str) -> np.ndarray:
 def test_the_outlines_are_where_they_belong(root: Any, drawing: Drawing) -> None:
     """In mm, y downwards, within the thinning; the second wheel at the centre distance."""
     for name, contour in zip(("gear1-outline", "gear2-outline"), drawing.contours, strict=True):
-        drawn = polygon(root, name) * [1, -1]
-        away = distances(contour.vertices, drawn, np.zeros(len(drawn)))
+        drawn = as_complex(polygon(root, name) * [1, -1])
+        away = distances(contour.points, drawn, np.zeros(len(drawn)))
         assert 1e-4 < away.max() < 0.0051
         assert len(drawn) < len(contour.vertices)
 

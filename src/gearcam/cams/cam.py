@@ -80,10 +80,10 @@ class Cam(NotebookView):
         """Return a drawing of the walls and their pitch curves, SVG, in the cam's frame."""
         inside = [wall for wall in self.walls if wall.side > 0]
         pitches = [
-            np.vstack([wall.pitch_contour.vertices, wall.pitch_contour.vertices[:1]])
+            np.append(wall.pitch_contour.points, wall.pitch_contour.points[:1])
             for wall in inside
             if wall.pitch_contour is not wall.contour
         ]
         return renderer().outlines(
-            self.facts.headline, [wall.outline for wall in self.walls], pitches
+            self.facts.headline, [wall.contour.points for wall in self.walls], pitches
         )

@@ -37,8 +37,7 @@ from numpy.typing import ArrayLike
 from gearcam.base.errors import InfeasibleError, beyond_limit
 from gearcam.cams.carriers import ROTATING, Carrier
 from gearcam.cams.followers import Follower
-from gearcam.numeric.arrays import Array, Ints, Plane
-from gearcam.numeric.bulges import as_complex
+from gearcam.numeric.arrays import Array, Ints, Plane, as_complex
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.sampling import FEWEST
 

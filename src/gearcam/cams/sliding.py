@@ -37,7 +37,6 @@ from gearcam.cams.trim import crossing_chords
 from gearcam.cams.wall import CHORD_TOLERANCE, OVERSAMPLING, PitchMotion, Wall
 from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array, Plane
-from gearcam.numeric.bulges import as_complex, as_pairs
 from gearcam.numeric.contour import Contour, Run
 
 _DENSE = 1 / 40
@@ -49,8 +48,8 @@ _FEWEST = 8
 _ALIKE = 1e-11
 """Distance of corners, in sizes of the plate, below which they are merged: rounding."""
 
-Stretch = tuple[tuple[Run, ...], Array]
-"""Runs of a part of a contour, and its vertices, (n, 2), mm, without the last."""
+Stretch = tuple[tuple[Run, ...], Plane]
+"""Runs of a part of a contour, and its points, (n,), complex, mm, without the last."""
 
 _FAR = 3.0
 """Size of a plate in remedies, over the least: bolts need space next to the groove."""
@@ -87,14 +86,14 @@ class SlidingWall(Wall):
     plate: Plate
 
     @cached_property
-    def line(self) -> Array:
-        """Vertices of the wall, (n, 2), mm, from the beginning of the travel to its end."""
-        return as_pairs(self.sampler.chords[1])
+    def line(self) -> Plane:
+        """Points of the wall, complex, mm, from the beginning of the travel to its end."""
+        return self.sampler.chords[1]
 
     @cached_property
-    def pitch_line(self) -> Array:
-        """Vertices of the pitch curve, (n, 2), mm, from the beginning of the travel to its end."""
-        return as_pairs(self._pitch_sampler.chords[1])
+    def pitch_line(self) -> Plane:
+        """Points of the pitch curve, complex, mm, from the beginning of the travel to its end."""
+        return self._pitch_sampler.chords[1]
 
     def stretch(self, *, reverse: bool = False) -> Stretch:
         """Return the wall as a part of a contour, from right to left, or in `reverse`."""
@@ -104,7 +103,7 @@ class SlidingWall(Wall):
     @cached_property
     def contour(self) -> Contour:
         """Outline of the metal behind the wall, counter-clockwise, verified to be simple."""
-        ways = np.diff(self.line[:, 0])
+        ways = np.diff(self.line.real)
         seen_whole = bool(np.all(ways > 0.0) or np.all(ways < 0.0))
         if not seen_whole and not self._metal.polygon.is_valid:
             raise crossing_chords(
@@ -121,8 +120,8 @@ class SlidingWall(Wall):
         left, last = self._level(-1, plate.left)
         right, first = self._level(0, plate.right)
         corners = np.array([
-            last, (plate.left, last[1]), (plate.left, edge),
-            (plate.right, edge), (plate.right, first[1]), first,
+            last, complex(plate.left, last.imag), complex(plate.left, edge),
+            complex(plate.right, edge), complex(plate.right, first.imag), first,
         ])  # fmt: skip
         if self.side > 0:
             around = [self.stretch(), *left, straight(corners), *_turned(right)]
@@ -131,21 +130,21 @@ class SlidingWall(Wall):
             around = [self.stretch(reverse=True), *right, back, *_turned(left)]
         return joined(around, self)
 
-    def _level(self, which: int, limit: float) -> tuple[list[Stretch], Array]:
+    def _level(self, which: int, limit: float) -> tuple[list[Stretch], complex]:
         """Return the continuation from an end of the wall, and the point where it is level.
 
         It follows the roller's circle where that reaches farther than the wall, up to a limit.
         """
-        center, start = (complex(*line[which]) for line in (self.pitch_line, self.line))
+        center, start = (complex(line[which]) for line in (self.pitch_line, self.line))
         outwards = -1.0 if which else 1.0
         far = outwards * min(outwards * center.real, outwards * limit)
         if not outwards * (far - start.real) > _ALIKE * (self.plate.right - self.plate.left):
-            return [], self.line[which]
+            return [], start
         aside = far - center.real
         deep = math.sqrt((self.follower.radius - aside) * (self.follower.radius + aside))
         end = complex(far, center.imag - self.side * deep)
         turn = float(np.angle((end - center) / (start - center)))
-        return [arc(self, center, start, turn)], np.array([end.real, end.imag])
+        return [arc(self, center, start, turn)], end
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -210,10 +209,12 @@ class SlidingCam(ShortRepr, Cam):
         plate = self.plate
         if self.upper is None:
             return self.lower.contour
-        corners = [(plate.left, plate.low), (plate.right, plate.low), (plate.right, plate.high)]
-        return joined(
-            [straight(np.array([*corners, (plate.left, plate.high), corners[0]]))], self.lower
-        )
+        start = complex(plate.left, plate.low)
+        corners = [
+            start, complex(plate.right, plate.low), complex(plate.right, plate.high),
+            complex(plate.left, plate.high), start,
+        ]  # fmt: skip
+        return joined([straight(np.array(corners))], self.lower)
 
     @cached_property
     def groove(self) -> Contour | None:
@@ -221,8 +222,8 @@ class SlidingCam(ShortRepr, Cam):
         lower, upper = self.lower, self.upper
         if upper is None:
             return None
-        right, left = as_complex(lower.pitch_line[[0, -1]]).tolist()
-        start, end = complex(*lower.line[0]), complex(*upper.line[-1])
+        right, left = lower.pitch_line[[0, -1]].tolist()
+        start, end = complex(lower.line[0]), complex(upper.line[-1])
         stretches = [
             lower.stretch(reverse=True), arc(lower, right, start, math.pi),
             upper.stretch(), arc(lower, left, end, math.pi),
@@ -231,9 +232,10 @@ class SlidingCam(ShortRepr, Cam):
 
     def picture(self) -> str:
         """Return a drawing of plate, groove and pitch curve, SVG, in the cam's frame."""
-        groove = [] if self.groove is None else [self.groove.vertices]
-        pitch = [self.lower.pitch_line]
-        return renderer().outlines(self.facts.headline, [self.edge.vertices, *groove], pitch)
+        edges = (
+            [self.edge.points] if self.groove is None else [self.edge.points, self.groove.points]
+        )
+        return renderer().outlines(self.facts.headline, edges, [self.lower.pitch_line])
 
 
 def make_sliding(
@@ -332,27 +334,27 @@ def _too_small(key: str, word: str, value: float, limit: float) -> InfeasibleErr
 def _turned(stretches: Sequence[Stretch]) -> list[Stretch]:
     """Return stretches in the opposite sense."""
     turned = []
-    for runs, vertices in stretches:
+    for runs, points in stretches:
         back = tuple(run.reversed for run in reversed(runs))
-        turned.append((back, np.vstack([back[0].points[:1], vertices[:0:-1]])))
+        turned.append((back, np.append(back[0].points[:1], points[:0:-1])))
     return turned
 
 
-def straight(corners: Array) -> Stretch:
+def straight(corners: Plane) -> Stretch:
     """Return straight runs.
 
     Parameters
     ----------
-    corners : (n, 2) array, mm
+    corners : (n,) complex array, mm
         Corners in order; there is no run between merged ones.
 
     Returns
     -------
     Stretch
     """
-    runs, alike = [], _ALIKE * float(np.ptp(corners, axis=0).max())
-    for start, end in pairwise(corners):
-        length = float(np.hypot(*(end - start)))
+    runs, alike = [], _ALIKE * float(max(np.ptp(corners.real), np.ptp(corners.imag)))
+    for start, end in pairwise(corners.tolist()):
+        length = abs(end - start)
         if length > alike:
             slope = (end - start) / length
             runs.append(Run(points=np.array([start, end]), tangents=np.array([slope, slope])))
@@ -384,8 +386,8 @@ def arc(wall: Wall, center: complex, start: complex, turn: float) -> Stretch:
 
     dense = points(_DENSE * wall.tolerance)
     tangents = math.copysign(1.0, turn) * 1j * dense / abs(spoke)
-    run = Run(points=as_pairs(center + dense), tangents=as_pairs(tangents))
-    return (run,), as_pairs(center + points(wall.tolerance))[:-1]
+    run = Run(points=center + dense, tangents=tangents)
+    return (run,), center + points(wall.tolerance)[:-1]
 
 
 def joined(stretches: Sequence[Stretch], wall: Wall) -> Contour:
@@ -404,7 +406,7 @@ def joined(stretches: Sequence[Stretch], wall: Wall) -> Contour:
     """
     return Contour(
         dense=lambda: tuple(run for runs, _ in stretches for run in runs),
-        vertices=np.vstack([vertices for _, vertices in stretches]),
+        points=np.concatenate([points for _, points in stretches]),
         tolerance=wall.tolerance,
         chord_error=wall.sampler.chords[2],
     )

@@ -36,7 +36,6 @@ from gearcam.cams.trim import (
 )
 from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array, Plane
-from gearcam.numeric.bulges import as_complex, as_pairs
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.sampling import Sampler
@@ -341,7 +340,7 @@ class Wall(PitchMotion):
     def contour(self) -> Contour:
         """The profile, counter-clockwise, verified to be a simple curve around the axis."""
         contour = self._contour(self.sampler)
-        points = as_complex(contour.vertices)
+        points = contour.points
         seen_whole = bool(np.all((np.conj(points) * np.roll(points, -1)).imag > 0.0))
         if not seen_whole and not contour.polygon.is_valid:
             raise crossing_chords(self.called, self.sampler, self._contour)
@@ -368,7 +367,7 @@ class Wall(PitchMotion):
         clockwise = not self.clockwise  # the curve runs opposite to the cam's rotation
         return Contour(
             dense=lambda: sampler.dense(OVERSAMPLING).runs(clockwise),
-            vertices=as_pairs(points[::-1] if clockwise else points),
+            points=points[::-1] if clockwise else points,
             tolerance=self.tolerance,
             chord_error=error,
         )

@@ -29,7 +29,7 @@ from gearcam.base.numerals import decimal, formatted
 from gearcam.export.dxf import CURVE_PART
 from gearcam.export.svg import arc_data
 from gearcam.numeric.arcs import fit_closed
-from gearcam.numeric.arrays import Array
+from gearcam.numeric.arrays import as_pairs
 from gearcam.numeric.contour import Contour
 from gearcam.parts.shapes import Circle, Loop
 from gearcam.pictures.drawings import ENGRAVED, OUTER, THROUGH, Drawing, Feature, Path, box
@@ -89,17 +89,19 @@ def cut_svg(drawings: Sequence[Drawing], title: str, kerf: float = 0.0) -> bytes
         raise ValueError(f"{title}: nothing to cut")
     tolerance = min(one.tolerance for drawing in drawings for one in drawing.contours)
     decimals = max(4, math.ceil(-math.log10(_FINER * tolerance)))
-    low, high = box(kept) + np.array([[-MARGIN], [MARGIN]])
-    wide, tall = (decimal(float(size), 4) for size in np.ceil((high - low) * 1e4) / 1e4)
+    low, high = box(kept)
+    low, high = low - complex(MARGIN, MARGIN), high + complex(MARGIN, MARGIN)
+    sizes = (high - low).real, (high - low).imag
+    wide, tall = (decimal(math.ceil(size * 1e4) / 1e4, 4) for size in sizes)
     size = f'width="{wide}mm" height="{tall}mm" viewBox="0 0 {wide} {tall}"'
     told = f"; paths are moved by half the kerf of {formatted(kerf)} mm" if kerf else ""
     # y = 0 of the paths is the upper edge of the sheet
-    shift = -np.array([low[0], high[1]])
+    shift = -complex(low.real, high.imag)
     words = f"<desc>1:1 in mm; first engrave blue lines, then cut red lines{told}</desc>"
     return svg_document(size, title, [words, _ON_SCREEN, *_groups(kept, shift, decimals)])
 
 
-def _groups(kept: Sequence[Feature], shift: Array, decimals: int) -> Iterator[str]:
+def _groups(kept: Sequence[Feature], shift: complex, decimals: int) -> Iterator[str]:
     for name, kinds, colour in GROUPS:
         inside = [one for one in kept if one.kind in kinds]
         if inside:
@@ -110,19 +112,21 @@ def _groups(kept: Sequence[Feature], shift: Array, decimals: int) -> Iterator[st
             yield "</g>"
 
 
-def _data(feature: Feature, shift: Array, decimals: int) -> str:
+def _data(feature: Feature, shift: complex, decimals: int) -> str:
     """Return the path data of a shifted feature."""
     match feature.shape:
         case Contour() as contour:
-            vertices, bulges = contour.fitted(fit_closed, CURVE_PART * contour.tolerance)
-            return arc_data(contour.moved(vertices) + shift, bulges, decimals)
+            points, bulges = contour.fitted(fit_closed, CURVE_PART * contour.tolerance)
+            return arc_data(contour.pose.apply(points) + shift, bulges, decimals)
         case Circle(center=center, diameter=diameter):
-            sides = center + 0.5 * diameter * np.array([[1.0, 0.0], [-1.0, 0.0]])
+            sides = np.array([center + 0.5 * diameter, center - 0.5 * diameter])
             return arc_data(sides + shift, np.ones(2), decimals)
-        case Loop(vertices=vertices, bulges=bulges):
-            return arc_data(vertices + shift, bulges, decimals)
+        case Loop(points=points, bulges=bulges):
+            return arc_data(points + shift, bulges, decimals)
         case Path(points=points):
-            steps = (f"{decimal(x, decimals)} {decimal(-y, decimals)}" for x, y in points + shift)
-            return f"M{'L'.join(steps)}"
+            pairs = as_pairs(points + shift).tolist()
+            return (
+                f"M{'L'.join(f'{decimal(x, decimals)} {decimal(-y, decimals)}' for x, y in pairs)}"
+            )
         case shape:
             raise ValueError(f"{feature.layer}: a {type(shape).__name__} cannot be cut")

@@ -22,11 +22,11 @@ import numpy as np
 
 from gearcam.base.numerals import formatted
 from gearcam.numeric.arcs import fit_closed
-from gearcam.numeric.arrays import Array
+from gearcam.numeric.arrays import Array, Plane, as_pairs
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.splines import DEGREE, fit_splines
 from gearcam.pictures import drawings
-from gearcam.pictures.drawings import Circle, Cross, Drawing, Loop, Path, Shape, box
+from gearcam.pictures.drawings import Circle, Cross, Drawing, Loop, Path, Shape, box, chains
 
 if TYPE_CHECKING:
     from ezdxf.document import Drawing as Document
@@ -143,8 +143,8 @@ def _fill(document: Document, drawing: Drawing, style: DxfStyle) -> None:
             color = COLORS.get(feature.kind, GREY)
             document.layers.add(feature.layer, color=color, linetype=dashed)
     space = document.modelspace()
-    low, high = (corner.tolist() for corner in box(drawing.features))
-    space.reset_extents((*low, 0.0), (*high, 0.0))
+    low, high = box(drawing.features)
+    space.reset_extents((low.real, low.imag, 0.0), (high.real, high.imag, 0.0))
     for feature in drawing.features:
         add_shape(space, feature.shape, {"layer": feature.layer}, style)
 
@@ -175,25 +175,24 @@ def add_shape(space: Modelspace, shape: Shape, attributes: dict[str, Any], style
                     poles.tolist(), degree=DEGREE, knots=knots.tolist(), dxfattribs=attributes
                 )
         case Contour() if style.curves == "arcs":
-            vertices, bulges = shape.fitted(fit_closed, CURVE_PART * style.tolerance)
-            _polyline(space, shape.moved(vertices), bulges, attributes, style)
-        case Contour(vertices=vertices):
-            _polyline(space, vertices, 0.0, attributes, style)
-        case Loop():
-            _polyline(space, shape.vertices, shape.bulges, attributes, style)
-        case Path():
-            _polyline(space, shape.points, 0.0, attributes, style, closed=shape.closed)
-        case Circle():
-            space.add_circle(shape.center.tolist(), 0.5 * shape.diameter, dxfattribs=attributes)
+            points, bulges = shape.fitted(fit_closed, CURVE_PART * style.tolerance)
+            _polyline(space, shape.pose.apply(points), bulges, attributes, style)
+        case Contour(points=points):
+            _polyline(space, points, 0.0, attributes, style)
+        case Loop(points=points, bulges=bulges):
+            _polyline(space, points, bulges, attributes, style)
+        case Path(points=points, closed=closed):
+            _polyline(space, points, 0.0, attributes, style, closed=closed)
+        case Circle(center=center, diameter=diameter):
+            space.add_circle((center.real, center.imag), 0.5 * diameter, dxfattribs=attributes)
         case Cross():
-            (x, y), arm = shape.center.tolist(), 0.5 * shape.size
-            space.add_line((x - arm, y), (x + arm, y), dxfattribs=attributes)
-            space.add_line((x, y - arm), (x, y + arm), dxfattribs=attributes)
+            for line, _ in chains(shape, style.tolerance):
+                space.add_line(*as_pairs(line).tolist(), dxfattribs=attributes)
 
 
 def _polyline(
     space: Modelspace,
-    vertices: Array,
+    points: Plane,
     bulges: Array | float,
     attributes: dict[str, Any],
     style: DxfStyle,
@@ -201,27 +200,27 @@ def _polyline(
     closed: bool = True,
 ) -> None:
     """Add a polyline of the type that the version supports."""
-    bends = np.broadcast_to(bulges, len(vertices))
+    bends, pairs = np.broadcast_to(bulges, len(points)), as_pairs(points)
     if style.version == "R12":
-        rows = np.column_stack([vertices, bends]).tolist()
+        rows = np.column_stack([pairs, bends]).tolist()
         space.add_polyline2d(rows, format="xyb", close=closed, dxfattribs=attributes)
         return
     line = space.add_lwpolyline((), close=closed, dxfattribs=attributes)
-    widths = np.zeros_like(vertices)
     # all at once: the library would add them one by one
-    line.lwpoints.extend(np.column_stack([vertices, widths, bends]))
+    line.lwpoints.extend(np.column_stack([pairs, np.zeros_like(pairs), bends]))
 
 
 def _splines(contour: Contour, style: DxfStyle) -> Iterator[tuple[Array, Array]]:
     """Yield poles and knots of the spline of each run; each begins where the last one ends."""
     made = contour.fitted(fit_splines, CURVE_PART * style.tolerance)
     for spline, following in zip(made, [*made[1:], made[0]], strict=True):
-        gap = float(np.hypot(*(spline.poles[-1] - following.poles[0])))
+        gap = float(abs(spline.poles[-1] - following.poles[0]))
         if gap > style.tolerance:
             raise ValueError(
                 f"smooth pieces of an outline do not join: a gap of {formatted(gap, 3)} mm"
             )
-        yield contour.moved(np.vstack([spline.poles[:-1], following.poles[:1]])), spline.knots
+        poles = contour.pose.apply(np.append(spline.poles[:-1], following.poles[:1]))
+        yield as_pairs(poles), spline.knots
 
 
 @contextmanager

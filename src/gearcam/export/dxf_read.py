@@ -16,8 +16,8 @@ import numpy as np
 
 from gearcam.base.errors import GearcamError
 from gearcam.export.dxf import MILLIMETRES
-from gearcam.numeric.arrays import Array
-from gearcam.numeric.bulges import as_complex, deviation
+from gearcam.numeric.arrays import Array, Plane, as_complex
+from gearcam.numeric.bulges import deviation
 from gearcam.numeric.contour import Contour
 from gearcam.pictures.drawings import CLOSED, INNER, KERF, OUTER_WALL, OUTLINE, PROFILE
 
@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from ezdxf.document import Drawing as Document
 
 
-_Outline = tuple[Array, Array, bool]
-"""Vertices, bulges, and whether it is closed."""
+_Outline = tuple[Plane, Array, bool]
+"""Points, bulges, and whether it is closed."""
 
 _SHOWN: Final = 80
 """Characters of messages of ezdxf that are printed: they may quote a whole file."""
@@ -40,11 +40,11 @@ a percent of the spline's own tolerance; 8 arcs would deviate by 3 %."""
 
 
 _ROUNDING: Final = 1e-9
-"""Largest difference of coordinates, mm, and bulges of one outline at two placements: rounding, far
+"""Largest difference of coordinates, mm, and bulges of one outline in two poses: rounding, far
 below the errors that are measured."""
 
-Known = dict[Contour, tuple[Array, Array, float]]
-"""Outlines as read in their own frames: vertices, bulges, and the measured error, mm."""
+Known = dict[Contour, tuple[Plane, Array, float]]
+"""Outlines as read in their own frames: points, bulges, and the measured error, mm."""
 
 
 class DxfError(GearcamError, ValueError):
@@ -61,7 +61,7 @@ def measure_dxf(data: bytes, contours: Sequence[Contour], known: Known | None = 
     contours : sequence of Contour
         The true outlines (and a cam's pitch curve), placed as in the drawing, in its order.
     known : dict, optional
-        Measured errors are kept here, so that an outline is measured at one placement only.
+        Measured errors are kept here, so that an outline is measured in one pose only.
 
     Returns
     -------
@@ -85,24 +85,24 @@ def measure_dxf(data: bytes, contours: Sequence[Contour], known: Known | None = 
         )
     known = {} if known is None else known
     return max(
-        _error(vertices, bulges, contour, known)
-        for (vertices, bulges, _), contour in zip(outlines, contours, strict=True)
+        _error(points, bulges, contour, known)
+        for (points, bulges, _), contour in zip(outlines, contours, strict=True)
     )
 
 
-def _error(vertices: Array, bulges: Array, contour: Contour, known: Known) -> float:
-    """Return the error of an outline, measured now or at another placement."""
+def _error(points: Plane, bulges: Array, contour: Contour, known: Known) -> float:
+    """Return the error of an outline, measured now or in another pose."""
     if contour.own in known:
         own, bends, error = known[contour.own]
-        if len(own) == len(vertices):
-            missed = np.abs(vertices - contour.moved(own)).max(), np.abs(bulges - bends).max()
+        if len(own) == len(points):
+            missed = np.abs(points - contour.pose.apply(own)).max(), np.abs(bulges - bends).max()
             if max(missed) <= _ROUNDING:
                 return error
     # the first point of each run is the last of the one before
-    dense = np.vstack([run.points[:-1] for run in contour.runs])
-    error = deviation(vertices, bulges, dense)
+    dense = np.concatenate([run.points[:-1] for run in contour.runs])
+    error = deviation(points, bulges, dense)
     if contour.own is contour:
-        known[contour] = vertices, bulges, error
+        known[contour] = points, bulges, error
     return error
 
 
@@ -112,21 +112,21 @@ def _outlines(document: Document, wanted: Callable[[str], bool]) -> Iterator[_Ou
     from ezdxf.entities.polyline import Polyline
     from ezdxf.entities.spline import Spline
 
-    chain: list[tuple[Array, Array]] = []
+    chain: list[tuple[Plane, Array]] = []
     for entity in document.modelspace():
         if not wanted(_layer(entity)):
             continue
         if isinstance(entity, LWPolyline):
             rows = entity.lwpoints.values
-            yield rows[:, :2], rows[:, 4], bool(entity.closed)
+            yield as_complex(rows[:, :2]), rows[:, 4], bool(entity.closed)
         elif isinstance(entity, Polyline):
             rows = np.array(
                 [(*v.dxf.location.vec2, v.dxf.get("bulge", 0.0)) for v in entity.vertices]
             )
-            yield rows[:, :2], rows[:, 2], bool(entity.is_closed)
+            yield as_complex(rows[:, :2]), rows[:, 2], bool(entity.is_closed)
         elif isinstance(entity, Spline):
             chain.append(_arcs(entity))
-            if (chain[-1][0][-1] == chain[0][0][0]).all():
+            if chain[-1][0][-1] == chain[0][0][0]:
                 yield _joined(chain)
                 chain = []
     if chain:
@@ -138,15 +138,15 @@ def _layer(entity: Any) -> str:
     return entity.dxf.layer if entity.dxf.is_supported("layer") else ""
 
 
-def _joined(chain: Sequence[tuple[Array, Array]]) -> _Outline:
+def _joined(chain: Sequence[tuple[Plane, Array]]) -> _Outline:
     """Join splines; they are closed if each begins where the one before ends."""
     following = [*chain[1:], chain[0]]
-    closed = all((a[-1] == b[0]).all() for (a, _), (b, _) in zip(chain, following, strict=True))
-    vertices = np.vstack([points[:-1] for points, _ in chain])
-    return vertices, np.concatenate([bulges for _, bulges in chain]), closed
+    closed = all(a[-1] == b[0] for (a, _), (b, _) in zip(chain, following, strict=True))
+    points = np.concatenate([points[:-1] for points, _ in chain])
+    return points, np.concatenate([bulges for _, bulges in chain]), closed
 
 
-def read_outline(data: bytes, *, outer: bool = False) -> tuple[Array, Array]:
+def read_outline(data: bytes, *, outer: bool = False) -> tuple[Plane, Array]:
     """Return the closed outline of a DXF file.
 
     Parameters
@@ -159,7 +159,7 @@ def read_outline(data: bytes, *, outer: bool = False) -> tuple[Array, Array]:
 
     Returns
     -------
-    vertices : (n, 2) array, mm
+    points : (n,) complex array, mm
         First not repeated.
     bulges : (n,) array
         Of the pieces between them; splines become arcs through their points.
@@ -180,28 +180,29 @@ def read_outline(data: bytes, *, outer: bool = False) -> tuple[Array, Array]:
         )
     for wanted in (PROFILE, OUTLINE, OUTER_WALL if outer else INNER, ""):
         found = [
-            (vertices, bulges)
+            (points, bulges)
             for layer in layers
             if layer.upper().endswith(wanted)
-            for vertices, bulges, closed in _outlines(document, layer.__eq__)
+            for points, bulges, closed in _outlines(document, layer.__eq__)
             if closed
         ]
         if len(found) == 1:
-            if not np.isfinite(np.column_stack(found[0])).all():
+            if not all(np.isfinite(values).all() for values in found[0]):
                 raise DxfError("the outline has coordinates that are not finite")
             return found[0]
     raise DxfError(f"the DXF file should hold one closed outline, but it holds {len(found)}")
 
 
-def _arcs(entity: Any) -> tuple[Array, Array]:
-    """Vertices and bulges of arcs through points of a spline, by ezdxf's own evaluation."""
+def _arcs(entity: Any) -> tuple[Plane, Array]:
+    """Points and bulges of arcs through points of a spline, by ezdxf's own evaluation."""
     curve = entity.construction_tool()
     breaks = np.unique(np.array(curve.knots()))
     steps = np.linspace(0.0, 1.0, 2 * _ON_CUBIC, endpoint=False)
     places = np.append((breaks[:-1, None] + np.diff(breaks)[:, None] * steps).ravel(), breaks[-1])
-    points = np.array([(point.x, point.y) for point in curve.points(places.tolist())])
-    points[[0, -1]] = [tuple(curve.control_points[k])[:2] for k in (0, -1)]
-    way = np.diff(as_complex(points))
+    points = np.array([complex(point.x, point.y) for point in curve.points(places.tolist())])
+    ends = [curve.control_points[k] for k in (0, -1)]
+    points[[0, -1]] = [complex(end.x, end.y) for end in ends]
+    way = np.diff(points)
     # the turn at an inner point of an arc is half the arc's angle
     turn = np.angle(way[1::2] * np.conj(way[::2]))
     return points[::2], np.tan(0.5 * turn)

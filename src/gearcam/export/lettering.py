@@ -15,7 +15,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from gearcam.numeric.arrays import Array
+from gearcam.numeric.arrays import Array, Plane, as_pairs
 from gearcam.pictures.drawings import LABEL, MARK, OUTER, THROUGH, Drawing, Feature, Path, box
 
 _TALL: Final = 6
@@ -67,32 +67,32 @@ def labelled(drawing: Drawing) -> Drawing:
     """Return the `drawing` of a part with its name in single strokes."""
     words = re.sub(r"(\d+)", r" \1", drawing.name.replace("_", " ")).upper()
     wide = text_width(words)
-    (x, y), room = _roomiest(drawing)
+    middle, room = _roomiest(drawing)
     height = min(_HIGHEST, 2.0 * (room - _FREE) / math.hypot(wide, 1.0))
-    left, base = x - 0.5 * wide * height, y - 0.5 * height
+    corner = middle - 0.5 * height * complex(wide, 1.0)
     if height < _LOWEST:
         height = _LOWEST
         low, high = box(drawing.features)
-        left, base = 0.5 * float(low[0] + high[0] - wide * height), float(low[1]) - _BELOW - height
-    lines = strokes(words, height, left, base)
+        left = 0.5 * (low.real + high.real - wide * height)
+        corner = complex(left, low.imag - _BELOW - height)
+    lines = strokes(words, height, corner)
     names = (Feature(layer=LABEL, shape=Path(points=line, closed=False)) for line in lines)
     return replace(drawing, features=(*drawing.features, *names))
 
 
-def _roomiest(drawing: Drawing) -> tuple[tuple[float, float], float]:
+def _roomiest(drawing: Drawing) -> tuple[complex, float]:
     """Return the centre and the radius of the largest free circle."""
     from shapely import Polygon, maximum_inscribed_circle
 
     def points(feature: Feature) -> Array:
         shape: Any = feature.shape
-        return shape.points(_SAGITTA)
+        return as_pairs(shape.polyline(_SAGITTA))
 
     (outer,) = (points(one) for one in drawing.features if one.kind in OUTER)
     inner = [points(one) for one in drawing.features if one.kind in (*THROUGH, MARK)]
     free: Any = Polygon(outer, inner).simplify(_COARSE)
     spoke: Any = maximum_inscribed_circle(free, tolerance=_COARSE)
-    (x, y), _ = spoke.coords
-    return (x, y), float(spoke.length) - _COARSE
+    return complex(*spoke.coords[0]), float(spoke.length) - _COARSE
 
 
 def text_width(text: str) -> float:
@@ -100,7 +100,7 @@ def text_width(text: str) -> float:
     return (_ADVANCE * len(text) - 2) / _TALL
 
 
-def strokes(text: str, height: float, left: float, base: float) -> list[Array]:
+def strokes(text: str, height: float, corner: complex) -> list[Plane]:
     """Return the strokes of a text.
 
     Parameters
@@ -109,12 +109,12 @@ def strokes(text: str, height: float, left: float, base: float) -> list[Array]:
         Capitals and digits.
     height : float, mm
         Height of the letters.
-    left, base : float, mm
+    corner : complex, mm
         Its lower left corner.
 
     Returns
     -------
-    list of (n, 2) array, mm
+    list of (n,) complex array, mm
         Open chains of points.
 
     Raises
@@ -125,7 +125,6 @@ def strokes(text: str, height: float, left: float, base: float) -> list[Array]:
     made = []
     for number, sign in enumerate(text):
         for stroke in filter(None, _STROKES[sign].split(", ")):
-            places = np.array([[int(x), int(y)] for x, y in stroke.split()], dtype=np.float64)
-            places[:, 0] += number * _ADVANCE
-            made.append(places * (height / _TALL) + [left, base])
+            places = np.array([complex(int(x), int(y)) for x, y in stroke.split()])
+            made.append((places + number * _ADVANCE) * (height / _TALL) + corner)
     return made

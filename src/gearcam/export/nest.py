@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from gearcam.base.numerals import NOISE
-from gearcam.numeric.arrays import Array
+from gearcam.numeric.arrays import Array, as_pairs
 from gearcam.numeric.pose import Pose
 from gearcam.pictures.drawings import (
     LABEL,
@@ -62,7 +62,7 @@ def _hull(drawing: Drawing) -> Polygon:
 
     kinds = (*OUTER, LABEL)
     corners = [reach(one.shape) for one in drawing.features if one.kind in kinds]
-    hull: Any = MultiPoint(np.vstack(corners)).convex_hull
+    hull: Any = MultiPoint(as_pairs(np.concatenate(corners))).convex_hull
     return hull
 
 

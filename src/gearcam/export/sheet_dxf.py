@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.export import dxf
 from gearcam.export.dxf import GREY, DxfStyle
+from gearcam.numeric.arrays import as_pairs
 from gearcam.pictures.drawings import CENTER, DASHED
 from gearcam.sheets.sheet import (
     ARROW,
@@ -111,9 +112,8 @@ def _prepare(document: Document, sheet: Sheet, style: DxfStyle) -> None:
         if style.version != "R12":
             made.dxf.lineweight = round(100 * (THICK if kind in HEAVY else THIN))
     document.styles.add(STYLE, font="arial.ttf", dxfattribs={"width": GLYPH})
-    low = sheet.corner.tolist()
-    high = (sheet.corner + [unit * side for side in sheet.size]).tolist()
-    document.modelspace().reset_extents((*low, 0.0), (*high, 0.0))
+    low, high = sheet.corner, sheet.corner + unit * complex(*sheet.size)
+    document.modelspace().reset_extents((*_pair(low), 0.0), (*_pair(high), 0.0))
     if style.version == "R12":
         return
     document.header["$LWDISPLAY"] = 1
@@ -134,10 +134,10 @@ def _measured(space: Modelspace, dimension: Dimension) -> None:
     rest: dict[str, Any] = {"text": words, "dimstyle": STYLE, "dxfattribs": {"layer": DIMENSION}}
     if isinstance(dimension, LinearDimension):
         made = space.add_linear_dim(
-            base=dimension.line.tolist(),
-            p1=dimension.first.tolist(),
-            p2=dimension.second.tolist(),
-            location=dimension.place.tolist(),
+            base=_pair(dimension.line),
+            p1=_pair(dimension.first),
+            p2=_pair(dimension.second),
+            location=_pair(dimension.place),
             angle=90.0 if dimension.vertical else 0.0,
             override={"dimtmove": 2},
             **rest,
@@ -148,12 +148,12 @@ def _measured(space: Modelspace, dimension: Dimension) -> None:
 
 
 def _round(space: Modelspace, dimension: RoundDimension, rest: dict[str, Any]) -> Any:
-    rest |= {"center": dimension.center.tolist(), "radius": dimension.radius}
+    rest |= {"center": _pair(dimension.center), "radius": dimension.radius}
     if dimension.knee is None:
         angle = math.degrees(dimension.angle)
         return space.add_diameter_dim(angle=angle, override={"dimtix": 1, "dimtmove": 0}, **rest)
     rest["override"] = {"dimtih": 1, "dimtoh": 1}
-    rest["location"] = dimension.point(dimension.knee).tolist()
+    rest["location"] = _pair(dimension.point(dimension.knee))
     return (space.add_diameter_dim if dimension.diameter else space.add_radius_dim)(**rest)
 
 
@@ -161,9 +161,9 @@ def _exploded(space: Modelspace, sheet: Sheet, drawn: DrawnDimension) -> None:
     """Add a dimension as lines, solid arrow heads and a text."""
     there = {"layer": DIMENSION}
     for line in drawn.lines:
-        space.add_line(*line.tolist(), dxfattribs=there)
+        space.add_line(*as_pairs(line).tolist(), dxfattribs=there)
     for head in drawn.heads:
-        space.add_solid([*head.tolist(), head[2].tolist()], dxfattribs=there)
+        space.add_solid(as_pairs(head[[0, 1, 2, 2]]).tolist(), dxfattribs=there)
     _text(space, sheet, drawn.text, DIMENSION)
 
 
@@ -179,4 +179,8 @@ def _text(space: Modelspace, sheet: Sheet, text: Text, layer: str) -> None:
         rotation=90.0 if text.upright else 0.0,
         dxfattribs={"layer": layer, "style": STYLE},
     )
-    made.set_placement(text.place.tolist(), align=align)
+    made.set_placement(_pair(text.place), align=align)
+
+
+def _pair(point: complex) -> tuple[float, float]:
+    return point.real, point.imag

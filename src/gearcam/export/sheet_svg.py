@@ -15,7 +15,7 @@ from xml.sax.saxutils import escape, quoteattr
 import numpy as np
 
 from gearcam.base.numerals import decimal
-from gearcam.numeric.arrays import Array
+from gearcam.numeric.arrays import Array, Plane, as_pairs
 from gearcam.pictures.drawings import CENTRODE, Circle, Feature, chains
 from gearcam.pictures.markup import svg_document
 from gearcam.sheets.sheet import CENTERLINE, HEAVY, HIDDEN, THICK, THIN, Sheet, Text
@@ -61,9 +61,9 @@ def sheet_svg(sheet: Sheet) -> bytes:
     return svg_document(size, sheet.title, lines)
 
 
-def _on_page(sheet: Sheet, points: Array) -> Array:
-    """Millimetres of paper, y downwards."""
-    return sheet.on_paper(points) * [1.0, -1.0] + [0.0, sheet.size[1]]
+def _on_page(sheet: Sheet, points: Plane) -> Array:
+    """Return points in millimetres of paper, (n, 2), y downwards."""
+    return as_pairs(sheet.on_paper(points)) * [1.0, -1.0] + [0.0, sheet.size[1]]
 
 
 def _feature(sheet: Sheet, feature: Feature) -> str:
@@ -74,7 +74,7 @@ def _feature(sheet: Sheet, feature: Feature) -> str:
     if kind in DASHES:
         style += f' stroke-dasharray="{DASHES[kind]}"'
     if isinstance(circle := feature.shape, Circle):
-        ((x, y),) = _on_page(sheet, circle.center[None, :])
+        ((x, y),) = _on_page(sheet, np.array([circle.center]))
         radius = decimal(0.5 * circle.diameter * sheet.scale)
         return f'<circle {style} cx="{decimal(x)}" cy="{decimal(y)}" r="{radius}"/>'
     drawn = chains(feature.shape, SAGITTA / sheet.scale)
@@ -82,7 +82,7 @@ def _feature(sheet: Sheet, feature: Feature) -> str:
     return f'<path {style} d="{data}"/>'
 
 
-def _data(sheet: Sheet, *chains_of_points: Array) -> str:
+def _data(sheet: Sheet, *chains_of_points: Plane) -> str:
     """Path data of open chains; coincident neighbours are written once."""
     data = ""
     for points in chains_of_points:
@@ -93,7 +93,7 @@ def _data(sheet: Sheet, *chains_of_points: Array) -> str:
 
 
 def _text(sheet: Sheet, text: Text, name: str) -> str:
-    ((x, y),) = _on_page(sheet, text.place[None, :])
+    ((x, y),) = _on_page(sheet, np.array([text.place]))
     place = f'x="{decimal(x)}" y="{decimal(y)}"'
     size = f'font-size="{decimal(text.height / CAPITAL)}" text-anchor="{text.anchor}"'
     turn = f' transform="rotate(-90 {decimal(x)} {decimal(y)})"' if text.upright else ""

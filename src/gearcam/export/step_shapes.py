@@ -23,7 +23,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from gearcam.numeric.bulges import arc_centers, as_complex, bulge_pieces
+from gearcam.numeric.bulges import arc_centers, bulge_pieces
 from gearcam.numeric.contour import Contour, Run
 from gearcam.numeric.splines import DEGREE, Spline, fit_splines
 from gearcam.parts.body import Edge, Layer, Part
@@ -238,8 +238,8 @@ def _outline(contour: Contour, tolerance: float) -> list[_Piece]:
     """Return a curve for each piece of a contour; each ends exactly where the next begins."""
     # a piece between two curves that meet has no length
     pieces = (piece for run in contour.runs for piece in run.pieces)
-    runs = [one for one in pieces if np.hypot(*np.diff(one.points, axis=0).T).sum() > RESOLUTION]
-    starts = [complex(*run.points[0]) for run in runs]
+    runs = [one for one in pieces if np.abs(np.diff(one.points)).sum() > RESOLUTION]
+    starts = [complex(run.points[0]) for run in runs]
     straight = [_is_straight(run, min(RESOLUTION, tolerance)) for run in runs]
     bent = [run for run, flat in zip(runs, straight, strict=True) if not flat]
     splines = iter(fit_splines(bent, tolerance) if bent else ())
@@ -251,13 +251,13 @@ def _outline(contour: Contour, tolerance: float) -> list[_Piece]:
 
 def _is_straight(run: Run, allowed: float) -> bool:
     """Whether a run and its tangents are within `allowed`, mm, of its chord."""
-    points, tangents = as_complex(run.points), as_complex(run.tangents)
+    points = run.points
     chord = points[-1] - points[0]
     if abs(chord) <= allowed:
         return False  # closed
     unit = chord / abs(chord)
     across = ((points - points[0]) * unit.conjugate()).imag
-    turned = tangents * unit.conjugate()
+    turned = run.tangents * unit.conjugate()
     return bool(
         np.abs(across).max() <= allowed
         and np.abs(turned.imag).max() * abs(chord) <= allowed
@@ -266,7 +266,7 @@ def _is_straight(run: Run, allowed: float) -> bool:
 
 
 def _curve(spline: Spline, start: complex, end: complex) -> _Piece:
-    places = [start, *as_complex(spline.poles[1:-1]).tolist(), end]
+    places = [start, *spline.poles[1:-1].tolist(), end]
     breaks = spline.breaks.tolist()
     poles, knots = occt.Array1_gp_Pnt(1, len(places)), occt.Array1_double(1, len(breaks))
     repeats = occt.Array1_int(1, len(breaks))
@@ -289,8 +289,7 @@ def _pieces(edge: Edge, tolerance: float) -> list[_Piece]:
     """Return the curves of an edge: exact ones, or those of a contour within the tolerance."""
     match edge:
         case Circle(center=center, diameter=diameter):
-            centre = complex(*center)
-            return [_circle(centre, centre + 0.5 * diameter, 2.0 * math.pi)]
+            return [_circle(center, center + 0.5 * diameter, 2.0 * math.pi)]
         case Loop():
             return list(_loop(edge))
         case Contour():
@@ -298,7 +297,7 @@ def _pieces(edge: Edge, tolerance: float) -> list[_Piece]:
 
 
 def _loop(shape: Loop) -> Iterator[_Piece]:
-    start, chord, bends = bulge_pieces(shape.vertices, shape.bulges, closed=True)
+    start, chord, bends = bulge_pieces(shape.points, shape.bulges, closed=True)
     for k in np.flatnonzero(np.abs(chord) > RESOLUTION):
         if bends[k] == 0.0:
             yield _line(complex(start[k]), complex(start[k] + chord[k]))

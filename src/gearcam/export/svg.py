@@ -18,7 +18,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from gearcam.base.numerals import decimal
-from gearcam.numeric.arrays import Array
+from gearcam.numeric.arrays import Array, Plane, as_pairs
 from gearcam.numeric.bulges import bulge_pieces, divided
 from gearcam.pictures import drawings
 from gearcam.pictures.drawings import Circle, Cross, Drawing, Feature, Loop, Path, box, chains
@@ -60,13 +60,12 @@ def svg_bytes(drawing: Drawing, *, title: str, notes: Sequence[str] = ()) -> byt
     """
     if not drawing.contours:
         raise ValueError(f"{drawing.name}: nothing to draw")
-    low, high = (corner.tolist() for corner in box(drawing.features))
 
     def elements(pixel: float) -> Iterator[str]:
         return (_element(feature, pixel) for feature in drawing.features)
 
     lines = [line for line in (title, ", ".join(notes)) if line]
-    return picture(lines, (low, high), elements).encode()
+    return picture(lines, box(drawing.features), elements).encode()
 
 
 def _element(feature: Feature, pixel: float) -> str:
@@ -90,32 +89,32 @@ def _element(feature: Feature, pixel: float) -> str:
     style = f'class={name} fill="{inside}"{clear} {line}'
     match shape:
         case Circle(center=center, diameter=diameter):
-            place = f'cx="{_number(center[0])}" cy="{_number(-center[1])}"'
+            place = f'cx="{_number(center.real)}" cy="{_number(-center.imag)}"'
             return f'<circle {style} {place} r="{_number(0.5 * diameter)}"/>'
         case Loop():
-            data = arc_data(shape.vertices, shape.bulges)
+            data = arc_data(shape.points, shape.bulges)
         case _:
             data = "".join(_data(points, closed) for points, closed in chains(shape, THINNING))
     return f'<path {style} d="{data}"/>'
 
 
-def _data(points: Array, closed: bool) -> str:
+def _data(points: Plane, closed: bool) -> str:
     """Return thinned path data, y downwards."""
     from shapely import LineString, get_coordinates, simplify
 
-    line = LineString(np.vstack([points, points[:1]]) if closed else points)
+    line = LineString(as_pairs(np.append(points, points[:1]) if closed else points))
     kept = get_coordinates(simplify(line, THINNING, preserve_topology=False))
     kept = kept[:-1] if closed else kept
     steps = " ".join(f"{_number(x)} {_number(-y)}" for x, y in kept.tolist())
     return f"M{steps}" + ("Z" if closed else "")
 
 
-def arc_data(vertices: Array, bulges: Array, decimals: int = DECIMALS) -> str:
+def arc_data(points: Plane, bulges: Array, decimals: int = DECIMALS) -> str:
     """Return the path data of a closed chain of straight lines and circular arcs.
 
     Parameters
     ----------
-    vertices : (n, 2) array, mm
+    points : (n,) complex array, mm
         First not repeated; y upwards.
     bulges : (n,) array
         Bulges of the pieces between them.
@@ -128,10 +127,10 @@ def arc_data(vertices: Array, bulges: Array, decimals: int = DECIMALS) -> str:
         With y downwards. No arc exceeds a quarter of a circle: the centre of a half circle would be
         inaccurate from a rounded radius.
     """
-    start, chord, bends = bulge_pieces(vertices, bulges, closed=True)
+    start, chord, bends = bulge_pieces(points, bulges, closed=True)
     half = 2.0 * np.arctan(bends)
     parts = np.maximum(1, np.ceil(np.abs(half) / (0.25 * math.pi + _ROUNDING))).astype(np.int64)
-    points, piece = divided(start, chord, bends, parts)
+    ends, piece = divided(start, chord, bends, parts)
     with np.errstate(divide="ignore"):  # of straight lines
         radii = (0.5 * np.abs(chord) / np.abs(np.sin(half))).tolist()
 
@@ -139,7 +138,7 @@ def arc_data(vertices: Array, bulges: Array, decimals: int = DECIMALS) -> str:
         return " ".join(decimal(value, decimals) for value in values)
 
     steps = []
-    for k, end in zip(piece.tolist(), np.roll(points, -1).tolist(), strict=True):
+    for k, end in zip(piece.tolist(), np.roll(ends, -1).tolist(), strict=True):
         # y is downwards: a visual left turn has the sweep flag 0 in SVG
         arc = f"A{numbers(radii[k], radii[k])} 0 0 {int(bends[k] < 0.0)} " if bends[k] else "L"
         steps.append(arc + numbers(end.real, -end.imag))

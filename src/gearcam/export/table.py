@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.base.numerals import SHORT, ULPS, exact
-from gearcam.numeric.arrays import Array
+from gearcam.numeric.arrays import Array, Plane
 
 _NEAR: Final = 8.0 * ULPS * float(np.finfo(float).eps)
 """Relative distance from a short decimal up to which a number is looked at closely: rounding of
@@ -94,6 +94,6 @@ def _exact(values: Array) -> Array:
     return values
 
 
-def outline_bytes(vertices: Array) -> bytes:
-    """Write an outline (n, 2), mm, as the columns x_mm and y_mm."""
-    return table_bytes({"x_mm": vertices[:, 0], "y_mm": vertices[:, 1]})
+def outline_bytes(points: Plane) -> bytes:
+    """Write the complex points of an outline, mm, as the columns x_mm and y_mm."""
+    return table_bytes({"x_mm": points.real, "y_mm": points.imag})

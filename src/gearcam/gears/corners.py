@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from gearcam.base.display import ShortRepr
 from gearcam.gears.flank import Toothing
 from gearcam.gears.track import Frames
-from gearcam.numeric.arrays import Array, Ints, Mask, Plane
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane, as_pairs
 
 if TYPE_CHECKING:
     from shapely import Polygon
@@ -63,7 +63,7 @@ _FEET = 2.0
 def highest_corners(
     toothing: Toothing,
     mate: Toothing,
-    mate_outline: Callable[[], Array],
+    mate_outline: Callable[[], Plane],
     tolerance: float,
     flanks: tuple[Array, Array],
     highest: Array,
@@ -75,7 +75,7 @@ def highest_corners(
     toothing, mate : Toothing
         The wheel and its mate.
     mate_outline : callable
-        Returns the outline of the mate, (n, 2), mm; called only if needed.
+        Returns the outline of the mate, complex, mm; called only if needed.
     tolerance : float, mm
         Its chord error. Penetration up to twice this counts as touching, since at contact a corner
         lies on the mate's flank.
@@ -138,7 +138,7 @@ class _Paths(ShortRepr):
     mate: Toothing
     sf: Array
     sigma: Array
-    outline: Callable[[], Array]
+    outline: Callable[[], Plane]
     tolerance: float
 
     @cached_property
@@ -271,7 +271,7 @@ class _Paths(ShortRepr):
         import shapely
 
         touched = 2.0 * self.tolerance
-        whole = shapely.Polygon(self.outline())
+        whole = shapely.Polygon(as_pairs(self.outline()))
         body = whole.buffer(touched if self.mate.track.hollow else -touched)
         shapely.prepare(body)
         return body

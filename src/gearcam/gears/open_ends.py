@@ -18,8 +18,7 @@ from gearcam.base.errors import Adjustment, InfeasibleError, beyond_limit
 from gearcam.gears.flank import Curve, Rows, Toothing
 from gearcam.gears.flank_ends import TipEnds
 from gearcam.gears.spec import RingSpec
-from gearcam.numeric.arrays import Array
-from gearcam.numeric.bulges import as_complex, as_pairs
+from gearcam.numeric.arrays import Plane
 from gearcam.numeric.contour import Run
 
 _BELOW = 1.0
@@ -98,7 +97,7 @@ def _shortened(rows: Rows, start: float, end: float) -> Rows:
 
 
 def body_runs(
-    toothing: Toothing, toothed: Array, tolerance: float, parts: int, ring: RingSpec
+    toothing: Toothing, toothed: Plane, tolerance: float, parts: int, ring: RingSpec
 ) -> tuple[Run, ...]:
     """Return the body outline from the last tooth to the first: around the shaft, or behind a ring.
 
@@ -106,7 +105,7 @@ def body_runs(
     ----------
     toothing : Toothing
         The wheel.
-    toothed : (n, 2) array, mm
+    toothed : (n,) complex array, mm
         Its teeth, counter-clockwise.
     tolerance : float, mm
         Chord error of the arc.
@@ -127,23 +126,22 @@ def body_runs(
         If the ends meet, since the wheel turns by a full turn or more; if a ring has no metal for
         its end faces, or its outside is not round.
     """
-    points = as_complex(toothed)
     frames = toothing.frames(toothing.track.angle(toothing.ends))
     depth = toothing.cutter.dedendum + _BELOW * toothing.pitch / math.pi
     inner = frames.p - depth * toothing.turn * frames.t
     inner = inner if toothing.wheel == 1 else inner[::-1]
-    first, last = complex(points[0]), complex(points[-1])
+    first, last = complex(toothed[0]), complex(toothed[-1])
     if toothing.track.slides:
-        back = points.real.max() + depth
+        back = toothed.real.max() + depth
         corners = [complex(back, point.imag) for point in (inner[1], inner[0])]
         chain = [last, inner[1], *corners, inner[0], first]
         return tuple(_line(start, end) for start, end in pairwise(chain))
     # counter-clockwise around its metal, the teeth of a ring run clockwise around the shaft
-    span = float(np.angle(points[1:] / points[:-1]).sum())
+    span = float(np.angle(toothed[1:] / toothed[:-1]).sum())
     span += float(np.angle(inner[1] / last) - np.angle(inner[0] / first))
-    radius, sweep = _HUB * min(abs(points).min(), abs(inner).min()), 2.0 * math.pi - span
+    radius, sweep = _HUB * min(abs(toothed).min(), abs(inner).min()), 2.0 * math.pi - span
     if span < 0.0:
-        roots, faces = float(abs(points).max()), float(abs(inner).max())
+        roots, faces = float(abs(toothed).max()), float(abs(inner).max())
         radius = _outside(ring, roots, faces, toothing.pitch / math.pi)
         sweep = span = -span
     if span >= 2.0 * math.pi - _GAP:
@@ -170,7 +168,7 @@ def body_runs(
     return (
         _line(last, inner[1]),
         _line(inner[1], hub[1]),
-        Run(points=as_pairs(arc), tangents=as_pairs(1j * arc / radius)),
+        Run(points=arc, tangents=1j * arc / radius),
         _line(hub[0], inner[0]),
         _line(inner[0], first),
     )
@@ -202,7 +200,4 @@ def _outside(ring: RingSpec, roots: float, faces: float, module: float) -> float
 
 
 def _line(start: complex, end: complex) -> Run:
-    points = np.array([start, end])
-    return Run(
-        points=as_pairs(points), tangents=as_pairs(np.full(2, (end - start) / abs(end - start)))
-    )
+    return Run(points=np.array([start, end]), tangents=np.full(2, (end - start) / abs(end - start)))

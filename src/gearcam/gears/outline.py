@@ -32,8 +32,7 @@ from gearcam.gears.rounding import round_tips
 from gearcam.gears.spaces import ROWS_PER_TOOTH, entangled, regular_rows, untangle
 from gearcam.gears.spec import RingSpec
 from gearcam.laws.ratio.span import angle_text
-from gearcam.numeric.arrays import Array, Ints, Mask
-from gearcam.numeric.bulges import as_pairs
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane, as_pairs
 from gearcam.numeric.contour import Contour, Run
 from gearcam.numeric.sampling import MOST, Dense, Sampler
 
@@ -121,9 +120,9 @@ class Outline(ShortRepr):
         )
 
     @cached_property
-    def toothed(self) -> Array:
-        """Vertices of the teeth, (n, 2), mm, counter-clockwise."""
-        points = as_pairs(self.sampler.chords[1])
+    def toothed(self) -> Plane:
+        """Points of the teeth, complex, mm, counter-clockwise."""
+        points = self.sampler.chords[1]
         return points[::-1] if self.toothing.track.clockwise else points
 
     @cached_property
@@ -137,12 +136,12 @@ class Outline(ShortRepr):
         )
 
     @cached_property
-    def points(self) -> Array:
-        """Vertices of the adaptive polygon, (n, 2), mm, counter-clockwise."""
+    def points(self) -> Plane:
+        """Points of the adaptive polygon, complex, mm, counter-clockwise."""
         if self.toothing.closed:
             return self.toothed
         sparse = [run.points[: -1 : self.oversampling] for run in self.body]
-        return np.vstack([self.toothed[:-1], *sparse])
+        return np.concatenate([self.toothed[:-1], *sparse])
 
     @cached_property
     def teeth(self) -> tuple[Ints, Ints]:
@@ -188,7 +187,7 @@ class Outline(ShortRepr):
         """The outline with dense points and tangents, for arcs, and its polygon."""
         return Contour(
             dense=lambda: self.dense_teeth + self.body,
-            vertices=self.points,
+            points=self.points,
             tolerance=self.tolerance,
             chord_error=self.chord_error,
         )
@@ -362,14 +361,14 @@ def _demand_simple(outline: Outline) -> None:
     """Refuse an outline that crosses itself: a tooth has been cut off."""
     from shapely import LinearRing, Polygon, is_valid_reason
 
-    repeats = np.any(np.all(np.diff(outline.points, axis=0) == 0.0, axis=1))
-    if LinearRing(outline.points).is_simple and not repeats:
+    points = as_pairs(outline.points)
+    if LinearRing(points).is_simple and np.all(np.diff(outline.points) != 0.0):
         return
     toothing = outline.toothing
     radius = toothing.track.convex.radius
     largest = np.sin(toothing.cutter.alpha) ** 2 * radius if np.isfinite(radius) else 0.0
     what = f"wheel {toothing.wheel} is not in one piece: undercut cuts teeth off"
-    where = _crossing(is_valid_reason(Polygon(outline.points)), float(np.ptp(outline.points)))
+    where = _crossing(is_valid_reason(Polygon(points)), float(np.ptp(points)))
     note = "the value is the module, the limit the largest without undercut at this size"
     more_teeth = toothing.pitch / (np.pi * largest) if largest else 2.0
     raise beyond_limit(
@@ -455,7 +454,7 @@ def outside(ring: Outline, rim: float) -> Contour:
     _, points, error = sampler.chords
     contour = Contour(
         dense=lambda: sampler.dense(ring.oversampling).runs(),
-        vertices=as_pairs(points),
+        points=points,
         tolerance=ring.tolerance,
         chord_error=error,
     )

@@ -24,8 +24,7 @@ from gearcam.gears.track import Wheel
 from gearcam.laws.ratio.base import RatioLaw
 from gearcam.laws.ratio.span import RACK, RING, WHEEL, Lobes
 from gearcam.numeric.arguments import whole
-from gearcam.numeric.arrays import Array
-from gearcam.numeric.bulges import as_pairs
+from gearcam.numeric.arrays import Array, Plane, as_pairs
 from gearcam.numeric.columns import Columns
 
 FINEST = 1e-9
@@ -158,7 +157,7 @@ class Gear(ShortRepr, NotebookView):
     @property
     def outline(self) -> Array:
         """Vertices of the outline, (n, 2), mm, counter-clockwise, in the wheel's frame."""
-        return self.profile.points
+        return as_pairs(self.profile.points)
 
     @property
     def ring(self) -> bool:
@@ -241,17 +240,15 @@ class Gear(ShortRepr, NotebookView):
         A ring is drawn with one module of metal around its teeth.
         """
         track = self.toothing.track
-        centrode = self.centrode(
-            np.linspace(0.0, float(track.angle(self.toothing.length)), PICTURED)
-        )
-        edges = [self.outline]
+        phi = np.linspace(0.0, float(track.angle(self.toothing.length)), PICTURED)
+        edges: list[Plane] = [self.profile.points]
         if self.hollow:
-            spokes = np.exp(1j * np.linspace(0.0, 2.0 * np.pi, PICTURED))
-            edges.append((self.largest_radius + self.pair.module) * as_pairs(spokes))
+            spokes: Plane = np.exp(1j * np.linspace(0.0, 2.0 * np.pi, PICTURED))
+            edges.append(spokes * (self.largest_radius + self.pair.module))
         return renderer().outlines(
             self.facts.headline,
             edges,
-            [centrode],
+            [self.toothing.frames(phi).p],
             wheel=self.wheel,
             axis=not track.slides,
         )
@@ -259,14 +256,12 @@ class Gear(ShortRepr, NotebookView):
     @cached_property
     def least_radius(self) -> float:
         """Smallest distance of the outline from the shaft's axis, mm."""
-        x, y = self.outline.T
-        return float(np.hypot(x, y).min())
+        return float(np.abs(self.profile.points).min())
 
     @cached_property
     def largest_radius(self) -> float:
         """Largest distance of the teeth from the shaft's axis, mm: for a ring, of its roots."""
-        x, y = self.profile.toothed.T
-        return float(np.hypot(x, y).max())
+        return float(np.abs(self.profile.toothed).max())
 
     def centrode(self, phi: Array) -> Array:
         """Return points of the centrode at driver angles, rad: (n, 2), mm, in the wheel's frame."""

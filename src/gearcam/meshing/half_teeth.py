@@ -18,8 +18,7 @@ import shapely
 
 from gearcam.gears.flank import Curve, Toothing
 from gearcam.gears.outline import Outline
-from gearcam.numeric.arrays import Array, Ints, Plane
-from gearcam.numeric.bulges import as_complex
+from gearcam.numeric.arrays import Array, Ints, Plane, as_pairs
 from gearcam.numeric.pose import Pose
 
 _BELOW = 0.5
@@ -103,7 +102,7 @@ class HalfTeeth:
         at: Any = shapely.points(points.real, points.imag)
         body = self.points[self.starts[self.count] :]  # by its edges, since it has many
         ends = np.stack([body, np.roll(body, -1)], axis=1)
-        edges: Any = shapely.linestrings(np.stack([ends.real, ends.imag], axis=2))
+        edges: Any = shapely.linestrings(as_pairs(ends).reshape(-1, 2, 2))
         tree = shapely.STRtree(np.concatenate([self.polygons[: self.count], edges]))
         least = tree.query_nearest(at, return_distance=True, all_matches=False)[1]
         for whole in self.polygons[self.count :]:
@@ -257,12 +256,11 @@ def _inner(outline: Outline, count: int) -> Plane:
 
 def _counted(outline: Outline) -> Plane:
     """Vertices of the body between the ends of an open wheel, in order of rising s."""
-    points = as_complex(outline.points[len(outline.toothed) :])
+    points = outline.points[len(outline.toothed) :]
     return points if outline.toothing.wheel == 1 else points[::-1]
 
 
 def as_polygons(points: Plane, sizes: Ints) -> Any:
     """Return polygons of `sizes` vertices each, from consecutive `points`."""
-    coordinates = np.stack([points.real, points.imag], axis=1)
     owner = np.repeat(np.arange(len(sizes)), sizes)
-    return shapely.polygons(shapely.linearrings(coordinates, indices=owner))
+    return shapely.polygons(shapely.linearrings(as_pairs(points), indices=owner))

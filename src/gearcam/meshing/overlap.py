@@ -19,8 +19,7 @@ import shapely
 
 from gearcam.gears.rolling import Rolling
 from gearcam.meshing.half_teeth import HalfTeeth, as_polygons
-from gearcam.numeric.arrays import Array, Ints, Mask
-from gearcam.numeric.bulges import as_complex
+from gearcam.numeric.arrays import Array, Ints, Mask, as_complex
 from gearcam.numeric.pose import Pose
 
 

@@ -4,8 +4,7 @@ A *biarc* is a pair of arcs with a common tangent at the joint, through two poin
 tangents. A run becomes a bulge polyline (see `bulges`) of biarcs, each as long as the tolerance
 allows.
 
-Points are complex numbers inside this module: turning and scaling a vector is one product. Arcs
-are given by curvature, not radius, so that nearly straight pieces lose no digits.
+Arcs are given by curvature, not radius, so that nearly straight pieces lose no digits.
 """
 
 from __future__ import annotations
@@ -17,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
-from gearcam.numeric.bulges import as_pairs, off_circle
+from gearcam.numeric.bulges import off_circle
 from gearcam.numeric.contour import Run
 from gearcam.numeric.fitting import (
     Checks,
@@ -59,7 +58,7 @@ class _Biarcs(NamedTuple):
     fails: Mask
 
 
-def fit_arcs(runs: Sequence[Run], tolerance: float) -> list[tuple[Array, Array]]:
+def fit_arcs(runs: Sequence[Run], tolerance: float) -> list[tuple[Plane, Array]]:
     """Fit tangent-continuous arcs to runs, each pair as long as the tolerance allows.
 
     From each point the longest piece is searched whose biarc stays within the tolerance of the
@@ -76,9 +75,9 @@ def fit_arcs(runs: Sequence[Run], tolerance: float) -> list[tuple[Array, Array]]
 
     Returns
     -------
-    list of (vertices, bulges)
-        For each run its ends and the knots between, (k, 2), mm, and the tangents of a quarter of
-        each arc's angle, (k - 1,), positive to the left, 0 for a straight piece.
+    list of (points, bulges)
+        For each run its ends and the knots between, (k,), complex, mm, and the tangents of a
+        quarter of each arc's angle, (k - 1,), positive to the left, 0 for a straight piece.
 
     Raises
     ------
@@ -98,12 +97,10 @@ def fit_arcs(runs: Sequence[Run], tolerance: float) -> list[tuple[Array, Array]]
     behind = np.cumsum(kept.sum(axis=1))[np.searchsorted(start, rows.last) - 1]
     pieces = (np.split(one.T[kept], behind[:-1]) for one in (knots[:2], bulges))
     ends = rows.points[rows.last]
-    return [
-        (as_pairs(np.append(one, q)), bends) for one, bends, q in zip(*pieces, ends, strict=True)
-    ]
+    return [(np.append(one, q), bends) for one, bends, q in zip(*pieces, ends, strict=True)]
 
 
-def fit_closed(runs: Sequence[Run], tolerance: float) -> tuple[Array, Array]:
+def fit_closed(runs: Sequence[Run], tolerance: float) -> tuple[Plane, Array]:
     """Fit arcs to a closed chain of runs.
 
     Parameters
@@ -115,10 +112,10 @@ def fit_closed(runs: Sequence[Run], tolerance: float) -> tuple[Array, Array]:
 
     Returns
     -------
-    vertices : (k, 2) array, mm
-        First point not repeated.
+    points : (k,) complex array, mm
+        First not repeated.
     bulges : (k,) array
-        Bulge k belongs to the piece from vertex k to the next one.
+        Bulge k belongs to the piece from point k to the next one.
 
     Raises
     ------
@@ -126,11 +123,12 @@ def fit_closed(runs: Sequence[Run], tolerance: float) -> tuple[Array, Array]:
         If the runs do not join within the tolerance.
     """
     ends = np.array([run.points[[0, -1]] for run in runs])
-    gap = float(np.hypot(*(np.roll(ends[:, 0], -1, axis=0) - ends[:, 1]).T).max())
+    gap = float(np.abs(np.roll(ends[:, 0], -1) - ends[:, 1]).max())
     if gap > tolerance:
         raise ValueError(f"runs do not join: a gap of {gap:.3g} mm")
     made = fit_arcs(runs, tolerance)
-    return np.vstack([points[:-1] for points, _ in made]), np.concatenate([b for _, b in made])
+    points = np.concatenate([points[:-1] for points, _ in made])
+    return points, np.concatenate([bulges for _, bulges in made])
 
 
 def _biarcs(rows: RunPoints, start: Ints, end: Ints) -> _Biarcs:

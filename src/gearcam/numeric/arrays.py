@@ -25,3 +25,19 @@ def keep_freed_memory() -> None:
     written to. On other systems this has no effect.
     """
     np.empty(_BLOCK, dtype=np.uint8)
+
+
+def as_complex(pairs: Array) -> Plane:
+    """Return points (n, 2) as complex numbers (n,)."""
+    return np.ascontiguousarray(pairs, dtype=np.float64).view(np.complex128).ravel()
+
+
+def as_pairs(points: Plane) -> Array:
+    """Return complex numbers (n,) as points (n, 2)."""
+    return np.ascontiguousarray(points, dtype=np.complex128).view(np.float64).reshape(-1, 2)
+
+
+def bounds(points: Plane) -> tuple[complex, complex]:
+    """Return the lower left and the upper right corner of the box around complex points."""
+    x, y = points.real, points.imag
+    return complex(x.min(), y.min()), complex(x.max(), y.max())

@@ -1,7 +1,8 @@
 """Bulge polylines: chains of arcs and straight lines, and the distances of curves from them.
 
-A *bulge polyline* has the data of a DXF polyline: vertices, and for each piece its *bulge*, the
+A *bulge polyline* has the data of a DXF polyline: points, and for each piece its *bulge*, the
 tangent of a quarter of the arc's angle, positive if the piece turns left, 0 if it is straight.
+Points are complex numbers, in mm.
 """
 
 from __future__ import annotations
@@ -14,16 +15,6 @@ from gearcam.numeric.arrays import Array, Ints, Plane
 
 BLOCK = 20_000
 """Distances computed at once in the search for the nearest of all pieces."""
-
-
-def as_complex(values: Array) -> Plane:
-    """Return points (n, 2) as complex numbers (n,)."""
-    return np.ascontiguousarray(values, dtype=np.float64).view(np.complex128).ravel()
-
-
-def as_pairs(values: Plane) -> Array:
-    """Return complex numbers (n,) as points (n, 2)."""
-    return np.ascontiguousarray(values).view(np.float64).reshape(-1, 2)
 
 
 def off_circle(local: Plane, bend: float | Array) -> Array:
@@ -46,16 +37,16 @@ def off_circle(local: Plane, bend: float | Array) -> Array:
 
 
 def flatten_bulges(
-    vertices: Array, bulges: Array, sagitta: float, closed: bool = True, least: int = 1
-) -> Array:
+    points: Plane, bulges: Array, sagitta: float, closed: bool = True, least: int = 1
+) -> Plane:
     """Return the points of chords that replace the arcs of a bulge polyline.
 
     Parameters
     ----------
-    vertices : (k, 2) array, mm
-        Vertices of the polyline.
+    points : (k,) complex array, mm
+        Points of the polyline.
     bulges : (k,) or (k - 1,) array
-        Bulges; with `closed` one more, for the piece from the last vertex to the first.
+        Bulges; with `closed` one more, for the piece from the last point to the first.
     sagitta : float, mm
         Largest distance between an arc and its chords.
     closed : bool
@@ -65,14 +56,13 @@ def flatten_bulges(
 
     Returns
     -------
-    (n, 2) array, mm
-        Points on the arcs, including the vertices.
+    (n,) complex array, mm
+        Points on the arcs, including those of the polyline.
     """
-    start, chord, bends = bulge_pieces(vertices, bulges, closed)
-    points, _ = divided(start, chord, bends, np.maximum(arc_chords(chord, bends, sagitta), least))
-    if not closed:
-        points = np.append(points, as_complex(vertices)[-1])
-    return as_pairs(points)
+    start, chord, bends = bulge_pieces(points, bulges, closed)
+    count = np.maximum(arc_chords(chord, bends, sagitta), least)
+    ends, _ = divided(start, chord, bends, count)
+    return ends if closed else np.append(ends, points[-1])
 
 
 def arc_chords(chord: Plane, bends: Array, sagitta: float) -> Ints:
@@ -136,32 +126,31 @@ def arc_centers(start: Plane, chord: Plane, bends: Array) -> Plane:
     return start + 0.5 * chord * (1 + 0.5j * (1 / bends - bends))
 
 
-def bulge_pieces(vertices: Array, bulges: Array, closed: bool) -> tuple[Plane, Plane, Array]:
+def bulge_pieces(points: Plane, bulges: Array, closed: bool) -> tuple[Plane, Plane, Array]:
     """Return start, chord (complex, mm) and bulge of each piece (see `flatten_bulges`).
 
     Raises
     ------
     ValueError
-        If the number of bulges does not match that of the vertices.
+        If the number of bulges does not match that of the points.
     """
-    points = as_complex(vertices)
     bends = np.asarray(bulges, dtype=np.float64)
     expected = len(points) if closed else len(points) - 1
     if len(bends) != expected:
-        raise ValueError(f"{len(points)} vertices need {expected} bulges, not {len(bends)}")
+        raise ValueError(f"{len(points)} points need {expected} bulges, not {len(bends)}")
     ends = np.roll(points, -1)
     return points[:expected], (ends - points)[:expected], bends
 
 
-def farthest(points: Array, vertices: Array, bulges: Array) -> float:
+def farthest(targets: Plane, points: Plane, bulges: Array) -> float:
     """Return the largest distance of a closed curve's points from a closed bulge polyline.
 
     Parameters
     ----------
-    points : (n, 2) array, mm
+    targets : (n,) complex array, mm
         Points on the curve, in order; fast if the polyline begins near the first and has the same
         sense.
-    vertices : (k, 2) array, mm
+    points : (k,) complex array, mm
         The polyline.
     bulges : (k,) array
         Its bulges; arcs of half a circle at most.
@@ -177,10 +166,10 @@ def farthest(points: Array, vertices: Array, bulges: Array) -> float:
     local one at corners. The points that seem farthest are then compared with all pieces, until no
     other point can be farther.
     """
-    start, chord, bends = bulge_pieces(vertices, bulges, closed=True)
+    start, chord, bends = bulge_pieces(points, bulges, closed=True)
     real = chord != 0
     if not real.any():  # all points coincide
-        return float(np.abs(as_complex(points) - start[0]).max())
+        return float(np.abs(targets - start[0]).max())
     start, chord, half = start[real], chord[real], 2 * np.arctan(bends[real])
     size, end = np.abs(chord), start + chord
     into, out = (chord / size * np.exp(1j * sign * half) for sign in (-1, 1))
@@ -193,7 +182,7 @@ def farthest(points: Array, vertices: Array, bulges: Array) -> float:
         ends = np.minimum(np.abs(local), np.abs(past))
         return np.where(side, ends, off_circle(local, bend[at])), side
 
-    targets, lengths = as_complex(points), np.cumsum(size / np.sinc(half / np.pi))
+    lengths = np.cumsum(size / np.sinc(half / np.pi))
     steps = np.abs(np.diff(targets, append=targets[0]))
     way = (np.cumsum(steps) - steps) * (lengths[-1] / steps.sum())
     piece = np.minimum(np.searchsorted(lengths, way, side="right"), len(start) - 1)
@@ -216,16 +205,16 @@ def farthest(points: Array, vertices: Array, bulges: Array) -> float:
     return largest
 
 
-def deviation(vertices: Array, bulges: Array, dense: Array, samples: int = 8) -> float:
+def deviation(points: Plane, bulges: Array, dense: Plane, samples: int = 8) -> float:
     """Return the largest distance between a closed bulge polyline and a closed dense polygon.
 
     Parameters
     ----------
-    vertices : (k, 2) array, mm
+    points : (k,) complex array, mm
         The polyline.
     bulges : (k,) array
         Its bulges.
-    dense : (n, 2) array, mm
+    dense : (n,) complex array, mm
         Points on the true curve, in order, first not repeated.
     samples : int
         Points on each piece of the polyline for distances to the dense polygon.
@@ -236,7 +225,7 @@ def deviation(vertices: Array, bulges: Array, dense: Array, samples: int = 8) ->
         The larger of two: from dense points to the polyline (exact), and from points of the
         polyline to the dense polygon, which includes the dense polygon's own chord error.
     """
-    there = farthest(dense, vertices, bulges)
-    places = flatten_bulges(vertices, bulges, math.inf, least=samples)
+    there = farthest(dense, points, bulges)
+    places = flatten_bulges(points, bulges, math.inf, least=samples)
     back = farthest(places, dense, np.zeros(len(dense)))
     return max(there, back)

@@ -1,8 +1,8 @@
 """Closed contours made of smooth runs, with their polygon.
 
 A *run* is a smooth piece of a true curve between two corners, sampled densely with its tangents. A
-*contour* is the closed chain of runs, with its adaptive polygon: vertices on the true curve, no
-chord farther from it than the tolerance.
+*contour* is the closed chain of runs, with its adaptive polygon: points on the true curve, no chord
+farther from it than the tolerance. Points are complex numbers, in mm.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from gearcam.base.display import ShortRepr
-from gearcam.numeric.arrays import Array
+from gearcam.numeric.arrays import Array, Plane, as_pairs
 from gearcam.numeric.moments import Moments, curve_moments
 from gearcam.numeric.pose import UNMOVED, Pose
 
@@ -32,16 +32,16 @@ class Run(ShortRepr):
 
     Parameters
     ----------
-    points : (n, 2) array, mm
+    points : (n,) complex array, mm
         Points on the true curve, dense: chord error at most 1/32 of the contour's tolerance.
-    tangents : (n, 2) array
+    tangents : (n,) complex array
         Unit tangents, forward along the contour.
     joints : tuple of int
         Indices of inner points at which two curves join smoothly.
     """
 
-    points: Array
-    tangents: Array
+    points: Plane
+    tangents: Plane
     joints: tuple[int, ...] = field(default=())
 
     @property
@@ -73,7 +73,7 @@ class Contour(ShortRepr):
     dense : callable
         Returns the runs in order, each beginning where the one before ends; called only if needed,
         since the polygon does without.
-    vertices : (k, 2) array, mm
+    points : (k,) complex array, mm
         The adaptive polygon, first point not repeated.
     tolerance : float, mm
         The allowed chord error.
@@ -86,7 +86,7 @@ class Contour(ShortRepr):
     """
 
     dense: Callable[[], tuple[Run, ...]]
-    vertices: Array
+    points: Plane
     tolerance: float
     chord_error: float
     source: Contour | None = None
@@ -100,21 +100,16 @@ class Contour(ShortRepr):
     def placed(self, pose: Pose) -> Contour:
         """Return the contour in its place."""
         own, pose = self.own, pose @ self.pose
-        turned = Pose(pose.turn)
         return replace(
             own,
             dense=lambda: tuple(
-                replace(run, points=_move(run.points, pose), tangents=_move(run.tangents, turned))
+                replace(run, points=pose.apply(run.points), tangents=run.tangents * pose.rotation)
                 for run in own.runs
             ),
-            vertices=_move(own.vertices, pose),
+            points=pose.apply(own.points),
             source=own,
             pose=pose,
         )
-
-    def moved(self, points: Array) -> Array:
-        """Return points (n, 2) of its own frame in their places."""
-        return points if self.source is None else _move(points, self.pose)
 
     def fitted(self, fit: Callable[[Sequence[Run], float], Fitted], tolerance: float) -> Fitted:
         """Return `fit` of the runs in their own frame to a `tolerance`, cached."""
@@ -135,30 +130,35 @@ class Contour(ShortRepr):
     @cached_property
     def area(self) -> float:
         """Area of the polygon, mm^2."""
-        return polygon_area(self.vertices)
+        return polygon_area(self.points)
 
     @cached_property
     def moments(self) -> Moments:
         """Moments of the region inside the true curve, from the dense runs."""
         # steps between runs have no length
         return curve_moments(
-            np.vstack([run.points for run in self.runs]),
-            np.vstack([run.tangents for run in self.runs]),
+            np.concatenate([run.points for run in self.runs]),
+            np.concatenate([run.tangents for run in self.runs]),
         )
 
     @property
     def length(self) -> float:
         """Length of the polygon's boundary, mm."""
-        return float(np.hypot(*np.diff(self.vertices, axis=0, append=self.vertices[:1]).T).sum())
+        return float(np.abs(np.diff(self.points, append=self.points[:1])).sum())
 
     @property
     def reach(self) -> float:
         """Largest distance of a vertex from the origin, mm."""
-        return float(np.hypot(*self.vertices.T).max())
+        return float(np.abs(self.points).max())
 
-    def points(self, _: float) -> Array:
-        """Return the polygon's vertices, within the contour's own tolerance."""
-        return self.vertices
+    @property
+    def vertices(self) -> Array:
+        """The points of the polygon as pairs, (k, 2), mm."""
+        return as_pairs(self.points)
+
+    def polyline(self, _: float) -> Plane:
+        """Return the polygon's points, (k,), complex, mm, within the contour's own tolerance."""
+        return self.points
 
     @cached_property
     def polygon(self) -> Polygon:
@@ -168,17 +168,12 @@ class Contour(ShortRepr):
         return Polygon(self.vertices)
 
 
-def _move(points: Array, pose: Pose) -> Array:
-    values = np.ascontiguousarray(points, dtype=np.float64).view(np.complex128)
-    return pose.apply(values).view(np.float64)
-
-
-def polygon_area(vertices: Array) -> float:
+def polygon_area(points: Plane) -> float:
     """Return the signed area of a polygon, counter-clockwise positive.
 
     Parameters
     ----------
-    vertices : (n, 2) array, mm
+    points : (n,) complex array, mm
         First point not repeated.
 
     Returns
@@ -186,5 +181,6 @@ def polygon_area(vertices: Array) -> float:
     float, mm^2
         From the shoelace formula about the first vertex.
     """
-    x, y = (vertices - vertices[0]).T
+    spokes = points - points[0]
+    x, y = spokes.real, spokes.imag
     return 0.5 * float((x * np.roll(y, -1) - y * np.roll(x, -1)).sum())

@@ -24,8 +24,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gearcam.numeric.arrays import Array, Ints, Mask, Plane
-from gearcam.numeric.bulges import as_pairs
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane, as_pairs
 from gearcam.numeric.contour import polygon_area
 from gearcam.numeric.sampling import Curves
 
@@ -150,7 +149,7 @@ class Ring:
     @property
     def area(self) -> float:
         """Signed area of its polygon."""
-        return polygon_area(as_pairs(self.polygon))
+        return polygon_area(self.polygon)
 
 
 def remaining(curves: Curves, chains: Sequence[Chain]) -> list[list[Ring]]:
@@ -237,7 +236,7 @@ def _tangle(chain: Chain) -> _Tangle:
     step = np.roll(p, -1) - p
     number = np.flatnonzero(np.abs(step) > _REAL * nudge)
     number = number[number < len(chain.curve)]
-    one, two = near_chords(as_pairs(p[number]), as_pairs((p + step)[number]))
+    one, two = near_chords(p[number], (p + step)[number])
     apart = two - one > 1
     if not chain.open:
         apart &= two - one < len(number) - 1
@@ -384,12 +383,12 @@ _TOGETHER = 64
 """Number of boxes compared all with all: faster than halving so few."""
 
 
-def near_chords(starts: Array, ends: Array) -> tuple[Ints, Ints]:
+def near_chords(starts: Plane, ends: Plane) -> tuple[Ints, Ints]:
     """Return the pairs of chords whose bounding boxes overlap, by repeated halving.
 
     Parameters
     ----------
-    starts, ends : (n, 2) arrays
+    starts, ends : (n,) complex arrays
         Ends of the chords, in order along the curve.
 
     Returns
@@ -399,8 +398,9 @@ def near_chords(starts: Array, ends: Array) -> tuple[Ints, Ints]:
     """
     size = 1 << (len(starts) - 1).bit_length()
     rest = np.full((size - len(starts), 2), np.inf)
-    low = np.concatenate([np.minimum(starts, ends), rest])
-    high = np.concatenate([np.maximum(starts, ends), -rest])
+    corners = as_pairs(starts), as_pairs(ends)
+    low = np.concatenate([np.minimum(*corners), rest])
+    high = np.concatenate([np.maximum(*corners), -rest])
     levels = [(low, high)]
     while len(low) > _TOGETHER:
         low, high = np.minimum(low[::2], low[1::2]), np.maximum(high[::2], high[1::2])

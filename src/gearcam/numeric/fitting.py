@@ -11,7 +11,6 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from gearcam.numeric.arrays import Array, Ints, Plane
-from gearcam.numeric.bulges import as_complex
 from gearcam.numeric.contour import Run
 from gearcam.numeric.hermite import on_cubics
 
@@ -82,8 +81,8 @@ def points_to_fit(runs: Sequence[Run], tolerance: float) -> RunPoints:
     """
     if not tolerance > 0:
         raise ValueError(f"the tolerance must be positive, not {tolerance}")
-    points = as_complex(np.vstack([run.points for run in runs]))
-    tangents = as_complex(np.vstack([run.tangents for run in runs]))
+    points = np.concatenate([run.points for run in runs])
+    tangents = np.concatenate([run.tangents for run in runs])
     if not (np.isfinite(points).all() and np.isfinite(tangents).all()):
         raise ValueError("points and tangents of a run must be finite")
     of = np.repeat(np.arange(len(runs)), [len(run.points) for run in runs])

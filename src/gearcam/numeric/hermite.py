@@ -1,7 +1,4 @@
-"""Hermite's cubics and quintics: interpolation between points with known derivatives.
-
-Points and tangents of curves are complex numbers inside this module.
-"""
+"""Hermite's cubics and quintics: interpolation between points with known derivatives."""
 
 from __future__ import annotations
 

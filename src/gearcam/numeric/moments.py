@@ -3,8 +3,6 @@
 For a homogeneous function f of degree k, ``integral of f dA = 1/(k + 2) * integral of f*(x dy - y
 dx)`` around the boundary (Green). Curves are integrated piece by piece: arcs by Gauss-Legendre
 points that are exact to rounding, sampled curves by the cubics through their points and tangents.
-
-Points are complex numbers inside this module.
 """
 
 from __future__ import annotations
@@ -17,7 +15,7 @@ import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.numeric.arrays import Array, Plane
-from gearcam.numeric.bulges import as_complex, bulge_pieces, on_arcs
+from gearcam.numeric.bulges import bulge_pieces, on_arcs
 from gearcam.numeric.hermite import hermite_arms, hermite_cubic
 
 _ON_ARC: Final = 16
@@ -71,12 +69,12 @@ class Moments(ShortRepr):
         )
 
 
-def arc_moments(vertices: Array, bulges: Array) -> Moments:
+def arc_moments(points: Plane, bulges: Array) -> Moments:
     """Return the moments inside a closed bulge polyline.
 
     Parameters
     ----------
-    vertices : (k, 2) array, mm
+    points : (k,) complex array, mm
         Counter-clockwise, first not repeated; no arc beyond a half circle.
     bulges : (k,) array
         Bulges (see `numeric.bulges`).
@@ -86,20 +84,20 @@ def arc_moments(vertices: Array, bulges: Array) -> Moments:
     Moments
         Exact to rounding.
     """
-    start, chord, bends = bulge_pieces(vertices, bulges, closed=True)
+    start, chord, bends = bulge_pieces(points, bulges, closed=True)
     place, weight = _gauss(_ON_ARC)
     way, speed = on_arcs(chord, bends, place[:, None])
     return _moments(_swept(start + way, speed, weight).sum(axis=1))
 
 
-def curve_moments(points: Array, tangents: Array) -> Moments:
+def curve_moments(points: Plane, tangents: Plane) -> Moments:
     """Return the contribution of an open curve to the moments of the region that it bounds.
 
     Parameters
     ----------
-    points : (n, 2) array, mm
+    points : (n,) complex array, mm
         Dense points of a smooth curve, forward along the boundary.
-    tangents : (n, 2) array
+    tangents : (n,) complex array
         Unit tangents.
 
     Returns
@@ -107,7 +105,7 @@ def curve_moments(points: Array, tangents: Array) -> Moments:
     Moments
         Only the sum over a closed chain is meaningful.
     """
-    return _moments(_on_cubics(as_complex(points), as_complex(tangents)).sum(axis=1))
+    return _moments(_on_cubics(points, tangents).sum(axis=1))
 
 
 def halving(points: Plane, tangents: Plane, middles: Plane, between: Plane) -> float:
@@ -133,7 +131,7 @@ def halving(points: Plane, tangents: Plane, middles: Plane, between: Plane) -> f
     return float(np.abs(parts.reshape(-1, 2).sum(axis=1) - whole).sum())
 
 
-def area_error(curves: Sequence[tuple[Array, Array]]) -> float:
+def area_error(curves: Sequence[tuple[Plane, Plane]]) -> float:
     """Return the error of the area at sampled curves, mm^2.
 
     Parameters
@@ -154,11 +152,11 @@ def area_error(curves: Sequence[tuple[Array, Array]]) -> float:
     return float((_SAFE * change / fall).sum())
 
 
-def _by_curve(curves: Sequence[tuple[Array, Array]], every: int) -> Array:
+def _by_curve(curves: Sequence[tuple[Plane, Plane]], every: int) -> Array:
     """Return the area at each curve from some of its points."""
     kept = [np.append(np.arange(0, len(points) - 1, every), -1) for points, _ in curves]
     some = [(points[k], tangents[k]) for (points, tangents), k in zip(curves, kept, strict=True)]
-    found = _on_cubics(*(as_complex(np.vstack(one)) for one in zip(*some, strict=True)))[0].real
+    found = _on_cubics(*(np.concatenate(one) for one in zip(*some, strict=True)))[0].real
     starts = np.cumsum([0, *(len(k) for k in kept)])
     found[starts[1:-1] - 1] = 0.0  # from one curve to the next
     return np.asarray(np.add.reduceat(found, starts[:-1]))

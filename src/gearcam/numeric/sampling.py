@@ -21,7 +21,6 @@ from gearcam.base.display import ShortRepr
 from gearcam.base.errors import ABOVE, beyond_limit
 from gearcam.base.numerals import formatted
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
-from gearcam.numeric.bulges import as_pairs
 from gearcam.numeric.contour import Run
 from gearcam.numeric.moments import halving
 
@@ -436,9 +435,7 @@ class Dense(ShortRepr):
         made = []
         for steps, points, tangents in self._stretches():
             joints = np.flatnonzero(self.rank[steps] == 1).tolist()
-            made.append(
-                Run(points=as_pairs(points), tangents=as_pairs(tangents), joints=tuple(joints))
-            )
+            made.append(Run(points=points, tangents=tangents, joints=tuple(joints)))
         return tuple(run.reversed for run in made[::-1]) if reverse else tuple(made)
 
     def missed(self, at: Callable[[Array], tuple[Plane, Plane]]) -> float:

@@ -15,8 +15,7 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.numeric.arrays import Array, Ints
-from gearcam.numeric.bulges import as_pairs
+from gearcam.numeric.arrays import Array, Ints, Plane
 from gearcam.numeric.contour import Run
 from gearcam.numeric.fitting import (
     Checks,
@@ -40,13 +39,13 @@ class Spline:
 
     Parameters
     ----------
-    poles : (2k + 2, 2) array, mm
+    poles : (2k + 2,) complex array, mm
         Control points of k cubics.
     breaks : (k + 1,) array, mm
         Its distinct knots: approximately the arc length.
     """
 
-    poles: Array
+    poles: Plane
     breaks: Array
 
     @property
@@ -93,7 +92,7 @@ def fit_splines(runs: Sequence[Run], tolerance: float) -> list[Spline]:
         own = slice(*np.searchsorted(start, (low, high)))
         poles = np.concatenate([p[[low]], inner[own].ravel(), p[[high]]])
         breaks = np.append(way[start[own]], way[high]) - way[low]
-        made.append(Spline(poles=as_pairs(poles), breaks=breaks))
+        made.append(Spline(poles=poles, breaks=breaks))
     return made
 
 

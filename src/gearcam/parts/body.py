@@ -23,10 +23,10 @@ import numpy as np
 
 from gearcam.base.display import NotebookView, ShortRepr, renderer
 from gearcam.base.facts import Facts
-from gearcam.numeric.arrays import Array
+from gearcam.numeric.arrays import Array, as_pairs, bounds
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.moments import Moments
-from gearcam.parts.shapes import Circle, Loop, frozen
+from gearcam.parts.shapes import Circle, Loop
 
 if TYPE_CHECKING:
     from shapely import Polygon
@@ -75,7 +75,8 @@ class Opening(ShortRepr):
         """Return the opening as JSON data: kind and name, for a circle also centre and diameter."""
         made: dict[str, Any] = {"kind": self.kind.lower(), "name": self.name}
         if isinstance(self.shape, Circle):
-            made |= {"center_mm": self.shape.center.tolist(), "diameter_mm": self.shape.diameter}
+            center = self.shape.center
+            made |= {"center_mm": [center.real, center.imag], "diameter_mm": self.shape.diameter}
         return made | {"area_mm2": self.shape.moments.area}
 
 
@@ -113,14 +114,14 @@ class Recess(Layer):
     ----------
     width : float, mm
         Diameter of the largest round tool that can mill it.
-    place : (float, float), mm
+    place : complex, mm
         A point where no larger tool fits.
     front : bool
         Whether it is open to the upper face; if not, to the lower one.
     """
 
     width: float
-    place: tuple[float, float]
+    place: complex
     front: bool = True
 
 
@@ -139,18 +140,15 @@ class Mark(ShortRepr):
 
     Parameters
     ----------
-    center : (2,) array, mm
+    center : complex, mm
         In the part's frame.
     diameter, depth : float, mm
         Of the cylinder that is removed.
     """
 
-    center: Array
+    center: complex
     diameter: float
     depth: float
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "center", frozen(self.center))
 
     @property
     def circle(self) -> Circle:
@@ -241,7 +239,7 @@ class Part(ShortRepr, NotebookView):
         for pocket in self.pockets:
             edges += [pocket.edge, *(island.shape for island in pocket.openings)]
         return renderer().outlines(
-            self.facts.headline, [edge.points(self.tolerance) for edge in edges]
+            self.facts.headline, [edge.polyline(self.tolerance) for edge in edges]
         )
 
     @property
@@ -274,7 +272,7 @@ class Part(ShortRepr, NotebookView):
         """The hub at the back and in front, if any, with the openings through it."""
         if self.hub is None:
             return ()
-        disc = Circle(center=np.zeros(2), diameter=self.hub.diameter)
+        disc = Circle(center=0j, diameter=self.hub.diameter)
         within = tuple(o for o in self.openings if o.shape.reach < 0.5 * self.hub.diameter)
         ends = ((-self.hub.back, 0.0), (self.width, self.width + self.hub.front))
         return tuple(
@@ -318,15 +316,15 @@ class Part(ShortRepr, NotebookView):
         from shapely import Polygon
 
         step = self.steps[0]
-        holes = [opening.shape.points(self.tolerance) for opening in step.openings]
-        return Polygon(step.edge.points(self.tolerance), holes)
+        holes = [as_pairs(one.shape.polyline(self.tolerance)) for one in step.openings]
+        return Polygon(as_pairs(step.edge.polyline(self.tolerance)), holes)
 
     @property
     def size(self) -> tuple[float, float, float]:
         """Extents along x, y and z of its frame, mm, hub included, to the chord tolerance."""
-        points = np.concatenate([layer.edge.points(self.tolerance) for layer in self.layers])
-        across, up = np.ptp(points, axis=0).tolist()
-        return across, up, self.thickness
+        points = np.concatenate([layer.edge.polyline(self.tolerance) for layer in self.layers])
+        low, high = bounds(points)
+        return (high - low).real, (high - low).imag, self.thickness
 
     @property
     def thickness(self) -> float:

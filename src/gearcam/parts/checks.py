@@ -15,8 +15,9 @@ from gearcam.base.display import ShortRepr
 from gearcam.base.findings import ROUNDING, Remark, check
 from gearcam.base.numerals import decimal, formatted
 from gearcam.base.quantities import LENGTH, Param
+from gearcam.numeric.arrays import as_pairs
 from gearcam.parts.blank import KIND
-from gearcam.parts.body import Part
+from gearcam.parts.body import Edge, Part
 from gearcam.parts.shapes import Circle
 from gearcam.parts.tools import ToolLimits, tool_limits
 
@@ -79,17 +80,17 @@ def thin_wall(subject: CheckedParts, limit: float) -> Iterator[Remark]:
 
 def _walls(part: Part) -> Iterator[tuple[float, str]]:
     """Yield thickness and place of every wall."""
-    from shapely import LinearRing, Point
+    from shapely import Point
 
     # a circle is its centre, its radius away
     rings = [
-        (Point(*shape.center), 0.5 * shape.diameter)
+        (Point(shape.center.real, shape.center.imag), 0.5 * shape.diameter)
         if isinstance(shape := opening.shape, Circle)
-        else (LinearRing(shape.points(part.tolerance)), 0.0)
+        else (_ring(shape, part.tolerance), 0.0)
         for opening in part.openings
     ]
     edges: list[tuple[Any, str]] = [
-        (LinearRing(edge.points(_FINE * part.tolerance)), what)
+        (_ring(edge, _FINE * part.tolerance), what)
         for what, ones in (("outline", part.contours), ("roots", part.inner))
         for edge in ones
     ]
@@ -103,15 +104,22 @@ def _walls(part: Part) -> Iterator[tuple[float, str]]:
         for edge, what in edges:
             yield max(_apart(ring, edge) - radius, 0.0), f"{opening.name} and the {what}"
     for recess in part.recesses:
-        rim = LinearRing(recess.edge.points(part.tolerance))
+        rim = _ring(recess.edge, part.tolerance)
         yield _apart(rim, edges[0][0]), "groove and the outline"
         floor = recess.low if recess.front else part.width - recess.high
         yield floor, "groove's floor and the other face"
-        islands = [LinearRing(one.shape.points(part.tolerance)) for one in recess.openings] or [rim]
+        islands = [_ring(one.shape, part.tolerance) for one in recess.openings] or [rim]
         for opening, (ring, radius) in zip(part.openings, rings, strict=True):
             for island in islands:
                 wall = _apart(ring, island) - radius
                 yield max(wall, 0.0), f"{opening.name} and the groove"
+
+
+def _ring(edge: Edge, sagitta: float) -> Any:
+    """Return the chords of an edge."""
+    from shapely import LinearRing
+
+    return LinearRing(as_pairs(edge.polyline(sagitta)))
 
 
 def _apart(one: Any, other: Any) -> float:
@@ -184,5 +192,4 @@ def _tightest(tools: ToolLimits) -> str:
     what = "a slot" if narrow else "an inner corner or radius"
     if place is None:
         return what
-    x, y = (decimal(value, 4) for value in place)
-    return f"{what} at x = {x}, y = {y} mm"
+    return f"{what} at x = {decimal(place.real, 4)}, y = {decimal(place.imag, 4)} mm"

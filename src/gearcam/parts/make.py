@@ -8,8 +8,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 
-import numpy as np
-
 from gearcam.base.errors import Adjustment
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank
@@ -137,11 +135,11 @@ def _demand_marks(part: Part, blank: WheelBlank, work: Workpiece) -> None:
     from shapely import Point
 
     for mark in part.marks:
-        middle = Point(*mark.center)
+        middle = Point(mark.center.real, mark.center.imag)
         radius = 0.5 * mark.diameter
         room = part.region.boundary.distance(middle) if part.region.contains(middle) else 0.0
         if part.hub is not None:
-            room = min(room, float(np.hypot(*mark.center)) - 0.5 * part.hub.diameter)
+            room = min(room, abs(mark.center) - 0.5 * part.hub.diameter)
         if room < radius:
             raise work.refusal(
                 "the timing mark meets an opening, the hub or the outline",

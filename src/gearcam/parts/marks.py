@@ -6,10 +6,9 @@ is too thin for them is refused.
 
 from __future__ import annotations
 
+import cmath
 import math
 from typing import Final
-
-import numpy as np
 
 from gearcam.base.errors import Adjustment, beyond_limit
 from gearcam.base.numerals import formatted
@@ -116,6 +115,5 @@ def timing_mark(
     diameter = diameter or min(MARK_DIAMETER * module, largest)
     gap = min(MARK_GAP * module, RIM_PART * rim)
     radius = pitch_radius + way * (dedendum_mm + gap + 0.5 * diameter) / lean
-    center = radius * np.array([math.cos(direction), math.sin(direction)])
     depth = min(MARK_DEPTH, MARK_DEPTH_PART * width)
-    return Mark(center=center, diameter=diameter, depth=depth)
+    return Mark(center=cmath.rect(radius, direction), diameter=diameter, depth=depth)

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from gearcam.base.errors import Adjustment, InfeasibleError
-from gearcam.numeric.arrays import Array
+from gearcam.numeric.arrays import Array, as_pairs
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank
 from gearcam.parts.body import Edge, Opening
@@ -86,7 +86,7 @@ class Workpiece:
 
     def points(self, edge: Edge) -> Array:
         """Return points of an `edge`, (n, 2), mm, for tests of overlap."""
-        return edge.points(self.sagitta)
+        return as_pairs(edge.polyline(self.sagitta))
 
     @property
     def sagitta(self) -> float:
@@ -127,7 +127,7 @@ def bore(blank: WheelBlank) -> Circle | Loop:
         half = math.sqrt(radius**2 - away**2)
         angle = 2.0 * (math.pi - math.acos(away / radius))
         return _with_arc([away + 1j * half, away - 1j * half], angle, turn)
-    return Circle(center=np.zeros(2), diameter=blank.bore)
+    return Circle(center=0j, diameter=blank.bore)
 
 
 def _with_arc(corners: list[complex], angle: float, turn: complex) -> Loop:
@@ -136,13 +136,13 @@ def _with_arc(corners: list[complex], angle: float, turn: complex) -> Loop:
     points = np.array([corners[0], middle, *corners[1:]]) * turn
     bulges = np.zeros(len(points))
     bulges[:2] = math.tan(0.125 * angle)
-    return Loop(vertices=np.column_stack([points.real, points.imag]), bulges=bulges)
+    return Loop(points=points, bulges=bulges)
 
 
 def _bolts(blank: WheelBlank) -> Iterator[Opening]:
     for number in range(blank.bolts):
         angle = blank.bolt_angle + 2.0 * math.pi * number / blank.bolts
-        center = 0.5 * blank.bolt_circle * np.array([math.cos(angle), math.sin(angle)])
+        center = cmath.rect(0.5 * blank.bolt_circle, angle)
         shape = Circle(center=center, diameter=blank.bolt_diameter)
         yield Opening(kind="HOLE", shape=shape, name=f"bolt hole {number + 1}")
 
@@ -276,7 +276,7 @@ def _no_room(
     shape, value, limit = opening.shape, None, None
     nearest = "they must not overlap"
     if isinstance(shape, Circle) and what == work.within:
-        center = Point(*shape.center)
+        center = Point(shape.center.real, shape.center.imag)
         inside = solid.contains(center)
         value = shape.diameter - widening
         limit = 2.0 * solid.boundary.distance(center) - widening if inside else None
@@ -367,10 +367,10 @@ def _arc_slot(radius: float, start: float, sweep: float, width: float) -> Loop:
     outwards = start + sweep * np.linspace(0.0, 1.0, parts + 1)
     outer = (radius + 0.5 * width) * np.exp(1j * outwards)
     inner = (radius - 0.5 * width) * np.exp(1j * outwards[::-1])
-    points = np.concatenate([outer, inner])
+    points = np.asarray(np.concatenate([outer, inner]), dtype=np.complex128)
     bend = math.tan(0.25 * sweep / parts)
     bulges = [*[bend] * parts, 1.0, *[-bend] * parts, 1.0]
-    return Loop(vertices=np.column_stack([points.real, points.imag]), bulges=np.array(bulges))
+    return Loop(points=points, bulges=np.array(bulges))
 
 
 def _lightening(
@@ -388,7 +388,7 @@ def _lightening(
     outside = 1.0 / math.cos(math.pi / (4 * _QUARTER))  # chords outside the arcs, not inside
     taken = [Point(0.0, 0.0).buffer((core + web) * outside, quad_segs=_QUARTER)]
     taken += [
-        Polygon(other.shape.points(fine)).buffer(web * outside, quad_segs=_QUARTER)
+        Polygon(as_pairs(other.shape.polyline(fine))).buffer(web * outside, quad_segs=_QUARTER)
         for other in others
         if other.kind != "BORE"
     ]
@@ -401,7 +401,7 @@ def _lightening(
             if not piece.is_empty and piece.geom_type == "Polygon":
                 spoke = maximum_inscribed_circle(piece, tolerance=fine)
                 if spoke.length > size:
-                    size, center = float(spoke.length), np.array(spoke.coords[0])
+                    size, center = float(spoke.length), complex(*spoke.coords[0])
         size -= fine
         if center is None or size <= 0.0:
             raise _no_lightening(number + 1, solid, core, rim, work)

@@ -19,8 +19,7 @@ import numpy as np
 
 from gearcam.base.errors import Adjustment, InfeasibleError
 from gearcam.base.numerals import formatted, rounded_down
-from gearcam.numeric.arrays import Mask, Plane
-from gearcam.numeric.bulges import as_complex, as_pairs
+from gearcam.numeric.arrays import Mask, Plane, as_complex, as_pairs
 from gearcam.numeric.contour import Contour, Run
 from gearcam.numeric.hermite import on_cubics
 from gearcam.parts.rolled import arc_run, roll, too_far
@@ -95,7 +94,7 @@ def followed(contour: Contour, by: float) -> Contour:
     """
     made = moved(contour, by)
     for run in contour.runs:
-        p, t = as_complex(run.points), as_complex(run.tangents)
+        p, t = run.points, run.tangents
         at = np.linspace(0.0, len(p) - 1.0, _PLACES)
         step = np.minimum(at.astype(np.int64), len(p) - 2)
         points, tangents = on_cubics(p, t, step, at - step)
@@ -186,12 +185,12 @@ def _contour(runs: Sequence[Run], old: Contour, by: float) -> Contour:
     from shapely import LinearRing, get_coordinates, linestrings, simplify
 
     real = _joined([piece for run in runs for piece in _cut(run, _GRAIN * old.tolerance)])
-    lines: Any = np.array([linestrings(run.points) for run in real])
+    lines: Any = np.array([linestrings(as_pairs(run.points)) for run in real])
     thinned: Any = simplify(lines, _VERTICES * old.tolerance, preserve_topology=False)
     vertices = np.vstack([get_coordinates(line)[:-1] for line in thinned])
     contour = Contour(
         dense=lambda: tuple(real),
-        vertices=vertices,
+        points=as_complex(vertices),
         tolerance=old.tolerance,
         chord_error=_VERTICES * old.tolerance,
     )
@@ -206,14 +205,14 @@ def _cut(run: Run, grain: float) -> list[Run]:
 
     A stretch shorter than a `grain`, mm, is a point, and a corner if the tangent turns in it.
     """
-    steps = np.hypot(*np.diff(run.points, axis=0).T)
+    steps = np.abs(np.diff(run.points))
     groups = np.append(0, np.flatnonzero(np.diff(steps > grain)) + 1)
     long = np.add.reduceat(steps, groups) > grain
     kept = np.repeat(long, np.diff(np.append(groups, len(steps))))
     ends = np.flatnonzero(np.diff(np.concatenate([[0], kept, [0]])))
     if not ends.size:
         return []
-    low, high, tangents = ends[::2], ends[1::2], as_complex(run.tangents)
+    low, high, tangents = ends[::2], ends[1::2], run.tangents
     corner = np.abs(np.angle(tangents[low[1:]] * np.conj(tangents[high[:-1]]))) > _TURN
     low, high = low[np.append(True, corner)], high[np.append(corner, True)]
     pieces = []

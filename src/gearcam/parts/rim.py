@@ -17,7 +17,7 @@ import numpy as np
 
 from gearcam.base.errors import Adjustment
 from gearcam.base.numerals import formatted, rounded_down
-from gearcam.numeric.arrays import Array
+from gearcam.numeric.arrays import Array, as_pairs
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank
 from gearcam.parts.body import Edge
@@ -49,7 +49,7 @@ def is_around(outside: Edge, inner: Contour) -> bool:
     """
     from shapely import Polygon
 
-    return Polygon(outside.points(inner.tolerance), [inner.vertices]).is_valid
+    return Polygon(as_pairs(outside.polyline(inner.tolerance)), [inner.vertices]).is_valid
 
 
 def demand_bolts(

@@ -21,7 +21,6 @@ import numpy as np
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.numerals import formatted
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
-from gearcam.numeric.bulges import as_complex, as_pairs
 from gearcam.numeric.contour import Contour, Run
 from gearcam.numeric.crossings import Chain, remaining, rows_between
 from gearcam.numeric.hermite import on_cubics
@@ -60,7 +59,7 @@ class Touched:
 
     def place(self, at: float) -> tuple[complex, complex]:
         """Return point and unit tangent at a position, on the cubic between its neighbours."""
-        p, t = as_complex(self.run.points), as_complex(self.run.tangents)
+        p, t = self.run.points, self.run.tangents
         k = min(max(int(at), 0), len(p) - 2)
         share = np.array([at - k])
         points, tangents = on_cubics(p[k : k + 2], t[k : k + 2], np.array([0]), share)
@@ -74,8 +73,8 @@ class Touched:
     def backwards(self) -> bool:
         """Whether the disc's centre moves backwards: its radius exceeds the radius of curvature."""
         run = self.as_run(self.by)
-        way, tangents = np.diff(as_complex(run.points)), as_complex(run.tangents)
-        return float((way * np.conj(tangents[1:] + tangents[:-1])).real.sum()) < 0.0
+        along = np.conj(run.tangents[1:] + run.tangents[:-1])
+        return float((np.diff(run.points) * along).real.sum()) < 0.0
 
     def as_run(self, by: float) -> Run:
         """Return the parallel of the stretch at the distance `by`, mm, as a run."""
@@ -83,12 +82,12 @@ class Touched:
         # points right next to an end would only amplify errors of interpolated tangents
         inner = inner[(inner - self.low > _BESIDE) & (self.high - inner > _BESIDE)]
         ends = [self.place(self.low), self.place(self.high)]
-        p = np.concatenate([[ends[0][0]], as_complex(self.run.points)[inner], [ends[1][0]]])
-        t = np.concatenate([[ends[0][1]], as_complex(self.run.tangents)[inner], [ends[1][1]]])
+        p = np.concatenate([[ends[0][0]], self.run.points[inner], [ends[1][0]]])
+        t = np.concatenate([[ends[0][1]], self.run.tangents[inner], [ends[1][1]]])
         places = np.concatenate([[self.low], inner, [self.high]])
         joints = [int(np.argmin(np.abs(places - joint))) for joint in self.run.joints]
         inside = tuple(joint for joint in dict.fromkeys(joints) if 0 < joint < len(p) - 1)
-        return Run(points=as_pairs(p - 1j * by * t), tangents=as_pairs(t), joints=inside)
+        return Run(points=p - 1j * by * t, tangents=t, joints=inside)
 
 
 def roll(contour: Contour, radius: float) -> list[tuple[Touched, Touched, complex | None]]:
@@ -143,8 +142,8 @@ def _pieces(contour: Contour, radius: float) -> tuple[list[Touched], dict[int, c
     closing: dict[int, complex] = {}
     for run, following in zip(runs, [*runs[1:], runs[0]], strict=True):
         made.append(Touched(run, radius, 0.0, len(run.points) - 1.0))
-        corner, before = complex(*run.points[-1]), complex(*run.tangents[-1])
-        behind = complex(*following.tangents[0])
+        corner, before = complex(run.points[-1]), complex(run.tangents[-1])
+        behind = complex(following.tangents[0])
         turn = float(np.angle(behind / before))
         if turn * radius > _SMOOTH * contour.tolerance:
             arc = arc_run(corner, radius, -1j * before, -1j * behind, contour.tolerance)
@@ -178,8 +177,8 @@ class _Middles:
             end=size - 1.0,
             corner=np.zeros(len(pieces), dtype=bool),  # smooth as far as needed here
             first=np.cumsum(size) - size,
-            points=as_complex(np.concatenate([piece.run.points for piece in pieces])),
-            tangents=as_complex(np.concatenate([piece.run.tangents for piece in pieces])),
+            points=np.concatenate([piece.run.points for piece in pieces]),
+            tangents=np.concatenate([piece.run.tangents for piece in pieces]),
             by=np.repeat([piece.by for piece in pieces], size),
         )
 
@@ -237,12 +236,12 @@ def arc_run(center: complex, radius: float, start: complex, end: complex, tolera
     spokes = start * np.exp(1j * turn * np.linspace(0.0, 1.0, count + 1))
     spokes[-1] = end
     tangents = 1j * spokes * math.copysign(1.0, turn * radius)
-    return Run(points=as_pairs(center + radius * spokes), tangents=as_pairs(tangents))
+    return Run(points=center + radius * spokes, tangents=tangents)
 
 
 def _densified(run: Run, radius: float, tolerance: float) -> Run:
     """Return a run with more points where its parallel would have too few."""
-    p, t = as_complex(run.points), as_complex(run.tangents)
+    p, t = run.points, run.tangents
     turn = np.abs(np.angle(t[1:] * np.conj(t[:-1])))
     bow = 0.125 * turn * (np.abs(np.diff(p)) + abs(radius) * turn)
     parts = np.maximum(np.ceil(np.sqrt(bow / (_DENSE * tolerance))), 1.0).astype(np.int64)
@@ -253,16 +252,12 @@ def _densified(run: Run, radius: float, tolerance: float) -> Run:
     share = (np.arange(len(step)) - first[step]) / parts[step]
     points, tangents = on_cubics(p, t, step, share)
     joints = tuple(int(first[joint]) for joint in run.joints)
-    return Run(
-        points=as_pairs(np.append(points, p[-1])),
-        tangents=as_pairs(np.append(tangents, t[-1])),
-        joints=joints,
-    )
+    return Run(points=np.append(points, p[-1]), tangents=np.append(tangents, t[-1]), joints=joints)
 
 
 def too_far(contour: Contour, radius: float) -> InfeasibleError:
     """Return the refusal of a disc of `radius`, mm, on a `contour`."""
     side = "outside" if radius > 0 else "inside"
     what = f"a disc of this radius that rolls {side} leaves no simple outline"
-    where = f"an outline of {formatted(np.ptp(contour.vertices[:, 0]))} mm"
+    where = f"an outline of {formatted(np.ptp(contour.points.real))} mm"
     return InfeasibleError(what, where=where, value=abs(radius), unit="mm")

@@ -15,15 +15,8 @@ from typing import Final
 import numpy as np
 
 from gearcam.base.display import ShortRepr
-from gearcam.numeric.arrays import Array
-from gearcam.numeric.bulges import (
-    arc_centers,
-    arc_chords,
-    as_pairs,
-    bulge_pieces,
-    flatten_bulges,
-    on_arcs,
-)
+from gearcam.numeric.arrays import Array, Plane
+from gearcam.numeric.bulges import arc_centers, arc_chords, bulge_pieces, flatten_bulges, on_arcs
 from gearcam.numeric.contour import Contour, Run
 from gearcam.numeric.moments import Moments, arc_moments
 
@@ -40,7 +33,7 @@ class Circle(ShortRepr):
 
     Parameters
     ----------
-    center : (2,) array, mm
+    center : complex, mm
         Its centre.
     diameter : float, mm
         Above 0.
@@ -51,11 +44,10 @@ class Circle(ShortRepr):
         If the diameter is not positive.
     """
 
-    center: Array
+    center: complex
     diameter: float
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "center", frozen(self.center))
         if not self.diameter > 0.0:
             raise ValueError(f"the diameter must be positive, not {self.diameter} mm")
 
@@ -63,34 +55,32 @@ class Circle(ShortRepr):
     def moments(self) -> Moments:
         """Moments about the origin."""
         area = 0.25 * math.pi * self.diameter**2
-        place = complex(*self.center)
-        return Moments(
-            area=area, first=area * place, polar=area * (abs(place) ** 2 + 0.125 * self.diameter**2)
-        )
+        square = abs(self.center) ** 2 + 0.125 * self.diameter**2
+        return Moments(area=area, first=area * self.center, polar=area * square)
 
     @property
     def reach(self) -> float:
         """Largest distance from the origin, mm."""
-        return float(np.hypot(*self.center)) + 0.5 * self.diameter
+        return abs(self.center) + 0.5 * self.diameter
 
     @property
     def length(self) -> float:
         """Circumference, mm."""
         return math.pi * self.diameter
 
-    def points(self, sagitta: float) -> Array:
-        """Return points, (n, 2), mm, counter-clockwise, with chords of at most `sagitta`, mm."""
+    def polyline(self, sagitta: float) -> Plane:
+        """Return points, complex, mm, counter-clockwise, with chords of at most `sagitta`, mm."""
         count = circle_segments(self.diameter, sagitta)
         angle = 2 * math.pi * np.arange(count) / count
-        spokes = np.column_stack([np.cos(angle), np.sin(angle)])
-        return self.center + 0.5 * self.diameter * spokes
+        spokes = np.cos(angle) + 1j * np.sin(angle)
+        return np.asarray(self.center + 0.5 * self.diameter * spokes, dtype=np.complex128)
 
     def contour(self, tolerance: float) -> Contour:
         """Return the circle as a contour of four runs, within a `tolerance`, mm."""
-        spokes = np.array([[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]])
-        vertices = self.center + 0.5 * self.diameter * spokes
+        radius = 0.5 * self.diameter
+        points = np.array([self.center + way * radius for way in (1.0, 1j, -1.0, -1j)])
         quarter = np.full(4, math.tan(math.pi / 8.0))
-        return Loop(vertices=vertices, bulges=quarter).contour(tolerance)
+        return Loop(points=points, bulges=quarter).contour(tolerance)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -99,7 +89,7 @@ class Loop(ShortRepr):
 
     Parameters
     ----------
-    vertices : (k, 2) array, mm
+    points : (k,) complex array, mm
         The first is not repeated.
     bulges : (k,) array
         Tangent of a quarter of the angle of each arc, 0 for straight pieces.
@@ -110,24 +100,22 @@ class Loop(ShortRepr):
         If the loop runs clockwise.
     """
 
-    vertices: Array
+    points: Plane
     bulges: Array
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "vertices", frozen(self.vertices))
-        object.__setattr__(self, "bulges", frozen(self.bulges))
         if not self.moments.area > 0.0:
             raise ValueError("a loop must run counter-clockwise")
 
     @cached_property
     def moments(self) -> Moments:
         """Moments about the origin."""
-        return arc_moments(self.vertices, self.bulges)
+        return arc_moments(self.points, self.bulges)
 
     @property
     def reach(self) -> float:
-        """Largest distance from the origin, mm: of a vertex, or of an arc's farthest point."""
-        start, chord, bends = bulge_pieces(self.vertices, self.bulges, closed=True)
+        """Largest distance from the origin, mm: of an end, or of an arc's farthest point."""
+        start, chord, bends = bulge_pieces(self.points, self.bulges, closed=True)
         bent = bends != 0.0
         start, chord, bends = start[bent], chord[bent], bends[bent]
         center = arc_centers(start, chord, bends)
@@ -136,42 +124,35 @@ class Loop(ShortRepr):
         # an arc that turns left lies to the right of its chord
         side = (np.conj(chord) * (center + radius * toward - start)).imag * bends
         arcs = np.where(side < 0.0, away + radius, 0.0)
-        return float(max(np.hypot(*self.vertices.T).max(), arcs.max(initial=0.0)))
+        return float(max(np.abs(self.points).max(), arcs.max(initial=0.0)))
 
     @property
     def length(self) -> float:
         """Length of the boundary, mm."""
-        chords = np.hypot(*(np.roll(self.vertices, -1, axis=0) - self.vertices).T)
+        chords = np.abs(np.roll(self.points, -1) - self.points)
         half = 2.0 * np.arctan(self.bulges)
         return float((chords / np.sinc(half / np.pi)).sum())
 
-    def points(self, sagitta: float) -> Array:
-        """Return points on the loop, (n, 2), mm, with chords of at most `sagitta`, mm."""
-        return flatten_bulges(self.vertices, self.bulges, sagitta)
+    def polyline(self, sagitta: float) -> Plane:
+        """Return points on the loop, complex, mm, with chords of at most `sagitta`, mm."""
+        return flatten_bulges(self.points, self.bulges, sagitta)
 
     def contour(self, tolerance: float) -> Contour:
         """Return the loop as a contour within a `tolerance`, mm, with a run for each piece."""
         return Contour(
             dense=lambda: tuple(self._runs(_DENSE * tolerance)),
-            vertices=self.points(tolerance),
+            points=self.polyline(tolerance),
             tolerance=tolerance,
             chord_error=tolerance,
         )
 
     def _runs(self, sagitta: float) -> Iterator[Run]:
-        pieces = bulge_pieces(self.vertices, self.bulges, closed=True)
+        pieces = bulge_pieces(self.points, self.bulges, closed=True)
         counts = arc_chords(*pieces[1:], sagitta)
         for start, chord, bend, count in zip(*pieces, counts, strict=True):
             way, slope = on_arcs(chord, bend, np.linspace(0.0, 1.0, count + 1))
             way[-1] = chord
-            yield Run(points=as_pairs(start + way), tangents=as_pairs(slope / np.abs(slope)))
-
-
-def frozen(values: object) -> Array:
-    """Return values as a new float64 array that is read-only."""
-    array = np.array(values, dtype=np.float64)
-    array.setflags(write=False)
-    return array
+            yield Run(points=start + way, tangents=slope / np.abs(slope))
 
 
 def circle_segments(diameter: float, sagitta: float) -> int:

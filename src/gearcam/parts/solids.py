@@ -22,7 +22,7 @@ import numpy as np
 
 from gearcam.base.errors import GearcamError, MissingExtraError
 from gearcam.base.numerals import formatted
-from gearcam.numeric.arrays import Array, Ints
+from gearcam.numeric.arrays import Array, Ints, as_pairs
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.pose import Pose
 from gearcam.parts.body import Body, Layer, Mark, Part
@@ -182,8 +182,8 @@ def demand_volume(part: Part, volume: float, allowed: float) -> None:
 
 def _slab(manifold3d: Any, layer: Layer, tolerance: float) -> Manifold:
     """Return a layer: its edge extruded along z, less its openings, which run clockwise."""
-    holes = [opening.shape.points(tolerance)[::-1] for opening in layer.openings]
-    loops = [np.ascontiguousarray(loop) for loop in (layer.edge.points(tolerance), *holes)]
+    holes = [opening.shape.polyline(tolerance)[::-1] for opening in layer.openings]
+    loops = [as_pairs(loop) for loop in (layer.edge.polyline(tolerance), *holes)]
     times = math.ldexp(1.0, _FILLED - math.frexp(layer.edge.reach)[1])
     section = manifold3d.CrossSection([times * loop for loop in loops])
     slab = manifold3d.Manifold.extrude(section, layer.height).scale((1.0 / times, 1.0 / times, 1.0))
@@ -195,8 +195,7 @@ def _cutter(manifold3d: Any, mark: Mark, part: Part) -> Manifold:
     segments = circle_segments(mark.diameter, part.contour.tolerance)
     height = (1 + OVERSHOOT) * mark.depth
     cylinder = manifold3d.Manifold.cylinder(height, 0.5 * mark.diameter, -1.0, segments)
-    x, y = mark.center
-    return cylinder.translate((float(x), float(y), part.width - mark.depth))
+    return cylinder.translate((mark.center.real, mark.center.imag, part.width - mark.depth))
 
 
 def _mesh(body: Manifold) -> Mesh:

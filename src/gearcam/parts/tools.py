@@ -21,7 +21,6 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from gearcam.base.display import ShortRepr
 from gearcam.numeric.arrays import Array, Ints, Plane
-from gearcam.numeric.bulges import as_complex
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.hermite import on_cubics
 
@@ -61,18 +60,18 @@ class ToolLimits(ShortRepr):
     ----------
     inner_radius : float, mm
         Smallest concave radius; 0 at an inner corner, inf without concave parts.
-    inner_place : (float, float) or None, mm
+    inner_place : complex or None, mm
         Its position.
     slot : float, mm
         Width of the narrowest slot; inf without one.
-    slot_place : (float, float) or None, mm
+    slot_place : complex or None, mm
         Its middle.
     """
 
     inner_radius: float
-    inner_place: tuple[float, float] | None
+    inner_place: complex | None
     slot: float
-    slot_place: tuple[float, float] | None
+    slot_place: complex | None
 
     @property
     def diameter(self) -> float:
@@ -82,10 +81,12 @@ class ToolLimits(ShortRepr):
     def as_dict(self) -> dict[str, Any]:
         """Return the limits as JSON data, without those that do not exist."""
         made: dict[str, Any] = {}
-        if self.inner_place is not None:
-            made |= {"inner_radius_mm": self.inner_radius, "at_mm": list(self.inner_place)}
-        if self.slot_place is not None:
-            made |= {"slot_mm": self.slot, "slot_at_mm": list(self.slot_place)}
+        for size, width, at, place in (
+            ("inner_radius_mm", self.inner_radius, "at_mm", self.inner_place),
+            ("slot_mm", self.slot, "slot_at_mm", self.slot_place),
+        ):
+            if place is not None:
+                made |= {size: width, at: [place.real, place.imag]}
         if made:
             made = {"largest_diameter_mm": self.diameter, **made}
         return made
@@ -108,17 +109,17 @@ def tool_limits(contour: Contour, *, hollow: bool = False) -> ToolLimits:
     """
     runs = [run.reversed for run in reversed(contour.runs)] if hollow else contour.runs
     ends = np.cumsum([len(run.points) for run in runs])
-    points = as_complex(np.concatenate([run.points for run in runs]))
-    tangents = as_complex(np.concatenate([run.tangents for run in runs]))
-    size = float(np.ptp(contour.vertices, axis=0).max())
+    points = np.concatenate([run.points for run in runs])
+    tangents = np.concatenate([run.tangents for run in runs])
+    size = float(max(np.ptp(contour.points.real), np.ptp(contour.points.imag)))
     radius, place = _inner(points, tangents, ends, size)
     # no parts of a convex outline face each other
     slot, middle = (math.inf, None) if place is None else _slot(points, tangents, ends)
     return ToolLimits(
         inner_radius=radius,
-        inner_place=None if place is None else (place.real, place.imag),
+        inner_place=place,
         slot=slot,
-        slot_place=None if middle is None else (middle.real, middle.imag),
+        slot_place=middle,
     )
 
 

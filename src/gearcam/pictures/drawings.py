@@ -26,7 +26,7 @@ import numpy as np
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import beyond_limit
 from gearcam.base.numerals import formatted
-from gearcam.numeric.arrays import Array
+from gearcam.numeric.arrays import Plane, bounds
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.pose import UNMOVED, Pose
 from gearcam.parts.body import Part
@@ -80,17 +80,17 @@ CROSS_SIZE: Final = 0.04
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Path(ShortRepr):
-    """A polyline: points (n, 2), mm; if closed, the first is not repeated."""
+    """A polyline: complex points (n,), mm; if closed, the first is not repeated."""
 
-    points: Array
+    points: Plane
     closed: bool = True
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Cross(ShortRepr):
-    """An upright cross: its `center` (2,), mm, and its whole `size`, mm."""
+    """An upright cross: its `center`, complex, mm, and its whole `size`, mm."""
 
-    center: Array
+    center: complex
     size: float
 
 
@@ -142,47 +142,40 @@ def placed(shape: Shape, pose: Pose) -> Shape:
     if pose == UNMOVED:
         return shape
 
-    def move(points: Array) -> Array:
-        values = np.ascontiguousarray(points, dtype=np.float64).view(np.complex128)
-        return pose.apply(values).view(np.float64)
-
     match shape:
         case Contour():
             return shape.placed(pose)
-        case Path():
-            return replace(shape, points=move(shape.points))
-        case Loop():
-            return replace(shape, vertices=move(shape.vertices))
+        case Path() | Loop():
+            return replace(shape, points=pose.apply(shape.points))
         case _:
-            return replace(shape, center=move(shape.center))
+            return replace(shape, center=complex(pose.apply(shape.center)))
 
 
-def reach(shape: Shape) -> Array:
-    """Return points (n, 2), mm, with the same bounding box as a `shape`."""
+def reach(shape: Shape) -> Plane:
+    """Return points, complex, mm, with the same bounding box as a `shape`."""
     match shape:
-        case Contour(vertices=points) | Path(points=points) | Loop(vertices=points):
+        case Contour(points=points) | Path(points=points) | Loop(points=points):
             return points
         case Circle(center=center, diameter=size) | Cross(center=center, size=size):
-            return np.array([center - 0.5 * size, center + 0.5 * size])
+            corner = 0.5 * size * (1 + 1j)
+            return np.array([center - corner, center + corner])
 
 
-def box(features: Iterable[Feature]) -> tuple[Array, Array]:
-    """Return the lower left and the upper right corner of `features`, (2,) each, mm."""
-    corners = np.vstack([reach(feature.shape) for feature in features])
-    return corners.min(axis=0), corners.max(axis=0)
+def box(features: Iterable[Feature]) -> tuple[complex, complex]:
+    """Return the lower left and the upper right corner of `features`, complex, mm."""
+    return bounds(np.concatenate([reach(feature.shape) for feature in features]))
 
 
-def chains(shape: Shape, sagitta: float) -> Iterator[tuple[Array, bool]]:
+def chains(shape: Shape, sagitta: float) -> Iterator[tuple[Plane, bool]]:
     """Yield the polylines of a `shape`, chord error at most `sagitta`, mm, and if they close."""
     match shape:
         case Path(points=points, closed=closed):
             yield points, closed
         case Cross(center=center, size=size):
-            arm = np.array([[-0.5 * size, 0.0], [0.5 * size, 0.0]])
-            yield center + arm, False
-            yield center + arm[:, ::-1], False
+            for arm in (0.5 * size, 0.5j * size):
+                yield np.array([center - arm, center + arm]), False
         case _:
-            yield shape.points(sagitta), True
+            yield shape.polyline(sagitta), True
 
 
 def place(features: Iterable[Feature], pose: Pose, prefix: str = "") -> tuple[Feature, ...]:
@@ -258,7 +251,7 @@ def _path(feature: Feature, kerf: float, tolerance: float, where: str) -> Shape:
         case Circle(diameter=diameter) as circle if diameter > kerf:
             return replace(circle, diameter=diameter - kerf)
         case Circle(center=center, diameter=diameter):
-            x, y = center.tolist()
+            x, y = center.real, center.imag
             what = (
                 f"the {feature.kind.lower()} at x = {formatted(x)}, y = {formatted(y)} mm is not "
                 "wider than the kerf"

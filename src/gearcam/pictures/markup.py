@@ -41,7 +41,7 @@ GLYPH: Final = 0.6
 
 _number: Final = partial(decimal, decimals=4)
 
-Corners = tuple[Sequence[float], Sequence[float]]
+Corners = tuple[complex, complex]
 """Lower left and upper right corner, mm."""
 
 
@@ -77,15 +77,15 @@ def picture(
         SVG.
     """
     low, high = corners
-    width = float(high[0] - low[0])
+    width = (high - low).real
     margin, pixel = MARGIN * width, width / PIXELS
     size = min(20 * pixel, width / (GLYPH * max([1, *map(len, lines)])))
     caption = size * 1.4 * len(lines)
-    left, top = float(low[0]) - margin, -float(high[1]) - margin
+    left, top = low.real - margin, -high.imag - margin
     whole = width + 2 * margin
-    tall = float(high[1] - low[1]) + 2 * margin + caption + 0.5 * margin
+    tall = (high - low).imag + 2 * margin + caption + 0.5 * margin
     view = " ".join(_number(value) for value in (left, top, whole, tall))
-    base = -float(low[1]) + margin + size
+    base = -low.imag + margin + size
     ground = f'x="{_number(left)}" y="{_number(top)}"'
     ground += f' width="{_number(whole)}" height="{_number(tall)}" fill="{GROUND}"'
     sheet = f'viewBox="{view}" width="{PIXELS}" height="{round(PIXELS * tall / whole)}"'
@@ -94,7 +94,7 @@ def picture(
         f'<g stroke-linejoin="round" stroke-width="{_number(1.2 * pixel)}">',
         *elements(pixel),
         "</g>",
-        *_caption(lines, float(low[0]), base, size),
+        *_caption(lines, low.real, base, size),
     ]
     return svg_document(f'{sheet} role="img"', lines[0], drawn).decode()
 
@@ -123,9 +123,9 @@ def outlines(
     ----------
     lines : sequence of str
         Lines of the caption; the first, in bold, is the title.
-    closed : sequence of (n, 2) array, mm
+    closed : sequence of (n,) complex array, mm
         The outline and the openings in it.
-    dashed : sequence of (n, 2) array, mm
+    dashed : sequence of (n,) complex array, mm
         Open curves, drawn dashed.
     wheel : {1, 2}
         Wheel whose colours are used.
@@ -137,9 +137,9 @@ def outlines(
     str
         SVG.
     """
-    points = [point for chain in (*closed, *dashed) for point in chain.tolist()]
-    x, y = zip(*points, *[(0.0, 0.0)] * axis, strict=True)
-    low, high = (min(x), min(y)), (max(x), max(y))
+    points = [point for chain in (*closed, *dashed) for point in chain.tolist()] + [0j] * axis
+    x, y = [point.real for point in points], [point.imag for point in points]
+    low, high = complex(min(x), min(y)), complex(max(x), max(y))
     ink, fill = INKS[wheel - 1], FILLS[wheel - 1]
 
     def elements(pixel: float) -> Iterable[str]:
@@ -157,7 +157,7 @@ def outlines(
 
 
 def _steps(chain: Any) -> str:
-    return " ".join(f"{_number(x)} {_number(-y)}" for x, y in chain.tolist())
+    return " ".join(f"{_number(point.real)} {_number(-point.imag)}" for point in chain.tolist())
 
 
 def page(drawn: str, facts: Facts, remarks: Sequence[str] = ()) -> str:
@@ -199,7 +199,7 @@ def refusal(title: str, error: Exception) -> str:
 def refusal_picture(title: str, error: Exception) -> str:
     """Return the same message as a picture (see `refusal`)."""
     lines = [f"{title} cannot be made", *str(error).replace("; ", "\n").splitlines()]
-    return picture(lines, ((0.0, 0.0), (PIXELS, 0.0)), lambda _: ())
+    return picture(lines, (0j, complex(PIXELS)), lambda _: ())
 
 
 def _image(drawn: str) -> str:

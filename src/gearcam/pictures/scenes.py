@@ -21,7 +21,6 @@ import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.numeric.arrays import Array, Ints, Plane
-from gearcam.numeric.bulges import as_complex
 from gearcam.numeric.pose import Pose
 from gearcam.pictures.drawings import Feature, chains
 
@@ -142,12 +141,12 @@ def extent(scene: Scene) -> tuple[float, float, float, float]:
     """
     low, high = [], []
     for body in scene.bodies:
-        points = np.vstack([p for f in body.features for p, _ in chains(f.shape, SAGITTA)])
-        places = as_complex(points)
+        chained = (chains(feature.shape, SAGITTA) for feature in body.features)
+        points = np.concatenate([chain for shape in chained for chain, _ in shape])
         if np.ptp(body.pose.turn) < 2.0 * np.pi:
-            moved = body.pose[:, None].apply(_outmost(places))
+            moved = body.pose[:, None].apply(_outmost(points))
         else:
-            corners = np.abs(places).max() * np.array([1 + 1j, -1 - 1j])
+            corners = np.abs(points).max() * np.array([1 + 1j, -1 - 1j])
             moved = corners + body.pose.shift[:, None]
         low.append((moved.real.min(), moved.imag.min()))
         high.append((moved.real.max(), moved.imag.max()))

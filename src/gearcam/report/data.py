@@ -67,7 +67,7 @@ def _body(body: MovingBody) -> dict[str, Any]:
     for feature in body.features:
         kind = feature.kind
         for points, closed in drawings.chains(feature.shape, SAGITTA):
-            flat = _rounded(points.ravel(), _MM)
+            flat = _flat(points)
             solid = kind in (*drawings.OUTER, *drawings.THROUGH, drawings.FOLLOWER)
             if kind == drawings.OUTER_WALL or feature.metal:
                 floor.append(flat)

@@ -16,7 +16,7 @@ from typing import Final
 import numpy as np
 
 from gearcam.base.numerals import decimal
-from gearcam.numeric.arrays import Array, Ints, Mask
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane, as_pairs
 from gearcam.pictures.drawings import Feature, Path, Shape, chains
 from gearcam.sheets.sheet import (
     ARROW_ROOM,
@@ -30,6 +30,7 @@ from gearcam.sheets.sheet import (
     LinearDimension,
     RoundDimension,
     Text,
+    along,
     as_drawn,
     text_box,
     text_width,
@@ -64,13 +65,12 @@ AROUND: Final = np.radians(np.arange(7.5, 367.5, 7.5))
 """Directions to try for a leader that may have any."""
 
 
-def _resampled(points: Array, step: float, closed: bool) -> Array:
-    """Return points at most `step` apart along a chain, (n, 2), mm."""
-    chain = np.vstack([points, points[:1]]) if closed else points
-    ways = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(chain, axis=0).T))])
+def _resampled(points: Plane, step: float, closed: bool) -> Plane:
+    """Return points at most `step` apart along a chain, complex, mm."""
+    chain = np.append(points, points[:1]) if closed else points
+    ways = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(chain)))])
     count = max(2, math.ceil(ways[-1] / step) + 1)
-    at = np.linspace(0.0, ways[-1], count)
-    return np.column_stack([np.interp(at, ways, chain[:, k]) for k in (0, 1)])
+    return np.interp(np.linspace(0.0, ways[-1], count), ways, chain)
 
 
 @dataclass(eq=False, kw_only=True)
@@ -81,11 +81,11 @@ class Board:
     ----------
     scale : float
         Millimetres of paper over millimetres of the part.
-    area : (2,) array, (2,) array, mm of the part
+    area : complex, complex, mm of the part
         Area for the texts of the views, lower left and upper right corner.
     paper : str
         Its paper, such as ``A4``.
-    corner : (2,) array, mm of the part
+    corner : complex, mm of the part
         Lower left corner of the paper.
     features, dimensions, texts, rows : list
         As in `Sheet`.
@@ -94,16 +94,17 @@ class Board:
     scale: float
     area: Box
     paper: str = ""
-    corner: Array = field(default_factory=lambda: np.zeros(2))
+    corner: complex = 0j
     features: list[Feature] = field(default_factory=list)
     dimensions: list[Dimension] = field(default_factory=list)
     texts: list[Text] = field(default_factory=list)
     rows: list[tuple[str, str]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        size = np.ceil((self.area[1] - self.area[0]) * self.scale / CELL).astype(int) + 1
-        self._lines = np.zeros(size, dtype=bool)
-        self._taken = np.zeros(size, dtype=bool)
+        size = (self.area[1] - self.area[0]) * self.scale / CELL
+        cells = math.ceil(size.real) + 1, math.ceil(size.imag) + 1
+        self._lines = np.zeros(cells, dtype=bool)
+        self._taken = np.zeros(cells, dtype=bool)
         self._step = 0.8 * CELL * self.unit
 
     @property
@@ -117,31 +118,31 @@ class Board:
         for points, closed in chains(shape, 0.1 * self._step):
             self._ink(points, closed)
 
-    def line(self, layer: str, start: tuple[float, float], end: tuple[float, float]) -> None:
+    def line(self, layer: str, start: complex, end: complex) -> None:
         """Draw a straight line on a `layer` from `start` to `end`, mm of the part."""
-        self.draw(layer, Path(points=np.array([start, end], dtype=np.float64), closed=False))
+        self.draw(layer, Path(points=np.array([start, end], dtype=np.complex128), closed=False))
 
-    def centre(self, place: Array, radius: float, gap: tuple[float, float] | None = None) -> None:
+    def centre(self, place: complex, radius: float, gap: tuple[float, float] | None = None) -> None:
         """Draw centre lines over a circle.
 
         Parameters
         ----------
-        place : (2,) array, mm
+        place : complex, mm
             Its centre.
         radius : float, mm
             Its radius.
         gap : (float, float), mm of paper, optional
             Range from the centre where the upright line is left out, for a text.
         """
-        (x, y), arm = place.tolist(), radius + OVERHANG * self.unit
+        arm = radius + OVERHANG * self.unit
         if gap is None:
-            self.line(CENTERLINE, (x - arm, y), (x + arm, y))
-            self.line(CENTERLINE, (x, y - arm), (x, y + arm))
+            self.line(CENTERLINE, place - arm, place + arm)
+            self.line(CENTERLINE, place - 1j * arm, place + 1j * arm)
             return
-        low, high = (y + value * self.unit for value in gap)
-        self.line(CENTERLINE, (x, y - arm), (x, low))
-        if high < y + arm:
-            self.line(CENTERLINE, (x, high), (x, y + arm))
+        low, high = (value * self.unit for value in gap)
+        self.line(CENTERLINE, place - 1j * arm, place + 1j * low)
+        if high < arm:
+            self.line(CENTERLINE, place + 1j * high, place + 1j * arm)
 
     def write(self, text: Text) -> None:
         """Write a text at its place."""
@@ -150,8 +151,8 @@ class Board:
 
     def linear(
         self,
-        first: tuple[float, float] | Array,
-        second: tuple[float, float] | Array,
+        first: complex,
+        second: complex,
         at: float,
         *,
         vertical: bool = False,
@@ -161,7 +162,7 @@ class Board:
 
         Parameters
         ----------
-        first, second : (2,) array, mm
+        first, second : complex, mm
             The points.
         at : float, mm
             y of the dimension line, x of a vertical one.
@@ -170,21 +171,18 @@ class Board:
         prefix : str
             Before the number.
         """
-        ends = np.array([first, second], dtype=np.float64)
-        along = int(vertical)
-        low, high = np.sort(ends[:, along])
-        wide = text_width(prefix + decimal(float(high - low))) * self.unit
-        place = np.full(2, at)
-        place[1 - along] += (GAP + 0.5 * HEIGHT) * self.unit * (-1.0 if vertical else 1.0)
-        place[along] = 0.5 * (low + high)
+        low, high = sorted((along(first, vertical), along(second, vertical)))
+        wide = text_width(prefix + decimal(high - low)) * self.unit
+        middle = 0.5 * (low + high)
         if wide + 2 * GAP * self.unit > high - low:
             behind = TAIL if high - low < ARROW_ROOM * self.unit else GAP
-            place[along] = high + (behind + GAP) * self.unit + 0.5 * wide
-        line = np.full(2, at)
-        line[along] = low
+            middle = high + (behind + GAP) * self.unit + 0.5 * wide
+        above = (GAP + 0.5 * HEIGHT) * self.unit
+        place = complex(at - above, middle) if vertical else complex(middle, at + above)
+        line = complex(at, low) if vertical else complex(low, at)
         self._measure(
             LinearDimension(
-                first=ends[0], second=ends[1], line=line, place=place, vertical=vertical,
+                first=first, second=second, line=line, place=place, vertical=vertical,
                 prefix=prefix,
             )
         )  # fmt: skip
@@ -212,12 +210,12 @@ class Board:
             self._measure(found)
         return found is not None
 
-    def label(self, point: Array, text: str) -> bool:
+    def label(self, point: complex, text: str) -> bool:
         """Write a text with a leader.
 
         Parameters
         ----------
-        point : (2,) array, mm
+        point : complex, mm
             Point of the leader's arrow.
         text : str
             The text.
@@ -233,7 +231,7 @@ class Board:
             return False
         drawn = as_drawn(found, self.unit)
         leader, shelf = drawn.lines
-        self.draw(DIMENSION, Path(points=np.vstack([leader, shelf[1:]]), closed=False))
+        self.draw(DIMENSION, Path(points=np.append(leader, shelf[1:]), closed=False))
         self.draw(DIMENSION, Path(points=drawn.heads[0][[1, 0, 2]], closed=False))
         self.write(drawn.text)
         return True
@@ -243,53 +241,55 @@ class Board:
         if 2.0 * made.radius * self.scale - text_width(made.label) <= TIGHT:
             return False
         low, high = text_box(as_drawn(made, self.unit).text, self.unit)
-        return bool(self._empty(low[None, :], high[None, :])[0])
+        return bool(self._empty(np.array([low]), np.array([high]))[0])
 
     def _search(self, made: RoundDimension, angles: Array, reaches: Array) -> RoundDimension | None:
         """Return the dimension with the best knee; None if there is no space for its text."""
         angle, reach = (axis.ravel() for axis in np.meshgrid(angles, reaches, indexing="ij"))
-        spokes = np.column_stack([np.cos(angle), np.sin(angle)])
+        spokes: Plane = np.exp(1j * angle)
         knees = made.radius + reach * self.unit
-        at = made.center + knees[:, None] * spokes
-        left = reach * spokes[:, 0] <= 0.0
+        at = np.asarray(made.center + knees * spokes, dtype=np.complex128)
+        left = reach * spokes.real <= 0.0
         wide = text_width(made.label) * self.unit
-        low = np.column_stack([at[:, 0] - wide * left, at[:, 1]])
-        high = low + np.array([wide, (HEIGHT + GAP) * self.unit])
+        low = at - wide * left
+        high = low + complex(wide, (HEIGHT + GAP) * self.unit)
         good = self._empty(low, high) & (knees > 0.0)
         best, least = None, math.inf
         for index in np.argsort(np.abs(reach), kind="stable").tolist():
             if abs(reach[index]) >= least:
                 break
             if good[index]:
-                edge = made.center + made.radius * spokes[index]
-                cost = abs(reach[index]) + CROSSING * self._crossed(edge, at[index])
+                edge = made.center + made.radius * complex(spokes[index])
+                cost = abs(reach[index]) + CROSSING * self._crossed(edge, complex(at[index]))
                 if cost < least:
                     best, least = index, cost
         if best is None:
             return None
         return replace(made, angle=float(angle[best]), knee=float(knees[best]))
 
-    def _crossed(self, start: Array, end: Array) -> float:
+    def _crossed(self, start: complex, end: complex) -> float:
         """Return the number of lines a leader crosses; infinite along one, or through a text."""
         way = end - start
-        length = float(np.hypot(*way))
+        length = abs(way)
         skip = min(1.0, 2.0 * CELL * self.unit / length)
         count = max(2, math.ceil(length * self.scale / CELL))
-        cells, inside = self._cells(start + np.linspace(skip, 1.0, count)[:, None] * way)
+        leader = np.linspace(skip, 1.0, count) * way
+        cells, inside = self._cells(np.asarray(start + leader, dtype=np.complex128))
         if not inside.all() or self._taken[cells[:, 0], cells[:, 1]].any():
             return math.inf
         hits = int(self._lines[cells[:, 0], cells[:, 1]].sum())
         return float(hits) if hits <= MOST else math.inf
 
-    def _cells(self, points: Array) -> tuple[Ints, Mask]:
-        """Return the cells of points, and which of them lie on the grid."""
-        cells = np.floor((points - self.area[0]) * self.scale / CELL).astype(np.int64)
+    def _cells(self, points: Plane) -> tuple[Ints, Mask]:
+        """Return the cells of points, (n, 2), and which of them lie on the grid."""
+        places = as_pairs(points - self.area[0]) * self.scale / CELL
+        cells = np.floor(places).astype(np.int64)
         inside = np.logical_and.reduce((cells >= 0) & (cells < self._lines.shape), axis=1)
         return cells, inside
 
-    def _empty(self, low: Array, high: Array) -> Mask:
-        """Return which of some boxes, (n, 2) each, are empty and lie in the area."""
-        edge = CLEAR * self.unit
+    def _empty(self, low: Plane, high: Plane) -> Mask:
+        """Return which of n boxes, from corner to corner, are empty and lie in the area."""
+        edge = CLEAR * self.unit * (1.0 + 1j)
         first, inside = self._cells(low - edge)
         last, also = self._cells(high + edge)
         sums = np.zeros(np.add(self._lines.shape, 1), dtype=np.int64)
@@ -299,13 +299,13 @@ class Board:
         held = sums[k, m] - sums[i, m] - sums[k, j] + sums[i, j]
         return inside & also & (held == 0)
 
-    def _ink(self, points: Array, closed: bool) -> None:
+    def _ink(self, points: Plane, closed: bool) -> None:
         cells, inside = self._cells(_resampled(points, self._step, closed))
         self._lines[cells[inside, 0], cells[inside, 1]] = True
 
     def _take(self, text: Text) -> None:
         low, high = text_box(text, self.unit)
-        edge = CLEAR * self.unit
+        edge = CLEAR * self.unit * (1.0 + 1j)
         corners, _ = self._cells(np.array([low - edge, high + edge]))
         (i, j), (k, m) = np.clip(corners, 0, None)
         self._taken[i : k + 1, j : m + 1] = True

@@ -14,12 +14,10 @@ from collections.abc import Mapping, Sequence
 from typing import Final
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.facts import Facts
 from gearcam.base.numerals import formatted
-from gearcam.numeric.arrays import Array
 from gearcam.pictures.drawings import Path
 from gearcam.sheets.board import Board
 from gearcam.sheets.sheet import FRAME, GLYPH, HEIGHT, Box, Sheet, Text
@@ -66,21 +64,21 @@ def scale_words(scale: float) -> str:
 
 
 def area_of(paper: str) -> Box:
-    """Return the corners of the views' area on a `paper`, (2,) each, mm of paper."""
+    """Return the corners of the views' area on a `paper`, mm of paper."""
     wide, tall = PAPERS[paper]
-    low = np.array([BINDING + PAD, MARGIN + BLOCK[1] + PAD])
-    return low, np.array([wide - MARGIN - TABLE - PAD, tall - MARGIN - PAD])
+    low = complex(BINDING + PAD, MARGIN + BLOCK[1] + PAD)
+    return low, complex(wide - MARGIN - TABLE - PAD, tall - MARGIN - PAD)
 
 
-def choose(size: ArrayLike, room: ArrayLike, rows: int) -> tuple[str, float]:
+def choose(size: complex, room: complex, rows: int) -> tuple[str, float]:
     """Return paper and scale.
 
     Parameters
     ----------
-    size : (float, float), mm
+    size : complex, mm
         Width and height of all views together.
-    room : (float, float), mm of paper
-        Space for dimensions and gaps besides the views.
+    room : complex, mm of paper
+        Space for dimensions and gaps besides the views, across and up.
     rows : int
         Number of rows of the table.
 
@@ -94,15 +92,20 @@ def choose(size: ArrayLike, room: ArrayLike, rows: int) -> tuple[str, float]:
     InfeasibleError
         If the views are too large for the smallest scale.
     """
-    size, room, found = np.asarray(size), np.asarray(room), []
+    found = []
     for paper, (_, tall) in PAPERS.items():
         low, high = area_of(paper)
-        fits = [scale for scale in SCALES if (scale * size <= high - low - room).all()]
+        free = high - low - room
+        fits = [
+            scale
+            for scale in SCALES
+            if scale * size.real <= free.real and scale * size.imag <= free.imag
+        ]
         long = (rows + 1) * ROW > tall - 2 * MARGIN - BLOCK[1]
         if fits and not (long and paper == "A4"):
             found.append((paper, fits[0]))
     if not found:
-        what = f"views of {formatted(size[0])} x {formatted(size[1])} mm do not fit on a sheet"
+        what = f"views of {formatted(size.real)} x {formatted(size.imag)} mm do not fit on a sheet"
         note = f"the smallest scale is 1 : {formatted(1.0 / min(SCALES))}"
         raise InfeasibleError(what, where="output.files", nearest=note)
     return max(found, key=lambda one: min(one[1], 1.0))
@@ -120,16 +123,16 @@ def sheet_rows(facts: Facts, names: Sequence[str]) -> dict[str, str]:
     }
 
 
-def begin(size: Array, room: Box, low: Array, rows: int) -> Board:
+def begin(size: complex, room: Box, low: complex, rows: int) -> Board:
     """Return an empty sheet with the views centred in their area.
 
     Parameters
     ----------
-    size : (2,) array, mm
+    size : complex, mm
         Width and height of all views together.
-    room : (2,) array, (2,) array, mm of paper
+    room : complex, complex, mm of paper
         Space for dimensions to the left and below, and to the right and above.
-    low : (2,) array, mm
+    low : complex, mm
         Lower left corner of the views.
     rows : int
         Number of rows of the table.
@@ -174,14 +177,16 @@ def finish(
     """
     size, rows = PAPERS[board.paper], (*facts.items(), *board.rows)
     left, right, top = BINDING, size[0] - MARGIN, size[1] - MARGIN
-    _chain(board, [(left, MARGIN), (right, MARGIN), (right, top), (left, top)], closed=True)
-    _table(board, rows, (right - TABLE, top))
-    _block(board, (name, title), (right - BLOCK[0], MARGIN))
+    frame = complex(left, MARGIN), complex(right, MARGIN), complex(right, top), complex(left, top)
+    _chain(board, frame, closed=True)
+    _table(board, rows, complex(right - TABLE, top))
+    _block(board, (name, title), complex(right - BLOCK[0], MARGIN))
     high = MARGIN + BLOCK[1]
     wide = right - BLOCK[0] - left - 2 * INSET
     height = min(HEIGHT, wide / (GLYPH * max(len(note) for note in notes)))
     for number, note in enumerate(notes, start=1):
-        _write(board, note, (left + INSET, high - 1.8 * HEIGHT * number), wide, height)
+        place = complex(left + INSET, high - 1.8 * HEIGHT * number)
+        _write(board, note, place, wide, height)
     return Sheet(
         name=name,
         title=title,
@@ -196,44 +201,41 @@ def finish(
     )
 
 
-def _chain(board: Board, points: Sequence[tuple[float, float]], *, closed: bool = False) -> None:
+def _chain(board: Board, points: Sequence[complex], *, closed: bool = False) -> None:
     """Draw lines of the frame, mm of paper."""
-    placed = board.corner + board.unit * np.array(points)
+    placed = np.array([board.corner + board.unit * point for point in points])
     board.draw(FRAME, Path(points=placed, closed=closed))
 
 
-def _write(
-    board: Board, text: str, place: tuple[float, float], wide: float, height: float = HEIGHT
-) -> None:
+def _write(board: Board, text: str, place: complex, wide: float, height: float = HEIGHT) -> None:
     """Write a line, smaller if it is longer than its space; line breaks become blanks."""
     text = " ".join(text.split())
     if text:
         height = min(height, wide / (GLYPH * len(text)))
-        at = board.corner + board.unit * np.array(place)
+        at = board.corner + board.unit * place
         board.write(Text(text=text, place=at, height=height))
 
 
-def _table(board: Board, rows: Sequence[tuple[str, str]], corner: tuple[float, float]) -> None:
+def _table(board: Board, rows: Sequence[tuple[str, str]], corner: complex) -> None:
     """Draw the table downwards from its upper left corner; long tables have lower rows."""
-    (left, top), right = corner, corner[0] + TABLE
     if not rows:
         return
-    row = min(ROW, (top - MARGIN - BLOCK[1]) / len(rows))
-    low = top - row * len(rows)
-    _chain(board, [(left, top), (left, low), (right, low)])
-    _chain(board, [(left + LABELS, top), (left + LABELS, low)])
+    row = min(ROW, (corner.imag - MARGIN - BLOCK[1]) / len(rows))
+    low = corner - 1j * row * len(rows)
+    _chain(board, [corner, low, low + TABLE])
+    _chain(board, [corner + LABELS, low + LABELS])
     for number, (label, value) in enumerate(rows, start=1):
-        base = top - row * number
+        base = corner - 1j * row * number
         if number < len(rows):
-            _chain(board, [(left, base), (right, base)])
-        height, up = min(HEIGHT, 0.5 * row), base + 0.27 * row
-        _write(board, label, (left + INSET, up), LABELS - 2 * INSET, height)
-        _write(board, value, (left + LABELS + INSET, up), TABLE - LABELS - 2 * INSET, height)
+            _chain(board, [base, base + TABLE])
+        height, place = min(HEIGHT, 0.5 * row), base + INSET + 0.27j * row
+        _write(board, label, place, LABELS - 2 * INSET, height)
+        _write(board, value, place + LABELS, TABLE - LABELS - 2 * INSET, height)
 
 
-def _block(board: Board, words: tuple[str, str], corner: tuple[float, float]) -> None:
+def _block(board: Board, words: tuple[str, str], corner: complex) -> None:
     """Draw the title block upwards from its lower left corner."""
-    (left, low), row, (name, title) = corner, BLOCK[1] / 3.0, words
+    row, (name, title) = BLOCK[1] / 3.0, words
     cells = [
         (0.0, 2, BLOCK[0], "title", title, 4.0),
         (0.0, 1, 100.0, "drawing", name, 3.0),
@@ -243,8 +245,9 @@ def _block(board: Board, words: tuple[str, str], corner: tuple[float, float]) ->
         (100.0, 0, 50.0, "paper", board.paper, 3.0),
     ]
     for across, up, wide, label, value, height in cells:
-        x, y = left + across, low + row * up
-        _chain(board, [(x, y), (x, y + row), (x + wide, y + row)])
-        _write(board, label, (x + INSET, y + row - SMALL - 0.8), wide - 2 * INSET, SMALL)
+        low = corner + across + 1j * row * up
+        top = low + 1j * row
+        _chain(board, [low, top, top + wide])
+        _write(board, label, top + INSET - 1j * (SMALL + 0.8), wide - 2 * INSET, SMALL)
         indent = 15.0
-        _write(board, value, (x + indent, y + 0.28 * row), wide - indent - INSET, height)
+        _write(board, value, low + indent + 0.28j * row, wide - indent - INSET, height)

@@ -1,7 +1,7 @@
 """Elements of a sheet: features, dimensions and texts, in true millimetres of the part.
 
 A *sheet* has a *paper* and a *scale*, millimetres of paper over millimetres of the part. All
-positions are in the part's millimetres, y upwards, with the front view in the part's own frame;
+positions are complex, in the part's millimetres, with the front view in the part's own frame;
 heights of texts, gaps and arrow heads are in millimetres of paper. A *dimension* has a measured
 value; `as_drawn` converts it to lines, arrow heads and a text, for formats without dimensions.
 Text heights are those of capital letters.
@@ -11,6 +11,7 @@ Depends on drawings.
 
 from __future__ import annotations
 
+import cmath
 import math
 from dataclasses import dataclass
 from typing import Final, Literal
@@ -19,10 +20,10 @@ import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.numerals import decimal
-from gearcam.numeric.arrays import Array
+from gearcam.numeric.arrays import Plane
 from gearcam.pictures.drawings import OUTER_WALL, OUTLINE, THROUGH, Feature
 
-Box = tuple[Array, Array]
+Box = tuple[complex, complex]
 """Lower left and upper right corner."""
 
 DIMENSION: Final = "DIMENSION"
@@ -82,7 +83,7 @@ class Text(ShortRepr):
     ----------
     text : str
         The text.
-    place : (2,) array, mm of the part
+    place : complex, mm of the part
         Position of its base line.
     height : float, mm of paper
         Height of its capitals.
@@ -93,7 +94,7 @@ class Text(ShortRepr):
     """
 
     text: str
-    place: Array
+    place: complex
     height: float = HEIGHT
     anchor: Literal["start", "middle"] = "start"
     upright: bool = False
@@ -105,11 +106,11 @@ class LinearDimension(ShortRepr):
 
     Parameters
     ----------
-    first, second : (2,) array, mm
+    first, second : complex, mm
         The points.
-    line : (2,) array, mm
+    line : complex, mm
         A point of the dimension line.
-    place : (2,) array, mm
+    place : complex, mm
         Middle of the text.
     vertical : bool
         Whether it is measured along y.
@@ -117,10 +118,10 @@ class LinearDimension(ShortRepr):
         Before and after the number.
     """
 
-    first: Array
-    second: Array
-    line: Array
-    place: Array
+    first: complex
+    second: complex
+    line: complex
+    place: complex
     vertical: bool = False
     prefix: str = ""
     suffix: str = ""
@@ -128,7 +129,7 @@ class LinearDimension(ShortRepr):
     @property
     def value(self) -> float:
         """What it measures, mm."""
-        return abs(float((self.second - self.first)[int(self.vertical)]))
+        return abs(along(self.second - self.first, self.vertical))
 
     @property
     def label(self) -> str:
@@ -142,7 +143,7 @@ class RoundDimension(ShortRepr):
 
     Parameters
     ----------
-    center : (2,) array, mm
+    center : complex, mm
         Centre of the circle.
     radius : float, mm
         Radius of the circle.
@@ -159,7 +160,7 @@ class RoundDimension(ShortRepr):
         Text instead of the dimension; then the leader points to a place, not to a circle.
     """
 
-    center: Array
+    center: complex
     radius: float
     angle: float = 0.0
     diameter: bool = True
@@ -179,12 +180,12 @@ class RoundDimension(ShortRepr):
         sign = "Ø" if self.diameter else "R"
         return self.words or f"{self.prefix}{sign}{decimal(self.value)}{self.suffix}"
 
-    def point(self, distance: float) -> Array:
-        """Return the point on the leader at a distance from the centre, (2,), mm."""
-        return self.center + distance * np.array([math.cos(self.angle), math.sin(self.angle)])
+    def point(self, distance: float) -> complex:
+        """Return the point on the leader at a distance from the centre, mm."""
+        return self.center + cmath.rect(distance, self.angle)
 
     @property
-    def edge(self) -> Array:
+    def edge(self) -> complex:
         """Point of the arrow."""
         return self.point(self.radius)
 
@@ -194,10 +195,10 @@ Dimension = LinearDimension | RoundDimension
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class DrawnDimension(ShortRepr):
-    """A drawn dimension: `lines` (2, 2) and arrow `heads` (3, 2), mm, and its `text`."""
+    """A drawn dimension: `lines` (2,) and arrow `heads` (3,), complex, mm, and its `text`."""
 
-    lines: tuple[Array, ...]
-    heads: tuple[Array, ...]
+    lines: tuple[Plane, ...]
+    heads: tuple[Plane, ...]
     text: Text
 
 
@@ -217,7 +218,7 @@ class Sheet(ShortRepr):
         Width and height of the paper.
     scale : float
         Millimetres of paper over millimetres of the part.
-    corner : (2,) array, mm of the part
+    corner : complex, mm of the part
         Lower left corner of the paper.
     features : tuple of Feature
         All lines except those of dimensions.
@@ -234,7 +235,7 @@ class Sheet(ShortRepr):
     paper: str
     size: tuple[float, float]
     scale: float
-    corner: Array
+    corner: complex
     features: tuple[Feature, ...]
     dimensions: tuple[Dimension, ...]
     texts: tuple[Text, ...]
@@ -250,9 +251,14 @@ class Sheet(ShortRepr):
         """The dimensions as lines, arrow heads and texts."""
         return tuple(as_drawn(dimension, self.unit) for dimension in self.dimensions)
 
-    def on_paper(self, points: Array) -> Array:
-        """Return points, (n, 2), mm of the part, as mm of paper from its lower left corner."""
-        return (np.asarray(points, dtype=np.float64) - self.corner) * self.scale
+    def on_paper(self, points: Plane) -> Plane:
+        """Return points, complex, mm of the part, as mm of paper from its lower left corner."""
+        return (points - self.corner) * self.scale
+
+
+def along(point: complex, vertical: bool) -> float:
+    """Return a coordinate of a `point`: y if `vertical`, else x."""
+    return point.imag if vertical else point.real
 
 
 def text_box(text: Text, unit: float) -> Box:
@@ -267,14 +273,14 @@ def text_box(text: Text, unit: float) -> Box:
 
     Returns
     -------
-    (2,) array, (2,) array, mm of the part
+    complex, complex, mm of the part
         Its lower left and upper right corner, with descenders.
     """
     wide, tall = text_width(text.text, text.height), text.height
     start = -0.5 * wide if text.anchor == "middle" else 0.0
-    low, high = np.array([start, -0.25 * tall]), np.array([start + wide, tall])
+    low, high = complex(start, -0.25 * tall), complex(start + wide, tall)
     if text.upright:
-        low, high = np.array([-tall, start]), np.array([0.25 * tall, start + wide])
+        low, high = complex(-tall, start), complex(0.25 * tall, start + wide)
     return text.place + unit * low, text.place + unit * high
 
 
@@ -297,63 +303,62 @@ def as_drawn(dimension: Dimension, unit: float) -> DrawnDimension:
     return _inside(dimension, unit) if dimension.knee is None else _leader(dimension, unit)
 
 
-def arrow_head(tip: Array, way: Array, unit: float) -> Array:
+def arrow_head(tip: complex, way: complex, unit: float) -> Plane:
     """Return an arrow head.
 
     Parameters
     ----------
-    tip : (2,) array, mm
+    tip : complex, mm
         Point of the arrow.
-    way : (2,) array
+    way : complex
         Unit vector of its direction.
     unit : float
         Millimetres of the part in a millimetre of paper.
 
     Returns
     -------
-    (3, 2) array, mm
+    (3,) complex array, mm
         Tip and back corners.
     """
     back = tip - ARROW * unit * way
-    side = ARROW * unit / 6.0 * np.array([-way[1], way[0]])
+    side = ARROW * unit / 6.0 * 1j * way
     return np.array([tip, back + side, back - side])
 
 
 def _linear(dimension: LinearDimension, unit: float) -> DrawnDimension:
-    along = int(dimension.vertical)
-    way = np.eye(2)[along]
-    lines, feet = [], []
+    vertical = dimension.vertical
+    way = 1j if vertical else 1.0
+    level = dimension.line.real if vertical else 1j * dimension.line.imag
+    lines = []
     for point in (dimension.first, dimension.second):
-        foot = np.where(way, point, dimension.line)
-        feet.append(foot)
-        length = float(np.hypot(*(foot - point)))
+        foot = level + along(point, vertical) * way
+        length = abs(foot - point)
         if length > LEAST_GAP * unit:
             away = (foot - point) / length * unit
             lines.append(np.array([point + LEAST_GAP * away, foot + PAST * away]))
-    low, high = sorted(feet, key=lambda foot: float(foot[along]))
+    low, high = sorted(along(point, vertical) for point in (dimension.first, dimension.second))
     inwards = dimension.value < ARROW_ROOM * unit
-    tail = TAIL * unit * way if inwards else 0.0
-    start, end = low - tail, high + tail
-    half = 0.5 * text_width(dimension.label) * unit
-    if dimension.place[along] > high[along]:
-        end[along] = max(end[along], dimension.place[along] + half)
+    tail = TAIL * unit if inwards else 0.0
+    start, end, middle = low - tail, high + tail, along(dimension.place, vertical)
+    if middle > high:
+        end = max(end, middle + 0.5 * text_width(dimension.label) * unit)
+    lines.append(level + np.array([start, end]) * way)
     turn = -1.0 if inwards else 1.0
-    base = dimension.place.copy()
-    base[1 - along] += 0.5 * HEIGHT * unit * (1.0 if dimension.vertical else -1.0)
-    text = Text(text=dimension.label, place=base, anchor="middle", upright=dimension.vertical)
-    heads = (arrow_head(low, -turn * way, unit), arrow_head(high, turn * way, unit))
-    return DrawnDimension(lines=(*lines, np.array([start, end])), heads=heads, text=text)
+    base = dimension.place - 0.5 * HEIGHT * unit * 1j * way
+    text = Text(text=dimension.label, place=base, anchor="middle", upright=vertical)
+    ends = zip((low, high), (-turn * way, turn * way), strict=True)
+    heads = tuple(arrow_head(level + end * way, outwards, unit) for end, outwards in ends)
+    return DrawnDimension(lines=tuple(lines), heads=heads, text=text)
 
 
 def _leader(dimension: RoundDimension, unit: float) -> DrawnDimension:
     distance = dimension.knee or 0.0
     knee, edge = dimension.point(distance), dimension.edge
     wide = text_width(dimension.label) * unit
-    left = bool(knee[0] <= edge[0])
-    end = knee + np.array([-wide if left else wide, 0.0])
+    end = knee + (-wide if knee.real <= edge.real else wide)
     way = dimension.point(1.0) - dimension.center
     way = -way if distance > dimension.radius else way
-    place = 0.5 * (knee + end) + np.array([0.0, GAP * unit])
+    place = 0.5 * (knee + end) + 1j * GAP * unit
     return DrawnDimension(
         lines=(np.array([edge, knee]), np.array([knee, end])),
         heads=(arrow_head(edge, way, unit),),
@@ -364,7 +369,7 @@ def _leader(dimension: RoundDimension, unit: float) -> DrawnDimension:
 def _inside(dimension: RoundDimension, unit: float) -> DrawnDimension:
     ends = [dimension.point(-dimension.radius), dimension.edge]
     way = (ends[1] - ends[0]) / (2.0 * dimension.radius)
-    place = dimension.center + np.array([0.0, GAP * unit])
+    place = dimension.center + 1j * GAP * unit
     return DrawnDimension(
         lines=(np.array(ends),),
         heads=(arrow_head(ends[0], -way, unit), arrow_head(ends[1], way, unit)),

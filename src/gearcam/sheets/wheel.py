@@ -20,14 +20,13 @@ from typing import Final
 import numpy as np
 
 from gearcam.base.numerals import decimal
-from gearcam.numeric.arrays import Array
-from gearcam.numeric.bulges import as_complex
+from gearcam.numeric.arrays import Plane, bounds
 from gearcam.numeric.pose import Pose
 from gearcam.parts.body import Edge, Hub, Part
 from gearcam.parts.shapes import Circle, Loop
 from gearcam.pictures.drawings import BORE, HOLE, INNER, SLOT, part_features, placed, reach
 from gearcam.sheets.board import AROUND, CLEAR, FIRST_LEVEL, LEVEL, OVERHANG, TIGHT, Board
-from gearcam.sheets.extent import true_points
+from gearcam.sheets.extent import extremes, true_points
 from gearcam.sheets.paper import begin, finish
 from gearcam.sheets.sheet import (
     CENTERLINE,
@@ -62,26 +61,26 @@ class _Wheel:
     """
 
     part: Part
-    points: Array
-    toothed: Array
+    points: Plane
+    toothed: Plane
 
     @property
-    def low(self) -> Array:
-        return self.points.min(axis=0)
+    def low(self) -> complex:
+        return bounds(self.points)[0]
 
     @property
-    def high(self) -> Array:
-        return self.points.max(axis=0)
+    def high(self) -> complex:
+        return bounds(self.points)[1]
 
     @property
     def round(self) -> bool:
         """Whether the outline is a circle around the axis, as for most rings and groove cams."""
-        return float(np.ptp(np.hypot(*self.points.T))) < SAME
+        return float(np.ptp(np.abs(self.points))) < SAME
 
     @property
     def turns(self) -> bool:
         """Whether the axis lies within the outline; racks have no axis."""
-        corners = as_complex(self.part.contours[-1].points(self.part.tolerance))
+        corners = self.part.contours[-1].polyline(self.part.tolerance)
         if not (self.part.turns and corners.all()):
             return False
         turn = float(np.angle(np.roll(corners, -1) / corners).sum())
@@ -100,7 +99,7 @@ class _Wheel:
     def bore_radius(self) -> float:
         """Bore diameter, with a keyway or a flat that of the arc, mm; 0 without a bore."""
         if isinstance(self.bore, Loop):
-            return float(np.hypot(*self.bore.vertices[0]))
+            return float(abs(self.bore.points[0]))
         return 0.5 * self.bore.diameter if isinstance(self.bore, Circle) else 0.0
 
 
@@ -131,16 +130,16 @@ def wheel_sheet(part: Part, facts: Mapping[str, str], title: str) -> Sheet:
     wheel = _Wheel(part=part, points=points, toothed=toothed)
     keyed = wheel.bore if isinstance(wheel.bore, Loop) else None
     shown = 2.0 * wheel.bore_radius if keyed else 0.0
-    size = wheel.high - wheel.low + [part.thickness + shown, 0.0]
+    size = wheel.high - wheel.low + part.thickness + shown
     levels = 1 + len(part.bosses) + (part.hub is not None) + len(part.recesses)  # side view
     levels = max(levels, 1 + wheel.placed)
     below = FIRST_LEVEL + LEVEL * levels
     across = BETWEEN + RIGHT + (BORE_ROOM if keyed else 0.0)
     rows = len(facts) + len(part.openings) + 2
-    room = np.array([LEFT, below]), np.array([across, ABOVE])
+    room = complex(LEFT, below), complex(across, ABOVE)
     board = begin(size, room, wheel.low, rows)
     _front_view(board, wheel)
-    side = float(wheel.high[0]) + BETWEEN * board.unit
+    side = wheel.high.real + BETWEEN * board.unit
     _side_view(board, wheel, side)
     if keyed:
         right = side + part.thickness + (RIGHT + 0.5 * BORE_ROOM) * board.unit
@@ -167,33 +166,32 @@ def _front_view(board: Board, wheel: _Wheel) -> None:
     for feature in part_features(part, -1):
         board.draw(HIDDEN if id(feature.shape) in behind else feature.layer, feature.shape)
     if part.hub is not None:
-        circle = Circle(center=np.zeros(2), diameter=part.hub.diameter)
+        circle = Circle(center=0j, diameter=part.hub.diameter)
         board.draw(EDGE if part.hub.front > 0.0 else HIDDEN, circle)
     if wheel.turns:
-        (x, y), (u, v) = wheel.low.tolist(), wheel.high.tolist()
-        over = OVERHANG * board.unit
-        board.line(CENTERLINE, (x - over, 0.0), (u + over, 0.0))
-        board.line(CENTERLINE, (0.0, y - over), (0.0, v + over))
+        low, high, over = wheel.low, wheel.high, OVERHANG * board.unit
+        board.line(CENTERLINE, low.real - over, high.real + over)
+        board.line(CENTERLINE, 1j * (low.imag - over), 1j * (high.imag + over))
     first = FIRST_LEVEL * board.unit
-    left, low = wheel.points[wheel.points.argmin(axis=0)]
-    right, high = wheel.points[wheel.points.argmax(axis=0)]
+    left, low, right, high = extremes(wheel.points)
     if wheel.round:
-        board.linear(left, right, float(low[1]) - first, prefix="Ø")
+        board.linear(left, right, low.imag - first, prefix="Ø")
         return
     if wheel.placed:
         _origin(board, wheel)
-    board.linear(left, right, float(low[1]) - first - LEVEL * board.unit * wheel.placed)
-    board.linear(low, high, float(left[0]) - first, vertical=True)
+    board.linear(left, right, low.imag - first - LEVEL * board.unit * wheel.placed)
+    board.linear(low, high, left.real - first, vertical=True)
 
 
 def _origin(board: Board, wheel: _Wheel) -> None:
     """Draw the origin of a part without an axis, to which hole positions refer."""
-    first, (left, bottom), right = FIRST_LEVEL * board.unit, wheel.low.tolist(), wheel.high[0]
-    side, way = (left, -2.0) if abs(left) < abs(right) else (float(right), 1.0)
-    board.centre(np.zeros(2), 0.0)
+    first, left, right = FIRST_LEVEL * board.unit, wheel.low.real, wheel.high.real
+    side, way = (left, -2.0) if abs(left) < abs(right) else (right, 1.0)
+    corner = complex(side, wheel.low.imag)
+    board.centre(0j, 0.0)
     if abs(side) > SAME:
-        board.linear((0.0, 0.0), (side, bottom), bottom - first)
-    board.linear((0.0, 0.0), (side, bottom), side + way * first, vertical=True)
+        board.linear(0j, corner, corner.imag - first)
+    board.linear(0j, corner, side + way * first, vertical=True)
 
 
 def _side_view(board: Board, wheel: _Wheel, left: float) -> None:
@@ -203,18 +201,18 @@ def _side_view(board: Board, wheel: _Wheel, left: float) -> None:
     for layer in part.layers:
         low, high = back + layer.low, back + layer.high
         bottom, top = _span(layer.edge)
-        _rectangle(board, (low, bottom), (high, top))
+        _rectangle(board, complex(low, bottom), complex(high, top))
         for opening in layer.openings:
             for y in _span(opening.shape) if opening.kind == INNER else ():
-                board.line(HIDDEN, (low, y), (high, y))
+                board.line(HIDDEN, complex(low, y), complex(high, y))
     _recesses(board, part, back)
     if wheel.turns:
         over = OVERHANG * unit
-        board.line(CENTERLINE, (left - over, 0.0), (end + over, 0.0))
+        board.line(CENTERLINE, left - over, end + over)
     radius = wheel.bore_radius
     for y in (-radius, radius) if radius else ():
-        board.line(HIDDEN, (left, y), (end, y))
-    base = float(wheel.low[1])
+        board.line(HIDDEN, complex(left, y), complex(end, y))
+    base = wheel.low.imag
     lengths = [(back, back + part.width)]
     lengths += [(back + boss.low, back + boss.high) for boss in part.bosses]
     lengths += [(left, end)] if part.hub is not None else []
@@ -222,19 +220,20 @@ def _side_view(board: Board, wheel: _Wheel, left: float) -> None:
     hidden = base if part.recesses else -0.5 * hub.diameter
     lengths.sort(key=lambda one: one[1] - one[0])  # short ones first: no crossings
     for level, (low, high) in enumerate(lengths):
-        y = [base if (x in (back, back + part.width)) else hidden for x in (low, high)]
-        at = base - (FIRST_LEVEL + LEVEL * level) * unit
-        board.linear((low, y[0]), (high, y[1]), at)
+        start, stop = (
+            complex(x, base if x in (back, back + part.width) else hidden) for x in (low, high)
+        )
+        board.linear(start, stop, base - (FIRST_LEVEL + LEVEL * level) * unit)
     level = 0
     if isinstance(wheel.bore, Circle):
         at = end + FIRST_LEVEL * unit
-        board.linear((end, -radius), (end, radius), at, vertical=True, prefix="Ø")
+        board.linear(end - 1j * radius, end + 1j * radius, at, vertical=True, prefix="Ø")
         level = 1
     if part.hub is not None:
         radius, front = 0.5 * hub.diameter, hub.front > 0.0
         x = end if front else left
         at = end + (FIRST_LEVEL + LEVEL * level) * unit if front else left - FIRST_LEVEL * unit
-        board.linear((x, -radius), (x, radius), at, vertical=True, prefix="Ø")
+        board.linear(x - 1j * radius, x + 1j * radius, at, vertical=True, prefix="Ø")
 
 
 def _recesses(board: Board, part: Part, back: float) -> None:
@@ -242,39 +241,40 @@ def _recesses(board: Board, part: Part, back: float) -> None:
     for recess in part.recesses:
         low, high = back + recess.low, back + recess.high
         for y in (end for edge in recess.edges for end in _span(edge)):
-            board.line(HIDDEN, (low, y), (high, y))
+            board.line(HIDDEN, complex(low, y), complex(high, y))
         floor, (bottom, top) = low if recess.front else high, _span(recess.edge)
-        board.line(HIDDEN, (floor, bottom), (floor, top))
+        board.line(HIDDEN, complex(floor, bottom), complex(floor, top))
 
 
 def _span(edge: Edge) -> tuple[float, float]:
     """Return the extent of an edge along y, mm."""
-    ys = (reach(edge) if isinstance(edge, Loop) else true_points([edge]))[:, 1]
-    return float(ys.min()), float(ys.max())
+    low, high = bounds(reach(edge) if isinstance(edge, Loop) else true_points([edge]))
+    return low.imag, high.imag
 
 
-def _rectangle(board: Board, low: tuple[float, float], high: tuple[float, float]) -> None:
-    corners = [low, (high[0], low[1]), high, (low[0], high[1])]
+def _rectangle(board: Board, low: complex, high: complex) -> None:
+    corners = [low, complex(high.real, low.imag), high, complex(low.real, high.imag)]
     for start, end in zip(corners, corners[1:] + corners[:1], strict=True):
         board.line(EDGE, start, end)
 
 
 def _bore_view(board: Board, bore: Loop, left: float) -> None:
     """Draw a bore to the right of x = `left`, with its keyway or flat at the top."""
-    corners = as_complex(bore.vertices)
+    corners = bore.points
     kind, floor = ("keyway", corners[-2:]) if len(corners) == 5 else ("flat", corners[[0, -1]])
     radius, middle = float(abs(corners[0])), complex(floor.mean())
     unit, x, top, direction = board.unit, left + radius, abs(middle), cmath.phase(middle)
     board.draw(EDGE, placed(bore, Pose(0.5 * math.pi - direction, x)))
-    board.centre(np.array([x, 0.0]), max(radius, top))
+    board.centre(complex(x), max(radius, top))
     first = FIRST_LEVEL * unit
     below = -radius - first
-    board.linear((x - radius, 0.0), (x + radius, 0.0), below, prefix="Ø")
+    board.linear(x - radius, x + radius, below, prefix="Ø")
     half = 0.5 * float(abs(floor[1] - floor[0]))
     if kind == "keyway":
-        board.linear((x - half, top), (x + half, top), max(top, radius) + first)
-    board.linear((x, -radius), (x - half, top), x - radius - first, vertical=True)
-    line = np.array([x, below - 5.0 * unit - HEIGHT * unit])
+        board.linear(complex(x - half, top), complex(x + half, top), max(top, radius) + first)
+    edge = complex(x - half, top)
+    board.linear(complex(x, -radius), edge, x - radius - first, vertical=True)
+    line = complex(x, below - 5.0 * unit - HEIGHT * unit)
     board.write(Text(text=f"bore, {kind} turned up", place=line, anchor="middle"))
     board.rows.append((f"{kind}, direction", f"{decimal(math.degrees(direction))} deg"))
 
@@ -299,13 +299,13 @@ def _callouts(board: Board, wheel: _Wheel) -> None:
 
 def _radii(board: Board, wheel: _Wheel) -> None:
     """Draw the largest and the smallest radius of the teeth from the axis."""
-    reach = np.hypot(*wheel.toothed.T)
+    reach = np.abs(wheel.toothed)
     for place, words in ((int(reach.argmax()), "max"), (int(reach.argmin()), "min")):
-        x, y = wheel.toothed[place].tolist()
-        radius, ways = float(reach[place]), np.array([math.atan2(y, x)])
-        made = RoundDimension(center=np.zeros(2), radius=radius, diameter=False, suffix=f" {words}")
+        point, radius = complex(wheel.toothed[place]), float(reach[place])
+        made = RoundDimension(center=0j, radius=radius, diameter=False, suffix=f" {words}")
         # a leader without direction to the axis
-        if not (board.round(made, ways) or board.label(np.array([x, y]), made.label)):
+        direction = np.array([cmath.phase(point)])
+        if not (board.round(made, direction) or board.label(point, made.label)):
             board.rows.append((f"{words}. radius from axis", decimal(radius)))
 
 
@@ -314,7 +314,7 @@ def _holes(board: Board, part: Part) -> None:
     groups: dict[tuple[int, int], list[Circle]] = {}
     for opening in part.openings:
         if opening.kind == HOLE and isinstance(opening.shape, Circle):
-            circle, away = opening.shape, float(np.hypot(*opening.shape.center))
+            circle, away = opening.shape, abs(opening.shape.center)
             key = round(circle.diameter / SAME), round(away / SAME)
             groups.setdefault(key, []).append(circle)
     patterns = [group for group in groups.values() if _even(group)]
@@ -334,52 +334,50 @@ def _holes(board: Board, part: Part) -> None:
     for group in patterns:
         _pattern(board, group)
     for one in named:
-        x, y = (decimal(value) for value in one.center.tolist())
-        board.rows.append((one.label, f"X {x}  Y {y}"))
+        place = f"X {decimal(one.center.real)}  Y {decimal(one.center.imag)}"
+        board.rows.append((one.label, place))
 
 
 def _even(circles: list[Circle]) -> bool:
     """Whether holes on one circle are at equal angles."""
     if len(circles) < 2:
         return False
-    angles = np.sort([math.atan2(*circle.center[::-1]) for circle in circles])
+    angles = np.sort([cmath.phase(circle.center) for circle in circles])
     steps = np.diff(np.append(angles, angles[0] + 2.0 * math.pi))
     return bool((np.abs(steps - 2.0 * math.pi / len(circles)) < SAME).all())
 
 
 def _ring(board: Board, circles: list[Circle]) -> None:
     """Draw the centre lines of a pattern: its circle, and a radial line through each hole."""
-    away = float(np.hypot(*circles[0].center))
-    board.draw(CENTERLINE, Circle(center=np.zeros(2), diameter=2.0 * away))
+    away = abs(circles[0].center)
+    board.draw(CENTERLINE, Circle(center=0j, diameter=2.0 * away))
     arm = 0.5 * circles[0].diameter + 0.5 * OVERHANG * board.unit
     for circle in circles:
         spoke = arm / away * circle.center
-        (a, b), (c, d) = (circle.center - spoke).tolist(), (circle.center + spoke).tolist()
-        board.line(CENTERLINE, (a, b), (c, d))
+        board.line(CENTERLINE, circle.center - spoke, circle.center + spoke)
 
 
 def _pattern(board: Board, circles: list[Circle]) -> None:
     one, count = circles[0], len(circles)
-    away = float(np.hypot(*one.center))
-    first = math.atan2(*one.center[::-1])
+    first = cmath.phase(one.center)
     made = RoundDimension(center=one.center, radius=0.5 * one.diameter, prefix=f"{count} x ")
     board.round(made, AROUND)
     # the arrow points at the circle between two holes
     between = first + math.pi / count * np.array([1.0, 3.0, -1.0, -3.0, 0.5, -0.5, 1.5, -1.5])
-    ring = RoundDimension(center=np.zeros(2), radius=away)
+    ring = RoundDimension(center=0j, radius=abs(one.center))
     board.round(ring, between)
     board.rows.append((made.label, f"on {ring.label}, at {decimal(math.degrees(first))} deg"))
 
 
 def _slot(board: Board, shape: Loop) -> None:
     """Dimension a slot along an arc about the axis: width, mean radius and end angles."""
-    corners = as_complex(shape.vertices)
+    corners = shape.points
     half = len(corners) // 2
     radii = np.abs(corners[[0, half]])
     middle, width = float(radii.mean()), float(radii[0] - radii[1])
     sweep = float(np.angle(corners[1:half] / corners[: half - 1]).sum())
     first = math.degrees(cmath.phase(complex(corners[0])))
-    place = shape.vertices[[half - 1, half]].mean(axis=0)
+    place = complex(corners[[half - 1, half]].mean())
     end = RoundDimension(center=place, radius=0.5 * width, diameter=False, prefix="slot ")
     if not board.round(end):
         board.rows.append(("slot, width", decimal(width)))

@@ -24,7 +24,6 @@ from gearcam.designs.outputs import OutputSpec, files_param, studies_param
 from gearcam.designs.table import table_of
 from gearcam.export.table import table_bytes
 from gearcam.numeric.arrays import Array, Plane
-from gearcam.numeric.bulges import as_pairs
 from gearcam.numeric.pose import Pose
 from gearcam.pictures.charts import Chart, Line
 from gearcam.pictures.drawings import CENTER, FOLLOWER, Cross, Feature, Path
@@ -222,7 +221,7 @@ def scene(result: Any, places: int = PLACES) -> Scene:
     ]
     if not result.slides:
         made.insert(0, _body("crank", [0.0, design.crank.length], 0.3 * size, turn, fixed))
-    cross = Cross(center=as_pairs(np.array([shaft]))[0], size=size)
+    cross = Cross(center=shaft, size=size)
     made.append(still((Feature(layer=CENTER, shape=cross),), around.places))
     return Scene(
         title=design.name,
@@ -241,7 +240,7 @@ def _body(name: str, points: Any, half: float, turn: Array, shift: Plane) -> Mov
     if half:
         bend = half * np.exp(1j * np.linspace(-0.5 * np.pi, 0.5 * np.pi, 13))
         points = np.concatenate([points[1] + bend, points[0] - bend])
-    path = Path(points=as_pairs(np.asarray(points, dtype=np.complex128)))
+    path = Path(points=np.asarray(points, dtype=np.complex128))
     shape = (Feature(layer=FOLLOWER, shape=path),)
     return MovingBody(name=name, called=name, features=shape, pose=Pose(turn, shift))
 

@@ -66,7 +66,7 @@ class Spacer(Result):
             )
         angle = np.linspace(0.0, 2.0 * np.pi, 90, endpoint=False)
         radius = 0.5 * ring.bore + ring.width
-        return radius * np.column_stack([np.cos(angle), np.sin(angle)])
+        return radius * np.exp(1j * angle)
 
     @cached_property
     def checked(self) -> tuple[Finding, ...]:

@@ -14,7 +14,7 @@ from gearcam.base.errors import InfeasibleError
 from gearcam.cams.carriers import Sliding
 from gearcam.cams.follow import follow, profile_points
 from gearcam.cams.followers import Arm
-from gearcam.numeric.bulges import as_pairs
+from gearcam.numeric.arrays import as_pairs
 from helpers_cams import Sizes
 from helpers_curves import distances
 from helpers_sampling import few
@@ -123,14 +123,14 @@ def test_the_roller_touches_and_does_not_overlap(mechanism: Sizes) -> None:
     else:
         fixed = mechanism.offset + 1j * position
     centre = np.asarray(fixed * np.exp(-1j * theta), dtype=np.complex128)
-    away = distances(as_pairs(centre), as_pairs(points), np.zeros(len(points)))
+    away = distances(centre, points, np.zeros(len(points)))
     assert away == pytest.approx(np.full(60, mechanism.radius), abs=1e-10)
     assert np.abs(centre - followed.contact) == pytest.approx(
         np.full(60, mechanism.radius), abs=1e-10
     )
-    assert distances(
-        as_pairs(followed.contact), as_pairs(points), np.zeros(len(points))
-    ) == pytest.approx(np.zeros(60), abs=1e-10)
+    assert distances(followed.contact, points, np.zeros(len(points))) == pytest.approx(
+        np.zeros(60), abs=1e-10
+    )
 
 
 def test_two_contacts_at_once() -> None:

@@ -62,7 +62,7 @@ def test_play_by_dense_points(kind: str) -> None:
         followed = follow(wall.outline, m, theta, side=wall.side).lift
         np.testing.assert_allclose(followed, found, atol=3e-5)
         if wall.side < 0 and isinstance(m, Stem):
-            dense = np.concatenate([run.points for run in wall.contour.runs]) @ [1.0, 1.0j]
+            dense = np.concatenate([run.points for run in wall.contour.runs])
             dense = dense[:-1, None] + np.diff(dense)[:, None] * np.linspace(0.0, 1.0, 9)
             places = [
                 lift(dense.ravel(), t, m.radius, m.offset, outwards=True) - m.start for t in theta

@@ -160,7 +160,7 @@ def test_the_volume_of_a_steep_swinging_cam_is_as_exact_as_told(
     )  # fmt: skip
     runs = made.cam.walls[0].sampler.dense(16 * OVERSAMPLING).runs()
     points, tangents = (
-        np.vstack([getattr(run, n) for run in runs]) for n in ("points", "tangents")
+        np.concatenate([getattr(run, n) for run in runs]) for n in ("points", "tangents")
     )
     off = abs(made.parts[0].volume - abs(curve_moments(points, tangents).area))
     told = error_rows(made)["volume_mm3"][0]
@@ -222,9 +222,9 @@ def test_slopes_of_a_thousand_multiply_the_chords_by_what_is_told(
 ) -> None:
     """A chord is narrower than its own error there: its neighbours are felt too."""
     made = built(KNIFE.format(law=rise_law, lift=lift, way=way, tolerance=1e-3))
-    wall, vertices = made.cam.walls[0], made.profiles[0].vertices
+    wall, points = made.cam.walls[0], made.profiles[0].points
     theta = np.linspace(wall.program.knots[:-1], wall.program.knots[1:], 400, axis=1).ravel()
-    columns, _, _ = followed(wall, vertices, np.zeros(len(vertices)), theta, made.design.limits)
+    columns, _, _ = followed(wall, points, np.zeros(len(points)), theta, made.design.limits)
     assert np.all(np.abs(columns["difference"]) <= columns["error"] + 1e-9)
 
 

@@ -17,7 +17,7 @@ from gearcam.gears.flank import Toothing
 from gearcam.gears.flank_ends import find_tips
 from gearcam.gears.outline import Outline, build_outline
 from gearcam.laws.ratio.centrodes import LogSpiral
-from gearcam.numeric.arrays import Array, Mask
+from gearcam.numeric.arrays import Array, Mask, Plane, as_pairs
 from helpers_built import fresh
 from helpers_pairs import job
 from helpers_rings import CHORDS, random_ring, ring
@@ -102,7 +102,7 @@ def highest(
 ) -> tuple[Array, Array]:
     """How high flanks may go and would, the mate's outline being one or never asked for."""
 
-    def asked() -> Array:
+    def asked() -> Plane:
         assert outline is not None, "the outline is made"
         return outline.points
 
@@ -133,7 +133,7 @@ def runs_in(of: Toothing, mate: Outline, reach: Array) -> Mask:
     curve = mate.toothing.frames(turn).p
     ring, centrode = mate.toothing.track.ring, shapely.Polygon(np.stack([curve.real, curve.imag]).T)
     less = 2.0 * mate.tolerance
-    body = shapely.Polygon(mate.points).buffer(less if ring else -less)
+    body = shapely.Polygon(as_pairs(mate.points)).buffer(less if ring else -less)
     metal, below = (shapely.contains_xy(each, path.real, path.imag) for each in (body, centrode))
     return np.any((metal != ring) & (below != ring), axis=1)
 
@@ -188,7 +188,12 @@ def test_nothing_is_seen_of_corners_where_an_open_mate_has_no_space() -> None:
     one, two = job(law, (20, 20), module=1.0, internal=True).pair.toothings
     sf, sigma = one.flanks
     paths = corners._Paths(
-        toothing=one, mate=two, sf=sf, sigma=sigma, outline=lambda: np.empty((0, 2)), tolerance=1e-3
+        toothing=one,
+        mate=two,
+        sf=sf,
+        sigma=sigma,
+        outline=lambda: np.empty(0, dtype=complex),
+        tolerance=1e-3,
     )
     every, short = np.arange(len(sf)), np.full(len(sf), 0.5)
     teeth = np.tile(one.tooth_places, 2)

@@ -18,6 +18,7 @@ from gearcam.laws.ratio.constant import Constant
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.meshing.half_teeth import half_teeth
 from gearcam.numeric import arcs
+from gearcam.numeric.arrays import Plane
 from gearcam.numeric.contour import Run
 from gearcam.numeric.jets import Jet, sin
 from gearcam.numeric.piecewise import Piece, Piecewise
@@ -139,9 +140,8 @@ def test_a_long_run_is_not_looked_through_for_every_arc(sense: float) -> None:
     """Twice around a circle in one run: each point is measured some 15 times, at any length."""
     for count in (2000, 32000):
         t = np.linspace(0.0, 4.0 * math.pi, count)
-        ahead = sense * np.stack([-np.sin(t), np.cos(t)], axis=1)
-        points = 30.0 * np.stack([np.cos(t), np.sin(t)], axis=1)
-        run = Run(points=points[:: int(sense)], tangents=ahead[:: int(sense)])
+        spokes: Plane = np.exp(1j * t)[:: int(sense)]
+        run = Run(points=spokes * 30.0, tangents=spokes * (sense * 1j))
         patch, ranges = counted(
             arcs, "largest", lambda _, low, high: int(np.maximum(high - low, 0).sum())
         )

@@ -21,6 +21,7 @@ from gearcam.laws.ratio.constant import Constant
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.laws.ratio.formula import Formula
 from gearcam.laws.ratio.phases import Phases
+from gearcam.numeric.arrays import as_pairs
 from helpers_pairs import Assembly, job
 from helpers_sampling import few
 
@@ -64,7 +65,7 @@ def built_or_refused(law: Any, teeth: tuple[int, int], **given: Any) -> GearPair
         return None
     profiles = [gear.profile for gear in made.gears]
     for profile in profiles:
-        ring = shapely.LinearRing(profile.points)
+        ring = shapely.LinearRing(as_pairs(profile.points))
         assert ring.is_simple
         assert ring.is_ccw
         assert profile.chord_error <= profile.tolerance

@@ -12,6 +12,7 @@ import pytest
 import shapely
 
 from gearcam.base.errors import InfeasibleError
+from gearcam.numeric.arrays import as_pairs
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank
 from gearcam.parts.body import Mark, Opening, Part
@@ -39,7 +40,7 @@ def made(contour: Contour, sizes: WheelBlank, place: Workpiece = PLACE, **rest: 
 
 def region(opening: Opening | Circle | Loop, sagitta: float = FINE) -> shapely.Polygon:
     shape = opening.shape if isinstance(opening, Opening) else opening
-    return shapely.Polygon(shape.points(sagitta))
+    return shapely.Polygon(as_pairs(shape.polyline(sagitta)))
 
 
 def turned(shape: Circle | Loop, angle: float) -> shapely.Polygon:
@@ -66,7 +67,7 @@ def test_a_keyway_is_measured_across_and_from_the_bore(angle: float) -> None:
     assert np.abs(shape.bulges).max() <= 1.0, "an arc beyond a half circle"
     strip = 2 * 3 * 12.8 - (3 * math.sqrt(91) + 100 * math.asin(0.3))
     assert shape.moments.area == pytest.approx(100 * math.pi + strip, rel=1e-12)
-    assert np.hypot(*shape.vertices.T).max() == pytest.approx(KEYED.bore_reach, rel=1e-14)
+    assert np.abs(shape.points).max() == pytest.approx(KEYED.bore_reach, rel=1e-14)
     assert KEYED.bore_reach == pytest.approx(math.hypot(12.8, 3.0), rel=1e-14)
 
 
@@ -87,7 +88,7 @@ def test_bolts_stand_on_their_circle() -> None:
     for k, opening in enumerate(found):
         assert isinstance(opening.shape, Circle)
         wanted = 30 * np.exp(1j * (0.3 + 2 * math.pi * k / 5))
-        assert opening.shape.center == pytest.approx([wanted.real, wanted.imag], abs=1e-13)
+        assert opening.shape.center == pytest.approx(wanted, abs=1e-13)
         assert opening.shape.diameter == 6.6
 
 
@@ -133,14 +134,14 @@ def test_lightening_holes_keep_rim_and_web_and_are_the_largest(count: int, bolts
     room = np.minimum(room, np.hypot(*grid.T) - 9.0 - 3.0)
     for other in others:
         assert isinstance(other.shape, Circle)
-        room = np.minimum(room, np.hypot(*(grid - other.shape.center).T) - 1.5 - 3.0)
+        room = np.minimum(room, np.abs(grid @ [1, 1j] - other.shape.center) - 1.5 - 3.0)
     for number, hole in enumerate(holes):
-        radius, place = hole.diameter / 2, complex(*hole.center)
+        radius, place = hole.diameter / 2, hole.center
         turn = place * np.exp(-2j * math.pi * (number + 0.5) / count)
-        walls = [ring.distance(shapely.Point(hole.center)) - radius - 5.0]
+        walls = [ring.distance(shapely.Point(place.real, place.imag)) - radius - 5.0]
         walls.append(abs(place) - radius - 9.0 - 3.0)
         walls += [
-            np.hypot(*(hole.center - o.shape.center)) - radius - 4.5  # pyright: ignore[reportAttributeAccessIssue]
+            abs(place - o.shape.center) - radius - 4.5  # pyright: ignore[reportAttributeAccessIssue]
             for o in others
         ]
         beside = np.full(len(grid), np.inf)
@@ -155,7 +156,7 @@ def test_lightening_holes_keep_rim_and_web_and_are_the_largest(count: int, bolts
         assert radius > np.minimum(room, beside).max() / 1.02
     for one, other in zip(holes, holes[1:] + holes[:1], strict=True):
         if one is not other:
-            away = float(np.hypot(*(one.center - other.center)))
+            away = abs(one.center - other.center)
             assert away - (one.diameter + other.diameter) / 2 >= 3.0 - 1e-3
 
 
@@ -168,7 +169,7 @@ def test_of_a_sector_in_two_pieces_the_larger_is_taken(angle: float) -> None:
     )  # fmt: skip
     hole = made(disc_contour(50.0), sizes).openings[2]
     assert isinstance(hole.shape, Circle)
-    place = math.degrees(np.angle(complex(*hole.shape.center)))
+    place = math.degrees(np.angle(hole.shape.center))
     assert (place > 60.0) if angle == 60.0 else (place < 120.0)
     # the ring's whole width, rim and web taken off
     assert hole.shape.diameter == pytest.approx(45.0 - 13.0, abs=0.02)
@@ -180,7 +181,7 @@ def test_a_thin_rim_leaves_the_web_whole(core: float) -> None:
     sizes = blank(bore_diameter=2 * core, lightening_holes=4, rim=0.2, web=2.0)
     for opening in made(disc_contour(60.0), sizes).openings[1:]:
         assert isinstance(opening.shape, Circle)
-        away = float(np.hypot(*opening.shape.center)) - opening.shape.diameter / 2 - core
+        away = abs(opening.shape.center) - opening.shape.diameter / 2 - core
         assert away >= 2.0 - 1e-4
 
 
@@ -209,7 +210,7 @@ def test_the_pin_stays_in_its_slot_all_the_way(wheel: int, travel: float) -> Non
     assert isinstance(slot.shape, Loop)
     assert np.abs(slot.shape.bulges).max() <= 1.0, "an arc beyond a half circle"
     # midway between bore and roots; farther out where the slot's own ends come near each other
-    ends = np.hypot(*slot.shape.vertices.T)
+    ends = np.abs(slot.shape.points)
     radius = 0.5 * float(ends.max() + ends.min())
     roomiest = 50.0 / (1.0 + math.sin(0.5 * travel)) if travel > math.pi else 30.0
     assert radius == pytest.approx(roomiest, abs=0.5)
@@ -262,7 +263,7 @@ def test_the_slot_of_an_open_pair_takes_its_own_travel(wheel: int) -> None:
     contour = (job.gear1, job.gear2)[wheel - 1].profile.contour
     place = Workpiece(name=f"wheel {wheel}", wheel=wheel, rim=5.4, travel=travel)
     (slot,) = openings(blank(stop_pin=2.0), [contour], place)
-    angles = np.angle(slot.shape.points(1e-4) @ [1, 1j] * (1 if wheel == 1 else -1))
+    angles = np.angle(slot.shape.polyline(1e-4) * (1 if wheel == 1 else -1))
     middle = travel / 2 if wheel == 1 else math.pi - travel / 2
     assert contour.polygon.contains(region(slot, 1e-4))
     inside = np.abs(np.angle(np.exp(1j * (angles * (1 if wheel == 1 else -1) - middle))))
@@ -350,7 +351,7 @@ def test_a_mark_must_lie_on_metal() -> None:
     for x, y, room in (
         (24.0, 0.0, 2 * (24 - 20)), (48.0, 0.0, 2 * (50 - 48)), (35.0, 5.0, 2 * (5 - 3)),
     ):  # fmt: skip
-        center = np.array([x, y])
+        center = complex(x, y)
         for diameter, good in ((0.99 * room, True), (1.01 * room, False)):
             mark = Mark(center=center, diameter=diameter, depth=0.5)
             if good:
@@ -360,7 +361,7 @@ def test_a_mark_must_lie_on_metal() -> None:
                 made(disc_contour(50.0), sizes, marker=lambda m=mark: m)
             assert caught.value.limit == pytest.approx(room, abs=5e-3)
     for bad in ((0.0, 0.0), (60.0, 0.0), (35.0, 0.0)):
-        mark = Mark(center=np.array(bad), diameter=0.1, depth=0.5)
+        mark = Mark(center=complex(*bad), diameter=0.1, depth=0.5)
         with pytest.raises(InfeasibleError, match="timing mark meets"):
             made(disc_contour(50.0), sizes, marker=lambda m=mark: m)
 

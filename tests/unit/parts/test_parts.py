@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 from dataclasses import fields
 
@@ -11,6 +12,7 @@ import pytest
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.quantities import params_of
 from gearcam.kinds.gear_pair.drawings import pair_drawing
+from gearcam.numeric.arrays import as_pairs
 from gearcam.numeric.contour import Contour, Run
 from gearcam.numeric.pose import Pose
 from gearcam.parts.blank import Blank
@@ -24,13 +26,11 @@ from helpers_contour import bore, gear_contour, layers, square_contour
 def reverse(contour: Contour) -> Contour:
     """The same curve, clockwise."""
     runs = tuple(Run(points=r.points[::-1], tangents=-r.tangents[::-1]) for r in contour.runs[::-1])
-    return Contour(
-        dense=lambda: runs, vertices=contour.vertices[::-1], tolerance=1e-3, chord_error=0.0
-    )
+    return Contour(dense=lambda: runs, points=contour.points[::-1], tolerance=1e-3, chord_error=0.0)
 
 
 def test_area_and_volume_of_a_square_plate() -> None:
-    mark = Mark(center=np.array([12.0, 0.0]), diameter=2.0, depth=0.5)
+    mark = Mark(center=complex(12.0, 0.0), diameter=2.0, depth=0.5)
     part = Part(
         name="plate",
         contours=(square_contour(30.0),),
@@ -54,9 +54,7 @@ def test_a_part_without_bore_has_none() -> None:
 def test_a_hub_has_the_holes_that_lie_within_it() -> None:
     """The bore goes through the hub; a bolt hole outside of it does not, nor one on its edge."""
     holes = tuple(
-        Opening(
-            kind="HOLE", shape=Circle(center=np.array([x, 0.0]), diameter=2.0), name=f"hole {x}"
-        )
+        Opening(kind="HOLE", shape=Circle(center=complex(x, 0.0), diameter=2.0), name=f"hole {x}")
         for x in (9.5, 13.0)
     )
     part = Part(
@@ -94,14 +92,13 @@ def test_the_marks_face_each_other_on_the_line_of_centres() -> None:
     second = timing_mark(80.0, math.pi, 5.0, 6.25, 50.0, bore_reach=20.0)
     assert first.diameter == second.diameter == pytest.approx(2.0)
     assert first.depth == 0.5
-    assert first.center == pytest.approx([100 - 6.25 - 1 - 1, 0.0], abs=1e-12)
-    assert second.center == pytest.approx([-(80 - 6.25 - 1 - 1), 0.0], abs=1e-12)
+    assert first.center == pytest.approx(100 - 6.25 - 1 - 1, abs=1e-12)
+    assert second.center == pytest.approx(-(80 - 6.25 - 1 - 1), abs=1e-12)
 
 
 def test_a_mark_lies_in_its_direction() -> None:
-    x, y = timing_mark(100.0, 2.0, 5.0, 6.25, 50.0).center
-    assert math.atan2(y, x) == pytest.approx(2.0)
-    assert math.hypot(x, y) == pytest.approx(91.75)
+    center = timing_mark(100.0, 2.0, 5.0, 6.25, 50.0).center
+    assert cmath.polar(center) == pytest.approx((91.75, 2.0))
 
 
 def test_a_thin_wheel_gets_a_shallow_mark() -> None:
@@ -114,8 +111,8 @@ def test_a_mark_lies_between_bore_and_root(rim: float, tilt: float) -> None:
     """Distances to the root along the centrode's normal, to the bore along the radius."""
     hole = 2 * (100 - (6.25 + rim) / math.cos(tilt))
     mark = timing_mark(100.0, 0.0, 5.0, 6.25, 10.0, bore_reach=hole / 2, tilt=tilt)
-    to_bore = mark.center[0] - hole / 2 - mark.diameter / 2
-    to_root = (100 - mark.center[0]) * math.cos(tilt) - 6.25 - mark.diameter / 2
+    to_bore = mark.center.real - hole / 2 - mark.diameter / 2
+    to_root = (100 - mark.center.real) * math.cos(tilt) - 6.25 - mark.diameter / 2
     assert to_bore > 0.2 * rim
     assert to_root > min(0.9, 0.3 * rim)
     assert 0 < mark.diameter <= 2.0
@@ -133,10 +130,10 @@ def test_no_rim_no_mark() -> None:
 
 
 def test_circle_points_keep_the_sagitta() -> None:
-    points = Circle(center=np.array([1.0, 2.0]), diameter=40.0).points(1e-3)
-    assert np.hypot(*(points - [1.0, 2.0]).T) == pytest.approx(20.0, abs=1e-12)
-    middles = 0.5 * (points + np.roll(points, -1, 0)) - [1.0, 2.0]
-    sagitta = 20 - np.hypot(*middles.T).min()
+    points = Circle(center=complex(1.0, 2.0), diameter=40.0).polyline(1e-3)
+    assert np.abs(points - (1 + 2j)) == pytest.approx(20.0, abs=1e-12)
+    middles = 0.5 * (points + np.roll(points, -1)) - (1 + 2j)
+    sagitta = 20 - np.abs(middles).min()
     assert 0.9e-3 < sagitta <= 1e-3
 
 
@@ -147,28 +144,28 @@ def test_placing_turns_then_shifts() -> None:
     c, s = math.cos(0.4), math.sin(0.4)
     turn = np.array([[c, -s], [s, c]])
     assert moved.vertices == pytest.approx(contour.vertices @ turn.T + [10, -3], abs=1e-12)
-    assert moved.runs[3].points == pytest.approx(
-        contour.runs[3].points @ turn.T + [10, -3], abs=1e-12
-    )
-    assert moved.runs[3].tangents == pytest.approx(contour.runs[3].tangents @ turn.T, abs=1e-12)
+    before, after = (as_pairs(one.runs[3].points) for one in (contour, moved))
+    assert after == pytest.approx(before @ turn.T + [10, -3], abs=1e-12)
+    before, after = (as_pairs(one.runs[3].tangents) for one in (contour, moved))
+    assert after == pytest.approx(before @ turn.T, abs=1e-12)
     assert moved.area == pytest.approx(contour.area, rel=1e-12)
-    circle = placed(Circle(center=np.array([1.0, 0.0]), diameter=2.0), Pose(math.pi / 2, 5.0))
+    circle = placed(Circle(center=complex(1.0, 0.0), diameter=2.0), Pose(math.pi / 2, 5.0))
     assert isinstance(circle, Circle)
-    assert circle.center == pytest.approx([5.0, 1.0], abs=1e-15)
+    assert circle.center == pytest.approx(5.0 + 1.0j, abs=1e-15)
     assert placed(contour, Pose()) is contour
 
 
 def test_the_pair_drawing_puts_wheel_two_at_the_centre_distance() -> None:
     contour = gear_contour(8, 3.0)
     part = Part(name="g", contours=(contour,), openings=bore(6.0), width=5.0)
-    centrode = Path(points=np.array([[12.0, 0.0], [0.0, 9.0], [-12.0, 0.0]]))
+    centrode = Path(points=np.array([12.0, 9.0j, -12.0]))
     drawing = pair_drawing([part, part], 24.0, [centrode, centrode])
     first, second = drawing.contours
     assert second.vertices - first.vertices == pytest.approx(
         np.tile([24.0, 0.0], (len(first.vertices), 1))
     )
     paths = [f.shape for f in drawing.features if isinstance(f.shape, Path)]
-    assert paths[1].points[0].tolist() == [36.0, 0.0]
+    assert paths[1].points[0] == 36.0
     assert layers(drawing) == [
         "GEAR1_OUTLINE", "GEAR1_BORE", "GEAR2_OUTLINE", "GEAR2_BORE", "CENTRODE", "CENTER",
     ]  # fmt: skip
@@ -180,8 +177,8 @@ def test_the_pair_drawing_puts_wheel_two_at_the_centre_distance() -> None:
 def test_a_loop_reaches_as_far_as_its_arcs(center: tuple[float, float]) -> None:
     """A circle of two half circles: its reach is that of the circle, between the vertices."""
     x, y = center
-    loop = Loop(vertices=np.array([[x + 2.0, y], [x - 2.0, y]]), bulges=np.ones(2))
+    loop = Loop(points=complex(x, y) + np.array([2.0 + 0j, -2.0]), bulges=np.ones(2))
     assert loop.reach == pytest.approx(math.hypot(x, y) + 2.0, rel=1e-14)
     for height, reach in ((5.0, 7.0), (-5.0, math.hypot(2.0, 5.0))):
-        half = np.array([[2.0, height], [-2.0, height]])  # the upper half of a disc
-        assert Loop(vertices=half, bulges=np.array([1.0, 0.0])).reach == pytest.approx(reach)
+        half = np.array([complex(2.0, height), complex(-2.0, height)])  # the upper half of a disc
+        assert Loop(points=half, bulges=np.array([1.0, 0.0])).reach == pytest.approx(reach)

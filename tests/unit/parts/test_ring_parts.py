@@ -17,6 +17,7 @@ from gearcam.kinds.gear_pair.design import PairOutputSpec
 from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.laws.ratio.constant import Constant
 from gearcam.laws.ratio.formula import Formula
+from gearcam.numeric.arrays import as_pairs
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import Blank
 from gearcam.parts.shapes import Circle
@@ -70,7 +71,7 @@ def test_an_outside_that_follows_is_a_true_parallel(law: Any) -> None:
     assert len(outside.runs) == 1, "no corners"
     chords: Any = shapely.linestrings(np.stack([dense, np.roll(dense, -1, 0)], axis=1))
     curve = shapely.STRtree(chords)
-    for points in (outside.vertices, outside.runs[0].points):
+    for points in (outside.vertices, as_pairs(outside.runs[0].points)):
         some = shapely.points(points[:: len(points) // 500])
         distance = curve.query_nearest(some, return_distance=True)[1]
         assert distance == pytest.approx(np.full(len(distance), away), abs=1e-6)
@@ -84,7 +85,7 @@ def test_the_steps_of_a_ring_share_their_outside() -> None:
     part = made.parts[1]
     assert [len(part.contours), len(part.inner)] == [3, 3]
     assert len({id(edge) for edge in part.contours}) == 1
-    outer = shapely.Polygon(part.contours[0].points(1e-3))
+    outer = shapely.Polygon(as_pairs(part.contours[0].polyline(1e-3)))
     for gears in made.steps:
         hole = shapely.Polygon(gears[1].outline)
         assert outer.contains(hole)
@@ -105,19 +106,21 @@ def test_marks_face_each_other_across_the_mesh(ring: RingSpec, blank: Blank) -> 
     made = ring_job(ring=ring, blank=blank)
     one, two = (part.marks[0] for part in made.parts)
     pitch_point = float(np.abs(made.gear1.toothing.frames(np.zeros(1)).p[0]))
-    places = [one.center[0], two.center[0] - made.pair.center_distance]
-    assert [one.center[1], two.center[1]] == [0.0, 0.0]
+    places = [one.center.real, two.center.real - made.pair.center_distance]
+    assert [one.center.imag, two.center.imag] == [0.0, 0.0]
     assert places[0] < pitch_point < places[1]
     sides = zip(made.gears, (one, two), blank.clearance, (-1.0, 1.0), strict=True)
     for gear, mark, clear, side in sides:
         edge = shapely.Polygon(gear.outline)
-        assert edge.contains(shapely.Point(*mark.center)) == (gear.wheel == 1)
+        assert edge.contains(shapely.Point(mark.center.real, mark.center.imag)) == (gear.wheel == 1)
         centrode_there = abs(complex(*gear.centrode(np.zeros(1))[0]))
         # the root is a dedendum below the centrode, and the mark 0.2 modules below the root
         away = 2.5 + clear + 0.4 + 0.5 * mark.diameter
-        assert mark.center[0] == pytest.approx(centrode_there + side * away, abs=1e-9)
+        assert mark.center.real == pytest.approx(centrode_there + side * away, abs=1e-9)
     region = made.parts[1].region
-    assert region.contains(shapely.Point(*two.center).buffer(0.5 * two.diameter))
+    assert region.contains(
+        shapely.Point(two.center.real, two.center.imag).buffer(0.5 * two.diameter)
+    )
 
 
 SHAFT: dict[str, tuple[Any, Any]] = {

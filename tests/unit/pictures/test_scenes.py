@@ -78,8 +78,8 @@ def wheels(found: Scene, result: Any) -> list[MovingBody]:
 
 
 def stood(body: MovingBody, k: int, points: Any) -> Any:
-    """Return points of a body, (n, 2), as complex numbers where they stand at a place."""
-    return (np.asarray(points) @ [1.0, 1j]) * np.exp(1j * body.pose.turn[k]) + body.pose.shift[k]
+    """Return points of a body, complex, where they stand at a place."""
+    return np.asarray(points) * np.exp(1j * body.pose.turn[k]) + body.pose.shift[k]
 
 
 def plane(points: Any) -> Any:
@@ -87,14 +87,12 @@ def plane(points: Any) -> Any:
 
 
 def tooth(body: MovingBody, number: int) -> Any:
-    """Return the vertices of a tooth, (n, 2), in the body's frame."""
+    """Return the points of a tooth, complex, in the body's frame."""
     assert body.teeth is not None
     points, _ = next(chains(body.features[0].shape, 1e-3))
     first, last = body.teeth[number - 1]
     return (
-        points[first : last + 1]
-        if first <= last
-        else np.vstack([points[first:], points[: last + 1]])
+        points[first : last + 1] if first <= last else np.append(points[first:], points[: last + 1])
     )
 
 
@@ -122,8 +120,8 @@ def test_wheels_move_as_the_law_says_and_never_into_each_other(name):
     for k in (0, 17):
         first, second = (
             Polygon(
-                plane(stood(body, k, part.contours[0].points(CHORD))),
-                [plane(stood(body, k, edge.vertices)) for edge in part.inner[:1]],
+                plane(stood(body, k, part.contours[0].polyline(CHORD))),
+                [plane(stood(body, k, edge.points)) for edge in part.inner[:1]],
             )
             for body, part in zip((one, two), result.parts, strict=True)
         )
@@ -172,7 +170,7 @@ def test_each_tooth_stands_at_its_own_place_on_the_centrode(name):
         for number in range(1, toothing.teeth + 1):
             s = np.array([(number - 1 + first) * toothing.pitch])
             (place,) = toothing.frames(toothing.track.angle(s)).p
-            shape = Polygon(tooth(body, number + half))
+            shape = Polygon(plane(tooth(body, number + half)))
             assert shape.is_valid
             assert shape.contains(Point(place.real, place.imag))
 
@@ -229,7 +227,7 @@ def test_steps_stand_behind_the_lowest_and_move_with_it():
 def test_teeth_of_a_ring_are_on_its_inner_edge():
     ring = next(b for b in scene(made("ring_ellipse"), 1).bodies if b.name == "gear2")
     assert ring.features[0].kind == "INNER"
-    points = tooth(ring, 1) @ [1.0, 1j]
+    points = tooth(ring, 1)
     ends, tip = np.abs(points[[0, -1]]), np.abs(points).min()
     assert tip < ends.min()  # it points to the shaft
 
@@ -269,7 +267,7 @@ def test_conjugate_cams_are_two_bodies():
     for body, part in zip(scene(result).bodies[:2], result.parts, strict=True):
         (profile,) = (one.shape for one in body.features if one.kind == "PROFILE")
         assert isinstance(profile, Contour)
-        assert profile.vertices == pytest.approx(part.contour.vertices, abs=1e-9)
+        assert profile.points == pytest.approx(part.contour.points, abs=1e-9)
 
 
 @pytest.mark.parametrize("name", SLIDING)
@@ -302,16 +300,16 @@ def demand_touch(result: Any) -> None:
 
 
 def _edges(result: Any, cams: list[MovingBody]) -> list[tuple[MovingBody, Any]]:
-    """Return body and edge, (n, 2), of each set of contacts, in order."""
+    """Return body and edge, complex, of each set of contacts, in order."""
     shapes = [(cam, one.shape) for cam in cams for one in cam.features]
     found = []
     for wall in result.contours:
-        place = wall.vertices[len(wall.vertices) // 3]
+        place = wall.points[len(wall.points) // 3]
         near = (
-            (cam, np.vstack([shape.vertices, shape.vertices[:1]]))
+            (cam, np.append(shape.points, shape.points[:1]))
             for cam, shape in shapes
             if isinstance(shape, Contour)
-            if np.hypot(*(shape.vertices - place).T).min() < CHORD
+            if np.abs(shape.points - place).min() < CHORD
         )
         found.append(next(near))
     return found * 2 if result.form.half_turns else found
@@ -389,7 +387,7 @@ def test_nothing_leaves_the_box_and_little_is_left_empty(name):
     left, bottom, right, top = extent(found)
     seen: list[Any] = []
     for body in found.bodies:
-        points = np.vstack([p for f in body.features for p, _ in chains(f.shape, 1e-3)])
+        points = np.concatenate([p for f in body.features for p, _ in chains(f.shape, 1e-3)])
         seen += [stood(body, k, points) for k in range(FEW + 1)]
     every: Any = np.concatenate(seen)
     room = (right - left) / 6000.0

@@ -82,7 +82,7 @@ def test_a_groove_is_a_floor_and_centrodes_are_dashed():
 
 def test_what_is_no_number_is_null_and_nothing_is_minus_zero():
     places = np.array([0.0, 1.0])
-    square = Path(points=np.array([[-0.0, 0.0], [1.0, 0.0], [1.0, 1.0]]))
+    square = Path(points=np.array([complex(-0.0, 0.0), 1.0, 1.0 + 1.0j]))
     body = MovingBody(
         name="a",
         called="a",

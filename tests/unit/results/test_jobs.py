@@ -21,6 +21,7 @@ from gearcam.laws.ratio.constant import Constant
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.laws.ratio.formula import Formula
 from gearcam.laws.ratio.phases import Phases
+from gearcam.numeric.arrays import as_pairs
 from gearcam.numeric.contour import polygon_area
 from helpers_built import fresh
 from helpers_pairs import job, profile
@@ -367,20 +368,20 @@ def test_timing_marks_face_each_other_at_zero(bores: tuple[float, float] | None)
     assert (len(one), len(two)) == (1, 1)
     distance = made.pair.center_distance
     pitch = abs(made.pair.rolling.tracks[0].frames(np.zeros(1)).p[0])
-    first, second = one[0].center, two[0].center + np.array([distance, 0.0])
-    assert (first[1], second[1]) == (0.0, pytest.approx(0.0, abs=1e-14))
-    assert 0.0 < first[0] < pitch < second[0] < distance
+    first, second = one[0].center, two[0].center + distance
+    assert (first.imag, second.imag) == (0.0, pytest.approx(0.0, abs=1e-14))
+    assert 0.0 < first.real < pitch < second.real < distance
     for part, mark, bore in zip(made.parts, (one[0], two[0]), bores or (0.0, 0.0), strict=True):
         assert mark.diameter > 0.0
-        assert np.hypot(*mark.center) - 0.5 * mark.diameter > 0.5 * bore
+        assert abs(mark.center) - 0.5 * mark.diameter > 0.5 * bore
         assert part.contour.polygon.contains(part.contour.polygon.__class__(_ring(mark)))
     if bores is None:
-        assert pitch - first[0] == pytest.approx(second[0] - pitch, rel=1e-12)
+        assert pitch - first.real == pytest.approx(second.real - pitch, rel=1e-12)
 
 
 def _ring(mark: Any) -> np.ndarray:
     angle = np.linspace(0.0, 2 * np.pi, 65)[:-1]
-    return mark.center + 0.5 * mark.diameter * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    return as_pairs(mark.center + 0.5 * mark.diameter * np.exp(1j * angle))
 
 
 @pytest.mark.parametrize("bores", [None, (8.0, 12.0)])

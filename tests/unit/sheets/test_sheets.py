@@ -40,7 +40,7 @@ def part(radius: float, openings: tuple[Opening, ...] = (), width: float = 5.0) 
 
 
 def hole(x: float, y: float, diameter: float) -> Opening:
-    return Opening(kind="HOLE", shape=Circle(center=np.array([x, y]), diameter=diameter), name="h")
+    return Opening(kind="HOLE", shape=Circle(center=complex(x, y), diameter=diameter), name="h")
 
 
 @pytest.mark.parametrize(
@@ -89,16 +89,16 @@ def test_scales_are_written_as_the_standard_does() -> None:
 
 
 def test_long_tables_take_the_larger_paper() -> None:
-    assert choose((10.0, 10.0), (20.0, 20.0), 10)[0] == "A4"
-    assert choose((10.0, 10.0), (20.0, 20.0), 40)[0] == "A3"
+    assert choose(10.0 + 10.0j, 20.0 + 20.0j, 10)[0] == "A4"
+    assert choose(10.0 + 10.0j, 20.0 + 20.0j, 40)[0] == "A3"
     with pytest.raises(InfeasibleError, match="do not fit on a sheet"):
-        choose((1e12, 1.0), (20.0, 20.0), 10)
+        choose(1e12 + 1.0j, 20.0 + 20.0j, 10)
 
 
 def test_very_long_tables_have_lower_rows() -> None:
     facts = {f"row {k}": str(k) for k in range(80)}
     sheet = wheel_sheet(part(20.0), facts, "t")
-    heights = {text.text: sheet.on_paper(text.place[None, :])[0, 1] for text in sheet.texts}
+    heights = {text.text: sheet.on_paper(np.array([text.place]))[0].imag for text in sheet.texts}
     assert heights["row 79"] > 34.0
     assert heights["row 0"] < 287.0
     assert min(text.height for text in sheet.texts) > 1.0
@@ -110,9 +110,9 @@ def test_long_names_stay_in_their_cells(title: str) -> None:
     shown = " ".join(title.split())
     (found,) = (text for text in sheet.texts if text.text == shown)
     for text in sheet.texts:
-        low, high = (sheet.on_paper(corner[None, :])[0] for corner in text_box(text, sheet.unit))
-        assert low[0] > 20.0
-        assert high[0] < sheet.size[0] - 10.0
+        low, high = (sheet.on_paper(np.array([corner]))[0] for corner in text_box(text, sheet.unit))
+        assert low.real > 20.0
+        assert high.real < sheet.size[0] - 10.0
     assert found.height <= 4.0
 
 
@@ -136,8 +136,8 @@ def test_holes_that_are_nearly_even_are_no_pattern() -> None:
 def test_a_stop_slot_is_told() -> None:
     bend = math.tan(math.pi / 8)
     # an arc of radius 20 and width 2, from 0 to 90 deg
-    points = np.array([(21.0, 0.0), (0.0, 21.0), (0.0, 19.0), (19.0, 0.0)])
-    shape = Loop(vertices=points, bulges=np.array([bend, 1.0, -bend, 1.0]))
+    points = np.array([21.0, 21.0j, 19.0j, 19.0])
+    shape = Loop(points=points, bulges=np.array([bend, 1.0, -bend, 1.0]))
     sheet = wheel_sheet(part(40.0, (Opening(kind="SLOT", shape=shape, name="s"),)), {}, "t")
     rows = dict(sheet.rows)
     assert rows["slot, mid radius"] == "20"
@@ -157,7 +157,7 @@ def test_a_rack_has_no_axis() -> None:
 
 def test_what_has_no_room_goes_into_the_table() -> None:
     marks = tuple(
-        Mark(center=np.array([x, y]), diameter=0.5, depth=0.2)
+        Mark(center=complex(x, y), diameter=0.5, depth=0.2)
         for x in np.linspace(-25, 25, 12)
         for y in np.linspace(-25, 25, 12)
     )
@@ -170,43 +170,42 @@ def test_what_has_no_room_goes_into_the_table() -> None:
     boxes = [text_box(one.text, sheet.unit) for one in sheet.drawn]
     for k, (low, high) in enumerate(boxes):
         for other_low, other_high in boxes[:k]:
-            assert (high <= other_low).any() or (other_high <= low).any()
+            gaps = other_low - high, low - other_high
+            assert max(max(gap.real, gap.imag) for gap in gaps) >= 0.0
 
 
 def test_narrow_dimensions_have_their_text_and_arrows_outside() -> None:
-    area = np.array([-50.0, -50.0]), np.array([50.0, 50.0])
+    area = -50.0 - 50.0j, 50.0 + 50.0j
     board = Board(scale=1.0, area=area)
-    board.linear((0.0, 0.0), (2.0, 0.0), -10.0)
-    board.linear((0.0, 0.0), (40.0, 0.0), -20.0)
+    board.linear(0.0, 2.0, -10.0)
+    board.linear(0.0, 40.0, -20.0)
     narrow, wide = (as_drawn(one, 1.0) for one in board.dimensions)
-    assert text_box(narrow.text, 1.0)[0][0] > 2.0
-    assert narrow.heads[0][1, 0] < 0.0
-    assert wide.text.place == pytest.approx([20.0, -20.0 + 0.8])
-    assert wide.heads[0][1, 0] > 0.0
+    assert text_box(narrow.text, 1.0)[0].real > 2.0
+    assert narrow.heads[0][1].real < 0.0
+    assert wide.text.place == pytest.approx(20.0 + 1j * (-20.0 + 0.8))
+    assert wide.heads[0][1].real > 0.0
 
 
 def test_dimensions_know_their_values() -> None:
-    at = np.array([3.0, 4.0])
-    line = LinearDimension(
-        first=np.zeros(2), second=at, line=at, place=at, vertical=True, prefix="Ø"
-    )
+    at = 3.0 + 4.0j
+    line = LinearDimension(first=0j, second=at, line=at, place=at, vertical=True, prefix="Ø")
     assert (line.value, line.label) == (4.0, "Ø4")
     ring = RoundDimension(center=at, radius=2.5, angle=math.pi / 2, suffix=" max")
     assert (ring.value, ring.label) == (5.0, "Ø5 max")
-    assert ring.edge == pytest.approx([3.0, 6.5])
+    assert ring.edge == pytest.approx(3.0 + 6.5j)
     inside = as_drawn(ring, 1.0)
     assert len(inside.heads) == 2
-    assert inside.lines[0] == pytest.approx(np.array([[3.0, 1.5], [3.0, 6.5]]))
+    assert inside.lines[0] == pytest.approx(np.array([3.0 + 1.5j, 3.0 + 6.5j]))
 
 
 def test_upright_texts_have_upright_boxes() -> None:
-    low, high = text_box(Text(text="abcd", place=np.zeros(2), upright=True), 1.0)
-    assert high[1] - low[1] > high[0] - low[0]
+    low, high = text_box(Text(text="abcd", place=0j, upright=True), 1.0)
+    assert (high - low).imag > (high - low).real
 
 
 def circles(count: int = 360) -> list[Path]:
     angle = np.linspace(0.0, 2 * np.pi, count, endpoint=False)
-    return [Path(points=30.0 * np.column_stack([np.cos(angle), np.sin(angle)]))] * 2
+    return [Path(points=np.asarray(30.0 * np.exp(1j * angle), dtype=np.complex128))] * 2
 
 
 def pair(phi: float = 0.2) -> Drawing:
@@ -219,7 +218,7 @@ def test_the_pitch_point_is_marked() -> None:
     sheet = pair_sheet(pair(), 60.0, {}, "t", pitch_radius=30.0)
     rings = [one.shape for one in sheet.features if one.layer == "CENTERLINE"]
     (ring,) = (shape for shape in rings if isinstance(shape, Circle))
-    assert ring.center == pytest.approx([30.0, 0.0], abs=2e-3)
+    assert ring.center == pytest.approx(30.0, abs=2e-3)
     assert "pitch point" in [text.text for text in sheet.texts]
     values = [one.value for one in sheet.dimensions]
     assert {30.0, 60.0} <= set(values)
@@ -242,13 +241,13 @@ def test_the_shaft_of_an_open_ring_may_lie_beside_its_outline() -> None:
         one for one in sheet.dimensions if isinstance(one, LinearDimension) and one.vertical
     )
     assert height.value == pytest.approx(60.0, abs=2e-3)
-    assert sheet.corner[0] < height.line[0] < -60.0
+    assert sheet.corner.real < height.line.real < -60.0
     lines = [one.shape for one in sheet.features if one.layer == "CENTERLINE"]
-    assert min(line.points[:, 0].min() for line in lines if isinstance(line, Path)) < -60.0
+    assert min(line.points.real.min() for line in lines if isinstance(line, Path)) < -60.0
 
 
 def test_nothing_is_not_drawn() -> None:
-    mark = Feature(layer="MARK", shape=Circle(center=np.zeros(2), diameter=1.0))
+    mark = Feature(layer="MARK", shape=Circle(center=0j, diameter=1.0))
     with pytest.raises(ValueError, match="nothing to draw"):
         pair_sheet(Drawing(name="empty", features=(mark,)), 60.0, {}, "t", pitch_radius=30.0)
 
@@ -300,7 +299,7 @@ def test_the_side_view_of_a_groove_has_both_walls() -> None:
     hidden = [
         one.shape.points for one in features if isinstance(one.shape, Path) and one.kind == "HIDDEN"
     ]
-    level = [points[0, 1] for points in hidden if np.ptp(points[:, 1]) == 0.0]
+    level = [points[0].imag for points in hidden if np.ptp(points.imag) == 0.0]
     walls = [one.vertices[:, 1] for one in made.profiles]
     bore = [-8.0, 8.0]
     ends = [end for y in walls for end in (y.min(), y.max())]

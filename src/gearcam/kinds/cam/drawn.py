@@ -101,10 +101,10 @@ def cam_drawing(
         moving.append(Feature(layer=PITCH, shape=pitch))
     features = list(place(moving, pose))
     if prime_radius is not None:
-        circle = Circle(center=np.zeros(2), diameter=2.0 * prime_radius)
+        circle = Circle(center=0j, diameter=2.0 * prime_radius)
         features.append(Feature(layer=PRIME, shape=circle))
     features += [Feature(layer=FOLLOWER, shape=shape) for shape in follower]
-    cross = Cross(center=np.zeros(2), size=CROSS_SIZE * float(np.ptp(part.contour.vertices)))
+    cross = Cross(center=0j, size=CROSS_SIZE * float(np.ptp(part.contour.vertices)))
     features.append(Feature(layer=CENTER, shape=cross))
     return Drawing(name=part.name, features=tuple(features))
 
@@ -145,13 +145,13 @@ def follower(motion: PitchMotion, theta: float, reach: float) -> list[Shape]:
     reach = 1.2 * reach
 
     def path(*points: complex) -> Path:
-        return Path(points=np.array([[side * z.real, z.imag] for z in points]), closed=False)
+        return Path(points=np.array([complex(side * z.real, z.imag) for z in points]), closed=False)
 
     found = motion.contact_place
     wide = 0.2 * reach + (found.largest if found is not None else 0.0)
     lines, discs = touching.symbol(position, reach, wide)
     circles = [
-        Circle(center=np.array([side * center.real, center.imag]), diameter=2.0 * radius)
+        Circle(center=complex(side * center.real, center.imag), diameter=2.0 * radius)
         for center, radius in discs
     ]
     return [*circles, *(path(*line) for line in lines)]
@@ -164,6 +164,6 @@ def grooved(
     pitch, least = walls[0].pitch_contour, walls[0].follower.prime_radius
     drawing = cam_drawing(part, pitch, least, follower, pose=Pose(angle), outline=BLANK)
     # a circle stays a circle in files
-    edge = Circle(center=np.zeros(2), diameter=2.0 * part.contour.reach)
+    edge = Circle(center=0j, diameter=2.0 * part.contour.reach)
     blank, *others = drawing.features
     return replace(drawing, features=(replace(blank, shape=edge), *others))

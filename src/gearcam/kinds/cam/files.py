@@ -38,7 +38,7 @@ def _tables(result: CamResult, _: Measured) -> Files:
     }
     walls = zip(result.cam.walls, result.contours, strict=True)
     return {
-        **{_named("profile", wall): outline_bytes(made.vertices) for wall, made in walls},
+        **{_named("profile", wall): outline_bytes(made.points) for wall, made in walls},
         "motion.csv": table_bytes(columns),
     }
 

@@ -19,7 +19,7 @@ from gearcam.cams.spec import FOLLOWED
 from gearcam.cams.wall import Wall
 from gearcam.laws.columns import LARGEST, read_rows
 from gearcam.numeric.arguments import points
-from gearcam.numeric.arrays import Array
+from gearcam.numeric.arrays import Array, Plane, as_complex
 from gearcam.numeric.bulges import flatten_bulges
 
 _SAGITTA = 0.01
@@ -28,7 +28,7 @@ _SAGITTA = 0.01
 _COLUMNS = ("x_mm", "y_mm")
 
 
-def read_profile(file: str | Path | ArrayLike, wall: Wall) -> tuple[Array, Array]:
+def read_profile(file: str | Path | ArrayLike, wall: Wall) -> tuple[Plane, Array]:
     """Return a closed profile, read from a file or from points.
 
     Parameters
@@ -41,7 +41,7 @@ def read_profile(file: str | Path | ArrayLike, wall: Wall) -> tuple[Array, Array
 
     Returns
     -------
-    vertices : (n, 2) array, mm
+    outline : (n,) complex array, mm
         First not repeated.
     bulges : (n,) array
         Bulges of the pieces between them.
@@ -52,8 +52,7 @@ def read_profile(file: str | Path | ArrayLike, wall: Wall) -> tuple[Array, Array
         If the file cannot be read, or does not contain such a profile.
     """
     if not isinstance(file, str | os.PathLike):
-        vertices = _open(points("profile", file))
-        return vertices, np.zeros(len(vertices))
+        return _straight(points("profile", file))
     name = os.fspath(file)
     try:
         if name.lower().endswith(".dxf"):
@@ -64,17 +63,18 @@ def read_profile(file: str | Path | ArrayLike, wall: Wall) -> tuple[Array, Array
     except (UnreadableError, ValueError) as error:
         rule = "a DXF file with one closed outline, or a CSV file with the columns x_mm, y_mm"
         raise DesignError([Problem(f"not a profile: {error}", file=name, allowed=rule)]) from error
-    vertices = _open(vertices)
-    return vertices, np.zeros(len(vertices))
+    return _straight(vertices)
 
 
-def _open(vertices: Array) -> Array:
-    """Return vertices without the last if it repeats the first."""
-    return vertices[:-1] if np.array_equal(vertices[:1], vertices[-1:]) else vertices
+def _straight(vertices: Array) -> tuple[Plane, Array]:
+    """Return points, without the last if it repeats the first, and the bulges between them."""
+    outline = as_complex(vertices)
+    outline = outline[:-1] if np.array_equal(outline[:1], outline[-1:]) else outline
+    return outline, np.zeros(len(outline))
 
 
 def followed(
-    wall: Wall, vertices: Array, bulges: Array, theta: Array, limits: Mapping[str, float]
+    wall: Wall, outline: Plane, bulges: Array, theta: Array, limits: Mapping[str, float]
 ) -> tuple[dict[str, Array], dict[str, Any], tuple[Finding, ...]]:
     """Return the motion of a cam's follower on a profile.
 
@@ -82,7 +82,7 @@ def followed(
     ----------
     wall : Wall
         With the follower, as wide as a groove, the size of the cam, and the lift to compare with.
-    vertices : (n, 2) array, mm
+    outline : (n,) complex array, mm
         The profile in the cam's frame, as for the design.
     bulges : (n,) array
         Bulges of its pieces.
@@ -105,12 +105,12 @@ def followed(
     InfeasibleError
         If the follower cannot rest on the profile.
     """
-    outline = flatten_bulges(vertices, bulges, _SAGITTA * wall.tolerance)
+    outline = flatten_bulges(outline, bulges, _SAGITTA * wall.tolerance)
     carrier, driver = wall.carrier, wall.carrier.driver
     # output of a cam that slides is the mirror image, which `follow` expects
-    side = np.array([-1.0 if wall.clockwise and carrier.around else 1.0, 1.0])
+    mirrored = wall.clockwise and carrier.around
     found = follow(
-        outline * side,
+        -np.conj(outline) if mirrored else outline,
         wall.follower,
         theta,
         carrier=carrier,
@@ -126,7 +126,7 @@ def followed(
         "s_asked": scale * asked,
         "difference": difference,
         "error": scale * found.error,
-        "contact_x_mm": side[0] * found.contact.real,
+        "contact_x_mm": -found.contact.real if mirrored else found.contact.real,
         "contact_y_mm": found.contact.imag,
     }
     worst = int(np.abs(difference).argmax())

@@ -56,11 +56,11 @@ def _contact(result: CamResult) -> Ladder:
     """Return the lift from the polygon of the first finished profile, over chord tolerance."""
     wall = result.cam.walls[0]
     theta = np.linspace(0.0, wall.program.period, _ANGLES, endpoint=False)
-    own, outlines = _own(result), dict[float, Array]()
+    own, outlines = _own(result), dict[float, Plane]()
 
     def make(tolerance: float) -> tuple[Array, int]:
         if tolerance not in outlines:
-            outlines[tolerance] = replace(wall, tolerance=tolerance).outline
+            outlines[tolerance] = replace(wall, tolerance=tolerance).contour.points
         outline = outlines[tolerance]
         bulges = np.zeros(len(outline))
         found, _, _ = followed(wall, outline, bulges, theta, result.design.limits)

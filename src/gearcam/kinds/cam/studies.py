@@ -30,12 +30,12 @@ def follow(
     chosen = result.wall(wall)
     if progress is not None:
         progress("profile", 0, 2)
-    vertices, bulges = read_profile(profile, chosen)
+    outline, bulges = read_profile(profile, chosen)
     if progress is not None:
         progress("follow", 1, 2)
     with result.stage("follow"):
         limits = result.design.limits
-        columns, facts, found = followed(chosen, vertices, bulges, result.angles, limits)
+        columns, facts, found = followed(chosen, outline, bulges, result.angles, limits)
     return StudyResult(
         result=result,
         study=FOLLOW,

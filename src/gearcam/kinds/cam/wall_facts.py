@@ -52,11 +52,11 @@ def size(wall: Wall, made: Contour, clearance: float = 0.0) -> Tree:
     dict
         Facts by key.
     """
-    reach = np.hypot(*made.vertices.T)
+    reach = np.abs(made.points)
     least = min(float(reach.min()), wall.nearest_flat - clearance)
     common = {
         "chord_error_mm": made.chord_error,
-        "vertices": len(made.vertices),
+        "vertices": len(made.points),
         "radius_mm": extent(least, float(reach.max())),
     }
     if clearance:

@@ -15,7 +15,7 @@ from typing import Final
 import numpy as np
 
 from gearcam.gears.pair import Gear
-from gearcam.numeric.arrays import Array
+from gearcam.numeric.arrays import Plane, bounds
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.pose import Pose
 from gearcam.parts.body import Part
@@ -34,7 +34,7 @@ from gearcam.pictures.drawings import (
     reach,
 )
 from gearcam.sheets.board import FIRST_LEVEL, LEVEL, OVERHANG, Board
-from gearcam.sheets.extent import true_points
+from gearcam.sheets.extent import extremes, true_points
 from gearcam.sheets.paper import begin, finish
 from gearcam.sheets.sheet import CENTERLINE, Sheet, fine
 
@@ -77,7 +77,7 @@ def centrode_path(gear: Gear, end: float) -> Path:
     """Return the centrode of a `gear` as a chain in its own frame, to the driver angle `end`."""
     closed = gear.toothing.closed
     phi1 = np.linspace(0.0, end, _POINTS + 1)[: -1 if closed else None]
-    return Path(points=gear.centrode(phi1), closed=closed)
+    return Path(points=gear.toothing.frames(phi1).p, closed=closed)
 
 
 def pair_drawing(
@@ -123,7 +123,7 @@ def pair_drawing(
         features += place([Feature(layer=CENTRODE, shape=path)], pose)
     size = CROSS_SIZE * (abs(center_distance) or float(np.ptp(parts[0].contour.vertices)))
     for shaft in (0.0, center_distance) if center_distance else (0.0,):
-        cross = Cross(center=np.array([shaft, 0.0]), size=size)
+        cross = Cross(center=shaft, size=size)
         features.append(Feature(layer=CENTER, shape=cross))
     return Drawing(name="pair", features=tuple(features))
 
@@ -167,18 +167,16 @@ def pair_sheet(
     points = true_points(outlines)
     shafts = (0.0, center_distance) if center_distance else (0.0,)
     # the shaft of an open ring lies beside its outline
-    reached = np.vstack([points, *([shaft, 0.0] for shaft in shafts)])
-    low, high = reached.min(axis=0), reached.max(axis=0)
+    low, high = bounds(np.append(points, shafts))
     below = FIRST_LEVEL + LEVEL * LEVELS
-    room = np.array([LEFT, below]), np.array([RIGHT, ABOVE])
+    room = complex(LEFT, below), complex(RIGHT, ABOVE)
     board = begin(high - low, room, low, len(facts) + 2)
     _views(board, drawing, shafts)
-    _sizes(board, points, center_distance, pitch_radius, float(low[0]))
-    place = np.array([pitch_radius, 0.0])
-    board.draw(CENTERLINE, Circle(center=place, diameter=POINT * board.unit))
-    board.label(place, "pitch point")
+    _sizes(board, points, center_distance, pitch_radius, low.real)
+    board.draw(CENTERLINE, Circle(center=pitch_radius, diameter=POINT * board.unit))
+    board.label(pitch_radius, "pitch point")
     for number, shaft in enumerate(shafts, start=1):
-        board.label(np.array([shaft, 0.0]), f"gear{number}")
+        board.label(shaft, f"gear{number}")
     tolerance = max(contour.tolerance for contour in drawing.contours)
     notes = [
         f"Chord tolerance of the outlines: {fine(tolerance)} mm.",
@@ -198,23 +196,24 @@ def _views(board: Board, drawing: Drawing, shafts: tuple[float, ...]) -> None:
     for feature in drawing.features:
         if feature.kind != CENTER:
             board.draw(feature.layer, feature.shape)
-    over, boxes = OVERHANG * board.unit, [reach(one) for one in _outlines(drawing)]
-    for shaft, corners in zip(shafts, boxes, strict=False):
-        low, high = float(corners[:, 1].min()), float(corners[:, 1].max())
-        board.line(CENTERLINE, (shaft, low - over), (shaft, high + over))
-    xs = np.append(np.concatenate(boxes)[:, 0], shafts)
-    board.line(CENTERLINE, (float(xs.min()) - over, 0.0), (float(xs.max()) + over, 0.0))
+    over, reached = OVERHANG * board.unit, [reach(one) for one in _outlines(drawing)]
+    for shaft, points in zip(shafts, reached, strict=False):
+        low, high = bounds(points)
+        start, end = complex(shaft, low.imag - over), complex(shaft, high.imag + over)
+        board.line(CENTERLINE, start, end)
+    low, high = bounds(np.append(np.concatenate(reached), shafts))
+    board.line(CENTERLINE, low.real - over, high.real + over)
 
 
 def _sizes(
-    board: Board, points: Array, center_distance: float, pitch_radius: float, beside: float
+    board: Board, points: Plane, center_distance: float, pitch_radius: float, beside: float
 ) -> None:
     """Draw the linear dimensions: pitch radius, centre distance, overall sizes left of `beside`."""
     unit = board.unit
-    left, low, right, high = points[[*points.argmin(axis=0), *points.argmax(axis=0)]]
-    levels = [float(low[1]) - (FIRST_LEVEL + LEVEL * level) * unit for level in range(LEVELS)]
-    board.linear((0.0, 0.0), (pitch_radius, 0.0), levels.pop(0))
+    left, low, right, high = extremes(points)
+    levels = [low.imag - (FIRST_LEVEL + LEVEL * level) * unit for level in range(LEVELS)]
+    board.linear(0.0, pitch_radius, levels.pop(0))
     if center_distance:
-        board.linear((0.0, 0.0), (center_distance, 0.0), levels.pop(0))
+        board.linear(0.0, center_distance, levels.pop(0))
     board.linear(left, right, levels.pop(0))
     board.linear(low, high, beside - FIRST_LEVEL * unit, vertical=True)

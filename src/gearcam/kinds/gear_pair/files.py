@@ -25,7 +25,9 @@ def _tables(result: GearPairResult, _: Measured) -> Files:
 
     columns = result.centrodes()
     centrodes = {name: values for name, values in columns.items() if name not in POINTS}
-    files = {f"{gear.name}_outline.csv": outline_bytes(gear.outline) for gear in result.gears}
+    files = {
+        f"{gear.name}_outline.csv": outline_bytes(gear.profile.points) for gear in result.gears
+    }
     return files | {"centrodes.csv": table_bytes(centrodes)}
 
 

@@ -14,7 +14,7 @@ from gearcam.gears.outline import outside
 from gearcam.gears.pair import Gear
 from gearcam.gears.spec import RIM
 from gearcam.kinds.gear_pair.design import GearPairDesign
-from gearcam.numeric.bulges import as_complex
+from gearcam.numeric.arrays import as_complex
 from gearcam.numeric.columns import Columns
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import KIND as PARTS_KIND
@@ -88,7 +88,7 @@ def _ring(gears: list[Gear], design: GearPairDesign) -> Part:
     toothed = [one.profile.contour for one in gears]
     contours: list[Contour | Circle] = [*toothed]
     if gear.hollow:
-        circle = Circle(center=np.zeros(2), diameter=2.0 * (roots + rim))
+        circle = Circle(center=0j, diameter=2.0 * (roots + rim))
         contours = [circle if around else outside(gear.profile, rim)] * len(gears)
     inner = toothed if gear.hollow else []
     work = Workpiece(name="wheel 2", rim=RIM * gear.pair.module, wheel=2)

@@ -45,9 +45,7 @@ def scene(result: GearPairResult, places: int = PLACES) -> Scene:
     bodies = [_stepped(*wheel) for wheel in wheels]
     size = CROSS_SIZE * (abs(result.pair.shift) or float(np.ptp(result.gear1.outline)))
     shafts = (0.0, result.pair.shift) if guide.turns else (0.0,)
-    crosses = tuple(
-        Feature(layer=CENTER, shape=Cross(center=np.array([x, 0.0]), size=size)) for x in shafts
-    )
+    crosses = tuple(Feature(layer=CENTER, shape=Cross(center=x, size=size)) for x in shafts)
     lowest = [steps[0] for steps in bodies]
     behind = [step for steps in bodies for step in steps[:0:-1]]
     radius = result.pair.rolling.tracks[0].frames(phi1).p

@@ -11,6 +11,7 @@ import shapely
 import gearcam
 from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.designs import loads
+from gearcam.numeric.arrays import as_pairs
 from gearcam.results.advice import Search
 from helpers_files import DEEP, EDGE, PLATE, built, read, refused, sliding_of
 from helpers_sampling import few
@@ -193,7 +194,8 @@ def test_beyond_a_slope_the_plate_follows_the_roller(walls: str) -> None:
             )
         )
         rollers = [
-            shapely.Point(point).buffer(6.0, quad_segs=256) for point in cam.lower.pitch_line
+            shapely.Point(point).buffer(6.0, quad_segs=256)
+            for point in as_pairs(cam.lower.pitch_line)
         ]
         taken = shapely.union_all(rollers)
         for wall in cam.walls:
@@ -204,7 +206,7 @@ def test_clearance_is_taken_off_the_wall_alone() -> None:
     result = built(EDGE, ("height_mm = 40", "height_mm = 40\nclearance_mm = 0.5"))
     x, y = result.contour.vertices.T
     assert (x.min(), x.max(), y.min()) == (-170.0, 0.0, -31.0)
-    wall = shapely.LineString(sliding_of(result).lower.line)
+    wall = shapely.LineString(as_pairs(sliding_of(result).lower.line))
     points = shapely.points(result.contour.vertices[(y > -7.0) & (x > -169.0) & (x < -1.0)])
     np.testing.assert_allclose(shapely.distance(points, wall), 0.5, atol=2e-3)
     rows = result.files("inspection")["inspection.csv"].decode().splitlines()

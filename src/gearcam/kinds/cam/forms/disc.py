@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Final
 
-import numpy as np
-
 from gearcam.base.facts import Fact
 from gearcam.cams.disc import DiscCam, make_cam
 from gearcam.cams.placing import make_follower
@@ -95,7 +93,7 @@ class Plates(Form[C, S, F]):
     @property
     def reach(self) -> float:
         """Largest radius of the profiles, mm."""
-        return max(float(np.hypot(*one.vertices.T).max()) for one in self.result.profiles)
+        return max(profile.reach for profile in self.result.profiles)
 
     def paths(self, radius: float | None) -> Mapping[str, Contour]:
         """Return the path around the plate."""

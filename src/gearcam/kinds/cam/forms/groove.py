@@ -6,8 +6,6 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
-import numpy as np
-
 from gearcam.base.errors import beyond_limit
 from gearcam.base.facts import Fact
 from gearcam.base.quantities import LENGTH, REQUIRED, TEXT, param
@@ -127,7 +125,7 @@ class Groove(Form[GrooveCam, GrooveSpec, GrooveFollower]):
         from gearcam.parts.shapes import Circle
 
         thickness, profiles, relief = self.given.thickness, self.result.profiles, self.cam.relief
-        disc = Circle(center=np.zeros(2), diameter=self.given.outer_diameter)
+        disc = Circle(center=0j, diameter=self.given.outer_diameter)
         within = [relief.contour] if relief is not None and relief.side > 0 else []
         return (
             make_part(
@@ -213,7 +211,6 @@ class Groove(Form[GrooveCam, GrooveSpec, GrooveFollower]):
         def recess(low: float, high: float, edges: tuple[Contour, Contour], width: float) -> Recess:
             island = Opening(kind="INNER", shape=edges[0], name="island")
             ends = (thickness - high, thickness - low) if front else (low, high)
-            x, y = cam.inner.pitch_contour.vertices[0].tolist()
             return Recess(
                 edge=edges[1],
                 openings=(island,),
@@ -221,7 +218,7 @@ class Groove(Form[GrooveCam, GrooveSpec, GrooveFollower]):
                 high=ends[1],
                 front=front,
                 width=width,
-                place=(x, y),
+                place=complex(cam.inner.pitch_contour.points[0]),
             )
 
         if cam.relief is None:

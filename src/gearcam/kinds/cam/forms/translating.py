@@ -258,9 +258,9 @@ class Translating(Form[SlidingCam, PlateSpec, PlateFollower]):
             else:
                 front = self.given.side != "back"
                 low, high = (thickness - depth, thickness) if front else (0.0, depth)
-                x, y = cam.lower.pitch_line[0].tolist()
+                place = complex(cam.lower.pitch_line[0])
                 recess = Recess(
-                    edge=cam.groove, low=low, high=high, front=front, width=cam.width, place=(x, y)
+                    edge=cam.groove, low=low, high=high, front=front, width=cam.width, place=place
                 )
                 recesses = [recess]
         sizes = {
@@ -289,7 +289,7 @@ class Translating(Form[SlidingCam, PlateSpec, PlateFollower]):
         middle, low = 0.5 * (plate.left + plate.right), plate.low + (blank.bolt_height or 0.0)
         for number in range(blank.bolts):
             aside = (number - 0.5 * (blank.bolts - 1)) * (blank.bolt_spacing or 0.0)
-            shape = Circle(center=np.array((middle + aside, low)), diameter=blank.bolt_diameter)
+            shape = Circle(center=complex(middle + aside, low), diameter=blank.bolt_diameter)
             yield Opening(kind="HOLE", shape=shape, name=f"bolt hole {number + 1}")
 
     def _cut(self) -> SlidingCam:
