@@ -46,20 +46,31 @@ FOLLOWERS: dict[str, dict[str, Any]] = {
 RUN = 10.0
 
 
-def made(name: str = "upright", radius: float = 6.0, run: float = 0.0, **sizes: Any) -> SlidingCam:
-    spec = PlateFollower(type="roller", roller_radius=radius, **FOLLOWERS[name])
-    lift = 0.2 if spec.oscillating else 15.0
-    still = [DwellPhase(angle=run)] if run else []
+LENGTHS = ("arm", "pivot_distance", "pivot_height")
+
+
+def made(
+    name: str = "upright", radius: float = 6.0, run: float = 0.0, scale: float = 1.0, **sizes: Any
+) -> SlidingCam:
+    given = {
+        key: scale ** (key in LENGTHS) * x if key != "motion" else x
+        for key, x in FOLLOWERS[name].items()
+    }
+    spec = PlateFollower(type="roller", roller_radius=scale * radius, **given)
+    lift = 0.2 if spec.oscillating else 15.0 * scale
+    still = [DwellPhase(angle=scale * run)] if run else []
     phases = [
         *still,
-        RisePhase(angle=60.0, law=law("3-4-5"), lift=lift),
-        DwellPhase(angle=30.0),
-        ReturnPhase(angle=40.0, law=law("cycloidal")),
+        RisePhase(angle=60.0 * scale, law=law("3-4-5"), lift=lift),
+        DwellPhase(angle=30.0 * scale),
+        ReturnPhase(angle=40.0 * scale, law=law("cycloidal")),
         *still,
     ]
     program = make_program(phases, DEFAULT, oscillating=spec.oscillating, closed=False)
     follower = make_follower_over_plate(spec)
-    return make_sliding(program, follower, **{"height": 60.0, "groove": True} | sizes)
+    sizes = {"height": 60.0, "tolerance": 1e-3} | sizes
+    lengths = {key: value if key == "groove" else scale * value for key, value in sizes.items()}
+    return make_sliding(program, follower, **{"groove": True} | lengths)
 
 
 @pytest.mark.parametrize("way", POINTS)
@@ -227,3 +238,25 @@ def test_stretches_at_both_ends_of_a_way_are_two() -> None:
     assert len(over_the_end(stretches, turning)) == 1
     stretches = [(0.0, 1.0), (100.0, 130.0)]
     assert over_the_end(stretches, made().motion.program) == [[one] for one in stretches]
+
+
+@pytest.mark.parametrize("scale", [1e-3, 1e3])
+@pytest.mark.parametrize("name", FOLLOWERS)
+@pytest.mark.parametrize("radius", [6.0, 40.0])
+def test_a_plate_of_another_size_is_the_same_plate(name: str, radius: float, scale: float) -> None:
+    """Walls, undercut, lost lift and lost motion, also of a roller that undercuts both walls."""
+    sizes = {"radius": radius, "run": 60.0, "clearance": 0.2, "height": 160.0}
+    one, other = made(name, **sizes), made(name, scale=scale, **sizes)
+    of_lift = 1.0 if "arm" in FOLLOWERS[name] else scale
+    for wall, scaled in zip(one.walls, other.walls, strict=True):
+        np.testing.assert_allclose(scaled.line, scale * wall.line, rtol=1e-9, atol=1e-9 * scale)
+        ends = np.ravel(wall.undercut)
+        assert len(ends) == len(np.ravel(scaled.undercut))
+        np.testing.assert_allclose(np.ravel(scaled.undercut), scale * ends, rtol=1e-10)
+        assert bool(wall.corners) == (radius > 20.0)
+        assert scaled.shortfall == pytest.approx(of_lift * wall.shortfall, rel=1e-9)
+    assert one.lost_motion is not None
+    assert other.lost_motion is not None
+    assert other.lost_motion.value == pytest.approx(of_lift * one.lost_motion.value, rel=1e-9)
+    if radius < 20.0:  # with corners two places may have equal values
+        assert other.lost_motion.theta == pytest.approx(scale * one.lost_motion.theta, rel=1e-6)

@@ -189,7 +189,7 @@ class CamResult(PartsResult):
         return np.minimum(places, travel)
 
     def motion_at(self, theta: Array) -> Columns:
-        """Return the table of `motion` at cam angles `theta`, rad; a whole travel is 2*pi."""
+        """Return the table of `motion` at cam angles, rad, or travels, mm."""
         driver = self.driver
         motions, walls = self.cam.motions, self.cam.walls
         found = motions[0].motion(theta)
