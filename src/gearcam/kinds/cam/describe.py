@@ -40,7 +40,10 @@ def schema() -> tuple[dict[str, Any], dict[str, Any]]:
             made |= {f"{name}-{law}": _phase_schema(name, law) for law in MOTION_LAWS}
         else:
             made[name] = _phase_schema(name)
-    made |= {_ROWS: _rows_schema(), _FORMULA: _formula_schema()}
+    made |= {
+        _ROWS: _rows_schema(),
+        _FORMULA: table_schema(turn_tables()[1], "the lift over the turn as a formula"),
+    }
     main = {
         "description": "the lift over a turn of the cam, by phases, rows or a formula",
         "minItems": 1,
@@ -69,10 +72,6 @@ def _rows_schema() -> dict[str, Any]:
     made = table_schema(known, "rows of cam angle and lift over the turn")
     inline = [{"required": ["theta_deg", key]} for key in _variants(known)["lift"]]
     return made | {"oneOf": [{"required": ["file"]}, *inline]}
-
-
-def _formula_schema() -> dict[str, Any]:
-    return table_schema(turn_tables()[1], "the lift over the turn as a formula")
 
 
 def _phase_schema(name: str, law: str = "") -> dict[str, Any]:

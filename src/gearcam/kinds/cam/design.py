@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.base.registry import classes_in, name_of
 from gearcam.cams.spec import POINTED, CamSpec, FollowerSpec
 from gearcam.designs.design import Design, Wanted
-from gearcam.designs.examine import home_of
 from gearcam.designs.faults import Fault, quoted, show
-from gearcam.designs.kind import KINDS, Examined
+from gearcam.designs.kind import Examined
 from gearcam.kinds.cam.forms.base import FORMS, VARIANTS
-from gearcam.kinds.cam.motion import circumstances, examine_motion, motion_of, whole_turns
+from gearcam.kinds.cam.motion import circumstances, motion_of, whole_turns
 from gearcam.kinds.cam.tables import CamBlank, CamOutputSpec, FollowSpec
 from gearcam.kinds.shared import AccuracySpec
 from gearcam.laws.motion.base import MOTION_LAWS
@@ -95,11 +93,6 @@ class CamDesign(Design):
             yield f"motion[{number}]", phase, tuple(PHASES.values())
             if isinstance(phase, RisePhase) and not name_of(MOTION_LAWS, phase.law):
                 yield f"motion[{number}].law", phase.law, tuple(classes_in(MOTION_LAWS).values())
-
-
-def examine_motion_of(document: Mapping[str, Any], found: Examined) -> None:
-    """Validate the motion of a `document`; add its faults and the motion to `found`."""
-    examine_motion(document, found, partial(home_of, KINDS[NAME]))
 
 
 def motion_document(design: CamDesign) -> list[dict[str, Any]] | dict[str, Any]:

@@ -110,15 +110,9 @@ def cam_drawing(
 
 
 def plate(
-    part: Part,
-    wall: Wall,
-    follower: Sequence[Shape] = (),
-    *,
-    angle: float = 0.0,
-    prime: float | None = None,
+    part: Part, wall: Wall, prime: float, follower: Sequence[Shape] = (), *, angle: float = 0.0
 ) -> Drawing:
     """Return a drawing of a plate, its outline a wall, with the pitch curve (see `cam_drawing`)."""
-    prime = wall.follower.prime_radius if prime is None else prime
     pitch = None if wall.pitch_contour is part.contour else wall.pitch_contour
     return cam_drawing(part, pitch, prime, follower, pose=Pose(angle))
 

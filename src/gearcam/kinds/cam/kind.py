@@ -13,13 +13,12 @@ from gearcam.designs.table import table_of
 from gearcam.kinds.cam.design import (
     NAME,
     CamDesign,
-    examine_motion_of,
     later,
     motion_document,
     problems,
 )
 from gearcam.kinds.cam.forms.base import VARIANTS, Form
-from gearcam.kinds.cam.motion import TITLE, homes
+from gearcam.kinds.cam.motion import TITLE, examine_motion, homes
 from gearcam.kinds.cam.tables import CAM_FORMATS, FollowSpec
 from gearcam.kinds.shared import AccuracySpec
 from gearcam.parts.blank import KIND as PARTS
@@ -34,7 +33,7 @@ KIND: Final = Kind(
     result=deferred(f"{_HERE}.build:CamResult"),
     main=Main(
         title=TITLE,
-        examine=examine_motion_of,
+        examine=examine_motion,
         document=motion_document,
         table=deferred(f"{_HERE}.describe:known"),
         homes=homes,

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from gearcam.cams.three_points import three_point_curvature
-from gearcam.cams.wall import CHORD_TOLERANCE
 from gearcam.kinds.cam.follow import followed
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.sampling import Sampler
@@ -34,7 +33,7 @@ _ANGLES: Final = 120
 
 
 def _outline(result: CamResult) -> Ladder:
-    walls, used = result.cam.walls, _own(result)
+    walls, used = result.cam.walls, result.form.chord_tolerance
 
     def samplers(tolerance: float) -> list[Sampler]:
         cut = [replace(wall, tolerance=tolerance) for wall in walls]
@@ -48,7 +47,7 @@ def _outline(result: CamResult) -> Ladder:
 
 
 def _solid(result: CamResult) -> Ladder:
-    own = _own(result)
+    own = result.form.chord_tolerance
     return solid_ladder(result, own, tolerances_around(own)[:-1])
 
 
@@ -56,7 +55,7 @@ def _contact(result: CamResult) -> Ladder:
     """Return the lift from the polygon of the first finished profile, over chord tolerance."""
     wall = result.cam.walls[0]
     theta = np.linspace(0.0, wall.program.period, _ANGLES, endpoint=False)
-    own, outlines = _own(result), dict[float, Plane]()
+    own, outlines = result.form.chord_tolerance, dict[float, Plane]()
 
     def make(tolerance: float) -> tuple[Array, int]:
         if tolerance not in outlines:
@@ -108,11 +107,6 @@ def _cam(result: CamResult) -> Ladder:
         make=make,
         measure=measure,
     )
-
-
-def _own(result: CamResult) -> float:
-    """Return the chord tolerance of the design, mm."""
-    return result.design.output.chord_tolerance or CHORD_TOLERANCE
 
 
 LADDERS: Final[Ladders] = {

@@ -7,15 +7,15 @@ whole turn is given by a formula, ``lift``, or by rows.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache, partial
 from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.base.quantities import OPPOSITES
 from gearcam.base.registry import name_of
-from gearcam.designs.examine import chosen
+from gearcam.designs.examine import chosen, home_of
 from gearcam.designs.faults import Fault, quoted, show
-from gearcam.designs.kind import Examined
+from gearcam.designs.kind import KINDS, Examined
 from gearcam.designs.lines import Path
 from gearcam.designs.slips import misspelt
 from gearcam.designs.table import Table, table_of
@@ -87,9 +87,7 @@ def summary(phase: type) -> str:
     return first[:1].lower() + first[1:]
 
 
-def examine_motion(
-    document: Mapping[str, Any], found: Examined, home: Callable[[str], str]
-) -> None:
+def examine_motion(document: Mapping[str, Any], found: Examined) -> None:
     """Examine the motion of a document, and the program that its phases or rows make.
 
     Parameters
@@ -98,8 +96,6 @@ def examine_motion(
         As read from TOML.
     found : Examined
         Gets the faults, or ``motion``.
-    home : callable
-        Gives the words that say where a key of another place belongs.
     """
     raw, given = document.get(TITLE), circumstances(document)
     types = quoted(PHASES)
@@ -113,13 +109,13 @@ def examine_motion(
         message = "is given over a turn, but the cam slides"
         found.faults.append(Fault((TITLE,), message, raw, f"[[{TITLE}]] with travel_mm"))
     elif isinstance(raw, Mapping):
-        _examine_turn(raw, given, found, home)
+        _examine_turn(raw, given, found)
     elif not isinstance(raw, list) or not raw:
         message = "the list is empty" if raw == [] else f"{show(raw)} is not a list of tables"
         found.faults.append(Fault((TITLE,), message, raw, rule))
     else:
         before = len(found.faults)
-        phases = [_phase((TITLE, k), item, given, found, home) for k, item in enumerate(raw)]
+        phases = [_phase((TITLE, k), item, given, found) for k, item in enumerate(raw)]
         _examine_program(phases, raw, given, found, half=_form(document).half_turns)
         if len(found.faults) == before:
             found.parts[TITLE] = tuple(phases)
@@ -131,6 +127,10 @@ def circumstances(document: Mapping[str, Any]) -> tuple[str, ...]:
     motion = follower.get("motion", "translating") if isinstance(follower, Mapping) else None
     known = (motion,) if motion in ("translating", "oscillating") else ()
     return (*known, "sliding" if _form(document).sliding else "turning")
+
+
+def _home(key: str) -> str:
+    return home_of(KINDS["cam"], key)
 
 
 def _form(document: Mapping[str, Any]) -> type[Form[Any, Any, Any]]:
@@ -160,14 +160,12 @@ def turn_tables() -> tuple[Table, Table]:
     return rows, formula
 
 
-def _examine_turn(
-    raw: Mapping[str, Any], given: Circumstances, found: Examined, home: Callable[[str], str]
-) -> None:
+def _examine_turn(raw: Mapping[str, Any], given: Circumstances, found: Examined) -> None:
     owner = _by_formula() if "lift" in raw else _by_rows()
     known = table_of(TITLE, owner)
     wrong = list(_wrong_units(known, raw, (TITLE,), given))
     known, rest = known.bound(given), _without(raw, wrong)
-    faults = list(faults_of(known, rest, home=home))
+    faults = list(faults_of(known, rest, home=_home))
     found.faults += [*faults, *wrong]
     if wrong or not _follower_known(given):
         return
@@ -179,9 +177,7 @@ def _examine_turn(
     found.faults += problems
 
 
-def _phase(
-    at: Path, raw: Any, given: Circumstances, found: Examined, home: Callable[[str], str]
-) -> Phase | None:
+def _phase(at: Path, raw: Any, given: Circumstances, found: Examined) -> Phase | None:
     """Examine one phase and return what can be read of it, to check the program."""
     if not isinstance(raw, Mapping):
         rule = f"a table with type = {quoted(PHASES)}"
@@ -203,7 +199,7 @@ def _phase(
     replaced = {one.allowed for one in wrong}  # these are not missing besides
     faults = [
         one
-        for one in faults_of(known, rest, home=home, at=at, listed=[*choices, *known.entries])
+        for one in faults_of(known, rest, home=_home, at=at, listed=[*choices, *known.entries])
         if one.path[-1] not in replaced
     ]
     phase, problems = None, list[Fault]()

@@ -20,10 +20,8 @@ from gearcam.cams.spec import (
     positive_length,
 )
 from gearcam.designs.faults import Fault
-from gearcam.kinds.cam.facts import pressure
 from gearcam.kinds.cam.forms.base import FORMS, Form
 from gearcam.kinds.cam.forms.disc import TOOL_PATH, Plates
-from gearcam.kinds.cam.wall_facts import curvature, size, start_angle, trimming
 
 if TYPE_CHECKING:
     from gearcam.laws.program import Program
@@ -184,13 +182,6 @@ class Conjugate(Plates[ConjugateCam, ConjugateSpec, ConjugateFollower]):
         """Return 0 and the height of the second plate, which is above the first one and the gap."""
         return 0.0, self.given.thickness + self.given.gap
 
-    def drawings(self) -> tuple[Drawing, ...]:
-        """Return each plate with its pitch curve and prime circle."""
-        from gearcam.kinds.cam.drawn import plate
-
-        rows = zip(self.result.parts, self.cam.walls, self.primes, strict=True)
-        return tuple(plate(part, wall, prime=prime) for part, wall, prime in rows)
-
     @property
     def primes(self) -> tuple[float, float]:
         """Prime radii of both cams, mm; the second is that at the highest lift."""
@@ -206,7 +197,7 @@ class Conjugate(Plates[ConjugateCam, ConjugateSpec, ConjugateFollower]):
         for part, wall, prime in zip(self.result.parts, self.cam.walls, self.primes, strict=True):
             side = -1.0 if wall.clockwise else 1.0
             shapes = follower(wall, pose, self.reach)
-            for feature in plate(part, wall, shapes, angle=side * pose, prime=prime).features:
+            for feature in plate(part, wall, prime, shapes, angle=side * pose).features:
                 if feature.layer in (CENTER, FOLLOWER):
                     others.append(feature)
                 else:
@@ -224,6 +215,8 @@ class Conjugate(Plates[ConjugateCam, ConjugateSpec, ConjugateFollower]):
 
     def facts(self) -> dict[str, Any]:
         """Return the place of the second roller, and both cams."""
+        from gearcam.kinds.cam.facts import curvature, pressure, size, start_angle, trimming
+
         cam, swings = self.cam, self.follower.oscillating
         second = cam.second.follower
         first_facts, second_facts = (

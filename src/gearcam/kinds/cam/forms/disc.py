@@ -10,7 +10,6 @@ from gearcam.cams.disc import DiscCam, make_cam
 from gearcam.cams.placing import make_follower
 from gearcam.cams.spec import CamSpec, FollowerSpec
 from gearcam.kinds.cam.forms.base import FORMS, C, F, Form, S
-from gearcam.kinds.cam.wall_facts import curvature, ends_of, size, start_angle, trimming
 
 if TYPE_CHECKING:
     from gearcam.laws.program import Program
@@ -79,8 +78,8 @@ class Plates(Form[C, S, F]):
         """Return each plate with its pitch curve and prime circle."""
         from gearcam.kinds.cam.drawn import plate
 
-        rows = zip(self.result.parts, self.cam.walls, strict=True)
-        return tuple(plate(part, wall) for part, wall in rows)
+        rows = zip(self.result.parts, self.cam.walls, self.primes, strict=True)
+        return tuple(plate(*row) for row in rows)
 
     def picture(self) -> Drawing:
         """Return the plate, turned, below its follower."""
@@ -88,7 +87,13 @@ class Plates(Form[C, S, F]):
 
         (part,), (wall,), pose = self.result.parts, self.cam.walls, self.output.pose
         side = -1.0 if wall.clockwise else 1.0
-        return plate(part, wall, follower(wall, pose, self.reach), angle=side * pose)
+        shapes = follower(wall, pose, self.reach)
+        return plate(part, wall, *self.primes, shapes, angle=side * pose)
+
+    @property
+    def primes(self) -> tuple[float, ...]:
+        """Radius of each plate's prime circle, for a flat follower of its base circle, mm."""
+        return (self.result.follower.prime_radius,)
 
     @property
     def reach(self) -> float:
@@ -104,6 +109,8 @@ class Plates(Form[C, S, F]):
 
     def facts(self) -> dict[str, Any]:
         """Return curvature, undercut and size of the profile."""
+        from gearcam.kinds.cam.facts import curvature, ends_of, size, start_angle, trimming
+
         (wall,), (finished,) = self.cam.walls, self.result.contours
         place = wall.contact_place
         return {

@@ -24,7 +24,6 @@ from gearcam.cams.spec import (
 from gearcam.designs.faults import Fault, show
 from gearcam.kinds.cam.forms.base import FORMS, Form
 from gearcam.kinds.cam.forms.disc import STEM, TOOL_PATH, workpiece
-from gearcam.kinds.cam.wall_facts import curvature, size, start_angle, trimming
 
 if TYPE_CHECKING:
     from gearcam.laws.program import Program
@@ -179,6 +178,8 @@ class Groove(Form[GrooveCam, GrooveSpec, GrooveFollower]):
 
     def facts(self) -> dict[str, Any]:
         """Return sizes of the groove, its lost motion, and both walls."""
+        from gearcam.kinds.cam.facts import curvature, size, start_angle, trimming
+
         walls = zip(self.cam.walls, self.result.profiles, strict=True)
         return {
             "outer_diameter_mm": Fact(self.given.outer_diameter, "diameter of the blank"),

@@ -29,7 +29,6 @@ from gearcam.kinds.cam.forms.base import FORMS, Form
 from gearcam.kinds.cam.forms.disc import STEM, TOOL_PATH, workpiece
 from gearcam.kinds.cam.forms.groove import milled_faults
 from gearcam.kinds.cam.tables import CamBlank, CamOutputSpec
-from gearcam.kinds.cam.wall_facts import curvature, start_angle, trimming
 from gearcam.laws.phases_of_lift import DwellPhase, Phase
 from gearcam.laws.program import Program, make_program
 from gearcam.numeric.pose import Pose
@@ -351,6 +350,8 @@ class Translating(Form[SlidingCam, PlateSpec, PlateFollower]):
 
     def facts(self) -> dict[str, Any]:
         """Return curvature, undercut and length of the walls, and the lost motion in a groove."""
+        from gearcam.kinds.cam.facts import curvature, start_angle, trimming
+
         cam, given = self.cam, self.given
         walls = {
             wall.key or "profile": {
