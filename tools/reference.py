@@ -21,7 +21,7 @@ from gearcam.cams.spec import FOLLOWERS
 from gearcam.cli import parsers
 from gearcam.commands import EXIT_CODES
 from gearcam.designs.table import Table
-from gearcam.designs.validate import made_of
+from gearcam.designs.validate import parameters_of
 from gearcam.kinds.cam.forms.base import FORMS, VARIANTS
 from gearcam.kinds.cam.motion import WITH_LAW, phase_table, rise_table, summary, turn_tables
 from gearcam.kinds.gear_pair.design import law_table
@@ -123,7 +123,7 @@ def follower_faults(form: str, kind: str, motion: str) -> list[Any]:
     """Return the keys about which a follower of a form has faults if no other key is given."""
     known, raw = VARIANTS.table("follower", form), {"type": kind, "motion": motion}
     owner: Any = known.owner
-    return [fault.path[-1] for fault in made_of(known, owner, raw, (), ("follower",))[1]]
+    return [fault.path[-1] for fault in parameters_of(known, owner, raw, (), ("follower",))[1]]
 
 
 def wanted(kind: str, motion: str) -> str:
