@@ -186,8 +186,8 @@ def highest_on_circles(z1: int, z2: int) -> float:
     return low
 
 
-def random_law(r: random.Random, n: int) -> dict[str, Any]:
-    """A constant, cosine or asymmetric law of n lobes, as a formula or by harmonics."""
+def mild_law(r: random.Random, n: int) -> dict[str, Any]:
+    """A law of n lobes whose swing leaves rings that mostly fit: a formula, or harmonics."""
     e = r.choice([0.0, 1.0, 1.0, 1.0, 1.0]) * r.uniform(0.0, 0.25) / n**1.7
     kind = r.choice(["cosine", "asymmetric", "harmonics", "harmonics"])
     if kind == "cosine":
@@ -222,7 +222,7 @@ def random_ring(seed: int) -> GearPairResult:
     if angle <= 20 and r.random() < 0.2:
         tables["ring"] = {"cutter_teeth": r.choice([12.0, 16.0, 24.0])}
     output = {"chord_tolerance_mm": CHORDS * module}
-    return ring(random_law(r, n1), (n1 * t, n2 * t), output=output, **tables)
+    return ring(mild_law(r, n1), (n1 * t, n2 * t), output=output, **tables)
 
 
 def overlap(

@@ -7,12 +7,12 @@ must be finite and smooth up to its jerk.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.rules import Breach
-from gearcam.base.tolerances import Tolerances
 from gearcam.laws.displacement import EXACT
 from gearcam.laws.entry import NO_JUMPS, VARIABLE, Axis, Functions
 from gearcam.laws.formula_syntax import FormulaError, parse
@@ -35,7 +35,80 @@ def formula_problems(name: str, given: Given, variable: str = VARIABLE) -> Itera
         yield name, None, f"{place}{error.what}{hint}", error.allowed
 
 
-def function_of(given: Given, axis: Axis, tolerance: float) -> Callable[[Jet], Jet]:
+@dataclass(frozen=True, eq=False)
+class AxisFunction:
+    """A formula as a function of jets over its axis.
+
+    Parameters
+    ----------
+    axis : Axis
+        Where it is needed.
+    evaluate : callable
+        ``evaluate(jet) -> jet``.
+    tolerance : float
+        Roughness of a derivative that does not count, over its largest value.
+    errors : (float, float, float, float)
+        Estimated errors of the function and its first three derivatives.
+    """
+
+    axis: Axis
+    evaluate: Callable[[Jet], Jet]
+    tolerance: float
+    errors: tuple[float, ...] = EXACT
+
+    def __call__(self, x: Jet) -> Jet:
+        """Return the function of a jet."""
+        return self.evaluate(x)
+
+    def demand_smooth(self, names: Sequence[str]) -> Array:
+        """Refuse a formula that has no jerk, or a rough one.
+
+        Parameters
+        ----------
+        names : sequence of str
+            Of the function and its derivatives, the jerk last.
+
+        Returns
+        -------
+        (n,) array
+            Places that show the peaks of the jerk, both ends included.
+
+        Raises
+        ------
+        InfeasibleError
+            With the place.
+        """
+        *_, cuts = [self._cuts(order, name) for order, name in enumerate(names)]
+        ends = np.array([self.axis.low, self.axis.high])
+        values = np.array(self(Jet.variable(ends, len(names))).derivatives())
+        for place, column in zip(ends.tolist(), values.T, strict=True):
+            if not np.isfinite(column).all():
+                order = int(np.argmin(np.isfinite(column)))
+                what = f"{(*names, 'the derivative of its jerk')[order]} cannot be computed"
+                note = "roots of zero and powers of zero that are not whole have no derivatives"
+                raise InfeasibleError(what, where=self.axis.place(place), nearest=note)
+        return cuts
+
+    def _cuts(self, order: int, name: str) -> Array:
+        """Return the knots that an expansion of a derivative needs."""
+
+        def values(x: Array) -> Array:
+            # with 1 added, the rounding of a derivative that is zero does not count as rough
+            return 1.0 + self(Jet.variable(x, order)).derivatives()[order]
+
+        low, high = self.axis.low, self.axis.high
+        # cut at an odd place first, so that a corner at a round one lies inside a part
+        odd = low + 0.3819660112501052 * (high - low)
+        try:
+            return expand(values, [low, odd, high], self.tolerance).knots
+        except NotSmoothError as error:
+            state = "smooth" if error.finite else "finite"
+            nearest = NO_JUMPS if error.finite else ""
+            where = self.axis.place(error.place)
+            raise InfeasibleError(f"{name} is not {state}", where=where, nearest=nearest) from error
+
+
+def function_of(given: Given, axis: Axis, tolerance: float) -> AxisFunction:
     """Return a formula as a function of jets.
 
     Parameters
@@ -45,12 +118,11 @@ def function_of(given: Given, axis: Axis, tolerance: float) -> Callable[[Jet], J
     axis : Axis
         Where it is needed.
     tolerance : float
-        Largest truncation error of the expansion of a function over its largest value.
+        Largest truncation error of an expansion over the largest value.
 
     Returns
     -------
-    callable
-        ``function(jet) -> jet``; for its errors see `errors_of`.
+    AxisFunction
 
     Raises
     ------
@@ -58,18 +130,12 @@ def function_of(given: Given, axis: Axis, tolerance: float) -> Callable[[Jet], J
         If a function is not finite, not smooth, or raises an exception.
     """
     if isinstance(given, str):
-        return parse(given, axis.variable).evaluate
+        return AxisFunction(axis, parse(given, axis.variable).evaluate, tolerance)
     from gearcam.laws.functions import expanded  # which a text does not need
 
-    return expanded(given, axis, tolerance)
-
-
-def errors_of(function: Callable[[Jet], Jet]) -> tuple[float, ...]:
-    """Return error estimates of a result of `function_of` and its first three derivatives.
-
-    Zeros for a formula given as text.
-    """
-    return getattr(function, "errors", EXACT)
+    function = expanded(given, axis, tolerance)
+    # its derivatives have lost digits, and their smoothness is proven already
+    return AxisFunction(axis, function, 1e-6, function.errors)
 
 
 def values_of(function: Callable[[Jet], Jet]) -> Callable[[Array], Array]:
@@ -96,70 +162,3 @@ def derivative(function: Callable[..., Jet]) -> Callable[..., Jet]:
         return Jet([slopes[0] + 0.0 * x.c[0], *slopes[1:]])
 
     return slope
-
-
-def demand_smooth(
-    function: Callable[[Jet], Jet],
-    given: Given,
-    axis: Axis,
-    names: Sequence[str],
-    tolerances: Tolerances,
-) -> Array:
-    """Refuse a formula that has no jerk, or a rough one.
-
-    Parameters
-    ----------
-    function : callable
-        ``function(jet) -> jet``.
-    given : str, callable or tuple of callables
-        What it was made from.
-    axis : Axis
-        Where it is needed.
-    names : sequence of str
-        Of the function and its derivatives, the jerk last.
-    tolerances : Tolerances
-        Accuracy of expansions.
-
-    Returns
-    -------
-    (n,) array
-        Places that show the peaks of the jerk, both ends included.
-
-    Raises
-    ------
-    InfeasibleError
-        With the place.
-    """
-    # derivatives of an expansion have lost digits, and their smoothness is proven already
-    tolerance = tolerances.expansion if isinstance(given, str) else 1e-6
-    *_, cuts = [_cuts(function, order, axis, name, tolerance) for order, name in enumerate(names)]
-    ends = np.array([axis.low, axis.high])
-    values = np.array(function(Jet.variable(ends, len(names))).derivatives())
-    for place, column in zip(ends.tolist(), values.T, strict=True):
-        if not np.isfinite(column).all():
-            order = int(np.argmin(np.isfinite(column)))
-            what = f"{(*names, 'the derivative of its jerk')[order]} cannot be computed"
-            note = "roots of zero and powers of zero that are not whole have no derivatives"
-            raise InfeasibleError(what, where=axis.place(place), nearest=note)
-    return cuts
-
-
-def _cuts(
-    function: Callable[[Jet], Jet], order: int, axis: Axis, name: str, tolerance: float
-) -> Array:
-    """Return the knots that an expansion of a derivative needs."""
-
-    def values(x: Array) -> Array:
-        # with 1 added, the rounding of a derivative that is zero does not count as rough
-        return 1.0 + function(Jet.variable(x, order)).derivatives()[order]
-
-    # cut at an odd place first, so that a corner at a round one lies inside a part
-    odd = axis.low + 0.3819660112501052 * (axis.high - axis.low)
-    try:
-        return expand(values, [axis.low, odd, axis.high], tolerance).knots
-    except NotSmoothError as error:
-        state = "smooth" if error.finite else "finite"
-        nearest = NO_JUMPS if error.finite else ""
-        raise InfeasibleError(
-            f"{name} is not {state}", where=axis.place(error.place), nearest=nearest
-        ) from error

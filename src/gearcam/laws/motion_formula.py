@@ -19,14 +19,7 @@ from gearcam.base.quantities import LONGEST, TEXT, param
 from gearcam.base.rules import Breach
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import TYPED, Axis
-from gearcam.laws.formula import (
-    Given,
-    demand_smooth,
-    errors_of,
-    formula_problems,
-    function_of,
-    values_of,
-)
+from gearcam.laws.formula import Given, formula_problems, function_of, values_of
 from gearcam.laws.phases_of_lift import TURN
 from gearcam.laws.program import Program, stretches_of
 from gearcam.numeric.piecewise import Piece, piecewise
@@ -104,7 +97,7 @@ class MotionFormula:
             raise beyond_limit(
                 what, _AXIS.place(float(theta[far])), scale * float(first[far]), limit, unit=unit
             )
-        cuts = demand_smooth(function, self.lift, _AXIS, _NAMES, tolerances)
+        cuts = function.demand_smooth(_NAMES)
         # two at least for each cut: the shortest wave has several, which cannot all be its zeros
         count = max(_PLACES, 2 * len(cuts))
         theta = np.linspace(0.0, TURN, count + 1)
@@ -125,5 +118,5 @@ class MotionFormula:
             lift=lift,
             stretches=stretches_of(lift, *rows),
             cuts=cuts,
-            errors=errors_of(function),
+            errors=function.errors,
         )

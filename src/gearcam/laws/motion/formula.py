@@ -13,13 +13,7 @@ from gearcam.base.quantities import TEXT, param
 from gearcam.base.rules import Breach
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import TYPED, Axis, LawEntry
-from gearcam.laws.formula import (
-    Given,
-    demand_smooth,
-    errors_of,
-    formula_problems,
-    function_of,
-)
+from gearcam.laws.formula import Given, formula_problems, function_of
 from gearcam.laws.motion.base import MOTION_LAWS, MotionFunction
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import Piece, piecewise
@@ -60,7 +54,7 @@ class FormulaRise(ShortRepr):
             If the formula is not finite or not smooth, or does not go from 0 to 1.
         """
         shape = function_of(self.formula, _AXIS, tolerances.expansion)
-        cuts = demand_smooth(shape, self.formula, _AXIS, _NAMES, tolerances)
+        cuts = shape.demand_smooth(_NAMES)
         start, end = (float(v) for v in shape(Jet.variable([0.0, 1.0], 0)).derivatives()[0])
         for place, value in ((0.0, start), (1.0, end)):
             if not abs(value - place) <= TYPED:
@@ -73,7 +67,7 @@ class FormulaRise(ShortRepr):
         return MotionFunction(
             function=piecewise([0.0, 1.0], [piece]),
             cuts=cuts[1:-1].tolist(),
-            errors=errors_of(shape),
+            errors=shape.errors,
         )
 
 

@@ -16,9 +16,9 @@ from gearcam.base.rules import Breach, exactly_one
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import TYPED, Axis, LawEntry
 from gearcam.laws.formula import (
+    AxisFunction,
     Given,
     derivative,
-    errors_of,
     formula_problems,
     function_of,
     values_of,
@@ -88,7 +88,7 @@ class Formula(ShortRepr):
             axis = axis_of("phi2", span.period)
             phi2 = function_of(self.phi2, axis, tolerances.expansion)
             law = from_phi2(phi2, span, tolerances)
-            return replace(law, function_errors=errors_of(phi2))
+            return replace(law, function_errors=phi2.errors)
         name = "ratio" if self.ratio is not None else "r1"
         axis = axis_of(name, span.n1 * span.period)
         function = function_of(getattr(self, name), axis, tolerances.expansion)
@@ -110,9 +110,9 @@ class Formula(ShortRepr):
         return _of_ratio(law, factor, function)
 
 
-def _of_ratio(law: RatioLaw, factor: float, function: Callable[[Jet], Jet]) -> RatioLaw:
+def _of_ratio(law: RatioLaw, factor: float, function: AxisFunction) -> RatioLaw:
     """Return a law with the errors of the function to which its ratio is proportional."""
-    errors = tuple(factor * each for each in errors_of(function)[:3])
+    errors = tuple(factor * each for each in function.errors[:3])
     return replace(law, function_errors=(law.period * errors[0], *errors))
 
 
@@ -231,7 +231,7 @@ class RackLaw(ShortRepr):
         law = make_law(RackTravel(turn, advance), [0.0, turn], [piece], tolerances)
         if self.travel is None:
             return _of_ratio(law, 1.0, function)
-        return replace(law, function_errors=errors_of(function))
+        return replace(law, function_errors=function.errors)
 
 
 LAWS.register(

@@ -16,7 +16,7 @@ from gearcam.base.quantities import NUMBER, TEXT, param
 from gearcam.base.rules import Breach, exactly_one, excludes, needs
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import VARIABLE, Axis, LawEntry
-from gearcam.laws.formula import Given, errors_of, formula_problems, function_of, values_of
+from gearcam.laws.formula import Given, formula_problems, function_of, values_of
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.formula import axis_of, from_phi2
 from gearcam.laws.ratio.slider import NARROWEST, crank_angle, make_slide
@@ -107,7 +107,7 @@ class MotionLaw(ShortRepr):
         }
         law = from_phi2(lambda x: scale * shape(start + per_angle * x), span, tolerances, solved)
         errors = tuple(
-            abs(scale) * abs(per_angle) ** k * each for k, each in enumerate(errors_of(shape))
+            abs(scale) * abs(per_angle) ** k * each for k, each in enumerate(shape.errors)
         )
         return replace(law, function_errors=errors)
 
@@ -128,7 +128,7 @@ class MotionLaw(ShortRepr):
             "crank_angle_at_start_deg": math.degrees(start),
         }
         law = make_law(lobes, knots, pieces, tolerances, solved)
-        errors = tuple(each / (radius * NARROWEST) for each in errors_of(shape))
+        errors = tuple(each / (radius * NARROWEST) for each in shape.errors)
         return replace(law, function_errors=errors)
 
 
