@@ -48,8 +48,12 @@ def known_keys(node: Mapping[str, Any], given: Mapping[str, Any]) -> dict[str, A
     found |= node.get("properties", {})
     for branch in node.get("allOf", ()):
         asked = branch.get("if", {}).get("properties", {})
-        if all(given.get(key) == what.get("const") for key, what in asked.items()):
-            found |= known_keys(branch.get("then", branch), given)
+        chosen = branch.get("then", branch)
+        # others are rules between keys, which have no keys of their own
+        if "$ref" in chosen and all(
+            given.get(key) == what.get("const") for key, what in asked.items()
+        ):
+            found |= known_keys(chosen, given)
     return {key: _resolved(one) for key, one in found.items()}
 
 

@@ -28,6 +28,7 @@ from gearcam.meshing.settings import MeshingSpec
 from gearcam.results.advice import Remedies, Remedy
 from helpers_pairs import PROFILES
 from random_designs.designs import MAKERS, design
+from random_designs.documented import places
 
 SMALL = """kind = "gear-pair"
 name = "small"
@@ -374,3 +375,11 @@ def test_a_campaign_finds_nothing(
 ) -> None:
     assert main([*words, "--jobs", "2", "-o", str(tmp_path)]) == 0
     assert "failures: 0" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("path", sorted(PROFILES.glob("*.toml")), ids=lambda path: path.stem)
+def test_every_key_has_a_range_to_draw_from(path: Path) -> None:
+    """Rules between keys, which are in the schema too, are no keys."""
+    nodes = [node for *_, node in places(tomllib.loads(path.read_text("utf-8")))]
+    assert len(nodes) > 20
+    assert all({"type", "enum", "anyOf", "const"} & node.keys() for node in nodes)
