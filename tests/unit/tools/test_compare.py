@@ -324,10 +324,10 @@ def test_the_base_has_its_own_keys() -> None:
 
 
 def test_the_base_has_its_own_names(tmp_path: Path) -> None:
-    for name, head in (("a", "travel_mm,by_way_mm"), ("b", "travel_mm,by_way_mm")):
+    for name, head in (("a", "way_mm,by_way_mm"), ("b", "travel_mm,by_way_mm")):
         (tmp_path / name).mkdir()
         (tmp_path / name / "rack.csv").write_text(f"{head}\n1,2\n")
     sides = tmp_path / "a", tmp_path / "b"
     assert [one.place for one in folders(*sides, 1e-3)] == ["rack.csv"]
-    assert [*folders(*sides, 1e-3, {"travel_mm": "travel_mm"})] == []
+    assert [*folders(*sides, 1e-3, {"travel_mm": "way_mm"})] == []
     assert called('"off-flank": "way-off-flank"', {"new": "off-flank"}) == '"new": "way-off-flank"'
