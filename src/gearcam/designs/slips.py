@@ -85,6 +85,8 @@ def _letters(word: str, other: str) -> float:
 def nearest(word: str, known: Iterable[str]) -> str:
     """Return the most similar known word, or an empty text."""
     by_lower = {name.lower(): name for name in known}
+    if word in by_lower.values():
+        return word
     meant = _SYNONYMS.get(word.lower(), word.lower())
     close = difflib.get_close_matches(meant, by_lower, n=1, cutoff=STRONG)
     close += [near for near in difflib.get_close_matches(meant, by_lower) if near[0] == meant[0]]
