@@ -79,23 +79,19 @@ def page(
     bytes
         HTML, UTF-8, including scripts, styles and data.
     """
-    return (
-        _templates()
-        .get_template("page.html")
-        .render(
-            document=document,
-            data=_embedded(document),
-            live=_embedded(live) if live else "",
-            solids=solids or {},
-            view=_embedded((solids or {}).get("view", "")),
-            style=_own("uPlot/uPlot.min.css", "page.css", "solids.css"),
-            script=_own(*(SCRIPTS if document["scene"] else STILL)),
-            live_style=_own("live.css") if live else "",
-            live_script=_own("live.js") if live else "",
-            licence=_own("uPlot/LICENSE"),
-        )
-        .encode()
-    )
+    values = {
+        "document": document,
+        "data": _embedded(document),
+        "live": _embedded(live) if live else "",
+        "solids": solids or {},
+        "view": _embedded((solids or {}).get("view", "")),
+        "style": _contents("uPlot/uPlot.min.css", "page.css", "solids.css"),
+        "script": _contents(*(SCRIPTS if document["scene"] else STILL)),
+        "live_style": _contents("live.css") if live else "",
+        "live_script": _contents("live.js") if live else "",
+        "licence": _contents("uPlot/LICENSE"),
+    }
+    return rendered("page.html", values).encode()
 
 
 def charts_page(title: str, charts: Sequence[Chart], text: str) -> bytes:
@@ -120,9 +116,9 @@ def charts_page(title: str, charts: Sequence[Chart], text: str) -> bytes:
         "title": title,
         "text": text,
         "data": _embedded({"title": title, "charts": data}),
-        "style": _own("uPlot/uPlot.min.css", "page.css"),
-        "script": _own(*_CHARTS, "blocks.js", "charts_page.js"),
-        "licence": _own("uPlot/LICENSE"),
+        "style": _contents("uPlot/uPlot.min.css", "page.css"),
+        "script": _contents(*_CHARTS, "blocks.js", "charts_page.js"),
+        "licence": _contents("uPlot/LICENSE"),
     }
     return rendered("charts.html", values).encode()
 
@@ -247,7 +243,7 @@ def _templates() -> Environment:
 
 
 @cache
-def _own(*names: str) -> str:
+def _contents(*names: str) -> str:
     """Return the contents of files of this folder, joined."""
     return "\n".join((_HOME / name).read_text(encoding="utf-8") for name in names)
 

@@ -41,6 +41,9 @@ BEYOND: Final = 1.0 / 64.0
 """Chord tolerance of the reference as a part of the finest: it changes the error of a rung by this
 part, and the order by one hundredth."""
 
+ROUNDING: Final = 64.0 * np.finfo(float).eps
+"""Rounding error relative to the size of a quantity."""
+
 _PLACES: Final = 997
 """Number of places at which functions are compared: a prime, to avoid the ends of intervals."""
 
@@ -138,7 +141,7 @@ def integral_ladder(
         levels=INTERVALS,
         own=float(FIRST_CUTS),
         order=EXPANSION_ORDER,
-        rounding=64.0 * np.finfo(float).eps * size * float(np.abs(values).max()),
+        rounding=ROUNDING * size * float(np.abs(values).max()),
         make=make,
         measure=measure,
     )
@@ -181,15 +184,28 @@ def outline_ladder(
         distances = [chord_distance(sampler) for sampler in outlines]
         return max(off for off, _ in distances), sum(count for _, count in distances)
 
+    return _over_chords(used, levels, samplers, measure, measured, "mm", reach)
+
+
+def _over_chords(
+    used: float,
+    levels: Sequence[float],
+    make: Callable[[float], Any],
+    measure: Callable[[Any], tuple[float, int]],
+    measured: str,
+    unit: str,
+    size: float,
+) -> Ladder:
+    """Return a ladder over chord tolerances of a quantity of a `size`."""
     return Ladder(
         refined="chord tolerance, mm",
         measured=measured,
-        unit="mm",
+        unit=unit,
         levels=levels,
         own=used,
         order=CHORD_ORDER,
-        rounding=64.0 * np.finfo(float).eps * reach,
-        make=samplers,
+        rounding=ROUNDING * size,
+        make=make,
         measure=measure,
     )
 
@@ -250,17 +266,8 @@ def limit_ladder(
         values, points = computed
         return float(np.abs(values - limit).max()), points
 
-    return Ladder(
-        refined="chord tolerance, mm",
-        measured=measured,
-        unit=unit,
-        levels=levels,
-        own=used,
-        order=CHORD_ORDER,
-        rounding=64.0 * np.finfo(float).eps * float(np.abs(limit).max()),
-        make=make,
-        measure=measure,
-    )
+    size = float(np.abs(limit).max())
+    return _over_chords(used, levels, make, measure, measured, unit, size)
 
 
 def solid_ladder(result: PartsResult, used: float, levels: Sequence[float]) -> Ladder:

@@ -15,6 +15,7 @@ from gearcam.numeric.sampling import Sampler
 from gearcam.results.ladders import (
     CHORD_ORDER,
     COARSER,
+    ROUNDING,
     Ladder,
     Ladders,
     integral_ladder,
@@ -85,7 +86,7 @@ def _flank(result: GearPairResult) -> Ladder:
         levels=_FLANKS,
         own=FLANK_POINTS,
         order=CHORD_ORDER,
-        rounding=64.0 * np.finfo(float).eps * max(gear.largest_radius for gear in gears),
+        rounding=ROUNDING * max(gear.largest_radius for gear in gears),
         make=points,
         measure=measure,
     )
