@@ -60,8 +60,8 @@ class ShownRise(MotionFunction):
     def continuity(self) -> int:
         """Order of continuity between dwells, -1 to 3, where 3 means at least 3.
 
-        It counts over the knots and both ends: 0 where the velocity jumps (hard shock), 1 where the
-        acceleration does (soft shock), 2 where the jerk does.
+        It counts over the knots and both ends: 0 where the velocity jumps, 1 where the acceleration
+        does, 2 where the jerk does.
         """
         before, after = np.array(self._sides)
         scales = np.array([1.0, *self._largest])

@@ -114,8 +114,9 @@ class Param:
         Circumstances in which the parameter has this key, of `OPPOSITES`; always if empty.
     other : Param or None
         The parameter in the opposite of the first circumstance: it has another unit and key.
-    constant_at : float or None
-        Value at which the ratio of a law is constant: the search for remedies moves towards it.
+    constant_at : float, "mean" or None
+        Value at which the ratio of a law is constant: the search for remedies moves towards it;
+        "mean" is the mean ratio.
     """
 
     quantity: Quantity = NUMBER
@@ -135,7 +136,7 @@ class Param:
     nested: tuple[str, ...] = ()
     when: tuple[str, ...] = ()
     other: Param | None = None
-    constant_at: float | None = None
+    constant_at: float | Literal["mean"] | None = None
 
     def __post_init__(self) -> None:
         if self.gt == 0.0 and self.quantity.least:

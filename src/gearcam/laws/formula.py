@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gearcam.base.display import ShortRepr
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.rules import Breach
 from gearcam.laws.displacement import EXACT
@@ -36,7 +37,7 @@ def formula_problems(name: str, given: Given, variable: str = VARIABLE) -> Itera
 
 
 @dataclass(frozen=True, eq=False)
-class AxisFunction:
+class AxisFunction(ShortRepr):
     """A formula as a function of jets over its axis.
 
     Parameters

@@ -1,9 +1,8 @@
 """Lift programs: the displacement of a follower over a turn, or over the travel, of the cam.
 
 A program joins phases: motion laws scaled to their phases, and segments, quintics that continue the
-phase before. It repeats every turn and has knots where its velocity (*hard shock*), acceleration
-(*soft shock*) or jerk jumps. That of a translating cam is *open*, over a travel in mm in place of
-an angle in rad.
+phase before. It repeats every turn and has knots where its velocity, acceleration or jerk jumps.
+That of a translating cam is *open*, over a travel in mm in place of an angle in rad.
 
 Source: 000 section 3.3, eqs. (3.3)-(3.5).
 """

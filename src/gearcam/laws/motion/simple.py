@@ -15,7 +15,7 @@ from gearcam.numeric.piecewise import Piece, Piecewise, piecewise
 
 @dataclass(frozen=True, kw_only=True)
 class ConstantVelocity(ClosedForm):
-    """Constant velocity; a hard shock at both ends."""
+    """Constant velocity, which jumps at both ends."""
 
     def function(self) -> Piecewise:
         """``S = phi``."""

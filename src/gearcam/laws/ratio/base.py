@@ -224,11 +224,11 @@ def milder(parameters: Any, mean: float) -> Iterator[Adjustment]:
     if hasattr(parameters, "milder"):
         yield from parameters.milder(mean)
     far = {
-        f"law.{given.key(name)}": given.constant_at
+        f"law.{given.key(name)}": mean if given.constant_at == "mean" else given.constant_at
         for name, given in params_of(type(parameters)).items()
         if given.constant_at is not None
     }
-    if far:
+    if far and getattr(parameters, "driven_travel", None) is None:
         yield Adjustment(far=far)
 
 

@@ -10,7 +10,7 @@ from itertools import zip_longest
 import numpy as np
 
 from gearcam.base.display import ShortRepr
-from gearcam.base.errors import Adjustment, beyond_limit
+from gearcam.base.errors import beyond_limit
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import (
     ANGLE,
@@ -43,7 +43,11 @@ class Multispeed(ShortRepr):
     """
 
     ratios: RowOfSome = param(
-        NUMBER, gt=0, min_length=2, doc='the constant ratios in turn; one may be "solve"'
+        NUMBER,
+        gt=0,
+        min_length=2,
+        constant_at="mean",
+        doc='the constant ratios in turn; one may be "solve"',
     )
     angles: Row = param(
         ANGLE, ge=0, le=360, min_length=2, doc="driver angle over which each ratio holds"
@@ -68,11 +72,6 @@ class Multispeed(ShortRepr):
                 yield "angles", index, "this phase is too short", rule
         for index in [k for k, value in enumerate(self.ratios) if value == "solve"][1:2]:
             yield "ratios", index, 'more than one "solve"', 'one "solve"'
-
-    def milder(self, mean: float) -> Iterator[Adjustment]:
-        """Yield a way towards the ratio `mean` of a closed law (see `Phases.milder`)."""
-        if self.driven_travel is None:
-            yield Adjustment(far={"law.ratios": mean})
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         """Return the law for `lobes`, to `tolerances`.

@@ -139,7 +139,11 @@ class Phases(ShortRepr):
         doc='driver angles from 0 to a turn or one lobe; of an open pair one may be "solve"',
     )
     ratios: RowOfSome = param(
-        NUMBER, gt=0, min_length=2, doc='i21 there; one may be "solve" (the first: the last too)'
+        NUMBER,
+        gt=0,
+        min_length=2,
+        constant_at="mean",  # a mixture of two laws that close closes too
+        doc='i21 there; one may be "solve" (the first: the last too)',
     )
     driven_travel: float | None = open_travel("driven wheel")
 
@@ -156,11 +160,6 @@ class Phases(ShortRepr):
             yield from self._closed_problems()
         elif len(open_places) > 1:
             yield (*open_places[1], 'more than one "solve"', 'one "solve" among knots and ratios')
-
-    def milder(self, mean: float) -> Iterator[Adjustment]:
-        """Yield a way towards the ratio `mean`: a mixture of two laws that close closes too."""
-        if self.driven_travel is None:
-            yield Adjustment(far={"law.ratios": mean})
 
     def _closed_problems(self) -> Iterator[Breach]:
         for index, value in enumerate(self.knots):
