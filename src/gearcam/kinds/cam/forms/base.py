@@ -60,7 +60,7 @@ class Form(ABC, Generic[C, S, F]):
     doc: ClassVar[str]
     """One line for people."""
 
-    tables: ClassVar[Mapping[str, type]] = {
+    tables: ClassVar[dict[str, type]] = {
         "follower": FollowerSpec,
         "cam": CamSpec,
         "blank": CamBlank,

@@ -118,7 +118,7 @@ class ConjugateSpec(CamSpec):
     --------
     >>> import gearcam as gc
     >>> gc.ConjugateSpec(prime_radius=40.0, prime_radius2=45.0, gap=2.0)
-    ConjugateSpec(form='conjugate', prime_radius=40, prime_radius2=45, gap=2)
+    ConjugateSpec(prime_radius=40, prime_radius2=45, gap=2)
     """
 
     form: str = form_param("conjugate")
@@ -134,8 +134,7 @@ class Conjugate(Plates[ConjugateCam, ConjugateSpec, ConjugateFollower]):
 
     name = "conjugate"
     doc = "two plates on one shaft, each with a roller of one follower"
-    tables: ClassVar[Mapping[str, type]] = {
-        **Form.tables,
+    tables: ClassVar[dict[str, type]] = Form.tables | {
         "follower": ConjugateFollower,
         "cam": ConjugateSpec,
     }

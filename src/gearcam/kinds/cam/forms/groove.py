@@ -64,7 +64,7 @@ class GrooveSpec(CamSpec):
     --------
     >>> import gearcam as gc
     >>> gc.GrooveSpec(prime_radius=40.0, outer_diameter=130.0, groove_depth=6.0)
-    GrooveSpec(form='groove', prime_radius=40, outer_diameter=130, groove_depth=6)
+    GrooveSpec(prime_radius=40, outer_diameter=130, groove_depth=6)
     """
 
     form: str = form_param("groove")
@@ -90,8 +90,7 @@ class Groove(Form[GrooveCam, GrooveSpec, GrooveFollower]):
 
     name = "groove"
     doc = "a disc with a groove that holds a roller from both sides"
-    tables: ClassVar[Mapping[str, type]] = {
-        **Form.tables,
+    tables: ClassVar[dict[str, type]] = Form.tables | {
         "follower": GrooveFollower,
         "cam": GrooveSpec,
     }

@@ -193,7 +193,7 @@ class Translating(Form[SlidingCam, PlateSpec, PlateFollower]):
 
     name = "translating"
     doc = "a plate that slides past its follower, with one wall or a groove"
-    tables: ClassVar[Mapping[str, type]] = {
+    tables: ClassVar[dict[str, type]] = {
         "follower": PlateFollower,
         "cam": PlateSpec,
         "blank": PlateBlank,

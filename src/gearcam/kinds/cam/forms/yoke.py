@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar, Final
 
@@ -65,7 +65,7 @@ class YokeSpec(CamSpec):
     --------
     >>> import gearcam as gc
     >>> gc.YokeSpec(base_radius=30.0)
-    YokeSpec(form='yoke', base_radius=30)
+    YokeSpec(base_radius=30)
     """
 
     form: str = form_param("yoke")
@@ -76,11 +76,7 @@ class Yoke(Plates[YokeCam, YokeSpec, YokeFollower]):
 
     name = "yoke"
     doc = "a plate between two faces or rollers, of constant breadth or diameter"
-    tables: ClassVar[Mapping[str, type]] = {
-        **Form.tables,
-        "follower": YokeFollower,
-        "cam": YokeSpec,
-    }
+    tables: ClassVar[dict[str, type]] = Form.tables | {"follower": YokeFollower, "cam": YokeSpec}
     half_turns = True
     rows = ("cam.breadth_mm", "cam.roller_distance_mm", "cam.face_width_mm")
 
