@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 from gearcam.base.facts import Fact
 from gearcam.base.quantities import ANGLE, LENGTH, LONGEST, param
@@ -112,7 +112,7 @@ class ConjugateFollower(FollowerSpec):
 
 @dataclass(frozen=True, kw_only=True)
 class ConjugateSpec(CamSpec):
-    """Conjugate cams: two plates on one shaft.
+    """Cams of the form conjugate: two plates on one shaft.
 
     Examples
     --------
@@ -134,7 +134,7 @@ class Conjugate(Plates[ConjugateCam, ConjugateSpec, ConjugateFollower]):
 
     name = "conjugate"
     doc = "two plates on one shaft, each with a roller of one follower"
-    tables: ClassVar[dict[str, type]] = Form.tables | {
+    tables = Form.tables | {
         "follower": ConjugateFollower,
         "cam": ConjugateSpec,
     }

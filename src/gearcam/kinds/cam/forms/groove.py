@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 from gearcam.base.errors import beyond_limit
 from gearcam.base.facts import Fact
@@ -58,7 +58,7 @@ class GrooveFollower(FollowerSpec):
 
 @dataclass(frozen=True, kw_only=True)
 class GrooveSpec(CamSpec):
-    """A groove cam: a disc with a groove.
+    """A cam of the form groove: a disc with a groove.
 
     Examples
     --------
@@ -90,7 +90,7 @@ class Groove(Form[GrooveCam, GrooveSpec, GrooveFollower]):
 
     name = "groove"
     doc = "a disc with a groove that holds a roller from both sides"
-    tables: ClassVar[dict[str, type]] = Form.tables | {
+    tables = Form.tables | {
         "follower": GrooveFollower,
         "cam": GrooveSpec,
     }

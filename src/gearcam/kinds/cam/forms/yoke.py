@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, ClassVar, Final
+from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.base.errors import Adjustment, beyond_limit
 from gearcam.base.facts import Fact
@@ -59,7 +59,7 @@ class YokeFollower(FollowerSpec):
 
 @dataclass(frozen=True, kw_only=True)
 class YokeSpec(CamSpec):
-    """A yoke cam: a plate that its follower touches on both sides of the axis.
+    """A cam of the form yoke: a plate that its follower touches on both sides of the axis.
 
     Examples
     --------
@@ -76,7 +76,7 @@ class Yoke(Plates[YokeCam, YokeSpec, YokeFollower]):
 
     name = "yoke"
     doc = "a plate between two faces or rollers, of constant breadth or diameter"
-    tables: ClassVar[dict[str, type]] = Form.tables | {"follower": YokeFollower, "cam": YokeSpec}
+    tables = Form.tables | {"follower": YokeFollower, "cam": YokeSpec}
     half_turns = True
     rows = ("cam.breadth_mm", "cam.roller_distance_mm", "cam.face_width_mm")
 
