@@ -179,7 +179,7 @@ def _formats(only: list[str] | None) -> tuple[str, ...] | None:
         refuse([Problem("the list is empty", key="--only", allowed=", ".join(all_formats()))])
     unknown = [name for name in formats if name not in FORMATS and name not in all_formats()]
     if unknown:
-        words = "is not a kind of file"
+        words = "is not a file format"
         refuse([unknown_word(name, words, all_formats(), "--only") for name in unknown])
     return tuple(dict.fromkeys(formats))
 

@@ -303,7 +303,7 @@ KINDS: Final[Mapping[str, DesignKind]] = _Kinds()
 
 
 def all_formats() -> tuple[str, ...]:
-    """Return the kinds of files of all kinds of design."""
+    """Return the formats of files of all kinds of design."""
     return tuple(dict.fromkeys(name for kind in KINDS.values() for name in kind.formats))
 
 

@@ -86,6 +86,6 @@ class OutputSpec(ShortRepr):
             why="DXF R12 does not support splines",
             allowed='"arcs" or "lines" in R12, "splines" in R2010',
         ),
-        distinct("files", "kind of file"),
+        distinct("files", "format"),
         distinct("studies", "study"),
     )  # fmt: skip

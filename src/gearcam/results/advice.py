@@ -227,7 +227,7 @@ class Advice:
     """How remedies are searched for in designs of one kind; a kind overrides what it knows."""
 
     file_demands: Mapping[str, Callable[[Any], object]] = MappingProxyType({})
-    """Functions by kind of file that refuse a file of a result although all parts can be made."""
+    """Functions by format that refuse a file of a result although all parts can be made."""
 
     def seek(self, search: Search, refusal: InfeasibleError | None) -> None:
         """Guide a `search` for remedies of a `refusal`, or of findings that are errors."""

@@ -100,7 +100,7 @@ class Kind(DesignKind):
     facts : callable
         ``facts(result)`` returns its facts.
     files : mapping of str to FileMaker
-        What makes each kind of file, by the names in `formats`.
+        What makes the files of each format, by the names in `formats`.
     charts : mapping of str to ChartMaker
         Charts by name; the report leads with the first three.
     scene : callable

@@ -43,9 +43,9 @@ FORMAT: Final = 1
 """Version of the layout of ``summary.json``."""
 
 PICTURE: Final = "svg"
-"""The kind of file that shows the design as a picture."""
+"""The format that shows the design as a picture."""
 REPORT: Final = "report"
-"""The kind of file that describes the others and is written last."""
+"""The format that describes the other files and is written last."""
 
 Progress = Callable[[str, int, int], None]
 """Called with the name of the next stage, the number of stages done and their total."""
@@ -338,13 +338,13 @@ class Result(NotebookView):
             }
         )
 
-    def files(self, kind: str, measured: dict[str, Any] | None = None) -> dict[str, bytes]:
-        """Return the files of one kind.
+    def files(self, name: str, measured: dict[str, Any] | None = None) -> dict[str, bytes]:
+        """Return the files of one format.
 
         Parameters
         ----------
-        kind : str
-            A kind of file that ``output.files`` can list.
+        name : str
+            A format that ``output.files`` can list.
         measured : dict, optional
             Receives facts measured on the files, by group.
 
@@ -360,8 +360,8 @@ class Result(NotebookView):
         InfeasibleError
             If the design cannot be made.
         """
-        demand_formats(self.design, (kind,))
-        return self.kind.files[kind](self, {} if measured is None else measured)
+        demand_formats(self.design, (name,))
+        return self.kind.files[name](self, {} if measured is None else measured)
 
     @property
     def charts(self) -> tuple[str, ...]:
@@ -492,7 +492,7 @@ class Result(NotebookView):
         directory : path
             Parent folder.
         files : str or sequence of str, optional
-            Kinds of files instead of those that the design lists.
+            Formats instead of those that the design lists.
         progress : callable, optional
             ``progress(stage, done, total)`` is called before each stage.
 
@@ -510,9 +510,9 @@ class Result(NotebookView):
         WriteError
             If a file cannot be written.
         """
-        kinds = sorted(demand_formats(self.design, files), key=lambda kind: kind == REPORT)
+        formats = sorted(demand_formats(self.design, files), key=lambda name: name == REPORT)
         studies = self.design.output.studies
-        steps = [*self.stages, *studies, *kinds, "writing"]
+        steps = [*self.stages, *studies, *formats, "writing"]
 
         def tell(step: str, *_: int) -> None:
             if progress is not None and step in steps:
@@ -529,11 +529,11 @@ class Result(NotebookView):
             if outcome.interrupted:
                 raise KeyboardInterrupt
             contents |= outcome.files
-        for kind in kinds:
-            tell(kind)
-            with self.stage(kind):
-                contents |= self.files(kind, measured)
-            self.sizes = {name: len(content) for name, content in contents.items()}
+        for name in formats:
+            tell(name)
+            with self.stage(name):
+                contents |= self.files(name, measured)
+            self.sizes = {file: len(content) for file, content in contents.items()}
         tell("writing")
         facts = self.facts.with_groups(measured)
         return self.put(directory, contents, facts, self.findings, keep=False)

@@ -1,4 +1,4 @@
-"""What a command has written, and the requested kinds of files."""
+"""What a command has written, and the requested formats."""
 
 from __future__ import annotations
 
@@ -52,15 +52,15 @@ class BuildOutput(ShortRepr):
     table: tuple[str, ...] = ()
 
 
-def demand_formats(design: Design, kinds: Sequence[str] | None) -> tuple[str, ...]:
-    """Return the requested kinds of files, if designs of this kind have them.
+def demand_formats(design: Design, formats: Sequence[str] | None) -> tuple[str, ...]:
+    """Return the requested formats, if designs of this kind have them.
 
     Parameters
     ----------
     design : Design
         Of any kind.
-    kinds : str, sequence of str or None
-        The requested kinds of files; None: those that the design lists.
+    formats : str, sequence of str or None
+        The requested formats; None: those that the design lists.
 
     Returns
     -------
@@ -69,21 +69,21 @@ def demand_formats(design: Design, kinds: Sequence[str] | None) -> tuple[str, ..
     Raises
     ------
     DesignError
-        If a kind of file is not available; the message lists those that are.
+        If a format is not available; the message lists those that are.
     """
-    formats = KINDS[design.kind].formats
-    asked = design.output.files if kinds is None else kinds
-    wanted = (asked,) if isinstance(asked, str) else tuple(asked)
+    available = KINDS[design.kind].formats
+    names = design.output.files if formats is None else formats
+    wanted = (names,) if isinstance(names, str) else tuple(names)
     problems = [
         Problem(
-            f"designs of kind {design.kind} have no {kind} files",
+            f"designs of kind {design.kind} have no {name} files",
             file=design.source,
             key="output.files",
-            value=kind,
-            allowed=", ".join(formats),
+            value=name,
+            allowed=", ".join(available),
         )
-        for kind in wanted
-        if kind not in formats
+        for name in wanted
+        if name not in available
     ]
     if problems:
         raise DesignError(problems)

@@ -1,4 +1,4 @@
-"""From the result of a cam to the contents of its files: one function a kind of file."""
+"""From the result of a cam to the contents of its files: one function a format."""
 
 from __future__ import annotations
 
@@ -168,4 +168,4 @@ FILES: Final[Mapping[str, Callable[..., Files]]] = {
     "tool-path": _tool_path,
     "curvature": _curvature,
 }
-"""What makes each kind of file: contents by name; what is measured on them is written down."""
+"""What makes the files of each format: contents by name; what is measured on them is recorded."""

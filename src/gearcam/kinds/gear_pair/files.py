@@ -1,4 +1,4 @@
-"""From a gear pair to the contents of its files: one function a kind of file."""
+"""From a gear pair to the contents of its files: one function a format."""
 
 from __future__ import annotations
 
@@ -88,4 +88,4 @@ FILES: Final[Mapping[str, Callable[..., Files]]] = {
     "inspection": _inspection,
     "report": report_files,
 }
-"""What makes each kind of file: contents by name; what is measured on them is written down."""
+"""What makes the files of each format: contents by name; what is measured on them is recorded."""
