@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
+from gearcam.base.display import ShortRepr
+
 TYPED: Final = 1e-9
 """Error, in rad or relative, of a number typed with few digits: it is corrected silently."""
 
@@ -24,7 +26,7 @@ Functions = Function | tuple[Function, ...]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Axis:
+class Axis(ShortRepr):
     """The variable and the interval of a formula.
 
     Parameters
