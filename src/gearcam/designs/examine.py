@@ -9,9 +9,8 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from functools import partial
 from pathlib import Path as FilePath
 from typing import Any, Final
 
@@ -150,19 +149,17 @@ def home_of(kind: DesignKind, key: str) -> str:
     return homes.get(key) or (kind.main.homes().get(key, "") if kind.main else "")
 
 
-def _elsewhere(kind: DesignKind, key: str) -> str:
-    """Return a hint that says where a misplaced key belongs in a design of this kind."""
-    return home_of(kind, key) or _near_home(kind, key, SURE)
+def _owners(what: str, has: Callable[[DesignKind], bool]) -> str:
+    """Return a hint that says to which kinds of design a key or table, `what`, belongs."""
+    owners = [kind.name for kind in KINDS.values() if has(kind)]
+    return f"this {what} belongs to kind = {quoted(owners)}" if owners else ""
 
 
 def _other_home(key: str) -> str:
-    """Return a hint that says to which kinds of design a key belongs."""
-    owners = [
-        other.name
-        for other in KINDS.values()
-        if any(key in other.table(title).entries for title in other.tables)
-    ]
-    return f"this key belongs to kind = {quoted(owners)}" if owners else ""
+    def has(kind: DesignKind) -> bool:
+        return any(key in kind.table(title).entries for title in kind.tables)
+
+    return _owners("key", has)
 
 
 def _near_home(kind: DesignKind, key: str, least: float) -> str:
@@ -186,25 +183,17 @@ def _kind_faults(document: Mapping[str, Any]) -> Iterator[Fault]:
 def _top_faults(document: Mapping[str, Any], kind: DesignKind) -> Iterator[Fault]:
     titles, rule = kind.titles, ", ".join(kind.titles)
     unknown = (key for key in document if key not in titles)
-    for key, hint in hinted(unknown, partial(_top_hint, kind)):
+
+    def hint_of(key: str) -> str:
+        hint = home_of(kind, key) or _owners("table", lambda other: key in other.titles)
+        return hint or key_hint(key, titles) or _near_home(kind, key, STRONG)
+
+    for key, hint in hinted(unknown, hint_of):
         value = document[key]
-        what = "table" if _holds_tables(value) else f"key (its value is {show(value)})"
+        items = value if isinstance(value, list) and value else [value]
+        tables = all(isinstance(item, Mapping) for item in items)
+        what = "table" if tables else f"key (its value is {show(value)})"
         yield Fault((key,), f"unknown {what}", value, rule, hint)
-
-
-def _top_hint(kind: DesignKind, key: str) -> str:
-    hint = home_of(kind, key) or _other_kind(key)
-    return hint or key_hint(key, kind.titles) or _near_home(kind, key, STRONG)
-
-
-def _holds_tables(value: Any) -> bool:
-    items = value if isinstance(value, list) and value else [value]
-    return all(isinstance(item, Mapping) for item in items)
-
-
-def _other_kind(title: str) -> str:
-    owners = [other.name for other in KINDS.values() if title in other.titles]
-    return f"this table belongs to kind = {quoted(owners)}" if owners else ""
 
 
 def _examine_name(document: Mapping[str, Any], stem: str, outcome: Examined) -> None:
@@ -259,7 +248,10 @@ def _examine_table(
             Fault((title,), f"{show(raw)} is not a list of tables", raw, "", hint)
         )
         return
-    home = partial(_elsewhere, kind)
+
+    def home(key: str) -> str:
+        return home_of(kind, key) or _near_home(kind, key, SURE)
+
     parts: list[Any] = []
     items: list[tuple[Path, Any]] = [((title,), raw)]
     if several:
@@ -292,7 +284,7 @@ def _without_foreign(
         return raw, faults
     value = variants.meant(document)
     entries, kept = variants.table(title, value).entries, dict(raw)
-    for key in raw.keys() - entries.keys():
+    for key in [key for key in raw if key not in entries]:
         owners = variants.owners(title, key)
         if owners:
             entry, given = variants.table(title, owners[0]).entries[key], kept.pop(key)

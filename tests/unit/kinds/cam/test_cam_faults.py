@@ -6,7 +6,8 @@ import re
 
 import pytest
 
-from gearcam.designs import document_of
+from gearcam.base.errors import DesignError
+from gearcam.designs import design, document_of
 from helpers_files import FLAT, RISE, ROLLER, SWINGING, changed, only, problems, read
 
 
@@ -255,3 +256,12 @@ def test_planned_forms_are_named_and_nothing_else_is_said(form: str) -> None:
     problem = only(changed('"disc"', f'"{form}"\nwidth_mm = 3').replace("rise", "raise"))
     assert problem.line == 27
     assert f"{form} cams are planned, but not available yet" in problem.message
+
+
+def test_keys_of_other_forms_are_reported_in_the_order_in_which_they_are_given() -> None:
+    foreign = {"side": "front", "groove_depth_mm": 3, "run_in_mm": 2, "gap_mm": 1, "walls": "both"}
+    document = document_of(read(ROLLER))
+    document["cam"] |= foreign
+    with pytest.raises(DesignError) as caught:
+        design(document)
+    assert [one.key for one in caught.value.problems] == [f"cam.{key}" for key in foreign]
