@@ -105,13 +105,13 @@ class GearPairResult(PartsResult):
     @cached_property
     def law(self) -> RatioLaw:
         """The ratio law."""
-        law, pair = self.design.law, self.design.pair
+        parameters, pair = self.design.law, self.design.pair
         with self.stage("law"):
-            if getattr(law, "driven_travel", None) is None:  # closed
+            if getattr(parameters, "driven_travel", None) is None:  # closed
                 demand_ring(pair)
-            made = law.build(lobes_of(pair), self.tolerances)
-            _demand_reached(self.design.output.pose, made)
-        return made
+            law = parameters.build(lobes_of(pair), self.tolerances)
+            _demand_reached(self.design.output.pose, law)
+        return law
 
     @cached_property
     def pair(self) -> GearPair:
@@ -184,22 +184,22 @@ class GearPairResult(PartsResult):
         # the limit holds for the circle around bore and keyway
         limits = [2.0 * one.least_radius for one in wheels]
         bores = [self.bores[one.wheel - 1] or 0.0 for one in wheels]
-        own = [self.design.blank.wheel(one.wheel).bore for one in wheels]
+        diameters = [self.design.blank.wheel(one.wheel).bore for one in wheels]
         rim = 2.0 * limit_of(KIND, "thin-rim", self.design.limits) * gear.pair.module
         # the largest bore that keeps the limit of the rim, or without any that meets the roots
         near = [
-            own[k] - bores[k] + limit - (rim if rim < 0.9 * limit else 0.0)
+            diameters[k] - bores[k] + limit - (rim if rim < 0.9 * limit else 0.0)
             for k, limit in enumerate(limits)
         ]
-        worst, nearest = limits.index(min(limits)), [*map(_room, wheels)]
+        worst, notes = limits.index(min(limits)), [*map(_room, wheels)]
         where = f"wheel {gear.wheel}, {names[0]}"
         if len(wheels) > 1:
             where = f"wheels 1 and 2, {key}"
-            nearest.append(f"both take less than {formatted(limits[worst])} mm")
-            if own[0] == own[1]:
+            notes.append(f"both take less than {formatted(limits[worst])} mm")
+            if diameters[0] == diameters[1]:
                 names, near, limits = [key], [min(near)], [limits[worst]]
-        if own != bores:
-            nearest.append("limits hold for the circle around bore and keyway")
+        if diameters != bores:
+            notes.append("limits hold for the circle around bore and keyway")
         what = "the bore reaches the root of the teeth"
         adjustments = (
             Adjustment(
@@ -208,7 +208,7 @@ class GearPairResult(PartsResult):
             ),
         )
         return beyond_limit(
-            what, where, bores[worst], min(limits), "; ".join(nearest), adjustments=adjustments
+            what, where, bores[worst], min(limits), "; ".join(notes), adjustments=adjustments
         )
 
     @property
@@ -226,9 +226,9 @@ class GearPairResult(PartsResult):
     @cached_property
     def checked(self) -> tuple[Finding, ...]:
         """Findings of the checks, errors first."""
-        found = [*self._gear_findings(self.subject)]
+        findings = [*self._gear_findings(self.subject)]
         for number, gears in enumerate(self.steps[1:], start=2):
-            found += (
+            findings += (
                 replace(finding, where=f"step {number}, {finding.where}")
                 for finding in self._gear_findings(self._subject(gears))
                 if finding.code in _OF_TEETH
@@ -236,8 +236,8 @@ class GearPairResult(PartsResult):
         if self.ordered:
             subject = self.parts_subject
             with self.stage("checks"):
-                found += run_checks(PARTS_KIND, subject, self.design.limits)
-        return in_order(found)
+                findings += run_checks(PARTS_KIND, subject, self.design.limits)
+        return in_order(findings)
 
     @cached_property
     def subject(self) -> CheckedPair:
@@ -506,8 +506,8 @@ class GearPairResult(PartsResult):
     def paths_of_contact(self) -> dict[Side, Columns]:
         """The tables of `contact` of both sides, over `phases`."""
         return {
-            side: contact_rows(self.pair, self.flanks_of(side), self.phases, found)
-            for side, found in self.touching.items()
+            side: contact_rows(self.pair, self.flanks_of(side), self.phases, points)
+            for side, points in self.touching.items()
         }
 
     @cached_property
