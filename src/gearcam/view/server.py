@@ -10,7 +10,6 @@ from __future__ import annotations
 import json
 import os
 import secrets
-import socket
 import sys
 from collections.abc import Callable
 from http import HTTPStatus
@@ -74,7 +73,7 @@ class Server(ThreadingHTTPServer):
     Raises
     ------
     DesignError
-        If the port is invalid or in use, with the nearest free one.
+        If the port is invalid or in use.
     """
 
     daemon_threads = True
@@ -89,7 +88,9 @@ class Server(ThreadingHTTPServer):
         try:
             super().__init__((HOME, port), Handler)
         except OSError as error:
-            raise DesignError([_taken(port, error)]) from error
+            message = f"port {port} cannot be used: {error.strerror}"
+            hint = "without --port a free one is taken"
+            raise DesignError([Problem(message, key="--port", hint=hint)]) from error
         self.hosts = tuple(f"{name}:{self.server_port}" for name in (HOME, "localhost"))
 
     @property
@@ -102,22 +103,6 @@ class Server(ThreadingHTTPServer):
         error = sys.exception()
         if isinstance(error, Exception) and not isinstance(error, ConnectionError | TimeoutError):
             complain(fault_text(error, self.session.file))
-
-
-def _taken(port: int, error: OSError) -> Problem:
-    ways = sorted(range(1024, _LAST_PORT + 1), key=lambda other: abs(other - port))
-    free = next((other for other in ways[:100] if _is_free(other)), None)
-    hint = f"the nearest free port is {free}" if free else ""
-    return Problem(f"port {port} cannot be used: {error.strerror}", key="--port", hint=hint)
-
-
-def _is_free(port: int) -> bool:
-    with socket.socket() as probe:
-        try:
-            probe.bind((HOME, port))
-        except OSError:
-            return False
-    return True
 
 
 class Handler(BaseHTTPRequestHandler):

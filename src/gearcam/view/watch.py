@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import os
 import time
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Final
 
@@ -59,9 +60,7 @@ class Watch:
             self._gone += 1
             return False, content
         self._gone = 0 if content else _GONE
-        if [mark and mark[2] for mark in marks.values()] == [
-            mark and mark[2] for mark in self._marks.values()
-        ] and marks.keys() == self._marks.keys():
+        if _digests(marks) == _digests(self._marks):
             self._marks = marks
             return False, content
         if content:
@@ -82,6 +81,10 @@ class Watch:
             return before
         digest = hashlib.sha256(_content(name, columns.LARGEST) or b"").hexdigest()
         return status.st_mtime_ns, status.st_size, digest
+
+
+def _digests(marks: Mapping[str, _Mark | None]) -> dict[str, str | None]:
+    return {name: mark and mark[2] for name, mark in marks.items()}
 
 
 def tables(content: bytes, file: str, before: list[str], outer: tuple[str, ...] = ()) -> list[str]:
