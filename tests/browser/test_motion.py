@@ -137,7 +137,9 @@ def test_the_picture_is_of_the_outlines(
     phi2 = built(NAIL).motion(np.radians([77.0]))["phi2_deg"][0]
     regions, drawn = {}, [shapely.MultiPoint([(0.0, 0.0), (180.0, 0.0)]).buffer(8.0)]
     for part, turn, x in zip(built(NAIL).parts, (-77.0, phi2), (0.0, 180.0), strict=True):
-        marks = shapely.MultiPoint([mark.center for mark in part.marks]).buffer(2.0)
+        marks = shapely.MultiPoint(
+            [(mark.center.real, mark.center.imag) for mark in part.marks]
+        ).buffer(2.0)
         regions[part.name], mark = (
             affinity.translate(affinity.rotate(one, turn, origin=(0.0, 0.0)), x)
             for one in (part.region, marks)

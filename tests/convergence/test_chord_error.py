@@ -22,6 +22,7 @@ from gearcam.gears.track import Wheel
 from gearcam.laws.ratio.constant import Constant
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.laws.ratio.formula import Formula
+from gearcam.numeric.arrays import as_pairs
 from gearcam.numeric.contour import polygon_area
 from helpers_pairs import job, profile
 from helpers_sampling import few
@@ -79,8 +80,8 @@ class Demand(NamedTuple):
 @cache
 def demand(name: str, wheel: Wheel) -> Demand:
     """Points that curvature asks for, by finite differences of the finest outline."""
-    steps = np.diff(finest(name, wheel).points, append=0)
-    steps[-1] = complex(*(finest(name, wheel).points[0] - finest(name, wheel).points[-1]))
+    points = finest(name, wheel).points
+    steps = np.diff(points, append=points[0])
     turning = np.abs(np.angle(steps * np.conj(np.roll(steps, 1))))
     length = 0.5 * (np.abs(steps) + np.abs(np.roll(steps, 1)))
     smooth = turning < CORNER
@@ -94,7 +95,7 @@ def demand(name: str, wheel: Wheel) -> Demand:
 def test_vertices_lie_on_the_true_curve(name: str, wheel: Wheel) -> None:
     fine = finest(name, wheel)
     m = module(fine)
-    vertices, ring = at(fine, m / 1000).points, LinearRing(fine.points)
+    vertices, ring = as_pairs(at(fine, m / 1000).points), LinearRing(as_pairs(fine.points))
     assert distances(vertices, ring).max() <= 1.01 * FINE * m
     off = vertices.copy()
     off[7] *= 1 + 1e-6
@@ -124,7 +125,7 @@ def test_no_chord_is_farther_off_than_the_tolerance(name: str, wheel: Wheel, par
 def test_the_finest_outline_lies_within_the_tolerance(name: str, wheel: Wheel, part: float) -> None:
     fine = finest(name, wheel)
     tolerance = part * module(fine)
-    worst = distances(fine.points, LinearRing(at(fine, tolerance).points)).max()
+    worst = distances(as_pairs(fine.points), LinearRing(as_pairs(at(fine, tolerance).points))).max()
     assert 0.5 * tolerance <= worst <= tolerance
 
 

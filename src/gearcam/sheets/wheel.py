@@ -300,8 +300,9 @@ def _callouts(board: Board, wheel: _Wheel) -> None:
 def _radii(board: Board, wheel: _Wheel) -> None:
     """Draw the largest and the smallest radius of the teeth from the axis."""
     reach = np.abs(wheel.toothed)
-    for place, words in ((int(reach.argmax()), "max"), (int(reach.argmin()), "min")):
-        point, radius = complex(wheel.toothed[place]), float(reach[place])
+    for radius, words in ((float(reach.max()), "max"), (float(reach.min()), "min")):
+        # the first of the points on an arc about the axis, not one that rounding chooses
+        point = complex(wheel.toothed[np.argmax(np.abs(reach - radius) < SAME)])
         made = RoundDimension(center=0j, radius=radius, diameter=False, suffix=f" {words}")
         # a leader without direction to the axis
         direction = np.array([cmath.phase(point)])

@@ -11,6 +11,7 @@ import pytest
 from gearcam.base.errors import InfeasibleError
 from gearcam.gears.flank import trace
 from gearcam.numeric import sampling
+from gearcam.numeric.arrays import as_pairs
 from gearcam.numeric.hermite import on_cubics
 from gearcam.numeric.sampling import Sampler, sags
 from helpers_pairs import profile
@@ -31,7 +32,7 @@ def test_no_place_of_the_curve_is_far_from_the_dense_points(name: str) -> None:
         index = np.repeat(np.arange(len(rows.kind)), len(share))
         phi = rows.start[index] + np.tile(share, len(rows.kind)) * (rows.end - rows.start)[index]
         curve, _ = trace(gear.toothing, rows, index, phi)
-        lines = [LineString(run.points) for run in outline.contour.runs]
+        lines = [LineString(as_pairs(run.points)) for run in outline.contour.runs]
         tree = STRtree(lines)
         _, away = tree.query_nearest(
             points(curve.real, curve.imag), return_distance=True, all_matches=False

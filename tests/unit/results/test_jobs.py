@@ -290,7 +290,7 @@ def test_the_outline_tables_hold_the_outlines(tmp_path: Path) -> None:
         header, rows = rows_of(folder / f"{gear.name}_outline.csv")
         assert header == ["x_mm", "y_mm"]
         assert np.array_equal(rows, gear.outline)
-        assert polygon_area(rows) > 0.0
+        assert polygon_area(rows @ [1, 1j]) > 0.0
         assert not np.array_equal(rows[0], rows[-1])
 
 
