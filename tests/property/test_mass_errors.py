@@ -112,5 +112,5 @@ def test_ends_of_flanks_that_were_sought_are_in_the_errors_of_mass_properties() 
         finer = make_gear(gear.pair, gear.wheel, gear.profile.tolerance / 64.0, DEFAULT)
         off = computed_area(finer.profile) - computed_area(gear.profile)
         true.append(part.width * abs(off))
-    assert [gear.profile.flanks.sought for gear in result.gears] == [False, True]
+    assert [gear.profile.flanks.traced for gear in result.gears] == [False, True]
     demand_honest(result, true)

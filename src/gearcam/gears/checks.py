@@ -251,10 +251,10 @@ def pressure_angle(subject: CheckedPair, limit: float) -> Iterator[Remark]:
     Looks at: the angle between the tooth force and the motion of the pitch point, driving forward
     and backward.
     """
-    found = {way: ends for way, ends in subject.pressure_angles.items() if ends[1] > limit}
-    if found:
-        where = (f"driving {way}, {angle_text(place)}" for way, (place, _) in found.items())
-        largest = max(angle for _, angle in found.values())
+    steep = {side: ends for side, ends in subject.pressure_angles.items() if ends[1] > limit}
+    if steep:
+        where = (f"driving {side}, {angle_text(place)}" for side, (place, _) in steep.items())
+        largest = max(angle for _, angle in steep.values())
         does = (
             "no longer turns the wheel" if largest >= 0.5 * math.pi else "mostly loads the bearings"
         )
@@ -333,12 +333,12 @@ def remote_cutter(subject: CheckedPair, limit: float) -> Iterator[Remark]:  # no
         clear = np.abs(ahead - center[:, None]) - (1.0 / cutter.kc + cutter.dedendum)
         # once the centrode has left the cutter, in either direction, it must not return to it
         half = count // 2
-        for way in (1, -1):
-            path = clear[:, way * np.arange(half)]
+        for sense in (1, -1):
+            path = clear[:, sense * np.arange(half)]
             again = np.where(np.maximum.accumulate(path, axis=1) > 0.0, path, np.inf)
             if again.min() < 0.0:
                 row, column = np.unravel_index(int(again.argmin()), again.shape)
-                places = s[[row, (row + way * column) % count]]
+                places = s[[row, (row + sense * column) % count]]
                 teeth = np.floor(places / gear.toothing.pitch).astype(int) % gear.toothing.teeth + 1
                 yield Remark(
                     "A pinion cutter in this tooth space would also cut into the other tooth: the "

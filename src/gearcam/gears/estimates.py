@@ -120,8 +120,8 @@ def _points(toothing: Toothing, frames: Frames, s: Array) -> Plane:
     reach = height / (math.sin(cutter.alpha) * math.cos(cutter.alpha))
     return np.array(
         [
-            toothing.flank_points(frames, s + way * reach, sigma)
-            for way in (-1.0, 1.0)
+            toothing.flank_points(frames, s + side * reach, sigma)
+            for side in (-1.0, 1.0)
             for sigma in (-1.0, 1.0)
         ]
     )

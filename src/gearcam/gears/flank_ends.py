@@ -41,7 +41,7 @@ _SHORT = 0.9
 _ANGLE = 2e-15
 """Tolerance of roll angles, in periods: 1e-14 rad is 1e-12 mm at a radius of 100 mm."""
 
-_Way = Callable[[Array, Frames], tuple[Plane, Plane]]
+_Motion = Callable[[Array, Frames], tuple[Plane, Plane]]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -137,8 +137,8 @@ def flank_at(
 
 def cross(
     toothing: Toothing,
-    one: _Way,
-    two: _Way,
+    one: _Motion,
+    two: _Motion,
     phi: Array,
     limits: tuple[Array, Array] | None = None,
     most: int = _STEPS,

@@ -147,8 +147,8 @@ def body_runs(
     if span >= 2.0 * math.pi - _GAP:
         name = ("driver", "driven wheel")[toothing.wheel - 1]
         key = ("law.driver_travel_deg", "law.driven_travel_deg")[toothing.wheel - 1]
-        ways = toothing.track.rotation(np.array([0.0, toothing.track.around]))
-        travel = math.degrees(ways[1] - ways[0])
+        angles = toothing.track.rotation(np.array([0.0, toothing.track.around]))
+        travel = math.degrees(angles[1] - angles[0])
         limit = travel * (2.0 * math.pi - _GAP) / span
         out = [Adjustment(near={key: limit / _MORE}, far={key: 0.8 * limit})]
         if toothing.wheel == 1:  # a spiral, or a knot that is solved, follows the driven wheel

@@ -61,7 +61,7 @@ class Flanks(ShortRepr):
         Upper ends.
     lowest, highest : (2z,) arrays, mm
         Reach w of both ends of each finished flank.
-    sought : bool
+    traced : bool
         Whether some ends come from tracing corners, which are exact to a part of the tolerance.
     """
 
@@ -71,7 +71,7 @@ class Flanks(ShortRepr):
     tips: TipEnds
     lowest: Array
     highest: Array
-    sought: bool = False
+    traced: bool = False
 
     @property
     def undercut(self) -> Mask:
@@ -157,10 +157,10 @@ class Outline(ShortRepr):
         root, count = self.toothing.numbers[0] - 1, len(row)
         tooth = np.where(np.isin(rows.kind, (Curve.LAND, Curve.FILLET)), root, rows.tooth)[row]
         ends = []
-        for way in (1, -1):
-            at = np.flatnonzero((tooth != np.roll(tooth, way)) & (tooth != root))
+        for step in (1, -1):
+            at = np.flatnonzero((tooth != np.roll(tooth, step)) & (tooth != root))
             at = at[np.argsort(tooth[at], kind="stable")]
-            ends.append((at - way) % count if closed else np.clip(at - way, 0, count - 1))
+            ends.append((at - step) % count if closed else np.clip(at - step, 0, count - 1))
         return np.unique(tooth[tooth != root]), np.column_stack(ends)
 
     @property
@@ -178,9 +178,14 @@ class Outline(ShortRepr):
         return self._dense.runs(self.toothing.track.clockwise)
 
     @property
-    def cubics_missed(self) -> float:
-        """Bound of the area between the teeth and cubics through their dense points, mm^2."""
-        return self._dense.missed(self.sampler.at)
+    def kinks_missed(self) -> float:
+        """Bound of the area between the teeth and cubics through dense points at kinks, mm^2.
+
+        Where a tip rises along the centrode, a jump of the curvature gives it a kink, but its dense
+        points have a single tangent there. 0 where no tip rises.
+        """
+        rising = (self.rows.kind == Curve.TIP) & (self.rows.low != self.rows.high)
+        return self._dense.missed(self.sampler.at) if rising.any() else 0.0
 
     @cached_property
     def contour(self) -> Contour:
@@ -301,7 +306,7 @@ def _find_flanks(
         tips=tips,
         lowest=np.full(sf.shape, -toothing.cutter.reach),
         highest=highest,
-        sought=lower.size > 0,
+        traced=lower.size > 0,
     )
 
 

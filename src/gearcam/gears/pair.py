@@ -271,7 +271,7 @@ class Gear(ShortRepr, NotebookView):
 def make_pair(
     law: RatioLaw,
     spec: PairSpec,
-    asked: Rack,
+    given: Rack,
     tolerances: Tolerances,
     finish: tuple[Finish, Finish] = (Finish(), Finish()),
     cutter_teeth: float | None = None,
@@ -284,7 +284,7 @@ def make_pair(
         With the lobes that the tooth counts give.
     spec : PairSpec
         Sizes.
-    asked : Rack
+    given : Rack
         Given values of the basic rack.
     tolerances : Tolerances
         Inner accuracy.
@@ -319,7 +319,7 @@ def make_pair(
             what, where=where, value=spec.center_distance, unit="mm", nearest=note
         )
     module = spec.module or rolling.tracks[0].length / (math.pi * spec.teeth[0])
-    rack = settle_rack(asked, spec.x)
+    rack = settle_rack(given, spec.x)
     demand_shift(rack, spec, module)
     demand_clearance(rack, spec, module, finish)
 

@@ -39,15 +39,15 @@ _FAR = 1.5
 """Range of reach searched, over the reach of a rack's flank: concave parts reach farther."""
 
 
-def settle_rack(asked: Rack, x: float) -> BasicRack:
+def settle_rack(given: Rack, x: float) -> BasicRack:
     """Return the basic rack: given values as given, defaults reduced where they do not fit.
 
     The tip radius is reduced first, then the dedendum, then the addendum.
 
     Parameters
     ----------
-    asked : Rack
-        Given values of the design.
+    given : Rack
+        Values of the design; None where it gives none.
     x : float
         Profile shift, in modules.
 
@@ -61,29 +61,29 @@ def settle_rack(asked: Rack, x: float) -> BasicRack:
         If the given values contradict each other.
     """
     usual, shift = BasicRack(), abs(x)
-    deepest = _SHARE * _deepest(asked.pressure_angle, asked.tip_radius or 0.0)
-    if asked.dedendum is not None:
-        deepest = asked.dedendum
-    addendum = asked.addendum
+    deepest = _SHARE * _deepest(given.pressure_angle, given.tip_radius or 0.0)
+    if given.dedendum is not None:
+        deepest = given.dedendum
+    addendum = given.addendum
     if addendum is None:
         wanted = max(usual.addendum, shift + _LEAST_ADDENDUM)
         addendum = wanted if wanted <= deepest else max(_SHALLOW * deepest, shift + _LEAST_ADDENDUM)
-    dedendum = asked.dedendum
+    dedendum = given.dedendum
     if dedendum is None:
-        room = shift + (asked.tip_radius or 0.0) / _TIP_PART
+        room = shift + (given.tip_radius or 0.0) / _TIP_PART
         wanted = usual.dedendum if usual.dedendum >= addendum else addendum / _SHALLOW
         dedendum = max(min(max(wanted, room), deepest), addendum)
     rack = BasicRack(
-        pressure_angle=asked.pressure_angle, addendum=addendum, dedendum=dedendum, tip_radius=0.0
+        pressure_angle=given.pressure_angle, addendum=addendum, dedendum=dedendum, tip_radius=0.0
     )
     largest = min(_largest_tip(rack), _TIP_PART * (dedendum - shift))
-    tip = asked.tip_radius
+    tip = given.tip_radius
     if tip is None:
         tip = min(usual.tip_radius, max(0.0, _SHARE * largest))
     rack = replace(rack, tip_radius=tip)
     # a default dedendum could be reduced as far as the tip radius needs
-    free = asked.dedendum is None
-    _demand_rack(rack, _widest_tip(asked.pressure_angle) if free else _largest_tip(rack))
+    free = given.dedendum is None
+    _demand_rack(rack, _widest_tip(given.pressure_angle) if free else _largest_tip(rack))
     return rack
 
 

@@ -177,8 +177,8 @@ def _chains(curves: WheelCurves, spaces: Ints, samples: int) -> list[Chain]:
     if curves.toothing.turn.imag > 0.0:  # mirrored, since the metal is to the right of rising s
         points = np.conj(points)
     return [
-        Chain(curve=number, low=begin, high=end, points=way)
-        for number, begin, end, way in zip(curve, low, high, points, strict=True)
+        Chain(curve=number, low=begin, high=end, points=path)
+        for number, begin, end, path in zip(curve, low, high, points, strict=True)
     ]
 
 

@@ -84,12 +84,12 @@ class BasicRack:
     dedendum: float = 1.25
     tip_radius: float = 0.38
 
-    def yielded(self, asked: Rack) -> dict[str, float]:
-        """Return the defaults that had to change beside the `asked` values: default by name."""
+    def yielded(self, given: Rack) -> dict[str, float]:
+        """Return the defaults that had to change beside the `given` values: default by name."""
         return {
             name: default
             for name in ("addendum", "dedendum", "tip_radius")
-            if getattr(asked, name) is None
+            if getattr(given, name) is None
             and getattr(self, name) != (default := getattr(BasicRack, name))
         }
 

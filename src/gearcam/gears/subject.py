@@ -92,8 +92,8 @@ class CheckedPair(ShortRepr):
         """Largest pressure angle of the flanks by direction of driving: phi1 and angle, rad."""
         places, slopes = self.slopes
         return {
-            way: (float(places[found.argmax()]), float(found.max()))
-            for way, found in self.pressure_at(slopes).items()
+            direction: (float(places[found.argmax()]), float(found.max()))
+            for direction, found in self.pressure_at(slopes).items()
         }
 
     @cached_property

@@ -19,13 +19,13 @@ if TYPE_CHECKING:
 _FINER: Final = 16.0
 """Factor by which the tolerance is finer when corners are followed again."""
 
-_SOUGHT: Final = 2.0
+_TRACED: Final = 2.0
 """Error over the change: ends of flanks are off in proportion to the tolerance, with scatter."""
 
 
 _VOLUME: Final = (
-    "cubics through dense points with halved steps on teeth, with doubled steps on all edges; ends "
-    "of flanks searched again with a tolerance 16 times finer; flank_mm over the whole edge"
+    "cubics through dense points with doubled steps, at kinks of tips with halved steps; ends of "
+    "flanks searched again with a tolerance 16 times finer; flank_mm over the whole edge"
 )
 
 
@@ -78,8 +78,8 @@ def _volume(result: GearPairResult, part: Part, gears: Sequence[Gear], flank: fl
     height, off = part.width / len(gears), quadrature_error(part)
     for gear in gears:
         outline = gear.profile
-        area = outline.cubics_missed + flank * outline.contour.length
-        if outline.flanks.sought:
+        area = outline.kinks_missed + flank * outline.contour.length
+        if outline.flanks.traced:
             finer = make_gear(
                 gear.pair,
                 gear.wheel,
@@ -87,7 +87,7 @@ def _volume(result: GearPairResult, part: Part, gears: Sequence[Gear], flank: fl
                 result.tolerances,
                 result.design.ring,
             )
-            area += _SOUGHT * abs(_toothed(finer) - _toothed(gear))
+            area += _TRACED * abs(_toothed(finer) - _toothed(gear))
         off += height * area
     return off
 
