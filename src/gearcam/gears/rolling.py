@@ -239,9 +239,11 @@ class Rolling(ShortRepr):
         def curvatures(phi: Array) -> Array:
             ratios = self.law.ratio.derivatives(phi, 3)
             wi, r, dr, ddr, d3r = _radii(ratios, self.mate)
-            speed, first, both = _bends(wi, r, dr, ddr)
+            speed = np.sqrt(r * r + dr * dr)
             rate = dr * (r + ddr) / (speed * speed)  # of the speed's logarithm
             cube = speed * speed * speed
+            first = (r * r + 2.0 * dr * dr - r * ddr) / cube
+            both = (1.0 + wi) / speed
             slope = (2.0 * r * dr + 3.0 * dr * ddr - r * d3r) / cube - 3.0 * rate * first
             change = self.mate * ratios[1] / speed - rate * both
             found = [[first, both - first], [slope, change - slope]]
@@ -366,13 +368,6 @@ def _radii(ratios: Sequence[Any], mate: int) -> list[Any]:
         bend = mate * a * di
         found.append(square * (more[1] - 6.0 * bend * (more[0] - bend * di)))
     return found
-
-
-def _bends(wi: Any, r: Any, dr: Any, ddr: Any) -> tuple[Any, Any, Any]:
-    """Return the speed for unit size, the driver's curvature, and the sum of both curvatures."""
-    speed = np.sqrt(r * r + dr * dr)
-    first = (r * r + 2.0 * dr * dr - r * ddr) / (speed * speed * speed)
-    return speed, first, (1.0 + wi) / speed
 
 
 def roll(
