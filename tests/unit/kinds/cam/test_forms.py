@@ -13,17 +13,21 @@ import gearcam
 from gearcam.designs.examine import examine
 from gearcam.designs.kind import KINDS
 from gearcam.designs.schema import schema
+from gearcam.kinds.cam.forms.base import FORMS as REGISTRY
 from helpers_pairs import PROFILES
 
-FORMS = {
-    "disc": "plate_cam_offset_roller",
-    "groove": "groove_cam",
-    "conjugate": "conjugate_cams",
-    "yoke": "yoke_cam",
-    "translating": "translating_cam",
-}
-"""A profile of each form."""
 
+def profiles() -> dict[str, dict[str, Any]]:
+    """Return the document of the first profile of each form."""
+    found: dict[str, dict[str, Any]] = {}
+    for path in sorted(PROFILES.glob("*.toml")):
+        document = tomllib.loads(path.read_text("utf-8"))
+        if document["kind"] == "cam" and isinstance(document["motion"], list):
+            found.setdefault(document["cam"].get("form", "disc"), document)
+    return {form: found[form] for form in REGISTRY}
+
+
+FORMS = profiles()
 TABLES = ("follower", "cam", "blank", "output")
 KEYS = [
     (title, key)
@@ -35,14 +39,9 @@ VALIDATOR = jsonschema.Draft202012Validator(schema())
 MOTION = gearcam.MotionFormula(lift="5*(1 - cos(theta))")
 
 
-def profile(form: str) -> dict[str, Any]:
-    """Return the document of a profile of a form."""
-    return tomllib.loads((PROFILES / f"{FORMS[form]}.toml").read_text("utf-8"))
-
-
 def with_key(form: str, title: str, key: str, value: Any) -> dict[str, Any]:
     """Return a document of a form with another key."""
-    document = copy.deepcopy(profile(form))
+    document = copy.deepcopy(FORMS[form])
     document.setdefault(title, {})[key] = value
     return document
 
@@ -78,7 +77,7 @@ def test_a_key_is_refused_with_the_names_of_the_forms_that_take_it(title: str, k
 
 @pytest.mark.parametrize("form", FORMS)
 def test_the_schema_refuses_keys_of_other_forms_too(form: str) -> None:
-    assert VALIDATOR.is_valid(profile(form))
+    assert VALIDATOR.is_valid(FORMS[form])
     refused = []
     for title, key in KEYS:
         document = with_key(form, title, key, unlike_default(title, key))
@@ -91,7 +90,7 @@ def test_the_schema_refuses_keys_of_other_forms_too(form: str) -> None:
 @pytest.mark.parametrize("form", [form for form in FORMS if form != "disc"])
 def test_defaults_of_other_forms_change_nothing(form: str) -> None:
     """So a design of one form can be changed to another with `Design.with_`."""
-    document, plain = profile(form), examine(profile(form), stem="x").parts
+    document, plain = copy.deepcopy(FORMS[form]), examine(FORMS[form], stem="x").parts
     for title in TABLES:
         known = KINDS["cam"].table_in({}, title).entries
         for key, entry in known.items():
