@@ -106,6 +106,6 @@ def test_open_wheels_cannot_be_stepped() -> None:
 def test_a_step_that_is_not_there_is_refused_by_reading() -> None:
     from gearcam.base.errors import DesignError
 
-    with pytest.raises(DesignError, match="no step 3") as caught:
+    with pytest.raises(DesignError, match="no such step") as caught:
         replace(profile("formula").design, steps=StepsSpec(count=2), meshing=MeshingSpec(step=3))
     assert caught.value.problems[0].allowed == "1 to 2 (steps.count)"

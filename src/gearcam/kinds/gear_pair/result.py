@@ -226,17 +226,18 @@ class GearPairResult(PartsResult):
     @cached_property
     def checked(self) -> tuple[Finding, ...]:
         """Findings of the checks, errors first."""
-        findings = [*self._gear_findings(self.subject)]
-        for number, gears in enumerate(self.steps[1:], start=2):
-            findings += (
-                replace(finding, where=f"step {number}, {finding.where}")
-                for finding in self._gear_findings(self._subject(gears))
-                if finding.code in _OF_TEETH
-            )
-        if self.ordered:
-            subject = self.parts_subject
-            with self.stage("checks"):
-                findings += run_checks(PARTS_KIND, subject, self.design.limits)
+        steps, limits = self.steps, self.design.limits
+        parts = self.parts_subject if self.ordered else None
+        with self.stage("checks"):
+            findings = [*run_checks(KIND, self.subject, limits)]
+            for number, gears in enumerate(steps[1:], start=2):
+                findings += (
+                    replace(finding, where=f"step {number}, {finding.where}")
+                    for finding in run_checks(KIND, self._subject(gears), limits)
+                    if finding.code in _OF_TEETH
+                )
+            if parts is not None:
+                findings += run_checks(PARTS_KIND, parts, limits)
         return in_order(findings)
 
     @cached_property
@@ -249,10 +250,6 @@ class GearPairResult(PartsResult):
         if gears[1].ring:
             rim = self.design.ring.least_rim(gears[1].largest_radius, self.pair.module)
         return CheckedPair(pair=gears[0].pair, gears=gears, bores=self.bores, rim=rim)
-
-    def _gear_findings(self, subject: CheckedPair) -> tuple[Finding, ...]:
-        with self.stage("checks"):
-            return run_checks(KIND, subject, self.design.limits)
 
     @cached_property
     def parts_subject(self) -> CheckedParts:
