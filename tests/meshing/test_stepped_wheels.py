@@ -108,4 +108,4 @@ def test_a_step_that_is_not_there_is_refused_by_reading() -> None:
 
     with pytest.raises(DesignError, match="no such step") as caught:
         replace(profile("formula").design, steps=StepsSpec(count=2), meshing=MeshingSpec(step=3))
-    assert caught.value.problems[0].allowed == "1 to 2 (steps.count)"
+    assert caught.value.problems[0].allowed == "at most steps.count = 2"
