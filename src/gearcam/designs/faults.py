@@ -269,7 +269,7 @@ def _objection(value: Any, entry: Key) -> str:
     return _beyond(value, param) if entry.base in (int, float) else ""
 
 
-def _beyond(value: float, param: Param) -> str:
+def _beyond(value: Any, param: Param) -> str:
     """Return why a number is not within its bounds; empty if it is."""
     try:
         number = float(value)

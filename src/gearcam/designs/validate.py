@@ -158,9 +158,10 @@ def document_faults(
     for title, table in tables.items():
         values |= _values(table, document.get(title), faults, (title,), title=f"{title}.")
     for rule in rules:
-        for name, *breach in rule.breaches(values):
+        for name, index, message, allowed in rule.breaches(values):
             title, _, field = name.partition(".")
-            yield from placed_faults([(field, *breach)], tables[title], document[title], (title,))
+            breach = field, index, message, allowed
+            yield from placed_faults([breach], tables[title], document[title], (title,))
 
 
 def placed_faults(

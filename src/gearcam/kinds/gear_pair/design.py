@@ -198,8 +198,8 @@ def _tooth_breaches(values: Values) -> Iterator[Breach]:
     """Yield the teeth to study that the driver does not have."""
     teeth, counts = values["meshing.teeth"].right, values["pair.teeth"].right
     most = counts[0] if isinstance(counts, list) and counts else None
-    for index, tooth in enumerate(teeth if isinstance(teeth, list) and _is_number(most) else ()):
-        if _is_number(tooth) and tooth > most:
+    for index, tooth in enumerate(teeth if isinstance(teeth, list) else ()):
+        if _is_number(most) and _is_number(tooth) and tooth > most:
             yield "meshing.teeth", index, "the driver has no such tooth", f"1 to {show(most)}"
 
 
