@@ -255,14 +255,14 @@ def _examine_table(
     parts: list[Any] = []
     items: list[tuple[Path, Any]] = [((title,), raw)]
     if several:
-        items = [((title, number), one) for number, one in enumerate(raw)]
+        items = [((title, number), item) for number, item in enumerate(raw)]
     for at, given in items:
-        one, foreign = _without_foreign(kind, document, title, given)
-        one, below = _with_designs(table, one, at, place)
-        faults = [*below, *faults_of(table, one, home=home, far=_other_home, at=at)]
+        content, foreign = _without_foreign(kind, document, title, given)
+        content, below = _with_designs(table, content, at, place)
+        faults = [*below, *faults_of(table, content, home=home, far=_other_home, at=at)]
         part, problems = None, list[Fault]()
-        if isinstance(one, Mapping):
-            part, problems = parameters_of(table, table.owner or dict, one, faults, at)
+        if isinstance(content, Mapping):
+            part, problems = parameters_of(table, table.owner or dict, content, faults, at)
         outcome.faults += [*foreign, *faults, *problems]
         if part is not None and not faults:
             parts.append(part)
@@ -370,8 +370,8 @@ def _from_file(key: Key, value: str, at: Path, place: Place) -> tuple[Any, list[
     if outcome.faults:
         lines = lines_of(text)
         return None, [
-            one if one.file else replace(one, file=file, line=line_at(lines, one.path))
-            for one in outcome.faults
+            fault if fault.file else replace(fault, file=file, line=line_at(lines, fault.path))
+            for fault in outcome.faults
         ]
     return KINDS[document["kind"]].design(source=file, examined=True, **outcome.parts), []
 

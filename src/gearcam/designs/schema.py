@@ -86,7 +86,7 @@ def chosen(key: str, names: Iterable[str], words: str, home: Callable[[str], str
     }
 
 
-def told(names: Iterable[tuple[str, str]]) -> str:
+def with_meanings(names: Iterable[tuple[str, str]]) -> str:
     """Return `names` with their descriptions in one line."""
     return "; ".join(f"{name}: {doc}" for name, doc in names)
 

@@ -78,7 +78,7 @@ def _of_value(key: Key, value: Any, path: Path) -> Iterator[Fault]:
         faults = [value_fault(path, value, key, item=key.length is not None)]
     else:
         items = enumerate(value if isinstance(value, list) else ())
-        faults = [value_fault((*path, number), one, key, item=True) for number, one in items]
+        faults = [value_fault((*path, number), item, key, item=True) for number, item in items]
         faults.append(list_fault(path, value, key))
     yield from (fault for fault in faults if fault)
 
@@ -87,7 +87,7 @@ def _values(
     table: Table, raw: Any, faults: Iterable[Fault], at: Path, wheel: int = 0, title: str = ""
 ) -> dict[str, Value]:
     """Return the values of a table, in which there are `faults`, by the names of their fields."""
-    wrong = {one.path[len(at) :] for one in faults if one.path[: len(at)] == at}
+    wrong = {fault.path[len(at) :] for fault in faults if fault.path[: len(at)] == at}
     written = raw if isinstance(raw, Mapping) else {}
     if wrong:
         wrong |= {(key,) for key in misspelt(written, table.entries)}
@@ -158,9 +158,9 @@ def document_faults(
     for title, table in tables.items():
         values |= _values(table, document.get(title), faults, (title,), title=f"{title}.")
     for rule in rules:
-        for name, index, message, allowed in rule.breaches(values):
+        for name, index, message, words in rule.breaches(values):
             title, _, field = name.partition(".")
-            breach = field, index, message, allowed
+            breach = field, index, message, words
             yield from placed_faults([breach], tables[title], document[title], (title,))
 
 

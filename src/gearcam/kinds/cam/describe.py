@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Final
 
 from gearcam.designs.listing import Listed, listed
-from gearcam.designs.schema import chosen, table_schema, told
+from gearcam.designs.schema import chosen, table_schema, with_meanings
 from gearcam.designs.table import Table
 from gearcam.designs.template import comment_line, entry_lines, key_line, law_comment
 from gearcam.kinds.cam.motion import (
@@ -31,7 +31,7 @@ _SHOWN: Final = ("file", "smoothing_tolerance_mm")
 
 def schema() -> tuple[dict[str, Any], dict[str, Any]]:
     """Return the schema of the motion and its definitions."""
-    words = told((name, entry.doc) for name, entry in MOTION_LAWS.items())
+    words = with_meanings((name, entry.doc) for name, entry in MOTION_LAWS.items())
     phases = chosen("type", PHASES, "the phase", lambda name: name)
     made: dict[str, Any] = {}
     for name in PHASES:

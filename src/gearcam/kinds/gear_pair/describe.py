@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from gearcam.designs.listing import Listed, listed
-from gearcam.designs.schema import chosen, table_schema, told
+from gearcam.designs.schema import chosen, table_schema, with_meanings
 from gearcam.designs.template import beside, entry_lines, key_line, law_comment
 from gearcam.kinds.gear_pair.design import law_table
 from gearcam.laws.ratio.base import LAWS
@@ -14,7 +14,7 @@ from gearcam.laws.ratio.base import LAWS
 
 def schema() -> tuple[dict[str, Any], dict[str, Any]]:
     """Return the schema of the table and its definitions."""
-    words = told((name, entry.doc) for name, entry in LAWS.items())
+    words = with_meanings((name, entry.doc) for name, entry in LAWS.items())
     main = chosen("type", LAWS, "the law", lambda name: f"law-{name}")
     laws = {
         f"law-{name}": table_schema(

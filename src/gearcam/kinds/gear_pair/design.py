@@ -126,30 +126,30 @@ def law_table(law_type: str) -> Table:
     return table_of("law", LAWS[law_type].parameters)
 
 
-def examine_law(document: Mapping[str, Any], found: Examined) -> None:
-    """Validate the law of a `document`; add its faults and the law to `found`."""
+def examine_law(document: Mapping[str, Any], outcome: Examined) -> None:
+    """Validate the law of a `document`; add its faults and the law to `outcome`."""
     raw = document.get("law")
     if not isinstance(raw, Mapping):
         rule = f"type = {quoted(LAWS)}"
         if "law" in document:
             wanted = f"a table [law] with {rule}"
-            found.faults.append(Fault(("law",), f"{show(raw)} is not a table", raw, wanted))
+            outcome.faults.append(Fault(("law",), f"{show(raw)} is not a table", raw, wanted))
         else:
-            found.faults.append(Fault(("law",), "the table [law] is missing", allowed=rule))
+            outcome.faults.append(Fault(("law",), "the table [law] is missing", allowed=rule))
         return
-    law_type, right = chosen(("law",), raw, "type", "a law", LAWS, found)
+    law_type, right = chosen(("law",), raw, "type", "a law", LAWS, outcome)
     if not law_type:
         return
     known = law_table(law_type)
     rest = {key: value for key, value in raw.items() if key != "type"}
     faults = list(faults_of(known, rest, home=partial(home_of, KINDS[NAME])))
     if not right:  # what is missing is reported once the law is known
-        found.faults += [one for one in faults if one.path[1] in rest]
+        outcome.faults += [fault for fault in faults if fault.path[1] in rest]
         return
     law, problems = parameters_of(known, LAWS[law_type].parameters, rest, faults, ("law",))
-    found.faults += [*faults, *problems]
+    outcome.faults += [*faults, *problems]
     if law is not None and not faults and not problems:
-        found.parts["law"] = law
+        outcome.parts["law"] = law
 
 
 def law_of(design: GearPairDesign) -> dict[str, Any]:
@@ -187,11 +187,11 @@ def planetary(document: Mapping[str, Any]) -> Fault | None:
     )
 
 
-def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
-    """Yield what is wrong between the tables of a `document` of which parts are `found`."""
+def problems(document: Mapping[str, Any], outcome: Examined) -> Iterator[Fault]:
+    """Yield what is wrong between the tables of a `document` of which parts are in `outcome`."""
     pair = document.get("pair")
     if isinstance(pair, Mapping) and pair.get("type") == "internal":
-        yield from _shaft_faults(document.get("blank"), found)
+        yield from _shaft_faults(document.get("blank"), outcome)
 
 
 def _tooth_breaches(values: Values) -> Iterator[Breach]:
@@ -217,7 +217,7 @@ RULES: Final = (
 """Rules between the tables of a pair."""
 
 
-def _shaft_faults(raw: Any, found: Examined) -> Iterator[Fault]:
+def _shaft_faults(raw: Any, outcome: Examined) -> Iterator[Fault]:
     """Yield keys that do not apply to a ring; a single value counts for wheel 1 only."""
     if not isinstance(raw, Mapping):
         return
@@ -229,9 +229,9 @@ def _shaft_faults(raw: Any, found: Examined) -> Iterator[Fault]:
                 message = f"{show(value[1])}: wheel 2 is a ring and has no shaft"
                 rule = "0 for wheel 2; the outside of the ring is set in [ring]"
                 yield Fault(("blank", key, 1), message, value[1], rule)
-        elif value and "blank" in found.parts:
-            own = getattr(found.parts["blank"], name)[0]
-            found.parts["blank"] = replace(found.parts["blank"], **{name: (own, 0)})
+        elif value and "blank" in outcome.parts:
+            own = getattr(outcome.parts["blank"], name)[0]
+            outcome.parts["blank"] = replace(outcome.parts["blank"], **{name: (own, 0)})
 
 
 def _is_number(value: Any) -> TypeGuard[float]:
