@@ -47,7 +47,7 @@ def small(**given: Any) -> GearPairResult:
     return job(law, given.pop("teeth", (22, 22)), **{"tolerance": 0.01, **sizes, **given})
 
 
-GIVEN = ("design", "tolerances", "timings", "sizes", "sought", "_studied", "_running")
+GIVEN = ("design", "tolerances", "timings", "sizes", "sought", "_studied", "_running", "_drawn")
 """What a job has from the beginning."""
 
 
