@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,30 @@ from gearcam.cams.measures import undercut
 from gearcam.cams.three_points import curvature_study
 from gearcam.cams.wall import PitchMotion
 from gearcam.numeric.arrays import Array, Plane
+
+
+def pitch_points(motion: PitchMotion, theta: Array) -> Plane:
+    """Return points of the pitch curve, or of the profile below a face, counter-clockwise.
+
+    Parameters
+    ----------
+    motion : PitchMotion
+        The motion.
+    theta : (n,) array, rad or mm
+        Cam angles or travels.
+
+    Returns
+    -------
+    (n,) complex array, mm
+    """
+    s, ds = motion.program.derivatives(theta, 1)
+    return np.conj(motion.pitch_curve.trace(theta, s, ds)[0])
+
+
+def curvature_at(motion: PitchMotion, theta: Array) -> Array:
+    """Return the exact curvature of this curve, (n,) 1/mm (see `pitch_points`)."""
+    contact = motion.pitch_curve.contact(theta, 0)
+    return np.asarray(contact.turning.c[0] / contact.pitch_speed.c[0]) + np.zeros_like(theta)
 
 
 def curvature_columns(
@@ -44,15 +69,9 @@ def curvature_columns(
         note = "leave out the curvature study, or remove the undercut"
         raise InfeasibleError(what, where="output.files", nearest=note)
 
-    def points(theta: Array) -> Plane:
-        s, ds = motion.program.derivatives(theta, 1)
-        return np.conj(curve.trace(theta, s, ds)[0])  # mirrored: counter-clockwise
-
-    def exact(theta: Array) -> Array:
-        found = curve.contact(theta, 0)
-        return np.asarray(found.turning.c[0] / found.pitch_speed.c[0])
-
-    study = curvature_study(points, exact, counts, motion.program.period, motion.program.closed)
+    points, exact = partial(pitch_points, motion), partial(curvature_at, motion)
+    period, closed = motion.program.period, motion.program.closed
+    study = curvature_study(points, exact, counts, period, closed)
     columns = {
         "points": study.count.astype(np.float64),
         "spacing_mm": study.spacing,

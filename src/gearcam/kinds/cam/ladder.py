@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from gearcam.cams.three_points import three_point_curvature
+from gearcam.kinds.cam.curvature import curvature_at, pitch_points
 from gearcam.kinds.cam.follow import followed
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.sampling import Sampler
@@ -80,20 +81,17 @@ def _cam(result: CamResult) -> Ladder:
     Next to a knot where a derivative of the lift jumps it converges more slowly, or not at all.
     """
     motion = result.cam.motions[0]
-    curve, program = motion.pitch_curve, motion.program
+    program = motion.program
 
     def make(count: float) -> tuple[Array, Array]:
         theta = np.arange(int(count), dtype=np.float64) * (program.period / count)
-        s, ds = program.derivatives(theta, 1)
-        points: Plane = np.conj(curve.trace(theta, s, ds)[0])  # counter-clockwise
-        return theta, three_point_curvature(points, closed=program.closed)
+        return theta, three_point_curvature(pitch_points(motion, theta), closed=program.closed)
 
     def measure(made: tuple[Array, Array]) -> tuple[float, int]:
-        theta, found = made
-        contact = curve.contact(theta, 0)
-        exact = np.asarray(contact.turning.c[0] / contact.pitch_speed.c[0]) + np.zeros_like(theta)
-        missed = found - (exact if program.closed else exact[1:-1])
-        return math.sqrt(np.mean(missed**2)), len(theta)
+        theta, curvature = made
+        exact = curvature_at(motion, theta)
+        error = curvature - (exact if program.closed else exact[1:-1])
+        return math.sqrt(np.mean(error**2)), len(theta)
 
     rough = min((jump.order for jump in program.jumps), default=4)
     return Ladder(
