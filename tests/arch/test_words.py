@@ -27,7 +27,7 @@ BANNED = {
 
 ELSEWHERE = {
     "strokes?": (
-        "lettering.py",
+        "laser_sheet.py",
         "nest.py",
         "svg.py",
         "cut_svg.py",

@@ -14,9 +14,8 @@ import shapely
 from gearcam.export.cut_svg import cut_svg
 from gearcam.export.dxf import DxfStyle, dxf_bytes
 from gearcam.export.dxf_read import measure_dxf, read_dxf
-from gearcam.export.lettering import labelled
+from gearcam.export.laser_sheet import labelled, nested
 from gearcam.export.mesh import glb_bytes, stl_bytes, threemf_bytes
-from gearcam.export.nest import nested
 from gearcam.export.sheet_dxf import sheet_dxf
 from gearcam.export.sheet_svg import sheet_svg
 from gearcam.export.svg import svg_bytes

@@ -120,14 +120,10 @@ def _demand_within(hub: Hub, contours: Sequence[Contour | Circle], work: Workpie
     room = 2.0 * solid_of(contours, (), work).boundary.distance(Point(0.0, 0.0))
     if hub.diameter >= room:
         key = work.key("hub_diameter_mm")
-        raise work.refusal(
-            f"the hub reaches {work.within if work.wheel is None else 'the roots of the teeth'}",
-            "blank.hub_diameter_mm",
-            value=hub.diameter,
-            limit=room,
-            nearest="at the limit they touch",
-            adjustments=(Adjustment(near={key: room}, far={key: 0.5 * room}),),
-        )
+        what = f"the hub reaches {work.within if work.wheel is None else 'the roots of the teeth'}"
+        smaller = (Adjustment(near={key: room}, far={key: 0.5 * room}),)
+        place = "blank.hub_diameter_mm"
+        raise work.refusal(what, hub.diameter, room, "at the limit they touch", smaller, place)
 
 
 def _demand_marks(part: Part, blank: WheelBlank, work: Workpiece) -> None:
@@ -141,17 +137,15 @@ def _demand_marks(part: Part, blank: WheelBlank, work: Workpiece) -> None:
         if part.hub is not None:
             room = min(room, abs(mark.center) - 0.5 * part.hub.diameter)
         if room < radius:
-            raise work.refusal(
-                "the timing mark meets an opening, the hub or the outline",
-                value=mark.diameter,
-                limit=max(0.0, 2.0 * room),
-                nearest="the limit is the free space around its centre",
-                adjustments=(
-                    Adjustment(near=_between_bolts(blank, work)),
-                    Adjustment(near={"blank.mark_diameter_mm": 1.9 * room} if room > 0.0 else {}),
-                    Adjustment(near={"blank.timing_marks": False}),
-                ),
+            what = "the timing mark meets an opening, the hub or the outline"
+            note = "the limit is the free space around its centre"
+            adjustments = (
+                Adjustment(near=_between_bolts(blank, work)),
+                Adjustment(near={"blank.mark_diameter_mm": 1.9 * room} if room > 0.0 else {}),
+                Adjustment(near={"blank.timing_marks": False}),
             )
+            limit = max(0.0, 2.0 * room)
+            raise work.refusal(what, mark.diameter, limit, note, adjustments)
 
 
 def _between_bolts(blank: WheelBlank, work: Workpiece) -> dict[str, object]:

@@ -1,4 +1,4 @@
-"""Mass properties of parts: mass, centroid, unbalance and inertia of the finished part.
+"""Mass properties of parts: mass, centroid, unbalance and inertia; and the facts of a part.
 
 The centroid of a non-circular wheel is off its shaft; the *unbalance* is mass times that distance.
 All properties follow from moments of plane regions (see `numeric.moments`) times their heights.
@@ -10,15 +10,19 @@ from __future__ import annotations
 
 import cmath
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import singledispatch
 from typing import Any, Final
 
 import numpy as np
 
+from gearcam.base.facts import Fact
+from gearcam.base.numerals import formatted
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.moments import Moments, area_error
 from gearcam.parts.body import Body, Edge, Part
+from gearcam.parts.tools import ToolLimits
 
 _PER_MM3: Final = 1e-9
 """m^3 in a mm^3."""
@@ -155,3 +159,55 @@ def mass_properties(body: Body, density: float) -> MassProperties:
         centroid=(center.real, center.imag, height / total.area),
         inertia=kilograms * total.polar,
     )
+
+
+def size_fact(extents: Sequence[float], name: str) -> Fact:
+    """Return the overall size of a part as a fact.
+
+    Parameters
+    ----------
+    extents : sequence of 3 floats, mm
+        Along x, y and z of the part's own frame.
+    name : str
+        Name of the part in messages, such as ``wheel 1``; empty for a single part.
+
+    Returns
+    -------
+    Fact
+        Shown to hundredths of a millimetre.
+    """
+    meaning = f"overall size of {name}" if name else "overall size"
+    text = " x ".join(formatted(round(one, 2), 9) for one in extents)
+    return Fact([float(one) for one in extents], meaning, text=text, shown=True)
+
+
+def part_facts(part: Part, name: str, tools: ToolLimits, density: float | None) -> dict[str, Any]:
+    """Return the facts of a part.
+
+    Parameters
+    ----------
+    part : Part
+        The finished part.
+    name : str
+        Its name in messages (see `size_fact`).
+    tools : ToolLimits
+        The largest tools for it.
+    density : float or None, kg/m^3
+        With a density the mass properties are included.
+
+    Returns
+    -------
+    dict
+        Facts that exist.
+    """
+    made: dict[str, Any] = {
+        "size_mm": size_fact(part.size, name),
+        "tool": tools.as_dict(),
+        "openings": [opening.as_dict() for opening in part.openings],
+    }
+    if density is not None:
+        made["density_kg_m3"] = density
+        mass = mass_properties(part, density).as_dict()
+        about = () if part.turns else ("unbalance_g_mm", "unbalance_direction_deg")
+        made["mass"] = {name: value for name, value in mass.items() if name not in about}
+    return {name: value for name, value in made.items() if value}

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.base.errors import Adjustment, InfeasibleError
+from gearcam.base.errors import Adjustment, InfeasibleError, beyond_limit
 from gearcam.numeric.arrays import Array, as_pairs
 from gearcam.numeric.contour import Contour
 from gearcam.parts.blank import WheelBlank
@@ -54,6 +54,9 @@ _SMALLER: Final = (
     ("bore", "bore_diameter_mm", 0.1),
 )
 """Text of a refusal, and the keys to reduce, with their least values, mm."""
+
+_STOP: Final = "blank.stop_pin_mm"
+"""The key of a stop pin, in messages."""
 
 _FARTHER: Final = 2.0
 _NEARER: Final = 0.05
@@ -97,9 +100,18 @@ class Workpiece:
         """Return the dotted key of its value of key `name` in ``[blank]``."""
         return f"blank.{name}" if self.wheel is None else f"blank.{name}[{self.wheel - 1}]"
 
-    def refusal(self, what: str, place: str = "[blank]", **told: Any) -> InfeasibleError:
-        """Return the error `what` at `place`, in mm; `told` are arguments of `InfeasibleError`."""
-        return InfeasibleError(what, where=f"{self.name}, {place}", unit="mm", **told)
+    def refusal(
+        self,
+        what: str,
+        value: float | None,
+        limit: float | None,
+        note: str,
+        adjustments: Sequence[Adjustment],
+        place: str = "[blank]",
+    ) -> InfeasibleError:
+        """Return the refusal of a value, mm, beyond its limit (see `beyond_limit`)."""
+        where = f"{self.name}, {place}"
+        return beyond_limit(what, where, value, limit, note, adjustments=adjustments, unit="mm")
 
 
 def bore(blank: WheelBlank) -> Circle | Loop:
@@ -274,15 +286,15 @@ def _no_room(
     from shapely import Point
 
     shape, value, limit = opening.shape, None, None
-    nearest = "they must not overlap"
+    note = "they must not overlap"
     if isinstance(shape, Circle) and what == work.within:
         center = Point(shape.center.real, shape.center.imag)
         inside = solid.contains(center)
         value = shape.diameter - widening
         limit = 2.0 * solid.boundary.distance(center) - widening if inside else None
-        nearest = f"its centre lies outside {what}"
+        note = f"its centre lies outside {what}"
         if limit:
-            nearest = "the limit is the free space around its centre"
+            note = "the limit is the free space around its centre"
     told = f"{opening.name} {what}"
     adjustments = [
         Adjustment(far={work.key(key): small}) for word, key, small in _SMALLER if word in told
@@ -293,13 +305,7 @@ def _no_room(
             for key, place in places.items()
             for times in (_NEARER, _FARTHER)
         ]
-    return work.refusal(
-        f"the {opening.name} meets {what}",
-        value=value,
-        limit=limit,
-        nearest=nearest,
-        adjustments=adjustments,
-    )
+    return work.refusal(f"the {opening.name} meets {what}", value, limit, note, adjustments)
 
 
 def _slot(blank: WheelBlank, solid: Polygon, work: Workpiece, chord: float) -> Opening:
@@ -309,32 +315,22 @@ def _slot(blank: WheelBlank, solid: Polygon, work: Workpiece, chord: float) -> O
     centres, moves from the polar angle 0 to the travel, or from pi back by the travel. Chords of
     its inner edge come nearer to the shaft than the edge, by `chord`, mm.
     """
+    key = work.key("stop_pin_mm")
     if work.travel is None:
-        raise work.refusal(
-            "a closed wheel turns all around: it has no stop",
-            "blank.stop_pin_mm",
-            value=blank.stop_pin,
-            nearest="only wheels of an open law (driven_travel_deg) have a stop",
-            adjustments=(Adjustment(near={work.key("stop_pin_mm"): 0.0}),),
-        )
+        what = "a closed wheel turns all around: it has no stop"
+        note = "only wheels of an open law (driven_travel_deg) have a stop"
+        without = (Adjustment(near={key: 0.0}),)
+        raise work.refusal(what, blank.stop_pin, None, note, without, _STOP)
     start = 0.0 if work.wheel == 1 else math.pi - work.travel
     wide = blank.widened
     inner = max(wide.bore_reach, 0.5 * blank.hub_diameter)
     radius, room = _roomiest(solid, start, work.travel, inner)
     room -= blank.widening + 2.0 * chord
     if blank.stop_pin >= room:
-        raise work.refusal(
-            "no room for the slot of the stop pin between shaft and roots",
-            "blank.stop_pin_mm",
-            value=blank.stop_pin,
-            limit=room,
-            nearest="the limit is the widest slot that fits",
-            adjustments=(
-                Adjustment(
-                    near={work.key("stop_pin_mm"): room}, far={work.key("stop_pin_mm"): 0.1 * room}
-                ),
-            ),
-        )
+        what = "no room for the slot of the stop pin between shaft and roots"
+        note = "the limit is the widest slot that fits"
+        smaller = (Adjustment(near={key: room}, far={key: 0.1 * room}),)
+        raise work.refusal(what, blank.stop_pin, room, note, smaller, _STOP)
     shape = _arc_slot(radius, start, work.travel, wide.stop_pin)
     return Opening(kind="SLOT", shape=shape, name="stop slot")
 
@@ -425,13 +421,11 @@ def _no_lightening(
     from shapely import Point
 
     least = solid.boundary.distance(Point(0.0, 0.0))
-    return work.refusal(
-        f"lightening hole {number} has no room between hub and rim",
-        value=least - core,
-        nearest="the value is the distance between hub or bore and the nearest root",
-        adjustments=(
-            Adjustment(near={"blank.rim_mm": 0.5 * rim}),
-            Adjustment(far={work.key("hub_diameter_mm"): 0.0}),
-            Adjustment(near={work.key("lightening_holes"): 0}),
-        ),
+    what = f"lightening hole {number} has no room between hub and rim"
+    note = "the value is the distance between hub or bore and the nearest root"
+    adjustments = (
+        Adjustment(near={"blank.rim_mm": 0.5 * rim}),
+        Adjustment(far={work.key("hub_diameter_mm"): 0.0}),
+        Adjustment(near={work.key("lightening_holes"): 0}),
     )
+    return work.refusal(what, least - core, None, note, adjustments)

@@ -116,14 +116,9 @@ def demand_bolts(
     if most > 0.0:
         roomiest = f"a bolt circle of {formatted(best)} mm allows up to {rounded_down(most, 4)} mm"
     told = f"the limit leaves walls of {formatted(wall)} mm on both sides; " if room > taken else ""
-    raise work.refusal(
-        "the bolt holes do not lie in the rim of the ring",
-        "blank.bolt_diameter_mm",
-        value=blank.bolt_diameter,
-        limit=room - taken if room > taken else None,
-        nearest=f"{told}{roomiest}",
-        adjustments=adjustments,
-    )
+    what, place = "the bolt holes do not lie in the rim of the ring", "blank.bolt_diameter_mm"
+    limit, note = room - taken if room > taken else None, f"{told}{roomiest}"
+    raise work.refusal(what, blank.bolt_diameter, limit, note, adjustments, place)
 
 
 def _hole(solid: Polygon) -> Polygon | None:

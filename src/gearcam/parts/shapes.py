@@ -7,7 +7,7 @@ form, and chords within a tolerance.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
@@ -18,10 +18,14 @@ from gearcam.base.display import ShortRepr
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.bulges import arc_centers, arc_chords, bulge_pieces, flatten_bulges, on_arcs
 from gearcam.numeric.contour import Contour, Run
+from gearcam.numeric.hermite import on_cubics
 from gearcam.numeric.moments import Moments, arc_moments
 
 FEWEST: Final = 12
 """Fewest chords of a circle."""
+
+_BETWEEN: Final = 129
+"""Points on the cubic between two dense points, near extremes."""
 
 _DENSE: Final = 1 / 40
 """Chord error of dense points over the tolerance."""
@@ -173,3 +177,45 @@ def circle_segments(diameter: float, sagitta: float) -> int:
     ratio = min(sagitta / diameter, 0.5)
     # Sagitta of n chords: (d/2)*(1 - cos(pi/n)) = d*sin(pi/(2n))^2.
     return max(FEWEST, 2 * math.ceil(math.pi / (4 * math.asin(math.sqrt(ratio)))))
+
+
+def true_points(edges: Iterable[Contour | Circle]) -> Plane:
+    """Return points on true edges, complex, mm: dense, and much denser at extreme points.
+
+    Extremes along x and y and of the distance from the origin are exact to 1e-8 mm: between dense
+    points the curve is a cubic with the tangents at its ends. For circles only the extremes along x
+    and y are returned.
+    """
+    return np.concatenate([_points(edge) for edge in edges])
+
+
+def _points(edge: Contour | Circle) -> Plane:
+    if isinstance(edge, Circle):
+        radius = 0.5 * edge.diameter
+        return np.array([edge.center + way * radius for way in (1.0, 1j, -1.0, -1j)])
+    runs = edge.runs
+    points = np.concatenate([run.points for run in runs])
+    tangents = np.concatenate([run.tangents for run in runs])
+    extremes = {
+        int(pick(values))
+        for values in (points.real, points.imag, np.abs(points))
+        for pick in (np.argmin, np.argmax)
+    }
+    starts = np.cumsum([0, *(len(run.points) for run in runs)])
+    # no curve between the last point of a run and the first of the next
+    firsts = [
+        first
+        for place in sorted(extremes)
+        for first in (place - 1, place)
+        if first >= 0 and first + 1 not in starts
+    ]
+    share = np.tile(np.linspace(0.0, 1.0, _BETWEEN), len(firsts))
+    between, _ = on_cubics(points, tangents, np.repeat(firsts, _BETWEEN), share)
+    return np.concatenate([points, between])
+
+
+def extremes(points: Plane) -> tuple[complex, complex, complex, complex]:
+    """Return the leftmost, lowest, rightmost and highest of some points, complex, mm."""
+    x, y = points.real, points.imag
+    left, low, right, high = points[[x.argmin(), y.argmin(), x.argmax(), y.argmax()]].tolist()
+    return left, low, right, high

@@ -258,8 +258,7 @@ def _dxf(result: PartsResult, measured: Measured) -> Files:
 def _cut_svg(result: PartsResult, _: Measured) -> Files:
     """Return files for a laser: one for each plate, and a sheet with all of them, labelled."""
     from gearcam.export.cut_svg import cut_svg
-    from gearcam.export.lettering import labelled
-    from gearcam.export.nest import nested
+    from gearcam.export.laser_sheet import labelled, nested
 
     title, kerf = result.design.name, result.design.output.kerf
     files = {

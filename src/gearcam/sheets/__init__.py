@@ -1,7 +1,7 @@
 """Sheets: dimensioned workshop drawings.
 
 `sheet` defines the elements of a sheet, `paper` selects paper and scale and draws frame, table and
-title block, `extent` measures outlines, `board` places dimensions where there is space, `wheel`
+title block, `board` places dimensions where there is space, `wheel`
 draws the sheet of a part. Exporters use sheets only.
 """
 

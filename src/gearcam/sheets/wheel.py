@@ -23,10 +23,9 @@ from gearcam.base.numerals import decimal
 from gearcam.numeric.arrays import Plane, bounds
 from gearcam.numeric.pose import Pose
 from gearcam.parts.body import Edge, Hub, Part
-from gearcam.parts.shapes import Circle, Loop
+from gearcam.parts.shapes import Circle, Loop, extremes, true_points
 from gearcam.pictures.drawings import BORE, HOLE, INNER, SLOT, part_features, placed, reach
 from gearcam.sheets.board import AROUND, CLEAR, FIRST_LEVEL, LEVEL, OVERHANG, TIGHT, Board
-from gearcam.sheets.extent import extremes, true_points
 from gearcam.sheets.paper import begin, finish
 from gearcam.sheets.sheet import (
     CENTERLINE,

@@ -11,7 +11,7 @@ from gearcam.base.facts import Fact, Facts, extent
 from gearcam.base.findings import limit_of
 from gearcam.base.numerals import formatted
 from gearcam.cams.checks import KIND, pressure_limit
-from gearcam.parts.facts import part_facts
+from gearcam.parts.mass import part_facts
 
 if TYPE_CHECKING:
     from gearcam.cams.measures import Range

@@ -19,6 +19,7 @@ from gearcam.numeric.arrays import Plane, bounds
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.pose import Pose
 from gearcam.parts.body import Part
+from gearcam.parts.shapes import extremes, true_points
 from gearcam.pictures.drawings import (
     CENTER,
     CENTRODE,
@@ -34,7 +35,6 @@ from gearcam.pictures.drawings import (
     reach,
 )
 from gearcam.sheets.board import FIRST_LEVEL, LEVEL, OVERHANG, Board
-from gearcam.sheets.extent import extremes, true_points
 from gearcam.sheets.paper import begin, finish
 from gearcam.sheets.sheet import CENTERLINE, Sheet, fine
 

@@ -16,7 +16,7 @@ from gearcam.gears.pair import gear_tree
 from gearcam.gears.subject import KIND, CheckedPair
 from gearcam.laws.ratio.span import angle_text
 from gearcam.meshing.drive_checks import side_name
-from gearcam.parts.facts import part_facts, size_fact
+from gearcam.parts.mass import part_facts, size_fact
 
 if TYPE_CHECKING:
     from gearcam.gears.contact import FlankPairs
