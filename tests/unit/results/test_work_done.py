@@ -219,7 +219,9 @@ EXPECTED: dict[tuple[str, Callable[[str, Path], None]], dict[str, int]] = {
         # of the cam, and of the part
         "run_checks": 2,
         # the page shows the solid with a coarser profile; the pitch curve is drawn too
-        "Wall.contour": 2, "undercut": 2, "make_part": 2, "solid": 2, "Sampler.chords": 3,
+        "Wall.contour": 2, "make_part": 2, "solid": 2, "Sampler.chords": 3,
+        # of both profiles, and of the pitch curve whose curvature is studied
+        "undercut": 3,
         # and the dense points of the way of a cutter
         "Sampler.dense": 3,
         "tool_limits": 1, "wheel_sheet": 1, "scene_data": 1, "view_page": 1,
