@@ -1,0 +1,59 @@
+"""Poses against matrices of homogeneous coordinates."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from gearcam.numeric.pose import UNMOVED, Pose
+
+POSES = [Pose(), Pose(0.7, 3.0 - 2.0j, 5.0), Pose(-2.0, 1j), Pose(shift=4.0), Pose(math.pi)]
+POINTS = np.array([0j, 1.0, 2.0 - 3.0j])
+
+
+def matrix(pose: Pose) -> np.ndarray:
+    c, s, shift = math.cos(pose.turn), math.sin(pose.turn), complex(pose.shift)
+    return np.array([[c, -s, shift.real], [s, c, shift.imag], [0.0, 0.0, 1.0]])
+
+
+def moved(matrix: np.ndarray, points: np.ndarray) -> np.ndarray:
+    x, y, _ = matrix @ np.stack([points.real, points.imag, np.ones(len(points))])
+    return x + 1j * y
+
+
+@pytest.mark.parametrize("outer", POSES)
+@pytest.mark.parametrize("inner", POSES)
+def test_a_pose_on_a_pose_is_the_product_of_both(outer: Pose, inner: Pose) -> None:
+    both = outer @ inner
+    expected = moved(matrix(outer) @ matrix(inner), POINTS)
+    assert both.apply(POINTS) == pytest.approx(expected, abs=1e-14)
+    assert outer.apply(inner.apply(POINTS)) == pytest.approx(expected, abs=1e-14)
+    assert both.height == outer.height + inner.height
+
+
+@pytest.mark.parametrize("pose", POSES)
+def test_the_inverse_undoes_a_pose(pose: Pose) -> None:
+    expected = moved(np.linalg.inv(matrix(pose)), POINTS)
+    assert pose.inverse.apply(POINTS) == pytest.approx(expected, abs=1e-14)
+    assert (pose.inverse @ pose).height == 0.0
+
+
+def test_n_poses_are_applied_each_to_its_point() -> None:
+    turns, shifts = np.array([0.3, -1.0, 2.0]), np.array([1j, 2.0, -1.0 + 1j])
+    every = Pose(turns, shifts)
+    expected = [
+        complex(Pose(turn, shift).apply(point))
+        for turn, shift, point in zip(turns, shifts, POINTS, strict=True)
+    ]
+    assert every.apply(POINTS) == pytest.approx(np.array(expected), abs=1e-15)
+    assert every[1:].apply(POINTS[1:]) == pytest.approx(np.array(expected[1:]), abs=1e-15)
+    assert every[:, None].apply(POINTS).shape == (3, 3)
+    assert every.inverse.apply(every.apply(POINTS)) == pytest.approx(POINTS, abs=1e-14)
+
+
+def test_only_the_pose_of_a_body_in_its_own_frame_moves_nothing() -> None:
+    assert Pose() == UNMOVED
+    assert Pose(1e-9) != UNMOVED
+    assert Pose(height=1e-9) != UNMOVED
