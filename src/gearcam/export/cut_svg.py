@@ -94,10 +94,10 @@ def cut_svg(drawings: Sequence[Drawing], title: str, kerf: float = 0.0) -> bytes
     sizes = (high - low).real, (high - low).imag
     wide, tall = (decimal(math.ceil(size * 1e4) / 1e4, 4) for size in sizes)
     size = f'width="{wide}mm" height="{tall}mm" viewBox="0 0 {wide} {tall}"'
-    told = f"; paths are moved by half the kerf of {formatted(kerf)} mm" if kerf else ""
+    remark = f"; paths are moved by half the kerf of {formatted(kerf)} mm" if kerf else ""
     # y = 0 of the paths is the upper edge of the sheet
     shift = -complex(low.real, high.imag)
-    words = f"<desc>1:1 in mm; first engrave blue lines, then cut red lines{told}</desc>"
+    words = f"<desc>1:1 in mm; first engrave blue lines, then cut red lines{remark}</desc>"
     return svg_document(size, title, [words, _ON_SCREEN, *_groups(kept, shift, decimals)])
 
 

@@ -212,8 +212,8 @@ def _polyline(
 
 def _splines(contour: Contour, style: DxfStyle) -> Iterator[tuple[Array, Array]]:
     """Yield poles and knots of the spline of each run; each begins where the last one ends."""
-    made = contour.fitted(fit_splines, CURVE_PART * style.tolerance)
-    for spline, following in zip(made, [*made[1:], made[0]], strict=True):
+    splines = contour.fitted(fit_splines, CURVE_PART * style.tolerance)
+    for spline, following in zip(splines, [*splines[1:], splines[0]], strict=True):
         gap = float(abs(spline.poles[-1] - following.poles[0]))
         if gap > style.tolerance:
             raise ValueError(

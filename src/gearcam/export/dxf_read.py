@@ -77,8 +77,8 @@ def measure_dxf(data: bytes, contours: Sequence[Contour], known: Known | None = 
     document = read_dxf(data)
     if document.dxfversion != _R12 and document.header.get("$INSUNITS") != MILLIMETRES:
         raise DxfError("the DXF file is not in millimetres")
-    found = _outlines(document, lambda layer: layer.endswith(CLOSED))
-    outlines = [outline for outline in found if outline[2]]  # a pitch curve may be open
+    every = _outlines(document, lambda layer: layer.endswith(CLOSED))
+    outlines = [outline for outline in every if outline[2]]  # a pitch curve may be open
     if len(outlines) != len(contours):
         raise DxfError(
             f"the DXF file should hold {len(contours)} closed outlines, but holds {len(outlines)}"
@@ -179,18 +179,18 @@ def read_outline(data: bytes, *, outer: bool = False) -> tuple[Plane, Array]:
             "take the file that ends in _reference.dxf, or one written without a kerf"
         )
     for wanted in (PROFILE, OUTLINE, OUTER_WALL if outer else INNER, ""):
-        found = [
+        candidates = [
             (points, bulges)
             for layer in layers
             if layer.upper().endswith(wanted)
             for points, bulges, closed in _outlines(document, layer.__eq__)
             if closed
         ]
-        if len(found) == 1:
-            if not all(np.isfinite(values).all() for values in found[0]):
+        if len(candidates) == 1:
+            if not all(np.isfinite(values).all() for values in candidates[0]):
                 raise DxfError("the outline has coordinates that are not finite")
-            return found[0]
-    raise DxfError(f"the DXF file should hold one closed outline, but it holds {len(found)}")
+            return candidates[0]
+    raise DxfError(f"the DXF file should hold one closed outline, but it holds {len(candidates)}")
 
 
 def _arcs(entity: Any) -> tuple[Plane, Array]:
@@ -226,8 +226,8 @@ def read_dxf(data: bytes) -> Document:
         document = read(io.StringIO(text, newline=None))
         audit = document.audit()
     except Exception as error:  # of any type: ezdxf looks up what a damaged file names
-        told = " ".join(str(error).split())[:_SHOWN]
-        raise DxfError(f"the DXF file cannot be read: {told}") from error
+        reason = " ".join(str(error).split())[:_SHOWN]
+        raise DxfError(f"the DXF file cannot be read: {reason}") from error
     faults = [*audit.errors, *audit.fixes]
     if faults:
         raise DxfError(f"the DXF file has errors ({len(faults)}); the first: {faults[0].message}")

@@ -222,9 +222,9 @@ def strokes(text: str, height: float, corner: complex) -> list[Plane]:
     KeyError
         If there is no such letter.
     """
-    made = []
+    lines = []
     for number, sign in enumerate(text):
         for stroke in filter(None, _STROKES[sign].split(", ")):
             places = np.array([complex(int(x), int(y)) for x, y in stroke.split()])
-            made.append((places + number * _ADVANCE) * (height / _TALL) + corner)
-    return made
+            lines.append((places + number * _ADVANCE) * (height / _TALL) + corner)
+    return lines

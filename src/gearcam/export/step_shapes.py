@@ -108,9 +108,9 @@ def solids_of(part: Part, tolerance: float) -> list[Any]:
 
 def properties(shape: Any) -> Any:
     """Volume and centre of mass of a shape of the kernel."""
-    found = occt.GProp_GProps()
-    occt.BRepGProp.VolumeProperties_s(shape, found, VOLUME_PRECISION, True, False)
-    return found
+    volume = occt.GProp_GProps()
+    occt.BRepGProp.VolumeProperties_s(shape, volume, VOLUME_PRECISION, True, False)
+    return volume
 
 
 def subshapes(shape: Any, kind: str) -> list[Any]:
@@ -128,9 +128,9 @@ def subshapes(shape: Any, kind: str) -> list[Any]:
     list of TopoDS_Shape
         Each once, in the shape's order.
     """
-    found = occt.IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher()
-    occt.TopExp.MapShapes_s(shape, getattr(occt.TopAbs_ShapeEnum, f"TopAbs_{kind}"), found)
-    return [found.FindKey(number) for number in range(1, found.Extent() + 1)]
+    shapes = occt.IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher()
+    occt.TopExp.MapShapes_s(shape, getattr(occt.TopAbs_ShapeEnum, f"TopAbs_{kind}"), shapes)
+    return [shapes.FindKey(number) for number in range(1, shapes.Extent() + 1)]
 
 
 def _explained(part: Part, tolerance: float) -> float:
@@ -181,10 +181,10 @@ def _combined(operation: Any, body: Any, tools: Sequence[Any]) -> Any:
     operation.SetNonDestructive(True)
     operation.SetToFillHistory(False)
     operation.Build()
-    found = subshapes(operation.Shape(), "SOLID") if operation.IsDone() else []
-    if len(found) != 1:
-        raise SolidError(f"the solid consists of {len(found)} pieces")
-    return found[0]
+    solids = subshapes(operation.Shape(), "SOLID") if operation.IsDone() else []
+    if len(solids) != 1:
+        raise SolidError(f"the solid consists of {len(solids)} pieces")
+    return solids[0]
 
 
 def _prism(layer: Layer, tolerance: float) -> Any:
@@ -195,12 +195,12 @@ def _prism(layer: Layer, tolerance: float) -> Any:
 def _converted(prism: Any) -> Any:
     """Return a solid whose swept curves are B-spline surfaces, which more programs read."""
     # planes and cylinders stay
-    found = subshapes(
+    solids = subshapes(
         occt.ShapeCustom.ConvertToBSpline_s(prism, True, False, False, False), "SOLID"
     )
-    if len(found) != 1:
+    if len(solids) != 1:
         raise SolidError("the solid is empty")
-    return occt.TopoDS.Solid(found[0])
+    return occt.TopoDS.Solid(solids[0])
 
 
 def _swept(layer: Layer, tolerance: float) -> Any:

@@ -151,11 +151,11 @@ class Chart:
                 ax.axhline(limit.value, color="0.35", ls="--", lw=1.0, label=text)
             else:
                 ax.plot([], [], color="0.35", ls=" ", label=f"{text}, outside this chart")
-        told: set[str] = set()
+        named: set[str] = set()
         for mark in self.marks:  # one legend entry for each sort
-            label = None if mark.label in told else mark.label
+            label = None if mark.label in named else mark.label
             ax.axvline(mark.value, color="0.5", ls=":", lw=0.8, label=label)
-            told.add(mark.label)
+            named.add(mark.label)
         ax.set(title=self.title, xlabel=self.x, ylabel=self.y, xlim=self.ends[0], ylim=self.ends[1])
         ax.grid(visible=True, alpha=0.3)
         if self.limits or self.marks or len(self.lines) > 1:

@@ -100,13 +100,13 @@ def picture(
 
 
 def _caption(lines: Sequence[str], left: float, base: float, size: float) -> list[str]:
-    made = []
+    texts = []
     for row, line in enumerate(lines):
         place = f'x="{_number(left)}" y="{_number(base + 1.4 * size * row)}"'
         font = f'font-family="sans-serif" font-size="{_number(size)}" fill="{TEXT_INK}"'
         weight = ' font-weight="bold"' if row == 0 else ""
-        made.append(f"<text {place} {font}{weight}>{escape(line)}</text>")
-    return made
+        texts.append(f"<text {place} {font}{weight}>{escape(line)}</text>")
+    return texts
 
 
 def outlines(

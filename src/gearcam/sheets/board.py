@@ -187,12 +187,12 @@ class Board:
             )
         )  # fmt: skip
 
-    def round(self, made: RoundDimension, angles: Array | None = None) -> bool:
+    def round(self, dimension: RoundDimension, angles: Array | None = None) -> bool:
         """Draw a diameter or radius where there is space.
 
         Parameters
         ----------
-        made : RoundDimension
+        dimension : RoundDimension
             The dimension; its arrow and its knee are placed here.
         angles : (n,) array, rad, optional
             Allowed directions of the arrow; any by default.
@@ -202,13 +202,13 @@ class Board:
         bool
             False if there is no space: nothing is drawn, and the table must contain it.
         """
-        found: RoundDimension | None = made
-        if not (made.diameter and angles is None and self._fits_inside(made)):
-            reaches = _REACHES if made.diameter else np.concatenate([_REACHES, -_REACHES])
-            found = self._search(made, AROUND if angles is None else angles, reaches)
-        if found is not None:
-            self._measure(found)
-        return found is not None
+        placed: RoundDimension | None = dimension
+        if not (dimension.diameter and angles is None and self._fits_inside(dimension)):
+            reaches = _REACHES if dimension.diameter else np.concatenate([_REACHES, -_REACHES])
+            placed = self._search(dimension, AROUND if angles is None else angles, reaches)
+        if placed is not None:
+            self._measure(placed)
+        return placed is not None
 
     def label(self, point: complex, text: str) -> bool:
         """Write a text with a leader.
@@ -225,32 +225,34 @@ class Board:
         bool
             False if there is no space: nothing is drawn.
         """
-        made = RoundDimension(center=point, radius=0.1 * self.unit, words=text)
-        found = self._search(made, AROUND, _REACHES)
-        if found is None:
+        wanted = RoundDimension(center=point, radius=0.1 * self.unit, words=text)
+        placed = self._search(wanted, AROUND, _REACHES)
+        if placed is None:
             return False
-        drawn = as_drawn(found, self.unit)
+        drawn = as_drawn(placed, self.unit)
         leader, shelf = drawn.lines
         self.draw(DIMENSION, Path(points=np.append(leader, shelf[1:]), closed=False))
         self.draw(DIMENSION, Path(points=drawn.heads[0][[1, 0, 2]], closed=False))
         self.write(drawn.text)
         return True
 
-    def _fits_inside(self, made: RoundDimension) -> bool:
+    def _fits_inside(self, dimension: RoundDimension) -> bool:
         """Return whether a diameter's text has space in the middle of its circle."""
-        if 2.0 * made.radius * self.scale - text_width(made.label) <= TIGHT:
+        if 2.0 * dimension.radius * self.scale - text_width(dimension.label) <= TIGHT:
             return False
-        low, high = text_box(as_drawn(made, self.unit).text, self.unit)
+        low, high = text_box(as_drawn(dimension, self.unit).text, self.unit)
         return bool(self._empty(np.array([low]), np.array([high]))[0])
 
-    def _search(self, made: RoundDimension, angles: Array, reaches: Array) -> RoundDimension | None:
+    def _search(
+        self, dimension: RoundDimension, angles: Array, reaches: Array
+    ) -> RoundDimension | None:
         """Return the dimension with the best knee; None if there is no space for its text."""
         angle, reach = (axis.ravel() for axis in np.meshgrid(angles, reaches, indexing="ij"))
         spokes: Plane = np.exp(1j * angle)
-        knees = made.radius + reach * self.unit
-        at = np.asarray(made.center + knees * spokes, dtype=np.complex128)
+        knees = dimension.radius + reach * self.unit
+        at = np.asarray(dimension.center + knees * spokes, dtype=np.complex128)
         left = reach * spokes.real <= 0.0
-        wide = text_width(made.label) * self.unit
+        wide = text_width(dimension.label) * self.unit
         low = at - wide * left
         high = low + complex(wide, (HEIGHT + GAP) * self.unit)
         good = self._empty(low, high) & (knees > 0.0)
@@ -259,13 +261,13 @@ class Board:
             if abs(reach[index]) >= least:
                 break
             if good[index]:
-                edge = made.center + made.radius * complex(spokes[index])
+                edge = dimension.center + dimension.radius * complex(spokes[index])
                 cost = abs(reach[index]) + CROSSING * self._crossed(edge, complex(at[index]))
                 if cost < least:
                     best, least = index, cost
         if best is None:
             return None
-        return replace(made, angle=float(angle[best]), knee=float(knees[best]))
+        return replace(dimension, angle=float(angle[best]), knee=float(knees[best]))
 
     def _crossed(self, start: complex, end: complex) -> float:
         """Return the number of lines a leader crosses; infinite along one, or through a text."""

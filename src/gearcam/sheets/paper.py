@@ -92,7 +92,7 @@ def choose(size: complex, room: complex, rows: int) -> tuple[str, float]:
     InfeasibleError
         If the views are too large for the smallest scale.
     """
-    found = []
+    fitting = []
     for paper, (_, tall) in PAPERS.items():
         low, high = area_of(paper)
         free = high - low - room
@@ -103,23 +103,23 @@ def choose(size: complex, room: complex, rows: int) -> tuple[str, float]:
         ]
         long = (rows + 1) * ROW > tall - 2 * MARGIN - BLOCK[1]
         if fits and not (long and paper == "A4"):
-            found.append((paper, fits[0]))
-    if not found:
+            fitting.append((paper, fits[0]))
+    if not fitting:
         what = f"views of {formatted(size.real)} x {formatted(size.imag)} mm do not fit on a sheet"
         note = f"the smallest scale is 1 : {formatted(1.0 / min(SCALES))}"
         raise InfeasibleError(what, where="output.files", nearest=note)
-    return max(found, key=lambda one: min(one[1], 1.0))
+    return max(fitting, key=lambda one: min(one[1], 1.0))
 
 
 def sheet_rows(facts: Facts, names: Sequence[str]) -> dict[str, str]:
     """Return the rows of a drawing's table: the quantities `names` that exist in `facts`."""
-    known = {one.name: one for one in facts.quantities()}
-    found = [known[name] for name in names if name in known]
+    by_name = {one.name: one for one in facts.quantities()}
+    named = [by_name[name] for name in names if name in by_name]
     return {
         one.meaning: " : ".join(formatted(part, _FEW) for part in one.value) + f" {one.unit}"
         if isinstance(one.value, list)
         else one.text
-        for one in found
+        for one in named
     }
 
 

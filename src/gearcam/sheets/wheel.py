@@ -289,10 +289,10 @@ def _callouts(board: Board, wheel: _Wheel) -> None:
             _slot(board, opening.shape)
     for mark in part.marks:
         words = f", {decimal(mark.depth)} deep"
-        made = RoundDimension(
+        dimension = RoundDimension(
             center=mark.center, radius=0.5 * mark.diameter, prefix="mark ", suffix=words
         )
-        if not board.round(made):
+        if not board.round(dimension):
             board.rows.append(("mark", f"Ø{decimal(mark.diameter)}{words}"))
 
 
@@ -302,10 +302,10 @@ def _radii(board: Board, wheel: _Wheel) -> None:
     for radius, words in ((float(reach.max()), "max"), (float(reach.min()), "min")):
         # the first of the points on an arc about the axis, not one that rounding chooses
         point = complex(wheel.toothed[np.argmax(np.abs(reach - radius) < SAME)])
-        made = RoundDimension(center=0j, radius=radius, diameter=False, suffix=f" {words}")
+        dimension = RoundDimension(center=0j, radius=radius, diameter=False, suffix=f" {words}")
         # a leader without direction to the axis
         direction = np.array([cmath.phase(point)])
-        if not (board.round(made, direction) or board.label(point, made.label)):
+        if not (board.round(dimension, direction) or board.label(point, dimension.label)):
             board.rows.append((f"{words}. radius from axis", decimal(radius)))
 
 
@@ -360,13 +360,13 @@ def _ring(board: Board, circles: list[Circle]) -> None:
 def _pattern(board: Board, circles: list[Circle]) -> None:
     one, count = circles[0], len(circles)
     first = cmath.phase(one.center)
-    made = RoundDimension(center=one.center, radius=0.5 * one.diameter, prefix=f"{count} x ")
-    board.round(made, AROUND)
+    size = RoundDimension(center=one.center, radius=0.5 * one.diameter, prefix=f"{count} x ")
+    board.round(size, AROUND)
     # the arrow points at the circle between two holes
     between = first + math.pi / count * np.array([1.0, 3.0, -1.0, -3.0, 0.5, -0.5, 1.5, -1.5])
     ring = RoundDimension(center=0j, radius=abs(one.center))
     board.round(ring, between)
-    board.rows.append((made.label, f"on {ring.label}, at {decimal(math.degrees(first))} deg"))
+    board.rows.append((size.label, f"on {ring.label}, at {decimal(math.degrees(first))} deg"))
 
 
 def _slot(board: Board, shape: Loop) -> None:
