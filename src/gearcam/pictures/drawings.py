@@ -173,7 +173,7 @@ def chains(shape: Shape, sagitta: float) -> Iterator[tuple[Plane, bool]]:
             yield points, closed
         case Cross(center=center, size=size):
             for arm in (0.5 * size, 0.5j * size):
-                yield np.array([center - arm, center + arm]), False
+                yield np.array([center - arm, center + arm], dtype=np.complex128), False
         case _:
             yield shape.polyline(sagitta), True
 

@@ -12,7 +12,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from gearcam.numeric.arrays import Array, Plane
+from gearcam.numeric.arrays import Array, Plane, as_pairs
 from gearcam.pictures import drawings
 from gearcam.pictures.charts import Chart
 from gearcam.pictures.scenes import SAGITTA, ContactPoints, MovingBody, Scene, extent
@@ -152,7 +152,7 @@ def _steady(values: Array, decimals: int) -> list[float | None] | float:
 
 
 def _flat(points: Plane) -> list[float | None]:
-    return _rounded(np.ascontiguousarray(points).view(np.float64), _MM)
+    return _rounded(as_pairs(points).ravel(), _MM)
 
 
 def _digits(values: Array) -> list[float | None]:

@@ -19,7 +19,7 @@ from gearcam.parts.blank import Blank
 from gearcam.parts.body import Hub, Mark, Opening, Part
 from gearcam.parts.marks import timing_mark
 from gearcam.parts.shapes import Loop
-from gearcam.pictures.drawings import Circle, Path, placed, wheel_drawing
+from gearcam.pictures.drawings import Circle, Cross, Path, chains, placed, wheel_drawing
 from helpers_contour import bore, gear_contour, layers, square_contour
 
 
@@ -182,3 +182,11 @@ def test_a_loop_reaches_as_far_as_its_arcs(center: tuple[float, float]) -> None:
     for height, reach in ((5.0, 7.0), (-5.0, math.hypot(2.0, 5.0))):
         half = np.array([complex(2.0, height), complex(-2.0, height)])  # the upper half of a disc
         assert Loop(points=half, bulges=np.array([1.0, 0.0])).reach == pytest.approx(reach)
+
+
+def test_chains_of_a_cross_on_the_axis_are_complex() -> None:
+    """Its centre may be a real number; a chain of real numbers would lose its heights."""
+    across, up = (points for points, _ in chains(Cross(center=3.0, size=2.0), 1e-3))
+    assert (across.dtype, up.dtype) == (np.complex128, np.complex128)
+    assert across.tolist() == [2.0, 4.0]
+    assert up.tolist() == [3.0 - 1.0j, 3.0 + 1.0j]
