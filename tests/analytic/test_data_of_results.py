@@ -209,8 +209,9 @@ def test_a_roller_touches_where_its_circle_does(rotation: str) -> None:
     turn = np.exp(-1j * side * theta)
     np.testing.assert_allclose(found["nx"] + 1j * found["ny"], away * turn / 6.0, atol=1e-12)
     place = (found["fixed_x_mm"] + 1j * found["fixed_y_mm"]) * turn
-    np.testing.assert_allclose(found.points, place, atol=1e-12)
-    np.testing.assert_allclose(found.points[2], found.points[-1], atol=1e-12)
+    points = found.points @ np.array([1.0, 1j])
+    np.testing.assert_allclose(points, place, atol=1e-12)
+    np.testing.assert_allclose(points[2], points[-1], atol=1e-12)
 
 
 def test_where_the_follower_rests_on_a_corner_there_is_no_contact() -> None:
