@@ -260,7 +260,10 @@ class Follower(ShortRepr, ABC):
 
     @abstractmethod
     def on_circle(self, radius: Array | float) -> Array:
-        """Return positions (n,) at distances from the origin, mm: the inverse of `distance`."""
+        """Return positions (n,) at distances from the origin, mm: the inverse of `distance`.
+
+        Out of reach of a round follower that of the nearest distance in reach.
+        """
 
     def least_start(self, limit: float, lift: Array, velocity: Array) -> tuple[float, float]:  # noqa: ARG002
         """Return the range of positions at zero lift that keep a limit of the pressure angle.
@@ -531,7 +534,7 @@ class Stem(Round):
 
     def on_circle(self, radius: Array | float) -> Array:
         """Return positions above the origin."""
-        return np.sqrt((radius - self.offset) * (radius + self.offset))
+        return np.sqrt(np.maximum((radius - self.offset) * (radius + self.offset), 0.0))
 
     def distance(self, p: float) -> float:
         """Return the distance of its centre from the origin, mm."""
@@ -672,8 +675,8 @@ class Arm(Round):
         small, large = sorted([self.pivot.real, self.arm])
         apart = large - small
         half = np.arctan2(
-            np.sqrt((radius - apart) * (radius + apart)),
-            np.sqrt((small - (radius - large)) * (small + (radius + large))),
+            np.sqrt(np.maximum((radius - apart) * (radius + apart), 0.0)),
+            np.sqrt(np.maximum((small - (radius - large)) * (small + (radius + large)), 0.0)),
         )
         return 2.0 * half
 

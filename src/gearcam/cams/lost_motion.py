@@ -74,8 +74,10 @@ class Rest(ShortRepr):
         across = np.conj(unit(self.roller.lean(position)))
         drawn = across * velocities * carrier.frame(stands)[0]
         turned = across * carrier.passing(fixed)
-        slope = -drawn.real / turned.real
-        rise = (drawn.imag + turned.imag * slope) / self.roller.lever
+        # where the wall comes nearer to the axis than the roller can, it leaves the wall
+        with np.errstate(divide="ignore", invalid="ignore"):
+            slope = -drawn.real / turned.real
+            rise = (drawn.imag + turned.imag * slope) / self.roller.lever
         lift = position - self.roller.start
         return stands, lift, slope, rise
 
@@ -140,7 +142,8 @@ class Rest(ShortRepr):
         first = np.where(centers.jump[index], 0.5 * (low + high), np.clip(aim, low, high))
         places = newton_in_bracket(function, low, high, first, _STEP * grain, _ROUNDING * grain)
         stands, lift, slope, rise = self._moving(index, places)
-        rise = rise / slope
+        with np.errstate(invalid="ignore"):
+            rise = np.where(np.isfinite(slope), rise / slope, 0.0)
         lift = lift + rise * (aim - stands)  # remaining error of the search
         for (before, after), point in self._corners:
             inside = np.mod(theta - before, period) <= np.mod(after - before, period)

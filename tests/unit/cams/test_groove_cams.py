@@ -20,8 +20,9 @@ from gearcam.cams.groove import GrooveCam, make_groove
 from gearcam.cams.lost_motion import Rest
 from gearcam.cams.trim import resting
 from gearcam.laws.motion_formula import MotionFormula
+from gearcam.laws.phases_of_lift import ReturnPhase, SegmentPhase
 from gearcam.numeric.jets import Jet
-from helpers_cams import angles, back, follower_of, program, rise, there_and_back
+from helpers_cams import TURN, angles, back, follower_of, law, program, rise, there_and_back
 from witness.roller_bands import band, lift
 
 STEEP = (50.0, 130.0, 50.0, 130.0)
@@ -188,3 +189,22 @@ def test_two_rollers_touch_a_wall_each() -> None:
     assert smaller.lost_motion.value == pytest.approx(
         groove("roller", clearance=0.1).lost_motion.value, rel=1e-9
     )
+
+
+def test_a_roller_leaves_a_wall_that_comes_nearer_to_the_axis_than_it_can() -> None:
+    """With half the clearance it would be at 6.65 mm from the axis, its guide is at 6.66 mm."""
+    up = SegmentPhase(angle=5.766050713996082, to=4.0, velocity=12.2)
+    motion = program([up, ReturnPhase(angle=TURN - up.angle, law=law("cycloidal"))])
+    roller = follower_of("roller", roller_radius=0.75, offset=6.66, prime_radius=15.0)
+    made = make_groove(motion, roller, clearance=1.0, tolerance=1e-4)
+    lowest = roller.start + motion.range[0]
+    assert math.hypot(6.66, lowest) - 0.5 < 6.66
+    # free down to the height of the axis, at least
+    assert made.lost_motion.value > lowest
+    # and farther, as a follower on points of both walls finds
+    theta = np.array([made.lost_motion.theta])
+    low, high = (
+        follow(wall.outline, roller, theta, side=wall.side, missed=wall.tolerance).lift[0]
+        for wall in made.walls
+    )
+    assert high - low > lowest
