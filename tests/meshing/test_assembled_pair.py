@@ -16,6 +16,7 @@ import pytest
 
 from gearcam.base.tolerances import DEFAULT
 from gearcam.gears.outline import build_outline
+from gearcam.numeric.arrays import as_pairs
 from helpers_pairs import PHASES, Assembly, profile
 from helpers_sampling import few
 
@@ -61,7 +62,7 @@ def test_tips_longer_than_the_mates_flank_would_collide(
 ) -> None:
     made = profile(name, FINE)
     untreated = build_outline(made.gear1.toothing, None, FINE, DEFAULT)
-    assembly = Assembly(made, (untreated.points, made.gear2.outline))
+    assembly = Assembly(made, (as_pairs(untreated.points), made.gear2.outline))
     worst = max(assembly.overlap(math.radians(d)) for d in range(phase - 12, phase + 13))
     assert worst > least
 
