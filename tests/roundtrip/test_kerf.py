@@ -17,7 +17,7 @@ from ezdxf.entities.lwpolyline import LWPolyline
 
 import gearcam
 from gearcam.base.errors import DesignError, InfeasibleError
-from gearcam.base.quantities import LENGTH
+from gearcam.base.quantities import LEAST_ALLOWANCE
 from gearcam.designs import load, loads
 from gearcam.export.dxf_read import DxfError, read_dxf, read_outline
 from gearcam.kinds.cam.build import CamResult
@@ -57,7 +57,7 @@ def files(kind: str, kerf: float = 0.0, **sizes: Any) -> dict[str, bytes]:
     extras: dict[str, Any] = {}
     made = job(kerf, **sizes).files(kind, extras)
     if kind == "dxf":
-        assert max(extras["dxf"]["error_mm"].values()) <= TOLERANCE
+        assert max(extras["accuracy"]["dxf_mm"].values()) <= TOLERANCE
     return made
 
 
@@ -143,7 +143,7 @@ def test_paths_are_measured_however_they_are_drawn(curves: str) -> None:
     other = GearPairResult(replace(made.design, output=output))
     extras: dict[str, Any] = {}
     data = other.files("dxf", extras)["gear1.dxf"]
-    assert 0.05 * TOLERANCE < extras["dxf"]["error_mm"]["gear1.dxf"] <= TOLERANCE
+    assert 0.05 * TOLERANCE < extras["accuracy"]["dxf_mm"]["gear1.dxf"] <= TOLERANCE
     layers = {entity.dxf.layer for entity in read_dxf(data).modelspace()}
     assert layers == {"OUTLINE_KERF", "BORE_KERF", "HOLE_KERF", "MARK"}
 
@@ -279,12 +279,12 @@ def test_a_kerf_that_leaves_nothing_of_an_opening_is_refused(
     cut_drawing(drawing, 0.999999 * float(words[0]))
 
 
-@pytest.mark.parametrize("kerf", [7e-6, 0.99 * LENGTH.least])
+@pytest.mark.parametrize("kerf", [7e-9, 0.99 * LEAST_ALLOWANCE])
 def test_a_kerf_is_none_or_that_of_a_machine(kerf: float) -> None:
     text = (PROFILES / "ellipse.toml").read_text("utf-8")
-    for good in (0.0, LENGTH.least):
+    for good in (0.0, LEAST_ALLOWANCE):
         assert loads(text.replace("[output]", f"[output]\nkerf_mm = {good}")).output.kerf == good
-    with pytest.raises(DesignError, match=r"too small(.|\n)*0 or at least 0.001 mm"):
+    with pytest.raises(DesignError, match=r"too small(.|\n)*0 or a number from 1e-06"):
         loads(text.replace("[output]", f"[output]\nkerf_mm = {kerf}"))
 
 

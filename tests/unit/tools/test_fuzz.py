@@ -10,7 +10,6 @@ from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
-import numpy as np
 import pytest
 
 import gearcam
@@ -138,9 +137,9 @@ def test_nothing_is_wrong_with_a_good_result(small: Any) -> None:
 def test_polygons_that_cross_themselves_are_seen(small: Any) -> None:
     part = small.result.parts[0]
     contour = part.contour
-    crossed = contour.vertices.copy()
+    crossed = contour.points.copy()
     crossed[[3, 4]] = crossed[[4, 3]]
-    wrong = dataclasses.replace(contour, vertices=crossed)
+    wrong = dataclasses.replace(contour, points=crossed)
     parts = (dataclasses.replace(part, contours=(wrong,)),)
     written = dataclasses.replace(small.written, files=(), summary={})
     (found,) = oracles.look_at(SimpleNamespace(parts=parts), written)
@@ -162,8 +161,8 @@ def test_parts_that_cannot_be_made_are_no_failure_where_no_file_asks_for_them(sm
 def test_curves_that_do_not_join_are_seen(small: Any, share: float, places: list[str]) -> None:
     part = small.result.parts[0]
     first, *others = part.contour.runs
-    off = [share * part.tolerance, 0.0]
-    moved = dataclasses.replace(first, points=np.add(first.points, off))
+    off = share * part.tolerance
+    moved = dataclasses.replace(first, points=first.points + off)
     wrong = dataclasses.replace(part.contour, dense=lambda: (moved, *others))
     parts = (dataclasses.replace(part, contours=(wrong,)),)
     written = dataclasses.replace(small.written, files=(), summary={})
@@ -226,9 +225,9 @@ def test_a_study_contradicts_a_better_contact_ratio(
 def test_a_follower_contradicts_a_profile_that_is_off(name: str) -> None:
     result: Any = gearcam.build(gearcam.load(PROFILES / f"{name}.toml"))
     assert [*doubts_of_cam(result)] == []
-    moved = 6.0 * result.profile.tolerance * np.array([0.0, 1.0])
+    moved = 6.0 * result.profile.tolerance * 1j
     vars(result)["profiles"] = tuple(
-        dataclasses.replace(one, vertices=one.vertices + moved) for one in result.profiles
+        dataclasses.replace(one, points=one.points + moved) for one in result.profiles
     )
     assert {place for place, _ in doubts_of_cam(result)} == {"lift"}
 
