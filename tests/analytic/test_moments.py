@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from gearcam.cams.carriers import unit
 from gearcam.numeric.hermite import hermite_arms
 from gearcam.numeric.moments import Moments, arc_moments, curve_moments
 from gearcam.parts.shapes import Circle, Loop
@@ -145,7 +146,7 @@ def ellipse(a: float, b: float, centre: complex) -> Curve:
 def sampled(curve: Curve, count: int) -> Moments:
     """Moments from `count` steps, points and unit tangents exact."""
     points, slopes = curve(np.linspace(0.0, 1.0, count + 1))
-    return curve_moments(points, slopes / np.abs(slopes))
+    return curve_moments(points, unit(np.angle(slopes)))
 
 
 def test_an_ellipse_by_points_and_tangents() -> None:
@@ -162,8 +163,8 @@ def test_wrong_tangents_are_found() -> None:
     """
     radius, count, turn = 5.0, 200, 0.1
     points, slopes = arc(0j, radius, 0.0, 2 * math.pi)(np.linspace(0.0, 1.0, count + 1))
-    units = slopes / np.abs(slopes)
-    right, wrong = (curve_moments(points, t).area for t in (units, units * np.exp(1j * turn)))
+    turned = (unit(np.angle(slopes) + by) for by in (0.0, turn))
+    right, wrong = (curve_moments(points, tangents).area for tangents in turned)
     bows = math.pi * radius**2 - count * radius**2 / 2 * math.sin(2 * math.pi / count)
     assert right - wrong == pytest.approx(1.2 * bows * (1 - math.cos(turn)), rel=0.01)
     assert right - wrong > 100 * abs(right - math.pi * radius**2)

@@ -193,8 +193,9 @@ def test_two_rollers_touch_a_wall_each() -> None:
 
 def test_a_roller_leaves_a_wall_that_comes_nearer_to_the_axis_than_it_can() -> None:
     """With half the clearance it would be at 6.65 mm from the axis, its guide is at 6.66 mm."""
-    up = SegmentPhase(angle=5.766050713996082, to=4.0, velocity=12.2)
-    motion = program([up, ReturnPhase(angle=TURN - up.angle, law=law("cycloidal"))])
+    turn = 5.766050713996082
+    up = SegmentPhase(angle=turn, to=4.0, velocity=12.2)
+    motion = program([up, ReturnPhase(angle=TURN - turn, law=law("cycloidal"))])
     roller = follower_of("roller", roller_radius=0.75, offset=6.66, prime_radius=15.0)
     made = make_groove(motion, roller, clearance=1.0, tolerance=1e-4)
     lowest = roller.start + motion.range[0]

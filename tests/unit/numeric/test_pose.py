@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from gearcam.numeric.arrays import Plane
 from gearcam.numeric.pose import UNMOVED, Pose
 
 POSES = [Pose(), Pose(0.7, 3.0 - 2.0j, 5.0), Pose(-2.0, 1j), Pose(shift=4.0), Pose(math.pi)]
@@ -18,7 +19,7 @@ def matrix(pose: Pose) -> np.ndarray:
     return np.array([[c, -s, shift.real], [s, c, shift.imag], [0.0, 0.0, 1.0]])
 
 
-def moved(matrix: np.ndarray, points: np.ndarray) -> np.ndarray:
+def moved(matrix: np.ndarray, points: Plane) -> Plane:
     x, y, _ = matrix @ np.stack([points.real, points.imag, np.ones(len(points))])
     return x + 1j * y
 

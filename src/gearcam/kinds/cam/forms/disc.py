@@ -88,7 +88,7 @@ class Plates(Form[C, S, F]):
         (part,), (wall,), pose = self.result.parts, self.cam.walls, self.output.pose
         side = -1.0 if wall.clockwise else 1.0
         shapes = follower(wall, pose, self.reach)
-        return plate(part, wall, *self.primes, shapes, angle=side * pose)
+        return plate(part, wall, self.primes[0], shapes, angle=side * pose)
 
     @property
     def primes(self) -> tuple[float, ...]:
