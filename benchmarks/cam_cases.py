@@ -70,7 +70,7 @@ def blank() -> Any:
 def rollers(job: Any, steps: int, segments: int) -> Any:
     """Return the roller at even angles, in the frame of the cam."""
     theta = np.arange(steps) * (2.0 * math.pi / steps)
-    centers = job.cam.curve.pitch(theta, job.program.derivatives(theta, 0)[0])
+    centers, _ = job.cam.pitch_curve.trace(theta, *job.program.derivatives(theta, 1))
     made = shapely.points(centers.real, centers.imag)
     return shapely.buffer(made, RADIUS, quad_segs=segments // 4)
 
