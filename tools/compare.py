@@ -305,7 +305,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--more", action="store_true", help=words)
     words = "key or word of designs with another name in the base: helix.steps=steps.count"
     parser.add_argument("--rename", action="append", default=[], metavar="OLD=NEW", help=words)
-    words = "name in files and findings that differs in the base: travel_mm=travel_mm"
+    words = "name in files and findings that differs in the base: u_mm=travel_mm"
     parser.add_argument("--called", action="append", default=[], metavar="OLD=NEW", help=words)
     parser.add_argument("--messages", action="store_true", help="compare the words of messages too")
     parser.add_argument("--limit", type=float, default=20.0, help="CPU time for a design, s")
