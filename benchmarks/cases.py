@@ -18,7 +18,6 @@ import numpy as np
 import shapely
 
 import gearcam
-import peers
 from gearcam.gears.flank import Toothing
 from gearcam.meshing.half_teeth import half_teeth
 from gearcam.meshing.overlap import Turning
@@ -124,6 +123,8 @@ def alone(design: Any) -> Timing:
 def against_ncgears(tries: int = 3) -> Result:
     """(a) Both outlines of the nail machine at 1 um against ncgears."""
     mine = measure("gearcam, nail machine, 1 um", lambda: outlines(gearcam.load(NAIL)), 15)
+    import peers  # needs ncgears, which is installed for the bench only
+
     nail = [peers.attempt(peers.nail_machine(start), MODULE, TEETH) for start in _starts()]
     built = [run for run in nail if run.built]
     coarse, fine = (load(SMOOTH.format(tolerance=value)) for value in ("0.001", "0.000123"))
