@@ -175,6 +175,17 @@ def allowance(*, doc: str) -> Any:
     return param(LENGTH, default=0.0, doc=doc, **bounds)
 
 
+def positive_length(*, example: float | None = None, default: Any = None, doc: str) -> Any:
+    """Return a dataclass field of a length above 0, up to `LONGEST`.
+
+    Parameters
+    ----------
+    example, default, doc
+        See `param`; the default None means that it may be left out.
+    """
+    return param(LENGTH, default=default, gt=0, le=LONGEST, example=example, doc=doc)
+
+
 def fixed(value: Any) -> Any:
     """Return a field of a subclass that has one `value` only: it is no parameter there."""
     return dataclasses.field(default=value, init=False)

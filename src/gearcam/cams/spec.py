@@ -18,7 +18,7 @@ from typing import Any, ClassVar, Final
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.numerals import formatted
-from gearcam.base.quantities import ANGLE, LENGTH, LONGEST, TEXT, fixed, param
+from gearcam.base.quantities import ANGLE, LENGTH, LONGEST, TEXT, fixed, param, positive_length
 from gearcam.base.rules import Breach, Rule, exactly_one, excluded, needed_with, only_with
 
 KIND: Final = "cams"
@@ -48,11 +48,6 @@ GROOVE_SIDE: Final = "face that a groove is cut into; front (+z) if left out"
 """Meanings of keys that several forms have."""
 
 
-def positive_length(*, example: float | None = None, default: Any = None, doc: str) -> Any:
-    """Return the field of a length above 0; for `example`, `default` and `doc` see `param`."""
-    return param(LENGTH, default=default, gt=0, le=LONGEST, example=example, doc=doc)
-
-
 def form_param(name: str) -> Any:
     """Return the field of the form of a cam, which has this `name`."""
     return param(TEXT, default=name, doc="the form of the cam")
@@ -64,7 +59,6 @@ def _aside(*, doc: str) -> Any:
 
 
 _NO_TYPE: Final = "does not apply to a {} follower"
-_NO_STEM: Final = "does not apply to a {} follower"
 _NO_ARM: Final = "does not apply to an {} follower"
 
 GUIDE_RULES: Final = (
@@ -72,13 +66,13 @@ GUIDE_RULES: Final = (
     needed_with(("roller_radius",), "type", "roller", why="is missing for a {} follower"),
     only_with(("dome_radius",), "type", "domed", why=_NO_TYPE),
     needed_with(("dome_radius",), "type", "domed", why="is missing for a {} follower"),
-    only_with(("arm", "pivot_distance"), "motion", "oscillating", why=_NO_STEM),
+    only_with(("arm", "pivot_distance"), "motion", "oscillating", why=_NO_TYPE),
     needed_with(("pivot_distance",), "motion", "oscillating", why="is missing for an {} follower"),
 )
 """Rules for the contact element and the guide of followers of all forms."""
 
 FACE_RULES: Final = (
-    only_with(("face_offset",), "motion", "oscillating", why=_NO_STEM),
+    only_with(("face_offset",), "motion", "oscillating", why=_NO_TYPE),
     only_with(("face_offset",), "type", "flat", why=_NO_TYPE),
 )
 """Rules for the offset of a face."""
@@ -222,7 +216,7 @@ class CamSpec(ShortRepr):
         doc="base radius: from the cam's axis to the profile at zero lift; give it instead of "
         "prime_radius_mm, and always with a flat follower",
     )
-    thickness: float = param(LENGTH, default=10.0, gt=0, le=LONGEST, doc="thickness of the plate")
+    thickness: float = positive_length(default=10.0, doc="thickness of the plate")
     rotation: str = param(
         TEXT,
         default="ccw",

@@ -5,7 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from gearcam.base.display import ShortRepr
-from gearcam.base.quantities import ANGLE, COUNT, LENGTH, LONGEST, NUMBER, TEXT, param
+from gearcam.base.quantities import (
+    ANGLE,
+    COUNT,
+    LENGTH,
+    NUMBER,
+    TEXT,
+    param,
+    positive_length,
+)
 from gearcam.base.rules import exactly_one, excludes, only_with
 
 RIM = 2.7
@@ -141,9 +149,7 @@ class PairSpec(ShortRepr):
         choices=("external", "internal"),
         doc="external: wheel 2 is beside wheel 1; internal: it is a ring around wheel 1",
     )
-    center_distance: float | None = param(
-        LENGTH, default=None, gt=0, le=LONGEST, doc="centre distance"
-    )
+    center_distance: float | None = positive_length(doc="centre distance")
     module: float | None = param(
         LENGTH,
         default=None,
@@ -172,9 +178,7 @@ class PairSpec(ShortRepr):
         le=1e4,
         doc="backlash along the pitch curve, of both wheels together",
     )
-    face_width: float = param(
-        LENGTH, default=10.0, gt=0, le=LONGEST, doc="face width of the wheels"
-    )
+    face_width: float = positive_length(default=10.0, doc="face width of the wheels")
 
     rules = (exactly_one("center_distance", "module", note="the other is computed"),)
 
@@ -196,21 +200,11 @@ class RingSpec:
         choices=("round", "follow"),
         doc="outside of the ring: a circle (round), or parallel to the roots (follow)",
     )
-    rim: float | None = param(
-        LENGTH,
-        default=None,
-        gt=0,
-        le=LONGEST,
-        example=6,
-        doc="least rim outside the roots; 2.7 modules if left out",
+    rim: float | None = positive_length(
+        example=6, doc="least rim outside the roots; 2.7 modules if left out"
     )
-    outer_diameter: float | None = param(
-        LENGTH,
-        default=None,
-        gt=0,
-        le=LONGEST,
-        example=130,
-        doc="outer diameter of a round ring, instead of rim_mm",
+    outer_diameter: float | None = positive_length(
+        example=130, doc="outer diameter of a round ring, instead of rim_mm"
     )
     cutter_teeth: float | None = param(
         NUMBER,

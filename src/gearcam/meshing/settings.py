@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from gearcam.base.display import ShortRepr
-from gearcam.base.quantities import ANGLE, COUNT, LENGTH, LONGEST, param
+from gearcam.base.quantities import ANGLE, COUNT, param, positive_length
 from gearcam.base.rules import above, distinct, excluded
 
 KIND = "meshing"
@@ -64,13 +64,8 @@ class MeshingSpec(ShortRepr):
     step: int = param(
         COUNT, default=1, ge=1, le=100, doc="step of stepped gears to study, counted from below"
     )
-    center_distance: float | None = param(
-        LENGTH,
-        default=None,
-        gt=0,
-        le=LONGEST,
-        example=80.1,
-        doc="centre distance as mounted, not for racks; as designed by default",
+    center_distance: float | None = positive_length(
+        example=80.1, doc="centre distance as mounted, not for racks; as designed by default"
     )
 
     rules = (

@@ -31,6 +31,7 @@ from gearcam.base.quantities import (
     allowance,
     param,
     params_of,
+    positive_length,
 )
 from gearcam.base.rules import Breach, below, excludes, needs, together
 
@@ -100,28 +101,20 @@ class WheelBlank(ShortRepr):
     hub_front: float = _length(doc="height of the hub on the front face (+z)")
     hub_back: float = _length(doc="height of the hub on the back face")
     lightening_holes: int = _count(doc="number of round lightening holes", le=36)
-    rim: float | None = param(
-        LENGTH, default=None, gt=0, le=LONGEST, example=6,
-        doc="least metal between lightening holes and roots; 2.7 modules if left out",
-    )  # fmt: skip
-    web: float | None = param(
-        LENGTH, default=None, gt=0, le=LONGEST, example=5,
+    rim: float | None = positive_length(
+        example=6, doc="least metal between lightening holes and roots; 2.7 modules if left out"
+    )
+    web: float | None = positive_length(
+        example=5,
         doc="least metal between lightening holes, and from them to bore, hub and bolt holes; the "
         "rim if left out",
-    )  # fmt: skip
-    stop_pin: float = _length(
-        doc="diameter of the stop pin, which runs in a slot of an open wheel", le=1e5
     )
+    stop_pin: float = _length(doc="diameter of the stop pin, which runs in a slot of an open wheel")
     timing_marks: bool = param(
         TEXT, default=True, doc="whether timing marks face each other at phi1 = 0"
     )
-    mark_diameter: float | None = param(
-        LENGTH,
-        default=None,
-        gt=0,
-        le=LONGEST,
-        example=1,
-        doc="diameter of the timing marks; 0.4 modules if left out",
+    mark_diameter: float | None = positive_length(
+        example=1, doc="diameter of the timing marks; 0.4 modules if left out"
     )
     density: float | None = param(
         DENSITY,

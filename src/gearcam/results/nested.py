@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 from typing import Any
 
-from gearcam.base.errors import Adjustment, InfeasibleError
+from gearcam.base.errors import InfeasibleError
 from gearcam.base.findings import Finding
 from gearcam.base.quantities import params_of
 from gearcam.designs.design import Design
@@ -39,9 +39,7 @@ def within(key: str) -> Iterator[None]:
             unit=error.unit,
             nearest=error.nearest,
             adjustments=[
-                Adjustment(
-                    near=keyed(key, way.near), far=keyed(key, way.far), doubling=way.doubling
-                )
+                replace(way, near=keyed(key, way.near), far=keyed(key, way.far))
                 for way in error.adjustments
             ],
         ) from error

@@ -153,7 +153,7 @@ def test_the_next_smaller_change_does_not_do(name: str, folder: Path) -> None:
 )
 def test_remedies_are_short_and_nearly_the_least(name: str, folder: Path) -> None:
     found = search(name, folder).found
-    # one way out is told once, though a refusal and the usual adjustments both name it
+    # a change that both the refusal and the usual adjustments name is listed once
     assert len({tuple(remedy.changes) for remedy in found}) == len(found)
     for remedy in found:
         for key, value in remedy.changes.items():

@@ -12,11 +12,11 @@ from gearcam.base.quantities import (
     COUNT,
     FINEST,
     LENGTH,
-    LONGEST,
     TEXT,
     allowance,
     fixed,
     param,
+    positive_length,
 )
 from gearcam.designs.outputs import FORMATS, OutputSpec, files_param, pose_param, studies_param
 from gearcam.parts.blank import WheelBlank
@@ -47,11 +47,7 @@ class CamBlank(WheelBlank):
 
     keyway_angle: float = _direction(doc="direction of the keyway in the cam's frame")
     bolt_angle: float = _direction(doc="direction of the first bolt hole in the cam's frame")
-    rim: float | None = param(
-        LENGTH,
-        default=None,
-        gt=0,
-        le=LONGEST,
+    rim: float | None = positive_length(
         example=6,
         doc="least metal between lightening holes and profile; two thirds of the thickness if left "
         "out",
@@ -132,11 +128,7 @@ class CamOutputSpec(OutputSpec):
         le=100000,
         doc="number of points in inspection.csv, at equal steps of the cam angle",
     )
-    tool_radius: float | None = param(
-        LENGTH,
-        default=None,
-        gt=0,
-        le=LONGEST,
+    tool_radius: float | None = positive_length(
         example=8,
         doc="radius of the cutter of the tool path; the follower's, or half a groove, if left out",
     )

@@ -22,7 +22,6 @@ _FINER: Final = 16.0
 _TRACED: Final = 2.0
 """Error over the change: ends of flanks are off in proportion to the tolerance, with scatter."""
 
-
 _VOLUME: Final = (
     "cubics through dense points with doubled steps, at kinks of tips with halved steps; ends of "
     "flanks searched again with a tolerance 16 times finer; flank_mm over the whole edge"
@@ -47,29 +46,23 @@ def error_rows(result: GearPairResult) -> Estimates:
     if result.law.function_error:
         how += ", with that of the expansion of the Python function"
     area = max(gear.profile.chord_error * gear.profile.contour.length for gear in result.gears)
-    if result.pair.on_rack:
-        turning = "travel_mm", result.pair.center_distance * driven
-    else:
-        turning = "driven_angle_rad", driven
+    rack = result.pair.on_rack
+    name = "travel_mm" if rack else "driven_angle_rad"
     rows = {
-        turning[0]: (turning[1], how),
+        name: (result.pair.center_distance * driven if rack else driven, how),
         "flank_mm": (flank, how),
         "contact_ratio": (contact_ratio, how),
         "area_mm2": (area, "chord error times the length of the outline"),
     }
-    volumes = (
-        [
+    if result.ordered:
+        steps = zip(result.parts, *result.steps, strict=True)
+        volumes = [
             _volume(result, part, gears, flank)
-            for number, (part, *gears) in enumerate(
-                zip(result.parts, *result.steps, strict=True), 1
-            )
+            for number, (part, *gears) in enumerate(steps, 1)
             if result.design.blank.wheel(number).density is not None
         ]
-        if result.ordered
-        else []
-    )
-    if volumes:
-        rows["volume_mm3"] = max(volumes), _VOLUME
+        if volumes:
+            rows["volume_mm3"] = max(volumes), _VOLUME
     return rows
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from gearcam.base.facts import Fact
-from gearcam.base.quantities import ANGLE, LENGTH, LONGEST, param
+from gearcam.base.quantities import ANGLE, LENGTH, LONGEST, param, positive_length
 from gearcam.base.rules import Breach, only_with
 from gearcam.cams.conjugate import ConjugateCam, SecondRoller, make_conjugate
 from gearcam.cams.placing import make_round_follower
@@ -17,7 +17,6 @@ from gearcam.cams.spec import (
     CamSpec,
     FollowerSpec,
     form_param,
-    positive_length,
 )
 from gearcam.designs.faults import Fault
 from gearcam.kinds.cam.forms.base import FORMS, Form

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from gearcam.base.errors import beyond_limit
 from gearcam.base.facts import Fact
-from gearcam.base.quantities import LENGTH, REQUIRED, TEXT, param
+from gearcam.base.quantities import LENGTH, REQUIRED, TEXT, param, positive_length
 from gearcam.base.rules import Breach, below
 from gearcam.cams.groove import GrooveCam, make_groove
 from gearcam.cams.placing import make_round_follower
@@ -19,7 +19,6 @@ from gearcam.cams.spec import (
     CamSpec,
     FollowerSpec,
     form_param,
-    positive_length,
 )
 from gearcam.designs.faults import Fault, show
 from gearcam.kinds.cam.forms.base import FORMS, Form

@@ -12,7 +12,16 @@ import numpy as np
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import beyond_limit
 from gearcam.base.facts import Fact
-from gearcam.base.quantities import LENGTH, LONGEST, REQUIRED, TEXT, fixed, param, params_of
+from gearcam.base.quantities import (
+    LENGTH,
+    LONGEST,
+    REQUIRED,
+    TEXT,
+    fixed,
+    param,
+    params_of,
+    positive_length,
+)
 from gearcam.base.rules import Breach, below, needs, only_with
 from gearcam.cams.placing import make_follower_over_plate
 from gearcam.cams.sliding import SlidingCam, make_sliding
@@ -22,7 +31,6 @@ from gearcam.cams.spec import (
     CamSpec,
     PlateFollower,
     form_param,
-    positive_length,
 )
 from gearcam.designs.faults import Fault, show
 from gearcam.kinds.cam.forms.base import FORMS, Form
@@ -171,12 +179,8 @@ class PlateOutput(CamOutputSpec):
 
     pose: float = fixed(0.0)
     motion_step: float = fixed(0.0)
-    travel_step: float = param(
-        LENGTH,
-        default=1.0,
-        gt=0,
-        le=LONGEST,
-        doc="step of a translating cam's travel in motion.csv",
+    travel_step: float = positive_length(
+        default=1.0, doc="step of a translating cam's travel in motion.csv"
     )
     place: float = param(
         LENGTH,
