@@ -1,4 +1,8 @@
-"""What kind of follower or carrier there is, is asked in their own files only."""
+"""What sort of follower or carrier there is, is asked in their own files only.
+
+A design's follower answers for itself, too: nobody asks its settings for flags. They may be
+passed on as an argument of the same name.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +12,7 @@ from collections.abc import Iterator
 from arch import rules
 
 FLAGS = {"flat", "oscillating", "slide", "slides"}
-"""Flags that followers and carriers do not have; the settings of a design do."""
+"""Flags that followers and carriers do not have; settings of a design have some for themselves."""
 
 CLASSES = {"Round", "Face", "Stem", "Arm", "FlatStem", "FlatArm", "Rotating", "Sliding"}
 
@@ -20,10 +24,15 @@ SETTINGS = {"spec.py", "placing.py"}
 
 
 def questions(tree: ast.AST, flags: bool) -> Iterator[str]:
-    """Yield the questions for the kind of a follower or carrier, also by `flags` if asked."""
+    """Yield the questions for the sort of a follower or carrier, also by `flags` if asked."""
+    passed = {
+        one.value for one in ast.walk(tree) if isinstance(one, ast.keyword) and one.arg in FLAGS
+    }
     for node in ast.walk(tree):
         match node:
-            case ast.Attribute(attr=name) if flags and name in FLAGS:
+            case ast.Attribute(attr=name, value=owner) if (
+                flags and name in FLAGS and node not in passed and not _is_self(owner)
+            ):
                 yield f"{node.lineno}: .{name}"
             case ast.Call(func=ast.Name(id="isinstance"), args=[_, kinds]):
                 names = {part.id for part in ast.walk(kinds) if isinstance(part, ast.Name)}
@@ -33,22 +42,27 @@ def questions(tree: ast.AST, flags: bool) -> Iterator[str]:
                 yield f"{node.lineno}: case {name}"
 
 
-def test_nobody_asks_for_the_kind_of_a_follower() -> None:
-    cams, kinds = (rules.SOURCE / folder for folder in ("cams", "kinds"))
+def _is_self(owner: ast.expr) -> bool:
+    return isinstance(owner, ast.Name) and owner.id == "self"
+
+
+def test_nobody_asks_for_the_sort_of_a_follower() -> None:
+    cams, kinds = (rules.SOURCE / folder for folder in ("cams", "kinds/cam"))
     found = [
         f"{path.name}:{question}"
         for path in rules.python_files(cams, kinds)
         if path.name not in OWN
-        for question in questions(rules.parse(path), flags=path.parent == cams)
-        if path.name not in SETTINGS or "isinstance" in question
+        for question in questions(rules.parse(path), flags=path.name not in SETTINGS)
     ]
     assert found == [], "a follower answers it (cams/followers.py), or its carrier"
 
 
 def test_such_questions_are_found() -> None:
     text = "x = m.flat or isinstance(f, (Stem, Arm))\nmatch c:\n    case Sliding():\n        pass\n"
+    text += "y = make(flat=m.flat) if self.flat else make(oscillating=not m.oscillating)\n"
     assert sorted(questions(ast.parse(text), flags=True)) == [
         "1: .flat",
         "1: isinstance of Arm, Stem",
         "3: case Sliding",
+        "5: .oscillating",
     ]

@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import Any, ClassVar, Protocol
+from typing import Any, ClassVar, Final, Protocol
 
 import numpy as np
 
@@ -21,6 +21,10 @@ from gearcam.base.display import ShortRepr
 from gearcam.base.numerals import formatted
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.jets import Jet, cos, sin
+
+ROUNDING: Final = 1e-9
+"""Share of a step by which a turn may differ from whole steps, and share of a travel by which a
+position may exceed it."""
 
 Pair = tuple[Any, Any]
 """Real and imaginary part of a vector: jets, arrays or floats."""
@@ -34,7 +38,7 @@ def unit(angle: Array | float) -> Plane:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Driver(ShortRepr):
+class DriverAxis(ShortRepr):
     """Name and unit of a cam's angle or travel in output.
 
     Parameters
@@ -99,8 +103,27 @@ class Carrier(ABC, ShortRepr):
 
     @property
     @abstractmethod
-    def driver(self) -> Driver:
+    def driver(self) -> DriverAxis:
         """Name and unit of its angle or travel in output."""
+
+    @property
+    @abstractmethod
+    def positions(self) -> tuple[float, float]:
+        """Least and largest driver position, rad or mm."""
+
+    @abstractmethod
+    def places(self, step: float, period: float) -> Array:
+        """Return the driver positions of a table.
+
+        Parameters
+        ----------
+        step, period : float, rad or mm
+            Step of the table, and whole turn or travel.
+
+        Returns
+        -------
+        (n,) array, rad or mm
+        """
 
     @abstractmethod
     def relative(self, ahead: Pair, at: Pair) -> Pair:
@@ -160,9 +183,9 @@ class Rotating(Carrier):
     rate, around, returns = 1.0, True, False
 
     @property
-    def driver(self) -> Driver:
+    def driver(self) -> DriverAxis:
         """Name and unit of the cam angle."""
-        return Driver(
+        return DriverAxis(
             column="theta_deg",
             symbol="theta",
             unit="deg",
@@ -171,6 +194,15 @@ class Rotating(Carrier):
             scale=math.degrees(1.0),
             whole=360.0,
         )
+
+    @property
+    def positions(self) -> tuple[float, float]:
+        """Any angle (see `Carrier.positions`)."""
+        return -math.inf, math.inf
+
+    def places(self, step: float, period: float) -> Array:
+        """Return angles; a whole turn only if it is in whole steps (see `Carrier.places`)."""
+        return step * np.arange(math.floor(period / step + ROUNDING) + 1.0)
 
     def relative(self, ahead: Pair, at: Pair) -> Pair:  # noqa: ARG002
         """Return ``conj(t)*C``, as ``U = -i*C`` (see `Carrier.relative`)."""
@@ -215,9 +247,9 @@ class Sliding(Carrier):
     rate, around, returns = 0.0, False, True
 
     @property
-    def driver(self) -> Driver:
+    def driver(self) -> DriverAxis:
         """Name and unit of the travel."""
-        return Driver(
+        return DriverAxis(
             column="travel_mm",
             symbol="u",
             unit="mm",
@@ -226,6 +258,16 @@ class Sliding(Carrier):
             scale=1.0,
             whole=self.travel,
         )
+
+    @property
+    def positions(self) -> tuple[float, float]:
+        """Both ends of the travel (see `Carrier.positions`)."""
+        return 0.0, self.travel
+
+    def places(self, step: float, period: float) -> Array:
+        """Return travels and the end, where the cam is not as before (see `Carrier.places`)."""
+        whole = step * np.arange(math.floor(period / step + ROUNDING) + 1.0)
+        return np.append(whole[whole < period * (1.0 - ROUNDING)], period)
 
     def relative(self, ahead: Pair, at: Pair) -> Pair:  # noqa: ARG002
         """Return ``i*conj(t)``, as ``U = 1`` everywhere (see `Carrier.relative`)."""

@@ -12,6 +12,7 @@ Depends on quantities and rules only.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, ClassVar, Final
@@ -135,6 +136,22 @@ class FollowerSpec(ShortRepr):
         """Radius of its round face, mm; 0 of a point."""
         return self.roller_radius or self.dome_radius or 0.0
 
+    @property
+    def named(self) -> str:
+        """It in words, with its article."""
+        return f"{'an' if self.oscillating else 'a'} {self.motion} {self.type} follower"
+
+    @property
+    def size_keys(self) -> tuple[str, str]:
+        """The key of the size that the cam has for it, and the key of the other size."""
+        keys = "base_radius_mm", "prime_radius_mm"
+        return keys if self.flat else (keys[1], keys[0])
+
+    @property
+    def placement(self) -> dict[str, float | None]:
+        """Its place beside the axis of the cam as facts, where that applies to it."""
+        return {"offset_mm": None if self.oscillating else self.offset}
+
     rules = (
         *GUIDE_RULES,
         *FACE_RULES,
@@ -179,6 +196,14 @@ class PlateFollower(FollowerSpec):
         doc="of an oscillating follower on a translating cam: height of its pivot above the "
         "roller's centre at zero lift"
     )
+
+    @property
+    def placement(self) -> dict[str, float | None]:
+        """Its place over the plate as facts (see `FollowerSpec.placement`)."""
+        return {
+            "axis_deg": math.degrees(self.axis) or None,
+            "pivot_height_mm": self.pivot_height if self.oscillating else None,
+        }
 
     rules = (
         *GUIDE_RULES,

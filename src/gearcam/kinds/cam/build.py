@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
@@ -15,6 +14,7 @@ from numpy.typing import ArrayLike
 
 from gearcam.base.errors import ABOVE, beyond_limit
 from gearcam.base.findings import Finding, in_order, run_checks
+from gearcam.cams.carriers import ROUNDING
 from gearcam.cams.checks import KIND
 from gearcam.kinds.cam.design import CamDesign
 from gearcam.kinds.cam.forms.base import FORMS, Form
@@ -31,17 +31,13 @@ from gearcam.results.parts import CHORDS, Estimates, PartsResult
 
 if TYPE_CHECKING:
     from gearcam.cams.cam import Cam
-    from gearcam.cams.carriers import Driver
+    from gearcam.cams.carriers import Carrier, DriverAxis
     from gearcam.cams.followers import Follower
     from gearcam.cams.wall import PitchMotion, Wall
     from gearcam.parts.body import Part
     from gearcam.parts.checks import CheckedParts
     from gearcam.pictures.drawings import Drawing
     from gearcam.results.result import Progress, StudyResult
-
-_WHOLE: Final = 1e-9
-"""Share of a step by which a turn may differ from whole steps, and share of a travel by which a
-position may exceed it: rounding."""
 
 _HINTED: Final = ("pressure-angle", "jamming", "coarse-rows")
 """Findings whose messages name values that help."""
@@ -99,9 +95,14 @@ class CamResult(PartsResult):
         return self.cam.motions[0].follower
 
     @property
-    def driver(self) -> Driver:
+    def driver(self) -> DriverAxis:
         """Name and unit of the cam's angle or travel in output."""
-        return self.cam.motions[0].carrier.driver
+        return self.carrier.driver
+
+    @property
+    def carrier(self) -> Carrier:
+        """What the cam does beneath its follower."""
+        return self.cam.motions[0].carrier
 
     @cached_property
     def profiles(self) -> tuple[Contour, ...]:
@@ -124,19 +125,14 @@ class CamResult(PartsResult):
         InfeasibleError
             If there are more than a million.
         """
-        output: Any = self.design.output
         period, driver = self.program.period, self.driver
-        step = output.travel_step if self.form.sliding else output.motion_step
+        key, step = self.form.step
         if step < (least := period / _MOST_STEPS):
-            key = f"output.{'travel' if self.form.sliding else 'motion'}_step_{driver.unit}"
             what, scale = f"tables would have more than {_MOST_STEPS:.0f} rows", driver.scale
             note, near = "the limit is the smallest step", ABOVE * least * scale
             value, limit, unit = step * scale, least * scale, driver.unit
             raise beyond_limit(what, key, value, limit, note, near=near, unit=unit)
-        places: Array = step * np.arange(math.floor(period / step + _WHOLE) + 1.0)
-        if self.form.sliding:  # its end does not coincide with its beginning
-            places = np.append(places[places < period * (1.0 - _WHOLE)], period)
-        return places
+        return self.carrier.places(step, period)
 
     def motion(self, theta: ArrayLike | None = None) -> Columns:
         """Return the exact motion of the follower, pressure angle and radii of curvature.
@@ -181,12 +177,8 @@ class CamResult(PartsResult):
         """Return cam angles, rad, from given angles, rad, or travels, mm."""
         if theta is None:
             return self.angles
-        driver = self.driver
-        if not self.form.sliding:
-            return angles("theta", theta)
-        travel = self.program.period
-        places = angles("theta", theta, 0.0, travel, _WHOLE * travel, driver.unit)
-        return np.minimum(places, travel)
+        low, high = self.carrier.positions
+        return angles("theta", theta, low, high, ROUNDING * (high - low), self.driver.per)
 
     def motion_at(self, theta: Array) -> Columns:
         """Return the table of `motion` at cam angles, rad, or travels, mm."""

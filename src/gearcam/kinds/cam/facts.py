@@ -53,10 +53,8 @@ def facts(result: CamResult) -> Facts:
         "part": _part(result) or None,
         "accuracy": result.accuracy,
     }
-    follower = f"{design.follower.motion} {design.follower.type} follower"
-    article = "an" if design.follower.oscillating else "a"
     headline = ("motion.total_lift", f"cam.{result.form.leading}")
-    return Facts(tree, headline, f"{design.cam.form} cam for {article} {follower}")
+    return Facts(tree, headline, f"{design.cam.form} cam for {design.follower.named}")
 
 
 def _motion(result: CamResult) -> Tree:

@@ -71,7 +71,7 @@ def _contact(result: CamResult) -> Ladder:
         make,
         levels=tolerances_around(own)[:-1],
         measured="lift from the profile",
-        unit="deg" if result.design.follower.oscillating else "mm",
+        unit=result.follower.lift_unit[1],
     )
 
 

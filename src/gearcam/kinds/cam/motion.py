@@ -126,7 +126,7 @@ def circumstances(document: Mapping[str, Any]) -> tuple[str, ...]:
     follower = document.get("follower", {})
     motion = follower.get("motion", "translating") if isinstance(follower, Mapping) else None
     known = (motion,) if motion in ("translating", "oscillating") else ()
-    return (*known, "sliding" if _form(document).sliding else "turning")
+    return (*known, _form(document).moves)
 
 
 def _home(key: str) -> str:

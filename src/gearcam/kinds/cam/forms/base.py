@@ -68,8 +68,8 @@ class Form(ABC, Generic[C, S, F]):
     }
     """Classes of the tables of its designs, by title; they derive from those of a disc."""
 
-    sliding: ClassVar[bool] = False
-    """Whether the cam slides: its motion is given over a travel, not over a turn."""
+    moves: ClassVar[str] = "turning"
+    """What the cam does, a circumstance of `gearcam.base.quantities`: units depend on it."""
 
     half_turns: ClassVar[bool] = False
     """Whether phases may fill half a turn; the other half is then its opposite."""
@@ -114,6 +114,11 @@ class Form(ABC, Generic[C, S, F]):
         """Chord tolerance of the profile, mm."""
         return self.output.chord_tolerance or CHORD_TOLERANCE
 
+    @property
+    def step(self) -> tuple[str, float]:
+        """Key and value of the step of tables of the motion, rad or mm."""
+        return "output.motion_step_deg", self.output.motion_step
+
     @classmethod
     def faults(cls, parts: Mapping[str, Any], document: Mapping[str, Any]) -> Iterator[Fault]:
         """Yield contradictions between the tables of a design.
@@ -131,9 +136,9 @@ class Form(ABC, Generic[C, S, F]):
 
     def program(self) -> Program:
         """Return the lift that the design asks for."""
-        motion, swings = self.design.motion, self.follower.oscillating
+        motion = self.design.motion
         make = partial(make_program, motion) if isinstance(motion, Sequence) else motion.program
-        return make(self.result.tolerances, oscillating=swings)
+        return make(self.result.tolerances, oscillating=self.follower.oscillating)
 
     @abstractmethod
     def make(self, program: Program) -> C:
@@ -161,7 +166,7 @@ class Form(ABC, Generic[C, S, F]):
 
     def rows_of(self, number: int) -> Sequence[str]:  # noqa: ARG002
         """Return the names of the facts in the table of a part's drawing, by its `number`."""
-        other = f"{'prime' if self.follower.flat else 'base'}_radius_mm"
+        _, other = self.follower.size_keys
         return [name for name in (*ROWS, *self.rows) if not name.endswith(other)]
 
     def heights(self) -> tuple[float, ...]:
@@ -171,13 +176,13 @@ class Form(ABC, Generic[C, S, F]):
     @property
     def leading(self) -> str:
         """The name of the size for the headline, one of its `sizes`."""
-        return "base_radius_mm" if self.follower.flat else "prime_radius_mm"
+        return self.follower.size_keys[0]
 
     def sizes(self) -> dict[str, Any]:
         """Return its sizes, as facts."""
         follower = self.result.follower
         return {
-            "offset_mm": None if self.follower.oscillating else self.follower.offset,
+            **self.follower.placement,
             "rotation": Fact(self.given.rotation, "cam turns"),
             "prime_radius_mm": follower.prime_radius,
             "base_radius_mm": follower.prime_radius - follower.radius,

@@ -102,6 +102,15 @@ class ConjugateFollower(FollowerSpec):
             preload=self.preload,
         )
 
+    def facts_of(self, cam: ConjugateCam) -> dict[str, Any]:
+        """Return the distance of the rollers, or the angle between their arms, as facts."""
+        distance = Fact(cam.apart, "distance between the centres of the rollers", shown=True)
+        angle = Fact(math.degrees(cam.apart), "angle between the arms", unit="deg", shown=True)
+        return {
+            "roller_distance_mm": None if self.oscillating else distance,
+            "arms_angle_deg": angle if self.oscillating else None,
+        }
+
     def problems(self) -> Iterator[Breach]:
         """Yield contradictions: field, index, message, what is allowed."""
         yield from super().problems()
@@ -215,7 +224,7 @@ class Conjugate(Plates[ConjugateCam, ConjugateSpec, ConjugateFollower]):
         """Return the place of the second roller, and both cams."""
         from gearcam.kinds.cam.facts import curvature, pressure, size, start_angle, trimming
 
-        cam, swings = self.cam, self.follower.oscillating
+        cam = self.cam
         second = cam.second.follower
         first_facts, second_facts = (
             {
@@ -230,15 +239,12 @@ class Conjugate(Plates[ConjugateCam, ConjugateSpec, ConjugateFollower]):
             "prime_radius_mm": Fact(cam.prime2, "prime radius"),
             "base_radius_mm": Fact(cam.prime2 - second.radius, "base radius"),
             "roller_radius_mm": second.radius,
-            "arm_mm": second.lever if swings else None,
+            "arm_mm": self.follower.second(None).arm or None,
             "pressure_angle_deg": pressure(self.result, cam.second),
         }
-        distance = Fact(cam.apart, "distance between the centres of the rollers", shown=True)
-        angle = Fact(math.degrees(cam.apart), "angle between the arms", unit="deg", shown=True)
         return {
             "gap_mm": self.given.gap,
-            "roller_distance_mm": None if swings else distance,
-            "arms_angle_deg": angle if swings else None,
+            **self.follower.facts_of(cam),
             "preload_mm": self.follower.preload or None,
             "cam1": first_facts,
             "cam2": own | second_facts,

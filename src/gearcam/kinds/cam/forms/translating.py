@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, ClassVar, cast
@@ -203,11 +202,16 @@ class Translating(Form[SlidingCam, PlateSpec, PlateFollower]):
         "blank": PlateBlank,
         "output": PlateOutput,
     }
-    sliding = True
+    moves = "sliding"
     rows = (
         "cam.travel_mm", "cam.run_in_mm", "cam.run_out_mm", "cam.axis_deg", "cam.pivot_height_mm",
         "cam.groove.width_mm", "cam.groove.depth_mm", "cam.roller_clearance_mm", "cam.lost_motion",
     )  # fmt: skip
+
+    @property
+    def step(self) -> tuple[str, float]:
+        """Key and value of the step of tables of the motion, mm (see `Form.step`)."""
+        return "output.travel_step_mm", self.output.travel_step
 
     @classmethod
     def faults(cls, parts: Mapping[str, Any], document: Mapping[str, Any]) -> Iterator[Fault]:  # noqa: ARG003
@@ -224,9 +228,12 @@ class Translating(Form[SlidingCam, PlateSpec, PlateFollower]):
         """Return the lift over the travel, with its run before and after."""
         motion = cast("Sequence[Phase]", self.design.motion)
         before, after = ([DwellPhase(angle=run)] if run else [] for run in self.given.runs)
-        swings = self.follower.oscillating
-        phases = [*before, *motion, *after]
-        return make_program(phases, self.result.tolerances, oscillating=swings, closed=False)
+        return make_program(
+            [*before, *motion, *after],
+            self.result.tolerances,
+            oscillating=self.follower.oscillating,
+            closed=False,
+        )
 
     def make(self, program: Program) -> SlidingCam:
         """Return the cam."""
@@ -341,13 +348,12 @@ class Translating(Form[SlidingCam, PlateSpec, PlateFollower]):
 
     def sizes(self) -> dict[str, Any]:
         """Return its sizes, as facts."""
-        follower, plate = self.follower, self.cam.plate
+        plate = self.cam.plate
         return {
             "travel_mm": Fact(self.cam.way, "travel"),
             "run_in_mm": self.given.run_in or None,
             "run_out_mm": self.given.run_out or None,
-            "axis_deg": math.degrees(follower.axis) or None,
-            "pivot_height_mm": follower.pivot_height if follower.oscillating else None,
+            **self.follower.placement,
             "length_mm": plate.right - plate.left,
             "height_mm": plate.high - plate.low,
         }

@@ -56,6 +56,15 @@ class YokeFollower(FollowerSpec):
         ),
     )
 
+    def facts_of(self, cam: YokeCam) -> dict[str, Any]:
+        """Return the distance of its two faces, or of its rollers, as facts."""
+        faces = Fact(cam.breadth, "distance between the faces", shown=True)
+        rollers = Fact(cam.breadth, "distance between the centres of the rollers", shown=True)
+        return {
+            "breadth_mm": faces if self.flat else None,
+            "roller_distance_mm": None if self.flat else rollers,
+        }
+
 
 @dataclass(frozen=True, kw_only=True)
 class YokeSpec(CamSpec):
@@ -108,15 +117,12 @@ class Yoke(Plates[YokeCam, YokeSpec, YokeFollower]):
 
     def facts(self) -> dict[str, Any]:
         """Return the facts of a disc cam, and the distance of both sides of the follower."""
-        cam, flat = self.cam, self.follower.flat
-        faces = Fact(cam.breadth, "distance between the faces", shown=True)
-        rollers = Fact(cam.breadth, "distance between the centres of the rollers", shown=True)
+        cam = self.cam
         return {
             **super().facts(),
-            "breadth_mm": faces if flat else None,
+            **self.follower.facts_of(cam),
             "face_width_mm": cam.face_width and Fact(cam.face_width, "least width of the faces"),
             "least_base_radius_mm": cam.least_base_radius,
-            "roller_distance_mm": None if flat else rollers,
         }
 
 
