@@ -97,7 +97,11 @@ def tree(value: Any) -> Any:
     return exact(value) if isinstance(value, float) else value
 
 
-def shortened(value: float, side: float, digits: int = 4) -> float:
+DIGITS: Final = 4
+"""Digits of values that are named as remedies."""
+
+
+def shortened(value: float, side: float, digits: int = DIGITS) -> float:
     """Return a `value` in `digits`, its size rounded up where `side` is above 0, else down."""
     step = 10.0 ** (math.floor(math.log10(abs(value))) + 1 - digits)
     size = (math.ceil if side > 0.0 else math.floor)(abs(value) / step) * step

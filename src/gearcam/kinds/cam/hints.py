@@ -12,7 +12,7 @@ import numpy as np
 
 from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.base.findings import CHECKS, Finding, limit_of
-from gearcam.base.numerals import formatted, shortened
+from gearcam.base.numerals import DIGITS, formatted, shortened
 from gearcam.cams.checks import KIND, driven
 from gearcam.designs.design import document_of, value_at
 from gearcam.kinds.cam.motion import turn_tables
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 _MOST: Final = 100.0
 """Largest radius that is tried, over what the follower needs: its lift, roller and offset."""
 
-_STEPS: Final = 8
-"""Radii that are tried, each larger than the one before."""
+_DOUBLINGS: Final = 8
+"""Radii that are tried, each twice as far beyond the first as the one before."""
 
 _CLOSER: Final = 1.0 + 1e-4
 """Factor of the least radius that a follower needs."""
@@ -98,17 +98,37 @@ def gentler(result: CamResult, code: str, number: int = 0) -> dict[str, float] |
     found = _least(result, motion, code, math.radians(steep.limit or 0.0))
     if found is None:
         return None
-    for _ in range(_STEPS):
-        changes = resized(result, number, shortened(found, 1.0))
-        try:
-            # another size has the same lift
-            other = type(result)(result.design.with_(changes), result.tolerances)
-            if not any(_steep(result, code, number, other.form.make(result.program))):
-                return changes
-        except (DesignError, InfeasibleError):
+    try:
+        return _first_that_keeps(result, code, number, shortened(found, 1.0))
+    except (DesignError, InfeasibleError):
+        return None
+
+
+def _first_that_keeps(
+    result: CamResult, code: str, number: int, start: float
+) -> dict[str, float] | None:
+    """Return the changes for the smallest radius, from `start`, mm, in the digits printed."""
+    step = 10.0 ** (math.floor(math.log10(start)) + 1 - DIGITS)
+
+    def tried(count: int) -> dict[str, float] | None:
+        changes = resized(result, number, float(f"{start + count * step:.10g}"))
+        # another size has the same lift
+        other = type(result)(result.design.with_(changes), result.tolerances)
+        steep = any(_steep(result, code, number, other.form.make(result.program)))
+        return None if steep else changes
+
+    low, high, changes = -1, 0, tried(0)  # below the start it is too steep
+    while changes is None:
+        low, high = high, 2 * high + 1
+        if high >= 1 << _DOUBLINGS:
             return None
-        found *= 1.001
-    return None
+        changes = tried(high)
+    while high - low > 1:
+        middle = (low + high) // 2
+        smaller = tried(middle)
+        low, high = (middle, high) if smaller is None else (low, middle)
+        changes = smaller or changes
+    return changes
 
 
 def resized(result: CamResult, number: int, size: float) -> dict[str, float]:
@@ -168,7 +188,7 @@ def _sentence(result: CamResult, code: str, number: int) -> str:
     if not follower.has_centre:
         return "A smaller face offset reduces it."
     if not motion.carrier.around:
-        return "A smaller lift or a longer way reduces it."
+        return "A smaller lift or a longer travel reduces it."
     unless = ", or another arm or pivot distance" if follower.angular else ""
     unless = ", or a smaller offset" if follower.aside else unless
     return (
