@@ -164,7 +164,7 @@ def test_walls_and_angles_by_differences(name: str, way: float) -> None:
 @pytest.mark.parametrize("name", FOLLOWERS)
 def test_a_roller_on_the_lower_wall_has_the_lift_asked_for(name: str) -> None:
     cam = made(name, run=RUN, groove=False, tolerance=1e-5, height=80.0)
-    theta = cam.way * np.linspace(0.003, 0.997, 301)
+    theta = cam.travel * np.linspace(0.003, 0.997, 301)
     dense = np.concatenate([run.points for run in cam.edge.runs])
     found = follow(dense, cam.roller, theta, carrier=cam.motion.carrier)
     asked = cam.motion.program.derivatives(theta, 0)[0]
@@ -203,7 +203,7 @@ def test_lost_lift_is_what_a_roller_on_the_trimmed_wall_lacks(name: str) -> None
     wall, program = cam.lower, cam.motion.program
     assert wall.corners
     assert wall.shortfall > 1e-3
-    theta = cam.way * np.linspace(0.008, 0.987, 2001)
+    theta = cam.travel * np.linspace(0.008, 0.987, 2001)
     found = follow(cam.edge.points, cam.roller, theta, carrier=cam.motion.carrier)
     lost = program.derivatives(theta, 0)[0] - found.lift
     assert lost.max() == pytest.approx(wall.shortfall, rel=1e-2)

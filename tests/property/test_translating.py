@@ -81,7 +81,7 @@ def made_of(design: Given) -> SlidingCam | InfeasibleError:
 def centers_of(design: Given, made: SlidingCam) -> Any:
     """Middles of rollers in the cam's frame, by the geometry of the follower."""
     given, motion = design[0], made.motion.program
-    way = np.union1d(np.linspace(0.0, made.way, 8001), motion.knots)
+    way = np.union1d(np.linspace(0.0, made.travel, 8001), motion.knots)
     lift = motion.derivatives(way, 0)[0]
     if "arm" not in given:
         return lift * 1j * np.exp(-1j * given["axis"]) - way

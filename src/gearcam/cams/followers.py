@@ -704,8 +704,8 @@ class Arm(Round):
         from_pivot = (z - self.pivot) * np.conj(chord / length)
         beside = self.radius + grow - from_pivot.imag
         room = (self.arm - beside) * (self.arm + beside)
-        way = (self.hand * np.sqrt(np.maximum(room, 0.0)) - from_pivot.real) / length
-        return np.where(room >= 0.0, way, np.nan)
+        place = (self.hand * np.sqrt(np.maximum(room, 0.0)) - from_pivot.real) / length
+        return np.where(room >= 0.0, place, np.nan)
 
     def mirrored(self) -> Self:
         """Return its mirror image in the x axis."""

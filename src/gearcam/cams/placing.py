@@ -124,33 +124,33 @@ def _arm(pivot: float, arm: float, radius: float, size: float) -> Arm:
         what, parts = "the arm cannot reach the prime circle", "arm and pivot"
         key, least = "follower.pivot_distance_mm", abs(arm - size)
         near = least if pivot <= least else arm + size
-        way = Adjustment(near={key: near}, far={key: max(arm, size)})
-        raise _out_of_reach(what, "cam.prime_radius_mm", parts, size, low, high, way)
+        adjustment = Adjustment(near={key: near}, far={key: max(arm, size)})
+        raise _out_of_reach(what, "cam.prime_radius_mm", parts, size, low, high, adjustment)
     return follower.starting_at(size)
 
 
 def _swinging_face(pivot: float, offset: float, size: float) -> FlatArm:
     if not abs(size + offset) < pivot:
         what, parts = "the face cannot touch the base circle", "pivot and face offset"
-        low, high, way = (
+        low, high, adjustment = (
             -pivot - offset,
             pivot - offset,
             Adjustment(far={"follower.face_offset_mm": 0.0}),
         )
-        raise _out_of_reach(what, "cam.base_radius_mm", parts, size, low, high, way)
+        raise _out_of_reach(what, "cam.base_radius_mm", parts, size, low, high, adjustment)
     return FlatArm(start=0.0, pivot=pivot, offset=offset).starting_at(size)
 
 
 def _out_of_reach(
-    what: str, key: str, parts: str, size: float, low: float, high: float, way: Adjustment
+    what: str, key: str, parts: str, size: float, low: float, high: float, adjustment: Adjustment
 ) -> InfeasibleError:
     """Return the error for a size outside the range that the parts allow."""
     least = max(low, 0.0)
     rule = f"{parts} allow sizes between {formatted(least)} and {formatted(high)} mm"
-    adjustments = (way,)
+    adjustments = (adjustment,)
     if high > 0.0:  # from the limit that the size exceeds to the middle of the allowed range
         near = least if size <= least else high
-        adjustments = (Adjustment(near={key: near}, far={key: 0.5 * (least + high)}), way)
+        adjustments = (Adjustment(near={key: near}, far={key: 0.5 * (least + high)}), adjustment)
     return beyond_limit(
         what, key, size, low if size <= low else high, rule, adjustments=adjustments
     )

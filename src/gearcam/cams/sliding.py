@@ -103,8 +103,8 @@ class SlidingWall(Wall):
     @cached_property
     def contour(self) -> Contour:
         """Outline of the metal behind the wall, counter-clockwise, verified to be simple."""
-        ways = np.diff(self.line.real)
-        seen_whole = bool(np.all(ways > 0.0) or np.all(ways < 0.0))
+        steps = np.diff(self.line.real)
+        seen_whole = bool(np.all(steps > 0.0) or np.all(steps < 0.0))
         if not seen_whole and not self._metal.polygon.is_valid:
             raise crossing_chords(
                 self.called,
@@ -181,7 +181,7 @@ class SlidingCam(ShortRepr, Cam):
         return (self.motion,)
 
     @property
-    def way(self) -> float:
+    def travel(self) -> float:
         """Travel, mm."""
         return self.motion.program.period
 
@@ -313,7 +313,7 @@ def _plate(
     if length is not None:
         if not (length > bare if groove else length >= bare):
             raise _too_small("length_mm", "long", length, bare)
-        left, right = (0.5 * (left + right + way) for way in (-length, length))
+        left, right = (0.5 * (left + right + move) for move in (-length, length))
     positions = np.array(program.range) + wide.start
     bottom, top = wide.centre(positions).imag.tolist()
     least = top - bottom + (2.0 * radius if groove else 0.0)

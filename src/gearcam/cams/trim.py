@@ -254,8 +254,8 @@ def _meets(segments: ProfileSegments, ring: Ring, chain: Chain, tolerance: float
     ends = np.sort([segments.start[index], segments.end[index]], axis=0)
     # a curve at rest at its beginning may be fast within the rounding of an angle
     beside = (np.clip(parameter + shift, *ends) for shift in (-rounding, 0.0, rounding))
-    ways = [rounding * np.abs(segments.moving(index, place)[1]) for place in beside]
-    rounded = _MISS * float(np.abs(chain.points).max()) + float(np.max(ways))
+    moves = [rounding * np.abs(segments.moving(index, place)[1]) for place in beside]
+    rounded = _MISS * float(np.abs(chain.points).max()) + float(np.max(moves))
     return ring.gap <= min(rounded, _JOINED * tolerance)
 
 

@@ -38,7 +38,7 @@ def document(variants: Sequence[Variant], title: str) -> dict[str, Any]:
     known = [(k, one.scene) for k, one in enumerate(made) if one.scene is not None]
     drawn = [(k, scene) for k, scene in known if scene.driver == known[0][1].driver]
     scenes = _together([scene for _, scene in drawn])
-    told = {
+    context = {
         "title": title,
         "variants": variants,
         "made": made,
@@ -48,7 +48,7 @@ def document(variants: Sequence[Variant], title: str) -> dict[str, Any]:
         "every": rows(variants, every=True),
     }
     blocks = dict.fromkeys(BLOCKS, "")
-    blocks |= {name: rendered(f"variants_{name}.html", told) for name in ("verdict", "facts")}
+    blocks |= {name: rendered(f"variants_{name}.html", context) for name in ("verdict", "facts")}
     return {
         "title": title,
         "kind": made[0].result.design.kind,

@@ -202,9 +202,9 @@ def _arcs(entity: Any) -> tuple[Plane, Array]:
     points = np.array([complex(point.x, point.y) for point in curve.points(places.tolist())])
     ends = [curve.control_points[k] for k in (0, -1)]
     points[[0, -1]] = [complex(end.x, end.y) for end in ends]
-    way = np.diff(points)
+    chord = np.diff(points)
     # the turn at an inner point of an arc is half the arc's angle
-    turn = np.angle(way[1::2] * np.conj(way[::2]))
+    turn = np.angle(chord[1::2] * np.conj(chord[::2]))
     return points[::2], np.tan(0.5 * turn)
 
 

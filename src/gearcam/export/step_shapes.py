@@ -280,9 +280,9 @@ def _curve(spline: Spline, start: complex, end: complex) -> _Piece:
 
 
 def _line(start: complex, end: complex) -> _Piece:
-    way = end - start
-    curve = occt.Geom_Line(_point(start), occt.gp_Dir(way.real, way.imag, 0.0))
-    return _Piece(curve=curve, first=0.0, last=abs(way), start=start)
+    vector = end - start
+    curve = occt.Geom_Line(_point(start), occt.gp_Dir(vector.real, vector.imag, 0.0))
+    return _Piece(curve=curve, first=0.0, last=abs(vector), start=start)
 
 
 def _pieces(edge: Edge, tolerance: float) -> list[_Piece]:

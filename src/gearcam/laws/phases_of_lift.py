@@ -288,7 +288,7 @@ def program_problems(
         if closed:
             yield from _turn_problems(phases, 0.5 * TURN if half else TURN)
         else:
-            yield from _way_problems(phases)
+            yield from _travel_problems(phases)
         yield from _closure_problems(phases, unit, closed=closed, half=half)
 
 
@@ -312,15 +312,15 @@ def _turn_problems(phases: Sequence[Phase], turn: float) -> Iterator[Problem]:
         yield None, "", message, f'{whole} deg in all, or "rest" for one of them{hint}'
 
 
-def _way_problems(phases: Sequence[Phase]) -> Iterator[Problem]:
-    ways = {k: phase.angle for k, phase in enumerate(phases) if phase.angle != "rest"}
+def _travel_problems(phases: Sequence[Phase]) -> Iterator[Problem]:
+    spans = {k: phase.angle for k, phase in enumerate(phases) if phase.angle != "rest"}
     for number in range(len(phases)):
-        if number not in ways:
+        if number not in spans:
             yield number, "angle", "a cam that slides has no turn with a rest", "a length above 0"
-    whole = sum(ways.values())
+    whole = sum(spans.values())
     least = whole * 1e-6
-    for number, way in ways.items():
-        if way < least:
+    for number, span in spans.items():
+        if span < least:
             rule = f"at least {formatted(least)} mm of {formatted(whole)} mm"
             yield number, "angle", "the phase is too short: it would be a jump", rule
 

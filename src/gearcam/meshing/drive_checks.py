@@ -71,7 +71,7 @@ def contact_ratio(subject: Sided, limit: float) -> Iterator[Remark]:
 
     Looks at: smallest contact ratio of any flank, both sides; stretches without contact of flanks.
     """
-    told: dict[str, list[tuple[float, str]]] = {}
+    places_by_message: dict[str, list[tuple[float, str]]] = {}
     for pairs in subject.sides:
         worst, found = float(pairs.contact_ratios.min()), non_contact(pairs)
         if worst >= limit and not found:
@@ -93,8 +93,8 @@ def contact_ratio(subject: Sided, limit: float) -> Iterator[Remark]:
         elif worst < 1.0:
             message = "This flank is in contact for less than a pitch; then its neighbours drive."
         place = f"{side_name(pairs)}, wheel 1, tooth {tooth}"
-        told.setdefault(message, []).append((worst, place))
-    for message, sides in told.items():
+        places_by_message.setdefault(message, []).append((worst, place))
+    for message, sides in places_by_message.items():
         where = "; ".join(place for _, place in sides)
         severity: Severity = "warning" if message == _FEW else "error"
         worst = min(sides)[0]

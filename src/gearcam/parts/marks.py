@@ -81,14 +81,14 @@ def timing_mark(
         given diameter.
     """
     lean = math.cos(tilt)
-    way, end, between = -1.0, bore_reach, "bore and root"
+    outward, end, between = -1.0, bore_reach, "bore and root"
     if outside is not None:
-        way, end, between = 1.0, outside, "root and outside"
-    rim = way * (end - pitch_radius) * lean - dedendum_mm
+        outward, end, between = 1.0, outside, "root and outside"
+    rim = outward * (end - pitch_radius) * lean - dedendum_mm
     if rim <= 0:
-        root = pitch_radius + way * dedendum_mm / lean
-        told = "outside" if way > 0.0 else "circle around bore, keyway and hub"
-        nearest = f"the value is the {told}, the limit the root there"
+        root = pitch_radius + outward * dedendum_mm / lean
+        limit = "outside" if outward > 0.0 else "circle around bore, keyway and hub"
+        nearest = f"the value is the {limit}, the limit the root there"
         what = f"no room for a timing mark between {between}"
         where = f"direction {formatted(math.degrees(direction))} deg"
         limit = 2 * root if root > 0.0 else None
@@ -114,6 +114,6 @@ def timing_mark(
         )
     diameter = diameter or min(MARK_DIAMETER * module, largest)
     gap = min(MARK_GAP * module, RIM_PART * rim)
-    radius = pitch_radius + way * (dedendum_mm + gap + 0.5 * diameter) / lean
+    radius = pitch_radius + outward * (dedendum_mm + gap + 0.5 * diameter) / lean
     depth = min(MARK_DEPTH, MARK_DEPTH_PART * width)
     return Mark(center=cmath.rect(radius, direction), diameter=diameter, depth=depth)

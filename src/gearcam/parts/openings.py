@@ -295,11 +295,11 @@ def _no_room(
         note = f"its centre lies outside {what}"
         if limit:
             note = "the limit is the free space around its centre"
-    told = f"{opening.name} {what}"
+    crossing = f"{opening.name} {what}"
     adjustments = [
-        Adjustment(far={work.key(key): small}) for word, key, small in _SMALLER if word in told
+        Adjustment(far={work.key(key): small}) for word, key, small in _SMALLER if word in crossing
     ]
-    if "bolt" in told:
+    if "bolt" in crossing:
         adjustments += [
             Adjustment(far={work.key(key): times * place})
             for key, place in places.items()

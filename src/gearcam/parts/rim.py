@@ -115,9 +115,11 @@ def demand_bolts(
     roomiest = f"no bolt circle keeps walls of {formatted(wall)} mm: a larger rim in [ring] may"
     if most > 0.0:
         roomiest = f"a bolt circle of {formatted(best)} mm allows up to {rounded_down(most, 4)} mm"
-    told = f"the limit leaves walls of {formatted(wall)} mm on both sides; " if room > taken else ""
+    reason = (
+        f"the limit leaves walls of {formatted(wall)} mm on both sides; " if room > taken else ""
+    )
     what, place = "the bolt holes do not lie in the rim of the ring", "blank.bolt_diameter_mm"
-    limit, note = room - taken if room > taken else None, f"{told}{roomiest}"
+    limit, note = room - taken if room > taken else None, f"{reason}{roomiest}"
     raise work.refusal(what, blank.bolt_diameter, limit, note, adjustments, place)
 
 

@@ -158,6 +158,6 @@ def _outmost(points: Plane) -> Plane:
     """Return the points that are outermost in some direction; others do not affect the box."""
     if len(points) <= _DIRECTIONS:
         return points
-    ways = 2.0 * np.pi * np.arange(_DIRECTIONS)[:, None] / _DIRECTIONS
-    along = np.cos(ways) * points.real + np.sin(ways) * points.imag
+    angles = 2.0 * np.pi * np.arange(_DIRECTIONS)[:, None] / _DIRECTIONS
+    along = np.cos(angles) * points.real + np.sin(angles) * points.imag
     return points[np.unique(along.argmax(axis=1))]

@@ -355,25 +355,28 @@ class Search:
             )
         )
 
-    def along(self, way: Adjustment) -> bool:
-        """Find the smallest change along a way; return whether there is one."""
+    def along(self, adjustment: Adjustment) -> bool:
+        """Find the smallest change along an adjustment; return whether there is one."""
         if self.over():
             return False
-        near = {key: way.near.get(key, value_at(self.document, key)) for key in way.far or way.near}
+        near = {
+            key: adjustment.near.get(key, value_at(self.document, key))
+            for key in adjustment.far or adjustment.near
+        }
         if any(value is None for value in near.values()):
             return False
-        if way.far and between(near, way.far, 1.0) == between(near, {}, 0.0):
+        if adjustment.far and between(near, adjustment.far, 1.0) == between(near, {}, 0.0):
             return False  # the design has this value already
-        if way.near:
-            first = between(near, way.far, INSIDE) if way.far else tidy(near)
+        if adjustment.near:
+            first = between(near, adjustment.far, INSIDE) if adjustment.far else tidy(near)
             if self.cures(first):
                 self.keep(first)
                 return True
-            if not way.far:
+            if not adjustment.far:
                 self.first.append(first)
-        better = any(ahead(remedy.changes, near, way.far) for remedy in self.found)
-        least = self._doubled if way.doubling else self._least
-        return bool(way.far) and not better and least(near, way.far)
+        better = any(ahead(remedy.changes, near, adjustment.far) for remedy in self.found)
+        least = self._doubled if adjustment.doubling else self._least
+        return bool(adjustment.far) and not better and least(near, adjustment.far)
 
     def _least(self, near: Changes, far: Changes) -> bool:
         """Find the smallest change between two ends; return whether there is one."""
@@ -430,14 +433,14 @@ class Search:
 
         Where a changed design is refused for another reason, its adjustments are followed too.
         """
-        for way in adjustments:
-            if self.along(way):
+        for adjustment in adjustments:
+            if self.along(adjustment):
                 continue
-            if (both := for_both(way)) is not None:
+            if (both := for_both(adjustment)) is not None:
                 self.along(both)
-            elif way.near and not self.over() and self.left(tidy(way.near)) is None:
+            elif adjustment.near and not self.over() and self.left(tidy(adjustment.near)) is None:
                 for other in self.second.adjustments if self.second else ():
-                    self.along(joined(way.near, other))
+                    self.along(joined(adjustment.near, other))
 
 
 class _NestedSearch(Search):

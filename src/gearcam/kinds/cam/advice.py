@@ -63,12 +63,12 @@ class CamAdvice(Advice):
 def _walled(search: Search, refusal: InfeasibleError) -> Iterator[Adjustment]:
     """Yield the adjustments of a refusal; a bore begins where its wall is thick enough."""
     wall = 2.0 * limit_of(PARTS_KIND, "thin-wall", search.result.design.limits)
-    for way in refusal.adjustments:
-        bore = [*way.far] == ["blank.bore_diameter_mm"] and not way.near
+    for adjustment in refusal.adjustments:
+        bore = [*adjustment.far] == ["blank.bore_diameter_mm"] and not adjustment.near
         if bore and refusal.limit is not None and wall < 0.9 * refusal.limit:
-            yield replace(way, near={"blank.bore_diameter_mm": refusal.limit - wall})
+            yield replace(adjustment, near={"blank.bore_diameter_mm": refusal.limit - wall})
         else:
-            yield way
+            yield adjustment
 
 
 def _of_errors(search: Search) -> Iterator[Adjustment]:

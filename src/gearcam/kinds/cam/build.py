@@ -188,10 +188,10 @@ class CamResult(PartsResult):
         columns = {driver.column: driver.scale * theta}
         names = zip(motions[0].motion_scales.items(), ("s", "ds", "d2s", "d3s"), strict=True)
         columns |= {name: scale * found[short] for (name, scale), short in names}
-        told = [found, *(one.motion(theta) for one in motions[1:])]
-        for one, values in zip(motions, told, strict=True):
+        tables = [found, *(one.motion(theta) for one in motions[1:])]
+        for one, values in zip(motions, tables, strict=True):
             columns[pressure_column(one)] = np.degrees(values["pressure"])
-        for one, values in zip(motions, told, strict=True):
+        for one, values in zip(motions, tables, strict=True):
             columns[rho_column("pitch", one)] = values["rho_pitch"]
         for wall in walls:
             columns[rho_column("profile", wall)] = wall.radii(theta)

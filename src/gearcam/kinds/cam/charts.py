@@ -39,7 +39,7 @@ def _of_lift(name: str, result: CamResult) -> Chart:
     table = result.motion_of_turn
     column = next(column for column in table if column.startswith(name))
     unit = column.removeprefix(f"{name}_").replace("_per_", "/")
-    places, told = _places(result)
+    places, label = _places(result)
     lines = [Line(label=name, x=table[places], y=table[column])]
     given = result.program.given
     if given is not None and name == "lift":
@@ -47,7 +47,7 @@ def _of_lift(name: str, result: CamResult) -> Chart:
         x, y = result.driver.scale * theta, result.follower.lift_unit[0] * lift
         lines.append(Line(label="given points, before smoothing", x=x, y=y, dots=True))
     title, unit = f"{name.capitalize()} of the follower", f"{name}, {unit}"
-    return Chart(title=title, x=told, y=unit, lines=(*lines,), marks=_knots(result))
+    return Chart(title=title, x=label, y=unit, lines=(*lines,), marks=_knots(result))
 
 
 def _pressure_angle(result: CamResult) -> Chart | None:
@@ -56,10 +56,10 @@ def _pressure_angle(result: CamResult) -> Chart | None:
         return None
     given = limit_of(KIND, "pressure-angle", result.design.limits)
     limit = math.degrees(pressure_limit(result.follower, given))
-    places, told = _places(result)
+    places, label = _places(result)
     return Chart(
         title="Pressure angle",
-        x=told,
+        x=label,
         y="pressure angle, deg",
         lines=tuple(
             Line(
@@ -106,10 +106,10 @@ def _curvature(result: CamResult) -> Chart:
     for value, wall in rollers.items():
         what = "convex" if wall.side > 0 else "concave"
         limits.append(Limit(label=f"roller ({what} pitch curve)", value=value))
-    places, told = _places(result)
+    places, label = _places(result)
     return Chart(
         title="Curvature (positive: convex)",
-        x=told,
+        x=label,
         y="curvature, 1/mm",
         lines=tuple(
             Line(

@@ -159,13 +159,13 @@ def _part(result: CamResult) -> Tree | list[Tree]:
     if not result.ordered:
         return {}
     density, several = result.design.blank.density, len(result.parts) > 1
-    told = [
+    parts = [
         part_facts(part, f"cam {number}" if several else "", tools, density)
         for number, (part, tools) in enumerate(
             zip(result.parts, result.part_subject.tools, strict=True), start=1
         )
     ]
-    return told if several else told[0]
+    return parts if several else parts[0]
 
 
 def ends_of(found: Range, scale: float = 1.0) -> dict[str, float]:

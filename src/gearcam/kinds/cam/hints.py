@@ -181,8 +181,8 @@ def _sentence(result: CamResult, code: str, number: int) -> str:
     """Return what keeps the limit of a check, in words."""
     changes = gentler(result, code, number)
     if changes is not None:
-        told = " and ".join(f"{key} = {formatted(value, 10)}" for key, value in changes.items())
-        return f"The smallest cam that keeps the limit has {told}."
+        changed = " and ".join(f"{key} = {formatted(value, 10)}" for key, value in changes.items())
+        return f"The smallest cam that keeps the limit has {changed}."
     motion = result.cam.motions[number]
     follower = motion.follower
     if not follower.has_centre:

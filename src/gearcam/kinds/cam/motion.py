@@ -171,8 +171,8 @@ def _examine_turn(raw: Mapping[str, Any], given: Circumstances, found: Examined)
         return
     made, problems = parameters_of(known, owner, raw, faults, (TITLE,))
     if not faults and not problems:
-        told = made.turn_problems(oscillating="oscillating" in given)
-        problems = list(placed_faults(told, known, raw, (TITLE,)))
+        faults_of_turn = made.turn_problems(oscillating="oscillating" in given)
+        problems = list(placed_faults(faults_of_turn, known, raw, (TITLE,)))
         found.parts[TITLE] = made
     found.faults += problems
 
@@ -213,8 +213,8 @@ def _phase(at: Path, raw: Any, given: Circumstances, found: Examined) -> Phase |
     if not wrong:
         phase, more = parameters_of(own, make, rest, faults, at)
         problems += more
-    told = [*faults, *problems, *wrong]
-    found.faults += [one for one in told if right or one.path[len(at)] in raw]
+    every = [*faults, *problems, *wrong]
+    found.faults += [one for one in every if right or one.path[len(at)] in raw]
     return phase if right else None
 
 
@@ -257,13 +257,13 @@ def _examine_program(
     if not _follower_known(given):
         return
     readable = [_UNREADABLE if phase is None else phase for phase in phases]
-    told = program_problems(
+    broken = program_problems(
         readable,
         oscillating="oscillating" in given,
         closed="turning" in given,
         half=half and fill_half(readable),
     )
-    for number, name, message, rule in told:
+    for number, name, message, rule in broken:
         if number is None:
             found.faults.append(Fault((TITLE,), message, allowed=rule))
         elif phases[number] is not None:
@@ -318,6 +318,6 @@ def homes() -> dict[str, str]:
             by_law.setdefault(key, []).append(law)
     found = {key: f"with law = {quoted(laws)}" for key, laws in by_law.items()}
     found |= {key: f"of type {quoted(names)}" for key, names in by_phase.items()}
-    told = {key: f"this key belongs under [[{TITLE}]] {words}" for key, words in found.items()}
+    homes = {key: f"this key belongs under [[{TITLE}]] {words}" for key, words in found.items()}
     turns = (key for known in turn_tables() for key in known.entries)
-    return dict.fromkeys(turns, f"this key belongs under [{TITLE}]") | told
+    return dict.fromkeys(turns, f"this key belongs under [{TITLE}]") | homes

@@ -76,7 +76,7 @@ class PairAdvice(Advice):
             [*(refusal.adjustments if refusal else ()), *_others(search, refusal, factor)]
         )
         if all(key.startswith("law.") for remedy in search.found for key in remedy.changes):
-            any(search.along(way) for way in _larger_ring(search))
+            any(search.along(step) for step in _larger_ring(search))
 
     def hopeless(self, result: Any) -> bool:
         """Return whether the flanks of a `result` alone exclude a contact ratio of 1."""

@@ -112,7 +112,9 @@ def _mesh(result: GearPairResult) -> Tree:
     gear = min(result.gears, key=lambda gear: gear.profile.tip_thickness.min())
     tooth = int(gear.profile.tip_thickness.argmin()) + 1
     # where both directions are equal by symmetry: the first, not the one that rounding makes larger
-    way, (phi1, angle) = max(subject.pressure_angles.items(), key=lambda item: round(item[1][1], 9))
+    direction, (phi1, angle) = max(
+        subject.pressure_angles.items(), key=lambda item: round(item[1][1], 9)
+    )
     places, values = subject.accelerations
     worst = int(np.argmax(np.abs(values)))
     return {
@@ -121,7 +123,7 @@ def _mesh(result: GearPairResult) -> Tree:
             math.degrees(angle),
             "largest pressure angle",
             at_most=math.degrees(limit_of(KIND, "pressure-angle", limits)),
-            place=f"driving {way}, {angle_text(phi1)}",
+            place=f"driving {direction}, {angle_text(phi1)}",
             shown=True,
         ),
         "tip_thickness_min_mm": Fact(

@@ -61,8 +61,8 @@ def turned(shape: Shape) -> Shape:
 
     def function(x: Jet) -> Jet:
         second = np.where(x.c[0] <= 0.5, 0.0, 1.0)
-        way = 1.0 - 2.0 * second
-        return shape(x * way + second) * way + second
+        scale = 1.0 - 2.0 * second
+        return shape(x * scale + second) * scale + second
 
     return function
 

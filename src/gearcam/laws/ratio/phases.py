@@ -386,12 +386,15 @@ def _solve_knot(
     ends = [*knots, 2.0 * math.pi]
     low, high = float(ends[index - 1]), float(ends[index + 1])
     if not low < place <= high or place == high < 2.0 * math.pi:
-        ways = sorted(math.degrees(driven(edge)) for edge in (low, high))
-        key, nearest = "law.driven_travel_deg", ways[0 if math.degrees(travel) < ways[0] else 1]
+        travels = sorted(math.degrees(driven(edge)) for edge in (low, high))
+        key, nearest = (
+            "law.driven_travel_deg",
+            travels[0 if math.degrees(travel) < travels[0] else 1],
+        )
         what = "no knot between its neighbours gives the driven wheel its travel"
-        least, most = (formatted(way, 10) for way in ways)
+        least, most = (formatted(one, 10) for one in travels)
         note = f"the knots allow {least} to {most} deg, both excluded"
-        where, near, far = f"law.knots_deg[{index}]", {key: nearest}, {key: 0.5 * sum(ways)}
+        where, near, far = f"law.knots_deg[{index}]", {key: nearest}, {key: 0.5 * sum(travels)}
         raise beyond_limit(what, where, math.degrees(travel), nearest, note, near=near, far=far)
     return filled(place), {f"knots_deg[{index}]": math.degrees(place)}
 

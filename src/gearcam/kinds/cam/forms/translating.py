@@ -350,7 +350,7 @@ class Translating(Form[SlidingCam, PlateSpec, PlateFollower]):
         """Return its sizes, as facts."""
         plate = self.cam.plate
         return {
-            "travel_mm": Fact(self.cam.way, "travel"),
+            "travel_mm": Fact(self.cam.travel, "travel"),
             "run_in_mm": self.given.run_in or None,
             "run_out_mm": self.given.run_out or None,
             **self.follower.placement,

@@ -139,8 +139,8 @@ def _demand_opposite(program: Program, motion: Motion) -> None:
         from gearcam.kinds.cam.motion import motion_of
 
         phases: Any = motion_of(half, ("translating", "turning"))
-        told = ", ".join(f"{one['type']} {formatted(one['angle_deg'])} deg" for one in phases)
-        rule += f", and these agree best with the first half: {told}"
+        fitting = ", ".join(f"{one['type']} {formatted(one['angle_deg'])} deg" for one in phases)
+        rule += f", and these agree best with the first half: {fitting}"
         adjustments = (Adjustment(near={"motion": phases}),)
     what = "the two half turns of a yoke's lift are not opposite to each other"
     where = f"motion, at {formatted(math.degrees(off.theta))} deg"
