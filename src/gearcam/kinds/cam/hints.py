@@ -26,8 +26,8 @@ if TYPE_CHECKING:
 _MOST: Final = 100.0
 """Largest radius that is tried, over what the follower needs: its lift, roller and offset."""
 
-_DOUBLINGS: Final = 8
-"""Radii that are tried, each twice as far beyond the first as the one before."""
+_FARTHEST: Final = 0.03
+"""Largest share of a radius by which a larger one is sought."""
 
 _CLOSER: Final = 1.0 + 1e-4
 """Factor of the least radius that a follower needs."""
@@ -110,25 +110,36 @@ def _first_that_keeps(
     """Return the changes for the smallest radius, from `start`, mm, in the digits printed."""
     step = 10.0 ** (math.floor(math.log10(start)) + 1 - DIGITS)
 
-    def tried(count: int) -> dict[str, float] | None:
+    def tried(count: int) -> tuple[dict[str, float], float]:
+        """Return changes, and the slope of the steepest angle over that of the limit, less 1."""
         changes = resized(result, number, float(f"{start + count * step:.10g}"))
         # another size has the same lift
         other = type(result)(result.design.with_(changes), result.tolerances)
-        steep = any(_steep(result, code, number, other.form.make(result.program)))
-        return None if steep else changes
+        steep = _steep(result, code, number, other.form.make(result.program))
+        slopes = [_slope(one.value) / _slope(one.limit) - 1.0 for one in steep]
+        return changes, max(slopes, default=0.0)
 
-    low, high, changes = -1, 0, tried(0)  # below the start it is too steep
-    while changes is None:
-        low, high = high, 2 * high + 1
-        if high >= 1 << _DOUBLINGS:
+    low, high = -1, 0  # below the start it is too steep
+    changes, excess = tried(high)
+    while excess > 0.0:
+        # slopes fall as the radius grows, about as its inverse
+        low, high = high, high + max(1, math.ceil(excess * start / step))
+        if high > _FARTHEST * start / step:
             return None
-        changes = tried(high)
+        changes, excess = tried(high)
+    middle = high - 1
     while high - low > 1:
+        smaller, excess = tried(middle)
+        if excess > 0.0:
+            low = middle
+        else:
+            high, changes = middle, smaller
         middle = (low + high) // 2
-        smaller = tried(middle)
-        low, high = (middle, high) if smaller is None else (low, middle)
-        changes = smaller or changes
     return changes
+
+
+def _slope(angle: float | None) -> float:
+    return math.tan(math.radians(angle or 0.0))
 
 
 def resized(result: CamResult, number: int, size: float) -> dict[str, float]:
