@@ -141,9 +141,8 @@ def test_facts_scale(name: str) -> None:
                 assert abs(found[key]) < EXACT
                 continue
             power = round(math.log(abs(found[key] / value)) / math.log(scale))
-            # chord errors, and the sagittas of which widths of slots are computed, are differences
-            # of lengths of a hundred thousand times their size
-            room = 1e5 * EXACT if "chord_error" in key or ".tool." in key else EXACT
+            # chord errors are differences of lengths of a hundred thousand times their size
+            room = 1e5 * EXACT if "chord_error" in key else EXACT
             assert found[key] == pytest.approx(value * scale**power, rel=room), (key, scale)
             unit = next((unit for unit in POWERS if key.split("[")[0].endswith(unit)), None)
             assert unit is None or power == POWERS[unit], key

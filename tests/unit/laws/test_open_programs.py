@@ -43,7 +43,7 @@ def test_every_way_that_is_wrong_is_told() -> None:
     told = list(program_problems(phases, oscillating=False, closed=False))
     jump, rest = (
         "the phase is too short: it would be a jump",
-        "a cam that slides has no turn with a rest",
+        "a cam that slides has no whole turn, and so no rest of it",
     )
     assert [(number, words) for number, _, words, _ in told] == [(0, rest), (3, rest), (2, jump)]
     assert told[-1][-1] == "at least 2.00001e-05 mm of 20.0001 mm"
