@@ -316,7 +316,8 @@ def _travel_problems(phases: Sequence[Phase]) -> Iterator[Problem]:
     spans = {k: phase.angle for k, phase in enumerate(phases) if phase.angle != "rest"}
     for number in range(len(phases)):
         if number not in spans:
-            yield number, "angle", "a cam that slides has no whole turn, and so no rest of it", "a length above 0"
+            message = "a cam that slides has no whole turn, and so no rest of it"
+            yield number, "angle", message, "a length above 0"
     whole = sum(spans.values())
     least = whole * 1e-6
     for number, span in spans.items():
