@@ -350,7 +350,7 @@ def _demand_motion(result: Any, found: Scene) -> None:
     driver = result.driver
     motion = result.motion(found.places / driver.scale)
     for cam in cams:
-        if result.form.sliding:
+        if result.form.moves == "sliding":
             assert cam.pose.shift == pytest.approx(found.places + 0j)
         else:
             way = -1.0 if result.design.cam.clockwise else 1.0
