@@ -19,6 +19,9 @@ CLASSES = {"Round", "Face", "Stem", "Arm", "FlatStem", "FlatArm", "Rotating", "S
 OWN = {"followers.py", "carriers.py"}
 """Where followers and carriers are."""
 
+ASKED = {"motion", "arm"}
+"""Settings of a follower that a comparison with a name or with None would use as a flag."""
+
 SETTINGS = {"spec.py", "placing.py"}
 """Where settings of a design are, and followers are made of them."""
 
@@ -34,6 +37,10 @@ def questions(tree: ast.AST, flags: bool) -> Iterator[str]:
                 flags and name in FLAGS and node not in passed and not _is_self(owner)
             ):
                 yield f"{node.lineno}: .{name}"
+            case ast.Compare(left=ast.Attribute(attr=name), comparators=[ast.Constant()]) if (
+                flags and name in ASKED
+            ):
+                yield f"{node.lineno}: comparison of .{name}"
             case ast.Call(func=ast.Name(id="isinstance"), args=[_, kinds]):
                 names = {part.id for part in ast.walk(kinds) if isinstance(part, ast.Name)}
                 if names & CLASSES:
@@ -60,9 +67,12 @@ def test_nobody_asks_for_the_sort_of_a_follower() -> None:
 def test_such_questions_are_found() -> None:
     text = "x = m.flat or isinstance(f, (Stem, Arm))\nmatch c:\n    case Sliding():\n        pass\n"
     text += "y = make(flat=m.flat) if self.flat else make(oscillating=not m.oscillating)\n"
+    text += "z = f.arm is None or f.motion == 'oscillating'\n"
     assert sorted(questions(ast.parse(text), flags=True)) == [
         "1: .flat",
         "1: isinstance of Arm, Stem",
         "3: case Sliding",
         "5: .oscillating",
+        "6: comparison of .arm",
+        "6: comparison of .motion",
     ]
