@@ -55,6 +55,7 @@ class Quantity:
 
 
 ANGLE: Final = Quantity("_deg", math.pi / 180.0, "deg", least=1e-6)
+ARCSEC: Final = Quantity("_arcsec", math.pi / 648000.0, "arcsec")
 LENGTH: Final = Quantity("_mm", 1.0, "mm", least=1e-3)
 NUMBER: Final = Quantity("", 1.0, "")
 COUNT: Final = Quantity("", 1.0, "")

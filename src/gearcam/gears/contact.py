@@ -15,13 +15,18 @@ touch together at any centre distance.
 Positions are those of the mounted pair, as complex numbers: O1 at 0, O2 at the centre distance
 along x, for a ring at the opposite side. A rack has no O2; its lead is a travel in mm.
 
+A `Mounting` moves the shafts and the teeth of real wheels: the teeth of an eccentric wheel are moved
+against its shaft, and so the points of its flanks and nothing else; an error of pitch moves a tooth
+along the pitch curve. With the driver turned by phi1 an eccentricity e has turned with it.
+
 Nothing is refused: flanks that cannot touch form no pair. Depends on flanks and tracks.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -66,6 +71,31 @@ _FREE = np.array([[1, 2, 3], [0, 2, 3], [0, 1, 3]])
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
+class Mounting(ShortRepr):
+    """How two wheels are mounted and made; without errors the wheels are those of the design.
+
+    Parameters
+    ----------
+    distance : complex, mm
+        Position of the driven frame: the centre distance along x, negative for a ring; for a rack
+        the offset from its design position. Across the line of centres along y.
+    eccentric : (complex, complex), mm
+        Offset of the teeth of driver and driven wheel from their shafts, in the wheel's frame.
+    pitch : (dict of int to float, dict of int to float), mm
+        Errors of teeth along the pitch curve, by number, of driver and driven wheel.
+    """
+
+    distance: complex
+    eccentric: tuple[complex, complex] = (0j, 0j)
+    pitch: tuple[Mapping[int, float], Mapping[int, float]] = field(default_factory=lambda: ({}, {}))
+
+    @property
+    def turns_differ(self) -> bool:
+        """Whether a wheel's teeth differ by their places on it."""
+        return any(self.eccentric) or any(any(errors.values()) for errors in self.pitch)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
 class FlankPairs(ShortRepr):
     """The pairs of flanks of one side of two mounted wheels, numbered by j.
 
@@ -77,18 +107,23 @@ class FlankPairs(ShortRepr):
         Guide of the driven wheel.
     side : {-1, +1}
         sigma of the driver's flanks.
-    distance : float, mm
-        Mounted position of the driven frame along x: the centre distance, negative for a ring;
-        for a rack the offset from its design position.
+    distance : complex, mm
+        Mounted position of the driven frame (see `Mounting`).
     flanks : (Flanks, Flanks)
-        The finished flanks of both wheels.
+        The finished flanks of both wheels, with their errors of pitch.
+    eccentric : (complex, complex), mm
+        Offset of the teeth of both wheels from their shafts, in the wheel's frame.
+    turns : int
+        Turns of a closed driver after which both wheels are as before: 1 where all turns are alike.
     """
 
     toothings: tuple[Toothing, Toothing]
     guide: Guide
     side: int
-    distance: float
+    distance: complex
     flanks: tuple[Flanks, Flanks]
+    eccentric: tuple[complex, complex] = (0j, 0j)
+    turns: int = 1
 
     @property
     def track(self) -> Track:
@@ -111,9 +146,9 @@ class FlankPairs(ShortRepr):
 
     @cached_property
     def travel(self) -> float:
-        """Driver angle of a turn, or of the travel of an open pair or a rack, rad."""
+        """Driver angle of its `turns`, or of the travel of an open pair or a rack, rad."""
         if self.toothings[0].closed == self.closed:
-            return self.track.around
+            return self.track.around * self.turns
         return float(self.track.angle(self.toothings[1].length))
 
     def tooth(self, wheel: Wheel, j: Ints) -> Ints:
@@ -163,14 +198,16 @@ class FlankPairs(ShortRepr):
     @cached_property
     def even(self) -> bool:
         """Whether flanks are evenly spaced: pairs then touch together at any centre distance."""
+        if any(self.eccentric):
+            return False
         found = self.separation(self.numbers)
         return found.size == 0 or bool(np.ptp(found) <= _EVEN * self.pitch)
 
     @cached_property
     def numbers(self) -> Ints:
-        """Numbers j of the pairs in one turn of the driver, or in the travel of an open pair."""
+        """Numbers j of the pairs in the `turns` of the driver, or in the travel of an open pair."""
         if self.closed:
-            return np.arange(self.toothings[0].teeth)
+            return np.arange(self.toothings[0].teeth * self.turns)
         open_one = next(toothing for toothing in self.toothings if not toothing.closed)
         j = np.arange(-3, open_one.teeth + 4)
         return j[self.real(j)]
@@ -238,7 +275,7 @@ class FlankPairs(ShortRepr):
 
     @cached_property
     def stretches(self) -> tuple[Array, Array, Ints]:
-        """Intervals of one turn of the driver, or of an open pair's travel, by pairs in contact.
+        """Intervals of the driver's `travel` by pairs in contact.
 
         Driver angles of start and end, rad, and the number of pairs in contact: 1 on single-pair
         arcs, 2 on double-pair arcs, 0 where no flanks touch.
@@ -265,7 +302,9 @@ class FlankPairs(ShortRepr):
         return pairs[np.clip(np.searchsorted(start, x, side="right") - 1, 0, len(pairs) - 1)]
 
 
-def flank_pairs(gears: tuple[Gear, Gear], side: int, distance: float | None = None) -> FlankPairs:
+def flank_pairs(
+    gears: tuple[Gear, Gear], side: int, mounting: Mounting | complex | None = None
+) -> FlankPairs:
     """Return the pairs of flanks of one side.
 
     Parameters
@@ -274,21 +313,44 @@ def flank_pairs(gears: tuple[Gear, Gear], side: int, distance: float | None = No
         Driver and driven wheel.
     side : {-1, +1}
         `DRIVE` or `COAST`.
-    distance : float, mm, optional
-        Mounted distance (see `FlankPairs`); by default the design distance.
+    mounting : Mounting or complex, mm, optional
+        How they are mounted, or the mounted distance alone; by default as designed.
 
     Returns
     -------
     FlankPairs
     """
     first, second = gears
+    if not isinstance(mounting, Mounting):
+        mounting = Mounting(distance=first.pair.shift if mounting is None else mounting)
+    one, two = (
+        _with_errors(gear, errors) for gear, errors in zip(gears, mounting.pitch, strict=True)
+    )
     return FlankPairs(
         toothings=(first.toothing, second.toothing),
         guide=first.pair.rolling.guide,
-        flanks=(first.profile.flanks, second.profile.flanks),
+        flanks=(one, two),
         side=side,
-        distance=first.pair.shift if distance is None else distance,
+        distance=mounting.distance,
+        eccentric=mounting.eccentric,
+        turns=_cycle(first.toothing, second.toothing) if mounting.turns_differ else 1,
     )
+
+
+def _with_errors(gear: Gear, errors: Mapping[int, float]) -> Flanks:
+    """Return the flanks of a wheel whose teeth are moved along its pitch curve, mm by number."""
+    flanks, numbers = gear.profile.flanks, gear.toothing.numbers
+    if not errors:
+        return flanks
+    moved = np.array([errors.get(number, 0.0) for number in numbers])
+    return replace(flanks, sf=flanks.sf + np.tile(moved, 2))
+
+
+def _cycle(one: Toothing, two: Toothing) -> int:
+    """Return the turns of a driver after which all its teeth meet the same ones again."""
+    if not (one.closed and two.closed):
+        return 1
+    return two.teeth // math.gcd(one.teeth, two.teeth)
 
 
 class FlankPositions(NamedTuple):
@@ -395,8 +457,9 @@ def normals(
     nominal, ratio = guide.motion(phi1) if motion is None else motion
     stand = guide.pose(nominal + lead)
     back = stand.rotation
-    foot1, n1 = first.p * turned, n1 * turned
-    foot2, n2, tangent2 = second.p * back + stand.shift, n2 * back, second.t * back
+    one_at, two_at = pairs.eccentric
+    foot1, n1 = (first.p + one_at) * turned, n1 * turned
+    foot2, n2, tangent2 = (second.p + two_at) * back + stand.shift, n2 * back, second.t * back
     carried, turns = guide.carried(foot2), guide.turns
     foot2 = foot2 + pairs.distance
     across = np.conj(n1) * (foot2 - foot1)

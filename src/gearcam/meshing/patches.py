@@ -202,7 +202,8 @@ def _overlapping(pairs: FlankPairs, phi1: Array, overclosure: float, lead: Array
         curvature = curvature + second.kappa / two.regularity(second, sf[1], -side)
     turn = np.stack([np.exp(-1j * ahead), guide.pose(moved).rotation])
     origin = at.foot[0] + one.ahead(first, sf[0]) * at.normal[0]
-    offset = at.foot - np.stack([first.p, second.p]) * turn - origin
+    foot = np.stack([p + e for p, e in zip((first.p, second.p), pairs.eccentric, strict=True)])
+    offset = at.foot - foot * turn - origin
     # the tangent towards the driver's tip is the x-axis
     level = 1j * np.conj(at.normal[0])
     every = Graphs(

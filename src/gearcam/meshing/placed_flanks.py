@@ -74,7 +74,7 @@ class PlacedFlanks:
         toothing, turn = self.pairs.toothings[wheel - 1], self.turn[wheel - 1]
         sigma, sf = self.pairs.sigma(wheel), self.sf[wheel - 1]
         frames = toothing.frames(angle, curved=not unit)
-        point = toothing.flank_points(frames, sf, sigma)
+        point = toothing.flank_points(frames, sf, sigma) + self.pairs.eccentric[wheel - 1]
         if unit:
             direction = toothing.turn * toothing.normals(frames, sigma)
         else:

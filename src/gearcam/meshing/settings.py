@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Final
 
 from gearcam.base.display import ShortRepr
-from gearcam.base.quantities import ANGLE, COUNT, param, positive_length
-from gearcam.base.rules import above, distinct, excluded
+from gearcam.base.quantities import ANGLE, COUNT, LENGTH, TEXT, param, positive_length
+from gearcam.base.rules import Breach, above, distinct, excluded
+from gearcam.laws.columns import ColumnsError, FromFile
 
 KIND = "meshing"
 """Registered checks of a study."""
+
+ERRORS = "errors"
+"""Registered checks of a study of errors."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -77,3 +84,84 @@ class MeshingSpec(ShortRepr):
         ),
         distinct("teeth", "tooth"),
     )  # fmt: skip
+
+
+_PITCH_COLUMNS: Final = ("wheel", "tooth", "pitch_mm")
+"""Columns of a file of pitch errors."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ErrorsSpec(FromFile):
+    """Errors of mounting and making, and tolerances for random assemblies.
+
+    Errors have the values given; a tolerance adds a random error to them in each of the `trials`.
+    A uniform error lies anywhere within its tolerance; of a normal one the tolerance is three times
+    the standard deviation. The eccentricity of a tolerance has any direction. A tooth with a
+    positive error of pitch is ahead in the sense of rising tooth numbers.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.ErrorsSpec(center=0.02, eccentricity=(0.05, 0.0))
+    ErrorsSpec(center=0.02, eccentricity=(0.05, 0.0))
+    """
+
+    center: float = param(
+        LENGTH, default=0.0, ge=-100, le=100, doc="added to the centre distance"
+    )
+    eccentricity: tuple[float, float] = param(
+        LENGTH, default=(0.0, 0.0), ge=0, le=100, both=True,
+        doc="distance of the teeth's middle from the shaft",
+    )
+    eccentricity_angle: tuple[float, float] = param(
+        ANGLE, default=(0.0, 0.0), ge=-360, le=360, both=True, word="eccentricity",
+        doc="its direction, in the wheel's own coordinates",
+    )
+    tilt: tuple[float, float] = param(
+        ANGLE, default=(0.0, 0.0), ge=-10, le=10,
+        doc="tilt of the driver's axis in the plane of the axes, and across it",
+    )
+    file: str | None = param(
+        TEXT, default=None, example="pitch.csv",
+        doc="CSV file of errors of pitch, with the columns wheel, tooth, pitch_mm",
+    )
+    center_tolerance: float = param(
+        LENGTH, default=0.0, ge=0, le=100, doc="tolerance of the centre distance"
+    )
+    eccentricity_tolerance: tuple[float, float] = param(
+        LENGTH, default=(0.0, 0.0), ge=0, le=100, both=True, doc="tolerance of the eccentricity"
+    )
+    pitch_tolerance: float = param(
+        LENGTH, default=0.0, ge=0, le=100, doc="tolerance of the place of each tooth of both wheels"
+    )
+    distribution: str = param(
+        TEXT, default="uniform", choices=("uniform", "normal"), doc="of random errors"
+    )
+    trials: int = param(
+        COUNT, default=0, ge=0, le=100000, doc="number of random assemblies"
+    )
+    seed: int = param(
+        COUNT, default=1, ge=0, le=1000000, doc="of the random numbers: the same gives the same"
+    )
+    steps: int = param(
+        COUNT, default=360, ge=8, le=100000, doc="number of phases in a turn of the driver"
+    )
+
+    @cached_property
+    def pitch_errors(self) -> tuple[Mapping[int, float], Mapping[int, float]]:
+        """Errors of pitch of both wheels, mm, by tooth; raises `ColumnsError` (see `FromFile`)."""
+        errors: tuple[dict[int, float], dict[int, float]] = {}, {}
+        if self.rows is not None:
+            table, lines = self.rows.columns(_PITCH_COLUMNS)
+            for (wheel, tooth, error), line in zip(table.tolist(), lines, strict=True):
+                if wheel not in (1, 2) or tooth != int(tooth):
+                    raise ColumnsError(f"line {line}: no tooth {tooth:g} of a wheel {wheel:g}")
+                errors[int(wheel) - 1][int(tooth)] = error
+        return errors
+
+    def problems(self) -> Iterator[Breach]:
+        """Yield the fault of a file that cannot be read."""
+        try:
+            _ = self.pitch_errors
+        except ColumnsError as error:
+            yield "file", None, str(error), f"a CSV file with {', '.join(_PITCH_COLUMNS)}"

@@ -20,7 +20,7 @@ from gearcam.designs.validate import faults_of, parameters_of
 from gearcam.gears.spec import PairSpec, Rack, RingSpec, StepsSpec
 from gearcam.kinds.shared import AccuracySpec
 from gearcam.laws.ratio.base import LAWS
-from gearcam.meshing.settings import MeshingSpec
+from gearcam.meshing.settings import ErrorsSpec, MeshingSpec
 from gearcam.parts.blank import Blank
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ class PairOutputSpec(OutputSpec):
     PairOutputSpec(files=('dxf', 'csv'), chord_tolerance=0.005)
     """
 
-    studies: tuple[str, ...] = studies_param(("mesh", "accuracy"))
+    studies: tuple[str, ...] = studies_param(("mesh", "errors", "accuracy"))
     pose: float = pose_param("phi1", "driver angle of the assembly drawing")
     inspection_points: int = param(
         COUNT, default=9, ge=2, le=1000, doc="number of points on each flank in inspection.csv"
@@ -84,6 +84,8 @@ class GearPairDesign(Design):
         Files and their tolerance.
     meshing : MeshingSpec
         Phases and mounting of a meshing study.
+    errors : ErrorsSpec
+        Errors of mounting and making, for their study.
     accuracy : AccuracySpec
         Settings of the study of error against run time.
 
@@ -110,6 +112,7 @@ class GearPairDesign(Design):
     steps: StepsSpec = field(default_factory=StepsSpec)
     output: PairOutputSpec = field(default_factory=PairOutputSpec)
     meshing: MeshingSpec = field(default_factory=MeshingSpec)
+    errors: ErrorsSpec = field(default_factory=ErrorsSpec)
     accuracy: AccuracySpec = field(default_factory=AccuracySpec)
 
     @property

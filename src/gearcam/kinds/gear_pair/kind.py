@@ -25,7 +25,7 @@ from gearcam.kinds.gear_pair.design import (
 )
 from gearcam.kinds.shared import AccuracySpec
 from gearcam.meshing.settings import KIND as MESHING
-from gearcam.meshing.settings import MeshingSpec
+from gearcam.meshing.settings import ERRORS, ErrorsSpec, MeshingSpec
 from gearcam.parts.blank import KIND as PARTS
 from gearcam.parts.blank import Blank
 from gearcam.results.kind import Kind
@@ -57,6 +57,7 @@ KIND: Final = Kind(
             "steps": StepsSpec,
             "output": PairOutputSpec,
             "meshing": MeshingSpec,
+            "errors": ErrorsSpec,
             "accuracy": AccuracySpec,
         }.items()
     },
@@ -65,9 +66,14 @@ KIND: Final = Kind(
     problems=problems,
     later=planetary,
     formats=FORMATS,
-    check_modules=("gearcam.gears.checks", "gearcam.meshing.checks", "gearcam.parts.checks"),
-    check_groups=(TEETH, MESHING, PARTS),
-    study_tables={"mesh": "meshing", "accuracy": "accuracy"},
+    check_modules=(
+        "gearcam.gears.checks",
+        "gearcam.meshing.checks",
+        "gearcam.meshing.error_checks",
+        "gearcam.parts.checks",
+    ),
+    check_groups=(TEETH, MESHING, ERRORS, PARTS),
+    study_tables={"mesh": "meshing", "errors": "errors", "accuracy": "accuracy"},
     example={
         "law": {
             "type": "phases",

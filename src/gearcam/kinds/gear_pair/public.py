@@ -6,11 +6,11 @@ from gearcam.gears.spec import PairSpec, Rack, RingSpec, StepsSpec
 from gearcam.kinds.gear_pair.design import GearPairDesign, PairOutputSpec
 from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.kinds.shared import AccuracySpec
-from gearcam.meshing.settings import MeshingSpec
+from gearcam.meshing.settings import ErrorsSpec, MeshingSpec
 from gearcam.parts.blank import Blank
 
 __all__ = [
-    "AccuracySpec", "Blank", "GearPairDesign", "GearPairResult", "MeshingSpec", "PairOutputSpec",
+    "AccuracySpec", "Blank", "ErrorsSpec", "GearPairDesign", "GearPairResult", "MeshingSpec", "PairOutputSpec",
     "PairSpec", "Rack", "RingSpec", "StepsSpec",
 ]  # fmt: skip
 

@@ -135,5 +135,20 @@ MESH: Final = Study(
     repeats=("contact-ratio",),  # the study checks the drive as mounted
 )
 
-STUDIES: Final[dict[str, Study]] = {one.name: one for one in (MESH, accuracy_study())}
+def _errors(result: GearPairResult, progress: Progress | None) -> StudyResult:
+    from gearcam.kinds.gear_pair.errors import study_errors
+
+    return study_errors(result, ERRORS, progress)
+
+
+ERRORS: Final = Study(
+    name="errors",
+    key="errors",
+    doc="Study errors of mounting and making of gear pairs; write DIR/NAME/errors.csv.",
+    done="studied",
+    table="errors",
+    compute=_errors,
+)
+
+STUDIES: Final[dict[str, Study]] = {one.name: one for one in (MESH, ERRORS, accuracy_study())}
 """The studies by name."""

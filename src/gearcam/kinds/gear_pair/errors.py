@@ -1,0 +1,286 @@
+"""The study of errors of mounting and making: each alone, all together, and random assemblies."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from functools import cache, partial
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from gearcam.base.errors import InfeasibleError
+from gearcam.base.facts import Fact, extent
+from gearcam.base.findings import limit_of, run_checks
+from gearcam.base.numerals import formatted
+from gearcam.base.quantities import ARCSEC
+from gearcam.meshing.error_checks import TRANSMISSION
+from gearcam.meshing.errors import (
+    Assembly,
+    Running,
+    alone,
+    cycle,
+    given,
+    harmonics,
+    largest,
+    random_assemblies,
+    run,
+)
+from gearcam.meshing.settings import ERRORS, ErrorsSpec
+from gearcam.pictures.charts import Chart, Line
+from gearcam.results.result import StudyResult
+
+if TYPE_CHECKING:
+    from gearcam.kinds.gear_pair.result import GearPairResult
+    from gearcam.numeric.arrays import Array
+    from gearcam.results.kind import Study
+    from gearcam.results.result import Progress
+
+Tree = dict[str, Any]
+Run = Callable[[Assembly], Running]
+
+_SIZES: Final[Mapping[str, tuple[str, str, Callable[[Assembly], float]]]] = {
+    "center": ("centre distance", "mm", lambda one: one.center),
+    "eccentricity1": ("eccentricity of wheel 1", "mm", lambda one: abs(one.eccentric[0])),
+    "eccentricity2": ("eccentricity of wheel 2", "mm", lambda one: abs(one.eccentric[1])),
+    "pitch1": ("pitch of wheel 1", "mm", lambda one: _most(one.pitch[0])),
+    "pitch2": ("pitch of wheel 2", "mm", lambda one: _most(one.pitch[1])),
+    "tilt": ("tilt", "deg", lambda one: math.degrees(abs(one.tilt))),
+}
+"""Words, unit and size of each error."""
+
+_HARMONICS: Final = 5
+_PERCENTILES: Final = (50, 90, 99)
+_BARS: Final = 40
+
+
+def study_errors(result: GearPairResult, study: Study, progress: Progress | None) -> StudyResult:
+    """Return the study of the errors of a pair (see `gearcam.meshing.errors`).
+
+    Parameters
+    ----------
+    result : GearPairResult
+        The pair.
+    study : Study
+        The entry of the study.
+    progress : callable, optional
+        Called with what is computed, the number done and their total.
+
+    Returns
+    -------
+    StudyResult
+        With the random assemblies done, if it was interrupted.
+
+    Raises
+    ------
+    InfeasibleError
+        If the pair has no such tooth or shaft, or the wheels do not reach each other.
+    """
+    design, gears = result.design, result.gears
+    spec, width, limits = design.errors, design.pair.face_width, design.limits
+    every = given(spec)
+    demand_errors(result, every)
+    each = alone(every)
+    count = 2 + len(each) + spec.trials
+
+    def report(done: int) -> None:
+        if progress is not None:
+            progress("errors", done, count)
+
+    with result.stage("errors"):
+        phi1 = cycle(gears, _unlike(every, spec), spec.steps)
+        assembled = partial(run, gears, width, phi1=phi1)
+        report(0)
+        without, together = assembled(Assembly()), assembled(every)
+        limit = limit_of(ERRORS, TRANSMISSION, limits) if not result.pair.on_rack else math.inf
+        running, sizes = {}, {}
+        for number, (name, one) in enumerate(each.items(), start=2):
+            report(number)
+            running[name] = assembled(one)
+            sizes[name] = _largest(assembled, name, one, limit)
+        trials: list[tuple[float, float]] = []
+        try:
+            for number, one in enumerate(random_assemblies(spec, gears)):
+                report(2 + len(each) + number)
+                found = assembled(one)
+                trials.append((found.peak_to_peak, found.least_backlash))
+        except KeyboardInterrupt:
+            pass
+    group = {
+        **_facts(together, gears, "all errors together"),
+        "without": _facts(without, gears, "without errors"),
+        "alone": {
+            name: _facts(one, gears, f"{_SIZES[name][0]} alone") | sizes[name]
+            for name, one in running.items()
+        },
+        "trials": _trial_facts(np.array(trials), without.unit) if trials else None,
+    }
+    lines = {"all together": together, "without": without}
+    lines |= {_SIZES[name][0]: one for name, one in running.items()}
+    return StudyResult(
+        result=result,
+        study=study,
+        file="errors.csv",
+        table=_columns(phi1, without, together, running),
+        group=group,
+        study_findings=run_checks(ERRORS, together, limits),
+        drawn=partial(_charts, lines, np.array(trials), without.unit),
+        interrupted="" if len(trials) == spec.trials else f"{len(trials)} of {spec.trials} trials",
+    )
+
+
+def demand_errors(result: GearPairResult, every: Assembly) -> None:
+    """Refuse errors of teeth and shafts that a pair does not have.
+
+    Parameters
+    ----------
+    result : GearPairResult
+        The pair.
+    every : Assembly
+        Its errors.
+
+    Raises
+    ------
+    InfeasibleError
+        If there is one.
+    """
+    for gear, errors in zip(result.gears, every.pitch, strict=True):
+        missing = sorted(set(errors) - set(gear.toothing.numbers[gear.toothing.whole]))
+        if missing:
+            raise InfeasibleError(
+                f"the file has an error of pitch of a tooth that wheel {gear.wheel} does not have",
+                where="errors.file",
+                value=float(missing[0]),
+                nearest=f"its teeth are 1 to {gear.toothing.teeth}",
+            )
+    if result.pair.on_rack and every.eccentric[1]:
+        raise InfeasibleError(
+            "a rack has no shaft, and so no eccentricity",
+            where="errors.eccentricity_mm[1]",
+            nearest="give 0 for wheel 2",
+        )
+
+
+def _unlike(every: Assembly, spec: ErrorsSpec) -> Assembly:
+    """Return an assembly in which turns differ if they do with the given errors and tolerances."""
+    if any(spec.eccentricity_tolerance) or spec.pitch_tolerance:
+        return Assembly(eccentric=(1j, 1j))
+    return every
+
+
+def _most(errors: Mapping[int, float]) -> float:
+    return max(map(abs, errors.values()), default=0.0)
+
+
+def _largest(assembled: Run, name: str, one: Assembly, limit: float) -> Tree:
+    """Return the size of an error, and its largest size that keeps each limit, as facts."""
+    words, unit, size = _SIZES[name]
+
+    @cache
+    def running(factor: float) -> Running | None:
+        try:
+            return assembled(one.times(factor))
+        except InfeasibleError:
+            return None
+
+    def of(value: Callable[[Running], float]) -> Callable[[float], float]:
+        def excess(factor: float) -> float:
+            found = running(factor)
+            return 1.0 if found is None else value(found)
+
+        return excess
+
+    def jammed(found: Running) -> float:
+        return -found.least_backlash if np.isfinite(found.lead).all() else 1.0
+
+    asked = {"free_running": ("the teeth touch and run free", jammed)}
+    if math.isfinite(limit):
+        arcsec = f"{formatted(limit / ARCSEC.factor)} arcsec"
+        asked["transmission"] = (
+            f"the transmission error is at most {arcsec}",
+            lambda found: found.peak_to_peak / limit - 1.0,
+        )
+    facts: Tree = {f"size_{unit}": size(one)}
+    for key, (why, value) in asked.items():
+        factor = largest(of(value))
+        if factor is not None and math.isfinite(factor):
+            label = f"largest error, {words}, with which {why}"
+            facts[f"largest_{key}_{unit}"] = Fact(factor * size(one), label, shown=True)
+    return facts
+
+
+def _facts(found: Running, gears: Any, how: str) -> Tree:
+    error: Tree = {}
+    if math.isfinite(found.peak_to_peak):
+        error["peak_to_peak"] = Fact(
+            found.peak_to_peak, f"transmission error, {how}", unit=found.unit, shown=True
+        )
+        error["harmonics"] = harmonics(found, gears, _HARMONICS) or None
+    some = found.backlash[np.isfinite(found.backlash)]
+    return {
+        f"transmission_error_{found.unit}": error,
+        "backlash_mm": extent(float(some.min()), float(some.max())) if some.size else None,
+        "contact_ratio": found.contact_ratio,
+    }
+
+
+def _trial_facts(trials: Array, unit: str) -> Tree:
+    error, backlash = trials.T
+    touching = np.isfinite(error)
+    tree: Tree = {"count": len(trials), "jam": int(np.count_nonzero(backlash < 0.0))}
+    if touching.all():
+        tree[f"transmission_error_{unit}"] = {
+            f"p{share}": Fact(
+                float(np.percentile(error, share)),
+                f"transmission error of {share} % of the assemblies, at most",
+                unit=unit,
+                shown=True,
+            )
+            for share in _PERCENTILES
+        }
+        tree["backlash_mm"] = extent(float(backlash.min()), float(backlash.max()))
+    return tree
+
+
+def _columns(
+    phi1: Array, without: Running, together: Running, each: Mapping[str, Running]
+) -> dict[str, Array]:
+    """Return the columns of ``errors.csv``: lags behind the nominal position, and backlash."""
+    unit = without.unit
+    lags = {"without": without, "together": together, **each}
+    return {
+        "phi1_deg": np.degrees(phi1),
+        **{f"lag_{name}_{unit}": np.ma.masked_invalid(0.0 - one.lead) for name, one in lags.items()},
+        "backlash_mm": np.ma.masked_invalid(together.backlash),
+    }
+
+
+def _charts(lines: Mapping[str, Running], trials: Array, unit: str) -> dict[str, Chart]:
+    """Return transmission errors with and without errors, and the histogram of the trials."""
+    from gearcam.kinds.gear_pair.charts import DRIVER
+
+    charts = {
+        "transmission_error": Chart(
+            title="Transmission error with errors of mounting and making (lag minus its mean)",
+            x=DRIVER,
+            y=f"lag, {unit}",
+            lines=tuple(
+                Line(label=label, x=np.degrees(one.phi1), y=one.error)
+                for label, one in lines.items()
+            ),
+        )
+    }
+    if len(trials) and np.isfinite(trials[:, 0]).all():
+        counts, edges = np.histogram(trials[:, 0], _BARS)
+        charts["trials"] = Chart(
+            title="Transmission error of random assemblies",
+            x=f"transmission error, peak to peak, {unit}",
+            y="assemblies",
+            lines=(Line(label="assemblies", x=np.repeat(edges, 2), y=_steps(counts)),),
+        )
+    return charts
+
+
+def _steps(counts: Array) -> Array:
+    """Return counts as the heights of a stepped line with two points at each edge."""
+    return np.concatenate([[0.0], np.repeat(counts, 2), [0.0]])

@@ -1,0 +1,334 @@
+"""Errors of mounting and making: what they do to the transmission, each alone and all together.
+
+An *assembly* is a pair with its errors: the change of the centre distance, the eccentricities and
+errors of pitch of both wheels, and the tilt of the driver's axis. Nothing is linearised: flanks are
+brought into contact where their errors have put them (see `gearcam.gears.contact`). An eccentric
+wheel's teeth turn about a centre that is not theirs; wheels with an error of pitch touch with the
+tooth that is furthest ahead. On tilted axes the section at a height z over the middle of the face
+width is the plane pair with its shafts moved by z times the tilt, so that flanks touch first at one
+of the faces; the sections' own change, of second order in the tilt, is left out.
+
+The *cycle* is the turn of the driver, or the turns after which the same teeth meet again. Over it
+an assembly has a transmission error, a least backlash, and a least contact ratio: that of each pair
+of teeth alone, the arc along which its flanks would touch if no other pair were ahead.
+
+Refused: an error with which the wheels no longer reach each other.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+
+from gearcam.base.display import ShortRepr
+from gearcam.base.errors import InfeasibleError
+from gearcam.gears.contact import COAST, DRIVE, FlankPairs, Mounting, flank_pairs
+from gearcam.gears.pair import Gear
+from gearcam.meshing.contact import contacts
+from gearcam.meshing.edges import first_touch, known_to, to_pitch_line
+from gearcam.meshing.settings import ErrorsSpec
+from gearcam.numeric.arrays import Array
+from gearcam.numeric.roots import bracketed_root
+
+Gears = tuple[Gear, Gear]
+
+_NARROW: Final = 1e-3
+"""Width of the bracket of a largest error, as a share of it."""
+
+_FARTHEST: Final = 1000
+"""Largest multiple of an error at which its largest value is sought."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Assembly(ShortRepr):
+    """The errors of a pair.
+
+    Parameters
+    ----------
+    center : float, mm
+        Added to the centre distance; for a rack, its distance from the design position.
+    eccentric : (complex, complex), mm
+        Offset of the teeth of both wheels from their shafts, in the wheel's frame.
+    pitch : (mapping of int to float, mapping of int to float), mm
+        Errors of teeth along the pitch curve, by number.
+    tilt : complex, rad
+        Of the driver's axis: in the plane of the axes, positive if they part towards the front, and
+        across it.
+    """
+
+    center: float = 0.0
+    eccentric: tuple[complex, complex] = (0j, 0j)
+    pitch: tuple[Mapping[int, float], Mapping[int, float]] = field(default_factory=lambda: ({}, {}))
+    tilt: complex = 0j
+
+    def times(self, factor: float) -> Assembly:
+        """Return the assembly with all errors multiplied by a `factor`."""
+        one, two = ({k: factor * v for k, v in errors.items()} for errors in self.pitch)
+        return Assembly(
+            center=factor * self.center,
+            eccentric=(factor * self.eccentric[0], factor * self.eccentric[1]),
+            pitch=(one, two),
+            tilt=factor * self.tilt,
+        )
+
+    def mountings(self, distance: float, width: float) -> tuple[Mounting, ...]:
+        """Return how the pair is mounted, on tilted axes in the back and front face.
+
+        Parameters
+        ----------
+        distance : float, mm
+            Position of the driven frame without errors; negative for a ring.
+        width : float, mm
+            Face width.
+        """
+        outward = math.copysign(1.0, distance)
+        middle = distance + outward * self.center
+        half = 0.5 * width
+        moves = [z * complex(outward * self.tilt.real, self.tilt.imag) for z in (-half, half)]
+        return tuple(
+            Mounting(distance=middle + move, eccentric=self.eccentric, pitch=self.pitch)
+            for move in (moves if self.tilt else [0j])
+        )
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Running(ShortRepr):
+    """How an assembly runs.
+
+    Parameters
+    ----------
+    phi1 : (n,) array, rad
+        Driver angles over the cycle.
+    lead : (n,) array, rad, for a rack mm
+        The driven wheel's turn from its nominal position, driven forward; infinite where nothing
+        touches.
+    backlash : (n,) array, mm
+        Free travel of the driven wheel between both contacts, along the pitch curve.
+    contact_ratio : float
+        Least of all pairs of teeth, on the driving side.
+    known_to : float, rad, for a rack mm
+        Rounding of `lead`.
+    unit : str
+        Unit of `lead`.
+    noise : float, mm
+        Rounding of `backlash`.
+    """
+
+    phi1: Array
+    lead: Array
+    backlash: Array
+    contact_ratio: float
+    known_to: float
+    unit: str
+    noise: float
+
+    @cached_property
+    def peak_to_peak(self) -> float:
+        """Transmission error, peak to peak, rad (mm): infinite where something does not touch."""
+        if not np.isfinite(self.lead).all():
+            return math.inf
+        error = float(np.ptp(self.lead))
+        return error if error > self.known_to else 0.0
+
+    @property
+    def least_backlash(self) -> float:
+        """Least backlash, mm; negative if the wheels cannot be assembled without force."""
+        return float(self.backlash.min())
+
+    @property
+    def error(self) -> Array:
+        """Lag behind the nominal position without its mean, (n,), rad (mm): the error."""
+        lag = np.where(np.isfinite(self.lead), -self.lead, np.nan)
+        error = lag - float(np.nanmean(lag))
+        return np.where(np.abs(error) <= self.known_to, 0.0, error)
+
+
+def cycle(gears: Gears, assembly: Assembly, steps: int) -> Array:
+    """Return driver angles over the cycle of an assembly, `steps` a turn or travel, (n,), rad."""
+    pairs = flank_pairs(gears, DRIVE, assembly.mountings(gears[0].pair.shift, 0.0)[0])
+    return np.linspace(0.0, pairs.travel, steps * pairs.turns, endpoint=not pairs.closed)
+
+
+def run(gears: Gears, width: float, assembly: Assembly, phi1: Array) -> Running:
+    """Return how an assembly runs.
+
+    Parameters
+    ----------
+    gears : (Gear, Gear)
+        The wheels.
+    width : float, mm
+        Their face width.
+    assembly : Assembly
+        Their errors.
+    phi1 : (n,) array, rad
+        Driver angles.
+
+    Returns
+    -------
+    Running
+
+    Raises
+    ------
+    InfeasibleError
+        If nothing touches at any of these angles.
+    """
+    sections = [
+        {side: flank_pairs(gears, side, mounting) for side in (DRIVE, COAST)}
+        for mounting in assembly.mountings(gears[0].pair.shift, width)
+    ]
+    driving = [section[DRIVE] for section in sections]
+    lead, back = (first_of([section[side] for section in sections], phi1) for side in (DRIVE, COAST))
+    if not np.isfinite(lead).any():
+        raise InfeasibleError(
+            "with these errors the wheels do not reach each other",
+            where="errors",
+            nearest="give smaller errors",
+        )
+    along = to_pitch_line(driving[0], phi1)
+    rounding = max(float(known_to(one, phi1).max()) for one in driving)
+    return Running(
+        phi1=phi1,
+        lead=lead,
+        backlash=(back - lead) * along,
+        contact_ratio=min(float(one.contact_ratios.min()) for one in driving),
+        known_to=rounding,
+        unit=driving[0].guide.unit,
+        noise=2.0 * rounding * float(np.abs(along).max()),
+    )
+
+
+def first_of(sections: list[FlankPairs], phi1: Array) -> Array:
+    """Return the driven wheel's lead at first contact of a side in any of some sections, (n,)."""
+    side = sections[0].side
+    leads = [first_touch(one, phi1, contacts(one, phi1))[0] for one in sections]
+    return -side * np.max([-side * lead for lead in leads], axis=0)
+
+
+def given(spec: ErrorsSpec) -> Assembly:
+    """Return the errors that a design gives, without its tolerances."""
+    one, two = (
+        size * complex(math.cos(angle), math.sin(angle))
+        for size, angle in zip(spec.eccentricity, spec.eccentricity_angle, strict=True)
+    )
+    return Assembly(
+        center=spec.center, eccentric=(one, two), pitch=spec.pitch_errors, tilt=complex(*spec.tilt)
+    )
+
+
+def alone(assembly: Assembly) -> dict[str, Assembly]:
+    """Return each of the errors of an assembly alone, by name; none is 0."""
+    one, two = assembly.eccentric
+    first, second = assembly.pitch
+    every = {
+        "center": Assembly(center=assembly.center),
+        "eccentricity1": Assembly(eccentric=(one, 0j)),
+        "eccentricity2": Assembly(eccentric=(0j, two)),
+        "pitch1": Assembly(pitch=(first, {})),
+        "pitch2": Assembly(pitch=({}, second)),
+        "tilt": Assembly(tilt=assembly.tilt),
+    }
+    there = (assembly.center, one, two, any(first.values()), any(second.values()), assembly.tilt)
+    return {name: each for (name, each), some in zip(every.items(), there, strict=True) if some}
+
+
+def largest(excess: Callable[[float], float]) -> float | None:
+    """Return the largest factor of an error that keeps a limit.
+
+    Parameters
+    ----------
+    excess : callable
+        ``excess(factor)`` of the error: below 0 if the error times the factor keeps the limit.
+
+    Returns
+    -------
+    float or None
+        To a thousandth, on the side that keeps it; infinite if a thousand times the error
+        still does, and None if the pair does not keep it without the error.
+    """
+    if excess(0.0) >= 0.0:
+        return None
+    low, high = 0.0, 1.0
+    while excess(high) < 0.0:
+        low, high = high, 2.0 * high
+        if high > _FARTHEST:
+            return math.inf
+
+    def values(factor: Array) -> Array:
+        return np.array([excess(float(one)) for one in np.atleast_1d(factor)])
+
+    tolerance = _NARROW * high
+    found = float(bracketed_root(values, [low], [high], tolerance)[0])
+    # the nearer end of the last bracket may lie beyond the limit
+    return found if excess(found) < 0.0 else max(low, found - tolerance)
+
+
+def random_assemblies(spec: ErrorsSpec, gears: Gears) -> Iterator[Assembly]:
+    """Yield the random assemblies of a design's tolerances, the same for the same `seed`."""
+    middle, random = given(spec), np.random.default_rng(spec.seed)
+
+    def within(tolerance: float, count: int = 1) -> Array:
+        if spec.distribution == "uniform":
+            return random.uniform(-tolerance, tolerance, count)
+        return random.normal(0.0, tolerance / 3.0, count)
+
+    for _ in range(spec.trials):
+        (center,) = within(spec.center_tolerance)
+        moved = [
+            abs(within(tolerance)[0]) * np.exp(1j * random.uniform(0.0, 2.0 * math.pi))
+            for tolerance in spec.eccentricity_tolerance
+        ]
+        pitch = [
+            {
+                number: errors.get(number, 0.0) + error
+                for number, error in zip(
+                    gear.toothing.numbers,
+                    within(spec.pitch_tolerance, len(gear.toothing.numbers)).tolist(),
+                    strict=True,
+                )
+            }
+            for gear, errors in zip(gears, middle.pitch, strict=True)
+        ]
+        yield replace(
+            middle,
+            center=middle.center + float(center),
+            eccentric=(
+                middle.eccentric[0] + complex(moved[0]), middle.eccentric[1] + complex(moved[1]),
+            ),
+            pitch=(pitch[0], pitch[1]) if spec.pitch_tolerance else middle.pitch,
+        )  # fmt: skip
+
+
+def harmonics(running: Running, gears: Gears, most: int) -> list[dict[str, float]]:
+    """Return the largest harmonics of a transmission error over whole turns of the driver.
+
+    Parameters
+    ----------
+    running : Running
+        A whole cycle of closed wheels.
+    gears : (Gear, Gear)
+        The wheels.
+    most : int
+        Largest number of them.
+
+    Returns
+    -------
+    list of dict
+        ``order``, per turn of the driver, and ``amplitude``, the largest first; empty for open
+        wheels and racks.
+    """
+    if not all(gear.toothing.closed for gear in gears) or not np.isfinite(running.lead).all():
+        return []
+    count = len(running.lead)
+    turns = running.phi1[-1] * count / (count - 1) / (2.0 * math.pi)
+    parts = np.abs(np.fft.rfft(running.error)) * 2.0 / count
+    order = np.argsort(-parts, kind="stable")[:most]
+    return [
+        {"order": float(k / turns), "amplitude": float(parts[k])}
+        for k in order
+        if parts[k] > running.known_to
+    ]
