@@ -32,7 +32,7 @@ from gearcam.gears.pair import Gear
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.edges import first_touch, known_to, to_pitch_line
 from gearcam.meshing.settings import ErrorsSpec
-from gearcam.numeric.arrays import Array
+from gearcam.numeric.arrays import Array, Mask
 from gearcam.numeric.roots import bracketed_root
 
 Gears = tuple[Gear, Gear]
@@ -76,24 +76,40 @@ class Assembly(ShortRepr):
             tilt=factor * self.tilt,
         )
 
-    def mountings(self, distance: float, width: float) -> tuple[Mounting, ...]:
-        """Return how the pair is mounted, on tilted axes in the back and front face.
+    @property
+    def none(self) -> bool:
+        """Whether there are no errors."""
+        return not (self.center or self.tilt or any(self.eccentric) or any(self.pitch))
+
+    def mounting(self, distance: float, height: float = 0.0) -> Mounting:
+        """Return how the pair is mounted.
 
         Parameters
         ----------
         distance : float, mm
             Position of the driven frame without errors; negative for a ring.
-        width : float, mm
-            Face width.
+        height : float, mm
+            Over the middle of the face width, on tilted axes.
         """
         outward = math.copysign(1.0, distance)
-        middle = distance + outward * self.center
-        half = 0.5 * width
-        moves = [z * complex(outward * self.tilt.real, self.tilt.imag) for z in (-half, half)]
-        return tuple(
-            Mounting(distance=middle + move, eccentric=self.eccentric, pitch=self.pitch)
-            for move in (moves if self.tilt else [0j])
+        move = height * complex(outward * self.tilt.real, self.tilt.imag)
+        return Mounting(
+            distance=distance + outward * self.center + move,
+            eccentric=self.eccentric,
+            pitch=self.pitch,
         )
+
+    def mountings(self, distance: float, low: float, high: float) -> list[Mounting]:
+        """Return how the pair is mounted where it touches first: on tilted axes at both faces.
+
+        Parameters
+        ----------
+        distance : float, mm
+            See `mounting`.
+        low, high : float, mm
+            Heights of the faces over the middle of the face width.
+        """
+        return [self.mounting(distance, z) for z in ((low, high) if self.tilt else (0.0,))]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -150,7 +166,7 @@ class Running(ShortRepr):
 
 def cycle(gears: Gears, assembly: Assembly, steps: int) -> Array:
     """Return driver angles over the cycle of an assembly, `steps` a turn or travel, (n,), rad."""
-    pairs = flank_pairs(gears, DRIVE, assembly.mountings(gears[0].pair.shift, 0.0)[0])
+    pairs = flank_pairs(gears, DRIVE, assembly.mounting(gears[0].pair.shift))
     return np.linspace(0.0, pairs.travel, steps * pairs.turns, endpoint=not pairs.closed)
 
 
@@ -179,10 +195,12 @@ def run(gears: Gears, width: float, assembly: Assembly, phi1: Array) -> Running:
     """
     sections = [
         {side: flank_pairs(gears, side, mounting) for side in (DRIVE, COAST)}
-        for mounting in assembly.mountings(gears[0].pair.shift, width)
+        for mounting in assembly.mountings(gears[0].pair.shift, -0.5 * width, 0.5 * width)
     ]
     driving = [section[DRIVE] for section in sections]
-    lead, back = (first_of([section[side] for section in sections], phi1) for side in (DRIVE, COAST))
+    lead, back = (
+        first_of([section[side] for section in sections], phi1)[0] for side in (DRIVE, COAST)
+    )
     if not np.isfinite(lead).any():
         raise InfeasibleError(
             "with these errors the wheels do not reach each other",
@@ -202,11 +220,14 @@ def run(gears: Gears, width: float, assembly: Assembly, phi1: Array) -> Running:
     )
 
 
-def first_of(sections: list[FlankPairs], phi1: Array) -> Array:
-    """Return the driven wheel's lead at first contact of a side in any of some sections, (n,)."""
+def first_of(sections: list[FlankPairs], phi1: Array) -> tuple[Array, Mask]:
+    """Return the lead at first contact of a side in any of some sections, as `first_touch`."""
     side = sections[0].side
-    leads = [first_touch(one, phi1, contacts(one, phi1))[0] for one in sections]
-    return -side * np.max([-side * lead for lead in leads], axis=0)
+    leads, edges = zip(
+        *(first_touch(one, phi1, contacts(one, phi1)) for one in sections), strict=True
+    )
+    first = np.argmax([-side * lead for lead in leads], axis=0), np.arange(len(phi1))
+    return np.stack(leads)[first], np.stack(edges)[first]
 
 
 def given(spec: ErrorsSpec) -> Assembly:

@@ -9,7 +9,8 @@ blank to the other, and a *body* below them.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -84,6 +85,29 @@ class HalfTeeth:
         index = half - self.first
         body = index == self.count
         return np.ma.masked_array(self.teeth[np.where(body, 0, index)], mask=body)
+
+    def moved(self, toothing: Toothing, pitch: Mapping[int, float], eccentric: complex) -> HalfTeeth:
+        """Return the half-teeth of a wheel with errors.
+
+        Parameters
+        ----------
+        toothing : Toothing
+            The wheel.
+        pitch : mapping of int to float, mm
+            Errors of teeth along the pitch curve, by number: a tooth is moved as a whole.
+        eccentric : complex, mm
+            Offset of all teeth from the shaft.
+        """
+        points, tips = self.points.copy(), self.tips.copy()
+        for number, error in pitch.items():
+            place = toothing.tooth_places[toothing.numbers.index(number)]
+            at = toothing.frames(toothing.track.angle([place, place + error]), curved=False)
+            turn = at.t[1] / at.t[0]
+            for half in np.flatnonzero(self.teeth == number):
+                own = slice(self.starts[half], self.starts[half + 1])
+                points[own] = at.p[1] + (points[own] - at.p[0]) * turn
+                tips[half] = at.p[1] + (tips[half] - at.p[0]) * turn
+        return replace(self, points=points + eccentric, tips=tips + eccentric)
 
     @cached_property
     def polygons(self) -> Any:

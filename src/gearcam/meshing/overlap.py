@@ -189,12 +189,34 @@ class Turning:
             least[there] = np.minimum(least[there], distance)
         return least
 
-    def _candidates(self, pose: Pose) -> tuple[Ints, Ints]:
-        """Phases and half-teeth of the driver that may touch the driven wheel.
+    def near(self, pose: Pose, margin: float) -> tuple[Ints, Ints, Ints]:
+        """Return the pieces of both wheels that are close to each other.
+
+        Parameters
+        ----------
+        pose : Pose
+            The n poses of the driver in the driven wheel's frame.
+        margin : float, mm
+            Largest distance.
+
+        Returns
+        -------
+        step, one, two : (k,) int arrays
+            Number of the pose, and indices of half-teeth of driver and driven wheel; the body of an
+            open wheel has the last number.
+        """
+        step, one = self._candidates(pose, margin)
+        polygons = self.driver.placed(one, pose[step])
+        own, mate = self._tree.query(polygons, predicate="dwithin", distance=margin)
+        return step[own], one[own], mate
+
+    def _candidates(self, pose: Pose, margin: float = 0.0) -> tuple[Ints, Ints]:
+        """Phases and half-teeth of the driver that may be within a margin of the driven wheel.
 
         The driver's body has the last number.
         """
         center, radius = self.driver.circles
+        radius = radius + margin
         seen = pose[:, None].apply(center)
         step, half = np.nonzero(self.rolling.guide.height(seen) - radius <= self._height)
         seen = seen[step, half]

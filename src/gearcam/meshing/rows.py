@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,6 +11,7 @@ import numpy as np
 from gearcam.meshing.contact import Contacts, contact_columns
 from gearcam.meshing.overlap import Overlaps, Turning
 from gearcam.meshing.patches import Patches
+from gearcam.meshing.solids import SolidOverlaps
 from gearcam.numeric.arrays import Array, Mask
 
 
@@ -36,6 +38,8 @@ class Block:
         Distance of the flanks when the driver is held back by the overclosure.
     overlaps : Overlaps
         Overlaps of the outlines, with the driver ahead.
+    solids : SolidOverlaps or None
+        The same of the solids, if asked for.
     contacts : Contacts
         Exact ones, without overclosure.
     patches : Patches
@@ -53,6 +57,7 @@ class Block:
     edge: Mask
     held_back_gap: Array
     overlaps: Overlaps
+    solids: SolidOverlaps | None
     contacts: Contacts
     patches: Patches
     interferes: Mask
@@ -99,7 +104,7 @@ def columns_of(blocks: list[Block], turning: Turning, side: int) -> dict[str, Ar
 
 
 def _columns(block: Block, turning: Turning, side: int) -> dict[str, Array]:
-    found, exact, patch = block.overlaps, block.contacts, block.patches
+    found, exact, patch, solid = block.overlaps, block.contacts, block.patches, block.solids
     wheels = turning.driver, turning.driven
     keys = [
         (found.step, *found.half),
@@ -108,11 +113,13 @@ def _columns(block: Block, turning: Turning, side: int) -> dict[str, Array]:
             for each in (exact, patch)
         ),
     ]
+    if solid is not None:
+        keys.append((solid.step, *solid.half))
     every, where = np.unique(
         np.hstack([np.stack(key) for key in keys]), axis=1, return_inverse=True
     )
     step, one, two = every
-    rows = np.split(where.ravel(), np.cumsum([len(found.step), len(exact.step)]))
+    rows = np.split(where.ravel(), np.cumsum([len(key[0]) for key in keys])[:-1])
     size = every.shape[1]
 
     def column(number: int, values: Array) -> Any:
@@ -143,4 +150,15 @@ def _columns(block: Block, turning: Turning, side: int) -> dict[str, Array]:
         f"lag_{turning.rolling.guide.unit}": np.ma.masked_invalid(0.0 - block.lead[step]),
         "backlash_mm": np.ma.masked_invalid(block.backlash[step]),
         "held_back_gap_mm": block.held_back_gap[step],
+        **({} if solid is None else _solid_columns(solid, column)),
+    }
+
+
+def _solid_columns(solid: SolidOverlaps, column: Callable[[int, Array], Any]) -> dict[str, Array]:
+    """Return the columns of overlaps of solids; `column` places the values in their rows."""
+    low, high = solid.extents
+    return {
+        "overlap_mm3": column(3, solid.volume).filled(0.0),
+        "overlap_from_z_mm": column(3, low),
+        "overlap_to_z_mm": column(3, high),
     }

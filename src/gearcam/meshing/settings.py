@@ -74,6 +74,9 @@ class MeshingSpec(ShortRepr):
     center_distance: float | None = positive_length(
         example=80.1, doc="centre distance as mounted, not for racks; as designed by default"
     )
+    solids: bool = param(
+        default=False, doc="whether to intersect the wheels' solids too, also on tilted axes"
+    )
 
     rules = (
         above("end", "start", why="the study would end before it begins, at {}"),

@@ -19,16 +19,18 @@ import numpy as np
 
 from gearcam.base.errors import ABOVE, InfeasibleError, beyond_limit
 from gearcam.base.numerals import formatted
-from gearcam.gears.contact import COAST, DRIVE, FlankPairs, flank_pairs
+from gearcam.gears.contact import COAST, DRIVE, FlankPairs, Mounting, flank_pairs
 from gearcam.gears.outline import Outline
 from gearcam.gears.pair import FINEST, Gear, GearPair
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.edges import first_touch, to_pitch_line
+from gearcam.meshing.errors import Assembly, first_of
 from gearcam.meshing.half_teeth import half_teeth
 from gearcam.meshing.overlap import Overlaps, Turning
 from gearcam.meshing.patches import patches
 from gearcam.meshing.rows import Block, columns_of, on_side
 from gearcam.meshing.settings import MeshingSpec
+from gearcam.meshing.solids import Bodies, PrismMaker, bodies
 from gearcam.numeric.arrays import Array, Mask
 
 Progress = Callable[[str, int, int], None]
@@ -56,6 +58,36 @@ _STOP = 1e-7
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
+class Made:
+    """The errors of a pair, and how its solids are made.
+
+    Parameters
+    ----------
+    errors : Assembly
+        Its errors.
+    prisms : callable or None
+        Makes prisms; None without solids.
+    low, high : float, mm
+        Heights over the middle of the face width between which the teeth extend.
+    """
+
+    errors: Assembly = field(default_factory=Assembly)
+    prisms: PrismMaker | None = None
+    low: float = 0.0
+    high: float = 0.0
+
+    def bodies(self, turning: Turning) -> Bodies | None:
+        """Return the solids of mounted wheels, if asked for."""
+        if self.prisms is None:
+            return None
+        return bodies(turning, self.prisms, self.errors.tilt, self.low, self.high)
+
+
+AS_DESIGNED = Made()
+"""Without errors and solids."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Setup:
     """A pair as mounted for a study.
 
@@ -64,7 +96,7 @@ class Setup:
     spec : MeshingSpec
         Settings.
     pairs : mapping of int to FlankPairs
-        Both sides.
+        Both sides; on tilted axes in the middle of the face width.
     turning : Turning
         The outlines.
     side : {-1, +1}
@@ -75,6 +107,10 @@ class Setup:
         Smallest penetration of a full contact: overclosure times lever arm.
     lever : float, mm
         Largest lever arm of the driver.
+    sections : mapping of int to list of FlankPairs
+        Both sides in the sections that touch first: on tilted axes both faces.
+    bodies : Bodies or None
+        The solids, if asked for.
     """
 
     spec: MeshingSpec
@@ -84,6 +120,8 @@ class Setup:
     stretch: tuple[float, float]
     penetration: float
     lever: float
+    sections: dict[int, list[FlankPairs]]
+    bodies: Bodies | None = None
 
     @property
     def noise(self) -> float:
@@ -145,6 +183,7 @@ def study(
     spec: MeshingSpec,
     progress: Progress | None = None,
     designed: tuple[FlankPairs, ...] = (),
+    made: Made = AS_DESIGNED,
 ) -> Meshing:
     """Return the meshing study of a pair.
 
@@ -158,6 +197,8 @@ def study(
         Called with ``"meshing"``, the phases done and their number.
     designed : tuple of FlankPairs
         Both sides of the pair as designed, if already computed.
+    made : Made
+        Errors and solids.
 
     Returns
     -------
@@ -169,7 +210,7 @@ def study(
     InfeasibleError
         If the wheels do not reach each other, or the overclosure is too small to be resolved.
     """
-    return run(mount(gears, spec, designed), progress)
+    return run(mount(gears, spec, designed, made), progress)
 
 
 def run(setup: Setup, progress: Progress | None = None) -> Meshing:
@@ -188,7 +229,10 @@ def run(setup: Setup, progress: Progress | None = None) -> Meshing:
 
 
 def mount(
-    gears: tuple[Gear, Gear], spec: MeshingSpec, designed: tuple[FlankPairs, ...] = ()
+    gears: tuple[Gear, Gear],
+    spec: MeshingSpec,
+    designed: tuple[FlankPairs, ...] = (),
+    made: Made = AS_DESIGNED,
 ) -> Setup:
     """Return a mounted pair, with outlines as fine as the overclosure needs.
 
@@ -200,6 +244,8 @@ def mount(
         Settings.
     designed : tuple of FlankPairs
         Both sides of the pair as designed, if already computed.
+    made : Made
+        Errors and solids.
 
     Returns
     -------
@@ -211,16 +257,24 @@ def mount(
         If the wheels do not reach each other, or the overclosure is too small to be resolved.
     """
     pair = gears[0].pair
-    distance = _distance(pair, spec)
-    pairs = {one.side: one for one in designed if one.distance == distance}
-    pairs = pairs or {side: flank_pairs(gears, side, distance) for side in (DRIVE, COAST)}
+    middle, *faces = _mountings(pair, spec, made)
+    pairs = {one.side: one for one in designed if made.errors.none and one.distance == middle.distance}
+    pairs = pairs or {side: flank_pairs(gears, side, middle) for side in (DRIVE, COAST)}
+    sections = {
+        side: [flank_pairs(gears, side, face) for face in faces] or [pairs[side]] for side in pairs
+    }
     side = DRIVE if spec.overclosure > 0.0 else COAST
     grid = np.linspace(0.0, pairs[side].travel, 20 * len(pairs[side].numbers))
     levers = contacts(pairs[side], grid).lever[0]
     if not levers.size:
         levers = np.abs(pair.rolling.tracks[0].frames(np.zeros(1)).p.real)
     penetration = abs(spec.overclosure) * float(levers.min())
-    both = [half_teeth(outline) for outline in _outlines(gears, spec, penetration)]
+    both = [
+        half_teeth(outline).moved(outline.toothing, errors, offset)
+        for outline, errors, offset in zip(
+            _outlines(gears, spec, penetration), middle.pitch, middle.eccentric, strict=True
+        )
+    ]
     for gear, wheel in zip(gears, both, strict=True):
         if not wheel.sound:
             what = "the teeth are too few and too deep to be divided into half-teeth"
@@ -232,7 +286,7 @@ def mount(
         rolling=pair.rolling,
         driver=both[0],
         driven=both[1],
-        distance=distance,
+        distance=middle.distance,
         moved=gears[0].toothing.moved,
     )
     return Setup(
@@ -243,7 +297,26 @@ def mount(
         stretch=stretch(spec, pairs[side]),
         penetration=penetration,
         lever=float(levers.max()),
+        sections=sections,
+        bodies=made.bodies(turning),
     )
+
+
+def _mountings(pair: GearPair, spec: MeshingSpec, made: Made) -> list[Mounting]:
+    """Return how the pair is mounted in the middle of the face width, and on tilted axes at its
+    faces.
+    """
+    distance, depth = _distance(pair, spec), 2.0 * pair.rack.addendum * pair.module
+    found = [replace(made.errors, tilt=0j).mounting(distance)]
+    if made.errors.tilt:
+        found += made.errors.mountings(distance, made.low, made.high)
+    apart = max(abs(abs(one.distance) - abs(distance)) for one in found)
+    if not pair.on_rack and apart >= depth:
+        where = "errors.tilt_deg" if made.errors.tilt else "errors.center_mm"
+        what = f"with this error the teeth are up to {formatted(apart, 3)} mm out of mesh"
+        note = f"the teeth reach {formatted(depth, 3)} mm into each other"
+        raise InfeasibleError(what, where=where, nearest=note)
+    return found
 
 
 def stretch(spec: MeshingSpec, pairs: FlankPairs) -> tuple[float, float]:
@@ -384,7 +457,12 @@ def _block(setup: Setup, phi1: Array, first: int) -> Block:
     """Return the results of some phases; `first` is the number of the first of them."""
     spec, turning, side = setup.spec, setup.turning, setup.side
     touching = {s: contacts(setup.pairs[s], phi1) for s in (DRIVE, COAST)}
-    first_touches = {s: first_touch(setup.pairs[s], phi1, found) for s, found in touching.items()}
+    first_touches = {
+        s: first_touch(setup.pairs[s], phi1, found)
+        if setup.sections[s] == [setup.pairs[s]]
+        else first_of(setup.sections[s], phi1)
+        for s, found in touching.items()
+    }
     first_lead, edge = first_touches[side]
     lead = np.where(np.isfinite(first_lead), first_lead, 0.0)
     ahead = turning.overlaps(phi1, spec.overclosure, lead)
@@ -404,6 +482,7 @@ def _block(setup: Setup, phi1: Array, first: int) -> Block:
         edge=edge,
         held_back_gap=held,
         overlaps=ahead,
+        solids=setup.bodies and setup.bodies.overlaps(phi1, spec.overclosure, lead),
         contacts=touching[side],
         patches=patches(setup.pairs[side], phi1, spec.overclosure, lead),
         interferes=interferes,

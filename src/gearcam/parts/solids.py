@@ -12,7 +12,7 @@ Depends on parts; manifold3d only inside the functions.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property, singledispatch
@@ -22,7 +22,7 @@ import numpy as np
 
 from gearcam.base.errors import GearcamError, MissingExtraError
 from gearcam.base.numerals import formatted
-from gearcam.numeric.arrays import Array, Ints, as_pairs
+from gearcam.numeric.arrays import Array, Ints, Plane, as_pairs
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.pose import Pose
 from gearcam.parts.body import Body, Layer, Mark, Part
@@ -202,6 +202,82 @@ def _mesh(body: Manifold) -> Mesh:
     raw = body.to_mesh64()
     vertices = np.array(raw.vert_properties[:, :3], dtype=np.float64)
     return Mesh(vertices=vertices, triangles=np.array(raw.tri_verts, dtype=np.int64))
+
+
+@dataclass(frozen=True, eq=False)
+class Prisms:
+    """Prisms of two sets of outlines, made when they are first used.
+
+    Parameters
+    ----------
+    first, second : sequence of (n,) complex arrays, mm
+        Outlines, counter-clockwise.
+    low, high : float, mm
+        Heights of their faces.
+    """
+
+    first: Sequence[Plane]
+    second: Sequence[Plane]
+    low: float
+    high: float
+
+    def overlap(self, one: int, two: int, motion: Array) -> tuple[float, Array]:
+        """Return the overlap of two prisms.
+
+        Parameters
+        ----------
+        one, two : int
+            Indices in `first` and `second`.
+        motion : (3, 4) array, mm
+            Rotation and shift of the first of them.
+
+        Returns
+        -------
+        volume : float, mm^3
+        vertices : (n, 3) array, mm
+            None without overlap.
+
+        Raises
+        ------
+        MissingExtraError
+            If manifold3d is not installed.
+        """
+        first, second = self._made("first", one), self._made("second", two)
+        shared = first.transform(motion) ^ second
+        volume = float(shared.volume())
+        return volume, _mesh(shared).vertices if volume > 0.0 else np.empty((0, 3))
+
+    def _made(self, of: str, number: int) -> Manifold:
+        """Return a prism; the same object each time."""
+        prisms = self._prisms
+        if (of, number) not in prisms:
+            prisms[of, number] = _prism(getattr(self, of)[number], self.low, self.high)
+        return prisms[of, number]
+
+    @cached_property
+    def _prisms(self) -> dict[tuple[str, int], Manifold]:
+        return {}
+
+
+@libraries()
+def _prism(outline: Plane, low: float, high: float) -> Manifold:
+    """Return an outline as a prism with exactly its vertices, which a `CrossSection` would round.
+
+    Its thin overlaps then have the area of those of the outlines, to rounding, times the height.
+    """
+    import manifold3d
+
+    count = len(outline)
+    face = np.asarray(manifold3d.triangulate([as_pairs(outline)]), dtype=np.uint64)
+    here = np.arange(count, dtype=np.uint64)
+    after = np.roll(here, -1)
+    above = np.uint64(count)
+    sides = [np.stack([here, after, after + above], 1), np.stack([here, after + above, here + above], 1)]
+    points = [np.column_stack([as_pairs(outline), np.full(count, z)]) for z in (low, high)]
+    mesh = manifold3d.Mesh64(
+        np.concatenate(points), np.concatenate([face[:, ::-1], face + above, *sides])
+    )
+    return manifold3d.Manifold(mesh)
 
 
 @singledispatch

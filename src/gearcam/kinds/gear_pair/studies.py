@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
@@ -14,8 +15,9 @@ from gearcam.results.kind import Study
 from gearcam.results.result import StudyResult
 
 if TYPE_CHECKING:
+    from gearcam.kinds.gear_pair.design import GearPairDesign
     from gearcam.kinds.gear_pair.result import GearPairResult
-    from gearcam.meshing.study import Meshing
+    from gearcam.meshing.study import Made, Meshing
     from gearcam.numeric.arrays import Array, Ints, Plane
     from gearcam.pictures.charts import Chart
     from gearcam.pictures.scenes import ContactPoints, Scene
@@ -36,7 +38,7 @@ def _mesh(result: GearPairResult, progress: Progress | None) -> StudyResult:
     gears = result.steps[design.meshing.step - 1]
     with result.stage("meshing"):
         designed = result.subject.sides if gears is result.steps[0] else ()
-        meshing = study(gears, design.meshing, progress, designed)
+        meshing = study(gears, design.meshing, progress, designed, _made(design))
     if not meshing.blocks:
         raise KeyboardInterrupt
     with result.stage("checks"):
@@ -53,6 +55,21 @@ def _mesh(result: GearPairResult, progress: Progress | None) -> StudyResult:
         overlay=_contacts(meshing),
         interrupted="" if meshing.complete else done,
     )
+
+
+def _made(design: GearPairDesign) -> Made:
+    """Return the errors of a design, and how its solids are made if it asks for them."""
+    from gearcam.meshing.errors import given
+    from gearcam.meshing.study import Made
+
+    spec, width, count = design.meshing, design.pair.face_width, design.steps.count
+    errors = given(design.errors)
+    low = width * ((spec.step - 1) / count - 0.5)
+    if not spec.solids:
+        return Made(errors=replace(errors, tilt=0j))
+    from gearcam.parts.solids import Prisms
+
+    return Made(errors=errors, prisms=Prisms, low=low, high=low + width / count)
 
 
 def _charts(result: GearPairResult, meshing: Meshing) -> dict[str, Chart]:
