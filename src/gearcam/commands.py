@@ -133,6 +133,8 @@ def _add_settings(study: Study, kind: Kind, parser: argparse.ArgumentParser) -> 
         if entry.length is not None:
             example = "1,27,..." if entry.base is int else "A,B,..."
             words |= {"type": partial(_list, entry.base), "metavar": example}
+        elif entry.base is bool:
+            words |= {"action": "store_true", "default": None}
         else:
             words |= {"type": entry.base, "metavar": unit or ("N" if entry.base is int else "KEY")}
         name = study.options.get(key, key.removesuffix("_deg"))

@@ -205,7 +205,7 @@ LAWS = {
         (
             "ellipse",
             "cams",
-            {"displacement", "entry"} | {"ratio.base", "ratio.ellipse", "ratio.span"},
+            {"columns", "displacement", "entry"} | {"ratio.base", "ratio.ellipse", "ratio.span"},
         ),
         (
             "eccentric_cam",

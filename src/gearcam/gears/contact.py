@@ -15,9 +15,8 @@ touch together at any centre distance.
 Positions are those of the mounted pair, as complex numbers: O1 at 0, O2 at the centre distance
 along x, for a ring at the opposite side. A rack has no O2; its lead is a travel in mm.
 
-A `Mounting` moves the shafts and the teeth of real wheels: the teeth of an eccentric wheel are moved
-against its shaft, and so the points of its flanks and nothing else; an error of pitch moves a tooth
-along the pitch curve. With the driver turned by phi1 an eccentricity e has turned with it.
+A `Mounting` moves shafts and teeth of real wheels: those of an eccentric wheel are moved against
+its shaft, and turn with it; an error of pitch moves a tooth along the pitch curve.
 
 Nothing is refused: flanks that cannot touch form no pair. Depends on flanks and tracks.
 """

@@ -206,14 +206,14 @@ def outermost(step: Ints, pair: Ints, outward: Array, touching: Mask) -> Ints:
     return at[np.append(True, ~again)[: len(at)]]
 
 
-def contact_columns(found: Contacts, distance: float) -> dict[str, Array]:
+def contact_columns(found: Contacts, distance: complex) -> dict[str, Array]:
     """Return the table columns of points of contact.
 
     Parameters
     ----------
     found : Contacts
         The points.
-    distance : float, mm
+    distance : complex, mm
         Mounted distance (see `FlankPairs`).
 
     Returns

@@ -133,7 +133,7 @@ def _facing(pairs: FlankPairs, phi1: Array) -> tuple[Facing, Array, Array]:
     return found, low, high
 
 
-def touches(pairs: FlankPairs, phi1: ArrayLike) -> Touches:
+def touches(pairs: FlankPairs, phi1: ArrayLike, *, exact: bool = True) -> Touches:
     """Return the first contacts of a side's pairs at phases.
 
     Parameters
@@ -142,6 +142,9 @@ def touches(pairs: FlankPairs, phi1: ArrayLike) -> Touches:
         The side.
     phi1 : (n,) array, rad
         Phases.
+    exact : bool
+        Whether to find the extremes inside flanks, too, not only whether they are inside: edges
+        are exact in any case, and `gearcam.meshing.contact` finds the others.
 
     Returns
     -------
@@ -162,13 +165,14 @@ def touches(pairs: FlankPairs, phi1: ArrayLike) -> Touches:
     right = np.where(falling[rows, best] > 0.0, after, best)
     inner = np.flatnonzero((falling[rows, left] > 0.0) & (falling[rows, right] <= 0.0))
     extreme, some = turn[rows, best], found.select(inner)
-    at = bracketed_root(
-        lambda x: some.compare(x)[1],
-        angle[inner, left[inner]],
-        angle[inner, right[inner]],
-        _EXTREME,
-    )
-    extreme[inner] = -pairs.side * some.compare(at)[0]
+    if exact:
+        at = bracketed_root(
+            lambda x: some.compare(x)[1],
+            angle[inner, left[inner]],
+            angle[inner, right[inner]],
+            _EXTREME,
+        )
+        extreme[inner] = -pairs.side * some.compare(at)[0]
     return Touches(
         step=found.step, pair=found.pair, turn=-pairs.side * extreme, edge=~np.isin(rows, inner)
     )
@@ -203,7 +207,7 @@ def first_touch(pairs: FlankPairs, phi1: Array, found: Contacts) -> tuple[Array,
     searched = np.flatnonzero(~np.isfinite(outward)) if pairs.even else np.arange(len(phi1))
     ends = np.full(len(phi1), -np.inf)
     if searched.size:
-        some = touches(pairs, phi1[searched])
+        some = touches(pairs, phi1[searched], exact=False)
         step, turn = searched[some.step[some.edge]], some.turn[some.edge]
         ends = of_leading_pair(pairs.side, len(phi1), step, turn)
     lead = -pairs.side * np.maximum(outward, ends)

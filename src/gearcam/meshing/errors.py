@@ -125,8 +125,8 @@ class Running(ShortRepr):
         touches.
     backlash : (n,) array, mm
         Free travel of the driven wheel between both contacts, along the pitch curve.
-    contact_ratio : float
-        Least of all pairs of teeth, on the driving side.
+    driving : tuple of FlankPairs
+        The driving side, on tilted axes in both faces.
     known_to : float, rad, for a rack mm
         Rounding of `lead`.
     unit : str
@@ -138,10 +138,15 @@ class Running(ShortRepr):
     phi1: Array
     lead: Array
     backlash: Array
-    contact_ratio: float
+    driving: tuple[FlankPairs, ...]
     known_to: float
     unit: str
     noise: float
+
+    @property
+    def contact_ratio(self) -> float:
+        """Least contact ratio of all pairs of teeth, on the driving side."""
+        return min(float(one.contact_ratios.min()) for one in self.driving)
 
     @cached_property
     def peak_to_peak(self) -> float:
@@ -164,8 +169,57 @@ class Running(ShortRepr):
         return np.where(np.abs(error) <= self.known_to, 0.0, error)
 
 
+def demand(gears: Gears, assembly: Assembly) -> None:
+    """Refuse errors of teeth and shafts that a pair does not have.
+
+    Parameters
+    ----------
+    gears : (Gear, Gear)
+        The wheels.
+    assembly : Assembly
+        Their errors.
+
+    Raises
+    ------
+    InfeasibleError
+        If there is one.
+    """
+    for gear, errors in zip(gears, assembly.pitch, strict=True):
+        toothing = gear.toothing
+        missing = sorted(set(errors) - set(toothing.numbers[toothing.whole]))
+        if missing:
+            raise InfeasibleError(
+                f"the file has an error of pitch of a tooth that wheel {gear.wheel} does not have",
+                where="errors.file",
+                value=float(missing[0]),
+                nearest=f"its teeth are 1 to {toothing.teeth}",
+            )
+    if gears[0].pair.on_rack and assembly.eccentric[1]:
+        raise InfeasibleError(
+            "a rack has no shaft, and so no eccentricity",
+            where="errors.eccentricity_mm[1]",
+            value=abs(assembly.eccentric[1]),
+            unit="mm",
+            nearest="give 0 for wheel 2",
+        )
+
+
 def cycle(gears: Gears, assembly: Assembly, steps: int) -> Array:
-    """Return driver angles over the cycle of an assembly, `steps` a turn or travel, (n,), rad."""
+    """Return driver angles over the cycle of an assembly.
+
+    Parameters
+    ----------
+    gears : (Gear, Gear)
+        The wheels.
+    assembly : Assembly
+        Their errors.
+    steps : int
+        Number of angles in a turn, or in the travel of an open pair.
+
+    Returns
+    -------
+    (n,) array, rad
+    """
     pairs = flank_pairs(gears, DRIVE, assembly.mounting(gears[0].pair.shift))
     return np.linspace(0.0, pairs.travel, steps * pairs.turns, endpoint=not pairs.closed)
 
@@ -197,7 +251,7 @@ def run(gears: Gears, width: float, assembly: Assembly, phi1: Array) -> Running:
         {side: flank_pairs(gears, side, mounting) for side in (DRIVE, COAST)}
         for mounting in assembly.mountings(gears[0].pair.shift, -0.5 * width, 0.5 * width)
     ]
-    driving = [section[DRIVE] for section in sections]
+    driving = tuple(section[DRIVE] for section in sections)
     lead, back = (
         first_of([section[side] for section in sections], phi1)[0] for side in (DRIVE, COAST)
     )
@@ -213,7 +267,7 @@ def run(gears: Gears, width: float, assembly: Assembly, phi1: Array) -> Running:
         phi1=phi1,
         lead=lead,
         backlash=(back - lead) * along,
-        contact_ratio=min(float(one.contact_ratios.min()) for one in driving),
+        driving=driving,
         known_to=rounding,
         unit=driving[0].guide.unit,
         noise=2.0 * rounding * float(np.abs(along).max()),
@@ -221,7 +275,20 @@ def run(gears: Gears, width: float, assembly: Assembly, phi1: Array) -> Running:
 
 
 def first_of(sections: list[FlankPairs], phi1: Array) -> tuple[Array, Mask]:
-    """Return the lead at first contact of a side in any of some sections, as `first_touch`."""
+    """Return the lead at first contact of a side in any of some sections.
+
+    Parameters
+    ----------
+    sections : list of FlankPairs
+        The side in each of them.
+    phi1 : (n,) array, rad
+        Phases.
+
+    Returns
+    -------
+    lead, edge : (n,) arrays
+        See `gearcam.meshing.edges.first_touch`.
+    """
     side = sections[0].side
     leads, edges = zip(
         *(first_touch(one, phi1, contacts(one, phi1)) for one in sections), strict=True
@@ -231,7 +298,17 @@ def first_of(sections: list[FlankPairs], phi1: Array) -> tuple[Array, Mask]:
 
 
 def given(spec: ErrorsSpec) -> Assembly:
-    """Return the errors that a design gives, without its tolerances."""
+    """Return the errors that a design gives, without its tolerances.
+
+    Parameters
+    ----------
+    spec : ErrorsSpec
+        The settings.
+
+    Returns
+    -------
+    Assembly
+    """
     one, two = (
         size * complex(math.cos(angle), math.sin(angle))
         for size, angle in zip(spec.eccentricity, spec.eccentricity_angle, strict=True)
@@ -242,7 +319,18 @@ def given(spec: ErrorsSpec) -> Assembly:
 
 
 def alone(assembly: Assembly) -> dict[str, Assembly]:
-    """Return each of the errors of an assembly alone, by name; none is 0."""
+    """Return each of the errors of an assembly alone.
+
+    Parameters
+    ----------
+    assembly : Assembly
+        All errors.
+
+    Returns
+    -------
+    dict of str to Assembly
+        By name, those that are not 0.
+    """
     one, two = assembly.eccentric
     first, second = assembly.pitch
     every = {
@@ -278,6 +366,11 @@ def largest(excess: Callable[[float], float]) -> float | None:
         low, high = high, 2.0 * high
         if high > _FARTHEST:
             return math.inf
+    while not low and high > 1.0 / _FARTHEST:
+        if excess(0.5 * high) < 0.0:
+            low = 0.5 * high
+        else:
+            high *= 0.5
 
     def values(factor: Array) -> Array:
         return np.array([excess(float(one)) for one in np.atleast_1d(factor)])
@@ -289,7 +382,19 @@ def largest(excess: Callable[[float], float]) -> float | None:
 
 
 def random_assemblies(spec: ErrorsSpec, gears: Gears) -> Iterator[Assembly]:
-    """Yield the random assemblies of a design's tolerances, the same for the same `seed`."""
+    """Yield the random assemblies of a design's tolerances.
+
+    Parameters
+    ----------
+    spec : ErrorsSpec
+        Errors, tolerances and their distribution; the same `seed` gives the same assemblies.
+    gears : (Gear, Gear)
+        The wheels.
+
+    Yields
+    ------
+    Assembly
+    """
     middle, random = given(spec), np.random.default_rng(spec.seed)
 
     def within(tolerance: float, count: int = 1) -> Array:

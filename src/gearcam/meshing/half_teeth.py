@@ -86,7 +86,9 @@ class HalfTeeth:
         body = index == self.count
         return np.ma.masked_array(self.teeth[np.where(body, 0, index)], mask=body)
 
-    def moved(self, toothing: Toothing, pitch: Mapping[int, float], eccentric: complex) -> HalfTeeth:
+    def moved(
+        self, toothing: Toothing, pitch: Mapping[int, float], eccentric: complex
+    ) -> HalfTeeth:
         """Return the half-teeth of a wheel with errors.
 
         Parameters

@@ -65,11 +65,27 @@ def numbers(meshing: Meshing) -> dict[str, Any]:
         "agreement": agreement(meshing, stepwise),
         **transmission(meshing),
     }
+    if setup.bodies is not None:
+        result |= _of_solids(meshing)
     for name in ("backlash", "held_back_gap"):
         found = meshing.every(name)
         found = found[np.isfinite(found)]
         if found.size:
             result[f"{name}_mm"] = _extent(found)
+    return result
+
+
+def _of_solids(meshing: Meshing) -> dict[str, Any]:
+    """Return the overlap of solids, and the length of teeth on which they bear at a phase."""
+    rows = meshing.columns
+    volume, bearing = rows["overlap_mm3"], rows["overlap_to_z_mm"] - rows["overlap_from_z_mm"]
+    result: dict[str, Any] = {
+        "overlap_max_mm3": float(volume.filled(0.0).max(initial=0.0)),
+        "overlap_sum_mm3": float(volume.sum()),
+    }
+    bears = meshing.on_side & ~np.ma.getmaskarray(bearing)
+    if bears.any():
+        result["bearing_length_mm"] = _extent(bearing.data[bears])
     return result
 
 

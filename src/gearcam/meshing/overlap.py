@@ -67,7 +67,7 @@ class Turning:
         The centrodes.
     driver, driven : HalfTeeth
         The wheels.
-    distance : float, mm
+    distance : complex, mm
         Mounted distance (see `FlankPairs`).
     moved : float, mm
         Offset of the teeth along the centrodes, for a step of stepped wheels.
@@ -76,7 +76,7 @@ class Turning:
     rolling: Rolling
     driver: HalfTeeth
     driven: HalfTeeth
-    distance: float
+    distance: complex
     moved: float = 0.0
 
     @cached_property

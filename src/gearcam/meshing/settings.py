@@ -109,23 +109,35 @@ class ErrorsSpec(FromFile):
     ErrorsSpec(center=0.02, eccentricity=(0.05, 0.0))
     """
 
-    center: float = param(
-        LENGTH, default=0.0, ge=-100, le=100, doc="added to the centre distance"
-    )
+    center: float = param(LENGTH, default=0.0, ge=-100, le=100, doc="added to the centre distance")
     eccentricity: tuple[float, float] = param(
-        LENGTH, default=(0.0, 0.0), ge=0, le=100, both=True,
+        LENGTH,
+        default=(0.0, 0.0),
+        ge=0,
+        le=100,
+        both=True,
         doc="distance of the teeth's middle from the shaft",
     )
     eccentricity_angle: tuple[float, float] = param(
-        ANGLE, default=(0.0, 0.0), ge=-360, le=360, both=True, word="eccentricity",
+        ANGLE,
+        default=(0.0, 0.0),
+        ge=-360,
+        le=360,
+        both=True,
+        word="eccentricity",
         doc="its direction, in the wheel's own coordinates",
     )
     tilt: tuple[float, float] = param(
-        ANGLE, default=(0.0, 0.0), ge=-10, le=10,
+        ANGLE,
+        default=(0.0, 0.0),
+        ge=-10,
+        le=10,
         doc="tilt of the driver's axis in the plane of the axes, and across it",
     )
     file: str | None = param(
-        TEXT, default=None, example="pitch.csv",
+        TEXT,
+        default=None,
+        example="pitch.csv",
         doc="CSV file of errors of pitch, with the columns wheel, tooth, pitch_mm",
     )
     center_tolerance: float = param(
@@ -140,9 +152,7 @@ class ErrorsSpec(FromFile):
     distribution: str = param(
         TEXT, default="uniform", choices=("uniform", "normal"), doc="of random errors"
     )
-    trials: int = param(
-        COUNT, default=0, ge=0, le=100000, doc="number of random assemblies"
-    )
+    trials: int = param(COUNT, default=0, ge=0, le=100000, doc="number of random assemblies")
     seed: int = param(
         COUNT, default=1, ge=0, le=1000000, doc="of the random numbers: the same gives the same"
     )

@@ -17,13 +17,14 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
+import shapely
 
 from gearcam.meshing.half_teeth import HalfTeeth
 from gearcam.meshing.overlap import Turning
 from gearcam.numeric.arrays import Array, Ints, Plane
 
 
-class Prisms(Protocol):
+class PrismPair(Protocol):
     """Prisms of two wheels, in the wheels' frames."""
 
     def overlap(self, one: int, two: int, motion: Array) -> tuple[float, Array]:
@@ -43,7 +44,9 @@ class PrismMaker(Protocol):
 
     def __call__(
         self, first: Sequence[Plane], second: Sequence[Plane], low: float, high: float
-    ) -> Prisms: ...
+    ) -> PrismPair:
+        """Return the prisms."""
+        ...
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -71,6 +74,14 @@ class SolidOverlaps:
     height: Array
     radius: Array
 
+    def outline(self, number: int) -> Array:
+        """Return the convex outline of a patch, closed: heights and radii, (2, n), mm."""
+        own = slice(self.start[number], self.start[number + 1])
+        hull = shapely.MultiPoint(
+            np.stack([self.height[own], self.radius[own]], axis=1)
+        ).convex_hull
+        return shapely.get_coordinates(hull).T
+
     @property
     def extents(self) -> tuple[Array, Array]:
         """Least and largest height of each, (n,), mm."""
@@ -88,7 +99,7 @@ class Bodies:
     ----------
     turning : Turning
         The outlines, mounted as in the middle of the face width.
-    prisms : Prisms
+    prisms : PrismPair
         The prisms, heights over the middle of the face width.
     tilt : complex, rad
         Of the driver's axis, in the plane of the axes and across it: the driven shaft is that much
@@ -98,7 +109,7 @@ class Bodies:
     """
 
     turning: Turning
-    prisms: Prisms
+    prisms: PrismPair
     tilt: complex
     reach: float
 
@@ -129,7 +140,18 @@ class Bodies:
         )
 
     def motions(self, phi1: Array, overclosure: float, lead: Array | float) -> Array:
-        """Return the motions of the driver in the driven wheel's frame, (n, 3, 4), mm."""
+        """Return the motions of the driver in the driven wheel's frame.
+
+        Parameters
+        ----------
+        phi1, overclosure, lead
+            See `Turning.pose`.
+
+        Returns
+        -------
+        (n, 3, 4) array, mm
+            Rotations and shifts.
+        """
         turning = self.turning
         pose = turning.pose(phi1, overclosure, lead)
         # the driver turns on its axis, is tilted with it, and is seen from the driven wheel
@@ -146,9 +168,7 @@ class Bodies:
         return own[:, 2], np.hypot(own[:, 0], own[:, 1])
 
 
-def bodies(
-    turning: Turning, make: PrismMaker, tilt: complex, low: float, high: float
-) -> Bodies:
+def bodies(turning: Turning, make: PrismMaker, tilt: complex, low: float, high: float) -> Bodies:
     """Return the prisms of two mounted wheels.
 
     Parameters

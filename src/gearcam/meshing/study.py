@@ -24,7 +24,7 @@ from gearcam.gears.outline import Outline
 from gearcam.gears.pair import FINEST, Gear, GearPair
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.edges import first_touch, to_pitch_line
-from gearcam.meshing.errors import Assembly, first_of
+from gearcam.meshing.errors import Assembly, demand, first_of
 from gearcam.meshing.half_teeth import half_teeth
 from gearcam.meshing.overlap import Overlaps, Turning
 from gearcam.meshing.patches import patches
@@ -107,8 +107,8 @@ class Setup:
         Smallest penetration of a full contact: overclosure times lever arm.
     lever : float, mm
         Largest lever arm of the driver.
-    sections : mapping of int to list of FlankPairs
-        Both sides in the sections that touch first: on tilted axes both faces.
+    faces : mapping of int to list of FlankPairs
+        Both sides in both faces of wheels on tilted axes, which touch first there; else empty.
     bodies : Bodies or None
         The solids, if asked for.
     """
@@ -120,7 +120,7 @@ class Setup:
     stretch: tuple[float, float]
     penetration: float
     lever: float
-    sections: dict[int, list[FlankPairs]]
+    faces: dict[int, list[FlankPairs]] = field(default_factory=dict)
     bodies: Bodies | None = None
 
     @property
@@ -257,12 +257,11 @@ def mount(
         If the wheels do not reach each other, or the overclosure is too small to be resolved.
     """
     pair = gears[0].pair
-    middle, *faces = _mountings(pair, spec, made)
-    pairs = {one.side: one for one in designed if made.errors.none and one.distance == middle.distance}
-    pairs = pairs or {side: flank_pairs(gears, side, middle) for side in (DRIVE, COAST)}
-    sections = {
-        side: [flank_pairs(gears, side, face) for face in faces] or [pairs[side]] for side in pairs
+    middle, *faces = _mountings(gears, spec, made)
+    pairs = {
+        one.side: one for one in designed if made.errors.none and one.distance == middle.distance
     }
+    pairs = pairs or {side: flank_pairs(gears, side, middle) for side in (DRIVE, COAST)}
     side = DRIVE if spec.overclosure > 0.0 else COAST
     grid = np.linspace(0.0, pairs[side].travel, 20 * len(pairs[side].numbers))
     levers = contacts(pairs[side], grid).lever[0]
@@ -297,15 +296,15 @@ def mount(
         stretch=stretch(spec, pairs[side]),
         penetration=penetration,
         lever=float(levers.max()),
-        sections=sections,
+        faces={side: [flank_pairs(gears, side, face) for face in faces] for side in pairs if faces},
         bodies=made.bodies(turning),
     )
 
 
-def _mountings(pair: GearPair, spec: MeshingSpec, made: Made) -> list[Mounting]:
-    """Return how the pair is mounted in the middle of the face width, and on tilted axes at its
-    faces.
-    """
+def _mountings(gears: tuple[Gear, Gear], spec: MeshingSpec, made: Made) -> list[Mounting]:
+    """Return how the pair is mounted in the middle of its width; if tilted also at both faces."""
+    demand(gears, made.errors)
+    pair = gears[0].pair
     distance, depth = _distance(pair, spec), 2.0 * pair.rack.addendum * pair.module
     found = [replace(made.errors, tilt=0j).mounting(distance)]
     if made.errors.tilt:
@@ -459,8 +458,8 @@ def _block(setup: Setup, phi1: Array, first: int) -> Block:
     touching = {s: contacts(setup.pairs[s], phi1) for s in (DRIVE, COAST)}
     first_touches = {
         s: first_touch(setup.pairs[s], phi1, found)
-        if setup.sections[s] == [setup.pairs[s]]
-        else first_of(setup.sections[s], phi1)
+        if not setup.faces
+        else first_of(setup.faces[s], phi1)
         for s, found in touching.items()
     }
     first_lead, edge = first_touches[side]

@@ -272,7 +272,10 @@ def _prism(outline: Plane, low: float, high: float) -> Manifold:
     here = np.arange(count, dtype=np.uint64)
     after = np.roll(here, -1)
     above = np.uint64(count)
-    sides = [np.stack([here, after, after + above], 1), np.stack([here, after + above, here + above], 1)]
+    sides = [
+        np.stack([here, after, after + above], 1),
+        np.stack([here, after + above, here + above], 1),
+    ]
     points = [np.column_stack([as_pairs(outline), np.full(count, z)]) for z in (low, high)]
     mesh = manifold3d.Mesh64(
         np.concatenate(points), np.concatenate([face[:, ::-1], face + above, *sides])

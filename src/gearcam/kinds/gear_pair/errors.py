@@ -20,6 +20,7 @@ from gearcam.meshing.errors import (
     Running,
     alone,
     cycle,
+    demand,
     given,
     harmonics,
     largest,
@@ -79,7 +80,7 @@ def study_errors(result: GearPairResult, study: Study, progress: Progress | None
     design, gears = result.design, result.gears
     spec, width, limits = design.errors, design.pair.face_width, design.limits
     every = given(spec)
-    demand_errors(result, every)
+    demand(gears, every)
     each = alone(every)
     count = 2 + len(each) + spec.trials
 
@@ -127,38 +128,6 @@ def study_errors(result: GearPairResult, study: Study, progress: Progress | None
         drawn=partial(_charts, lines, np.array(trials), without.unit),
         interrupted="" if len(trials) == spec.trials else f"{len(trials)} of {spec.trials} trials",
     )
-
-
-def demand_errors(result: GearPairResult, every: Assembly) -> None:
-    """Refuse errors of teeth and shafts that a pair does not have.
-
-    Parameters
-    ----------
-    result : GearPairResult
-        The pair.
-    every : Assembly
-        Its errors.
-
-    Raises
-    ------
-    InfeasibleError
-        If there is one.
-    """
-    for gear, errors in zip(result.gears, every.pitch, strict=True):
-        missing = sorted(set(errors) - set(gear.toothing.numbers[gear.toothing.whole]))
-        if missing:
-            raise InfeasibleError(
-                f"the file has an error of pitch of a tooth that wheel {gear.wheel} does not have",
-                where="errors.file",
-                value=float(missing[0]),
-                nearest=f"its teeth are 1 to {gear.toothing.teeth}",
-            )
-    if result.pair.on_rack and every.eccentric[1]:
-        raise InfeasibleError(
-            "a rack has no shaft, and so no eccentricity",
-            where="errors.eccentricity_mm[1]",
-            nearest="give 0 for wheel 2",
-        )
 
 
 def _unlike(every: Assembly, spec: ErrorsSpec) -> Assembly:
@@ -250,7 +219,9 @@ def _columns(
     lags = {"without": without, "together": together, **each}
     return {
         "phi1_deg": np.degrees(phi1),
-        **{f"lag_{name}_{unit}": np.ma.masked_invalid(0.0 - one.lead) for name, one in lags.items()},
+        **{
+            f"lag_{name}_{unit}": np.ma.masked_invalid(0.0 - one.lead) for name, one in lags.items()
+        },
         "backlash_mm": np.ma.masked_invalid(together.backlash),
     }
 

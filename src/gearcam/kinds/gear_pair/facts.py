@@ -215,6 +215,9 @@ _STUDIED: Mapping[str, str] = {
     "lag_mm": "lag of the driven wheel, backlash taken up",
     "penetration_mm": "penetration of flanks",
     "chord_error_mm": "chord error of outlines",
+    "overlap_max_mm3": "largest overlap of two teeth",
+    "overlap_sum_mm3": "overlaps of all phases together",
+    "bearing_length_mm": "length over which a tooth bears",
 }
 """Labels of the numbers of a study that are always shown."""
 

@@ -24,8 +24,8 @@ from gearcam.kinds.gear_pair.design import (
     problems,
 )
 from gearcam.kinds.shared import AccuracySpec
-from gearcam.meshing.settings import KIND as MESHING
 from gearcam.meshing.settings import ERRORS, ErrorsSpec, MeshingSpec
+from gearcam.meshing.settings import KIND as MESHING
 from gearcam.parts.blank import KIND as PARTS
 from gearcam.parts.blank import Blank
 from gearcam.results.kind import Kind

@@ -10,8 +10,8 @@ from gearcam.meshing.settings import ErrorsSpec, MeshingSpec
 from gearcam.parts.blank import Blank
 
 __all__ = [
-    "AccuracySpec", "Blank", "ErrorsSpec", "GearPairDesign", "GearPairResult", "MeshingSpec", "PairOutputSpec",
-    "PairSpec", "Rack", "RingSpec", "StepsSpec",
+    "AccuracySpec", "Blank", "ErrorsSpec", "GearPairDesign", "GearPairResult", "MeshingSpec",
+    "PairOutputSpec", "PairSpec", "Rack", "RingSpec", "StepsSpec",
 ]  # fmt: skip
 
 PUBLIC = {name: globals()[name] for name in __all__}

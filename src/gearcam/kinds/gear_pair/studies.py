@@ -101,7 +101,38 @@ def _charts(result: GearPairResult, meshing: Meshing) -> dict[str, Chart]:
             for name, label in table.items()
         ),
     )
-    return charts
+    if meshing.setup.bodies is not None:
+        charts["patch_over_width"] = _patch_over_width(meshing)
+    return {name: chart for name, chart in charts.items() if chart is not None}
+
+
+def _patch_over_width(meshing: Meshing) -> Chart | None:
+    """Return the patches on the driver's flank, of the two half-teeth with the largest overlap."""
+    from gearcam.pictures.charts import Chart, Line
+
+    rows = [
+        (solids.volume[k], tuple(solids.half[:, k]), solids, k)
+        for solids in (block.solids for block in meshing.blocks)
+        if solids is not None
+        for k in range(len(solids.volume))
+    ]
+    if not rows:
+        return None
+    _, pair, _, _ = max(rows, key=lambda row: row[0])
+    outlines = [solids.outline(k) for _, half, solids, k in rows if half == pair]
+    apart = np.full((2, 1), np.nan)
+    x, y = np.concatenate([part for one in outlines for part in (one, apart)], axis=1)
+    turning = meshing.setup.turning
+    one, two = (
+        int(wheel.tooth(np.array([half]))[0])
+        for wheel, half in zip((turning.driver, turning.driven), pair, strict=True)
+    )
+    return Chart(
+        title=f"Patches of driver tooth {one} on tooth {two}, phase by phase",
+        x="over the middle of the face width, mm",
+        y="from the driver's axis, mm",
+        lines=(Line(label=f"tooth {one} on tooth {two}", x=x, y=y),),
+    )
 
 
 def _contacts(meshing: Meshing) -> Callable[[Scene], dict[str, ContactPoints]]:
@@ -152,6 +183,7 @@ MESH: Final = Study(
     repeats=("contact-ratio",),  # the study checks the drive as mounted
 )
 
+
 def _errors(result: GearPairResult, progress: Progress | None) -> StudyResult:
     from gearcam.kinds.gear_pair.errors import study_errors
 
@@ -165,6 +197,15 @@ ERRORS: Final = Study(
     done="studied",
     table="errors",
     compute=_errors,
+    options={
+        "center_mm": "center",
+        "eccentricity_mm": "eccentricity",
+        "eccentricity_deg": "eccentricity-angle",
+        "file": "pitch",
+        "center_tolerance_mm": "center-tolerance",
+        "eccentricity_tolerance_mm": "eccentricity-tolerance",
+        "pitch_tolerance_mm": "pitch-tolerance",
+    },
 )
 
 STUDIES: Final[dict[str, Study]] = {one.name: one for one in (MESH, ERRORS, accuracy_study())}

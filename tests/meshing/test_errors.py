@@ -1,0 +1,244 @@
+"""Errors of mounting and making: against closed forms of involutes and independent searches."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import gearcam as gc
+from gearcam.base.errors import DesignError, InfeasibleError
+from gearcam.gears.contact import COAST, DRIVE, Mounting, flank_pairs
+from gearcam.meshing.contact import contacts
+from gearcam.meshing.edges import first_touch, touches
+from gearcam.meshing.errors import Assembly, cycle, harmonics, largest, run
+from gearcam.meshing.half_teeth import half_teeth
+from gearcam.meshing.overlap import Turning
+from helpers_built import built
+from helpers_pairs import profile
+
+ALPHA = math.radians(20)
+MODULE, TEETH = 2.0, (20, 30)
+ROUND: dict[str, Any] = {
+    "kind": "gear-pair",
+    "name": "round",
+    "law": {"type": "constant"},
+    "pair": {"teeth": [*TEETH], "module_mm": MODULE, "backlash_mm": 0.1},
+}
+BASE2 = 0.5 * MODULE * TEETH[1] * math.cos(ALPHA)
+
+
+def with_errors(errors: Mapping[str, Any], **pair: Any) -> gc.Design:
+    return gc.design({**ROUND, "pair": ROUND["pair"] | pair, "errors": dict(errors)})
+
+
+def pressed(assembly: Assembly, document: Mapping[str, Any] = ROUND, steps: int = 120) -> Any:
+    gears = built(gc.design(dict(document))).gears
+    return run(gears, 10.0, assembly, cycle(gears, assembly, steps)), gears
+
+
+@pytest.mark.parametrize(("wheel", "order"), [(0, 1.0), (1, 2 / 3)])
+def test_an_eccentric_involute_runs_with_the_error_of_its_closed_form(
+    wheel: int, order: float
+) -> None:
+    """Amplitude e/(r2*cos(alpha)), once a turn of the wheel; what is left falls with e^2."""
+    missed = []
+    for size in (0.04, 0.01):
+        offset = (size + 0j, 0j) if wheel == 0 else (0j, size * 1j)
+        running, gears = pressed(Assembly(eccentric=offset))
+        first = harmonics(running, gears, 1)[0]
+        assert first["order"] == pytest.approx(order)
+        missed.append(abs(first["amplitude"] * BASE2 / size - 1.0))
+    # which tooth leads depends on the size of the error, so that no power of it is exact
+    assert missed[0] < 1e-3
+    assert missed[1] < 0.3 * missed[0]
+
+
+def test_an_eccentric_wheel_leaves_the_backlash_of_its_closed_form() -> None:
+    """Radial offset e changes the backlash along the pitch circles by 2*e*tan(alpha)."""
+    size = 0.02
+    running, _ = pressed(Assembly(eccentric=(size + 0j, 0j)), steps=360)
+    change = 2.0 * size * math.tan(ALPHA)
+    found = running.backlash.min(), running.backlash.max()
+    assert found == pytest.approx((0.1 - change, 0.1 + change), abs=0.02 * change)
+
+
+def test_a_tooth_ahead_leads_by_its_error() -> None:
+    running, _ = pressed(Assembly(pitch=({3: 0.01}, {})))
+    assert running.peak_to_peak == pytest.approx(0.01 / (0.5 * MODULE * TEETH[1]), rel=1e-6)
+    behind, _ = pressed(Assembly(pitch=({3: -0.01}, {})))
+    # its neighbours carry instead, except where it would be alone in contact
+    assert 0.0 < behind.peak_to_peak <= running.peak_to_peak * (1 + 1e-6)
+
+
+def test_the_backlash_grows_with_the_centre_distance() -> None:
+    more = 0.05
+    running, _ = pressed(Assembly(center=more))
+    base1, distance = 0.5 * MODULE * TEETH[0] * math.cos(ALPHA), 0.5 * MODULE * sum(TEETH)
+    angle = math.acos(distance * math.cos(ALPHA) / (distance + more))
+
+    def inv(x: float) -> float:
+        return math.tan(x) - x
+
+    # normal play of two involutes over the pitch line's lever arm
+    play = 0.1 * math.cos(ALPHA) + 2.0 * (base1 + BASE2) * (inv(angle) - inv(ALPHA))
+    assert running.backlash == pytest.approx(play / math.cos(ALPHA), abs=1e-9)
+
+
+MOUNTINGS = {
+    "eccentric": Mounting(distance=0j, eccentric=(0.03 - 0.02j, 0.01j)),
+    "aside": Mounting(distance=0.05 + 0.1j),
+    "pitch": Mounting(distance=0.02, pitch=({2: 0.004}, {5: -0.006})),
+}
+
+
+def mounted(name: str, shift: float) -> Mounting:
+    one = MOUNTINGS[name]
+    return Mounting(distance=shift + one.distance, eccentric=one.eccentric, pitch=one.pitch)
+
+
+@pytest.mark.parametrize("name", MOUNTINGS)
+@pytest.mark.parametrize("design", ["ellipse", "ring_ellipse"])
+@pytest.mark.parametrize("side", [DRIVE, COAST])
+def test_common_normals_and_the_search_by_heights_agree(name: str, design: str, side: int) -> None:
+    gears = profile(design).gears
+    pairs = flank_pairs(gears, side, mounted(name, gears[0].pair.shift))
+    phi1 = np.linspace(0.05, 6.2, 31)
+    exact, found = contacts(pairs, phi1), touches(pairs, phi1)
+    smooth = ~found.edge
+    both = dict(zip(zip(exact.step, exact.pair, strict=True), exact.lead, strict=True))
+    compared = [
+        (both[step, pair], turn)
+        for step, pair, turn in zip(
+            found.step[smooth], found.pair[smooth], found.turn[smooth], strict=True
+        )
+        if (step, pair) in both
+    ]
+    assert len(compared) > 20
+    one, two = np.array(compared).T
+    assert one == pytest.approx(two, abs=1e-11)
+
+
+@pytest.mark.parametrize("name", MOUNTINGS)
+def test_outlines_touch_where_the_flanks_do(name: str) -> None:
+    """The moved outlines, intersected, know nothing of common normals."""
+    made = gc.build(gc.load("profiles/ellipse.toml").with_({"output.chord_tolerance_mm": 1e-4}))
+    gears = made.gears
+    mounting = mounted(name, gears[0].pair.shift + 0.05)
+    pairs = flank_pairs(gears, DRIVE, mounting)
+    phi1 = np.linspace(0.1, 6.1, 23)
+    lead, _ = first_touch(pairs, phi1, contacts(pairs, phi1))
+    driver, driven = (
+        half_teeth(gear.profile).moved(gear.toothing, errors, offset)
+        for gear, errors, offset in zip(gears, mounting.pitch, mounting.eccentric, strict=True)
+    )
+    turning = Turning(
+        rolling=made.pair.rolling, driver=driver, driven=driven, distance=mounting.distance
+    )
+    gap = turning.flank_distance(DRIVE, phi1, 0.0, lead)
+    assert gap.max() < 5e-4
+    # driven ahead a little, the driven wheel is clear of the driver everywhere; back, they overlap
+    back = turning.flank_distance(DRIVE, phi1, 0.0, lead + 5e-5)
+    assert back.min() > 6e-4
+    ahead = turning.overlaps(phi1, 0.0, lead - 5e-5)
+    assert np.array_equal(np.unique(ahead.step[ahead.facing]), np.arange(len(phi1)))
+
+
+def test_the_largest_errors_are_those_of_the_closed_forms() -> None:
+    design = with_errors({"eccentricity_mm": [0.05, 0], "steps": 60})
+    facts = built(design).study("errors").group["alone"]["eccentricity1"]
+    limit = math.radians(600 / 3600)
+    assert facts["largest_transmission_mm"].value == pytest.approx(0.5 * limit * BASE2, rel=5e-3)
+    jam = 0.1 / (2.0 * math.tan(ALPHA))
+    assert facts["largest_free_running_mm"].value == pytest.approx(jam, rel=0.03)
+
+
+@pytest.mark.parametrize(("root", "factor"), [(0.37, 0.37), (5.5, 5.5), (2000.0, math.inf)])
+def test_the_largest_factor_is_a_root(root: float, factor: float) -> None:
+    found = largest(lambda x: (x / root) ** 3 - 1.0)
+    assert found == factor if math.isinf(factor) else 0.998 * factor < found <= factor
+    assert largest(lambda x: 0.0 * x) is None
+
+
+def test_random_assemblies_have_the_percentiles_of_quadrature() -> None:
+    """Equal wheels: the two eccentricities add as vectors of any direction."""
+    tolerance, count = 0.02, 80
+    errors = {"eccentricity_tolerance_mm": tolerance, "trials": count, "steps": 24}
+    facts = built(with_errors(errors, teeth=[20, 20])).study("errors").group["trials"]
+    base = 0.5 * MODULE * 20 * math.cos(ALPHA)
+    share = (np.arange(60) + 0.5) / 60
+    one, two, turn = np.meshgrid(share, share, 2.0 * math.pi * share)
+    size = np.sort(np.abs(one + two * np.exp(1j * turn)).ravel()) * tolerance
+    room = 3.0 * math.sqrt(0.25 / count)
+    for percent in (50, 90):
+        low, high = (
+            2.0 / base * size[int(np.clip(percent / 100 + sign * room, 0, 0.9999) * size.size)]
+            for sign in (-1, 1)
+        )
+        assert low < facts["transmission_error_rad"][f"p{percent}"].value < high
+    few = {**errors, "trials": 5}
+    one, again = (gc.build(with_errors(few, teeth=[20, 20])).study("errors") for _ in range(2))
+    assert one.group["trials"] == again.group["trials"]
+
+
+def test_a_study_is_written(tmp_path: Path) -> None:
+    (tmp_path / "pitch.csv").write_text("wheel,tooth,pitch_mm\n1,3,0.01\n2,7,-0.005\n", "utf-8")
+    text = """
+    kind = "gear-pair"
+    law = { type = "constant" }
+    pair = { teeth = [20, 30], module_mm = 2, backlash_mm = 0.1 }
+    errors = { center_mm = 0.02, tilt_deg = [0.1, 0.05], file = "pitch.csv", steps = 24 }
+    output = { files = ["report"], studies = ["errors"] }
+    """
+    (tmp_path / "made.toml").write_text(text, "utf-8")
+    result = gc.build(gc.load(tmp_path / "made.toml"))
+    found = result.study("errors")
+    assert {*found.group["alone"]} == {"center", "pitch1", "pitch2", "tilt"}
+    assert "lag_tilt_rad" in found.columns
+    assert len(found.columns["phi1_deg"]) == 24 * 3
+    assert "transmission_error" in found.charts
+    written = result.write(tmp_path / "out")
+    page = (Path(written.directory) / "report.html").read_text("utf-8")
+    assert "Transmission error with errors of mounting and making" in page
+    assert result.facts["errors.contact_ratio"] == pytest.approx(1.6, abs=0.05)
+
+
+@pytest.mark.parametrize(
+    ("errors", "message"),
+    [
+        ({"file": "3,1,0.1"}, "line 2: no tooth 1 of a wheel 3"),
+        ({"file": "1,1.5,0.1"}, "line 2: no tooth 1.5 of a wheel 1"),
+        ({"eccentricity_mm": -1}, "-1"),
+        ({"distribution": "gauss"}, "normal"),
+    ],
+)
+def test_errors_that_cannot_be_read_are_refused(
+    errors: dict[str, Any], message: str, tmp_path: Path
+) -> None:
+    if "file" in errors:
+        path = tmp_path / "pitch.csv"
+        path.write_text("wheel,tooth,pitch_mm\n" + errors["file"] + "\n", "utf-8")
+        errors = {"file": str(path)}
+    with pytest.raises(DesignError, match=message):
+        with_errors(errors)
+
+
+def test_errors_that_a_pair_cannot_have_are_refused(tmp_path: Path) -> None:
+    path = tmp_path / "pitch.csv"
+    path.write_text("wheel,tooth,pitch_mm\n2,31,0.01\n", "utf-8")
+    with pytest.raises(InfeasibleError, match="wheel 2 does not have") as caught:
+        built(with_errors({"file": str(path)})).study("errors")
+    assert "its teeth are 1 to 30" in str(caught.value)
+    with pytest.raises(InfeasibleError, match="do not reach each other"):
+        built(with_errors({"center_mm": 20})).study("errors")
+
+
+def test_jamming_and_a_large_error_are_found() -> None:
+    found = built(with_errors({"eccentricity_mm": 0.3, "steps": 60})).study("errors")
+    assert {one.code for one in found.study_findings} == {"jams", "transmission-error"}
+    free = built(with_errors({"eccentricity_mm": 0.01, "steps": 60})).study("errors")
+    assert free.study_findings == ()
