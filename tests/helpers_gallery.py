@@ -138,6 +138,14 @@ DOOR_KNOT = ((math.pi - 2) * 60 + math.pi * 300) / (2 * math.pi)
 """003 (3.12), degrees."""
 
 
+def play_apart() -> float:
+    """Backlash of two wheels of 24 teeth of module 2 and backlash 0.1, 0.03 mm too far apart."""
+    base = 24 * mp.cos(mp.radians(20))
+    angle = mp.acos(2 * base / mp.mpf("48.03"))
+    involute = [mp.tan(one) - one for one in (angle, mp.radians(20))]
+    return float(mp.mpf("0.1") + 4 * base * (involute[0] - involute[1]) / mp.cos(mp.radians(20)))
+
+
 def feeder_scale() -> float:
     """S of r = S*(1 + 0.2*cos(2*phi)), whose length is pi*m*z = 80*pi."""
 
@@ -298,6 +306,14 @@ NUMBERS: dict[str, dict[str, Number]] = {
     "feeder": {
         "pair.travel_per_turn_mm": (2 * math.pi * feeder_scale(), 1e-9),
         "pair.radius_mm.max": (1.2 * feeder_scale(), 1e-10),
+    },
+    "askew_pair": {
+        "errors.alone.center.backlash_mm.min": (play_apart(), 1e-9),
+        # 2*e/(r*cos(alpha)); between phases of 10 degrees at most 0.4 % of it are missed
+        "errors.alone.eccentricity1.transmission_error_rad.peak_to_peak": (
+            0.04 / (24 * math.cos(math.radians(20))),
+            5e-3,
+        ),
     },
     "shop_order": {
         # about its focus: A = 2a with the perimeter 4*a*E(e) = pi*m*z

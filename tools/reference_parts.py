@@ -21,6 +21,7 @@ TITLES: Final = {"gear-pair": "Gear pairs", "cam": "Cams"}
 GROUPS: Final = {
     "teeth": "Law, centrodes and teeth",
     "meshing": "Meshing study (`gearcam mesh`)",
+    "errors": "Errors of mounting and making (`gearcam errors`)",
     "parts": "Parts",
     "cams": "Motion and profile",
     "followed profiles": "Followed profile (`gearcam follow`)",

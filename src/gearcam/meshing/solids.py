@@ -23,6 +23,9 @@ from gearcam.meshing.half_teeth import HalfTeeth
 from gearcam.meshing.overlap import Turning
 from gearcam.numeric.arrays import Array, Ints, Plane
 
+_ALONG = 20.0
+"""Points along a patch in a picture."""
+
 
 class PrismPair(Protocol):
     """Prisms of two wheels, in the wheels' frames."""
@@ -75,11 +78,11 @@ class SolidOverlaps:
     radius: Array
 
     def outline(self, number: int) -> Array:
-        """Return the convex outline of a patch, closed: heights and radii, (2, n), mm."""
+        """Return points on the convex outline of a patch: heights and radii, (2, n), mm."""
         own = slice(self.start[number], self.start[number + 1])
-        hull = shapely.MultiPoint(
-            np.stack([self.height[own], self.radius[own]], axis=1)
-        ).convex_hull
+        points = np.stack([self.height[own], self.radius[own]], axis=1)
+        spacing = float(np.ptp(self.height[own])) / _ALONG
+        hull = shapely.segmentize(shapely.MultiPoint(points).convex_hull, spacing)
         return shapely.get_coordinates(hull).T
 
     @property

@@ -162,18 +162,18 @@ def _largest(assembled: Run, name: str, one: Assembly, limit: float) -> Tree:
     def jammed(found: Running) -> float:
         return -found.least_backlash if np.isfinite(found.lead).all() else 1.0
 
-    asked = {"free_running": ("the teeth touch and run free", jammed)}
+    asked = {"free_running": ("that runs free", jammed)}
     if math.isfinite(limit):
         arcsec = f"{formatted(limit / ARCSEC.factor)} arcsec"
         asked["transmission"] = (
-            f"the transmission error is at most {arcsec}",
+            f"within {arcsec}",
             lambda found: found.peak_to_peak / limit - 1.0,
         )
     facts: Tree = {f"size_{unit}": size(one)}
     for key, (why, value) in asked.items():
         factor = largest(of(value))
         if factor is not None and math.isfinite(factor):
-            label = f"largest error, {words}, with which {why}"
+            label = f"{words}, largest {why}"
             facts[f"largest_{key}_{unit}"] = Fact(factor * size(one), label, shown=True)
     return facts
 
@@ -242,7 +242,8 @@ def _charts(lines: Mapping[str, Running], trials: Array, unit: str) -> dict[str,
         )
     }
     if len(trials) and np.isfinite(trials[:, 0]).all():
-        counts, edges = np.histogram(trials[:, 0], _BARS)
+        bars = min(_BARS, 5 + math.isqrt(len(trials)))
+        counts, edges = np.histogram(trials[:, 0], bars)
         charts["trials"] = Chart(
             title="Transmission error of random assemblies",
             x=f"transmission error, peak to peak, {unit}",

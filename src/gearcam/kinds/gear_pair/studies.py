@@ -120,8 +120,8 @@ def _patch_over_width(meshing: Meshing) -> Chart | None:
         return None
     _, pair, _, _ = max(rows, key=lambda row: row[0])
     outlines = [solids.outline(k) for _, half, solids, k in rows if half == pair]
-    apart = np.full((2, 1), np.nan)
-    x, y = np.concatenate([part for one in outlines for part in (one, apart)], axis=1)
+    x, y = np.concatenate(outlines, axis=1)
+    order = np.argsort(x, kind="stable")
     turning = meshing.setup.turning
     one, two = (
         int(wheel.tooth(np.array([half]))[0])
@@ -131,7 +131,7 @@ def _patch_over_width(meshing: Meshing) -> Chart | None:
         title=f"Patches of driver tooth {one} on tooth {two}, phase by phase",
         x="over the middle of the face width, mm",
         y="from the driver's axis, mm",
-        lines=(Line(label=f"tooth {one} on tooth {two}", x=x, y=y),),
+        lines=(Line(label="outlines of the patches", x=x[order], y=y[order], dots=True),),
     )
 
 
