@@ -67,6 +67,31 @@ def test_an_eccentric_wheel_leaves_the_backlash_of_its_closed_form() -> None:
     assert found == pytest.approx((0.1 - change, 0.1 + change), abs=0.02 * change)
 
 
+@pytest.mark.parametrize("direction", [1.0 + 0j, 0.6 - 0.8j])
+def test_a_small_error_turns_the_driven_wheel_by_its_part_along_the_normal(
+    direction: complex,
+) -> None:
+    """Central differences of the exact contact, against the normal and lever without error."""
+    gears, size = profile("ellipse").gears, 1e-4
+    phi1 = np.linspace(0.05, 6.2, 37)
+    plain, more, less = (
+        contacts(
+            flank_pairs(
+                gears, DRIVE, Mounting(distance=gears[0].pair.shift, eccentric=(e * direction, 0j))
+            ),
+            phi1,
+        )
+        for e in (0.0, size, -size)
+    )
+    rates = {}
+    for step, pair, high, low in zip(more.step, more.pair, more.lead, less.lead, strict=True):
+        rates[step, pair] = (high - low) / (2.0 * size)
+    moved = direction * np.exp(-1j * phi1[plain.step])
+    expected = (np.conj(plain.force) * moved).real / plain.lever[1]
+    found = [rates[key] for key in zip(plain.step, plain.pair, strict=True)]
+    assert np.array(found) == pytest.approx(expected, rel=1e-6, abs=1e-9)
+
+
 def test_a_tooth_ahead_leads_by_its_error() -> None:
     running, _ = pressed(Assembly(pitch=({3: 0.01}, {})))
     assert running.peak_to_peak == pytest.approx(0.01 / (0.5 * MODULE * TEETH[1]), rel=1e-6)
