@@ -96,6 +96,35 @@ def _study(d: Draw, design: dict[str, Any]) -> dict[str, Any]:
     return study
 
 
+def _errors(d: Draw, design: dict[str, Any], module: float) -> dict[str, Any]:
+    """Return errors of mounting and making, of up to a hundredth of the module."""
+
+    def size() -> float:
+        return short(module * d.log(1e-4, 1e-2))
+
+    rack = design["law"]["type"] == "rack"
+    errors: dict[str, Any] = {"steps": d.whole(8, 60)}
+    if d.chance(0.5):
+        errors["center_mm"] = size()
+    if d.chance(0.5):
+        errors["eccentricity_mm"] = [size(), 0 if rack else size()]
+        errors["eccentricity_deg"] = [d.even(-180, 180), d.even(-180, 180)]
+    if d.chance(0.3):
+        errors["tilt_deg"] = [d.even(-0.1, 0.1), d.even(-0.1, 0.1)]
+    if d.chance(0.15):
+        errors["file"] = "pitch.csv"
+    if d.chance(0.4):
+        errors |= {
+            "center_tolerance_mm": size(),
+            "eccentricity_tolerance_mm": [size(), 0 if rack else size()],
+            "pitch_tolerance_mm": size(),
+            "distribution": d.pick(["uniform", "normal"]),
+            "trials": d.whole(1, 3),
+            "seed": d.whole(0, 9),
+        }
+    return errors
+
+
 def _vertices(document: dict[str, Any]) -> float:
     """Return the approximate number of vertices of a pair, to which the time is proportional."""
     pair, steps = document["pair"], document.get("steps", {}).get("count", 1)
@@ -139,5 +168,9 @@ def design(d: Draw, index: int) -> dict[str, Any]:
     if closed and not opened and z[1] > z[0] and d.chance(0.3):
         _ring(d, made, module)
     made["output"] |= asked(d, _SHARES, min(1.0, _AFFORDABLE / _vertices(made)))
-    studies(d, made, "law", "mesh")
+    studies(d, made, "law", d.pick(["mesh", "errors"]))
+    if "meshing" in made and d.chance(0.2):
+        made["meshing"]["solids"] = True
+    if d.chance(0.1):
+        made["errors"] = _errors(d, made, module)
     return made

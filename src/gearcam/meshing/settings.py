@@ -106,7 +106,7 @@ class ErrorsSpec(FromFile):
     --------
     >>> import gearcam as gc
     >>> gc.ErrorsSpec(center=0.02, eccentricity=(0.05, 0.0))
-    ErrorsSpec(center=0.02, eccentricity=(0.05, 0.0))
+    ErrorsSpec(center=0.02, eccentricity=(0.05, 0))
     """
 
     center: float = param(LENGTH, default=0.0, ge=-100, le=100, doc="added to the centre distance")
