@@ -125,6 +125,14 @@ def _errors(d: Draw, design: dict[str, Any], module: float) -> dict[str, Any]:
     return errors
 
 
+def _studies(d: Draw, design: dict[str, Any], module: float) -> None:
+    studies(d, design, "law", d.pick(["mesh", "errors"]))
+    if "meshing" in design and d.chance(0.2):
+        design["meshing"]["solids"] = True
+    if d.chance(0.1):
+        design["errors"] = _errors(d, design, module)
+
+
 def _vertices(document: dict[str, Any]) -> float:
     """Return the approximate number of vertices of a pair, to which the time is proportional."""
     pair, steps = document["pair"], document.get("steps", {}).get("count", 1)
@@ -168,9 +176,5 @@ def design(d: Draw, index: int) -> dict[str, Any]:
     if closed and not opened and z[1] > z[0] and d.chance(0.3):
         _ring(d, made, module)
     made["output"] |= asked(d, _SHARES, min(1.0, _AFFORDABLE / _vertices(made)))
-    studies(d, made, "law", d.pick(["mesh", "errors"]))
-    if "meshing" in made and d.chance(0.2):
-        made["meshing"]["solids"] = True
-    if d.chance(0.1):
-        made["errors"] = _errors(d, made, module)
+    _studies(d, made, module)
     return made
