@@ -58,8 +58,8 @@ _STOP = 1e-7
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Made:
-    """The errors of a pair, and how its solids are made.
+class Condition:
+    """The errors of a pair, and how to make its solids.
 
     Parameters
     ----------
@@ -83,7 +83,7 @@ class Made:
         return bodies(turning, self.prisms, self.errors.tilt, self.low, self.high)
 
 
-AS_DESIGNED = Made()
+AS_DESIGNED = Condition()
 """Without errors and solids."""
 
 
@@ -183,7 +183,7 @@ def study(
     spec: MeshingSpec,
     progress: Progress | None = None,
     designed: tuple[FlankPairs, ...] = (),
-    made: Made = AS_DESIGNED,
+    condition: Condition = AS_DESIGNED,
 ) -> Meshing:
     """Return the meshing study of a pair.
 
@@ -197,7 +197,7 @@ def study(
         Called with ``"meshing"``, the phases done and their number.
     designed : tuple of FlankPairs
         Both sides of the pair as designed, if already computed.
-    made : Made
+    condition : Condition
         Errors and solids.
 
     Returns
@@ -210,7 +210,7 @@ def study(
     InfeasibleError
         If the wheels do not reach each other, or the overclosure is too small to be resolved.
     """
-    return run(mount(gears, spec, designed, made), progress)
+    return run(mount(gears, spec, designed, condition), progress)
 
 
 def run(setup: Setup, progress: Progress | None = None) -> Meshing:
@@ -232,7 +232,7 @@ def mount(
     gears: tuple[Gear, Gear],
     spec: MeshingSpec,
     designed: tuple[FlankPairs, ...] = (),
-    made: Made = AS_DESIGNED,
+    condition: Condition = AS_DESIGNED,
 ) -> Setup:
     """Return a mounted pair, with outlines as fine as the overclosure needs.
 
@@ -244,7 +244,7 @@ def mount(
         Settings.
     designed : tuple of FlankPairs
         Both sides of the pair as designed, if already computed.
-    made : Made
+    condition : Condition
         Errors and solids.
 
     Returns
@@ -257,9 +257,11 @@ def mount(
         If the wheels do not reach each other, or the overclosure is too small to be resolved.
     """
     pair = gears[0].pair
-    middle, *faces = _mountings(gears, spec, made)
+    middle, *faces = _mountings(gears, spec, condition)
     pairs = {
-        one.side: one for one in designed if made.errors.none and one.distance == middle.distance
+        one.side: one
+        for one in designed
+        if condition.errors.none and one.distance == middle.distance
     }
     pairs = pairs or {side: flank_pairs(gears, side, middle) for side in (DRIVE, COAST)}
     side = DRIVE if spec.overclosure > 0.0 else COAST
@@ -297,21 +299,21 @@ def mount(
         penetration=penetration,
         lever=float(levers.max()),
         faces={side: [flank_pairs(gears, side, face) for face in faces] for side in pairs if faces},
-        bodies=made.bodies(turning),
+        bodies=condition.bodies(turning),
     )
 
 
-def _mountings(gears: tuple[Gear, Gear], spec: MeshingSpec, made: Made) -> list[Mounting]:
+def _mountings(gears: tuple[Gear, Gear], spec: MeshingSpec, condition: Condition) -> list[Mounting]:
     """Return how the pair is mounted in the middle of its width; if tilted also at both faces."""
-    demand(gears, made.errors)
+    demand(gears, condition.errors)
     pair = gears[0].pair
     distance, depth = _distance(pair, spec), 2.0 * pair.rack.addendum * pair.module
-    found = [replace(made.errors, tilt=0j).mounting(distance)]
-    if made.errors.tilt:
-        found += made.errors.mountings(distance, made.low, made.high)
+    found = [replace(condition.errors, tilt=0j).mounting(distance)]
+    if condition.errors.tilt:
+        found += condition.errors.mountings(distance, condition.low, condition.high)
     apart = max(abs(abs(one.distance) - abs(distance)) for one in found)
     if not pair.on_rack and apart >= depth:
-        where = "errors.tilt_deg" if made.errors.tilt else "errors.center_mm"
+        where = "errors.tilt_deg" if condition.errors.tilt else "errors.center_mm"
         what = f"with this error the teeth are up to {formatted(apart, 3)} mm out of mesh"
         note = f"the teeth reach {formatted(depth, 3)} mm into each other"
         raise InfeasibleError(what, where=where, nearest=note)

@@ -17,7 +17,7 @@ from gearcam.results.result import StudyResult
 if TYPE_CHECKING:
     from gearcam.kinds.gear_pair.design import GearPairDesign
     from gearcam.kinds.gear_pair.result import GearPairResult
-    from gearcam.meshing.study import Made, Meshing
+    from gearcam.meshing.study import Condition, Meshing
     from gearcam.numeric.arrays import Array, Ints, Plane
     from gearcam.pictures.charts import Chart
     from gearcam.pictures.scenes import ContactPoints, Scene
@@ -38,7 +38,7 @@ def _mesh(result: GearPairResult, progress: Progress | None) -> StudyResult:
     gears = result.steps[design.meshing.step - 1]
     with result.stage("meshing"):
         designed = result.subject.sides if gears is result.steps[0] else ()
-        meshing = study(gears, design.meshing, progress, designed, _made(design))
+        meshing = study(gears, design.meshing, progress, designed, _condition(design))
     if not meshing.blocks:
         raise KeyboardInterrupt
     with result.stage("checks"):
@@ -57,19 +57,19 @@ def _mesh(result: GearPairResult, progress: Progress | None) -> StudyResult:
     )
 
 
-def _made(design: GearPairDesign) -> Made:
-    """Return the errors of a design, and how its solids are made if it asks for them."""
+def _condition(design: GearPairDesign) -> Condition:
+    """Return the errors of a design, and how to make its solids if it asks for them."""
     from gearcam.meshing.errors import given
-    from gearcam.meshing.study import Made
+    from gearcam.meshing.study import Condition
 
     spec, width, count = design.meshing, design.pair.face_width, design.steps.count
     errors = given(design.errors)
     low = width * ((spec.step - 1) / count - 0.5)
     if not spec.solids:
-        return Made(errors=replace(errors, tilt=0j))
+        return Condition(errors=replace(errors, tilt=0j))
     from gearcam.parts.solids import Prisms
 
-    return Made(errors=errors, prisms=Prisms, low=low, high=low + width / count)
+    return Condition(errors=errors, prisms=Prisms, low=low, high=low + width / count)
 
 
 def _charts(result: GearPairResult, meshing: Meshing) -> dict[str, Chart]:
