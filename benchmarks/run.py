@@ -15,6 +15,7 @@ import cases
 import law_cases
 import needs
 import ring_cases
+import solid_cases
 from gearcam.numeric.arrays import keep_freed_memory
 from measuring import Result, environment
 
@@ -53,6 +54,7 @@ def main() -> int:
         cases.against_ncgears,
         law_cases.against_ellipse,
         ring_cases.against_external,
+        solid_cases.against_booleans,
         before_cases.against_before,
         before_cases.large_growth,
     ):

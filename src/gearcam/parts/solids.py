@@ -242,13 +242,25 @@ class Prisms:
         MissingExtraError
             If manifold3d is not installed.
         """
-        first, second = self._made("first", one), self._made("second", two)
+        first, second = self.solid("first", one), self.solid("second", two)
         shared = first.transform(motion) ^ second
         volume = float(shared.volume())
         return volume, _mesh(shared).vertices if volume > 0.0 else np.empty((0, 3))
 
-    def _made(self, of: str, number: int) -> Manifold:
-        """Return a prism; the same object each time."""
+    def solid(self, of: str, number: int) -> Manifold:
+        """Return a prism; the same object each time.
+
+        Parameters
+        ----------
+        of : {"first", "second"}
+            The set of outlines.
+        number : int
+            Index in it.
+
+        Returns
+        -------
+        manifold3d.Manifold
+        """
         prisms = self._prisms
         if (of, number) not in prisms:
             prisms[of, number] = _prism(getattr(self, of)[number], self.low, self.high)
