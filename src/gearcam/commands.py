@@ -137,7 +137,7 @@ def _add_settings(study: Study, kind: Kind, parser: argparse.ArgumentParser) -> 
             words |= {"action": "store_true", "default": None}
         else:
             words |= {"type": entry.base, "metavar": unit or ("N" if entry.base is int else "KEY")}
-        name = study.options.get(key, key.removesuffix("_deg"))
+        name = study.options.get(key, key.removesuffix("_deg").replace("_", "-"))
         parser.add_argument(f"--{name}", dest=key, **words)
 
 

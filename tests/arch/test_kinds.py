@@ -225,12 +225,17 @@ def test_a_kind_uses_another_and_its_slider_moves_as_by_hand() -> None:
     "drive",
     [
         "ellipse.toml", "ring_ellipse.toml", "plate_cam_oscillating.toml", "eccentric_cam.toml",
-        "translating_cam.toml", "groove_cam.toml",
+        "translating_cam.toml", "groove_cam.toml", "cw",
     ],
 )  # fmt: skip
 @pytest.mark.usefixtures("toy")
-def test_a_slider_crank_runs_behind_any_drive(drive: str) -> None:
-    result = gearcam.build(loads(slider_crank(str(PROFILES / drive), 10, 200)))
+def test_a_slider_crank_runs_behind_any_drive(drive: str, tmp_path: Path) -> None:
+    file = PROFILES / drive
+    if drive == "cw":  # the shaft of its follower is on the other side
+        text = (PROFILES / "plate_cam_oscillating.toml").read_text("utf-8")
+        file = tmp_path / "cw.toml"
+        file.write_text(text.replace("[cam]", '[cam]\nrotation = "cw"'), "utf-8")
+    result = gearcam.build(loads(slider_crank(str(file), 10, 200)))
     scene = result.scene(24)
     bodies = {body.name: body for body in scene.bodies}
     unit = np.radians(1.0) if scene.driver.endswith("deg") else 1.0

@@ -238,11 +238,18 @@ def run_checks(kind: str, subject: Any, limits: Mapping[str, float]) -> tuple[Fi
     -------
     tuple of Finding
         Errors first, then warnings, then notes.
+
+    Raises
+    ------
+    LookupError
+        If there are none: the module of the checks was not imported.
     """
+    entries = [entry for entry in CHECKS.values() if entry.kind == kind]
+    if not entries:
+        raise LookupError(f"no checks of {kind} are registered: import their module")
     findings: list[Finding] = []
-    for entry in CHECKS.values():
-        if entry.kind == kind:
-            findings += entry.run(subject, limit_of(kind, entry.code, limits))
+    for entry in entries:
+        findings += entry.run(subject, limit_of(kind, entry.code, limits))
     return in_order(findings)
 
 

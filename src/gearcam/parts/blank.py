@@ -156,6 +156,8 @@ class WheelBlank(ShortRepr):
 
         A keyway keeps its depth, which counts from the widened bore.
         """
+        if not self.clearance_bores:  # it may be fixed, and then cannot be replaced
+            return self
         sizes = {name: getattr(self, name) for name in _FOLLOWING}
         wider = {name: size + self.widening for name, size in sizes.items() if size}
         return replace(self, clearance_bores=False, **wider)

@@ -210,7 +210,11 @@ def scene(result: Any, places: int = PLACES) -> Scene:
     if design.drive.pair is not None:
         shaft = next(one.pose.shift[0] for one in around.bodies if one.name == "gear2")
     else:
-        shaft = complex(design.drive.cam.follower.pivot_distance or 0.0)
+        by = design.drive.cam
+        height = getattr(by.follower, "pivot_height", None) or 0.0
+        shaft = complex(by.follower.pivot_distance or 0.0, height)
+        if by.cam.rotation == "cw":  # the mirror image of a cam that turns counter-clockwise
+            shaft = -shaft.conjugate()
     size = 0.25 * design.crank.length
     fixed = np.zeros(len(around.places), dtype=np.complex128) + shaft
     turn, flat = np.unwrap(np.angle(pin)), np.zeros(len(along))
