@@ -137,7 +137,8 @@ def _add_settings(study: Study, kind: Kind, parser: argparse.ArgumentParser) -> 
             words |= {"action": "store_true", "default": None}
         else:
             words |= {"type": entry.base, "metavar": unit or ("N" if entry.base is int else "KEY")}
-        name = study.options.get(key, key.removesuffix("_deg").replace("_", "-"))
+        plain = key.removesuffix(entry.param.quantity.suffix).replace("_", "-")
+        name = study.options.get(key, plain)
         parser.add_argument(f"--{name}", dest=key, **words)
 
 

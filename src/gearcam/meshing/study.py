@@ -308,7 +308,7 @@ def _mountings(gears: tuple[Gear, Gear], spec: MeshingSpec, condition: Condition
     demand(gears, condition.errors)
     pair = gears[0].pair
     distance, depth = _distance(pair, spec), 2.0 * pair.rack.addendum * pair.module
-    found = [replace(condition.errors, tilt=0j).mounting(distance)]
+    found = [condition.errors.mounting(distance)]
     if condition.errors.tilt:
         found += condition.errors.mountings(distance, condition.low, condition.high)
     apart = max(abs(abs(one.distance) - abs(distance)) for one in found)

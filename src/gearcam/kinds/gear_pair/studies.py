@@ -197,15 +197,7 @@ ERRORS: Final = Study(
     done="studied",
     table="errors",
     compute=_errors,
-    options={
-        "center_mm": "center",
-        "eccentricity_mm": "eccentricity",
-        "eccentricity_deg": "eccentricity-angle",
-        "file": "pitch",
-        "center_tolerance_mm": "center-tolerance",
-        "eccentricity_tolerance_mm": "eccentricity-tolerance",
-        "pitch_tolerance_mm": "pitch-tolerance",
-    },
+    options={"eccentricity_deg": "eccentricity-angle", "file": "pitch"},
 )
 
 STUDIES: Final[dict[str, Study]] = {one.name: one for one in (MESH, ERRORS, accuracy_study())}
