@@ -182,6 +182,16 @@ def test_the_largest_errors_are_those_of_the_closed_forms() -> None:
     assert facts["largest_free_running_mm"].value == pytest.approx(jam, rel=0.03)
 
 
+def test_no_error_is_allowed_that_jams_the_pair() -> None:
+    """Involutes closer together keep their ratio: only their backlash limits how close."""
+    result = gc.build(with_errors({"center_mm": -0.01, "steps": 24}))
+    found = result.study("errors").to_dict()["errors"]["alone"]["center"]
+    assert found["largest_transmission_mm"] == found["largest_free_running_mm"]
+    assert found["largest_free_running_mm"] == pytest.approx(
+        -0.05 / math.tan(ALPHA), rel=0.02
+    )  # backlash 2*a*tan(alpha)
+
+
 @pytest.mark.parametrize(("root", "factor"), [(0.37, 0.37), (5.5, 5.5), (2000.0, math.inf)])
 def test_the_largest_factor_is_a_root(root: float, factor: float) -> None:
     found = largest(lambda x: (x / root) ** 3 - 1.0)

@@ -165,9 +165,9 @@ def _largest(assembled: Run, name: str, one: Assembly, limit: float) -> Tree:
     asked = {"free_running": ("that runs free", jammed)}
     if math.isfinite(limit):
         arcsec = f"{formatted(limit / ARCSEC.factor)} arcsec"
-        asked["transmission"] = (
+        asked["transmission"] = (  # of a pair that jams the error says nothing
             f"within {arcsec}",
-            lambda found: found.peak_to_peak / limit - 1.0,
+            lambda found: max(found.peak_to_peak / limit - 1.0, jammed(found)),
         )
     facts: Tree = {f"size_{unit}": size(one)}
     for key, (why, value) in asked.items():
