@@ -156,7 +156,7 @@ def dense_flank(gear: Gear, tooth: int, sigma: int, points: int = 6001) -> np.nd
 
 
 def dense_touch(
-    made: GearPairResult, side: int, phi1: float, phi2: float, distance: float, *, internal: bool
+    made: GearPairResult, side: int, phi1: float, phi2: float, distance: complex, *, internal: bool
 ) -> float:
     """The driven wheel's turn at first touch, by dense points of all flanks near the pitch point.
 

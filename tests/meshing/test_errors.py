@@ -195,6 +195,7 @@ def test_no_error_is_allowed_that_jams_the_pair() -> None:
 @pytest.mark.parametrize(("root", "factor"), [(0.37, 0.37), (5.5, 5.5), (2000.0, math.inf)])
 def test_the_largest_factor_is_a_root(root: float, factor: float) -> None:
     found = largest(lambda x: (x / root) ** 3 - 1.0)
+    assert found is not None
     assert found == factor if math.isinf(factor) else 0.998 * factor < found <= factor
     assert largest(lambda x: 0.0 * x) is None
 

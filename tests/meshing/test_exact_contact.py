@@ -34,7 +34,7 @@ def samples() -> tuple[GearPairResult, ...]:
 NAMES = ["two phases", "three phases", "ellipse"]
 
 
-def touched(made: GearPairResult, side: int, phi1: np.ndarray, distance: float) -> np.ndarray:
+def touched(made: GearPairResult, side: int, phi1: np.ndarray, distance: complex) -> np.ndarray:
     """The driven wheel's turn at first touch, by dense points."""
     phi2 = made.law.phi2(phi1)
     pairs = zip(phi1.tolist(), phi2.tolist(), strict=True)

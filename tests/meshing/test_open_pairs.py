@@ -83,7 +83,7 @@ def lead_of(name: str, way: float) -> float:
     return way / radius[pair.law.mate]
 
 
-def seen(name: str, points: Any, phi: float, lead: float, distance: float) -> Any:
+def seen(name: str, points: Any, phi: float, lead: float, distance: complex) -> Any:
     """Points of wheel 2 in the assembled pair, by the convention of the frames."""
     law, size = made(name).law, made(name).pair.center_distance
     driven = float(law.phi2(phi))
@@ -93,7 +93,7 @@ def seen(name: str, points: Any, phi: float, lead: float, distance: float) -> An
     return points * np.exp(turn * (driven + lead)) + distance
 
 
-def whole_areas(name: str, distance: float, angles: Array, lead: float) -> Array:
+def whole_areas(name: str, distance: complex, angles: Array, lead: float) -> Array:
     areas = []
     for phi in angles.tolist():
         one = made(name).gear1.outline @ [1, 1j] * np.exp(-1j * (phi + OVERCLOSURE))
@@ -195,7 +195,7 @@ def flank(gear: Gear, place: int, sigma: int) -> NDArray[np.complex128]:
     return toothing.flank_points(frames, np.full(4001, sf), np.full(4001, float(sigma)))
 
 
-def dense_touch(name: str, side: int, phi: float, distance: float) -> float:
+def dense_touch(name: str, side: int, phi: float, distance: complex) -> float:
     """First touch by dense points: of every flank near the pitch point on both wheels' blanks."""
     gears, mate = made(name).gears, made(name).law.mate
     first, second = (gear.toothing for gear in gears)

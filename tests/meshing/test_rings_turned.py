@@ -107,7 +107,7 @@ def test_mounted_farther_interferes_and_nearer_plays(name: str) -> None:
         assert (len(touched) == 0) == free
 
 
-def whole_areas(name: str, distance: float, angles: Array, lead: float) -> list[float]:
+def whole_areas(name: str, distance: complex, angles: Array, lead: float) -> list[float]:
     """Overlap of the whole wheel with all that lies outside the ring's outline."""
     areas = []
     for phi1, driven in zip(angles.tolist(), driven_angles(name, angles).tolist(), strict=True):

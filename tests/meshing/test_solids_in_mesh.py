@@ -13,6 +13,7 @@ import pytest
 import gearcam as gc
 from gearcam.base.errors import InfeasibleError
 from gearcam.gears.contact import DRIVE
+from gearcam.kinds.gear_pair.design import GearPairDesign
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.solids import bodies, tilted
 from gearcam.meshing.study import Setup, mount, phases
@@ -32,6 +33,7 @@ SOLID = {"meshing.solids": True, "meshing.steps": 20}
 @pytest.mark.parametrize("name", ["ellipse", "ring_ellipse", "stepped_ellipse", "press", "feeder"])
 def test_on_parallel_axes_a_volume_is_the_area_times_the_width(name: str) -> None:
     design = gc.load(f"profiles/{name}.toml").with_(SOLID)
+    assert isinstance(design, GearPairDesign)
     width = design.pair.face_width / design.steps.count
     rows = gc.build(design).mesh().columns
     overlaps = rows["area_mm2"] > 0.0
@@ -45,6 +47,7 @@ def test_on_parallel_axes_a_volume_is_the_area_times_the_width(name: str) -> Non
 
 def round_setup(overclosure: float = 0.02) -> tuple[Setup, np.ndarray]:
     design = gc.design(ROUND).with_({"meshing.overclosure_deg": overclosure, "meshing.steps": 40})
+    assert isinstance(design, GearPairDesign)
     setup = mount(built(gc.design(ROUND)).gears, design.meshing)
     return setup, phases(design.meshing, setup.pairs[DRIVE])
 
@@ -155,6 +158,7 @@ def test_a_tooth_moved_by_5_um_is_found_in_3d(tmp_path: Path) -> None:
 
 def test_the_report_shows_the_patch_over_the_width() -> None:
     design = gc.load("profiles/ellipse.toml").with_(SOLID | {"output.studies": ["mesh"]})
+    assert isinstance(design, GearPairDesign)
     study = gc.build(design).study("mesh")
     chart = study.charts["patch_over_width"]
     (line,) = chart.lines

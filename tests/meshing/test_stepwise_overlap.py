@@ -33,7 +33,7 @@ def turning_of(made: GearPairResult, shift: float = 0.0) -> Turning:
     return Turning(rolling=made.pair.rolling, driver=first, driven=second, distance=distance)
 
 
-def whole_areas(made: GearPairResult, distance: float, angles: Array, lead: float) -> list[float]:
+def whole_areas(made: GearPairResult, distance: complex, angles: Array, lead: float) -> list[float]:
     """Overlap of the whole outlines."""
     areas = []
     for phi in angles:
@@ -69,7 +69,7 @@ def test_all_overlap_is_that_of_the_whole_outlines(name: str, shift: float, coun
     module = made.pair.module
     turning = turning_of(made, shift * module)
     angles = np.radians(np.arange(count) * 360.0 / count + 0.3)
-    for lead in np.array([0.0, 0.01, -0.01, 0.2, -0.4]) * module / turning.distance:
+    for lead in np.array([0.0, 0.01, -0.01, 0.2, -0.4]) * module / made.pair.center_distance:
         found = turning.overlaps(angles, OVERCLOSURE, lead)
         areas = np.bincount(found.step, found.area, minlength=len(angles))
         expected = whole_areas(made, turning.distance, angles, lead)
@@ -85,7 +85,7 @@ def test_pieces_are_those_of_every_two_halves(name: str, shift: float, lead: flo
     """Shift and lead in modules: tips in roots, and flanks through flanks."""
     made = overlapping(name)
     turning = turning_of(made, shift * made.pair.module)
-    angle = lead * made.pair.module / turning.distance
+    angle = lead * made.pair.module / made.pair.center_distance
     angles = TURN[::40]
     found = turning.overlaps(angles, OVERCLOSURE, angle)
     for step, phi in enumerate(angles):
