@@ -12,7 +12,7 @@ from gearcam.laws.motion.base import MOTION_LAWS
 from random_designs.blank import blank
 from random_designs.draw import Draw, short
 from random_designs.laws import random_motion_law
-from random_designs.output import asked, studies
+from random_designs.output import asked, drive, studies
 
 FOLLOWERS: Final = ("knife-edge", "roller", "flat", "domed", "point", "roller", "flat", "domed")
 """Followers, which take turns; a point is a knife edge."""
@@ -254,6 +254,7 @@ def design(d: Draw, index: int) -> dict[str, Any]:
     _form(d, made, size, lift)
     made["output"] |= asked(d, _SHARES)
     studies(d, made, "cam")
+    drive(d, made, "speed_mm_s" if made["cam"].get("form") == "translating" else "speed_rpm")
     if d.chance(0.03):
         made["follow"] = {"file": "measured.csv", "wall": d.pick(["1", "inner", "outer"])}
     return made

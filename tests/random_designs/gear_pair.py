@@ -13,7 +13,7 @@ from random_designs.blank import blank
 from random_designs.draw import Draw, short
 from random_designs.law_draw import Counts, LawDraw
 from random_designs.laws import random_law
-from random_designs.output import asked, studies
+from random_designs.output import asked, drive, studies
 
 _SHARES: Final = {
     "svg": 0.7, "dxf": 0.1, "inspection": 0.15, "cut-svg": 0.06, "drawing-svg": 0.08,
@@ -177,4 +177,5 @@ def design(d: Draw, index: int) -> dict[str, Any]:
         _ring(d, made, module)
     made["output"] |= asked(d, _SHARES, min(1.0, _AFFORDABLE / _vertices(made)))
     _studies(d, made, module)
+    drive(d, made)
     return made

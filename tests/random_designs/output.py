@@ -65,6 +65,22 @@ def studies(d: Draw, design: dict[str, Any], stage: str, name: str = "accuracy")
             design["output"]["studies"] = ["accuracy"]
 
 
+def drive(d: Draw, design: dict[str, Any], key: str = "speed_rpm") -> None:
+    """Give a speed to a few designs.
+
+    Parameters
+    ----------
+    d : Draw
+        Random numbers of this design.
+    design : dict
+        The design, which is changed.
+    key : str
+        The key of the speed.
+    """
+    if d.chance(0.1):
+        design["drive"] = {key: short(d.log(0.1, 1e4))}
+
+
 def limits(d: Draw, document: Mapping[str, Any]) -> dict[str, Any]:
     """Return one or two limits of checks of a `document`, drawn by `d` near their defaults."""
     known = known_keys(known_keys(schema(), document)["limits"], {})

@@ -19,6 +19,15 @@ from gearcam.base.numerals import formatted
 
 _UNITS: Final = {
     "_kg_m3": "kg/m3",
+    "_mm_s3": "mm/s3",
+    "_mm_s2": "mm/s2",
+    "_mm_s": "mm/s",
+    "_deg_s3": "deg/s3",
+    "_deg_s2": "deg/s2",
+    "_deg_s": "deg/s",
+    "_rad_s3": "rad/s3",
+    "_rad_s2": "rad/s2",
+    "_rpm": "rpm",
     "_kg_mm2": "kg mm2",
     "_g_mm": "g mm",
     "_mm3": "mm3",

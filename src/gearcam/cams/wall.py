@@ -92,6 +92,20 @@ class PitchMotion(ShortRepr):
         names = ("lift_{}", "velocity_{}_per_{}", "acceleration_{}_per_{}2", "jerk_{}_per_{}3")
         return {name.format(unit, driver.per): scale for name in names}
 
+    def timed_scales(self, speed: float | None) -> dict[str, float]:
+        """Return names of derivatives by time, with factors from those by the driver's position.
+
+        Parameters
+        ----------
+        speed : float or None, rad/s or mm/s
+            Speed of the cam; without one there are none.
+        """
+        if speed is None:
+            return {}
+        (scale, unit), names = self.follower.lift_unit, ("velocity", "acceleration", "jerk")
+        powers = zip(names, ("s", "s2", "s3"), (1, 2, 3), strict=True)
+        return {f"{name}_{unit}_{per}": scale * speed**order for name, per, order in powers}
+
     @property
     def total_lift(self) -> Fact:
         """Total lift, from the lowest to the highest, in the unit of output."""

@@ -150,12 +150,14 @@ class CamResult(PartsResult):
             ``theta_deg``, for a translating cam ``travel_mm``; ``lift_mm`` and its derivatives by
             theta ``velocity_mm_per_rad``, ``acceleration_mm_per_rad2`` and ``jerk_mm_per_rad3``
             (for an oscillating follower ``lift_deg``, ``velocity_deg_per_rad`` and so on, for a
-            translating cam ``velocity_mm_per_mm`` and so on); ``pressure_angle_deg``, signed;
-            ``rho_pitch_mm`` and ``rho_profile_mm``, radii of curvature of pitch curve and profile
-            before trimming: positive where convex, infinite where straight; where the pitch curve
-            is convex and the profile undercut, that of the profile is negative. At a knot the
-            values after it are returned. For conjugate cams and grooves names of columns contain
-            the key, such as ``pressure_angle_2_deg`` and ``rho_profile_outer_mm``.
+            translating cam ``velocity_mm_per_mm`` and so on); with a speed of the drive also those
+            by time, ``velocity_mm_s``, ``acceleration_mm_s2`` and ``jerk_mm_s3``;
+            ``pressure_angle_deg``, signed; ``rho_pitch_mm`` and ``rho_profile_mm``, radii of
+            curvature of pitch curve and profile before trimming: positive where convex, infinite
+            where straight; where the pitch curve is convex and the profile undercut, that of the
+            profile is negative. At a knot the values after it are returned. For conjugate cams and
+            grooves names of columns contain the key, such as ``pressure_angle_2_deg`` and
+            ``rho_profile_outer_mm``.
 
         Raises
         ------
@@ -188,6 +190,9 @@ class CamResult(PartsResult):
         columns = {driver.column: driver.scale * theta}
         names = zip(motions[0].motion_scales.items(), ("s", "ds", "d2s", "d3s"), strict=True)
         columns |= {name: scale * found[short] for (name, scale), short in names}
+        timed = motions[0].timed_scales(self.design.drive.speed).items()
+        for (name, scale), short in zip(timed, ("ds", "d2s", "d3s"), strict=False):
+            columns[name] = scale * found[short]
         tables = [found, *(one.motion(theta) for one in motions[1:])]
         for one, values in zip(motions, tables, strict=True):
             columns[pressure_column(one)] = np.degrees(values["pressure"])

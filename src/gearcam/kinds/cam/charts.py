@@ -35,6 +35,24 @@ def _knots(result: CamResult) -> tuple[MarkedPlace, ...]:
     return knot_marks(driver.scale * np.asarray(result.program.knots), 0.0, driver.whole)
 
 
+def _of_time(name: str, result: CamResult) -> Chart | None:
+    drive = result.design.drive
+    timed = result.cam.motions[0].timed_scales(drive.speed)
+    for column in timed:
+        if column.startswith(name):
+            unit = column.removeprefix(f"{name}_").replace("_", "/", 1)
+            places, label = _places(result)
+            table = result.motion_of_turn
+            return Chart(
+                title=f"{name.capitalize()} of the follower at {drive.named}",
+                x=label,
+                y=f"{name}, {unit}",
+                lines=(Line(label=name, x=table[places], y=table[column]),),
+                marks=_knots(result),
+            )
+    return None
+
+
 def _of_lift(name: str, result: CamResult) -> Chart:
     table = result.motion_of_turn
     column = next(column for column in table if column.startswith(name))
@@ -125,10 +143,13 @@ def _curvature(result: CamResult) -> Chart:
     )
 
 
+_DERIVED: Final = ("velocity", "acceleration", "jerk")
+
 CHARTS: Final[Charts] = {
     "lift": partial(_of_lift, "lift"),
     "pressure_angle": _pressure_angle,
     "curvature": _curvature,
-    **{name: partial(_of_lift, name) for name in ("velocity", "acceleration", "jerk")},
+    **{name: partial(_of_lift, name) for name in _DERIVED},
+    **{f"{name}_in_time": partial(_of_time, name) for name in _DERIVED},
 }
 """Functions that return the charts by name; the report leads with the first three."""

@@ -17,6 +17,7 @@ from gearcam.kinds.cam.tables import CamBlank, CamOutputSpec, FollowSpec
 from gearcam.kinds.shared import AccuracySpec
 from gearcam.laws.motion.base import MOTION_LAWS
 from gearcam.laws.phases_of_lift import PHASES, RisePhase
+from gearcam.mechanics.drive import DriveSpec
 
 if TYPE_CHECKING:
     from gearcam.kinds.cam.build import CamResult
@@ -43,6 +44,8 @@ class CamDesign(Design):
         The follower and its guide.
     cam : CamSpec
         Form, size, direction of turning.
+    drive : DriveSpec or SlideDriveSpec
+        Speed of the cam.
     blank : CamBlank, PlateBlank or WheelBlank
         Bore, hub, holes, density.
     output : CamOutputSpec
@@ -71,6 +74,7 @@ class CamDesign(Design):
     motion: Motion
     follower: FollowerSpec
     cam: CamSpec
+    drive: DriveSpec = field(default_factory=DriveSpec)
     blank: WheelBlank | PlateBlank = field(default_factory=CamBlank)
     output: CamOutputSpec = field(default_factory=CamOutputSpec)
     follow: FollowSpec = field(default_factory=FollowSpec)

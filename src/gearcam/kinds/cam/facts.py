@@ -79,6 +79,18 @@ def _motion(result: CamResult) -> Tree:
                 _PEAKS[: program.continuity + 1], program.peaks, strict=False
             )
         },
+        **_timed(result),
+    }
+
+
+def _timed(result: CamResult) -> Tree:
+    """Return the peaks of the derivatives by time that are finite; none without a speed."""
+    program, drive = result.program, result.design.drive
+    scales = result.cam.motions[0].timed_scales(drive.speed)
+    rows = zip(scales.items(), _PEAKS[: program.continuity + 1], program.peaks, strict=False)
+    return {
+        f"peak_{name}": Fact(factor * peak, meaning, place=f"at {drive.named}", shown=True)
+        for (name, factor), (_, meaning, _), peak in rows
     }
 
 

@@ -33,14 +33,19 @@ def _tables(result: CamResult, _: Measured) -> Files:
     """
     from gearcam.export.table import outline_bytes, table_bytes
 
-    columns = {
-        _SHORT.get(name.partition("_")[0], name): values for name, values in result.motion().items()
-    }
+    columns = {_short(name): values for name, values in result.motion().items()}
     walls = zip(result.cam.walls, result.contours, strict=True)
     return {
         **{_named("profile", wall): outline_bytes(made.points) for wall, made in walls},
         "motion.csv": table_bytes(columns),
     }
+
+
+def _short(name: str) -> str:
+    """Return the name in the file of a column of the motion; those by time keep theirs."""
+    what, _, unit = name.partition("_")
+    by_time = unit.partition("_")[2].startswith("s")
+    return name if by_time else _SHORT.get(what, name)
 
 
 def _named(stem: str, wall: Wall) -> str:

@@ -14,14 +14,15 @@ from gearcam.kinds.shared import AccuracySpec
 from gearcam.laws.motion_formula import MotionFormula
 from gearcam.laws.motion_table import MotionTable
 from gearcam.laws.phases_of_lift import DwellPhase, ReturnPhase, RisePhase, SegmentPhase
+from gearcam.mechanics.drive import DriveSpec, SlideDriveSpec
 from gearcam.parts.blank import WheelBlank
 
 __all__ = [
     "AccuracySpec", "CamBlank", "CamDesign", "CamOutputSpec", "CamResult", "CamSpec",
-    "ConjugateFollower", "ConjugateSpec", "DwellPhase", "FollowSpec", "FollowerSpec",
+    "ConjugateFollower", "ConjugateSpec", "DriveSpec", "DwellPhase", "FollowSpec", "FollowerSpec",
     "GrooveFollower", "GrooveSpec", "MotionFormula", "MotionTable", "PlateBlank", "PlateFollower",
-    "PlateOutput", "PlateSpec", "ReturnPhase", "RisePhase", "SegmentPhase", "WheelBlank",
-    "YokeFollower", "YokeSpec",
+    "PlateOutput", "PlateSpec", "ReturnPhase", "RisePhase", "SegmentPhase", "SlideDriveSpec",
+    "WheelBlank", "YokeFollower", "YokeSpec",
 ]  # fmt: skip
 
 PUBLIC = {name: globals()[name] for name in __all__}

@@ -20,6 +20,7 @@ from gearcam.designs.validate import faults_of, parameters_of
 from gearcam.gears.spec import PairSpec, Rack, RingSpec, StepsSpec
 from gearcam.kinds.shared import AccuracySpec
 from gearcam.laws.ratio.base import LAWS
+from gearcam.mechanics.drive import DriveSpec
 from gearcam.meshing.settings import ErrorsSpec, MeshingSpec
 from gearcam.parts.blank import Blank
 
@@ -72,6 +73,8 @@ class GearPairDesign(Design):
         The law's parameters, such as `gearcam.laws.Ellipse`.
     pair : PairSpec
         Centre distance or module, tooth counts, width.
+    drive : DriveSpec
+        Speed of the driver.
     rack : Rack
         The basic rack.
     blank : Blank
@@ -106,6 +109,7 @@ class GearPairDesign(Design):
 
     law: Any
     pair: PairSpec
+    drive: DriveSpec = field(default_factory=DriveSpec)
     rack: Rack = field(default_factory=Rack)
     blank: Blank = field(default_factory=Blank)
     ring: RingSpec = field(default_factory=RingSpec)

@@ -12,6 +12,7 @@ import numpy as np
 from gearcam.base.facts import Fact, Facts, extent
 from gearcam.base.findings import limit_of
 from gearcam.base.numerals import formatted
+from gearcam.base.quantities import RPM
 from gearcam.gears.pair import gear_tree
 from gearcam.gears.subject import KIND, CheckedPair
 from gearcam.laws.ratio.span import angle_text
@@ -72,10 +73,30 @@ def _pair(result: GearPairResult) -> Tree:
         if pair.internal
         else None,
         **size_facts,
+        **_timed(result),
         "solved": {
             name: _solved(name, value, shown=name in pair.law.solved)
             for name, value in solved.items()
         },
+    }
+
+
+def _timed(result: GearPairResult) -> Tree:
+    """Return speed and largest acceleration of what is driven; empty without a speed."""
+    drive, pair, subject = result.design.drive, result.pair, result.subject
+    if drive.speed is None:
+        return {}
+    (_, low), (_, high) = pair.law.ratio_range
+    steepest = pair.rolling.mean_radius * float(np.abs(subject.accelerations[1]).max())
+    what, key, unit = "driven wheel", "driven_speed_rpm", "driven_acceleration_max_rad_s2"
+    speed, rate = drive.speed / RPM.factor, drive.speed**2
+    if pair.on_rack:
+        what, key, unit = "rack", "rack_velocity_mm_s", "rack_acceleration_max_mm_s2"
+        speed, rate = pair.center_distance * drive.speed, pair.center_distance * rate
+    place = f"at {drive.named}"
+    return {
+        key: Fact(extent(low, high, speed), f"speed of the {what}", place=place, shown=True),
+        unit: Fact(rate * steepest, f"largest acceleration of the {what}", place=place),
     }
 
 

@@ -24,6 +24,7 @@ from gearcam.kinds.gear_pair.design import (
     problems,
 )
 from gearcam.kinds.shared import AccuracySpec
+from gearcam.mechanics.drive import DriveSpec
 from gearcam.meshing.settings import ERRORS, ErrorsSpec, MeshingSpec
 from gearcam.meshing.settings import KIND as MESHING
 from gearcam.parts.blank import KIND as PARTS
@@ -51,6 +52,7 @@ KIND: Final = Kind(
         title: partial(table_of, title, owner)
         for title, owner in {
             "pair": PairSpec,
+            "drive": DriveSpec,
             "rack": Rack,
             "blank": Blank,
             "ring": RingSpec,

@@ -6,12 +6,13 @@ from gearcam.gears.spec import PairSpec, Rack, RingSpec, StepsSpec
 from gearcam.kinds.gear_pair.design import GearPairDesign, PairOutputSpec
 from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.kinds.shared import AccuracySpec
+from gearcam.mechanics.drive import DriveSpec
 from gearcam.meshing.settings import ErrorsSpec, MeshingSpec
 from gearcam.parts.blank import Blank
 
 __all__ = [
-    "AccuracySpec", "Blank", "ErrorsSpec", "GearPairDesign", "GearPairResult", "MeshingSpec",
-    "PairOutputSpec", "PairSpec", "Rack", "RingSpec", "StepsSpec",
+    "AccuracySpec", "Blank", "DriveSpec", "ErrorsSpec", "GearPairDesign", "GearPairResult",
+    "MeshingSpec", "PairOutputSpec", "PairSpec", "Rack", "RingSpec", "StepsSpec",
 ]  # fmt: skip
 
 PUBLIC = {name: globals()[name] for name in __all__}

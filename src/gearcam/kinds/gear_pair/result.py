@@ -436,7 +436,9 @@ class GearPairResult(PartsResult):
             ``phi1_deg``; ``phi2_deg``, counted from phi1 = 0 over all turns; ``ratio`` i21; its
             derivatives by phi1 ``acceleration_per_rad`` and ``jerk_per_rad2``. A rack has
             ``travel_mm``, ``velocity_mm_per_rad``, ``acceleration_mm_per_rad2`` and
-            ``jerk_mm_per_rad3``. At a knot the values after it are returned.
+            ``jerk_mm_per_rad3``. With a speed of the drive also ``speed_rpm`` of the driven wheel,
+            ``acceleration_rad_s2`` and ``jerk_rad_s3``; of a rack ``velocity_mm_s``,
+            ``acceleration_mm_s2`` and ``jerk_mm_s3``. At a knot the values after it are returned.
 
         Raises
         ------
@@ -445,7 +447,7 @@ class GearPairResult(PartsResult):
         InfeasibleError
             If the law is impossible.
         """
-        return motion_columns(self.pair, self._phases(phi1))
+        return motion_columns(self.pair, self._phases(phi1), self.design.drive.speed)
 
     def contact(self, phi1: ArrayLike | None = None, side: Side = "drive") -> Columns:
         """Return all points of contact of the finished flanks at the design centre distance.

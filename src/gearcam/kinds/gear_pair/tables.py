@@ -9,11 +9,15 @@ from typing import Final
 
 import numpy as np
 
+from gearcam.base.quantities import RPM
 from gearcam.gears.contact import COAST, FlankPairs
 from gearcam.gears.pair import GearPair
 from gearcam.meshing.contact import Contacts, contact_columns
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
+
+_TIMED_ANGLE: Final = ("speed_rpm", "acceleration_rad_s2", "jerk_rad_s3")
+_TIMED_TRAVEL: Final = ("velocity_mm_s", "acceleration_mm_s2", "jerk_mm_s3")
 
 POINTS: Final = ("x1_mm", "y1_mm", "x2_mm", "y2_mm")
 """Columns of points, which are not in the file of the centrodes."""
@@ -49,8 +53,18 @@ def _radii(curvature: Array) -> Array:
         return np.where(curvature == 0.0, np.inf, 1.0 / curvature)
 
 
-def motion_columns(pair: GearPair, phi1: Array) -> Columns:
-    """Return the motion of the driven element of a `pair` at driver angles `phi1`, rad."""
+def motion_columns(pair: GearPair, phi1: Array, speed: float | None = None) -> Columns:
+    """Return the motion of the driven element of a `pair` at driver angles.
+
+    Parameters
+    ----------
+    pair : GearPair
+        The pair.
+    phi1 : (n,) array, rad
+        Driver angles.
+    speed : float or None, rad/s
+        Speed of the driver; with one there are columns of the motion in time.
+    """
     place, *slopes = pair.law.derivatives(phi1, 3)
     names = ("ratio", "acceleration_per_rad", "jerk_per_rad2")
     first = {"phi2_deg": np.degrees(place)}
@@ -59,6 +73,11 @@ def motion_columns(pair: GearPair, phi1: Array) -> Columns:
         size = pair.center_distance
         first, slopes = {"travel_mm": size * place}, [size * slope for slope in slopes]
     columns = {"phi1_deg": np.degrees(phi1), **first, **dict(zip(names, slopes, strict=True))}
+    if speed is not None:
+        rates = [slope * speed**order for order, slope in enumerate(slopes, start=1)]
+        columns |= zip(_TIMED_TRAVEL if pair.on_rack else _TIMED_ANGLE, rates, strict=True)
+        if not pair.on_rack:
+            columns["speed_rpm"] = columns["speed_rpm"] / RPM.factor
     return Columns(columns)
 
 

@@ -24,6 +24,7 @@ from gearcam.designs.table import table_of
 from gearcam.designs.validate import placed_faults
 from gearcam.kinds.cam.tables import CamBlank, CamOutputSpec
 from gearcam.laws.program import Program, make_program
+from gearcam.mechanics.drive import DriveSpec
 
 if TYPE_CHECKING:
     from gearcam.kinds.cam.build import CamResult
@@ -63,6 +64,7 @@ class Form(ABC, Generic[C, S, F]):
     tables: ClassVar[dict[str, type]] = {
         "follower": FollowerSpec,
         "cam": CamSpec,
+        "drive": DriveSpec,
         "blank": CamBlank,
         "output": CamOutputSpec,
     }

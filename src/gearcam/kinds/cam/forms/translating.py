@@ -38,6 +38,7 @@ from gearcam.kinds.cam.forms.groove import milled_faults
 from gearcam.kinds.cam.tables import CamBlank, CamOutputSpec
 from gearcam.laws.phases_of_lift import DwellPhase, Phase
 from gearcam.laws.program import Program, make_program
+from gearcam.mechanics.drive import SlideDriveSpec
 from gearcam.numeric.pose import Pose
 
 if TYPE_CHECKING:
@@ -199,6 +200,7 @@ class Translating(Form[SlidingCam, PlateSpec, PlateFollower]):
     tables: ClassVar[dict[str, type]] = {
         "follower": PlateFollower,
         "cam": PlateSpec,
+        "drive": SlideDriveSpec,
         "blank": PlateBlank,
         "output": PlateOutput,
     }
