@@ -54,6 +54,9 @@ class Quantity:
     least: float = 0.0
 
 
+FILE_KEYS: Final = frozenset({"file", "outline1", "outline2"})
+"""Keys that name a file, relative to that of the design."""
+
 ANGLE: Final = Quantity("_deg", math.pi / 180.0, "deg", least=1e-6)
 ARCSEC: Final = Quantity("_arcsec", math.pi / 648000.0, "arcsec")
 LENGTH: Final = Quantity("_mm", 1.0, "mm", least=1e-3)

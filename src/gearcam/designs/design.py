@@ -21,6 +21,8 @@ from typing import Any, ClassVar, Final, Self
 
 from gearcam.base.display import cut
 from gearcam.base.errors import DesignError, InfeasibleError, Problem
+from gearcam.base.quantities import FILE_KEYS
+from gearcam.base.reading import UnreadableError, read
 from gearcam.designs.examine import examine, examine_file
 from gearcam.designs.faults import dotted, functions_of, is_deep
 from gearcam.designs.kind import KINDS
@@ -488,7 +490,7 @@ def _with_rows(value: Any, design: Design) -> Any:
     """Return a part of a document with rows instead of CSV files, and all numbers as floats."""
     if isinstance(value, Mapping):
         return {
-            key: _rows(item, design) if key == "file" else _with_rows(item, design)
+            key: _rows(item, design) if key in FILE_KEYS else _with_rows(item, design)
             for key, item in value.items()
         }
     if isinstance(value, list):
@@ -496,11 +498,19 @@ def _with_rows(value: Any, design: Design) -> Any:
     return float(value) if isinstance(value, int) and not isinstance(value, bool) else value
 
 
-def _rows(file: str, design: Design) -> Any:
-    from gearcam.laws.columns import ColumnsError, tables_in
+def _rows(file: Any, design: Design) -> Any:
+    """Return the rows of a table's file; of another file what tells its content."""
+    from gearcam.laws.columns import LARGEST, ColumnsError, tables_in
 
+    if file is None:
+        return None
     try:
-        return next((rows.cells for rows in tables_in(design) if rows.file == file), None)
+        for rows in tables_in(design):
+            if rows.file == file:
+                return rows.cells
+        return hashlib.sha256(read(file, LARGEST)).hexdigest()
+    except UnreadableError:
+        return None  # the study that needs it says so
     except ColumnsError as error:
         raise InfeasibleError(str(error), where=file) from error
 

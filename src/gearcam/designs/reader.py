@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from gearcam.base.errors import DesignError, Problem
+from gearcam.base.quantities import FILE_KEYS
 from gearcam.base.reading import UnreadableError, read
 from gearcam.designs.faults import DEEPEST, TOO_DEEP, Fault, is_deep
 from gearcam.designs.kind import KINDS
@@ -110,8 +111,9 @@ def find_tables(value: Any, folder: Path) -> None:
     for item in value.values() if isinstance(value, dict) else value:
         if isinstance(item, dict | list):
             find_tables(item, folder)
-    if isinstance(value, dict) and isinstance(value.get("file"), str) and value["file"]:
-        value["file"] = os.fspath(folder / value["file"])
+    for key in FILE_KEYS.intersection(value) if isinstance(value, dict) else ():
+        if isinstance(value[key], str) and value[key]:
+            value[key] = os.fspath(folder / value[key])
 
 
 def problems_of(faults: Iterable[Fault], text: str, file: str) -> list[Problem]:

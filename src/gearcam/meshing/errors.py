@@ -4,7 +4,8 @@ An *assembly* is a pair with its errors: the change of the centre distance, the 
 errors of pitch of both wheels, and the tilt of the driver's axis. Nothing is linearised: flanks are
 brought into contact where their errors have put them (see `gearcam.gears.contact`). An eccentric
 wheel's teeth turn about a centre that is not theirs; wheels with an error of pitch touch with the
-tooth that is furthest ahead. On tilted axes the section at a height z over the middle of the face
+tooth that is furthest ahead. A measured outline takes the place of a wheel's own flanks, and has
+its errors of making. On tilted axes the section at a height z over the middle of the face
 width is the plane pair with its shafts moved by z times the tilt, so that flanks touch first at one
 of the faces; the sections' own change, of second order in the tilt, is left out.
 
@@ -21,7 +22,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -34,6 +35,9 @@ from gearcam.meshing.edges import first_touch, known_to, to_pitch_line
 from gearcam.meshing.settings import ErrorsSpec
 from gearcam.numeric.arrays import Array, Mask
 from gearcam.numeric.roots import bracketed_root
+
+if TYPE_CHECKING:  # outlines need more than numpy
+    from gearcam.meshing.half_teeth import HalfTeeth
 
 Gears = tuple[Gear, Gear]
 
@@ -59,17 +63,21 @@ class Assembly(ShortRepr):
     tilt : complex, rad
         Of the driver's axis: in the plane of the axes, positive if they part towards the front, and
         across it.
+    outlines : (HalfTeeth or None, HalfTeeth or None)
+        Measured outlines in the place of the wheels' own.
     """
 
     center: float = 0.0
     eccentric: tuple[complex, complex] = (0j, 0j)
     pitch: tuple[Mapping[int, float], Mapping[int, float]] = field(default_factory=lambda: ({}, {}))
     tilt: complex = 0j
+    outlines: tuple[HalfTeeth | None, HalfTeeth | None] = (None, None)
 
     def times(self, factor: float) -> Assembly:
-        """Return the assembly with all errors multiplied by a `factor`."""
+        """Return the assembly with all errors but outlines multiplied by a `factor`."""
         one, two = ({k: factor * v for k, v in errors.items()} for errors in self.pitch)
-        return Assembly(
+        return replace(
+            self,
             center=factor * self.center,
             eccentric=(factor * self.eccentric[0], factor * self.eccentric[1]),
             pitch=(one, two),
@@ -79,7 +87,13 @@ class Assembly(ShortRepr):
     @property
     def none(self) -> bool:
         """Whether there are no errors."""
-        return not (self.center or self.tilt or any(self.eccentric) or any(self.pitch))
+        moved = self.center or self.tilt or any(self.eccentric) or any(self.pitch)
+        return not (moved or self.measured)
+
+    @property
+    def measured(self) -> bool:
+        """Whether an outline was measured."""
+        return any(outline is not None for outline in self.outlines)
 
     def mounting(self, distance: float, height: float = 0.0) -> Mounting:
         """Return how the pair is mounted.
@@ -133,6 +147,8 @@ class Running(ShortRepr):
         Unit of `lead`.
     noise : float, mm
         Rounding of `backlash`.
+    measured : bool
+        Whether an outline was measured: its contact ratio is not known.
     """
 
     phi1: Array
@@ -142,10 +158,13 @@ class Running(ShortRepr):
     known_to: float
     unit: str
     noise: float
+    measured: bool = False
 
     @property
-    def contact_ratio(self) -> float:
-        """Least contact ratio of all pairs of teeth, on the driving side."""
+    def contact_ratio(self) -> float | None:
+        """Least contact ratio of all pairs of teeth on the driving side; None if not known."""
+        if self.measured:
+            return None
         return min(float(one.contact_ratios.min()) for one in self.driving)
 
     @cached_property
@@ -247,14 +266,18 @@ def run(gears: Gears, width: float, assembly: Assembly, phi1: Array) -> Running:
     InfeasibleError
         If nothing touches at any of these angles.
     """
+    mountings = assembly.mountings(gears[0].pair.shift, -0.5 * width, 0.5 * width)
     sections = [
         {side: flank_pairs(gears, side, mounting) for side in (DRIVE, COAST)}
-        for mounting in assembly.mountings(gears[0].pair.shift, -0.5 * width, 0.5 * width)
+        for mounting in mountings
     ]
     driving = tuple(section[DRIVE] for section in sections)
-    lead, back = (
-        first_of([section[side] for section in sections], phi1)[0] for side in (DRIVE, COAST)
-    )
+    if assembly.measured:
+        lead, back = _of_outlines(gears, assembly, mountings, sections, phi1)
+    else:
+        lead, back = (
+            first_of([section[side] for section in sections], phi1)[0] for side in (DRIVE, COAST)
+        )
     if not np.isfinite(lead).any():
         raise InfeasibleError(
             "with these errors the wheels do not reach each other",
@@ -271,7 +294,45 @@ def run(gears: Gears, width: float, assembly: Assembly, phi1: Array) -> Running:
         known_to=rounding,
         unit=driving[0].guide.unit,
         noise=2.0 * rounding * float(np.abs(along).max()),
+        measured=assembly.measured,
     )
+
+
+def _of_outlines(
+    gears: Gears,
+    assembly: Assembly,
+    mountings: list[Mounting],
+    sections: list[dict[int, FlankPairs]],
+    phi1: Array,
+) -> list[Array]:
+    """Return the leads of both sides of wheels of which an outline was measured."""
+    from gearcam.meshing.half_teeth import half_teeth
+    from gearcam.meshing.measured import outline_leads
+    from gearcam.meshing.overlap import Turning
+
+    one, two = (
+        (half_teeth(gear.profile) if outline is None else outline).moved(
+            gear.toothing, pitch, eccentric
+        )
+        for gear, outline, pitch, eccentric in zip(
+            gears, assembly.outlines, assembly.pitch, assembly.eccentric, strict=True
+        )
+    )
+    turnings = [
+        Turning(rolling=gears[0].pair.rolling, driver=one, driven=two, distance=mounting.distance)
+        for mounting in mountings
+    ]
+    return [
+        -side
+        * np.max(
+            [
+                -side * outline_leads(turning, section[side], phi1)
+                for turning, section in zip(turnings, sections, strict=True)
+            ],
+            axis=0,
+        )
+        for side in (DRIVE, COAST)
+    ]
 
 
 def first_of(sections: list[FlankPairs], phi1: Array) -> tuple[Array, Mask]:
@@ -340,8 +401,13 @@ def alone(assembly: Assembly) -> dict[str, Assembly]:
         "pitch1": Assembly(pitch=(first, {})),
         "pitch2": Assembly(pitch=({}, second)),
         "tilt": Assembly(tilt=assembly.tilt),
+        "outline1": Assembly(outlines=(assembly.outlines[0], None)),
+        "outline2": Assembly(outlines=(None, assembly.outlines[1])),
     }
-    there = (assembly.center, one, two, any(first.values()), any(second.values()), assembly.tilt)
+    there = (
+        *(assembly.center, one, two, any(first.values()), any(second.values()), assembly.tilt),
+        *(outline is not None for outline in assembly.outlines),
+    )
     return {name: each for (name, each), some in zip(every.items(), there, strict=True) if some}
 
 

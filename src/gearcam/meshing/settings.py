@@ -140,6 +140,15 @@ class ErrorsSpec(FromFile):
         example="pitch.csv",
         doc="CSV file of errors of pitch, with the columns wheel, tooth, pitch_mm",
     )
+    outline1: str | None = param(
+        TEXT,
+        default=None,
+        example="measured.csv",
+        doc="DXF or CSV file (columns x_mm, y_mm) of an outline of wheel 1 that was measured",
+    )
+    outline2: str | None = param(
+        TEXT, default=None, example="measured.csv", doc="the same of wheel 2"
+    )
     center_tolerance: float = param(
         LENGTH, default=0.0, ge=0, le=100, doc="tolerance of the centre distance"
     )

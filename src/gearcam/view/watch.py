@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Final
 
 from gearcam.base.errors import DesignError
+from gearcam.base.quantities import FILE_KEYS
 from gearcam.base.reading import UnreadableError, read
 from gearcam.designs import reader
 from gearcam.designs.examine import MOST_NESTED, nested_in
@@ -109,7 +110,7 @@ def tables(content: bytes, file: str, before: list[str], outer: tuple[str, ...] 
         document = document_in(decoded(content, file), file)
     except DesignError:
         return before
-    files = [value for path, value in leaves(document) if path[-1] == "file"]
+    files = [value for path, value in leaves(document) if path[-1] in FILE_KEYS]
     names = [os.fspath(Path(file).parent / one) for one in files if isinstance(one, str) and one]
     around = (*outer, file)
     inner = (value for _, _, value in nested_in(document) if isinstance(value, str) and value)

@@ -10,22 +10,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearcam.base.errors import DesignError, Problem
 from gearcam.base.facts import Fact
 from gearcam.base.findings import Finding, run_checks
-from gearcam.base.reading import UnreadableError, read
 from gearcam.cams.follow import follow
 from gearcam.cams.spec import FOLLOWED
 from gearcam.cams.wall import Wall
-from gearcam.laws.columns import LARGEST, read_rows
 from gearcam.numeric.arguments import points
-from gearcam.numeric.arrays import Array, Plane, as_complex
+from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.bulges import flatten_bulges
+from gearcam.results.outline_file import read_closed, straight
 
 _SAGITTA = 0.01
 """Chord error of flattened arcs, in chord tolerances of the design."""
-
-_COLUMNS = ("x_mm", "y_mm")
 
 
 def read_profile(file: str | Path | ArrayLike, wall: Wall) -> tuple[Plane, Array]:
@@ -52,25 +48,8 @@ def read_profile(file: str | Path | ArrayLike, wall: Wall) -> tuple[Plane, Array
         If the file cannot be read, or does not contain such a profile.
     """
     if not isinstance(file, str | os.PathLike):
-        return _straight(points("profile", file))
-    name = os.fspath(file)
-    try:
-        if name.lower().endswith(".dxf"):
-            from gearcam.export.dxf_read import read_outline
-
-            return read_outline(read(name, LARGEST), outer=wall.side < 0)
-        vertices, _ = read_rows(name).columns(_COLUMNS)
-    except (UnreadableError, ValueError) as error:
-        rule = "a DXF file with one closed outline, or a CSV file with the columns x_mm, y_mm"
-        raise DesignError([Problem(f"not a profile: {error}", file=name, allowed=rule)]) from error
-    return _straight(vertices)
-
-
-def _straight(vertices: Array) -> tuple[Plane, Array]:
-    """Return points, without the last if it repeats the first, and the bulges between them."""
-    outline = as_complex(vertices)
-    outline = outline[:-1] if np.array_equal(outline[:1], outline[-1:]) else outline
-    return outline, np.zeros(len(outline))
+        return straight(points("profile", file))
+    return read_closed(os.fspath(file), what="a profile", outer=wall.side < 0)
 
 
 def followed(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import cache, partial
 from typing import TYPE_CHECKING, Any, Final
 
@@ -28,11 +29,15 @@ from gearcam.meshing.errors import (
     run,
 )
 from gearcam.meshing.settings import ERRORS, ErrorsSpec
+from gearcam.numeric.arrays import as_complex
+from gearcam.numeric.bulges import flatten_bulges
 from gearcam.pictures.charts import Chart, Line
+from gearcam.results.outline_file import read_closed
 from gearcam.results.result import StudyResult
 
 if TYPE_CHECKING:
     from gearcam.kinds.gear_pair.result import GearPairResult
+    from gearcam.meshing.half_teeth import HalfTeeth
     from gearcam.numeric.arrays import Array
     from gearcam.results.kind import Study
     from gearcam.results.result import Progress
@@ -48,11 +53,19 @@ _SIZES: Final[Mapping[str, tuple[str, str, Callable[[Assembly], float]]]] = {
     "pitch2": ("pitch of wheel 2", "mm", lambda one: _most(one.pitch[1])),
     "tilt": ("tilt", "deg", lambda one: math.degrees(abs(one.tilt))),
 }
+_OUTLINES: Final = {
+    "outline1": "measured outline of wheel 1",
+    "outline2": "measured outline of wheel 2",
+}
+_WORDS: Final = {name: words for name, (words, _, _) in _SIZES.items()} | _OUTLINES
 """Words, unit and size of each error."""
 
 _HARMONICS: Final = 5
 _PERCENTILES: Final = (50, 90, 99)
 _BARS: Final = 40
+
+_SAGITTA: Final = 0.01
+"""Chord error of flattened arcs of a measured outline, in chord tolerances of the design."""
 
 
 def study_errors(result: GearPairResult, study: Study, progress: Progress | None) -> StudyResult:
@@ -79,7 +92,7 @@ def study_errors(result: GearPairResult, study: Study, progress: Progress | None
     """
     design, gears = result.design, result.gears
     spec, width, limits = design.errors, design.pair.face_width, design.limits
-    every = given(spec)
+    every, off = _with_outlines(result, given(spec))
     demand(gears, every)
     each = alone(every)
     count = 2 + len(each) + spec.trials
@@ -98,7 +111,10 @@ def study_errors(result: GearPairResult, study: Study, progress: Progress | None
         for number, (name, one) in enumerate(each.items(), start=2):
             report(number)
             running[name] = assembled(one)
-            sizes[name] = _largest(assembled, name, one, limit)
+            if name in _SIZES:
+                sizes[name] = _largest(assembled, name, one, limit)
+            else:
+                sizes[name] = {"size_mm": off[name]}
         trials: list[tuple[float, float]] = []
         try:
             for number, one in enumerate(random_assemblies(spec, gears)):
@@ -111,13 +127,13 @@ def study_errors(result: GearPairResult, study: Study, progress: Progress | None
         **_facts(together, gears, "all errors together"),
         "without": _facts(without, gears, "without errors"),
         "alone": {
-            name: _facts(one, gears, f"{_SIZES[name][0]} alone") | sizes[name]
+            name: _facts(one, gears, f"{_WORDS[name]} alone") | sizes[name]
             for name, one in running.items()
         },
         "trials": _trial_facts(np.array(trials), without.unit) if trials else None,
     }
     lines = {"all together": together, "without": without}
-    lines |= {_SIZES[name][0]: one for name, one in running.items()}
+    lines |= {_WORDS[name]: one for name, one in running.items()}
     return StudyResult(
         result=result,
         study=study,
@@ -130,9 +146,31 @@ def study_errors(result: GearPairResult, study: Study, progress: Progress | None
     )
 
 
+def _with_outlines(result: GearPairResult, every: Assembly) -> tuple[Assembly, dict[str, float]]:
+    """Return an assembly with the measured outlines of a design, and their distances, mm."""
+    spec = result.design.errors
+    outlines: list[HalfTeeth | None] = []
+    off: dict[str, float] = {}
+    for key, file, gear in zip(
+        _OUTLINES, (spec.outline1, spec.outline2), result.gears, strict=True
+    ):
+        if file is None:
+            outlines.append(None)
+            continue
+        from gearcam.meshing.half_teeth import half_teeth
+        from gearcam.meshing.measured import as_half_teeth, demand_near
+
+        points, bulges = read_closed(file, what="an outline")
+        outline = flatten_bulges(points, bulges, _SAGITTA * gear.profile.tolerance)
+        own, module = as_complex(gear.outline), result.pair.module
+        off[key] = demand_near(outline, own, module, f"errors.{key}")
+        outlines.append(as_half_teeth(outline, half_teeth(gear.profile)))
+    return replace(every, outlines=(outlines[0], outlines[1])), off
+
+
 def _unlike(every: Assembly, spec: ErrorsSpec) -> Assembly:
     """Return an assembly in which turns differ if they do with the given errors and tolerances."""
-    if any(spec.eccentricity_tolerance) or spec.pitch_tolerance:
+    if any(spec.eccentricity_tolerance) or spec.pitch_tolerance or every.measured:
         return Assembly(eccentric=(1j, 1j))
     return every
 
