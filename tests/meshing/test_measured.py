@@ -91,13 +91,12 @@ def test_a_wheels_own_outline_has_no_error(name: str, written: str, tmp_path: Pa
     study = gc.build(result.design.with_({**keys, "errors.steps": 90})).study("errors")
     radius = 0.5 * result.pair.center_distance
     facts = study.to_dict()
-    error = facts["errors"]["transmission_error_rad"]["peak_to_peak"]
-    assert 0.0 < error * radius < 2.0 * CHORD
-    assert facts["errors"]["alone"]["outline1"]["size_mm"] < CHORD
-    free = facts["errors"]["backlash_mm"]
-    assert free["min"] == pytest.approx(
-        facts["errors"]["without"]["backlash_mm"]["min"], abs=3 * CHORD
-    )
+    found, own = facts["errors"], facts["errors"]["without"]
+    # with backlash, the driven wheel of an ellipse lags by a varying angle
+    error, usual = (one["transmission_error_rad"]["peak_to_peak"] for one in (found, own))
+    assert abs(error - usual) * radius < 2.0 * CHORD
+    assert found["alone"]["outline1"]["size_mm"] < 2.0 * CHORD
+    assert found["backlash_mm"]["min"] == pytest.approx(own["backlash_mm"]["min"], abs=3 * CHORD)
 
 
 def test_a_measured_tooth_that_is_ahead_leads_by_its_error() -> None:
