@@ -96,7 +96,7 @@ def test_a_wheels_own_outline_has_no_error(name: str, written: str, tmp_path: Pa
     error, usual = (one["transmission_error_rad"]["peak_to_peak"] for one in (found, own))
     assert abs(error - usual) * radius < 2.0 * CHORD
     assert found["alone"]["outline1"]["size_mm"] < 2.0 * CHORD
-    assert found["backlash_mm"]["min"] == pytest.approx(own["backlash_mm"]["min"], abs=3 * CHORD)
+    assert found["backlash_mm"]["min"] == pytest.approx(own["backlash_mm"]["min"], abs=5 * CHORD)
 
 
 def test_a_measured_tooth_that_is_ahead_leads_by_its_error() -> None:
