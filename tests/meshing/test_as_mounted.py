@@ -14,7 +14,8 @@ from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.edges import first_touch, known_to, non_contact, touches
-from gearcam.meshing.numbers import harmonics, numbers
+from gearcam.meshing.harmonics import harmonics
+from gearcam.meshing.numbers import numbers
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.meshing.study import Meshing, study
 from gearcam.parts.blank import Blank
@@ -136,15 +137,25 @@ def test_harmonics_make_up_the_lag() -> None:
 
 @pytest.mark.parametrize("turns", [1, 2])
 def test_harmonics_of_a_known_lag(turns: int) -> None:
-    start = math.radians(20.0)
-    found = mounted(0.0, steps=32 * 8 * turns, start=start, end=start + turns * 2.0 * math.pi)
-    lead = 1e-3 + 3e-4 * np.cos(2.0 * found.phi1 + 0.7) - 1e-5 * np.sin(90.0 * found.phi1)
-    told = {one["order"]: one for one in harmonics(found, lead)}
+    start, teeth = math.radians(20.0), 32
+    phi1 = start + 2.0 * math.pi * np.arange(8 * teeth * turns) / (8 * teeth)
+    lead = 1e-3 + 3e-4 * np.cos(2.0 * phi1 + 0.7) - 1e-5 * np.sin(90.0 * phi1)
+    told = {one["order"]: one for one in harmonics(lead, start, turns, teeth, 1e-15)}
     assert told[2]["amplitude"] == pytest.approx(3e-4, rel=1e-9)
     assert told[2]["phase_deg"] == pytest.approx(math.degrees(0.7), abs=1e-7)
     assert told[90]["amplitude"] == pytest.approx(1e-5, rel=1e-9)
     assert told[90]["phase_deg"] == pytest.approx(90.0, abs=1e-6)
     assert list(told) == [2, 90]
+
+
+def test_harmonics_between_those_of_a_turn() -> None:
+    """Of a wheel that comes back to the same teeth after three turns."""
+    phi1 = 6.0 * math.pi * np.arange(720) / 720
+    lag = 3e-4 * np.cos(2.0 / 3.0 * phi1 - 0.4) + 1e-5 * np.cos(2.0 * phi1)
+    told = harmonics(lag, 0.0, 3, 20, 1e-15, between=True)
+    assert [one["order"] for one in told] == [pytest.approx(2.0 / 3.0), 2]
+    assert told[0]["amplitude"] == pytest.approx(3e-4, rel=1e-9)
+    assert told[0]["phase_deg"] == pytest.approx(math.degrees(-0.4), abs=1e-7)
 
 
 @pytest.mark.parametrize(

@@ -113,10 +113,14 @@ def _errors(d: Draw, design: dict[str, Any], module: float) -> dict[str, Any]:
         errors["tilt_deg"] = [d.even(-0.1, 0.1), d.even(-0.1, 0.1)]
     if d.chance(0.15):
         errors["file"] = "pitch.csv"
+    for outline in ("outline1", "outline2"):
+        if d.chance(0.05):
+            errors[outline] = "outline.csv"
     if d.chance(0.4):
         errors |= {
             "center_tolerance_mm": size(),
             "eccentricity_tolerance_mm": [size(), 0 if rack else size()],
+            "tilt_tolerance_deg": [d.even(0, 0.1), d.even(0, 0.1)],
             "pitch_tolerance_mm": size(),
             "distribution": d.pick(["uniform", "normal"]),
             "trials": d.whole(1, 3),

@@ -24,7 +24,7 @@ Nothing is refused: flanks that cannot touch form no pair. Depends on flanks and
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
@@ -332,7 +332,7 @@ def flank_pairs(
         side=side,
         distance=mounting.distance,
         eccentric=mounting.eccentric,
-        turns=_cycle(first.toothing, second.toothing) if mounting.turns_differ else 1,
+        turns=turns_of_cycle(gears) if mounting.turns_differ else 1,
     )
 
 
@@ -345,8 +345,20 @@ def _with_errors(gear: Gear, errors: Mapping[int, float]) -> Flanks:
     return replace(flanks, sf=flanks.sf + np.tile(moved, 2))
 
 
-def _cycle(one: Toothing, two: Toothing) -> int:
-    """Return the turns of a driver after which all its teeth meet the same ones again."""
+def turns_of_cycle(gears: Sequence[Gear]) -> int:
+    """Return the turns of a driver after which all its teeth meet the same ones again.
+
+    Parameters
+    ----------
+    gears : sequence of Gear
+        The wheels.
+
+    Returns
+    -------
+    int
+        1 if one of them is open.
+    """
+    one, two = (gear.toothing for gear in gears)
     if not (one.closed and two.closed):
         return 1
     return two.teeth // math.gcd(one.teeth, two.teeth)

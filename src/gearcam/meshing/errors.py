@@ -28,10 +28,18 @@ import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import InfeasibleError
-from gearcam.gears.contact import COAST, DRIVE, FlankPairs, Mounting, flank_pairs
+from gearcam.gears.contact import (
+    COAST,
+    DRIVE,
+    FlankPairs,
+    Mounting,
+    flank_pairs,
+    turns_of_cycle,
+)
 from gearcam.gears.pair import Gear
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.edges import first_touch, known_to, to_pitch_line
+from gearcam.meshing.harmonics import harmonics, too_few
 from gearcam.meshing.settings import ErrorsSpec
 from gearcam.numeric.arrays import Array, Mask
 from gearcam.numeric.roots import bracketed_root
@@ -89,6 +97,11 @@ class Assembly(ShortRepr):
         """Whether there are no errors."""
         moved = self.center or self.tilt or any(self.eccentric) or any(self.pitch)
         return not (moved or self.measured)
+
+    @property
+    def alike(self) -> bool:
+        """Whether the teeth of a wheel are alike, so that one turn is like the next."""
+        return not (self.measured or self.mounting(0.0).turns_differ)
 
     @property
     def measured(self) -> bool:
@@ -223,24 +236,25 @@ def demand(gears: Gears, assembly: Assembly) -> None:
         )
 
 
-def cycle(gears: Gears, assembly: Assembly, steps: int) -> Array:
-    """Return driver angles over the cycle of an assembly.
+def cycle(gears: Gears, steps: int, *, alike: bool) -> Array:
+    """Return driver angles over a turn, or over the turns of a cycle.
 
     Parameters
     ----------
     gears : (Gear, Gear)
         The wheels.
-    assembly : Assembly
-        Their errors.
     steps : int
         Number of angles in a turn, or in the travel of an open pair.
+    alike : bool
+        Whether the teeth of a wheel are alike, so that one turn is like the next.
 
     Returns
     -------
     (n,) array, rad
     """
-    pairs = flank_pairs(gears, DRIVE, assembly.mounting(gears[0].pair.shift))
-    return np.linspace(0.0, pairs.travel, steps * pairs.turns, endpoint=not pairs.closed)
+    pairs = flank_pairs(gears, DRIVE)
+    turns = 1 if alike else turns_of_cycle(gears)
+    return np.linspace(0.0, pairs.travel * turns, steps * turns, endpoint=not pairs.closed)
 
 
 def run(gears: Gears, width: float, assembly: Assembly, phi1: Array) -> Running:
@@ -470,6 +484,7 @@ def random_assemblies(spec: ErrorsSpec, gears: Gears) -> Iterator[Assembly]:
 
     for _ in range(spec.trials):
         (center,) = within(spec.center_tolerance)
+        tilt = [float(within(tolerance)[0]) for tolerance in spec.tilt_tolerance]
         moved = [
             abs(within(tolerance)[0]) * np.exp(1j * random.uniform(0.0, 2.0 * math.pi))
             for tolerance in spec.eccentricity_tolerance
@@ -488,6 +503,7 @@ def random_assemblies(spec: ErrorsSpec, gears: Gears) -> Iterator[Assembly]:
         yield replace(
             middle,
             center=middle.center + float(center),
+            tilt=middle.tilt + complex(*tilt),
             eccentric=(
                 middle.eccentric[0] + complex(moved[0]), middle.eccentric[1] + complex(moved[1]),
             ),
@@ -495,32 +511,29 @@ def random_assemblies(spec: ErrorsSpec, gears: Gears) -> Iterator[Assembly]:
         )  # fmt: skip
 
 
-def harmonics(running: Running, gears: Gears, most: int) -> list[dict[str, float]]:
-    """Return the largest harmonics of a transmission error over whole turns of the driver.
+def of_error(running: Running, gears: Gears) -> list[dict[str, float]] | str:
+    """Return the harmonics of a transmission error over whole turns of the driver.
 
     Parameters
     ----------
     running : Running
-        A whole cycle of closed wheels.
+        A whole cycle.
     gears : (Gear, Gear)
         The wheels.
-    most : int
-        Largest number of them.
 
     Returns
     -------
-    list of dict
-        ``order``, per turn of the driver, and ``amplitude``, the largest first; empty for open
-        wheels and racks.
+    list of dict, or str
+        Of the lag (see `gearcam.meshing.harmonics`), the largest first; or why there are none.
     """
-    if not all(gear.toothing.closed for gear in gears) or not np.isfinite(running.lead).all():
-        return []
-    count = len(running.lead)
-    turns = running.phi1[-1] * count / (count - 1) / (2.0 * math.pi)
-    parts = np.abs(np.fft.rfft(running.error)) * 2.0 / count
-    order = np.argsort(-parts, kind="stable")[:most]
-    return [
-        {"order": float(k / turns), "amplitude": float(parts[k])}
-        for k in order
-        if parts[k] > running.known_to
-    ]
+    if not all(gear.toothing.closed for gear in gears):
+        return "the wheels do not turn all around"
+    if not np.isfinite(running.lead).all():
+        return "in some phases nothing touches"
+    count, teeth = len(running.phi1), gears[0].toothing.teeth
+    turns = round(running.phi1[-1] * count / (count - 1) / (2.0 * math.pi))
+    reason = too_few(count // turns, teeth)
+    if reason:
+        return reason
+    found = harmonics(running.error, 0.0, turns, teeth, running.known_to, between=True)
+    return sorted(found, key=lambda one: -one["amplitude"])

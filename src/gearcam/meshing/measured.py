@@ -161,18 +161,18 @@ def _teeth(outline: Plane, module: float) -> int:
 
 def _misplaced(outline: Plane, own: Plane, limit: float) -> str:
     """Return by how much an outline is off centre and turned, if that brings it to the wheel."""
-    middles = [
-        as_complex(shapely.Polygon(as_pairs(one)).centroid.coords)[0] for one in (outline, own)
-    ]
-    edge = shapely.Polygon(as_pairs(own)).exterior
-    some = outline[:: max(1, len(outline) // _TRIED)] - middles[0]
-    angles = 2.0 * math.pi * np.arange(_ANGLES) / _ANGLES
-    step = angles[1]
-    for _ in range(3):
-        fits = [_distances(middles[1] + some * np.exp(1j * angle), edge).mean() for angle in angles]
-        best = float(angles[int(np.argmin(fits))])
-        angles = best + np.linspace(-step, step, 21)
-        step = angles[1] - angles[0]
+    middles = [shapely.Polygon(as_pairs(one)).centroid for one in (outline, own)]
+    middles = [complex(middle.x, middle.y) for middle in middles]
+    centred, edge = outline - middles[0], shapely.Polygon(as_pairs(own - middles[1])).exterior
+    coarse = edge.simplify(0.1 * limit)
+    best, fit = _best_turn(centred, coarse)
+    flipped, mirrored = _best_turn(centred.conj(), coarse)
+    if mirrored < fit and _near(centred.conj() * np.exp(1j * flipped), edge, limit):
+        return "is mirrored: it is that of the wheel seen from the other side"
+    if not _near(centred * np.exp(1j * best), edge, limit):
+        worst = outline[int(_distances(centred, edge).argmax())]
+        place = f"x = {formatted(worst.real, 4)}, y = {formatted(worst.imag, 4)} mm"
+        return f"is not that of this wheel, at {place} above all"
     turned = -math.remainder(best, 2.0 * math.pi)
     offset = middles[0] - middles[1] * np.exp(1j * turned)
     found = []
@@ -182,12 +182,24 @@ def _misplaced(outline: Plane, own: Plane, limit: float) -> str:
         )
     if abs(turned) * np.abs(own).max() > limit / 4.0:
         found.append(f"turned by {formatted(math.degrees(turned), 3)} deg")
-    placed = middles[1] + (outline - middles[0]) * np.exp(1j * best)
-    if not found or _distances(placed, edge).max() > limit:
-        worst = outline[int(_distances(outline, edge).argmax())]
-        place = f"x = {formatted(worst.real, 4)}, y = {formatted(worst.imag, 4)} mm"
-        return f"is not that of this wheel, at {place} above all"
-    return "is " + " and ".join(found)
+    return "is " + " and ".join(found or ["too far from that of the wheel"])
+
+
+def _near(points: Plane, edge: Any, limit: float) -> bool:
+    return bool(_distances(points, edge).max() <= limit)
+
+
+def _best_turn(outline: Plane, edge: Any) -> tuple[float, float]:
+    """Return the angle that turns an outline nearest to another, and how near that is, mm."""
+    some = outline[:: max(1, len(outline) // _TRIED)]
+    angles = 2.0 * math.pi * np.arange(_ANGLES) / _ANGLES
+    step, best, fit = angles[1], 0.0, math.inf
+    for _ in range(3):
+        fits = [_distances(some * np.exp(1j * angle), edge).mean() for angle in angles]
+        best, fit = float(angles[int(np.argmin(fits))]), float(min(fits))
+        angles = best + np.linspace(-step, step, 21)
+        step = angles[1] - angles[0]
+    return best, fit
 
 
 def as_half_teeth(outline: Plane, own: HalfTeeth) -> HalfTeeth:

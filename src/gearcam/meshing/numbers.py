@@ -7,20 +7,14 @@ from typing import Any
 import numpy as np
 
 from gearcam.base.facts import extent
-from gearcam.base.numerals import formatted
 from gearcam.gears.contact import DRIVE
 from gearcam.meshing.edges import known_to
+from gearcam.meshing.harmonics import harmonics, too_few
 from gearcam.meshing.study import Meshing
 from gearcam.numeric.arrays import Array, Ints, Mask
 
-LEAST_STEPS = 8
-"""Steps per tooth needed for harmonics."""
-
 WHOLE = 1e-9
 """Rounding of whole turns given in degrees, in turns."""
-
-MOST_ORDERS = 3
-"""Number of harmonics reported, in multiples of the tooth frequency."""
 
 
 def numbers(meshing: Meshing) -> dict[str, Any]:
@@ -104,11 +98,11 @@ def transmission(meshing: Meshing) -> dict[str, Any]:
         taken up; ``transmission_error``, the deviation from its mean; what is at most its
         ``known_to``, the rounding, is 0.
     """
-    lead, along = meshing.every("lead"), meshing.every("along")
+    setup, lead, along = meshing.setup, meshing.every("lead"), meshing.every("along")
     touching = np.isfinite(lead)
     if not touching.any():
         return {}
-    unit = meshing.setup.turning.rolling.guide.unit
+    unit = setup.turning.rolling.guide.unit
     least = rounding(meshing)
     error: dict[str, Any] = {
         "unit": unit,
@@ -120,7 +114,9 @@ def transmission(meshing: Meshing) -> dict[str, Any]:
     if reason:
         error["no_harmonics"] = reason
     else:
-        error["harmonics"] = harmonics(meshing, lead)
+        start, end = setup.stretch
+        turns, teeth = round((end - start) / (2.0 * np.pi)), setup.pairs[DRIVE].toothings[0].teeth
+        error["harmonics"] = harmonics(lead, start, turns, teeth, least)
     return {"lag_mm": _extent((0.0 - lead * along)[touching]), "transmission_error": error}
 
 
@@ -150,40 +146,7 @@ def without_harmonics(meshing: Meshing, touching: Mask) -> str:
         return "not every phase was studied"
     if not touching.all():
         return "in some phases nothing touches"
-    if meshing.asked < LEAST_STEPS * teeth * round(turns):
-        return (
-            f"{formatted(meshing.asked / (teeth * turns), 3)} steps per tooth, needed: "
-            f"{LEAST_STEPS}; steps = {LEAST_STEPS * teeth * round(turns)}"
-        )
-    return ""
-
-
-def harmonics(meshing: Meshing, lead: Array) -> list[dict[str, float]]:
-    """Return the harmonics of the driver's turn in the driven wheel's lead, from 1 to 3*z1.
-
-    Parameters
-    ----------
-    meshing : Meshing
-        A study of whole turns.
-    lead : (n,) array, rad
-        Lead at each phase.
-
-    Returns
-    -------
-    list of dict
-        ``order``, ``amplitude`` in the unit of `lead`, ``phase_deg``: the lead is its mean and the
-        sum of ``amplitude*cos(order*phi1 + phase)``. Those that are rounding are left out.
-    """
-    start, end = meshing.setup.stretch
-    turns, least = round((end - start) / (2.0 * np.pi)), rounding(meshing)
-    teeth = meshing.setup.pairs[DRIVE].toothings[0].teeth
-    orders = np.arange(1, MOST_ORDERS * teeth + 1)
-    parts = 2.0 / len(lead) * np.fft.rfft(lead)[orders * turns] * np.exp(-1j * orders * start)
-    return [
-        {"order": int(order), "amplitude": float(abs(part)), "phase_deg": float(np.degrees(angle))}
-        for order, part, angle in zip(orders, parts, np.angle(parts), strict=True)
-        if abs(part) > least
-    ]
+    return too_few(meshing.asked, teeth * round(turns))
 
 
 def rounding(meshing: Meshing) -> float:

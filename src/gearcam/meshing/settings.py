@@ -155,6 +155,9 @@ class ErrorsSpec(FromFile):
     eccentricity_tolerance: tuple[float, float] = param(
         LENGTH, default=(0.0, 0.0), ge=0, le=100, both=True, doc="tolerance of the eccentricity"
     )
+    tilt_tolerance: tuple[float, float] = param(
+        ANGLE, default=(0.0, 0.0), ge=0, le=10, doc="tolerance of both tilts"
+    )
     pitch_tolerance: float = param(
         LENGTH, default=0.0, ge=0, le=100, doc="tolerance of the place of each tooth of both wheels"
     )
@@ -168,6 +171,11 @@ class ErrorsSpec(FromFile):
     steps: int = param(
         COUNT, default=360, ge=8, le=100000, doc="number of phases in a turn of the driver"
     )
+
+    @property
+    def alike(self) -> bool:
+        """Whether the tolerances keep the teeth of a wheel alike."""
+        return not (any(self.eccentricity_tolerance) or self.pitch_tolerance)
 
     @cached_property
     def pitch_errors(self) -> tuple[Mapping[int, float], Mapping[int, float]]:

@@ -23,12 +23,12 @@ from gearcam.meshing.errors import (
     cycle,
     demand,
     given,
-    harmonics,
     largest,
+    of_error,
     random_assemblies,
     run,
 )
-from gearcam.meshing.settings import ERRORS, ErrorsSpec
+from gearcam.meshing.settings import ERRORS
 from gearcam.numeric.arrays import as_complex
 from gearcam.numeric.bulges import flatten_bulges
 from gearcam.pictures.charts import Chart, Line
@@ -102,7 +102,7 @@ def study_errors(result: GearPairResult, study: Study, progress: Progress | None
             progress("errors", done, count)
 
     with result.stage("errors"):
-        phi1 = cycle(gears, _unlike(every, spec), spec.steps)
+        phi1 = cycle(gears, spec.steps, alike=every.alike and spec.alike)
         assembled = partial(run, gears, width, phi1=phi1)
         report(0)
         without, together = assembled(Assembly()), assembled(every)
@@ -168,13 +168,6 @@ def _with_outlines(result: GearPairResult, every: Assembly) -> tuple[Assembly, d
     return replace(every, outlines=(outlines[0], outlines[1])), off
 
 
-def _unlike(every: Assembly, spec: ErrorsSpec) -> Assembly:
-    """Return an assembly in which turns differ if they do with the given errors and tolerances."""
-    if any(spec.eccentricity_tolerance) or spec.pitch_tolerance or every.measured:
-        return Assembly(eccentric=(1j, 1j))
-    return every
-
-
 def _most(errors: Mapping[int, float]) -> float:
     return max(map(abs, errors.values()), default=0.0)
 
@@ -222,7 +215,11 @@ def _facts(found: Running, gears: Any, how: str) -> Tree:
         error["peak_to_peak"] = Fact(
             found.peak_to_peak, f"transmission error, {how}", unit=found.unit, shown=True
         )
-        error["harmonics"] = harmonics(found, gears, _HARMONICS) or None
+        parts = of_error(found, gears)
+        if isinstance(parts, str):
+            error["no_harmonics"] = parts
+        else:
+            error["harmonics"] = parts[:_HARMONICS] or None
     some = found.backlash[np.isfinite(found.backlash)]
     return {
         f"transmission_error_{found.unit}": error,
