@@ -132,7 +132,8 @@ def _add_settings(study: Study, kind: Kind, parser: argparse.ArgumentParser) -> 
         unit = entry.param.quantity.unit.upper()
         if entry.length is not None:
             example = "1,27,..." if entry.base is int else "A,B,..."
-            words |= {"type": partial(_list, entry.base), "metavar": example}
+            read = partial(_list, entry.base, both=entry.param.both)
+            words |= {"type": read, "metavar": example}
         elif entry.base is bool:
             words |= {"action": "store_true", "default": None}
         else:
@@ -142,11 +143,13 @@ def _add_settings(study: Study, kind: Kind, parser: argparse.ArgumentParser) -> 
         parser.add_argument(f"--{name}", dest=key, **words)
 
 
-def _list(base: type, text: str) -> list[Any]:
+def _list(base: type, text: str, *, both: bool) -> Any:
+    """Return the numbers of a list; a single number alone if it may stand for both wheels."""
     try:
-        return [base(word.strip()) for word in text.split(",") if word.strip()]
+        numbers = [base(word.strip()) for word in text.split(",") if word.strip()]
     except ValueError:
         raise argparse.ArgumentTypeError(f'"{text}" is not a list such as 1,27') from None
+    return numbers[0] if both and len(numbers) == 1 else numbers
 
 
 def studied(study: Study, design: Design, options: Options) -> Any:

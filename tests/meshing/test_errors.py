@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import shapely
 
 import gearcam as gc
 from gearcam.base.errors import DesignError, InfeasibleError
@@ -29,6 +30,12 @@ ROUND: dict[str, Any] = {
     "law": {"type": "constant"},
     "pair": {"teeth": [*TEETH], "module_mm": MODULE, "backlash_mm": 0.1},
 }
+ELLIPSE: dict[str, Any] = {
+    "kind": "gear-pair",
+    "name": "ellipse",
+    "law": {"type": "ellipse", "eccentricity": 0.4},
+    "pair": {"teeth": [24, 24], "module_mm": MODULE, "backlash_mm": 0.1},
+}
 BASE2 = 0.5 * MODULE * TEETH[1] * math.cos(ALPHA)
 
 
@@ -38,7 +45,7 @@ def with_errors(errors: Mapping[str, Any], **pair: Any) -> gc.Design:
 
 def pressed(assembly: Assembly, document: Mapping[str, Any] = ROUND, steps: int = 160) -> Any:
     gears = built(gc.design(dict(document))).gears
-    return run(gears, 10.0, assembly, cycle(gears, steps, alike=assembly.alike)), gears
+    return run([gears], 10.0, assembly, cycle(gears, steps, alike=assembly.alike)), gears
 
 
 @pytest.mark.parametrize(("wheel", "order"), [(0, 1.0), (1, 2 / 3)])
@@ -91,6 +98,16 @@ def test_a_small_error_turns_the_driven_wheel_by_its_part_along_the_normal(
     expected = (np.conj(plain.force) * moved).real / plain.lever[1]
     found = [rates[key] for key in zip(plain.step, plain.pair, strict=True)]
     assert np.array(found) == pytest.approx(expected, rel=1e-6, abs=1e-9)
+
+
+@pytest.mark.parametrize(("wheel", "sign"), [(1, -1.0), (2, 1.0)])
+def test_an_error_of_pitch_moves_a_tooth_towards_the_next_number(wheel: int, sign: float) -> None:
+    """All teeth moved alike: the driver turns against its numbers, and lags, the mate leads."""
+    errors = dict.fromkeys(range(1, TEETH[wheel - 1] + 1), 0.01)
+    running, _ = pressed(Assembly(pitch=(errors, {}) if wheel == 1 else ({}, errors)), steps=24)
+    without, _ = pressed(Assembly(), steps=24)
+    radius = 0.5 * MODULE * TEETH[1]
+    assert radius * (running.lead[:24] - without.lead) == pytest.approx(sign * 0.01, rel=1e-6)
 
 
 def test_a_tooth_ahead_leads_by_its_error() -> None:
@@ -202,12 +219,15 @@ def test_no_error_is_allowed_that_jams_the_pair() -> None:
     )  # backlash 2*a*tan(alpha)
 
 
-@pytest.mark.parametrize(("root", "factor"), [(0.37, 0.37), (5.5, 5.5), (2000.0, math.inf)])
+@pytest.mark.parametrize(
+    ("root", "factor"), [(1e-5, 1e-5), (0.37, 0.37), (700.0, 700.0), (2000.0, math.inf)]
+)
 def test_the_largest_factor_is_a_root(root: float, factor: float) -> None:
     found = largest(lambda x: (x / root) ** 3 - 1.0)
     assert found is not None
     assert found == factor if math.isinf(factor) else 0.998 * factor < found <= factor
     assert largest(lambda x: 0.0 * x) is None
+    assert largest(lambda x: 1.0 if x else -1.0) == 0.0
 
 
 def test_random_assemblies_have_the_percentiles_of_quadrature() -> None:
@@ -258,8 +278,10 @@ def test_a_study_is_written(tmp_path: Path) -> None:
     [
         ({"file": "3,1,0.1"}, "line 2: no tooth 1 of a wheel 3"),
         ({"file": "1,1.5,0.1"}, "line 2: no tooth 1.5 of a wheel 1"),
+        ({"file": "1,1,0.1\n1,1,0.2"}, "line 3: a second error of tooth 1"),
         ({"eccentricity_mm": -1}, "-1"),
         ({"distribution": "gauss"}, "normal"),
+        ({"trials": 5}, "trials: 5: needs a tolerance"),
     ],
 )
 def test_errors_that_cannot_be_read_are_refused(
@@ -279,6 +301,9 @@ def test_errors_that_a_pair_cannot_have_are_refused(tmp_path: Path) -> None:
     with pytest.raises(InfeasibleError, match="wheel 2 does not have") as caught:
         built(with_errors({"file": str(path)})).study("errors")
     assert "its teeth are 1 to 30" in str(caught.value)
+    path.write_text("wheel,tooth,pitch_mm\n2,3,4\n", "utf-8")
+    with pytest.raises(InfeasibleError, match="larger than a quarter of the pitch"):
+        built(with_errors({"file": str(path)})).study("errors")
     with pytest.raises(InfeasibleError, match="do not reach each other"):
         built(with_errors({"center_mm": 20})).study("errors")
 
@@ -288,3 +313,106 @@ def test_jamming_and_a_large_error_are_found() -> None:
     assert {one.code for one in found.study_findings} == {"jams", "transmission-error"}
     free = built(with_errors({"eccentricity_mm": 0.01, "steps": 60})).study("errors")
     assert free.study_findings == ()
+
+
+@pytest.mark.parametrize("name", ["round", "ellipse"])
+def test_without_backlash_wheels_further_apart_run_free(name: str) -> None:
+    document = ROUND if name == "round" else ELLIPSE
+    errors = {"center_mm": 0.01, "eccentricity_mm": 0.01, "steps": 60}
+    pair = document["pair"] | {"backlash_mm": 0}
+    found = built(gc.design({**document, "pair": pair, "errors": errors})).study("errors").to_dict()
+    alone = found["errors"]["alone"]
+    assert alone["center"]["largest_free_running_mm"] > 0.5
+    assert alone["eccentricity1"]["largest_free_running_mm"] == 0.0
+
+
+def test_tips_do_not_reach_into_roots() -> None:
+    """With much backlash the clearance of the rack, 0.25 modules, is what limits."""
+    errors = {"center_mm": -0.44, "steps": 48}
+    found = built(with_errors(errors, backlash_mm=1.0)).study("errors")
+    assert "interference" not in {one.code for one in found.study_findings}
+    most = found.to_dict()["errors"]["alone"]["center"]["largest_free_running_mm"]
+    assert -0.5 < most < -0.44
+    errors["center_mm"] = -0.52
+    found = built(with_errors(errors, backlash_mm=1.0)).study("errors")
+    assert "interference" in {one.code for one in found.study_findings}
+
+
+def test_interference_is_found_where_outlines_overlap() -> None:
+    """Non-circular wheels, whose common normal is inclined to the line of centres."""
+    document = {**ELLIPSE, "pair": ELLIPSE["pair"] | {"backlash_mm": 1.0}}
+    made = built(gc.design(document))
+    for center, hits in ((-0.45, False), (-0.56, True)):
+        errors = {"center_mm": center, "steps": 60}
+        found = built(gc.design({**document, "errors": errors})).study("errors")
+        seen = {one.code for one in found.study_findings}
+        assert ("interference" in seen) == hits
+        assert (overlap(made, center, 60) > 0.01) == hits
+
+
+def overlap(made: Any, center: float, steps: int) -> float:
+    """Largest overlap of the outlines, mm2, in the middle of their backlash."""
+    worst = 0.0
+    phi1 = np.linspace(0.0, 2.0 * math.pi, steps, endpoint=False)
+    running = run([made.gears], 10.0, Assembly(center=center), phi1)
+    radius = np.abs(made.pair.rolling.tracks[1].frames(phi1).p)
+    turn = running.lead + 0.5 * running.backlash / radius
+    for phi, lead in zip(phi1, turn, strict=True):
+        one, two = (
+            shapely.Polygon(np.stack([z.real, z.imag], axis=1))
+            for z in (
+                made.gear1.outline @ [1, 1j] * np.exp(-1j * phi),
+                made.gear2.outline @ [1, 1j] * np.exp(1j * (made.law.phi2(phi) + lead))
+                + made.pair.center_distance
+                + center,
+            )
+        )
+        worst = max(worst, one.intersection(two).area)
+    return worst
+
+
+def test_only_wheel_2_makes_turns_differ() -> None:
+    gears = built(gc.design(ROUND)).gears
+    error = {7: 0.01}
+    for assembly, turns in (
+        (Assembly(pitch=(error, {}), eccentric=(0.01 + 0j, 0j)), 1),
+        (Assembly(pitch=({}, error)), 3),
+        (Assembly(eccentric=(0j, 0.01j)), 3),
+    ):
+        phi1 = cycle(gears, 90, alike=assembly.alike)
+        assert len(phi1) == 90 * turns
+    once, whole = (
+        run([gears], 10.0, Assembly(pitch=(error, {})), cycle(gears, 90, alike=alike)).lead
+        for alike in (True, False)
+    )
+    assert np.tile(once, 3) == pytest.approx(whole, abs=1e-13)
+
+
+def test_a_percentile_is_kept_by_so_many_assemblies() -> None:
+    """Also where some of them do not touch everywhere."""
+    errors = {"center_tolerance_mm": 6.0, "trials": 12, "steps": 24}
+    found = built(with_errors(errors)).study("errors").to_dict()["errors"]["trials"]
+    assert found["count"] == 12
+    assert 0 < found["apart"] < 6
+    assert "p50" in found["transmission_error_rad"]
+    assert "p99" not in found["transmission_error_rad"]
+
+
+def test_an_error_of_pitch_of_a_rack_or_a_step_counts() -> None:
+    stepped = gc.load("profiles/stepped_ellipse.toml")
+    made = gc.build(stepped)
+    assert len(made.steps) > 1
+    phi1 = np.linspace(0.0, 2.0 * math.pi, 200, endpoint=False)
+    ahead = Assembly(pitch=({3: -0.05}, {}))
+    leads = [run([gears], 10.0, ahead, phi1).lead for gears in made.steps]
+    every = run(made.steps, 10.0, ahead, phi1).lead
+    assert every == pytest.approx(np.max(leads, axis=0), abs=1e-15)
+    assert np.abs(leads[0] - leads[1]).max() > 1e-4
+
+
+def test_a_rack_has_no_tolerance_of_eccentricity() -> None:
+    design = gc.load("profiles/feeder.toml").with_(
+        {"errors.eccentricity_tolerance_mm": [0.01, 0.01], "errors.trials": 2}
+    )
+    with pytest.raises(InfeasibleError, match="a rack has no shaft"):
+        gc.build(design).study("errors")

@@ -15,9 +15,9 @@ import shapely
 import gearcam as gc
 from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.gears.contact import COAST, DRIVE, Mounting, flank_pairs
-from gearcam.meshing.errors import Assembly, run
+from gearcam.meshing.errors import Assembly, cycle, run
 from gearcam.meshing.half_teeth import HalfTeeth, half_teeth
-from gearcam.meshing.measured import as_half_teeth, demand_near, outline_leads
+from gearcam.meshing.measured import as_half_teeth, chord_error, demand_near, outline_leads
 from gearcam.meshing.overlap import Turning
 from helpers_built import built
 from helpers_pairs import profile
@@ -46,7 +46,7 @@ def complex_of(points: np.ndarray) -> np.ndarray:
 
 
 def halves(gear: Any, change: Callable[[np.ndarray], np.ndarray] = lambda z: z) -> HalfTeeth:
-    return as_half_teeth(change(complex_of(gear.outline)), half_teeth(gear.profile))
+    return as_half_teeth(change(complex_of(gear.outline)), half_teeth(gear.profile), CHORD)
 
 
 def mating(name: str, mounting: Mounting | None = None) -> tuple[Any, Turning]:
@@ -105,8 +105,8 @@ def test_a_measured_tooth_that_is_ahead_leads_by_its_error() -> None:
     own = half_teeth(gears[0].profile)
     ahead = own.moved(gears[0].toothing, {7: error}, 0j)
     phi1 = np.linspace(0.0, 2.0 * math.pi, 180, endpoint=False)
-    exact = run(gears, 10.0, Assembly(pitch=({7: error}, {})), phi1)
-    found = run(gears, 10.0, Assembly(outlines=(ahead, None)), phi1)
+    exact = run([gears], 10.0, Assembly(pitch=({7: error}, {})), phi1)
+    found = run([gears], 10.0, Assembly(outlines=(ahead, None)), phi1)
     assert np.abs(found.lead - exact.lead).max() * radius < 2.0 * CHORD
     assert exact.peak_to_peak * radius > 0.8 * error
 
@@ -114,9 +114,9 @@ def test_a_measured_tooth_that_is_ahead_leads_by_its_error() -> None:
 def test_an_outline_off_its_shaft_runs_as_an_eccentric_wheel() -> None:
     gears, offset = made("round").gears, 0.03 + 0.02j
     phi1 = np.linspace(0.0, 2.0 * math.pi, 90, endpoint=False)
-    exact = run(gears, 10.0, Assembly(eccentric=(offset, 0j)), phi1)
+    exact = run([gears], 10.0, Assembly(eccentric=(offset, 0j)), phi1)
     measured = halves(gears[0], lambda z: z + offset)
-    found = run(gears, 10.0, Assembly(outlines=(measured, None)), phi1)
+    found = run([gears], 10.0, Assembly(outlines=(measured, None)), phi1)
     assert np.abs(found.lead - exact.lead).max() * 30.0 < 2.0 * CHORD
     assert np.abs(found.backlash - exact.backlash).max() < 5.0 * CHORD
     assert found.contact_ratio is None
@@ -137,6 +137,7 @@ WRONG: dict[str, tuple[Callable[[np.ndarray], np.ndarray], str]] = {
     "open": (away, "is open: its last point is .* mm from its first"),
     "crossed": (crossed, "crosses itself: .* at \\("),
     "inches": (lambda z: z / 25.4, "is in inches: it is 0.0394 times as large"),
+    "metres": (lambda z: 1e-3 * z, "is 0.001 times as large"),
     "scaled": (lambda z: 1.1 * z, "is 1.1 times as large"),
     "off centre": (lambda z: z + 3.0 - 2.0j, "is off centre by x = 3, y = -2 mm"),
     "turned": (lambda z: z * np.exp(1j * math.radians(100)), "is turned by 100 deg"),
@@ -151,6 +152,40 @@ def test_a_wrong_outline_is_refused_with_its_cause(fault: str) -> None:
     own = complex_of(made("swing").gear1.outline)
     with pytest.raises(InfeasibleError, match=message):
         demand_near(change(own), own, 2.0, "errors.outline1")
+
+
+@pytest.mark.parametrize("name", ["nautilus", "furnace_door_two_phase", "ring_ellipse", "feeder"])
+def test_own_outlines_touch_where_flanks_do(name: str) -> None:
+    """Also where lands are oblique to the circle about the driven shaft; chords of 1 um."""
+    gears = profile(name).gears
+    phi1 = cycle(gears, 40, alike=True)
+    exact = run([gears], 10.0, Assembly(), phi1)
+    found = run([gears], 10.0, Assembly(outlines=(half_teeth(gears[0].profile), None)), phi1)
+    assert not found.jams
+    assert found.backlash == pytest.approx(exact.backlash, abs=5e-3)
+    assert exact.interference is None
+
+
+@pytest.mark.parametrize("turned", [3.0, -7.5])
+def test_a_round_outline_is_turned_by_less_than_half_a_pitch(turned: float) -> None:
+    own = complex_of(made("round").gear1.outline)
+    with pytest.raises(InfeasibleError, match=f"is turned by {turned:g} deg"):
+        demand_near(own * np.exp(1j * math.radians(turned)), own, 2.0, "errors.outline1")
+
+
+def test_thinned_points_say_how_well_they_are_known() -> None:
+    gear = made("round").gear1
+    own = complex_of(gear.outline)
+    circle: Any = 100.0 * np.exp(2j * math.pi * np.arange(40000) / 40000)
+    sagitta = 100.0 * (1.0 - math.cos(math.pi / 400))
+    assert chord_error(circle[::100], circle) == pytest.approx(sagitta, rel=1e-3)
+    thin = chord_error(own[::6], own)
+    assert thin > 10.0 * chord_error(own, own)
+    phi1 = np.linspace(0.0, 2.0 * math.pi, 60, endpoint=False)
+    halves = as_half_teeth(own[::6], half_teeth(gear.profile), thin)
+    running = run([made("round").gears], 10.0, Assembly(outlines=(halves, None)), phi1)
+    assert np.ptp(running.lead) < 3.0 * running.known_to
+    assert not running.jams
 
 
 def test_an_outline_with_another_number_of_teeth_is_refused() -> None:

@@ -15,6 +15,7 @@ from gearcam.base.errors import InfeasibleError
 from gearcam.gears.contact import DRIVE
 from gearcam.kinds.gear_pair.design import GearPairDesign
 from gearcam.meshing.contact import contacts
+from gearcam.meshing.errors import Assembly, run
 from gearcam.meshing.solids import bodies, tilted
 from gearcam.meshing.study import Setup, mount, phases
 from gearcam.parts.solids import Prisms
@@ -138,7 +139,26 @@ def test_on_tilted_axes_the_teeth_bear_at_one_end(tilt: list[float], front: bool
     # every phase has a pair that touches
     assert {*rows["step"][bears].astype(int)} == set(range(20))
     assert study.findings == ()
+    assert study.facts["meshing.pairs_in_contact"]["min"] >= 1
     assert study.facts["meshing.bearing_length_mm"]["max"] < 0.7 * WIDTH
+
+
+@pytest.mark.parametrize("name", ["ellipse", "ring_ellipse"])
+def test_solids_bear_at_the_face_where_flanks_touch_first(name: str) -> None:
+    """In a ring, axes that part towards the front bring the teeth together there."""
+    design = gc.load(f"profiles/{name}.toml").with_(SOLID | {"errors.tilt_deg": [0.2, 0.0]})
+    assert isinstance(design, GearPairDesign)
+    result = gc.build(design.with_({"meshing.solids": False}))  # a tilt asks for solids by itself
+    phi1, tilt = np.linspace(0.0, 1.0, 5), Assembly(tilt=math.radians(0.2) + 0j)
+    low, high = (
+        section.lead(DRIVE, phi1) for section in run([result.gears], 8.0, tilt, phi1).sections
+    )
+    front = bool(np.all(high > low))  # the driver pushes the driven wheel ahead
+    assert front == (name == "ring_ellipse")
+    rows = result.mesh().columns
+    bears = rows["overlap_mm3"] > 0.0
+    middle = 0.5 * (rows["overlap_from_z_mm"][bears] + rows["overlap_to_z_mm"][bears])
+    assert np.all((middle > 0.0) == front)
 
 
 def test_a_tooth_moved_by_5_um_is_found_in_3d(tmp_path: Path) -> None:

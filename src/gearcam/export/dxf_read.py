@@ -176,7 +176,7 @@ def read_outline(data: bytes, *, outer: bool = False) -> tuple[Plane, Array]:
     if paths:
         raise DxfError(
             f"the layer {paths[0]} holds the path of a cutter, not an edge: "
-            "take the file that ends in _reference.dxf, or one written without a kerf"
+            "take one written without a kerf, or the _reference.dxf of a cam"
         )
     for wanted in (PROFILE, OUTLINE, OUTER_WALL if outer else INNER, ""):
         candidates = [

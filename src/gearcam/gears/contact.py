@@ -90,8 +90,8 @@ class Mounting(ShortRepr):
 
     @property
     def turns_differ(self) -> bool:
-        """Whether a wheel's teeth differ by their places on it."""
-        return any(self.eccentric) or any(any(errors.values()) for errors in self.pitch)
+        """Whether wheel 2's teeth differ: wheel 1's are the same after each turn of the driver."""
+        return self.eccentric[1] != 0.0 or any(self.pitch[1].values())
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -45,13 +45,28 @@ def jams(together: Running, limit: float) -> Iterator[Remark]:  # noqa: ARG001
 
     Looks at: least backlash over the cycle, all errors together.
     """
-    least = together.least_backlash
-    if least < -together.noise:
-        angle = math.degrees(together.phi1[int(np.argmin(together.backlash))])
+    if together.least_backlash < -together.noise:
         yield Remark(
             "With its errors the pair jams: give it more backlash or a larger centre distance.",
-            f"phi1 = {formatted(angle)} deg",
-            least,
+            _place(together, int(np.argmin(together.backlash))),
+            together.least_backlash,
+            limit=0.0,
+        )
+
+
+@check("interference", kind=ERRORS, severity="error", unit="mm")
+def interference(together: Running, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Report wheels that their errors press into each other beside their flanks.
+
+    Looks at: overlap of whole outlines over the cycle, with tips, roots and fillets, in the middle
+    of the backlash; all errors together.
+    """
+    if together.interference is not None and not together.jams:
+        phi1, depth = together.interference
+        yield Remark(
+            "With its errors tips reach into roots or fillets of the other wheel.",
+            f"phi1 = {formatted(math.degrees(phi1))} deg",
+            depth,
             limit=0.0,
         )
 
@@ -64,10 +79,13 @@ def nothing_touches(together: Running, limit: float) -> Iterator[Remark]:  # noq
     """
     apart = ~np.isfinite(together.lead)
     if apart.any():
-        angle = math.degrees(together.phi1[int(np.argmax(apart))])
         yield Remark(
             "With these errors nothing touches in some phases.",
-            f"first at phi1 = {formatted(angle)} deg",
+            f"first at {_place(together, int(np.argmax(apart)))}",
             float(np.count_nonzero(apart)),
             limit=math.inf,
         )
+
+
+def _place(together: Running, phase: int) -> str:
+    return f"phi1 = {formatted(math.degrees(together.phi1[phase]))} deg"

@@ -19,7 +19,7 @@ Refused: an error with which the wheels no longer reach each other.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Final
@@ -46,14 +46,21 @@ from gearcam.numeric.roots import bracketed_root
 
 if TYPE_CHECKING:  # outlines need more than numpy
     from gearcam.meshing.half_teeth import HalfTeeth
+    from gearcam.meshing.overlap import Turning
 
 Gears = tuple[Gear, Gear]
 
 _NARROW: Final = 1e-3
 """Width of the bracket of a largest error, as a share of it."""
 
-_FARTHEST: Final = 1000
+_FARTHEST: Final = 1000.0
 """Largest multiple of an error at which its largest value is sought."""
+
+_SMALLEST: Final = 1e-6
+"""Smallest, below which it is 0."""
+
+_SHARE: Final = 0.25
+"""Largest error of pitch, in pitches."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -100,8 +107,8 @@ class Assembly(ShortRepr):
 
     @property
     def alike(self) -> bool:
-        """Whether the teeth of a wheel are alike, so that one turn is like the next."""
-        return not (self.measured or self.mounting(0.0).turns_differ)
+        """Whether wheel 2's teeth are alike, so that one turn of the driver is like the next."""
+        return self.outlines[1] is None and not self.mounting(0.0).turns_differ
 
     @property
     def measured(self) -> bool:
@@ -119,12 +126,21 @@ class Assembly(ShortRepr):
             Over the middle of the face width, on tilted axes.
         """
         outward = math.copysign(1.0, distance)
-        move = height * complex(outward * self.tilt.real, self.tilt.imag)
         return Mounting(
-            distance=distance + outward * self.center + move,
+            distance=distance + outward * self.center + height * self.lean(distance),
             eccentric=self.eccentric,
             pitch=self.pitch,
         )
+
+    def lean(self, distance: float) -> complex:
+        """Return how far the driven shaft moves along x and y for each mm of height.
+
+        Parameters
+        ----------
+        distance : float, mm
+            Position of the driven frame; negative for a ring.
+        """
+        return complex(math.copysign(1.0, distance) * self.tilt.real, self.tilt.imag)
 
     def mountings(self, distance: float, low: float, high: float) -> list[Mounting]:
         """Return how the pair is mounted where it touches first: on tilted axes at both faces.
@@ -152,14 +168,14 @@ class Running(ShortRepr):
         touches.
     backlash : (n,) array, mm
         Free travel of the driven wheel between both contacts, along the pitch curve.
-    driving : tuple of FlankPairs
-        The driving side, on tilted axes in both faces.
+    sections : tuple
+        The wheels at the heights at which they may touch first.
     known_to : float, rad, for a rack mm
-        Rounding of `lead`.
+        How well `lead` is known: rounding, and chords of measured outlines.
     unit : str
         Unit of `lead`.
     noise : float, mm
-        Rounding of `backlash`.
+        How well `backlash` is known: rounding, and chords of measured outlines.
     measured : bool
         Whether an outline was measured: its contact ratio is not known.
     """
@@ -167,11 +183,16 @@ class Running(ShortRepr):
     phi1: Array
     lead: Array
     backlash: Array
-    driving: tuple[FlankPairs, ...]
+    sections: tuple[_Section, ...]
     known_to: float
     unit: str
     noise: float
     measured: bool = False
+
+    @property
+    def driving(self) -> tuple[FlankPairs, ...]:
+        """The driving side of each section."""
+        return tuple(section.sides[DRIVE] for section in self.sections)
 
     @property
     def contact_ratio(self) -> float | None:
@@ -190,8 +211,28 @@ class Running(ShortRepr):
 
     @property
     def least_backlash(self) -> float:
-        """Least backlash, mm; negative if the wheels cannot be assembled without force."""
+        """Least backlash, mm."""
         return float(self.backlash.min())
+
+    @property
+    def jams(self) -> bool:
+        """Whether the wheels cannot be assembled without force, for their flanks."""
+        return self.least_backlash < -self.noise
+
+    @cached_property
+    def interference(self) -> tuple[float, float] | None:
+        """Where whole outlines overlap most: driver angle, rad, and how far, mm; or None.
+
+        How far the driven wheel would have to turn for them to part, along the pitch curve, when it
+        has no room to either side: flanks, tips, roots and fillets.
+        """
+        lead, back = _of_side([section.outline_lead for section in self.sections], self.phi1)
+        play = (back - lead) * to_pitch_line(self.driving[0], self.phi1)
+        chords = 2.0 * max(section.chord_error for section in self.sections)
+        least = int(np.argmin(play))
+        if play[least] >= -self.noise - chords / self.sections[0].cosine:
+            return None
+        return float(self.phi1[least]), -float(play[least])
 
     @property
     def error(self) -> Array:
@@ -201,7 +242,7 @@ class Running(ShortRepr):
         return np.where(np.abs(error) <= self.known_to, 0.0, error)
 
 
-def demand(gears: Gears, assembly: Assembly) -> None:
+def demand(gears: Gears, assembly: Assembly, spec: ErrorsSpec | None = None) -> None:
     """Refuse errors of teeth and shafts that a pair does not have.
 
     Parameters
@@ -210,6 +251,8 @@ def demand(gears: Gears, assembly: Assembly) -> None:
         The wheels.
     assembly : Assembly
         Their errors.
+    spec : ErrorsSpec, optional
+        Their tolerances.
 
     Raises
     ------
@@ -217,22 +260,46 @@ def demand(gears: Gears, assembly: Assembly) -> None:
         If there is one.
     """
     for gear, errors in zip(gears, assembly.pitch, strict=True):
-        toothing = gear.toothing
-        missing = sorted(set(errors) - set(toothing.numbers[toothing.whole]))
+        numbers = gear.toothing.numbers[gear.toothing.whole]
+        missing = sorted(set(errors) - set(numbers))
         if missing:
             raise InfeasibleError(
                 f"the file has an error of pitch of a tooth that wheel {gear.wheel} does not have",
                 where="errors.file",
                 value=float(missing[0]),
-                nearest=f"its teeth are 1 to {toothing.teeth}",
+                nearest=f"its teeth are {numbers[0]} to {numbers[-1]}",
             )
-    if gears[0].pair.on_rack and assembly.eccentric[1]:
+        largest = max(map(abs, errors.values()), default=0.0)
+        _demand_below_pitch(gear, "file", largest)
+        if spec is not None:
+            _demand_below_pitch(gear, "pitch_tolerance_mm", spec.pitch_tolerance)
+    if gears[0].pair.on_rack:
+        tolerances = (0.0, 0.0) if spec is None else spec.eccentricity_tolerance
+        for key, size in (
+            ("eccentricity_mm", abs(assembly.eccentric[1])),
+            ("eccentricity_tolerance_mm", tolerances[1]),
+        ):
+            if size:
+                raise InfeasibleError(
+                    "a rack has no shaft, and so no eccentricity",
+                    where=f"errors.{key}[1]",
+                    value=size,
+                    unit="mm",
+                    nearest="give 0 for wheel 2",
+                )
+
+
+def _demand_below_pitch(gear: Gear, key: str, error: float) -> None:
+    """Refuse an error of pitch that brings a tooth into the place of the next."""
+    limit = _SHARE * math.pi * gear.pair.module
+    if error > limit:
         raise InfeasibleError(
-            "a rack has no shaft, and so no eccentricity",
-            where="errors.eccentricity_mm[1]",
-            value=abs(assembly.eccentric[1]),
+            f"an error of pitch of wheel {gear.wheel} is larger than a quarter of the pitch",
+            where=f"errors.{key}",
+            value=error,
+            limit=limit,
             unit="mm",
-            nearest="give 0 for wheel 2",
+            nearest="give errors in mm",
         )
 
 
@@ -246,7 +313,7 @@ def cycle(gears: Gears, steps: int, *, alike: bool) -> Array:
     steps : int
         Number of angles in a turn, or in the travel of an open pair.
     alike : bool
-        Whether the teeth of a wheel are alike, so that one turn is like the next.
+        Whether wheel 2's teeth are alike, so that one turn of the driver is like the next.
 
     Returns
     -------
@@ -257,15 +324,15 @@ def cycle(gears: Gears, steps: int, *, alike: bool) -> Array:
     return np.linspace(0.0, pairs.travel * turns, steps * turns, endpoint=not pairs.closed)
 
 
-def run(gears: Gears, width: float, assembly: Assembly, phi1: Array) -> Running:
+def run(steps: Sequence[Gears], width: float, assembly: Assembly, phi1: Array) -> Running:
     """Return how an assembly runs.
 
     Parameters
     ----------
-    gears : (Gear, Gear)
-        The wheels.
+    steps : sequence of (Gear, Gear)
+        The wheels; of stepped wheels those of each step.
     width : float, mm
-        Their face width.
+        Face width of all steps.
     assembly : Assembly
         Their errors.
     phi1 : (n,) array, rad
@@ -280,73 +347,112 @@ def run(gears: Gears, width: float, assembly: Assembly, phi1: Array) -> Running:
     InfeasibleError
         If nothing touches at any of these angles.
     """
-    mountings = assembly.mountings(gears[0].pair.shift, -0.5 * width, 0.5 * width)
-    sections = [
-        {side: flank_pairs(gears, side, mounting) for side in (DRIVE, COAST)}
-        for mounting in mountings
-    ]
-    driving = tuple(section[DRIVE] for section in sections)
-    if assembly.measured:
-        lead, back = _of_outlines(gears, assembly, mountings, sections, phi1)
-    else:
-        lead, back = (
-            first_of([section[side] for section in sections], phi1)[0] for side in (DRIVE, COAST)
+    sections = tuple(
+        _Section(gears, assembly, mounting)
+        for number, gears in enumerate(steps)
+        for mounting in assembly.mountings(
+            gears[0].pair.shift,
+            width * (number / len(steps) - 0.5),
+            width * ((number + 1) / len(steps) - 0.5),
         )
+    )
+    measured = assembly.measured
+    lead, back = _of_side(
+        [section.outline_lead if measured else section.lead for section in sections], phi1
+    )
     if not np.isfinite(lead).any():
         raise InfeasibleError(
             "with these errors the wheels do not reach each other",
             where="errors",
             nearest="give smaller errors",
         )
-    along = to_pitch_line(driving[0], phi1)
-    rounding = max(float(known_to(one, phi1).max()) for one in driving)
+    along = to_pitch_line(sections[0].sides[DRIVE], phi1)
+    least, most = float(np.abs(along).min()), float(np.abs(along).max())
+    rounding = max(float(known_to(section.sides[DRIVE], phi1).max()) for section in sections)
+    chords = sections[0].chord_error / sections[0].cosine if measured else 0.0
     return Running(
         phi1=phi1,
         lead=lead,
         backlash=(back - lead) * along,
-        driving=driving,
-        known_to=rounding,
-        unit=driving[0].guide.unit,
-        noise=2.0 * rounding * float(np.abs(along).max()),
-        measured=assembly.measured,
+        sections=sections,
+        known_to=rounding + chords / least,
+        unit=sections[0].sides[DRIVE].guide.unit,
+        noise=2.0 * (rounding * most + chords),
+        measured=measured,
     )
 
 
-def _of_outlines(
-    gears: Gears,
-    assembly: Assembly,
-    mountings: list[Mounting],
-    sections: list[dict[int, FlankPairs]],
-    phi1: Array,
-) -> list[Array]:
-    """Return the leads of both sides of wheels of which an outline was measured."""
-    from gearcam.meshing.half_teeth import half_teeth
-    from gearcam.meshing.measured import outline_leads
-    from gearcam.meshing.overlap import Turning
-
-    one, two = (
-        (half_teeth(gear.profile) if outline is None else outline).moved(
-            gear.toothing, pitch, eccentric
-        )
-        for gear, outline, pitch, eccentric in zip(
-            gears, assembly.outlines, assembly.pitch, assembly.eccentric, strict=True
-        )
-    )
-    turnings = [
-        Turning(rolling=gears[0].pair.rolling, driver=one, driven=two, distance=mounting.distance)
-        for mounting in mountings
-    ]
+def _of_side(leads: Sequence[Callable[[int, Array], Array]], phi1: Array) -> list[Array]:
+    """Return the leads at first contact of both sides in any of some sections."""
     return [
-        -side
-        * np.max(
-            [
-                -side * outline_leads(turning, section[side], phi1)
-                for turning, section in zip(turnings, sections, strict=True)
-            ],
-            axis=0,
-        )
+        -side * np.max([-side * lead(side, phi1) for lead in leads], axis=0)
         for side in (DRIVE, COAST)
     ]
+
+
+@dataclass(frozen=True, eq=False)
+class _Section:
+    """Two wheels at a height, mounted.
+
+    Parameters
+    ----------
+    gears : (Gear, Gear)
+        The wheels.
+    assembly : Assembly
+        Their errors.
+    mounting : Mounting
+        Where they are.
+    """
+
+    gears: Gears
+    assembly: Assembly
+    mounting: Mounting
+
+    @cached_property
+    def sides(self) -> dict[int, FlankPairs]:
+        """Both sides."""
+        return {side: flank_pairs(self.gears, side, self.mounting) for side in (DRIVE, COAST)}
+
+    @cached_property
+    def outlines(self) -> Turning:
+        """The outlines, the measured ones in the place of the wheels' own."""
+        from gearcam.meshing.half_teeth import half_teeth
+        from gearcam.meshing.overlap import Turning
+
+        one, two = (
+            (half_teeth(gear.profile) if outline is None else outline).moved(
+                gear.toothing, pitch, eccentric
+            )
+            for gear, outline, pitch, eccentric in zip(
+                self.gears,
+                self.assembly.outlines,
+                self.mounting.pitch,
+                self.mounting.eccentric,
+                strict=True,
+            )
+        )
+        rolling = self.gears[0].pair.rolling
+        return Turning(rolling=rolling, driver=one, driven=two, distance=self.mounting.distance)
+
+    @property
+    def chord_error(self) -> float:
+        """Chord errors of both outlines, mm."""
+        return self.outlines.driver.chord_error + self.outlines.driven.chord_error
+
+    @property
+    def cosine(self) -> float:
+        """Cosine of the pressure angle."""
+        return math.cos(self.gears[0].toothing.cutter.alpha)
+
+    def lead(self, side: int, phi1: Array) -> Array:
+        """Return the lead at first contact of flanks (see `gearcam.meshing.edges.first_touch`)."""
+        return first_of([self.sides[side]], phi1)[0]
+
+    def outline_lead(self, side: int, phi1: Array) -> Array:
+        """Return the lead at first contact of outlines."""
+        from gearcam.meshing.measured import outline_leads
+
+        return outline_leads(self.outlines, self.sides[side], phi1)
 
 
 def first_of(sections: list[FlankPairs], phi1: Array) -> tuple[Array, Mask]:
@@ -437,20 +543,20 @@ def largest(excess: Callable[[float], float]) -> float | None:
     -------
     float or None
         To a thousandth, on the side that keeps it; infinite if a thousand times the error
-        still does, and None if the pair does not keep it without the error.
+        still does, 0 if not even a millionth of it does, and None if the pair does not keep it
+        without the error.
     """
     if excess(0.0) >= 0.0:
         return None
-    low, high = 0.0, 1.0
+    low, high = 0.5, 1.0
     while excess(high) < 0.0:
-        low, high = high, 2.0 * high
-        if high > _FARTHEST:
+        if high == _FARTHEST:
             return math.inf
-    while not low and high > 1.0 / _FARTHEST:
-        if excess(0.5 * high) < 0.0:
-            low = 0.5 * high
-        else:
-            high *= 0.5
+        low, high = high, min(2.0 * high, _FARTHEST)
+    while excess(low) >= 0.0:
+        low, high = 0.5 * low, low
+        if high < _SMALLEST:
+            return 0.0
 
     def values(factor: Array) -> Array:
         return np.array([excess(float(one)) for one in np.atleast_1d(factor)])
@@ -461,28 +567,30 @@ def largest(excess: Callable[[float], float]) -> float | None:
     return found if excess(found) < 0.0 else max(low, found - tolerance)
 
 
-def random_assemblies(spec: ErrorsSpec, gears: Gears) -> Iterator[Assembly]:
+def random_assemblies(spec: ErrorsSpec, gears: Gears, middle: Assembly) -> Iterator[Assembly]:
     """Yield the random assemblies of a design's tolerances.
 
     Parameters
     ----------
     spec : ErrorsSpec
-        Errors, tolerances and their distribution; the same `seed` gives the same assemblies.
+        Tolerances and their distribution; the same `seed` gives the same assemblies.
     gears : (Gear, Gear)
         The wheels.
+    middle : Assembly
+        The errors to which random ones are added.
 
     Yields
     ------
     Assembly
     """
-    middle, random = given(spec), np.random.default_rng(spec.seed)
+    random = np.random.default_rng(spec.seed)
 
     def within(tolerance: float, count: int = 1) -> Array:
         if spec.distribution == "uniform":
             return random.uniform(-tolerance, tolerance, count)
         return random.normal(0.0, tolerance / 3.0, count)
 
-    for _ in range(spec.trials):
+    for _ in range(spec.assemblies):
         (center,) = within(spec.center_tolerance)
         tilt = [float(within(tolerance)[0]) for tolerance in spec.tilt_tolerance]
         moved = [

@@ -56,6 +56,12 @@ _ANGLES: Final = 720
 _TRIED: Final = 120
 """Points of it that are tried."""
 
+_AS_NEAR: Final = 1.2
+"""Factor within which rotations fit equally well."""
+
+_CHORDS: Final = 0.9
+"""Share of the chords whose error is not exceeded."""
+
 _STEPS: Final = 3
 """Newton's steps to the place of a height on an edge; the error is squared in each."""
 
@@ -143,12 +149,12 @@ def _cause(outline: Plane, own: Plane, module: float) -> str:
     scale = sizes[0] / sizes[1]
     if abs(scale * _INCH - 1.0) <= _SCALED:
         return f"is in inches: it is {formatted(scale, 3)} times as large as the wheel"
-    teeth = _teeth(outline, module), _teeth(own, module)
+    teeth = _teeth(outline / scale, module), _teeth(own, module)
     if teeth[0] != teeth[1]:
         return f"has {teeth[0]} teeth; that of the wheel has {teeth[1]}"
     if abs(scale - 1.0) > _SCALED:
         return f"is {formatted(scale, 3)} times as large as the wheel"
-    return _misplaced(outline, own, _NEAR * module)
+    return _misplaced(outline, own, _NEAR * module, teeth[1])
 
 
 def _teeth(outline: Plane, module: float) -> int:
@@ -159,16 +165,19 @@ def _teeth(outline: Plane, module: float) -> int:
     return int(np.sum(shapely.area(shapely.get_parts(rest)) > _TOOTH * module**2))
 
 
-def _misplaced(outline: Plane, own: Plane, limit: float) -> str:
+def _misplaced(outline: Plane, own: Plane, limit: float, teeth: int) -> str:
     """Return by how much an outline is off centre and turned, if that brings it to the wheel."""
     middles = [shapely.Polygon(as_pairs(one)).centroid for one in (outline, own)]
     middles = [complex(middle.x, middle.y) for middle in middles]
     centred, edge = outline - middles[0], shapely.Polygon(as_pairs(own - middles[1])).exterior
     coarse = edge.simplify(0.1 * limit)
-    best, fit = _best_turn(centred, coarse)
-    flipped, mirrored = _best_turn(centred.conj(), coarse)
-    if mirrored < fit and _near(centred.conj() * np.exp(1j * flipped), edge, limit):
+    turns, fit = _best_turns(centred, coarse, teeth)
+    flipped, mirrored = _best_turns(centred.conj(), coarse, teeth)
+    if mirrored < fit and _near(centred.conj() * np.exp(1j * flipped[0]), edge, limit):
         return "is mirrored: it is that of the wheel seen from the other side"
+    # the likely cause: the least offset, and then the least angle
+    offsets = np.abs(middles[0] - middles[1] * np.exp(-1j * turns)) // (limit / 4.0)
+    best = float(turns[np.lexsort([np.abs(turns), offsets])[0]])
     if not _near(centred * np.exp(1j * best), edge, limit):
         worst = outline[int(_distances(centred, edge).argmax())]
         place = f"x = {formatted(worst.real, 4)}, y = {formatted(worst.imag, 4)} mm"
@@ -189,20 +198,55 @@ def _near(points: Plane, edge: Any, limit: float) -> bool:
     return bool(_distances(points, edge).max() <= limit)
 
 
-def _best_turn(outline: Plane, edge: Any) -> tuple[float, float]:
-    """Return the angle that turns an outline nearest to another, and how near that is, mm."""
+def _best_turns(outline: Plane, edge: Any, teeth: int) -> tuple[Array, float]:
+    """Return the angles that turn an outline nearest to another, and how near, mm."""
     some = outline[:: max(1, len(outline) // _TRIED)]
+
+    def fits(angles: Array) -> Array:
+        return np.array([_distances(some * np.exp(1j * one), edge).mean() for one in angles])
+
     angles = 2.0 * math.pi * np.arange(_ANGLES) / _ANGLES
-    step, best, fit = angles[1], 0.0, math.inf
+    step = angles[1]
+    best = float(angles[np.argmin(fits(angles))])
     for _ in range(3):
-        fits = [_distances(some * np.exp(1j * angle), edge).mean() for angle in angles]
-        best, fit = float(angles[int(np.argmin(fits))]), float(min(fits))
-        angles = best + np.linspace(-step, step, 21)
-        step = angles[1] - angles[0]
-    return best, fit
+        tried = best + np.linspace(-step, step, 21)
+        best, step = float(tried[np.argmin(fits(tried))]), tried[1] - tried[0]
+    # a round wheel fits after each tooth, one with lobes after each of them
+    alike = best + 2.0 * math.pi * np.arange(teeth) / teeth
+    alike = alike - 2.0 * math.pi * np.round(alike / (2.0 * math.pi))
+    far = fits(alike)
+    return alike[far <= _AS_NEAR * far[0]], float(far[0])
 
 
-def as_half_teeth(outline: Plane, own: HalfTeeth) -> HalfTeeth:
+def chord_error(outline: Plane, own: Plane) -> float:
+    """Return how far the true outline may lie beside the chords of a measured one.
+
+    Parameters
+    ----------
+    outline : (n,) complex array, mm
+        The measured outline.
+    own : (m,) complex array, mm
+        The wheel's own.
+
+    Returns
+    -------
+    float, mm
+        How much further from the wheel's own outline the middle of a chord is than its ends, for
+        nine chords in ten: at corners of the tips chords say nothing of the flanks.
+    """
+    shape = shapely.Polygon(as_pairs(own))
+    edge = shape.exterior
+
+    def beside(points: Plane) -> Array:
+        inside = shapely.contains_xy(shape, points.real, points.imag)
+        return np.where(inside, -1.0, 1.0) * _distances(points, edge)
+
+    ends, following = beside(outline), np.roll(outline, -1)
+    sagitta = beside(0.5 * (outline + following)) - 0.5 * (ends + np.roll(ends, -1))
+    return float(np.quantile(np.abs(sagitta), _CHORDS))
+
+
+def as_half_teeth(outline: Plane, own: HalfTeeth, chord_error: float) -> HalfTeeth:
     """Return a measured outline as half-teeth.
 
     Parameters
@@ -211,6 +255,8 @@ def as_half_teeth(outline: Plane, own: HalfTeeth) -> HalfTeeth:
         A closed outline near the wheel's own.
     own : HalfTeeth
         The wheel's own.
+    chord_error : float, mm
+        See `chord_error`.
 
     Returns
     -------
@@ -234,6 +280,7 @@ def as_half_teeth(outline: Plane, own: HalfTeeth) -> HalfTeeth:
         points=np.concatenate(parts),
         starts=np.cumsum([0, *map(len, parts)]),
         tips=np.array([part[0] for part in parts[: own.count]]),
+        chord_error=chord_error,
     )
 
 
@@ -295,17 +342,25 @@ def _comparisons(guide: Guide, mine: Plane, mate: Plane) -> Iterator[tuple[Ints,
     From the driver's vertices to the mate's edges, and from the driver's edges to its vertices.
     """
     mates = np.broadcast_to(mate, (len(mine), len(mate)))
-    row, vertex, edge = _facing(guide, mine, mates)
+    row, vertex, edge = _facing(guide, mine, mates, 1)
     yield row, guide.turn(mine[row, vertex], _at_height(guide, mates, row, edge, mine[row, vertex]))
-    row, vertex, edge = _facing(guide, mates, mine)
+    row, vertex, edge = _facing(guide, mates, mine, -1)
     yield row, guide.turn(_at_height(guide, mine, row, edge, mate[vertex]), mate[vertex])
 
 
-def _facing(guide: Guide, vertices: Plane, line: Plane) -> tuple[Ints, Ints, Ints]:
-    """Return rows, vertices and edges of lines such that an edge has the height of the vertex."""
-    height, ends = guide.height(vertices)[:, :, None], guide.height(line)
-    low, high = (pick(ends[:, :-1], ends[:, 1:])[:, None] for pick in (np.minimum, np.maximum))
-    row, vertex, edge = np.nonzero((low <= height) & (height <= high) & (low < high))
+def _facing(guide: Guide, vertices: Plane, line: Plane, rises: int) -> tuple[Ints, Ints, Ints]:
+    """Return rows, vertices and edges of lines such that an edge has the height of the vertex.
+
+    From tip to root the heights of the driver's line rise (`rises` is 1 for its vertices), and
+    those of the mate's fall. Where they do the opposite, as on lands that are oblique to the circle
+    about the driven shaft, the metal is on the other side, and nothing touches.
+    """
+    height, ends = guide.height(vertices), guide.height(line)
+    flank = np.pad(rises * np.diff(height) > 0.0, ((0, 0), (1, 1)))
+    outer = (flank[:, 1:] | flank[:, :-1])[:, :, None]
+    low, high = (ends[:, 1:], ends[:, :-1])[::rises]
+    low, high, height = low[:, None], high[:, None], height[:, :, None]
+    row, vertex, edge = np.nonzero(outer & (low <= height) & (height <= high) & (low < high))
     return row, vertex, edge
 
 

@@ -75,7 +75,7 @@ class MeshingSpec(ShortRepr):
         example=80.1, doc="centre distance as mounted, not for racks; as designed by default"
     )
     solids: bool = param(
-        default=False, doc="whether to intersect the wheels' solids too, also on tilted axes"
+        default=False, doc="whether to intersect the wheels' solids too; on tilted axes always"
     )
 
     rules = (
@@ -89,6 +89,9 @@ class MeshingSpec(ShortRepr):
     )  # fmt: skip
 
 
+_TRIALS: Final = 100
+"""Number of random assemblies unless given."""
+
 _PITCH_COLUMNS: Final = ("wheel", "tooth", "pitch_mm")
 """Columns of a file of pitch errors."""
 
@@ -99,8 +102,9 @@ class ErrorsSpec(FromFile):
 
     Errors have the values given; a tolerance adds a random error to them in each of the `trials`.
     A uniform error lies anywhere within its tolerance; of a normal one the tolerance is three times
-    the standard deviation. The eccentricity of a tolerance has any direction. A tooth with a
-    positive error of pitch is ahead in the sense of rising tooth numbers.
+    the standard deviation. The size of a random
+    eccentricity is that of such an error, in any direction. A tooth with a
+    positive error of pitch is moved along the pitch curve, towards the next number.
 
     Examples
     --------
@@ -138,7 +142,7 @@ class ErrorsSpec(FromFile):
         TEXT,
         default=None,
         example="pitch.csv",
-        doc="CSV file of errors of pitch, with the columns wheel, tooth, pitch_mm",
+        doc="CSV file of errors of pitch: columns wheel, tooth, pitch_mm (towards the next number)",
     )
     outline1: str | None = param(
         TEXT,
@@ -164,7 +168,14 @@ class ErrorsSpec(FromFile):
     distribution: str = param(
         TEXT, default="uniform", choices=("uniform", "normal"), doc="of random errors"
     )
-    trials: int = param(COUNT, default=0, ge=0, le=100000, doc="number of random assemblies")
+    trials: int | None = param(
+        COUNT,
+        default=None,
+        ge=0,
+        le=100000,
+        example=500,
+        doc="number of random assemblies; 100 by default if there are tolerances",
+    )
     seed: int = param(
         COUNT, default=1, ge=0, le=1000000, doc="of the random numbers: the same gives the same"
     )
@@ -173,9 +184,26 @@ class ErrorsSpec(FromFile):
     )
 
     @property
+    def assemblies(self) -> int:
+        """Number of random assemblies."""
+        if self.trials is None:
+            return _TRIALS if any(self.tolerances) else 0
+        return self.trials
+
+    @property
+    def tolerances(self) -> tuple[float, ...]:
+        """All tolerances."""
+        return (
+            self.center_tolerance,
+            *self.eccentricity_tolerance,
+            *self.tilt_tolerance,
+            self.pitch_tolerance,
+        )
+
+    @property
     def alike(self) -> bool:
-        """Whether the tolerances keep the teeth of a wheel alike."""
-        return not (any(self.eccentricity_tolerance) or self.pitch_tolerance)
+        """Whether the tolerances keep wheel 2's teeth alike."""
+        return not (self.eccentricity_tolerance[1] or self.pitch_tolerance)
 
     @cached_property
     def pitch_errors(self) -> tuple[Mapping[int, float], Mapping[int, float]]:
@@ -186,11 +214,15 @@ class ErrorsSpec(FromFile):
             for (wheel, tooth, error), line in zip(table.tolist(), lines, strict=True):
                 if wheel not in (1, 2) or tooth != int(tooth):
                     raise ColumnsError(f"line {line}: no tooth {tooth:g} of a wheel {wheel:g}")
+                if int(tooth) in errors[int(wheel) - 1]:
+                    raise ColumnsError(f"line {line}: a second error of tooth {tooth:g}")
                 errors[int(wheel) - 1][int(tooth)] = error
         return errors
 
     def problems(self) -> Iterator[Breach]:
-        """Yield the fault of a file that cannot be read."""
+        """Yield the faults of a file that cannot be read, and of trials without tolerances."""
+        if self.trials and not any(self.tolerances):
+            yield "trials", None, "needs a tolerance", "with center_tolerance_mm, for example"
         try:
             _ = self.pitch_errors
         except ColumnsError as error:

@@ -80,7 +80,8 @@ class Condition:
         """Return the solids of mounted wheels, if asked for."""
         if self.prisms is None:
             return None
-        return bodies(turning, self.prisms, self.errors.tilt, self.low, self.high)
+        lean = self.errors.lean(turning.distance.real)
+        return bodies(turning, self.prisms, lean, self.low, self.high)
 
 
 AS_DESIGNED = Condition()
@@ -336,7 +337,9 @@ def stretch(spec: MeshingSpec, pairs: FlankPairs) -> tuple[float, float]:
     """
     if spec.end is not None:
         return spec.start, spec.end
-    return spec.start, pairs.travel + (spec.start if pairs.closed else 0.0)
+    if pairs.closed:
+        return spec.start, spec.start + pairs.travel / pairs.turns
+    return spec.start, pairs.travel
 
 
 def phases(spec: MeshingSpec, pairs: FlankPairs) -> Array:

@@ -90,12 +90,12 @@ def study_errors(result: GearPairResult, study: Study, progress: Progress | None
     InfeasibleError
         If the pair has no such tooth or shaft, or the wheels do not reach each other.
     """
-    design, gears = result.design, result.gears
+    design, gears, steps = result.design, result.gears, result.steps
     spec, width, limits = design.errors, design.pair.face_width, design.limits
+    demand(gears, given(spec), spec)
     every, off = _with_outlines(result, given(spec))
-    demand(gears, every)
     each = alone(every)
-    count = 2 + len(each) + spec.trials
+    count = 2 + len(each) + spec.assemblies
 
     def report(done: int) -> None:
         if progress is not None:
@@ -103,7 +103,7 @@ def study_errors(result: GearPairResult, study: Study, progress: Progress | None
 
     with result.stage("errors"):
         phi1 = cycle(gears, spec.steps, alike=every.alike and spec.alike)
-        assembled = partial(run, gears, width, phi1=phi1)
+        assembled = partial(run, steps, width, phi1=phi1)
         report(0)
         without, together = assembled(Assembly()), assembled(every)
         limit = limit_of(ERRORS, TRANSMISSION, limits) if not result.pair.on_rack else math.inf
@@ -114,13 +114,12 @@ def study_errors(result: GearPairResult, study: Study, progress: Progress | None
             if name in _SIZES:
                 sizes[name] = _largest(assembled, name, one, limit)
             else:
-                sizes[name] = {"size_mm": off[name]}
-        trials: list[tuple[float, float]] = []
+                sizes[name] = off[name]
+        trials: list[tuple[float, float, bool]] = []
         try:
-            for number, one in enumerate(random_assemblies(spec, gears)):
+            for number, one in enumerate(random_assemblies(spec, gears, every)):
                 report(2 + len(each) + number)
-                found = assembled(one)
-                trials.append((found.peak_to_peak, found.least_backlash))
+                trials.append(_trial(assembled, one))
         except KeyboardInterrupt:
             pass
     group = {
@@ -140,31 +139,50 @@ def study_errors(result: GearPairResult, study: Study, progress: Progress | None
         file="errors.csv",
         table=_columns(phi1, without, together, running),
         group=group,
-        study_findings=run_checks(ERRORS, together, limits),
+        study_findings=() if every.none else run_checks(ERRORS, together, limits),
         drawn=partial(_charts, lines, np.array(trials), without.unit),
-        interrupted="" if len(trials) == spec.trials else f"{len(trials)} of {spec.trials} trials",
+        interrupted=""
+        if len(trials) == spec.assemblies
+        else f"{len(trials)} of {spec.assemblies} trials",
     )
 
 
-def _with_outlines(result: GearPairResult, every: Assembly) -> tuple[Assembly, dict[str, float]]:
-    """Return an assembly with the measured outlines of a design, and their distances, mm."""
+def _trial(assembled: Run, one: Assembly) -> tuple[float, float, bool]:
+    """Return transmission error, least backlash, and whether a random assembly jams."""
+    try:
+        found = assembled(one)
+    except InfeasibleError:
+        return math.inf, math.inf, False
+    return found.peak_to_peak, found.least_backlash, found.jams
+
+
+def _with_outlines(result: GearPairResult, every: Assembly) -> tuple[Assembly, dict[str, Tree]]:
+    """Return an assembly with the measured outlines of a design, and facts of them."""
     spec = result.design.errors
     outlines: list[HalfTeeth | None] = []
-    off: dict[str, float] = {}
+    off: dict[str, Tree] = {}
     for key, file, gear in zip(
         _OUTLINES, (spec.outline1, spec.outline2), result.gears, strict=True
     ):
         if file is None:
             outlines.append(None)
             continue
+        if len(result.steps) > 1:
+            raise InfeasibleError(
+                "a measured outline is that of one step, but the wheels are stepped",
+                where=f"errors.{key}",
+                nearest="study a design with steps.count = 1",
+            )
         from gearcam.meshing.half_teeth import half_teeth
-        from gearcam.meshing.measured import as_half_teeth, demand_near
+        from gearcam.meshing.measured import as_half_teeth, chord_error, demand_near
 
         points, bulges = read_closed(file, what="an outline")
         outline = flatten_bulges(points, bulges, _SAGITTA * gear.profile.tolerance)
         own, module = as_complex(gear.outline), result.pair.module
-        off[key] = demand_near(outline, own, module, f"errors.{key}")
-        outlines.append(as_half_teeth(outline, half_teeth(gear.profile)))
+        off[key] = {"size_mm": demand_near(outline, own, module, f"errors.{key}")}
+        chords = chord_error(outline, own)
+        off[key]["chord_error_mm"] = Fact(chords, f"{_OUTLINES[key]}, chord error", shown=True)
+        outlines.append(as_half_teeth(outline, half_teeth(gear.profile), chords))
     return replace(every, outlines=(outlines[0], outlines[1])), off
 
 
@@ -183,37 +201,56 @@ def _largest(assembled: Run, name: str, one: Assembly, limit: float) -> Tree:
         except InfeasibleError:
             return None
 
-    def of(value: Callable[[Running], float]) -> Callable[[float], float]:
-        def excess(factor: float) -> float:
-            found = running(factor)
-            return 1.0 if found is None else value(found)
-
-        return excess
-
-    def jammed(found: Running) -> float:
-        return -found.least_backlash if np.isfinite(found.lead).all() else 1.0
-
-    asked = {"free_running": ("that runs free", jammed)}
+    asked = {"free_running": ("that runs free", _not_free)}
     if math.isfinite(limit):
         arcsec = f"{formatted(limit / ARCSEC.factor)} arcsec"
         asked["transmission"] = (  # of a pair that jams the error says nothing
             f"within {arcsec}",
-            lambda found: max(found.peak_to_peak / limit - 1.0, jammed(found)),
+            lambda found: max(found.peak_to_peak / limit - 1.0, _not_free(found)),
         )
     facts: Tree = {f"size_{unit}": size(one)}
-    for key, (why, value) in asked.items():
-        factor = largest(of(value))
+    for key, (why, excess) in asked.items():
+        factor = _largest_factor(running, excess)
         if factor is not None and math.isfinite(factor):
             label = f"{words}, largest {why}"
             facts[f"largest_{key}_{unit}"] = Fact(factor * size(one), label, shown=True)
     return facts
 
 
+def _largest_factor(
+    running: Callable[[float], Running | None], excess: Callable[[Running], float]
+) -> float | None:
+    """Return the largest factor of an error (see `largest`), also for tips in roots."""
+
+    def of(factor: float, *, whole: bool = False) -> float:
+        found = running(factor)
+        return 1.0 if found is None or (whole and found.interference) else excess(found)
+
+    factor = largest(of)  # of flanks; whole outlines take much longer
+    if factor is not None and math.isfinite(factor) and of(factor, whole=True) >= 0.0:
+        return largest(partial(of, whole=True))
+    return factor
+
+
+def _not_free(found: Running) -> float:
+    """Return a number below 0 if flanks touch everywhere, with backlash and without a gap."""
+    if not np.isfinite(found.lead).all():
+        return 1.0
+    ratio = found.contact_ratio
+    apart = -1.0 if ratio is None else 1.0 - ratio
+    return max(-found.least_backlash - found.noise, apart)
+
+
 def _facts(found: Running, gears: Any, how: str) -> Tree:
-    error: Tree = {}
+    error: Tree = {"known_to": Fact(found.known_to, f"{how}, known to", unit=found.unit)}
     if math.isfinite(found.peak_to_peak):
+        known = f"known to {formatted(found.known_to, 1)} {found.unit}"
         error["peak_to_peak"] = Fact(
-            found.peak_to_peak, f"transmission error, {how}", unit=found.unit, shown=True
+            found.peak_to_peak,
+            f"transmission error, {how}",
+            unit=found.unit,
+            place=known if found.measured or not found.peak_to_peak else "",
+            shown=True,
         )
         parts = of_error(found, gears)
         if isinstance(parts, str):
@@ -229,19 +266,29 @@ def _facts(found: Running, gears: Any, how: str) -> Tree:
 
 
 def _trial_facts(trials: Array, unit: str) -> Tree:
-    error, backlash = trials.T
+    """Return counts, and percentiles of errors that so many assemblies do not exceed."""
+    error, backlash, jams = trials.T
     touching = np.isfinite(error)
-    tree: Tree = {"count": len(trials), "jam": int(np.count_nonzero(backlash < 0.0))}
-    if touching.all():
-        tree[f"transmission_error_{unit}"] = {
-            f"p{share}": Fact(
-                float(np.percentile(error, share)),
-                f"transmission error of {share} % of the assemblies, at most",
-                unit=unit,
-                shown=True,
-            )
-            for share in _PERCENTILES
-        }
+    tree: Tree = {
+        "count": len(trials),
+        "jam": int(np.count_nonzero(jams)),
+        "apart": int(np.count_nonzero(~touching)),
+    }
+    least = {
+        share: float(np.percentile(error, share, method="inverted_cdf")) for share in _PERCENTILES
+    }
+    tree[f"transmission_error_{unit}"] = {
+        f"p{share}": Fact(
+            value,
+            f"transmission error of {share} % of the assemblies, at most",
+            unit=unit,
+            shown=True,
+        )
+        for share, value in least.items()
+        if math.isfinite(value)
+    } or None
+    if touching.any():
+        backlash = backlash[touching]
         tree["backlash_mm"] = extent(float(backlash.min()), float(backlash.max()))
     return tree
 
@@ -276,9 +323,10 @@ def _charts(lines: Mapping[str, Running], trials: Array, unit: str) -> dict[str,
             ),
         )
     }
-    if len(trials) and np.isfinite(trials[:, 0]).all():
-        bars = min(_BARS, 5 + math.isqrt(len(trials)))
-        counts, edges = np.histogram(trials[:, 0], bars)
+    found = trials[np.isfinite(trials[:, 0]), 0] if len(trials) else trials
+    if len(found):
+        bars = min(_BARS, 5 + math.isqrt(len(found)))
+        counts, edges = np.histogram(found, bars)
         charts["trials"] = Chart(
             title="Transmission error of random assemblies",
             x=f"transmission error, peak to peak, {unit}",

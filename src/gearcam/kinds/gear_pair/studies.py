@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
@@ -58,15 +57,15 @@ def _mesh(result: GearPairResult, progress: Progress | None) -> StudyResult:
 
 
 def _condition(design: GearPairDesign) -> Condition:
-    """Return the errors of a design, and how to make its solids if it asks for them."""
+    """Return the errors of a design, and how to make its solids, if it asks for them."""
     from gearcam.meshing.errors import given
     from gearcam.meshing.study import Condition
 
     spec, width, count = design.meshing, design.pair.face_width, design.steps.count
     errors = given(design.errors)
     low = width * ((spec.step - 1) / count - 0.5)
-    if not spec.solids:
-        return Condition(errors=replace(errors, tilt=0j))
+    if not (spec.solids or errors.tilt):
+        return Condition(errors=errors)
     from gearcam.parts.solids import Prisms
 
     return Condition(errors=errors, prisms=Prisms, low=low, high=low + width / count)
