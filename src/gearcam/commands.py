@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, Final, NoReturn
 
 from gearcam import build, remedies
 from gearcam.base.errors import DesignError, InfeasibleError, MissingExtraError, Problem, WriteError
+from gearcam.base.quantities import FILE_KEYS
 from gearcam.console import (
     DEBUG,
     all_lines,
@@ -137,7 +138,8 @@ def _add_settings(study: Study, kind: Kind, parser: argparse.ArgumentParser) -> 
         elif entry.base is bool:
             words |= {"action": "store_true", "default": None}
         else:
-            words |= {"type": entry.base, "metavar": unit or ("N" if entry.base is int else "KEY")}
+            name = "FILE" if key in FILE_KEYS else "N" if entry.base is int else "KEY"
+            words |= {"type": entry.base, "metavar": unit or name}
         plain = key.removesuffix(entry.param.quantity.suffix).replace("_", "-")
         name = study.options.get(key, plain)
         parser.add_argument(f"--{name}", dest=key, **words)

@@ -14,7 +14,7 @@ from gearcam.base.numerals import formatted
 from gearcam.base.quantities import Param
 from gearcam.designs.lines import Path
 from gearcam.designs.slips import did_you_mean, nearest
-from gearcam.designs.table import Key
+from gearcam.designs.table import Key, default_of
 
 MISSING: Final = object()
 """Value of a fault about a missing key."""
@@ -303,7 +303,8 @@ def _list_hint(value: Any, entry: Key) -> str:
         words = [word.strip() for word in value.split(",")]
         items = [nearest(word, entry.param.choices or ()) or word for word in words]
     else:
-        items = [value] * (entry.length or 1)
+        usual, count = default_of(entry), entry.length or 1
+        items = [value, *usual[1:]] if isinstance(usual, list | tuple) else [value] * count
     return f"write {entry.key} = {show(items)}"
 
 

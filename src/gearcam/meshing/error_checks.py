@@ -71,6 +71,22 @@ def interference(together: Running, limit: float) -> Iterator[Remark]:  # noqa: 
         )
 
 
+@check("contact-ratio", kind=ERRORS)
+def contact_ratio(together: Running, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Warn of a contact ratio below 1: tips and edges drive in turn with flanks.
+
+    Looks at: least contact ratio of all pairs of teeth, all errors together.
+    """
+    ratio = together.contact_ratio
+    if ratio is not None and ratio < 1.0:
+        yield Remark(
+            "With its errors a pair of teeth parts before the next one meets.",
+            "all errors together",
+            ratio,
+            limit=1.0,
+        )
+
+
 @check("nothing-touches", kind=ERRORS, severity="error", unit="phases")
 def nothing_touches(together: Running, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Report phases in which the errors keep all teeth apart.

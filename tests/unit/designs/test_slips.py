@@ -52,6 +52,8 @@ SLIPS: dict[str, tuple[str, str, str, str, str]] = {
                         "blank.bolt_circle_radius_mm", "mean bolt_circle_mm? (twice the radius)"),
     "one of two": (PAIR, "[36, 36]", "36", "pair.teeth",
                    "from 3 to 3000 write teeth = [36, 36]"),
+    "the first of two": (PAIR, "[output]", "[errors]\ntilt_deg = 0.1\n[output]", "errors.tilt_deg",
+                         "write tilt_deg = [0.1, 0"),
     "one of any": (PAIR, '["csv"]', '"csv, dfx"', "output.files",
                    'write files = ["csv", "dxf"]'),
     "no quotes": (PAIR, '"gear-pair"', "gear-pair", "", 'write kind = "gear-pair"'),

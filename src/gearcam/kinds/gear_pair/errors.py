@@ -46,7 +46,7 @@ Tree = dict[str, Any]
 Run = Callable[[Assembly], Running]
 
 _SIZES: Final[Mapping[str, tuple[str, str, Callable[[Assembly], float]]]] = {
-    "center": ("centre distance", "mm", lambda one: one.center),
+    "center": ("change of the centre distance", "mm", lambda one: one.center),
     "eccentricity1": ("eccentricity of wheel 1", "mm", lambda one: abs(one.eccentric[0])),
     "eccentricity2": ("eccentricity of wheel 2", "mm", lambda one: abs(one.eccentric[1])),
     "pitch1": ("pitch of wheel 1", "mm", lambda one: _most(one.pitch[0])),
@@ -63,6 +63,9 @@ _WORDS: Final = {name: words for name, (words, _, _) in _SIZES.items()} | _OUTLI
 _HARMONICS: Final = 5
 _PERCENTILES: Final = (50, 90, 99)
 _BARS: Final = 40
+
+_WHOLE: Final = 1e-9
+"""Rounding of a whole number."""
 
 _SAGITTA: Final = 0.01
 """Chord error of flattened arcs of a measured outline, in chord tolerances of the design."""
@@ -213,8 +216,16 @@ def _largest(assembled: Run, name: str, one: Assembly, limit: float) -> Tree:
         factor = _largest_factor(running, excess)
         if factor is not None and math.isfinite(factor):
             label = f"{words}, largest {why}"
-            facts[f"largest_{key}_{unit}"] = Fact(factor * size(one), label, shown=True)
+            facts[f"largest_{key}_{unit}"] = Fact(_kept(factor * size(one)), label, shown=True)
     return facts
+
+
+def _kept(value: float) -> float:
+    """Return a value known to a thousandth, in so many digits, not rounded up."""
+    if value == 0.0:
+        return 0.0
+    unit = 10.0 ** (math.floor(math.log10(abs(value))) - 2)
+    return float(formatted(math.copysign(math.floor(abs(value) / unit + _WHOLE) * unit, value), 3))
 
 
 def _largest_factor(
@@ -244,12 +255,16 @@ def _not_free(found: Running) -> float:
 def _facts(found: Running, gears: Any, how: str) -> Tree:
     error: Tree = {"known_to": Fact(found.known_to, f"{how}, known to", unit=found.unit)}
     if math.isfinite(found.peak_to_peak):
-        known = f"known to {formatted(found.known_to, 1)} {found.unit}"
+        place = ""
+        if found.measured or not found.peak_to_peak:
+            place = f"known to {formatted(found.known_to, 1)} {found.unit}"
+        elif found.unit == "rad":
+            place = f"{formatted(found.peak_to_peak / ARCSEC.factor, 4)} arcsec"
         error["peak_to_peak"] = Fact(
             found.peak_to_peak,
             f"transmission error, {how}",
             unit=found.unit,
-            place=known if found.measured or not found.peak_to_peak else "",
+            place=place,
             shown=True,
         )
         parts = of_error(found, gears)
@@ -261,7 +276,9 @@ def _facts(found: Running, gears: Any, how: str) -> Tree:
     return {
         f"transmission_error_{found.unit}": error,
         "backlash_mm": extent(float(some.min()), float(some.max())) if some.size else None,
-        "contact_ratio": found.contact_ratio,
+        "contact_ratio": None
+        if found.contact_ratio is None
+        else Fact(found.contact_ratio, f"contact ratio, {how}", shown=True),
     }
 
 
@@ -271,8 +288,12 @@ def _trial_facts(trials: Array, unit: str) -> Tree:
     touching = np.isfinite(error)
     tree: Tree = {
         "count": len(trials),
-        "jam": int(np.count_nonzero(jams)),
-        "apart": int(np.count_nonzero(~touching)),
+        "jam": Fact(int(np.count_nonzero(jams)), "assemblies that jam", shown=True),
+        "apart": Fact(
+            int(np.count_nonzero(~touching)),
+            "assemblies in which nothing touches somewhere",
+            shown=not touching.all(),
+        ),
     }
     least = {
         share: float(np.percentile(error, share, method="inverted_cdf")) for share in _PERCENTILES
