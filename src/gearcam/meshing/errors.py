@@ -227,12 +227,12 @@ class Running(ShortRepr):
         has no room to either side: flanks, tips, roots and fillets.
         """
         lead, back = _of_side([section.outline_lead for section in self.sections], self.phi1)
-        play = (back - lead) * to_pitch_line(self.driving[0], self.phi1)
+        room = (back - lead) * to_pitch_line(self.driving[0], self.phi1)
         chords = 2.0 * max(section.chord_error for section in self.sections)
-        least = int(np.argmin(play))
-        if play[least] >= -self.noise - chords / self.sections[0].cosine:
+        least = int(np.argmin(room))
+        if room[least] >= -self.noise - chords / self.sections[0].cosine:
             return None
-        return float(self.phi1[least]), -float(play[least])
+        return float(self.phi1[least]), -float(room[least])
 
     @property
     def error(self) -> Array:
