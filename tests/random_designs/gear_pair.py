@@ -113,9 +113,8 @@ def _errors(d: Draw, design: dict[str, Any], module: float) -> dict[str, Any]:
         errors["tilt_deg"] = [d.even(-0.1, 0.1), d.even(-0.1, 0.1)]
     if d.chance(0.15):
         errors["file"] = "pitch.csv"
-    for outline in ("outline1", "outline2"):
-        if d.chance(0.05):
-            errors[outline] = "outline.csv"
+    if d.chance(0.1):
+        errors[d.pick(["outline1", "outline2"])] = "outline.csv"
     if d.chance(0.4):
         errors |= {
             "center_tolerance_mm": size(),
