@@ -41,6 +41,10 @@ class Cam(NotebookView):
         """The motions of the walls, at least one; the first has the given lift."""
         return self.walls
 
+    def linked(self, wall: Wall) -> dict[str, float]:  # noqa: ARG002
+        """Return the lift per unit of each size between the first roller and that on a wall."""
+        return {}
+
     @cached_property
     def lost_motion(self) -> Extreme | None:
         """Largest lost motion between walls, mm or rad; None with one wall only."""

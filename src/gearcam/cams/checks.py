@@ -2,7 +2,8 @@
 
 Importing this module registers them. A check looks at all motions or walls of a `Cam` and yields
 findings; where there are several, the place of a finding names which. The check of a followed
-profile looks at the wall that it was taken for and at the motion that was found.
+profile looks at the wall that it was taken for and at the motion that was found, that of
+precision at the largest deviation by the tolerances.
 """
 
 from __future__ import annotations
@@ -13,16 +14,17 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from gearcam.base.findings import Remark, check
-from gearcam.base.numerals import formatted, shortened
+from gearcam.base.findings import ROUNDING, Remark, check
+from gearcam.base.numerals import formatted, rounded_down, shortened
 from gearcam.base.quantities import ANGLE, LENGTH, Param
 from gearcam.cams.cam import Cam
 from gearcam.cams.followers import Follower
-from gearcam.cams.spec import FOLLOWED, KIND
+from gearcam.cams.spec import FOLLOWED, KIND, PRECISION
 from gearcam.cams.wall import PitchMotion, Wall
 
 if TYPE_CHECKING:
     from gearcam.cams.follow import Followed
+    from gearcam.cams.precision import Deviation
 
 _MISSED: Final = 0.1
 """Part of the whole lift by which wear cannot change the lift of a cam's own profile."""
@@ -344,4 +346,25 @@ def other_profile(followed: tuple[Wall, Followed], limit: float) -> Iterator[Rem
             scale * float(off[worst]),
             unit=unit,
             limit=scale * most,
+        )
+
+
+@check("lift-error", kind=PRECISION)
+def lift_error(deviation: Deviation, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Warn if the tolerances let the lift deviate by more than is wanted.
+
+    Looks at: the largest deviation of the lift over the cycle, with all tolerances.
+    """
+    found, wanted, combined = deviation
+    scale, unit = found.wall.follower.lift_unit
+    if found.value > wanted * (1.0 + ROUNDING):
+        share = rounded_down(100.0 * wanted / found.value, 3)
+        yield Remark(
+            f"With its tolerances the lift may deviate by {formatted(scale * found.value, 4)} "
+            f"{unit} ({combined.replace('-', ' ')}): more than is wanted. With {share} % of each "
+            "tolerance it keeps that.",
+            found.place,
+            scale * found.value,
+            unit=unit,
+            limit=scale * wanted,
         )

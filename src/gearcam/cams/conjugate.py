@@ -86,6 +86,11 @@ class ConjugateCam(ShortRepr, Cam):
         """Both profiles; each has a motion of its own."""
         return self.first, self.second
 
+    def linked(self, wall: Wall) -> dict[str, float]:
+        """Return 1 for the distance of the rollers, or the angle between the arms."""
+        name = "arms_angle" if self.first.follower.angular else "roller_distance"
+        return {name: 1.0} if wall is self.second else {}
+
     @property
     def apart(self) -> float:
         """Distance of the rollers, mm, or angle between the arms, rad: on the follower."""

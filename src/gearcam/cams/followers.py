@@ -342,6 +342,25 @@ class Follower(ShortRepr, ABC):
         """
 
     @abstractmethod
+    def along_normal(self, p: Array, point: Plane, normal: Plane) -> tuple[Array, dict[str, Array]]:
+        """Return how far its surface moves along the normal of a contact, mm, by what moves it.
+
+        Parameters
+        ----------
+        p : (n,) array
+            Positions of the follower.
+        point, normal : (n,) complex arrays, mm and 1
+            Points of contact in the fixed frame, with the normals of the metal, outward.
+
+        Returns
+        -------
+        by_position : (n,) array
+            Per unit of the position.
+        by_size : dict of str to (n,) array
+            Per unit of each of its sizes, mm or rad.
+        """
+
+    @abstractmethod
     def symbol(self, p: float, reach: float, wide: float) -> tuple[list[Line], list[Disc]]:
         """Return lines and discs that show the follower.
 
@@ -423,6 +442,18 @@ class Round(Follower):
     @abstractmethod
     def centre(self, p: Array) -> Plane:
         """Return the centre, mm, at positions (n,)."""
+
+    @abstractmethod
+    def centre_by(self, p: Array) -> tuple[Plane, dict[str, Plane]]:
+        """Return the derivatives of the centre by the position, and by its sizes, at (n,)."""
+
+    def along_normal(self, p: Array, point: Plane, normal: Plane) -> tuple[Array, dict[str, Array]]:  # noqa: ARG002
+        """Return what moves the centre, and the radius (see `Follower.along_normal`)."""
+        by_position, by_size = self.centre_by(p)
+        round_end = {"radius": np.full(normal.shape, -1.0)} if self.radius else {}
+        return _dot(normal, by_position), round_end | {
+            name: _dot(normal, moved) for name, moved in by_size.items()
+        }
 
     @abstractmethod
     def on_level(self, height: Array) -> Array:
@@ -523,6 +554,11 @@ class Stem(Round):
     def centre(self, p: Array) -> Plane:
         """Return the centre, mm."""
         return np.asarray(cmath.exp(1j * self.tilt) * (self.offset + 1j * p), dtype=np.complex128)
+
+    def centre_by(self, p: Array) -> tuple[Plane, dict[str, Plane]]:
+        """Return the derivatives by offset and inclination (see `Round.centre_by`)."""
+        aside = np.full(np.shape(p), cmath.exp(1j * self.tilt))
+        return 1j * aside, {"offset": aside, "axis": 1j * self.centre(p)}
 
     def lean(self, p: Array) -> float:  # noqa: ARG002
         """Return the tilt."""
@@ -654,6 +690,13 @@ class Arm(Round):
     def centre(self, p: Array) -> Plane:
         """Return the centre, mm."""
         return self.pivot - (self.hand * self.arm) * unit(-self.hand * p)
+
+    def centre_by(self, p: Array) -> tuple[Plane, dict[str, Plane]]:
+        """Return the derivatives by the arm and the place of the pivot (see `Round.centre_by`)."""
+        out, still = -self.hand * unit(-self.hand * p), np.ones(np.shape(p))
+        return -1j * self.hand * self.arm * out, {
+            "arm": out, "pivot_distance": self.hand * still, "pivot_height": 1j * still,
+        }  # fmt: skip
 
     def axes(self, p: Jet | Array) -> tuple[Pair, Pair]:
         """Return ``exp(i*hand*p)``, and ``i*hand*arm - i*exp(i*hand*p)*pivot``.
@@ -839,6 +882,15 @@ class FlatStem(Face):
         """Return the shift along the guide (see `Follower.moved`)."""
         return np.zeros_like(rise), np.asarray(1j * rise, dtype=np.complex128)
 
+    def along_normal(self, p: Array, point: Plane, normal: Plane) -> tuple[Array, dict[str, Array]]:
+        """Return what moves the face (see `Follower.along_normal`)."""
+        foot = self.offset + 1j * p
+        return normal.imag, {
+            "offset": normal.real,
+            "axis": _dot(normal, 1j * point),
+            "face_angle": _dot(normal, 1j * (point - foot)),
+        }
+
     def symbol(self, p: float, reach: float, wide: float) -> tuple[list[Line], list[Disc]]:
         """Return face and stem (see `Follower.symbol`)."""
         foot = complex(self.offset, p)
@@ -924,6 +976,14 @@ class FlatArm(Face):
         """Return the rotation about the pivot (see `Follower.moved`)."""
         return -rise, self.pivot * (1.0 - unit(-rise))
 
+    def along_normal(self, p: Array, point: Plane, normal: Plane) -> tuple[Array, dict[str, Array]]:
+        """Return what moves the face (see `Follower.along_normal`)."""
+        return _dot(normal, -1j * (point - self.pivot)), {
+            "pivot_distance": normal.real,
+            "pivot_height": normal.imag,
+            "face_offset": _dot(normal, -1j * unit(-p)),
+        }
+
     def symbol(self, p: float, reach: float, wide: float) -> tuple[list[Line], list[Disc]]:  # noqa: ARG002
         """Return the face, and its distance from the pivot (see `Follower.symbol`)."""
         along = cmath.exp(-1j * p)
@@ -982,6 +1042,11 @@ def _polar(across: Jet, y: Jet) -> tuple[Jet, Jet]:
     far = sqrt(across * across + y * y)
     # an arctangent of half the angle stays finite at the height of the pivot
     return 2.0 * atan(y / (far + across)), far
+
+
+def _dot(normal: Plane, moved: Plane) -> Array:
+    """Return the components of movements along normals."""
+    return (np.conj(normal) * moved).real
 
 
 def _at_least_0(x: Jet) -> Jet:

@@ -28,6 +28,9 @@ KIND: Final = "cams"
 FOLLOWED: Final = "followed profiles"
 """The checks of given profiles that a follower was put on."""
 
+PRECISION: Final = "precision of cams"
+"""The checks of the errors that tolerances make."""
+
 POINTED: Final = ("knife-edge", "point")
 """Two words for a follower without a radius."""
 

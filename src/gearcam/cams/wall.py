@@ -35,7 +35,7 @@ from gearcam.cams.trim import (
     without_tiny_loops,
 )
 from gearcam.laws.program import Program
-from gearcam.numeric.arrays import Array, Plane
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.sampling import Sampler
@@ -405,14 +405,21 @@ class Wall(PitchMotion):
         points, normals : (n,) complex arrays, mm and 1
             Points of contact at those angles, with the outward normals of the metal.
         """
-        kept = self.drawn
-        turn = self.program.period
+        kept, (left, index, within) = self.drawn, self._sweeps_at(theta)
+        points, tangents = kept.at(index, within)
+        # opposite to the rotation the metal lies to the right, mirrored to the left
+        return theta[left], points, tangents * self.side * (-1j if self.clockwise else 1j)
+
+    def touched(self, theta: Array) -> Mask:
+        """Return where trimming leaves the point of contact, at cam angles (n,), any turns."""
+        return self._sweeps_at(theta)[0]
+
+    def _sweeps_at(self, theta: Array) -> tuple[Mask, Ints, Array]:
+        """Return where a point is left, and there the segments with the angles within them."""
+        kept, turn = self.drawn, self.program.period
         # an open curve ends with its last point
         within = np.minimum(theta, np.nextafter(turn, 0)) if self.program.open else theta % turn
         sweeps = np.flatnonzero(~kept.jump)
         inside = (kept.start[sweeps] <= within[:, None]) & (within[:, None] < kept.end[sweeps])
         left = inside.any(axis=1)
-        index = sweeps[inside.argmax(axis=1)][left]
-        points, tangents = kept.at(index, within[left])
-        # opposite to the rotation the metal lies to the right, mirrored to the left
-        return theta[left], points, tangents * self.side * (-1j if self.clockwise else 1j)
+        return left, sweeps[inside.argmax(axis=1)][left], within[left]

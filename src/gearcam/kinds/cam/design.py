@@ -7,13 +7,14 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.base.registry import classes_in, name_of
-from gearcam.cams.spec import POINTED, CamSpec, FollowerSpec
+from gearcam.base.rules import Rule, only_with
+from gearcam.cams.spec import FOLLOWERS, POINTED, CamSpec, FollowerSpec
 from gearcam.designs.design import Design, Wanted
 from gearcam.designs.faults import Fault, quoted, show
 from gearcam.designs.kind import Examined
 from gearcam.kinds.cam.forms.base import FORMS, VARIANTS
 from gearcam.kinds.cam.motion import circumstances, motion_of, whole_turns
-from gearcam.kinds.cam.tables import CamBlank, CamOutputSpec, FollowSpec
+from gearcam.kinds.cam.tables import CamBlank, CamOutputSpec, FollowSpec, PrecisionSpec
 from gearcam.kinds.shared import AccuracySpec
 from gearcam.laws.motion.base import MOTION_LAWS
 from gearcam.laws.phases_of_lift import PHASES, RisePhase
@@ -52,6 +53,8 @@ class CamDesign(Design):
         Files and their tolerance.
     follow : FollowSpec
         A given profile, for the study of the motion that it makes.
+    precision : PrecisionSpec
+        Tolerances of its sizes, for the study of the errors that they make.
     accuracy : AccuracySpec
         Settings of the study of error against run time.
 
@@ -78,6 +81,7 @@ class CamDesign(Design):
     blank: WheelBlank | PlateBlank = field(default_factory=CamBlank)
     output: CamOutputSpec = field(default_factory=CamOutputSpec)
     follow: FollowSpec = field(default_factory=FollowSpec)
+    precision: PrecisionSpec = field(default_factory=PrecisionSpec)
     accuracy: AccuracySpec = field(default_factory=AccuracySpec)
 
     def _settle(self) -> None:
@@ -97,6 +101,32 @@ class CamDesign(Design):
             yield f"motion[{number}]", phase, tuple(PHASES.values())
             if isinstance(phase, RisePhase) and not name_of(MOTION_LAWS, phase.law):
                 yield f"motion[{number}].law", phase.law, tuple(classes_in(MOTION_LAWS).values())
+
+
+def _toleranced(sizes: str, key: str, *words: str) -> Rule:
+    """Return the rule that some sizes have tolerances only with certain followers or forms."""
+    names = (f"precision.{size}_tolerance" for size in sizes.split())
+    return only_with(names, key, *words)
+
+
+_ROUND: Final = tuple(name for name in FOLLOWERS if name != "flat")
+_TURNING: Final = tuple(name for name in FORMS if name != "translating")
+
+RULES: Final = (
+    _toleranced("radius", "follower.type", "roller", "domed"),
+    _toleranced("offset axis face_angle roller_distance", "follower.motion", "translating"),
+    _toleranced("face_angle face_offset", "follower.type", "flat"),
+    _toleranced(
+        "arm pivot_distance pivot_height face_offset arms_angle", "follower.motion", "oscillating"
+    ),
+    _toleranced("arm", "follower.type", *_ROUND),
+    _toleranced("roller_distance arms_angle", "cam.form", "conjugate"),
+    _toleranced("cam_angle", "cam.form", *_TURNING),
+    _toleranced("travel", "cam.form", "translating"),
+    only_with(("precision.lift_error",), "follower.motion", "translating"),
+    only_with(("precision.swing_error",), "follower.motion", "oscillating"),
+)
+"""Rules between the tables of a cam."""
 
 
 def motion_document(design: CamDesign) -> list[dict[str, Any]] | dict[str, Any]:

@@ -6,12 +6,13 @@ from functools import partial
 from typing import Final
 
 from gearcam.base.registry import DeferredMapping, deferred
-from gearcam.cams.spec import FOLLOWED
+from gearcam.cams.spec import FOLLOWED, PRECISION
 from gearcam.cams.spec import KIND as CAM
 from gearcam.designs.kind import Main
 from gearcam.designs.table import table_of
 from gearcam.kinds.cam.design import (
     NAME,
+    RULES,
     CamDesign,
     later,
     motion_document,
@@ -19,7 +20,7 @@ from gearcam.kinds.cam.design import (
 )
 from gearcam.kinds.cam.forms.base import VARIANTS, Form
 from gearcam.kinds.cam.motion import TITLE, examine_motion, homes
-from gearcam.kinds.cam.tables import CAM_FORMATS, FollowSpec
+from gearcam.kinds.cam.tables import CAM_FORMATS, FollowSpec, PrecisionSpec
 from gearcam.kinds.shared import AccuracySpec
 from gearcam.parts.blank import KIND as PARTS
 from gearcam.results.kind import Kind
@@ -44,16 +45,18 @@ KIND: Final = Kind(
     tables={
         **{title: partial(VARIANTS.union, title) for title in Form.tables},
         "follow": partial(table_of, "follow", FollowSpec),
+        "precision": partial(table_of, "precision", PrecisionSpec),
         "accuracy": partial(table_of, "accuracy", AccuracySpec),
     },
     variants=VARIANTS,
     required=("follower", "cam"),
+    rules=RULES,
     problems=problems,
     later=later,
     formats=CAM_FORMATS,
     check_modules=("gearcam.cams.checks", "gearcam.parts.checks"),
-    check_groups=(CAM, PARTS, FOLLOWED),
-    study_tables={"follow": "follow", "accuracy": "accuracy"},
+    check_groups=(CAM, PARTS, FOLLOWED, PRECISION),
+    study_tables={name: name for name in ("follow", "precision", "accuracy")},
     example={
         "motion": [
             {"type": "rise", "angle_deg": 120, "law": "cycloidal", "lift_mm": 10},

@@ -9,7 +9,7 @@ from gearcam.kinds.cam.forms.conjugate import ConjugateFollower, ConjugateSpec
 from gearcam.kinds.cam.forms.groove import GrooveFollower, GrooveSpec
 from gearcam.kinds.cam.forms.translating import PlateBlank, PlateOutput, PlateSpec
 from gearcam.kinds.cam.forms.yoke import YokeFollower, YokeSpec
-from gearcam.kinds.cam.tables import CamBlank, CamOutputSpec, FollowSpec
+from gearcam.kinds.cam.tables import CamBlank, CamOutputSpec, FollowSpec, PrecisionSpec
 from gearcam.kinds.shared import AccuracySpec
 from gearcam.laws.motion_formula import MotionFormula
 from gearcam.laws.motion_table import MotionTable
@@ -21,8 +21,8 @@ __all__ = [
     "AccuracySpec", "CamBlank", "CamDesign", "CamOutputSpec", "CamResult", "CamSpec",
     "ConjugateFollower", "ConjugateSpec", "DriveSpec", "DwellPhase", "FollowSpec", "FollowerSpec",
     "GrooveFollower", "GrooveSpec", "MotionFormula", "MotionTable", "PlateBlank", "PlateFollower",
-    "PlateOutput", "PlateSpec", "ReturnPhase", "RisePhase", "SegmentPhase", "SlideDriveSpec",
-    "WheelBlank", "YokeFollower", "YokeSpec",
+    "PlateOutput", "PlateSpec", "PrecisionSpec", "ReturnPhase", "RisePhase", "SegmentPhase",
+    "SlideDriveSpec", "WheelBlank", "YokeFollower", "YokeSpec",
 ]  # fmt: skip
 
 PUBLIC = {name: globals()[name] for name in __all__}

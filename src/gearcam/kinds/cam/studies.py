@@ -1,4 +1,4 @@
-"""Studies of cams: the motion of the follower on a given profile."""
+"""Studies of cams: the motion on a given profile, and the errors that tolerances make."""
 
 from __future__ import annotations
 
@@ -71,5 +71,22 @@ FOLLOW: Final = Study(
     many=False,
 )
 
-STUDIES: Final[dict[str, Study]] = {one.name: one for one in (FOLLOW, accuracy_study())}
+
+def _precision(result: CamResult, progress: Progress | None) -> StudyResult:
+    from gearcam.kinds.cam.precision import study_precision
+
+    return study_precision(result, PRECISION, progress)
+
+
+PRECISION: Final = Study(
+    name="precision",
+    key="precision",
+    doc="Compute how errors of sizes move the follower; write DIR/NAME/precision.csv.",
+    done="studied",
+    table="precision",
+    options={"lift_error_deg": "swing-error"},
+    compute=_precision,
+)
+
+STUDIES: Final[dict[str, Study]] = {one.name: one for one in (FOLLOW, PRECISION, accuracy_study())}
 """The studies by name."""

@@ -1,8 +1,9 @@
-"""The tables of a cam beside motion, follower and size: blank, output, the study of a profile."""
+"""The tables of a cam beside motion, follower and size: blank, output, settings of studies."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -13,9 +14,12 @@ from gearcam.base.quantities import (
     FINEST,
     LENGTH,
     TEXT,
+    Param,
+    Quantity,
     allowance,
     fixed,
     param,
+    params_of,
     positive_length,
 )
 from gearcam.designs.outputs import FORMATS, OutputSpec, files_param, pose_param, studies_param
@@ -91,6 +95,82 @@ class FollowSpec(ShortRepr):
     )
 
 
+def _tolerance(quantity: Quantity = LENGTH, *, doc: str) -> Any:
+    """Return a tolerance to either side; 0: the size is exact."""
+    return param(quantity, default=0.0, ge=0, le=100 if quantity is LENGTH else 90, doc=doc)
+
+
+def _wanted(quantity: Quantity, *, word: str = "", example: float, doc: str) -> Any:
+    """Return the largest deviation that is wanted, if there is one."""
+    return param(quantity, default=None, gt=0, le=100, word=word, example=example, doc=doc)
+
+
+@dataclass(frozen=True, kw_only=True)
+class PrecisionSpec(ShortRepr):
+    """Tolerances of the sizes of a cam and its follower, and the error of the lift that is wanted.
+
+    Tolerances are to either side of the size in the design; those of a roller or an arm hold for
+    both of conjugate cams.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.PrecisionSpec(profile_tolerance=0.02, offset_tolerance=0.05, lift_error=0.1).tolerances
+    {'profile': 0.02, 'offset': 0.05}
+    """
+
+    profile_tolerance: float = _tolerance(doc="of the profile along its normal, to either side")
+    radius_tolerance: float = _tolerance(doc="of the radius of a roller or a dome")
+    offset_tolerance: float = _tolerance(doc="of the place of the guide, across it")
+    axis_tolerance: float = _tolerance(
+        ANGLE,
+        doc="of the direction of the guide: turned about the cam's axis, or over a translating cam "
+        "about the roller's centre at zero lift",
+    )
+    face_angle_tolerance: float = _tolerance(
+        ANGLE, doc="of the squareness of a face to its stem, turned about the stem"
+    )
+    arm_tolerance: float = _tolerance(doc="of the length of the arm")
+    pivot_distance_tolerance: float = _tolerance(doc="of the distance of the pivot")
+    pivot_height_tolerance: float = _tolerance(doc="of the place of the pivot across that distance")
+    face_offset_tolerance: float = _tolerance(doc="of the offset of a face from its pivot")
+    roller_distance_tolerance: float = _tolerance(doc="of the distance of the rollers")
+    arms_angle_tolerance: float = _tolerance(ANGLE, doc="of the angle between the arms")
+    cam_angle_tolerance: float = _tolerance(ANGLE, doc="of the cam's angle on its shaft")
+    travel_tolerance: float = _tolerance(doc="of the place of a translating cam along its travel")
+    lift_error: float | None = _wanted(
+        LENGTH, example=0.1, doc="largest deviation of the lift that is wanted"
+    )
+    swing_error: float | None = _wanted(
+        ANGLE, word="lift_error", example=0.1, doc="the same of an oscillating follower"
+    )
+    combined: str = param(
+        TEXT,
+        default="worst-case",
+        choices=("worst-case", "root-of-squares"),
+        doc="how errors of several sizes add up where they must keep the wanted one",
+    )
+
+    @property
+    def tolerances(self) -> dict[str, float]:
+        """The tolerances above 0, mm or rad, by the names of their sizes."""
+        every = {size: getattr(self, f"{size}_tolerance") for size in SIZES}
+        return {size: tolerance for size, tolerance in every.items() if tolerance}
+
+    @property
+    def wanted(self) -> float | None:
+        """The wanted error, mm or rad."""
+        return self.lift_error or self.swing_error
+
+
+SIZES: Final[Mapping[str, Param]] = {
+    name.removesuffix("_tolerance"): param
+    for name, param in params_of(PrecisionSpec).items()
+    if name.endswith("_tolerance")
+}
+"""The sizes that may have tolerances, with the quantities of these."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class CamOutputSpec(OutputSpec):
     """Which files and studies of a cam are written, and how exact (see `OutputSpec`).
@@ -108,7 +188,7 @@ class CamOutputSpec(OutputSpec):
     """
 
     files: tuple[str, ...] = files_param(CAM_FORMATS)
-    studies: tuple[str, ...] = studies_param(("follow", "accuracy"))
+    studies: tuple[str, ...] = studies_param(("follow", "precision", "accuracy"))
     chord_tolerance: float | None = param(
         LENGTH,
         default=None,

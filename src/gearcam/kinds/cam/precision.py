@@ -1,0 +1,246 @@
+"""The study of precision: deviations of the lift by tolerances, and tolerances for a wanted one."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+import numpy as np
+
+from gearcam.base.facts import Fact
+from gearcam.base.findings import Finding, run_checks
+from gearcam.base.quantities import ANGLE, Quantity
+from gearcam.cams.precision import (
+    COMBINED,
+    Deviation,
+    Largest,
+    added,
+    largest,
+    rooted,
+    sensitivities,
+)
+from gearcam.cams.spec import PRECISION
+from gearcam.kinds.cam.tables import SIZES, PrecisionSpec
+from gearcam.numeric.piecewise import with_both_sides
+from gearcam.pictures.charts import Chart, Limit, Line, knot_marks
+from gearcam.results.result import StudyResult
+
+if TYPE_CHECKING:
+    from gearcam.cams.cam import Cam
+    from gearcam.kinds.cam.build import CamResult
+    from gearcam.numeric.arrays import Array
+    from gearcam.results.kind import Study
+    from gearcam.results.result import Progress
+
+Tree = dict[str, Any]
+
+_COMBINATIONS: Final = {"worst_case": added, "root_of_squares": rooted}
+
+_NO_INFLUENCE: Final = 1e-12
+"""Sensitivity, mm per mm or rad per rad, that is rounding only."""
+
+
+class _Values(NamedTuple):
+    """Sensitivities on a wall, with the wall's key."""
+
+    key: str
+    by_size: dict[str, Array]
+
+
+def study_precision(result: CamResult, study: Study, progress: Progress | None) -> StudyResult:
+    """Return the study of the precision of a cam (see `gearcam.cams.precision`).
+
+    Parameters
+    ----------
+    result : CamResult
+        The cam.
+    study : Study
+        The entry of the study.
+    progress : callable, optional
+        Called with what is computed, the number done and their total.
+
+    Returns
+    -------
+    StudyResult
+    """
+    spec, cam, theta = result.design.precision, result.cam, result.angles
+    with result.stage("precision"):
+        values = _values(cam, theta)
+        most: dict[str, Largest] = {}
+        sizes = dict.fromkeys(size for one in values for size in one.by_size)
+        for number, size in enumerate(sizes):
+            if progress is not None:
+                progress("precision", number, len(sizes))
+            found = largest(cam, lambda by_size, size=size: _of(by_size, size))
+            if found is not None:
+                most[size] = found
+        facts = _facts(cam, spec, most)
+        findings = _findings(cam, spec)
+    driver, (scale, unit) = result.driver, result.follower.lift_unit
+    columns = {driver.column: driver.scale * theta}
+    for one in values:
+        columns |= _columns(one, spec, scale, unit)
+    return StudyResult(
+        result=result,
+        study=study,
+        file="precision.csv",
+        table=columns,
+        group=facts,
+        study_findings=findings,
+        drawn=partial(_charts, result),
+    )
+
+
+def _values(cam: Cam, theta: Array) -> list[_Values]:
+    return [_Values(wall.key, sensitivities(wall, cam.linked(wall), theta)) for wall in cam.walls]
+
+
+def _of(by_size: Mapping[str, Array], size: str) -> Array:
+    """Return the sensitivities (n,) to a size; 0 where a wall's follower has no such size."""
+    return by_size.get(size, 0.0 * next(iter(by_size.values())))
+
+
+def _known(by_size: Mapping[str, Array], errors: Mapping[str, float]) -> dict[str, float]:
+    """Return the errors of the sizes that a wall's follower has."""
+    return {size: error for size, error in errors.items() if size in by_size}
+
+
+def _combined(cam: Cam, how: Any, errors: Mapping[str, float]) -> Largest | None:
+    """Return the largest deviation by errors of sizes."""
+    return largest(cam, lambda by_size: how(by_size, _known(by_size, errors)))
+
+
+def _facts(cam: Cam, spec: PrecisionSpec, most: Mapping[str, Largest]) -> Tree:
+    scale, unit = cam.motions[0].follower.lift_unit
+    tolerances, wanted, tree = spec.tolerances, spec.wanted, Tree()
+    if tolerances:
+        for name, how in _COMBINATIONS.items():
+            found = _combined(cam, how, tolerances)
+            if found is not None:
+                label = f"largest deviation of the lift, {name.replace('_', ' ')}"
+                value = scale * found.value
+                tree[f"{name}_{unit}"] = Fact(value, label, place=found.place, shown=True)
+    tree[f"wanted_{unit}"] = None if wanted is None else scale * wanted
+    allowed = {} if wanted is None else _allowed(cam, spec, most, wanted)
+    tree["sizes"] = {
+        size: _size_facts(size, one, tolerances.get(size, 0.0), allowed, (scale, unit))
+        for size, one in most.items()
+    }
+    return tree
+
+
+def _allowed(
+    cam: Cam, spec: PrecisionSpec, most: Mapping[str, Largest], wanted: float
+) -> dict[str, tuple[float, float]]:
+    """Return the tolerances that the wanted error allows: of a size alone, and of all together.
+
+    Together each has an equal share: alone all would make the same largest deviation. Sizes are
+    those with tolerances, or all if none has one.
+    """
+    alone = {size: wanted / one.value for size, one in most.items() if one.value > _NO_INFLUENCE}
+    shared = {size: alone[size] for size in spec.tolerances or alone if size in alone}
+    found = _combined(cam, COMBINED[spec.combined], shared)
+    if found is None:
+        return {}
+    share = wanted / found.value
+    return {size: (value, share * value * (size in shared)) for size, value in alone.items()}
+
+
+def _size_facts(
+    size: str,
+    found: Largest,
+    tolerance: float,
+    allowed: Mapping[str, tuple[float, float]],
+    lift_unit: tuple[float, str],
+) -> Tree:
+    (scale, unit), quantity = lift_unit, SIZES[size].quantity
+    words, suffix = size.replace("_", " "), quantity.suffix
+    per = f"sensitivity_{unit}_per{suffix}"
+    value = scale * found.value * quantity.factor
+    tree: Tree = {
+        f"tolerance{suffix}": tolerance / quantity.factor,
+        per: Fact(value, f"sensitivity to {words}", place=found.place, unit=_per(unit, quantity)),
+        f"deviation_{unit}": scale * found.value * tolerance,
+    }
+    if size in allowed:
+        alone, together = (tolerance / quantity.factor for tolerance in allowed[size])
+        tree[f"allowed_alone{suffix}"] = Fact(alone, f"tolerance of {words} allowed, alone")
+        if together:
+            label = f"tolerance of {words} allowed, with equal shares"
+            tree[f"allowed_together{suffix}"] = Fact(together, label, shown=True)
+    return tree
+
+
+def _per(unit: str, quantity: Quantity) -> str:
+    return f"{unit}/{quantity.unit}"
+
+
+def _findings(cam: Cam, spec: PrecisionSpec) -> tuple[Finding, ...]:
+    if spec.wanted is None or not spec.tolerances:
+        return ()
+    found = _combined(cam, COMBINED[spec.combined], spec.tolerances)
+    if found is None:
+        return ()
+    return run_checks(PRECISION, Deviation(found, spec.wanted, spec.combined), {})
+
+
+def _columns(values: _Values, spec: PrecisionSpec, scale: float, unit: str) -> dict[str, Array]:
+    """Return the columns of ``precision.csv`` for a wall."""
+    key = f"_{values.key}" if values.key else ""
+    columns = {}
+    for size, each in values.by_size.items():
+        quantity = SIZES[size].quantity
+        columns[f"by_{size}{key}_{unit}_per{quantity.suffix}"] = scale * quantity.factor * each
+    errors = _known(values.by_size, spec.tolerances)
+    if errors:
+        for name, how in _COMBINATIONS.items():
+            columns[f"{name}{key}_{unit}"] = scale * how(values.by_size, errors)
+    return {name: np.ma.masked_invalid(column) for name, column in columns.items()}
+
+
+def _charts(result: CamResult) -> dict[str, Chart]:
+    """Return deviations by the tolerances, and sensitivities to lengths and to angles."""
+    spec, driver, program = result.design.precision, result.driver, result.program
+    turn = with_both_sides(result.angles, program.knots)
+    turn[-1] = np.nextafter(program.period, 0.0)
+    scale, unit = result.follower.lift_unit
+    x, groups = driver.scale * turn, {"mm": [], "deg": []}
+    deviations: list[Line] = []
+    for one in _values(result.cam, turn):
+        on = f", {one.key}" if one.key else ""
+        for size, each in one.by_size.items():
+            quantity, label = SIZES[size].quantity, f"{size.replace('_', ' ')}{on}"
+            if np.nanmax(np.abs(each), initial=0.0) > _NO_INFLUENCE:
+                values = scale * quantity.factor * each
+                groups[quantity.unit].append(Line(label=label, x=x, y=values))
+                if size in spec.tolerances:
+                    values = scale * each * spec.tolerances[size]
+                    deviations.append(Line(label=label, x=x, y=values))
+        errors = _known(one.by_size, spec.tolerances)
+        for name, how in _COMBINATIONS.items() if errors else ():
+            label = f"{name.replace('_', ' ')}{on}"
+            deviations.append(Line(label=label, x=x, y=scale * how(one.by_size, errors)))
+    common = {
+        "x": f"{driver.called} {driver.symbol}, {driver.unit}",
+        "marks": knot_marks(driver.scale * np.asarray(program.knots), 0.0, driver.whole),
+    }
+    charts = {}
+    if deviations:
+        ends = () if spec.wanted is None else (scale * spec.wanted, -scale * spec.wanted)
+        charts["precision"] = Chart(
+            title="Deviation of the lift by the tolerances",
+            y=f"deviation, {unit}",
+            lines=tuple(deviations),
+            limits=tuple(Limit(label="wanted", value=end) for end in ends),
+            **common,
+        )
+    for per, lines in groups.items():
+        if lines:
+            charts[f"sensitivity_{per}"] = Chart(
+                title=f"Sensitivity of the lift to {'angles' if per == ANGLE.unit else 'lengths'}",
+                y=f"lift per error, {unit}/{per}",
+                lines=tuple(lines),
+                **common,
+            )
+    return charts
