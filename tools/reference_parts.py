@@ -25,6 +25,7 @@ GROUPS: Final = {
     "parts": "Parts",
     "cams": "Motion and profile",
     "followed profiles": "Followed profile (`gearcam follow`)",
+    "precision of cams": "Precision (`gearcam precision`)",
 }
 """Headings of groups of checks, by what they examine."""
 

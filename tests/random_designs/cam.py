@@ -213,6 +213,46 @@ def _form(d: Draw, design: dict[str, Any], size: float, lift: float) -> None:
         _slide(d, design, size)
 
 
+def _precision(d: Draw, design: dict[str, Any], size: float) -> dict[str, Any]:
+    """Return tolerances of some sizes that the mechanism has, and a wanted error."""
+    follower, form = design["follower"], design["cam"].get("form", "disc")
+    swings, kind = "motion" in follower, follower["type"]
+    angles = ["arms_angle"] if swings else ["axis"]
+    lengths = ["profile", *(["pivot_distance", "pivot_height"] if swings else ["offset"])]
+    if form == "translating":
+        lengths.append("travel")
+    else:
+        angles.append("cam_angle")
+    if kind in ("roller", "domed"):
+        lengths.append("radius")
+    if swings:
+        lengths.append("face_offset" if kind == "flat" else "arm")
+    elif kind == "flat":
+        angles.append("face_angle")
+    if form != "conjugate":
+        angles = [name for name in angles if name != "arms_angle"]
+    elif not swings:
+        lengths.append("roller_distance")
+    made: dict[str, Any] = {
+        f"{name}_tolerance_mm": short(size * d.log(1e-6, 1e-3)) for name in lengths if d.chance(0.6)
+    }
+    made |= {f"{name}_tolerance_deg": d.log(1e-4, 0.5) for name in angles if d.chance(0.6)}
+    if d.chance(0.7):
+        key, scale = ("lift_error_deg", 1.0) if swings else ("lift_error_mm", size)
+        made[key] = short(scale * d.log(1e-5, 1e-3))
+    if d.chance(0.3):
+        made["combined"] = d.pick(["worst-case", "root-of-squares"])
+    return made
+
+
+def _studies(d: Draw, design: dict[str, Any], size: float) -> None:
+    studies(d, design, "cam", d.pick(["accuracy", "precision"]))
+    if d.chance(0.15):
+        design["precision"] = _precision(d, design, size)
+    if d.chance(0.03):
+        design["follow"] = {"file": "measured.csv", "wall": d.pick(["1", "inner", "outer"])}
+
+
 def design(d: Draw, index: int) -> dict[str, Any]:
     """Return a random cam; motion laws and followers take turns.
 
@@ -253,8 +293,6 @@ def design(d: Draw, index: int) -> dict[str, Any]:
         d.pick(phases)["angle_deg"] = "rest"
     _form(d, made, size, lift)
     made["output"] |= asked(d, _SHARES)
-    studies(d, made, "cam")
     drive(d, made, "speed_mm_s" if made["cam"].get("form") == "translating" else "speed_rpm")
-    if d.chance(0.03):
-        made["follow"] = {"file": "measured.csv", "wall": d.pick(["1", "inner", "outer"])}
+    _studies(d, made, size)
     return made

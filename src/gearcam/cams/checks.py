@@ -24,7 +24,7 @@ from gearcam.cams.wall import PitchMotion, Wall
 
 if TYPE_CHECKING:
     from gearcam.cams.follow import Followed
-    from gearcam.cams.precision import Deviation
+    from gearcam.cams.precision import LiftError
 
 _MISSED: Final = 0.1
 """Part of the whole lift by which wear cannot change the lift of a cam's own profile."""
@@ -350,7 +350,7 @@ def other_profile(followed: tuple[Wall, Followed], limit: float) -> Iterator[Rem
 
 
 @check("lift-error", kind=PRECISION)
-def lift_error(deviation: Deviation, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+def lift_error(deviation: LiftError, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Warn if the tolerances let the lift deviate by more than is wanted.
 
     Looks at: the largest deviation of the lift over the cycle, with all tolerances.

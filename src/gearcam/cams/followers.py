@@ -693,7 +693,7 @@ class Arm(Round):
 
     def centre_by(self, p: Array) -> tuple[Plane, dict[str, Plane]]:
         """Return the derivatives by the arm and the place of the pivot (see `Round.centre_by`)."""
-        out, still = -self.hand * unit(-self.hand * p), np.ones(np.shape(p))
+        out, still = -self.hand * unit(-self.hand * p), np.ones(np.shape(p), dtype=np.complex128)
         return -1j * self.hand * self.arm * out, {
             "arm": out, "pivot_distance": self.hand * still, "pivot_height": 1j * still,
         }  # fmt: skip

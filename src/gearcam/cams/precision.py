@@ -86,14 +86,36 @@ def sensitivities(wall: Wall, linked: Mapping[str, float], theta: Array) -> dict
 
 
 def added(values: Mapping[str, Array], errors: Mapping[str, float]) -> Array:
-    """Return the deviation (n,) in the worst case: by sensitivities and errors of sizes."""
+    """Return the deviation in the worst case: the sum of the absolute values of all.
+
+    Parameters
+    ----------
+    values : mapping of str to (n,) array
+        Sensitivities by size.
+    errors : mapping of str to float
+        Errors of some of them, mm or rad.
+
+    Returns
+    -------
+    (n,) array, mm or rad
+    """
     return sum(
         (np.abs(values[name]) * error for name, error in errors.items()), start=_zero(values)
     )
 
 
 def rooted(values: Mapping[str, Array], errors: Mapping[str, float]) -> Array:
-    """Return the root of squares of the deviations (n,): by sensitivities and errors of sizes."""
+    """Return the root of the sum of squares of all deviations.
+
+    Parameters
+    ----------
+    values, errors
+        See `added`.
+
+    Returns
+    -------
+    (n,) array, mm or rad
+    """
     squares = ((values[name] * error) ** 2 for name, error in errors.items())
     return np.sqrt(sum(squares, start=_zero(values)))
 
@@ -165,7 +187,7 @@ def _largest(wall: Wall, linked: Mapping[str, float], function: Function) -> Ext
     return found
 
 
-class Deviation(NamedTuple):
+class LiftError(NamedTuple):
     """What the check looks at: the largest deviation with all tolerances, and the wanted one."""
 
     found: Largest

@@ -421,5 +421,5 @@ class Wall(PitchMotion):
         within = np.minimum(theta, np.nextafter(turn, 0)) if self.program.open else theta % turn
         sweeps = np.flatnonzero(~kept.jump)
         inside = (kept.start[sweeps] <= within[:, None]) & (within[:, None] < kept.end[sweeps])
-        left = inside.any(axis=1)
+        left = np.asarray(inside.any(axis=1))
         return left, sweeps[inside.argmax(axis=1)][left], within[left]

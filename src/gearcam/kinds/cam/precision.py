@@ -13,8 +13,8 @@ from gearcam.base.findings import Finding, run_checks
 from gearcam.base.quantities import ANGLE, Quantity
 from gearcam.cams.precision import (
     COMBINED,
-    Deviation,
     Largest,
+    LiftError,
     added,
     largest,
     rooted,
@@ -182,7 +182,7 @@ def _findings(cam: Cam, spec: PrecisionSpec) -> tuple[Finding, ...]:
     found = _combined(cam, COMBINED[spec.combined], spec.tolerances)
     if found is None:
         return ()
-    return run_checks(PRECISION, Deviation(found, spec.wanted, spec.combined), {})
+    return run_checks(PRECISION, LiftError(found, spec.wanted, spec.combined), {})
 
 
 def _columns(values: _Values, spec: PrecisionSpec, scale: float, unit: str) -> dict[str, Array]:
@@ -229,7 +229,7 @@ def _charts(result: CamResult) -> dict[str, Chart]:
     if deviations:
         ends = () if spec.wanted is None else (scale * spec.wanted, -scale * spec.wanted)
         charts["precision"] = Chart(
-            title="Deviation of the lift by the tolerances",
+            title="LiftError of the lift by the tolerances",
             y=f"deviation, {unit}",
             lines=tuple(deviations),
             limits=tuple(Limit(label="wanted", value=end) for end in ends),
