@@ -12,6 +12,7 @@ from gearcam.base.quantities import (
     ANGLE,
     COUNT,
     FINEST,
+    LEAST_ALLOWANCE,
     LENGTH,
     TEXT,
     Param,
@@ -102,7 +103,8 @@ def _tolerance(quantity: Quantity = LENGTH, *, doc: str) -> Any:
 
 def _wanted(quantity: Quantity, *, word: str = "", example: float, doc: str) -> Any:
     """Return the largest deviation that is wanted, if there is one."""
-    return param(quantity, default=None, gt=0, le=100, word=word, example=example, doc=doc)
+    bounds = {"ge": LEAST_ALLOWANCE, "le": 100}
+    return param(quantity, default=None, word=word, example=example, doc=doc, **bounds)
 
 
 @dataclass(frozen=True, kw_only=True)
