@@ -1,4 +1,4 @@
-"""Cross-check of a cam by the inverse problem: the motion of the follower on its profile."""
+"""Cross-checks of a cam: the motion on its profile, and what an error of the profile does."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from typing import Final
 
 import numpy as np
 
+from gearcam.cams.precision import sensitivities
 from gearcam.cams.wall import Wall
 from gearcam.kinds.cam.build import CamResult
 from gearcam.kinds.cam.follow import followed
@@ -20,6 +21,9 @@ _ROOM: Final = 3.0
 
 _ROUNDING: Final = 1e-9
 """Allowed error relative to the size of the profile."""
+
+_ALIKE: Final = 1e-6
+"""Allowed relative difference of two forms of a sensitivity, of steep cams too."""
 
 
 def doubts(result: CamResult) -> Iterator[tuple[str, str]]:
@@ -46,13 +50,24 @@ def doubts(result: CamResult) -> Iterator[tuple[str, str]]:
             at = wall.carrier.driver.text(float(theta[worst]))
             words = f"{wall.called} {wall.key}: the lift at {at} differs by {off[worst]}"
             yield "lift", f"{words}, {room[worst]} {wall.follower.lift_unit[1]} are allowed"
+        # metal in excess lifts by its share along the follower's direction
+        lifted = sensitivities(wall, result.cam.linked(wall), theta)["profile"]
+        off = np.abs(np.abs(lifted) * _lever(wall, theta) - 1.0)
+        if np.nanmax(off, initial=0.0) > _ALIKE:
+            at = wall.carrier.driver.text(float(theta[int(np.nanargmax(off))]))
+            yield "precision", f"{wall.called} {wall.key}: an error of the profile at {at}"
 
 
 def _room(wall: Wall, theta: Array) -> Array:
     """Return the allowed error of the lift at cam angles, in the unit of files."""
+    normal = _ROOM * wall.tolerance + _ROUNDING * np.abs(wall.outline).max()
+    return wall.follower.lift_unit[0] * (normal / _lever(wall, theta) + wall.shortfall)
+
+
+def _lever(wall: Wall, theta: Array) -> Array:
+    """Return mm along the normal of the contact per unit of lift, at cam angles."""
     follower, contact = wall.follower, wall.curve.contact(theta, 0)
     lever = follower.lever * np.cos(contact.pressure.c[0])
     if not follower.has_centre:  # perpendicular to the face
         lever = np.abs(contact.place.c[0]) if follower.angular else 1.0
-    normal = _ROOM * wall.tolerance + _ROUNDING * np.abs(wall.outline).max()
-    return follower.lift_unit[0] * (normal / lever + wall.shortfall + np.zeros_like(theta))
+    return lever + np.zeros_like(theta)

@@ -232,6 +232,23 @@ def test_a_follower_contradicts_a_profile_that_is_off(name: str) -> None:
     assert {place for place, _ in doubts_of_cam(result)} == {"lift"}
 
 
+@pytest.mark.parametrize("name", ["flat_follower", "valve_lever", "conjugate_cams"])
+def test_an_error_of_the_profile_is_said_in_two_forms(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    result: Any = gearcam.build(gearcam.load(PROFILES / f"{name}.toml"))
+    assert [*doubts_of_cam(result)] == []
+
+    def twice(self: Any, *contact: Any) -> Any:
+        by_position, by_size = along(self, *contact)
+        return 2.0 * by_position, by_size
+
+    face = type(result.follower)
+    along = face.along_normal
+    monkeypatch.setattr(face, "along_normal", twice)
+    assert {place for place, _ in doubts_of_cam(result)} == {"precision"}
+
+
 def test_a_library_that_a_study_misses_is_a_failure(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

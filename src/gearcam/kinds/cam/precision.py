@@ -229,7 +229,7 @@ def _charts(result: CamResult) -> dict[str, Chart]:
     if deviations:
         ends = () if spec.wanted is None else (scale * spec.wanted, -scale * spec.wanted)
         charts["precision"] = Chart(
-            title="LiftError of the lift by the tolerances",
+            title="Deviation of the lift by the tolerances",
             y=f"deviation, {unit}",
             lines=tuple(deviations),
             limits=tuple(Limit(label="wanted", value=end) for end in ends),
