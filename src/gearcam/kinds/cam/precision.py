@@ -140,10 +140,8 @@ def _allowed(
     """
     alone = {size: wanted / one.value for size, one in most.items() if one.value > _NO_INFLUENCE}
     shared = {size: alone[size] for size in spec.tolerances or alone if size in alone}
-    found = _combined(cam, COMBINED[spec.combined], shared)
-    if found is None:
-        return {}
-    share = wanted / found.value
+    found = _combined(cam, COMBINED[spec.combined], shared) if shared else None
+    share = 0.0 if found is None else wanted / found.value
     return {size: (value, share * value * (size in shared)) for size, value in alone.items()}
 
 

@@ -186,6 +186,9 @@ def test_a_size_that_does_not_move_the_follower_has_no_tolerance_allowed() -> No
     facts = _facts({"lift_error_mm": 0.1}, "flat_follower")["sizes"]
     assert "allowed_alone_mm" not in facts["offset"]
     assert "allowed_together_mm" in facts["profile"]
+    facts = _facts({"lift_error_mm": 0.1, "offset_tolerance_mm": 0.1}, "flat_follower")["sizes"]
+    assert "allowed_together_mm" not in facts["profile"]
+    assert facts["profile"]["allowed_alone_mm"] == pytest.approx(0.1)
 
 
 def test_the_command_takes_tolerances(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
