@@ -24,6 +24,7 @@ GROUPS: Final = {
     "errors": "Errors of mounting and making (`gearcam errors`)",
     "parts": "Parts",
     "cams": "Motion and profile",
+    "forces": "Forces (`gearcam forces`)",
     "followed profiles": "Followed profile (`gearcam follow`)",
     "precision of cams": "Precision (`gearcam precision`)",
 }

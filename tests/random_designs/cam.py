@@ -12,7 +12,7 @@ from gearcam.laws.motion.base import MOTION_LAWS
 from random_designs.blank import blank
 from random_designs.draw import Draw, short
 from random_designs.laws import random_motion_law
-from random_designs.output import asked, drive, studies
+from random_designs.output import asked, drive, forces, studies
 
 FOLLOWERS: Final = ("knife-edge", "roller", "flat", "domed", "point", "roller", "flat", "domed")
 """Followers, which take turns; a point is a knife edge."""
@@ -294,5 +294,6 @@ def design(d: Draw, index: int) -> dict[str, Any]:
     _form(d, made, size, lift)
     made["output"] |= asked(d, _SHARES)
     drive(d, made, "speed_mm_s" if made["cam"].get("form") == "translating" else "speed_rpm")
+    forces(d, made, swings)
     _studies(d, made, size)
     return made

@@ -81,6 +81,71 @@ def drive(d: Draw, design: dict[str, Any], key: str = "speed_rpm") -> None:
         design["drive"] = {key: short(d.log(0.1, 1e4))}
 
 
+def forces(d: Draw, design: dict[str, Any], swings: bool) -> None:
+    """Give loads, springs, masses and friction to a few cams, and ask for their forces.
+
+    Parameters
+    ----------
+    d : Draw
+        Random numbers of this design.
+    design : dict
+        The design, which is changed.
+    swings : bool
+        Whether the follower swings.
+    """
+    if not d.chance(0.25):
+        return
+    slides = design["cam"].get("form") == "translating"
+    design["drive"] = {"speed_mm_s" if slides else "speed_rpm": short(d.log(1, 1e3))}
+    design["load"] = [_load(d, swings, slides)]
+    stiffness, preload = ("stiffness_nm_rad", "preload_nm") if swings else (
+        "stiffness_n_mm", "preload_n"
+    )  # fmt: skip
+    spring: dict[str, Any] = {stiffness: short(d.log(0.1, 100)), preload: short(d.log(1, 1000))}
+    if d.chance(0.4):
+        spring[d.pick([stiffness, preload])] = "solve"
+    design["spring"] = [{"on": "follower", **spring}]
+    mass: dict[str, Any] = {"of": "follower", "mass_kg": short(d.log(0.01, 10))}
+    if swings:
+        mass |= {"inertia_kg_m2": short(d.log(1e-5, 1e-2)), "center_mm": short(d.even(-20, 60))}
+    design["mass"] = [mass]
+    if d.chance(0.5):
+        design["gravity"] = {"direction_deg": d.even(-180, 180), "g_m_s2": 9.81}
+    if d.chance(0.7):
+        design["friction"] = {
+            **{name: short(d.even(0, 0.3)) for name in ("joint", "guide", "roller", "flank")},
+            "journal_radius_mm": [short(d.log(1, 20)), short(d.log(0.5, 5))],
+            "guide_length_mm": short(d.log(10, 100)),
+        }
+        if d.chance(0.5):
+            design["friction"]["guide_at_mm"] = short(d.even(40, 200))
+    if d.chance(0.5):
+        design["material"] = {
+            "name": [d.pick(["steel", "bronze", "pom"])],
+            "young_modulus_mpa": short(d.log(1e3, 3e5)),
+            "poisson": [0.3, short(d.even(0.2, 0.4))],
+            "yield_mpa": short(d.log(20, 1000)),
+            "density_kg_m3": 7850,
+        }
+    design["forces"] = {"steps": d.whole(12, 100)}
+    if d.chance(0.7):
+        design["output"]["studies"] = ["forces"]
+
+
+def _load(d: Draw, swings: bool, slides: bool) -> dict[str, Any]:
+    unit, load = "mm" if slides else "deg", {"on": "follower", "against": d.chance(0.3)}
+    how = d.pick(["constant", "formula", "table"])
+    if how == "constant":
+        load["torque_nm" if swings else "force_n"] = short(d.log(0.1, 500))
+    elif how == "formula":
+        load["formula"] = d.pick(["3 + 2*s", "5 + cos(u)" if slides else "5 + cos(theta)"])
+    else:
+        load |= {"table": [1.0, short(d.log(0.1, 500)), 1.0], f"at_{unit}": [0, 90, 360]}
+    if d.chance(0.3):
+        load |= {f"from_{unit}": 20, f"to_{unit}": short(d.even(30, 300))}
+    return load
+
+
 def limits(d: Draw, document: Mapping[str, Any]) -> dict[str, Any]:
     """Return one or two limits of checks of a `document`, drawn by `d` near their defaults."""
     known = known_keys(known_keys(schema(), document)["limits"], {})

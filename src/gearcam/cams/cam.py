@@ -21,6 +21,7 @@ import numpy as np
 from gearcam.base.display import NotebookView, renderer
 from gearcam.base.facts import Fact, Facts
 from gearcam.cams.measures import Extreme
+from gearcam.cams.statics import Touch
 from gearcam.cams.wall import PitchMotion, Wall
 from gearcam.numeric.arrays import Array
 
@@ -44,6 +45,11 @@ class Cam(NotebookView):
     def linked(self, wall: Wall) -> dict[str, float]:  # noqa: ARG002
         """Return the lift per unit of each size between the first roller and that on a wall."""
         return {}
+
+    @property
+    def touches(self) -> tuple[Touch, ...]:
+        """Where it can press on its follower: by default at each wall."""
+        return tuple(Touch(wall=wall, end=wall.follower, key=wall.key) for wall in self.walls)
 
     @cached_property
     def lost_motion(self) -> Extreme | None:

@@ -19,6 +19,7 @@ import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.numerals import formatted
+from gearcam.mechanics.friction import FrictionSpec
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.jets import Jet, cos, sin
 
@@ -157,6 +158,10 @@ class Carrier(ABC, ShortRepr):
         """Return velocities of points z of the cam in the fixed frame, mm per unit of x."""
 
     @abstractmethod
+    def drag(self, force: Plane, friction: FrictionSpec) -> Array:
+        """Return the `friction` of the cam's bearing, N mm or N, under a `force` (n,), N."""
+
+    @abstractmethod
     def stand(self, follower: Centred, z: Plane, near: Array) -> tuple[Array, Array, Plane]:
         """Return where a follower has its centre on given points of the cam's frame.
 
@@ -225,6 +230,11 @@ class Rotating(Carrier):
         """Return velocities around the origin (see `Carrier.passing`)."""
         return 1j * z
 
+    def drag(self, force: Plane, friction: FrictionSpec) -> Array:
+        """Return the moment of friction of its journals (see `Carrier.drag`)."""
+        circle = friction.journal * math.sin(math.atan(friction.joint))
+        return circle * np.abs(force)
+
     def stand(self, follower: Centred, z: Plane, near: Array) -> tuple[Array, Array, Plane]:
         """Return where the centres are on the points (see `Carrier.stand`)."""
         p = follower.on_circle(np.abs(z))
@@ -288,6 +298,10 @@ class Sliding(Carrier):
     def passing(self, z: Plane) -> Plane:
         """Return the velocity of all points."""
         return np.full(np.shape(z), -1.0, dtype=np.complex128)
+
+    def drag(self, force: Plane, friction: FrictionSpec) -> Array:
+        """Return the friction in the plate's guide, which does not tip (see `Carrier.drag`)."""
+        return friction.guide * np.abs(force.imag)
 
     def stand(self, follower: Centred, z: Plane, near: Array) -> tuple[Array, Array, Plane]:  # noqa: ARG002
         """Return where the centres are on the points (see `Carrier.stand`)."""

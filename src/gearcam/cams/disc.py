@@ -12,11 +12,13 @@ Depends on cam, followers and wall.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from gearcam.base.errors import beyond_limit
 from gearcam.cams.cam import Cam
 from gearcam.cams.followers import Follower
+from gearcam.cams.statics import Touch
 from gearcam.cams.wall import CHORD_TOLERANCE, Wall
 from gearcam.laws.program import Program
 
@@ -44,6 +46,15 @@ class DiscCam(Wall, Cam):
 @dataclass(frozen=True, eq=False, kw_only=True)
 class YokeCam(DiscCam):
     """A disc cam whose follower encloses it (see the module)."""
+
+    @property
+    def touches(self) -> tuple[Touch, ...]:
+        """On both sides of the axis (see `Cam.touches`)."""
+        first, second = (
+            Touch(wall=self, end=self.follower, key=key, across=across)
+            for key, across in (("near", 0.0), ("far", math.pi))
+        )
+        return first, second
 
     @property
     def breadth(self) -> float:

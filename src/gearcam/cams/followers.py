@@ -54,7 +54,9 @@ from gearcam.base.display import ShortRepr
 from gearcam.base.errors import beyond_limit
 from gearcam.base.numerals import rounded_down
 from gearcam.cams.carriers import Carrier, Pair, unit
+from gearcam.cams.supports import Pivot, StraightGuide, Support
 from gearcam.laws.program import Program
+from gearcam.mechanics.friction import FrictionSpec
 from gearcam.numeric.arrays import Array, Mask, Plane
 from gearcam.numeric.jets import Jet, asin, atan, sin_cos, sqrt
 
@@ -161,6 +163,35 @@ class Follower(ShortRepr, ABC):
     def lean(self, p: Array) -> Array | float:
         """Return the angle of its direction from the y axis at positions (n,), rad."""
         return self.spin * p
+
+    @property
+    def bend(self) -> float:
+        """Curvature of its end, 1/mm: 0 of a face, nan of a point."""
+        return 0.0
+
+    @abstractmethod
+    def held(self, friction: FrictionSpec, highest: float) -> Support:
+        """Return what holds it.
+
+        Parameters
+        ----------
+        friction : FrictionSpec
+            With the length and the place of a guide.
+        highest : float, mm or rad
+            The highest lift, above which a guide begins if it has no given place.
+        """
+
+    def mass_point(self, p: Array, distance: float) -> Plane:  # noqa: ARG002
+        """Return a point of the follower in the fixed frame.
+
+        Parameters
+        ----------
+        p : (n,) array
+            Positions.
+        distance : float, mm
+            From the pivot towards the contact; a stem is weighed on its axis.
+        """
+        return np.zeros(np.shape(p), dtype=np.complex128)
 
     @property
     def below(self) -> bool:
@@ -416,11 +447,23 @@ class Follower(ShortRepr, ABC):
         """
 
 
+def _guide(direction: complex, foot: complex, beyond: float, friction: FrictionSpec) -> Support:
+    """Return a guide along a direction from a foot, mm, by default beyond a height, mm."""
+    length = friction.guide_length or 0.0
+    height = beyond + 0.5 * length if friction.guide_at is None else friction.guide_at
+    return StraightGuide(direction=direction, middle=foot + height * direction)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Round(Follower):
     """A follower with a round end: a roller, a dome, or a point."""
 
     has_centre = True
+
+    @property
+    def bend(self) -> float:
+        """Curvature of its end, 1/mm (see `Follower.bend`)."""
+        return 1.0 / self.radius if self.radius else math.nan
 
     highest: ClassVar[float]
     """Limit of its positions over a cam that turns, mm or rad."""
@@ -550,6 +593,11 @@ class Stem(Round):
     def least_start(self, limit: float, lift: Array, velocity: Array) -> tuple[float, float]:
         """Return the range of positions at zero lift (see `Follower.least_start`)."""
         return float((np.abs(velocity - self.offset) / math.tan(limit) - lift).max()), math.inf
+
+    def held(self, friction: FrictionSpec, highest: float) -> Support:
+        """Return its guide (see `Follower.held`)."""
+        turn = cmath.exp(1j * self.tilt)
+        return _guide(1j * turn, self.offset * turn, self.start + highest + self.radius, friction)
 
     def centre(self, p: Array) -> Plane:
         """Return the centre, mm."""
@@ -686,6 +734,14 @@ class Arm(Round):
     def spin(self) -> float:
         """Turn of its direction per unit of position, rad."""
         return -float(self.hand)
+
+    def held(self, friction: FrictionSpec, highest: float) -> Support:  # noqa: ARG002
+        """Return its pivot (see `Follower.held`)."""
+        return Pivot(at=self.pivot, spin=self.spin)
+
+    def mass_point(self, p: Array, distance: float) -> Plane:
+        """Return a point on the line from the pivot to the centre (see `Follower.mass_point`)."""
+        return self.pivot - (self.hand * distance) * unit(-self.hand * p)
 
     def centre(self, p: Array) -> Plane:
         """Return the centre, mm."""
@@ -866,6 +922,10 @@ class FlatStem(Face):
 
     offset: float = 0.0
 
+    def held(self, friction: FrictionSpec, highest: float) -> Support:
+        """Return its guide (see `Follower.held`)."""
+        return _guide(1j, complex(self.offset), self.start + highest, friction)
+
     def distance(self, p: float) -> float:
         """Return the height of the face, mm."""
         return p
@@ -963,6 +1023,14 @@ class FlatArm(Face):
     def clear(self) -> float:
         """Largest radius of a cam about the origin that does not reach past its pivot, mm."""
         return self.pivot - self.offset
+
+    def held(self, friction: FrictionSpec, highest: float) -> Support:  # noqa: ARG002
+        """Return its pivot (see `Follower.held`)."""
+        return Pivot(at=complex(self.pivot), spin=self.spin)
+
+    def mass_point(self, p: Array, distance: float) -> Plane:
+        """Return a point on the parallel to the face through the pivot (see `Follower`)."""
+        return self.pivot - distance * unit(-p)
 
     def distance(self, p: float) -> float:
         """Return the distance of the face from the origin, mm."""

@@ -33,6 +33,7 @@ from gearcam.cams.carriers import Sliding
 from gearcam.cams.followers import Round
 from gearcam.cams.lost_motion import Rest, largest_lost_motion
 from gearcam.cams.measures import Extreme
+from gearcam.cams.statics import Touch
 from gearcam.cams.trim import crossing_chords
 from gearcam.cams.wall import CHORD_TOLERANCE, OVERSAMPLING, PitchMotion, Wall
 from gearcam.laws.program import Program
@@ -174,6 +175,11 @@ class SlidingCam(ShortRepr, Cam):
     def walls(self) -> tuple[SlidingWall, ...]:
         """The wall below the follower, and for a groove also that above it."""
         return (self.lower,) if self.upper is None else (self.lower, self.upper)
+
+    @property
+    def touches(self) -> tuple[Touch, ...]:
+        """Its walls (see `Cam.touches`)."""
+        return tuple(Touch(wall=wall, end=self.roller, key=wall.key) for wall in self.walls)
 
     @property
     def motions(self) -> tuple[PitchMotion, ...]:

@@ -21,6 +21,7 @@ from gearcam.base.display import ShortRepr
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import ANGLE, LENGTH, LONGEST, TEXT, fixed, param, positive_length
 from gearcam.base.rules import Breach, Rule, exactly_one, excluded, needed_with, only_with
+from gearcam.mechanics.friction import FrictionSpec
 
 KIND: Final = "cams"
 """The checks of cams."""
@@ -30,6 +31,9 @@ FOLLOWED: Final = "followed profiles"
 
 PRECISION: Final = "precision of cams"
 """The checks of the errors that tolerances make."""
+
+FORCES: Final = "forces"
+"""The checks of a study of forces."""
 
 POINTED: Final = ("knife-edge", "point")
 """Two words for a follower without a radius."""
@@ -138,6 +142,18 @@ class FollowerSpec(ShortRepr):
     def radius(self) -> float:
         """Radius of its round face, mm; 0 of a point."""
         return self.roller_radius or self.dome_radius or 0.0
+
+    def dragged(self, friction: FrictionSpec, radius: float) -> float:
+        """Return tangential over normal force at the contact.
+
+        Parameters
+        ----------
+        friction : FrictionSpec
+            Coefficients: of a roller on its pin, and of surfaces that slide.
+        radius : float, mm
+            Of its end.
+        """
+        return friction.rolling(radius) if self.type == "roller" else friction.flank
 
     @property
     def named(self) -> str:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.numerals import formatted
-from gearcam.base.quantities import RPM, SPEED, Quantity, param
+from gearcam.base.quantities import RPM, SPEED, Quantity, param, params_of
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,10 +28,28 @@ class DriveSpec(ShortRepr):
         RPM, default=None, gt=0, le=1e6, example=300, doc="mean speed of the driver"
     )
 
+    effort: ClassVar[tuple[str, float]] = ("torque_nm", 1e-3)
+    """What the driver exerts: its name in output, and its unit there over that inside."""
+
+    @property
+    def quantity(self) -> Quantity:
+        """Unit of the speed."""
+        return params_of(type(self))["speed"].quantity
+
+    @property
+    def key(self) -> str:
+        """Key of the speed in files."""
+        return f"speed{self.quantity.suffix}"
+
     @property
     def named(self) -> str:
         """The speed in words; empty if none is given."""
-        return _named(self.speed, RPM)
+        return self.words(self.speed)
+
+    def words(self, speed: float | None) -> str:
+        """Return a `speed`, rad/s or mm/s, in words; empty for None."""
+        unit = self.quantity
+        return "" if speed is None else f"{formatted(speed / unit.factor)} {unit.unit}"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,11 +67,4 @@ class SlideDriveSpec(DriveSpec):
         SPEED, default=None, gt=0, le=1e6, example=250, doc="mean speed of a driver that slides"
     )
 
-    @property
-    def named(self) -> str:
-        """The speed in words; empty if none is given."""
-        return _named(self.speed, SPEED)
-
-
-def _named(speed: float | None, quantity: Quantity) -> str:
-    return "" if speed is None else f"{formatted(speed / quantity.factor)} {quantity.unit}"
+    effort: ClassVar[tuple[str, float]] = ("drive_n", 1.0)

@@ -24,13 +24,14 @@ _TIMES: Final = 6.0
 an undercut or nearly sharp profile has no largest one, and would leave no room for the rest."""
 
 
-def _places(result: CamResult) -> tuple[str, str]:
+def places_of(result: CamResult) -> tuple[str, str]:
     """Return the column of cam angles or travels, and its axis label."""
     driver = result.driver
     return driver.column, f"{driver.called} {driver.symbol}, {driver.unit}"
 
 
-def _knots(result: CamResult) -> tuple[MarkedPlace, ...]:
+def knots_of(result: CamResult) -> tuple[MarkedPlace, ...]:
+    """Return marks at the knots of the motion."""
     driver = result.driver
     return knot_marks(driver.scale * np.asarray(result.program.knots), 0.0, driver.whole)
 
@@ -41,14 +42,14 @@ def _of_time(name: str, result: CamResult) -> Chart | None:
     for column in timed:
         if column.startswith(name):
             unit = column.removeprefix(f"{name}_").replace("_", "/", 1)
-            places, label = _places(result)
+            places, label = places_of(result)
             table = result.motion_of_turn
             return Chart(
                 title=f"{name.capitalize()} of the follower at {drive.named}",
                 x=label,
                 y=f"{name}, {unit}",
                 lines=(Line(label=name, x=table[places], y=table[column]),),
-                marks=_knots(result),
+                marks=knots_of(result),
             )
     return None
 
@@ -57,7 +58,7 @@ def _of_lift(name: str, result: CamResult) -> Chart:
     table = result.motion_of_turn
     column = next(column for column in table if column.startswith(name))
     unit = column.removeprefix(f"{name}_").replace("_per_", "/")
-    places, label = _places(result)
+    places, label = places_of(result)
     lines = [Line(label=name, x=table[places], y=table[column])]
     given = result.program.given
     if given is not None and name == "lift":
@@ -65,7 +66,7 @@ def _of_lift(name: str, result: CamResult) -> Chart:
         x, y = result.driver.scale * theta, result.follower.lift_unit[0] * lift
         lines.append(Line(label="given points, before smoothing", x=x, y=y, dots=True))
     title, unit = f"{name.capitalize()} of the follower", f"{name}, {unit}"
-    return Chart(title=title, x=label, y=unit, lines=(*lines,), marks=_knots(result))
+    return Chart(title=title, x=label, y=unit, lines=(*lines,), marks=knots_of(result))
 
 
 def _pressure_angle(result: CamResult) -> Chart | None:
@@ -74,7 +75,7 @@ def _pressure_angle(result: CamResult) -> Chart | None:
         return None
     given = limit_of(KIND, "pressure-angle", result.design.limits)
     limit = math.degrees(pressure_limit(result.follower, given))
-    places, label = _places(result)
+    places, label = places_of(result)
     return Chart(
         title="Pressure angle",
         x=label,
@@ -89,7 +90,7 @@ def _pressure_angle(result: CamResult) -> Chart | None:
             for column in (pressure_column(one),)
         ),
         limits=(Limit(label="limit", value=limit), Limit(label="limit", value=-limit)),
-        marks=_knots(result),
+        marks=knots_of(result),
     )
 
 
@@ -124,7 +125,7 @@ def _curvature(result: CamResult) -> Chart:
     for value, wall in rollers.items():
         what = "convex" if wall.side > 0 else "concave"
         limits.append(Limit(label=f"roller ({what} pitch curve)", value=value))
-    places, label = _places(result)
+    places, label = places_of(result)
     return Chart(
         title="Curvature (positive: convex)",
         x=label,
@@ -139,7 +140,7 @@ def _curvature(result: CamResult) -> Chart:
             for seen in (np.abs(values) <= largest,)
         ),
         limits=tuple(limits),
-        marks=_knots(result),
+        marks=knots_of(result),
     )
 
 

@@ -12,13 +12,20 @@ from gearcam.cams.spec import FOLLOWERS, POINTED, CamSpec, FollowerSpec
 from gearcam.designs.design import Design, Wanted
 from gearcam.designs.faults import Fault, quoted, show
 from gearcam.designs.kind import Examined
+from gearcam.designs.table import table_of
+from gearcam.designs.validate import placed_faults
 from gearcam.kinds.cam.forms.base import FORMS, VARIANTS
 from gearcam.kinds.cam.motion import circumstances, motion_of, whole_turns
-from gearcam.kinds.cam.tables import CamBlank, CamOutputSpec, FollowSpec, PrecisionSpec
+from gearcam.kinds.cam.tables import CamBlank, CamOutputSpec, FollowSpec, ForcesSpec, PrecisionSpec
 from gearcam.kinds.shared import AccuracySpec
 from gearcam.laws.motion.base import MOTION_LAWS
 from gearcam.laws.phases_of_lift import PHASES, RisePhase
 from gearcam.mechanics.drive import DriveSpec
+from gearcam.mechanics.friction import FrictionSpec
+from gearcam.mechanics.load import LoadSpec
+from gearcam.mechanics.mass import GravitySpec, MassSpec
+from gearcam.mechanics.material import MaterialSpec
+from gearcam.mechanics.spring import SpringSpec
 
 if TYPE_CHECKING:
     from gearcam.kinds.cam.build import CamResult
@@ -51,6 +58,20 @@ class CamDesign(Design):
         Bore, hub, holes, density.
     output : CamOutputSpec
         Files and their tolerance.
+    load : sequence of LoadSpec or SlideLoadSpec
+        What the follower works against.
+    spring : sequence of SpringSpec
+        Springs that press it onto the cam.
+    mass : sequence of MassSpec
+        Its masses.
+    gravity : GravitySpec
+        Direction of gravity.
+    friction : FrictionSpec
+        Coefficients of friction, bearings.
+    material : MaterialSpec
+        Materials of cam and follower.
+    forces : ForcesSpec
+        Settings of the study of forces.
     follow : FollowSpec
         A given profile, for the study of the motion that it makes.
     precision : PrecisionSpec
@@ -80,6 +101,13 @@ class CamDesign(Design):
     drive: DriveSpec = field(default_factory=DriveSpec)
     blank: WheelBlank | PlateBlank = field(default_factory=CamBlank)
     output: CamOutputSpec = field(default_factory=CamOutputSpec)
+    load: tuple[LoadSpec, ...] = ()
+    spring: tuple[SpringSpec, ...] = ()
+    mass: tuple[MassSpec, ...] = ()
+    gravity: GravitySpec = field(default_factory=GravitySpec)
+    friction: FrictionSpec = field(default_factory=FrictionSpec)
+    material: MaterialSpec = field(default_factory=MaterialSpec)
+    forces: ForcesSpec = field(default_factory=ForcesSpec)
     follow: FollowSpec = field(default_factory=FollowSpec)
     precision: PrecisionSpec = field(default_factory=PrecisionSpec)
     accuracy: AccuracySpec = field(default_factory=AccuracySpec)
@@ -150,8 +178,27 @@ def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
     output, follower = document.get("output"), document.get("follower")
     yield from _follow_faults(output, document.get("follow"))
     yield from _tool_faults(output, follower)
+    if "follower" in found.parts:
+        yield from _load_faults(found, document)
     if {"cam", "follower"} <= found.parts.keys():
         yield from FORMS[VARIANTS.meant(document)].faults(found.parts, document)
+
+
+def _load_faults(found: Examined, document: Mapping[str, Any]) -> Iterator[Fault]:
+    """Yield loads, springs and masses that do not suit how the follower moves."""
+    follower = found.parts["follower"]
+    for title in ("load", "spring", "mass"):
+        known = VARIANTS.table("load", VARIANTS.meant(document)) if title == "load" else None
+        for number, one in enumerate(found.parts.get(title, ())):
+            table = known or table_of(title, type(one))
+            breaches = one.allowed_on(oscillating=follower.oscillating)
+            raw = document[title][number]
+            yield from placed_faults(breaches, table, raw, (title, number))
+    solved = [one.solved for one in found.parts.get("spring", ())]
+    if sum(solved) > 1:
+        second = [number for number, one in enumerate(solved) if one][1]
+        message = 'a second spring is solved too: "solve" stands in one of them'
+        yield Fault(("spring", second), message, allowed="numbers in all springs but one")
 
 
 def _follow_faults(output: Any, follow: Any) -> Iterator[Fault]:

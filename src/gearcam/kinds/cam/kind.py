@@ -6,7 +6,7 @@ from functools import partial
 from typing import Final
 
 from gearcam.base.registry import DeferredMapping, deferred
-from gearcam.cams.spec import FOLLOWED, PRECISION
+from gearcam.cams.spec import FOLLOWED, FORCES, PRECISION
 from gearcam.cams.spec import KIND as CAM
 from gearcam.designs.kind import Main
 from gearcam.designs.table import table_of
@@ -20,8 +20,12 @@ from gearcam.kinds.cam.design import (
 )
 from gearcam.kinds.cam.forms.base import VARIANTS, Form
 from gearcam.kinds.cam.motion import TITLE, examine_motion, homes
-from gearcam.kinds.cam.tables import CAM_FORMATS, FollowSpec, PrecisionSpec
+from gearcam.kinds.cam.tables import CAM_FORMATS, FollowSpec, ForcesSpec, PrecisionSpec
 from gearcam.kinds.shared import AccuracySpec
+from gearcam.mechanics.friction import FrictionSpec
+from gearcam.mechanics.mass import GravitySpec, MassSpec
+from gearcam.mechanics.material import MaterialSpec
+from gearcam.mechanics.spring import SpringSpec
 from gearcam.parts.blank import KIND as PARTS
 from gearcam.results.kind import Kind
 
@@ -44,19 +48,26 @@ KIND: Final = Kind(
     ),
     tables={
         **{title: partial(VARIANTS.union, title) for title in Form.tables},
+        "spring": partial(table_of, "spring", SpringSpec),
+        "mass": partial(table_of, "mass", MassSpec),
+        "gravity": partial(table_of, "gravity", GravitySpec),
+        "friction": partial(table_of, "friction", FrictionSpec),
+        "material": partial(table_of, "material", MaterialSpec),
+        "forces": partial(table_of, "forces", ForcesSpec),
         "follow": partial(table_of, "follow", FollowSpec),
         "precision": partial(table_of, "precision", PrecisionSpec),
         "accuracy": partial(table_of, "accuracy", AccuracySpec),
     },
     variants=VARIANTS,
+    several=("load", "spring", "mass"),
     required=("follower", "cam"),
     rules=RULES,
     problems=problems,
     later=later,
     formats=CAM_FORMATS,
-    check_modules=("gearcam.cams.checks", "gearcam.parts.checks"),
-    check_groups=(CAM, PARTS, FOLLOWED, PRECISION),
-    study_tables={name: name for name in ("follow", "precision", "accuracy")},
+    check_modules=("gearcam.cams.checks", "gearcam.cams.force_checks", "gearcam.parts.checks"),
+    check_groups=(CAM, PARTS, FOLLOWED, FORCES, PRECISION),
+    study_tables={name: name for name in ("follow", "forces", "precision", "accuracy")},
     example={
         "motion": [
             {"type": "rise", "angle_deg": 120, "law": "cycloidal", "lift_mm": 10},

@@ -9,20 +9,26 @@ from gearcam.kinds.cam.forms.conjugate import ConjugateFollower, ConjugateSpec
 from gearcam.kinds.cam.forms.groove import GrooveFollower, GrooveSpec
 from gearcam.kinds.cam.forms.translating import PlateBlank, PlateOutput, PlateSpec
 from gearcam.kinds.cam.forms.yoke import YokeFollower, YokeSpec
-from gearcam.kinds.cam.tables import CamBlank, CamOutputSpec, FollowSpec, PrecisionSpec
+from gearcam.kinds.cam.tables import CamBlank, CamOutputSpec, FollowSpec, ForcesSpec, PrecisionSpec
 from gearcam.kinds.shared import AccuracySpec
 from gearcam.laws.motion_formula import MotionFormula
 from gearcam.laws.motion_table import MotionTable
 from gearcam.laws.phases_of_lift import DwellPhase, ReturnPhase, RisePhase, SegmentPhase
 from gearcam.mechanics.drive import DriveSpec, SlideDriveSpec
+from gearcam.mechanics.friction import FrictionSpec
+from gearcam.mechanics.load import LoadSpec, SlideLoadSpec
+from gearcam.mechanics.mass import GravitySpec, MassSpec
+from gearcam.mechanics.material import MaterialSpec
+from gearcam.mechanics.spring import SpringSpec
 from gearcam.parts.blank import WheelBlank
 
 __all__ = [
     "AccuracySpec", "CamBlank", "CamDesign", "CamOutputSpec", "CamResult", "CamSpec",
     "ConjugateFollower", "ConjugateSpec", "DriveSpec", "DwellPhase", "FollowSpec", "FollowerSpec",
-    "GrooveFollower", "GrooveSpec", "MotionFormula", "MotionTable", "PlateBlank", "PlateFollower",
+    "ForcesSpec", "FrictionSpec", "GravitySpec", "GrooveFollower", "GrooveSpec", "LoadSpec",
+    "MassSpec", "MaterialSpec", "MotionFormula", "MotionTable", "PlateBlank", "PlateFollower",
     "PlateOutput", "PlateSpec", "PrecisionSpec", "ReturnPhase", "RisePhase", "SegmentPhase",
-    "SlideDriveSpec", "WheelBlank", "YokeFollower", "YokeSpec",
+    "SlideDriveSpec", "SlideLoadSpec", "SpringSpec", "WheelBlank", "YokeFollower", "YokeSpec",
 ]  # fmt: skip
 
 PUBLIC = {name: globals()[name] for name in __all__}

@@ -88,5 +88,30 @@ PRECISION: Final = Study(
     compute=_precision,
 )
 
-STUDIES: Final[dict[str, Study]] = {one.name: one for one in (FOLLOW, PRECISION, accuracy_study())}
+
+def _forces(result: CamResult, progress: Progress | None) -> StudyResult:
+    from gearcam.kinds.cam.forces import study_forces
+
+    return study_forces(result, FORCES, progress)
+
+
+def _demand_speed(design: Any) -> None:
+    from gearcam.kinds.cam.forces import demand
+
+    demand(design)
+
+
+FORCES: Final = Study(
+    name="forces",
+    key="forces",
+    doc="Compute forces, torque, efficiency and contact pressure; write DIR/NAME/forces.csv.",
+    done="computed",
+    table="forces",
+    compute=_forces,
+    demand=_demand_speed,
+)
+
+STUDIES: Final[dict[str, Study]] = {
+    one.name: one for one in (FOLLOW, FORCES, PRECISION, accuracy_study())
+}
 """The studies by name."""

@@ -174,6 +174,26 @@ SIZES: Final[Mapping[str, Param]] = {
 
 
 @dataclass(frozen=True, kw_only=True)
+class ForcesSpec(ShortRepr):
+    """Places at which the study ``forces`` computes the forces.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.ForcesSpec(steps=360)
+    ForcesSpec(steps=360)
+    """
+
+    steps: int = param(
+        COUNT,
+        default=720,
+        ge=12,
+        le=100000,
+        doc="number of even steps of the turn or travel; both sides of knots are added",
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
 class CamOutputSpec(OutputSpec):
     """Which files and studies of a cam are written, and how exact (see `OutputSpec`).
 
@@ -190,7 +210,7 @@ class CamOutputSpec(OutputSpec):
     """
 
     files: tuple[str, ...] = files_param(CAM_FORMATS)
-    studies: tuple[str, ...] = studies_param(("follow", "precision", "accuracy"))
+    studies: tuple[str, ...] = studies_param(("follow", "forces", "precision", "accuracy"))
     chord_tolerance: float | None = param(
         LENGTH,
         default=None,

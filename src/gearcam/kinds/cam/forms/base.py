@@ -25,6 +25,7 @@ from gearcam.designs.validate import placed_faults
 from gearcam.kinds.cam.tables import CamBlank, CamOutputSpec
 from gearcam.laws.program import Program, make_program
 from gearcam.mechanics.drive import DriveSpec
+from gearcam.mechanics.load import LoadSpec
 
 if TYPE_CHECKING:
     from gearcam.kinds.cam.build import CamResult
@@ -65,6 +66,7 @@ class Form(ABC, Generic[C, S, F]):
         "follower": FollowerSpec,
         "cam": CamSpec,
         "drive": DriveSpec,
+        "load": LoadSpec,
         "blank": CamBlank,
         "output": CamOutputSpec,
     }
@@ -120,6 +122,11 @@ class Form(ABC, Generic[C, S, F]):
     def step(self) -> tuple[str, float]:
         """Key and value of the step of tables of the motion, rad or mm."""
         return "output.motion_step_deg", self.output.motion_step
+
+    @property
+    def contact_width(self) -> float:
+        """Width of the contact between cam and follower, mm."""
+        return self.given.thickness
 
     @classmethod
     def faults(cls, parts: Mapping[str, Any], document: Mapping[str, Any]) -> Iterator[Fault]:

@@ -98,6 +98,11 @@ class Groove(Form[GrooveCam, GrooveSpec, GrooveFollower]):
         "cam.roller2_radius_mm", "cam.roller_clearance_mm", "cam.lost_motion",
     )  # fmt: skip
 
+    @property
+    def contact_width(self) -> float:
+        """Depth of the groove, mm."""
+        return self.given.groove_depth
+
     @classmethod
     def faults(cls, parts: Mapping[str, Any], document: Mapping[str, Any]) -> Iterator[Fault]:
         """Yield contradictions between the tables of a design (see `Form.faults`)."""

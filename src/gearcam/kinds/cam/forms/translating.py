@@ -39,6 +39,7 @@ from gearcam.kinds.cam.tables import CamBlank, CamOutputSpec
 from gearcam.laws.phases_of_lift import DwellPhase, Phase
 from gearcam.laws.program import Program, make_program
 from gearcam.mechanics.drive import SlideDriveSpec
+from gearcam.mechanics.load import SlideLoadSpec
 from gearcam.numeric.pose import Pose
 
 if TYPE_CHECKING:
@@ -201,6 +202,7 @@ class Translating(Form[SlidingCam, PlateSpec, PlateFollower]):
         "follower": PlateFollower,
         "cam": PlateSpec,
         "drive": SlideDriveSpec,
+        "load": SlideLoadSpec,
         "blank": PlateBlank,
         "output": PlateOutput,
     }
@@ -214,6 +216,11 @@ class Translating(Form[SlidingCam, PlateSpec, PlateFollower]):
     def step(self) -> tuple[str, float]:
         """Key and value of the step of tables of the motion, mm (see `Form.step`)."""
         return "output.travel_step_mm", self.output.travel_step
+
+    @property
+    def contact_width(self) -> float:
+        """Depth of a groove, or thickness of the plate, mm."""
+        return self.given.groove_depth or self.given.thickness
 
     @classmethod
     def faults(cls, parts: Mapping[str, Any], document: Mapping[str, Any]) -> Iterator[Fault]:  # noqa: ARG003

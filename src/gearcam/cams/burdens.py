@@ -1,0 +1,214 @@
+"""The loads of a follower: springs, given loads, inertia and gravity, and the spring that holds it.
+
+Everything is *against* a rise: N along a guide, N mm about a pivot. A cam that only presses keeps
+its follower where this sum is not negative, whatever the friction: the normal force is a multiple
+of it. So the spring that just holds the follower is an extreme of the other loads,
+
+    preload = max(-(rest + k*s)),        stiffness = max(-(rest + F0)/s),
+
+and the speed at which a given spring lets go is the least of ``sqrt((F0 + k*s + loads)/(-m*s''))``
+where the acceleration is negative. Extremes lie at knots or are enclosed between neighbouring
+samples and divided until rounding: exact where they lie at a knot, as for a harmonic motion.
+
+Sources: classical (Norton, Rothbart); 000 section 3.5.
+
+Depends on followers, supports, laws and mechanics; numpy only.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from gearcam.base.display import ShortRepr
+from gearcam.cams.followers import Follower
+from gearcam.cams.statics import sense_of
+from gearcam.cams.supports import Burden, Support
+from gearcam.laws.program import Program
+from gearcam.mechanics.load import LoadSpec
+from gearcam.mechanics.mass import MassSpec
+from gearcam.mechanics.spring import SpringSpec
+from gearcam.numeric.arrays import Array, Plane
+
+_SAMPLES = 65
+"""Samples of each smooth piece; between neighbours there is one extreme at most, as a rule."""
+
+_ROUNDS = 6
+"""Divisions of the space around an extreme by a sixteenth: below 1e-8 of a piece."""
+
+_BARELY = 1e-9
+"""Lift over the largest below which a stiffness does nothing."""
+
+MM = 1e-3
+"""Metres in a millimetre: N of kg mm/s2, and N m of N mm."""
+
+Motion = tuple[Array, Array, Array, Array]
+"""Positions of the driver, lifts, their first and second derivatives."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Loads(ShortRepr):
+    """What acts on a follower beside its cam.
+
+    Parameters
+    ----------
+    program : Program
+        Its lift.
+    follower : Follower
+        The follower.
+    support : Support
+        What holds it.
+    speed : float or None, rad/s or mm/s
+        Of the cam.
+    springs, given, masses : sequences
+        As in the design; a mass acts by its inertia with a speed, and by its weight with gravity.
+    pull : complex, m/s2
+        Acceleration of gravity, in the frame of a cam that turns counter-clockwise.
+    """
+
+    program: Program
+    follower: Follower
+    support: Support
+    speed: float | None = None
+    springs: Sequence[SpringSpec] = ()
+    given: Sequence[LoadSpec] = ()
+    masses: Sequence[MassSpec] = ()
+    pull: complex = 0j
+
+    @property
+    def _unit(self) -> float:
+        """N or N mm in the unit of output, N or N m."""
+        return 1e3 if self.follower.angular else 1.0
+
+    def motion(self, x: Array) -> Motion:
+        """Return the motion at positions (n,) of the driver."""
+        s, ds, d2s = self.program.derivatives(x, 2)
+        return x, s, ds, d2s
+
+    @cached_property
+    def inertia(self) -> float:
+        """Mass, kg, or moment of inertia, kg m2, times the unit of output over that inside."""
+        if self.follower.angular:
+            return 1e3 * sum(one.inertia or 0.0 for one in self.masses)
+        return MM * sum(one.mass or 0.0 for one in self.masses)
+
+    def _weights(self, s: Array) -> tuple[Array, Plane]:
+        """Return weight against a rise, and on the support."""
+        against, total = np.zeros_like(s), np.zeros(s.shape, dtype=complex)
+        for one in self.masses:
+            pull = np.full(s.shape, (one.mass or 0.0) * self.pull)
+            centre = self.follower.mass_point(self.follower.start + s, one.center or 0.0)
+            against -= self.support.lifting(pull, centre)
+            total += pull
+        return against, total
+
+    def still(self, motion: Motion) -> Array:
+        """Return loads and weight against a rise, without springs and inertia."""
+        x, s, ds, _ = motion
+        sense = sense_of(ds)
+        x = x % self.program.period if self.program.closed else x
+        total, _ = self._weights(s)
+        for one in self.given:
+            total = total + one.at(x, s, sense, per=self._unit)
+        return total
+
+    def known(self, motion: Motion) -> Array:
+        """Return all loads against a rise but what springs have to be solved for."""
+        _, s, _, d2s = motion
+        total = self.still(motion)
+        for one in self.springs:
+            rate, force = one.rate, one.force
+            total = total + (0.0 if rate == "solve" else rate) * s
+            total = total + (0.0 if force == "solve" else force)
+        return total + self.inertia * (self.speed or 0.0) ** 2 * d2s
+
+    @cached_property
+    def solved(self) -> dict[str, float]:
+        """The stiffness or preload that springs need, N/mm or N mm/rad, and N or N mm.
+
+        Infinite where no stiffness holds the follower: it would have to at zero lift.
+        """
+        found: dict[str, float] = {}
+        for one in self.springs:
+            if one.force == "solve":
+                found["preload"] = max(0.0, self._largest(lambda motion: -self.known(motion))[0])
+            if one.rate == "solve":
+                found["stiffness"] = max(0.0, self._largest(self._needed)[0])
+        return found
+
+    @cached_property
+    def preload_at_rest(self) -> float:
+        """The preload that is needed where a stiffness does nothing, N or N mm."""
+        least = _BARELY * max(map(abs, self.program.range))
+
+        def lack(motion: Motion) -> Array:
+            return np.where(motion[1] <= least, -self.known(motion), -np.inf)
+
+        return self._largest(lack)[0]
+
+    def _needed(self, motion: Motion) -> Array:
+        """Return the stiffness that is needed at a lift, negative where none is."""
+        s, lack = motion[1], -self.known(motion)
+        least = _BARELY * max(map(abs, self.program.range))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.where(s > least, lack / s, np.where(lack > 0.0, np.inf, -np.inf))
+
+    @cached_property
+    def release(self) -> tuple[float, float] | None:
+        """The speed at which the follower lifts off, rad/s or mm/s, and where; None if never."""
+        if not self.inertia:
+            return None
+
+        def slowness(motion: Motion) -> Array:
+            d2s = motion[3]
+            held = self.held_still(motion)
+            with np.errstate(divide="ignore", invalid="ignore"):
+                ratio = np.where(held > 0.0, -self.inertia * d2s / held, np.inf)
+            return np.where(d2s < 0.0, ratio, -np.inf)
+
+        most, where = self._largest(slowness)
+        return (1.0 / math.sqrt(most), where) if most > 0.0 else None
+
+    def held_still(self, motion: Motion) -> Array:
+        """Return the loads against a rise at a very low speed, with springs as solved."""
+        _, s, _, _ = motion
+        total = self.still(motion)
+        for one in self.springs:
+            rate, force = one.rate, one.force
+            total = total + (self.solved["stiffness"] if rate == "solve" else rate) * s
+            total = total + (self.solved["preload"] if force == "solve" else force)
+        return total
+
+    def burden(self, motion: Motion) -> Burden:
+        """Return what the cam has to move."""
+        _, s, ds, d2s = motion
+        square = (self.speed or 0.0) ** 2
+        weight = self._weights(s)[1]
+        for one in self.masses:
+            centre = self.follower.mass_point(self.follower.start + s, one.center or 0.0)
+            hurry = self.support.hurrying(centre, ds, d2s)
+            weight -= MM * (one.mass or 0.0) * square * hurry
+        return Burden(
+            against=self.held_still(motion) + self.inertia * square * d2s,
+            resultant=weight,
+            sense=sense_of(ds),
+        )
+
+    def _largest(self, value: Callable[[Motion], Array]) -> tuple[float, float]:
+        """Return the largest value over the turn, and where it is."""
+        cuts = np.unique(np.concatenate([self.program.cuts, self.program.knots]))
+        low, high = cuts[:-1, None], np.nextafter(cuts[1:, None], -np.inf)
+        x = low + (high - low) * np.linspace(0.0, 1.0, _SAMPLES)
+        found = value(self.motion(x.ravel())).reshape(x.shape)
+        for _ in range(_ROUNDS):
+            best = np.argmax(found, axis=1)[:, None]
+            low = np.take_along_axis(x, np.maximum(best - 1, 0), axis=1)
+            high = np.take_along_axis(x, np.minimum(best + 1, x.shape[1] - 1), axis=1)
+            x = low + (high - low) * np.linspace(0.0, 1.0, 33)
+            found = value(self.motion(x.ravel())).reshape(x.shape)
+        row, column = np.unravel_index(int(np.argmax(found)), found.shape)
+        return float(found[row, column]), float(x[row, column])

@@ -1,0 +1,142 @@
+"""The checks of a study of forces; importing this module registers them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from gearcam.base.display import ShortRepr
+from gearcam.base.findings import Remark, check
+from gearcam.base.numerals import formatted
+from gearcam.base.quantities import MPA, TORQUE, Param
+from gearcam.cams.carriers import DriverAxis
+from gearcam.cams.spec import FORCES
+from gearcam.cams.statics import Statics
+from gearcam.mechanics.hertz import FIRST_YIELD
+from gearcam.numeric.arrays import Array, Mask
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Loaded(ShortRepr):
+    """A cam under its loads.
+
+    Parameters
+    ----------
+    x : (n,) array, rad or mm
+        Positions of the driver.
+    driver : DriverAxis
+        Their name and unit.
+    statics : Statics
+        The forces.
+    pressure : (n,) array, MPa
+        Contact pressure.
+    yields : float or None, MPa
+        The lower yield stress.
+    torque : (n,) array
+        Of the driver, in N m; of a driver that slides nan.
+    release : str
+        At which speed the follower lifts off, in words; empty if unknown.
+    """
+
+    x: Array
+    driver: DriverAxis
+    statics: Statics
+    pressure: Array
+    yields: float | None
+    torque: Array
+    release: str = ""
+
+    def stretch(self, mask: Mask) -> str:
+        """Return where a mask first holds, in words."""
+        places = np.flatnonzero(mask)
+        breaks = np.flatnonzero(np.diff(places) > 1)
+        last = places[breaks[0]] if breaks.size else places[-1]
+        low, high = (
+            formatted(self.driver.scale * float(self.x[one]), 5) for one in (places[0], last)
+        )
+        more = f", and {breaks.size} more" if breaks.size else ""
+        return f"{self.driver.symbol} = {low} to {high} {self.driver.unit}{more}"
+
+    def at(self, index: int) -> str:
+        """Return a place in words."""
+        return self.driver.place(float(self.x[index]))
+
+
+@check("self-locking", kind=FORCES, severity="error")
+def self_locking(loaded: Loaded, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Report where friction locks the follower: no force of the cam can move it.
+
+    Looks at: the share of the normal force's effect that friction leaves, wherever it would carry.
+    """
+    locked = loaded.statics.locked
+    if locked.any():
+        least = float(np.nanmin(loaded.statics.reserve[locked]))
+        yield Remark(
+            "Friction locks the follower: a smaller pressure angle, a longer or nearer guide, or "
+            "less friction frees it.",
+            loaded.stretch(locked),
+            least,
+            limit=0.0,
+        )
+
+
+@check("lift-off", kind=FORCES)
+def lift_off(loaded: Loaded, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Warn where the loads lift the follower off its cam.
+
+    Looks at: the loads against a rise, where no wall holds the follower from the other side.
+    """
+    lifted = loaded.statics.lifted
+    if lifted.any():
+        message = "The follower lifts off the cam: it needs a stiffer spring or more preload"
+        message += f"; it stays on it up to {loaded.release}." if loaded.release else "."
+        yield Remark(message, loaded.stretch(lifted))
+
+
+_PRESSURE: Final = (
+    "contact_pressure",
+    Param(MPA, ge=0, le=1e5, doc="largest contact pressure; 0: 1.79 times the yield stress"),
+    0.0,
+)
+
+
+@check("contact-pressure", kind=FORCES, limit=_PRESSURE, unit="MPa")
+def contact_pressure(loaded: Loaded, limit: float) -> Iterator[Remark]:
+    """Warn of a contact pressure at which the surface wears or yields.
+
+    Looks at: Hertz pressure between profile and follower, over the turn; without a limit against
+    1.79 times the lower yield stress, where a line contact first yields, if one is given.
+    """
+    most = limit or FIRST_YIELD * (loaded.yields or np.inf)
+    if np.isnan(loaded.pressure).all():
+        return
+    worst = int(np.nanargmax(loaded.pressure))
+    found = float(loaded.pressure[worst])
+    if found > most:
+        message = "The contact pressure is too high: a larger roller or cam, a wider face or a "
+        message += "weaker spring lowers it."
+        yield Remark(message, loaded.at(worst), found, limit=most)
+
+
+_TORQUE: Final = (
+    "drive_torque",
+    Param(TORQUE, ge=0, le=1e9, doc="largest torque of the cam's drive; 0: no limit"),
+    0.0,
+)
+
+
+@check("drive-torque", kind=FORCES, limit=_TORQUE, unit="N m")
+def drive_torque(loaded: Loaded, limit: float) -> Iterator[Remark]:
+    """Warn if the cam needs more torque than its drive has.
+
+    Looks at: largest torque of the cam over the turn, with all friction.
+    """
+    if not limit or np.isnan(loaded.torque).all():
+        return
+    worst = int(np.nanargmax(loaded.torque))
+    found, most = float(loaded.torque[worst]), limit / TORQUE.factor
+    if found > most:
+        yield Remark("The cam needs more torque than the drive has.", loaded.at(worst), found)

@@ -1,0 +1,242 @@
+"""Rigid body statics of a cam and its follower, at positions of the driver.
+
+A *touch* is a place where a cam can press on its follower: one of a disc cam, two where walls or
+rollers hold the follower from both sides. A touch only presses, so that the sign of the load tells
+which one carries. Where no touch can carry the follower *lifts off*; where friction leaves nothing
+of the normal force it is *locked*.
+
+The contact force acts on the follower with its roller as one body: friction of the roller on its
+pin is a tangential force at its circumference. All work is per unit of the driver's position:
+
+    T = Q*ds + mu*N*abs(slide) + G*abs(ds) + drag
+
+with T the torque of the cam, N mm, or its driving force, N; Q the load, G the friction of the
+follower's support, and drag that of the cam's bearing. Without friction ``T = Q*ds`` is the virtual
+work; both are held by the tests, as the program gets T from the force and its arm.
+
+Sources: 000 section 3.5, eqs. (3.58), (3.73), (3.78), (3.85); derived anew.
+
+Depends on followers, supports, wall and mechanics; numpy only.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from gearcam.base.display import ShortRepr
+from gearcam.cams.followers import Follower
+from gearcam.cams.supports import Burden, Push, Support
+from gearcam.cams.wall import Wall
+from gearcam.mechanics.friction import FrictionSpec
+from gearcam.numeric.arrays import Array, Ints, Mask
+
+_AT_REST = 1e-12
+"""Velocity over the largest below which the follower is at rest: rounding."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Touch(ShortRepr):
+    """A place where a cam can press on its follower.
+
+    Parameters
+    ----------
+    wall : Wall
+        The wall that presses.
+    end : Follower
+        The follower's end there, without the groove's clearance.
+    key : str
+        Name of the wall; empty for the only touch.
+    across : float, rad
+        How far the cam is turned on where the touch is on the other side of the axis: 0 or pi.
+    """
+
+    wall: Wall
+    end: Follower
+    key: str = ""
+    across: float = 0.0
+
+    def _state(self, x: Array) -> tuple[Array, Array, Array]:
+        """Return position of the wall's follower, its lift and velocity."""
+        if self.across:
+            x = (x + self.across) % self.wall.program.period
+        s, ds = self.wall.program.derivatives(x, 1)
+        return x, s, ds
+
+    def push(self, x: Array, ds: Array, support: Support, share: float) -> tuple[Push, Array]:
+        """Return the force of the wall, and the speed of sliding.
+
+        Parameters
+        ----------
+        x, ds : (n,) arrays
+            Positions of the driver, and velocities of the follower.
+        support : Support
+            What holds the follower.
+        share : float
+            Tangential force over normal force.
+
+        Returns
+        -------
+        push : Push
+            Its force.
+        slide : (n,) array, mm per unit of x
+            Velocity of the cam past the follower's end, along the tangent.
+        """
+        _, s, own = self._state(x)
+        wall, touching = self.wall, self.wall.follower
+        inset = wall.side * touching.radius
+        at, tangent = touching.trace(wall.carrier, np.zeros_like(x), touching.start + s, own, inset)
+        if self.across:
+            at, tangent = -at, -tangent
+        normal = wall.side * 1j * tangent
+        past = wall.carrier.passing(at) - support.velocity(at) * ds
+        slide = (past * np.conj(tangent)).real
+        unit = normal + share * np.sign(slide) * tangent
+        return Push(at=at, unit=unit, normal=normal), slide
+
+    def curvature(self, x: Array) -> Array:
+        """Return the relative curvature of wall and follower, 1/mm; nan where undercut."""
+        x, _, _ = self._state(x)
+        speed = self.wall.curve.contact(x, 0).speed.c[0] + np.zeros_like(x)
+        with np.errstate(divide="ignore"):
+            bent = 1.0 / self.wall.radii(x) + self.end.bend
+        return np.where(speed > 0.0, bent, np.nan)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Statics(ShortRepr):
+    """Forces at positions of the driver; nan where nothing carries.
+
+    Parameters
+    ----------
+    force : (n,) array, N
+        Normal force.
+    carrying : (n,) int array
+        Number of the touch that carries; -1 where none does.
+    locked, lifted : (n,) bool arrays
+        Where the follower is locked, and where no touch holds it.
+    reserve : (n,) array
+        Share of the normal force's effect that friction leaves, where the touch would carry.
+    torque : (n,) array, N mm or N
+        Of the driver, with all friction.
+    against : (n,) array, N or N mm
+        Loads against a rise.
+    useful : (n,) array, N mm or N
+        Work of the loads, per unit of the driver's position.
+    lost : dict of str to (n,) array, N mm or N
+        Work of friction by places: contact, support, bearing.
+    reactions : dict of str to (n,) array
+        Of the support, as columns of output, in the frame of a cam that turns counter-clockwise.
+    bearing : (n,) complex array, N
+        Force of the cam's bearing on the cam, in that frame.
+    curvature : (n,) array, 1/mm
+        Relative curvature at the touch that carries.
+    """
+
+    force: Array
+    carrying: Ints
+    locked: Mask
+    lifted: Mask
+    reserve: Array
+    torque: Array
+    against: Array
+    useful: Array
+    lost: dict[str, Array]
+    reactions: dict[str, Array]
+    bearing: Array
+    curvature: Array
+
+    @property
+    def efficiency(self) -> Array:
+        """Work that arrives over work that is put in; nan at rest and where all is lost."""
+        put, got = self.torque, self.useful
+        forward, backward = (put > 0.0) & (got > 0.0), (put < 0.0) & (got < 0.0)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.where(forward, got / put, np.where(backward, put / got, np.nan))
+
+
+def sense_of(ds: Array) -> Array:
+    """Return the sign of velocities (n,), 0 at rest."""
+    return np.where(np.abs(ds) <= _AT_REST * np.abs(ds).max(initial=0.0), 0.0, np.sign(ds))
+
+
+def solve(
+    touches: Sequence[Touch],
+    support: Support,
+    x: Array,
+    ds: Array,
+    burden: Burden,
+    friction: FrictionSpec,
+    share: Callable[[float], float],
+) -> Statics:
+    """Return the forces of a cam on its follower.
+
+    Parameters
+    ----------
+    touches : sequence of Touch
+        Where the cam can press.
+    support : Support
+        What holds the follower.
+    x, ds : (n,) arrays
+        Positions of the driver, and velocities of the follower.
+    burden : Burden
+        What has to be moved.
+    friction : FrictionSpec
+        Coefficients.
+    share : callable
+        ``share(radius)`` returns tangential over normal force of an end of that radius, mm.
+
+    Returns
+    -------
+    Statics
+    """
+    count = x.shape
+    force, reserve = np.full(count, np.nan), np.full(count, np.nan)
+    carrying, locked = np.full(count, -1), np.zeros(count, dtype=bool)
+    lost = {name: np.zeros(count) for name in ("contact", "support", "bearing")}
+    torque, bearing = np.zeros(count), np.zeros(count, dtype=complex)
+    curvature, reactions = np.full(count, np.nan), dict[str, Array]()
+    for number, touch in enumerate(touches):
+        part = share(touch.end.radius)
+        push, slide = touch.push(x, ds, support, part)
+        asked = burden.against * support.lifting(push.normal, push.at) >= 0.0
+        found, left = support.normal_force(push, burden, friction)
+        stuck = asked & (left <= 0.0)
+        carries = asked & (left > 0.0) & (found >= 0.0) & (carrying < 0)
+        reserve = np.where(asked, left, reserve)
+        locked |= stuck
+        carrying[carries] = number
+        force = np.where(carries, found, force)
+        carrier, pressed = touch.wall.carrier, np.where(carries, found, 0.0)
+        arm = (push.unit * np.conj(carrier.passing(push.at))).real
+        drag = carrier.drag(pressed * push.unit, friction)
+        torque += pressed * arm + drag
+        bearing += pressed * push.unit
+        lost["bearing"] += drag
+        lost["contact"] += part * pressed * np.abs(slide)
+        rubbed = support.friction_of(pressed, push, burden, friction) * np.abs(ds)
+        lost["support"] += np.where(carries, rubbed, 0.0)
+        for name, values in support.reactions(pressed, push, burden, friction).items():
+            held = reactions.setdefault(name, np.full(count, np.nan))
+            held[carries] = values[carries]
+        curvature = np.where(carries, touch.curvature(x), curvature)
+    none = carrying < 0
+    for values in (torque, *lost.values()):
+        values[none] = np.nan
+    bearing[none] = np.nan
+    return Statics(
+        force=force,
+        carrying=carrying,
+        locked=locked & none,
+        lifted=none & ~locked,
+        reserve=reserve,
+        torque=torque,
+        against=burden.against,
+        useful=burden.against * ds,
+        lost=lost,
+        reactions=reactions,
+        bearing=bearing,
+        curvature=curvature,
+    )

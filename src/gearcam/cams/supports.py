@@ -1,0 +1,287 @@
+"""What holds a follower: a guide or a pivot, and the force of the cam that moves it there.
+
+The force of the cam on the follower is ``N*r``: N is the normal force, and r the unit normal with
+the share of friction at the contact. The loads against a rise are Q, in N of a guided follower and
+in N mm of a swinging one; F is their resultant, as far as it loads the support. With c, what a unit
+of N does for a rise, and sigma, the sign of the velocity,
+
+    c*N - Q - sigma*G(N) = 0,
+
+where G is the friction of the support:
+
+==================== ========================================================
+guide of length b    ``mu*max(abs(R), 2*abs(M)/b)``: R across, M about its middle
+pivot of radius r    ``r*sin(arctan(mu))*abs(N*r + F)``
+==================== ========================================================
+
+The first covers both cases of a guide: its ends press on the same side, or on opposite sides if
+``abs(M/R) > b/2``. Both equations have closed solutions: the guide's is piecewise linear, the
+pivot's quadratic. The *reserve* is what is left of c by friction; where it is gone the follower is
+locked, whatever the force.
+
+Sources: 000 eqs. (3.65) to (3.69), (3.90) to (3.99), (3.101) to (3.104); derived anew.
+
+Depends on numeric; numpy only.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+
+import numpy as np
+
+from gearcam.base.display import ShortRepr
+from gearcam.mechanics.friction import FrictionSpec
+from gearcam.numeric.arrays import Array, Plane
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Push:
+    """The force of a cam on its follower, before it is known how large it is.
+
+    Parameters
+    ----------
+    at : (n,) complex array, mm
+        Points of contact in the fixed frame.
+    unit : (n,) complex array
+        Force for a normal force of 1, with friction at the contact.
+    normal : (n,) complex array
+        The normal, from the cam to the follower.
+    """
+
+    at: Plane
+    unit: Plane
+    normal: Plane
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Burden:
+    """What a cam has to move.
+
+    Parameters
+    ----------
+    against : (n,) array, N or N mm
+        Loads against a rise.
+    resultant : (n,) complex array, N
+        Force on the support beside that of the cam.
+    sense : (n,) array
+        Sign of the velocity.
+    """
+
+    against: Array
+    resultant: Plane
+    sense: Array
+
+
+class Support(ABC, ShortRepr):
+    """What holds a follower."""
+
+    @abstractmethod
+    def velocity(self, z: Plane) -> Plane:
+        """Return velocities of points z of the follower, mm per unit of lift."""
+
+    @abstractmethod
+    def hurrying(self, z: Plane, ds: Array, d2s: Array) -> Plane:
+        """Return accelerations of points z of the follower, mm per square unit of the driver.
+
+        Parameters
+        ----------
+        z : (n,) complex array, mm
+            The points.
+        ds, d2s : (n,) arrays
+            Derivatives of the lift.
+        """
+
+    @abstractmethod
+    def normal_force(
+        self, push: Push, burden: Burden, friction: FrictionSpec
+    ) -> tuple[Array, Array]:
+        """Return the normal force, N, and the reserve.
+
+        Parameters
+        ----------
+        push : Push
+            The force of the cam.
+        burden : Burden
+            What it has to move.
+        friction : FrictionSpec
+            Coefficients of friction.
+
+        Returns
+        -------
+        force : (n,) array, N
+            Negative where the cam would have to pull; of no meaning where the reserve is not
+            positive.
+        reserve : (n,) array
+            Share of the normal force's effect that friction leaves.
+        """
+
+    @abstractmethod
+    def friction_of(
+        self, force: Array, push: Push, burden: Burden, friction: FrictionSpec
+    ) -> Array:
+        """Return the friction of the support, N or N mm.
+
+        Parameters
+        ----------
+        force : (n,) array, N
+            Normal force of the `push`, which moves the `burden` against `friction`.
+        """
+
+    @abstractmethod
+    def reactions(
+        self, force: Array, push: Push, burden: Burden, friction: FrictionSpec
+    ) -> dict[str, Array]:
+        """Return what the support exerts on the follower, as columns of output.
+
+        Parameters
+        ----------
+        force : (n,) array, N
+            Normal force of the `push`, which moves the `burden` against `friction`.
+        """
+
+    def lifting(self, direction: Plane, at: Plane) -> Array:
+        """Return what unit forces in a direction at points (n,) do for a rise, 1 or mm."""
+        return (direction * np.conj(self.velocity(at))).real
+
+
+@dataclass(frozen=True, kw_only=True)
+class StraightGuide(Support):
+    """A straight guide.
+
+    Parameters
+    ----------
+    direction : complex
+        Unit vector of a rise.
+    middle : complex, mm
+        Middle of the guide.
+    """
+
+    direction: complex
+    middle: complex
+
+    def velocity(self, z: Plane) -> Plane:
+        """Return the direction (see `Support.velocity`)."""
+        return np.full(np.shape(z), self.direction)
+
+    def hurrying(self, z: Plane, ds: Array, d2s: Array) -> Plane:  # noqa: ARG002
+        """Return accelerations along the guide (see `Support.hurrying`)."""
+        return np.asarray(self.direction * d2s, dtype=np.complex128)
+
+    def _sideways(self, push: Push, burden: Burden) -> tuple[Array, Array, Array]:
+        """Return forces across the guide by N and of loads, and the moment about it by N."""
+        across = np.conj(-1j * self.direction)
+        moment = (np.conj(push.at - self.middle) * push.unit).imag
+        return (push.unit * across).real, (burden.resultant * across).real, moment
+
+    def normal_force(
+        self, push: Push, burden: Burden, friction: FrictionSpec
+    ) -> tuple[Array, Array]:
+        """Return force and reserve (see `Support.normal_force`)."""
+        side, loaded, moment = self._sideways(push, burden)
+        plain = self.lifting(push.normal, push.at)
+        upward = np.sign(plain)
+        effect, load = upward * self.lifting(push.unit, push.at), upward * burden.against
+        drag = upward * burden.sense * friction.guide
+        forms = [(side, loaded)]
+        if friction.guide_length:
+            forms.append((2.0 / friction.guide_length * moment, np.zeros_like(moment)))
+        signed = [(sign * by, sign * of) for by, of in forms for sign in (1.0, -1.0)]
+        left = np.array([effect - drag * by for by, _ in signed])
+        with np.errstate(divide="ignore", invalid="ignore"):
+            roots = np.array([load + drag * of for _, of in signed]) / left
+        roots = np.where(left > 0.0, roots, np.inf)
+        hardest = np.max(roots, axis=0, where=np.isfinite(roots), initial=-np.inf)
+        force = np.where(drag >= 0.0, hardest, roots.min(axis=0))
+        least = np.where(drag > 0.0, left.min(axis=0), effect)
+        return force, least / np.abs(plain)
+
+    def friction_of(
+        self, force: Array, push: Push, burden: Burden, friction: FrictionSpec
+    ) -> Array:
+        """Return the friction in the guide, N (see `Support.friction_of`)."""
+        side, loaded, moment = self._sideways(push, burden)
+        pressed = np.abs(side * force + loaded)
+        if friction.guide_length:
+            pressed = np.maximum(pressed, 2.0 / friction.guide_length * np.abs(moment * force))
+        return friction.guide * pressed * np.abs(burden.sense)
+
+    def reactions(
+        self, force: Array, push: Push, burden: Burden, friction: FrictionSpec
+    ) -> dict[str, Array]:
+        """Return forces across and their moment, with a length at both ends (see `Support`)."""
+        side, loaded, moment = self._sideways(push, burden)
+        across, turning = -(side * force + loaded), -moment * force
+        columns = {"guide_n": across, "guide_moment_nmm": turning}
+        if friction.guide_length:
+            pair = turning / friction.guide_length
+            columns |= {"guide_low_n": 0.5 * across + pair, "guide_high_n": 0.5 * across - pair}
+        return columns
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pivot(Support):
+    """A pivot about which the follower swings.
+
+    Parameters
+    ----------
+    at : complex, mm
+        The pivot.
+    spin : float
+        Turn of the follower per unit of lift.
+    """
+
+    at: complex
+    spin: float
+
+    def velocity(self, z: Plane) -> Plane:
+        """Return velocities around the pivot (see `Support.velocity`)."""
+        return 1j * self.spin * (z - self.at)
+
+    def hurrying(self, z: Plane, ds: Array, d2s: Array) -> Plane:
+        """Return accelerations around the pivot and towards it (see `Support.hurrying`)."""
+        return (1j * self.spin * d2s - (self.spin * ds) ** 2) * (z - self.at)
+
+    @staticmethod
+    def _circle(friction: FrictionSpec) -> float:
+        """Return the radius of the circle of friction, mm."""
+        return friction.journal * math.sin(math.atan(friction.joint))
+
+    def normal_force(
+        self, push: Push, burden: Burden, friction: FrictionSpec
+    ) -> tuple[Array, Array]:
+        """Return force and reserve (see `Support.normal_force`)."""
+        plain = self.lifting(push.normal, push.at)
+        upward = np.sign(plain)
+        effect, load = upward * self.lifting(push.unit, push.at), upward * burden.against
+        sense, circle, other = upward * burden.sense, self._circle(friction), burden.resultant
+        square, size = circle**2 * np.abs(sense), np.abs(push.unit)
+        a = effect**2 - square * size**2
+        b = effect * load + square * (push.unit * np.conj(other)).real
+        # b^2 - a*c with its factor taken out: without friction nothing is lost to rounding
+        inside = np.abs(effect * other + load * push.unit) ** 2
+        inside = inside - square * (push.unit * np.conj(other)).imag ** 2
+        with np.errstate(divide="ignore", invalid="ignore"):
+            force = (b + sense * circle * np.sqrt(np.maximum(inside, 0.0))) / a
+        least = effect - np.maximum(sense, 0.0) * circle * size
+        return force, least / np.abs(plain)
+
+    def friction_of(
+        self, force: Array, push: Push, burden: Burden, friction: FrictionSpec
+    ) -> Array:
+        """Return the moment of friction in the pivot, N mm (see `Support.friction_of`)."""
+        pressed = np.abs(force * push.unit + burden.resultant)
+        return self._circle(friction) * pressed * np.abs(burden.sense)
+
+    def reactions(
+        self,
+        force: Array,
+        push: Push,
+        burden: Burden,
+        friction: FrictionSpec,  # noqa: ARG002
+    ) -> dict[str, Array]:
+        """Return the force of the pivot and its components (see `Support.reactions`)."""
+        reaction = -(force * push.unit + burden.resultant)
+        return {"pivot_n": np.abs(reaction), "pivot_x_n": reaction.real, "pivot_y_n": reaction.imag}

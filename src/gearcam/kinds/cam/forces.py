@@ -1,0 +1,353 @@
+"""The study of forces of a cam: statics of its follower, contact pressure, springs."""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from gearcam.base.errors import DesignError, InfeasibleError, Problem, beyond_limit
+from gearcam.base.facts import Fact, extent
+from gearcam.base.findings import run_checks
+from gearcam.base.quantities import TORQUE
+from gearcam.cams.burdens import Loads
+from gearcam.cams.force_checks import Loaded
+from gearcam.cams.spec import FORCES
+from gearcam.cams.statics import Statics, solve
+from gearcam.kinds.cam.charts import knots_of, places_of
+from gearcam.mechanics.hertz import half_width, line_pressure
+from gearcam.numeric.piecewise import with_both_sides
+from gearcam.pictures.charts import Chart, Limit, Line
+from gearcam.results.result import StudyResult
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from gearcam.kinds.cam.build import CamResult
+    from gearcam.numeric.arrays import Array
+    from gearcam.results.kind import Study
+    from gearcam.results.result import Progress
+
+Tree = dict[str, Any]
+
+_MIRRORED: Final = (
+    "guide_n", "guide_moment_nmm", "guide_low_n", "guide_high_n", "pivot_x_n",
+)  # fmt: skip
+"""Reactions that change their sign in the mirror image, which a cam that turns clockwise is."""
+
+_TOLD: Final = 0.1
+"""Work over the largest, per step, above which an efficiency is told: near rest it is always 0."""
+
+
+def demand(design: Any) -> None:
+    """Refuse a design whose masses or springs need a speed that is missing.
+
+    Raises
+    ------
+    DesignError
+        If it is missing.
+    """
+    if design.drive.speed is not None:
+        return
+    key = "drive." + design.drive.key
+    solved = any(one.solved for one in design.spring)
+    if design.mass and (solved or not design.gravity.given):
+        what = "is missing: a mass acts by its inertia, which depends on the speed"
+        near = "a speed above 0, or [gravity] for the weight alone"
+        if solved:
+            what, near = "is missing: a spring is solved for a speed", "a speed above 0"
+        problem = Problem(what, file=design.source, key=key, allowed=near)
+        raise DesignError([problem])
+
+
+def loads_of(result: CamResult) -> Loads:
+    """Return what acts on the follower of a cam, its `result`, beside the cam.
+
+    Raises
+    ------
+    InfeasibleError
+        If no stiffness of a spring keeps the follower on the cam.
+    """
+    design, motion = result.design, result.cam.motions[0]
+    pull = design.gravity.pull
+    follower, highest = motion.follower, motion.program.range[1]
+    loads = Loads(
+        program=motion.program,
+        follower=follower,
+        support=follower.held(design.friction, highest),
+        speed=design.drive.speed,
+        springs=design.spring,
+        given=design.load,
+        masses=design.mass,
+        pull=-pull.conjugate() if motion.clockwise else pull,
+    )
+    if math.isinf(loads.solved.get("stiffness", 0.0)):
+        raise _no_stiffness(loads)
+    return loads
+
+
+def _no_stiffness(loads: Loads) -> InfeasibleError:
+    """Return the error for a spring that has no force where it is needed, at zero lift."""
+    number = next(k for k, one in enumerate(loads.springs) if one.rate == "solve")
+    spring = loads.springs[number]
+    given = spring.force if isinstance(spring.force, float) else 0.0
+    name, unit, scale = "preload_n", "N", 1.0
+    if loads.follower.angular:
+        name, unit, scale = "preload_nm", "N m", 1e-3
+    what = "no stiffness keeps the follower on the cam: at zero lift only a preload does"
+    needed = scale * (given + loads.preload_at_rest)
+    where, rule = f"spring[{number}].{name}", "the limit is the least preload"
+    return beyond_limit(what, where, scale * given, needed, rule, unit=unit)
+
+
+def places(result: CamResult) -> Array:
+    """Return the positions of the driver that are studied, on both sides of knots."""
+    period, count = result.program.period, result.design.forces.steps
+    even = period * np.arange(count + 1.0) / count
+    even[-1] = np.nextafter(period, 0.0)
+    return with_both_sides(even, np.asarray(result.program.knots))
+
+
+def study_forces(result: CamResult, study: Study, progress: Progress | None) -> StudyResult:
+    """Return the study of the forces of a cam (see `gearcam.cams.statics`).
+
+    Parameters
+    ----------
+    result : CamResult
+        The cam.
+    study : Study
+        The entry of the study.
+    progress : callable, optional
+        Called with what is computed, the number done and their total.
+
+    Returns
+    -------
+    StudyResult
+        Its rows are those of ``forces.csv``.
+
+    Raises
+    ------
+    InfeasibleError
+        If the cam is impossible, or no stiffness keeps the follower on it.
+    """
+    demand(result.design)
+    if progress is not None:
+        progress("forces", 0, 1)
+    design, cam = result.design, result.cam
+    with result.stage("forces"):
+        loads = loads_of(result)
+        x = places(result)
+        motion = loads.motion(x)
+        statics = solve(
+            cam.touches,
+            loads.support,
+            x,
+            motion[2],
+            loads.burden(motion),
+            design.friction,
+            partial(design.follower.dragged, design.friction),
+        )
+        per_width = statics.force / result.form.contact_width
+        pressure = line_pressure(per_width, statics.curvature, design.material)
+        width = half_width(per_width, statics.curvature, design.material)
+        only_presses = len(cam.touches) == 1
+        release = loads.release if only_presses else None
+        _, scale = design.drive.effort
+        turns = scale != 1.0
+        loaded = Loaded(
+            x=x,
+            driver=result.driver,
+            statics=statics,
+            pressure=pressure,
+            yields=design.material.weakest,
+            torque=scale * statics.torque if turns else np.full(x.shape, np.nan),
+            release=design.drive.words(release[0]) if release else "",
+        )
+        found = run_checks(FORCES, loaded, design.limits)
+    columns = _columns(result, x, statics, pressure, width)
+    return StudyResult(
+        result=result,
+        study=study,
+        file="forces.csv",
+        table=columns,
+        group=_facts(result, loads, loaded, release),
+        study_findings=found,
+        drawn=partial(_charts, result, columns),
+    )
+
+
+def _effort(result: CamResult) -> tuple[str, float]:
+    """Return name and factor of the column of loads."""
+    return ("load_nm", 1e-3) if result.follower.angular else ("load_n", 1.0)
+
+
+def _columns(
+    result: CamResult, x: Array, statics: Statics, pressure: Array, width: Array
+) -> dict[str, Array]:
+    """Return the columns of ``forces.csv``."""
+    driver, drive, motion = result.driver, result.design.drive, result.cam.motions[0]
+    (load, load_scale), (effort, scale) = _effort(result), drive.effort
+    sign = -1.0 if motion.clockwise else 1.0
+    columns = {
+        driver.column: driver.scale * x,
+        load: load_scale * statics.against,
+        "normal_n": statics.force,
+        "wall": statics.carrying + 1,
+        **{
+            name: (sign if name in _MIRRORED else 1.0) * values
+            for name, values in statics.reactions.items()
+        },
+        "bearing_n": np.abs(statics.bearing),
+        effort: scale * statics.torque,
+        "efficiency": statics.efficiency,
+        "reserve": statics.reserve,
+        "pressure_mpa": pressure,
+        "half_width_mm": width,
+    }
+    if drive.speed is not None:
+        watts = 1e-3 * drive.speed
+        columns["power_w"] = watts * statics.torque
+        columns["losses_w"] = watts * sum(statics.lost.values())
+    return {
+        name: values if values.dtype.kind == "i" else np.ma.masked_invalid(values)
+        for name, values in columns.items()
+    }
+
+
+def _extreme(loaded: Loaded, values: Array, label: str, unit: str) -> Fact | None:
+    """Return the range of some values, with the place of the largest, as a fact."""
+    if np.isnan(values).all():
+        return None
+    ends = extent(float(np.nanmin(values)), float(np.nanmax(values)))
+    place = f"largest {loaded.at(int(np.nanargmax(values)))}"
+    return Fact(ends, label, place=place, unit=unit, shown=True)
+
+
+def _facts(
+    result: CamResult, loads: Loads, loaded: Loaded, release: tuple[float, float] | None
+) -> Tree:
+    """Return the facts of the study."""
+    statics, design = loaded.statics, result.design
+    effort, scale = design.drive.effort
+    tree: Tree = {
+        "normal_n": _extreme(loaded, statics.force, "normal force", "N"),
+        effort: _extreme(
+            loaded,
+            scale * statics.torque,
+            "torque of the cam" if scale != 1.0 else "force of the drive",
+            "N m" if scale != 1.0 else "N",
+        ),
+        "efficiency": _efficiency(loaded),
+        "reserve": _least(loaded, statics.reserve, "share that friction leaves"),
+        "pressure_mpa": _most(loaded, loaded.pressure, "contact pressure"),
+        "locked": bool(statics.locked.any()),
+        "lifted": bool(statics.lifted.any()),
+        "reversals": _reversals(statics),
+        "spring": _spring(loads) or None,
+        "friction": Fact(
+            "none of " + ", ".join(design.friction.left_out), "friction left out", shown=True
+        )
+        if design.friction.left_out
+        else None,
+    }
+    if release is not None:
+        speed, where = release
+        quantity = design.drive.quantity
+        tree[f"release_speed{quantity.suffix}"] = Fact(
+            speed / quantity.factor,
+            "speed at which the follower lifts off",
+            place=result.driver.place(where),
+            unit=quantity.unit,
+            shown=True,
+        )
+    return tree
+
+
+def _least(loaded: Loaded, values: Array, label: str) -> Fact | None:
+    if np.isnan(values).all():
+        return None
+    index = int(np.nanargmin(values))
+    return Fact(float(values[index]), label, place=loaded.at(index), unit="")
+
+
+def _most(loaded: Loaded, values: Array, label: str) -> Fact | None:
+    if np.isnan(values).all():
+        return None
+    index = int(np.nanargmax(values))
+    return Fact(
+        float(values[index]), f"largest {label}", place=loaded.at(index), unit="MPa", shown=True
+    )
+
+
+def _efficiency(loaded: Loaded) -> Tree | None:
+    """Return the overall efficiency, of the work against loads, and the least one."""
+    statics = loaded.statics
+    driven = (statics.useful > 0.0) & (statics.torque > 0.0)
+    if not driven.any():
+        return None
+    got = _integral(loaded.x, np.where(driven, statics.useful, 0.0))
+    put = _integral(loaded.x, np.where(driven, statics.torque, 0.0))
+    strong = statics.useful > _TOLD * np.nanmax(np.abs(statics.useful))
+    least = np.where(driven & strong, statics.efficiency, np.nan)
+    return {
+        "overall": Fact(got / put, "efficiency against the loads", unit="", shown=True),
+        "least": _least(loaded, least, "least efficiency"),
+    }
+
+
+def _integral(x: Array, y: Array) -> float:
+    return float(np.sum(0.5 * (y[1:] + y[:-1]) * np.diff(x)))
+
+
+def _reversals(statics: Statics) -> int | None:
+    """Return how often the follower changes walls; None with one wall."""
+    walls = statics.carrying[statics.carrying >= 0]
+    changes = int(np.count_nonzero(np.diff(walls)))
+    return changes or None
+
+
+def _spring(loads: Loads) -> Tree:
+    """Return the solved values of springs as facts."""
+    swings, made = loads.follower.angular, {}
+    names = {"preload": "preload_nm", "stiffness": "stiffness_nm_rad"}
+    scale = 1e-3
+    if not swings:
+        names, scale = {"preload": "preload_n", "stiffness": "stiffness_n_mm"}, 1.0
+    for what, value in loads.solved.items():
+        label = f"least {what} of the spring"
+        made[names[what]] = Fact(scale * value, label, shown=True)
+    return made
+
+
+_TITLES: Final = {
+    "normal_n": ("Normal force between cam and follower", "normal force, N"),
+    "torque_nm": ("Torque of the cam", "torque, N m"),
+    "drive_n": ("Force that drives the cam", "force, N"),
+    "pressure_mpa": ("Contact pressure (Hertz)", "contact pressure, MPa"),
+    "efficiency": ("Efficiency", "efficiency"),
+}
+"""Titles and axes of charts by columns."""
+
+
+def _charts(result: CamResult, columns: Mapping[str, Any]) -> dict[str, Chart]:
+    """Return charts of forces over the driver."""
+    column, label = places_of(result)
+    limits = {"pressure_mpa": result.design.limits.get("contact_pressure", 0.0)}
+    limits["torque_nm"] = result.design.limits.get("drive_torque", 0.0) / TORQUE.factor
+    charts = {}
+    for name, (title, axis) in _TITLES.items():
+        values = np.ma.filled(columns[name], np.nan) if name in columns else None
+        if values is None or not np.isfinite(values).any():
+            continue
+        most = limits.get(name)
+        charts[name.partition("_")[0]] = Chart(
+            title=title,
+            x=label,
+            y=axis,
+            lines=(Line(label=axis.partition(",")[0], x=np.asarray(columns[column]), y=values),),
+            limits=(Limit(label="limit", value=most),) if most else (),
+            marks=knots_of(result),
+        )
+    return charts

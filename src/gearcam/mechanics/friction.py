@@ -1,0 +1,84 @@
+"""The table ``[friction]``: coefficients, and the sizes of bearings that friction needs."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from gearcam.base.display import ShortRepr
+from gearcam.base.quantities import LENGTH, LONGEST, param, positive_length
+from gearcam.base.rules import needs
+
+
+def _coefficient(*, doc: str) -> Any:
+    return param(default=0.0, ge=0, le=2, doc=doc)
+
+
+@dataclass(frozen=True, kw_only=True)
+class FrictionSpec(ShortRepr):
+    """Coefficients of friction, 0 where left out, and sizes of bearings.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> friction = gc.FrictionSpec(roller=0.1, journal_radius=(10.0, 3.0))
+    >>> round(friction.rolling(8.0), 6)  # of a roller of 8 mm, at its circumference
+    0.03734
+    """
+
+    joint: float = _coefficient(doc="of journals: shaft of the cam, pivot of a follower")
+    guide: float = _coefficient(doc="of straight guides")
+    roller: float = _coefficient(doc="of a roller on its pin")
+    flank: float = _coefficient(doc="of surfaces that slide on each other")
+    journal_radius: tuple[float, float] | None = param(
+        LENGTH,
+        default=None,
+        gt=0,
+        le=LONGEST,
+        both=True,
+        example=[10, 3],
+        doc="radius of the journals of shaft and pivot, and that of a roller's pin",
+    )
+    guide_length: float | None = positive_length(
+        example=40, doc="length of the guide of a translating follower"
+    )
+    guide_at: float | None = param(
+        LENGTH,
+        default=None,
+        ge=-LONGEST,
+        le=LONGEST,
+        example=90,
+        doc="middle of the guide, along the follower from the cam's axis; if left out the guide "
+        "begins where the follower's end is at the highest lift",
+    )
+
+    rules = (
+        needs("joint", "journal_radius"),
+        needs("roller", "journal_radius"),
+        needs("guide", "guide_length"),
+    )
+
+    @property
+    def journal(self) -> float:
+        """Radius of shaft and pivot, mm; 0 if none is given."""
+        return 0.0 if self.journal_radius is None else self.journal_radius[0]
+
+    def rolling(self, radius: float) -> float:
+        """Return the share of its load that turns a roller, at its circumference.
+
+        Parameters
+        ----------
+        radius : float, mm
+            Of the roller.
+        """
+        if not self.roller or self.journal_radius is None:
+            return 0.0
+        share = self.journal_radius[1] / radius * math.sin(math.atan(self.roller))
+        return math.tan(math.asin(min(share, 1.0)))
+
+    @property
+    def left_out(self) -> tuple[str, ...]:
+        """Names of coefficients that are 0."""
+        names = ("joint", "guide", "roller", "flank")
+        return tuple(name for name in names if not getattr(self, name))

@@ -1,0 +1,202 @@
+"""The table ``[[load]]``: what a mechanism works against."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, ClassVar, Final
+
+import numpy as np
+
+from gearcam.base.display import ShortRepr
+from gearcam.base.numerals import formatted
+from gearcam.base.quantities import ANGLE, FORCE, LENGTH, LONGEST, TEXT, TORQUE, Row, param
+from gearcam.base.rules import Breach, exactly_one, needs
+from gearcam.numeric.arrays import Array
+
+OF_LIFT: Final = "s"
+"""Variable of formulas over the lift, mm or rad."""
+
+_MOST: Final = 1e9
+
+
+@dataclass(frozen=True, kw_only=True)
+class LoadSpec(ShortRepr):
+    """A load on the follower: a force, of an oscillating follower a torque.
+
+    It is positive where it presses the follower onto the cam, or, with `against`, always opposes
+    the motion. It may be constant, a formula in the cam angle theta, rad, or in the lift s, mm or
+    rad, or rows that are joined by straight lines.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.LoadSpec(force=120.0, start=1.0, end=2.0).at([0.5, 1.5], [0.0, 0.0], [1.0, 1.0])
+    array([  0., 120.])
+    """
+
+    _angle: ClassVar[str] = "theta"
+    _whole: ClassVar[float] = 2.0 * math.pi
+    _unit: ClassVar[tuple[float, str]] = (math.degrees(1.0), "deg")
+
+    on: str = param(TEXT, default="follower", choices=("follower",), doc="member that is loaded")
+    force: float | None = param(
+        FORCE, default=None, ge=-_MOST, le=_MOST, example=100, doc="constant force"
+    )
+    torque: float | None = param(
+        TORQUE, default=None, ge=-_MOST, le=_MOST, example=2, doc="constant torque"
+    )
+    formula: str | None = param(
+        TEXT,
+        default=None,
+        example="50 + 20*cos(theta)",
+        doc="force, N, or torque, N m, as a formula in the cam angle theta, rad (of a translating "
+        "cam the travel u, mm), or in the lift s, mm or rad",
+    )
+    table: Row | None = param(
+        default=None,
+        ge=-_MOST,
+        le=_MOST,
+        min_length=2,
+        example=[100, 250, 100],
+        doc="forces, N, or torques, N m, at the places of `at`, with straight lines between",
+    )
+    place: Row | None = param(
+        ANGLE, default=None, ge=0, le=360, min_length=2, word="at", example=[0, 180, 360],
+        doc="cam angles of the table, from 0 to 360",
+    )  # fmt: skip
+    start: float | None = param(
+        ANGLE, default=None, ge=0, le=360, word="from", example=90, doc="where the load begins"
+    )
+    end: float | None = param(
+        ANGLE, default=None, ge=0, le=360, word="to", example=180, doc="where the load ends"
+    )
+    against: bool = param(default=False, doc="whether the load always opposes the motion")
+
+    rules = (
+        exactly_one("force", "torque", "formula", "table"),
+        needs("table", "place"),
+        needs("place", "table"),
+        needs("start", "end"),
+        needs("end", "start"),
+    )
+
+    def problems(self) -> Iterator[Breach]:
+        """Yield contradictions: field, index, message, what is allowed."""
+        if self.formula is not None:
+            yield from self._formula_problems(self.formula)
+        if self.table is not None and self.place is not None:
+            yield from self._row_problems(self.table, self.place)
+
+    def _formula_problems(self, text: str) -> Iterator[Breach]:
+        from gearcam.laws.formula_syntax import FormulaError
+
+        try:
+            self._read(text)
+        except FormulaError as error:
+            place = "" if error.column is None else f"column {error.column}: "
+            yield "formula", None, f"{place}{error.what}", error.allowed
+
+    def _row_problems(self, table: Row, place: Row) -> Iterator[Breach]:
+        if len(table) != len(place):
+            what = f"{len(place)} values, but table has {len(table)}"
+            yield "place", None, what, "one for each value of the table"
+            return
+        back = np.flatnonzero(np.diff(place) < 0.0)
+        if back.size:
+            yield "place", int(back[0]) + 1, "is below the value before it", "rising values"
+        elif place[0] > 0.0:
+            yield "place", 0, "the table begins inside the turn", "0 as the first value"
+        elif self._whole and place[-1] < self._whole * (1.0 - 1e-12):
+            scale, unit = self._unit
+            last = f"{formatted(scale * self._whole)} {unit}"
+            yield "place", len(place) - 1, "the table ends inside the turn", f"{last} as the last"
+
+    def _read(self, text: str) -> Any:
+        """Return the formula's function of (angle or travel, lift), arrays (n,)."""
+        from gearcam.laws.formula_syntax import FormulaError, parse
+        from gearcam.numeric.jets import Jet
+
+        def values(made: Any, x: Array) -> Array:
+            found = made.evaluate(Jet([x]))
+            return np.asarray(found.c[0] if isinstance(found, Jet) else found) + np.zeros_like(x)
+
+        try:
+            made = parse(text, self._angle)
+            return lambda x, _: values(made, x)
+        except FormulaError as error:
+            try:
+                by_lift = parse(text, OF_LIFT)
+            except FormulaError:
+                raise error from None
+            return lambda _, s: values(by_lift, s)
+
+    def allowed_on(self, *, oscillating: bool) -> Iterator[Breach]:
+        """Yield a force on a follower that swings, or a torque on one that does not."""
+        if oscillating and self.force is not None:
+            yield "force", None, "acts on a follower that swings", "torque_nm about its pivot"
+        if not oscillating and self.torque is not None:
+            yield "torque", None, "acts on a follower that does not swing", "force_n along its axis"
+
+    def at(self, x: Any, s: Any, ds: Any, *, per: float = 1.0) -> Array:
+        """Return the load against a rise.
+
+        Parameters
+        ----------
+        x : (n,) array, rad or mm
+            Cam angles in the turn, or travels.
+        s, ds : (n,) array
+            Lifts and their derivatives.
+        per : float
+            Unit of formula and table in those inside: 1 of N, 1000 of N m.
+
+        Returns
+        -------
+        (n,) array, N or N mm
+        """
+        x, s = np.asarray(x, dtype=float), np.asarray(s, dtype=float)
+        given = self.torque if self.force is None else self.force
+        if self.formula is not None:
+            value = per * (self._read(self.formula)(x, s) + np.zeros_like(x))
+        elif self.table is not None:
+            value = per * np.interp(x, np.asarray(self.place), np.asarray(self.table))
+        else:
+            value = np.full(x.shape, given)
+        if self.start is not None and self.end is not None:
+            inside = (self.start <= x) & (x <= self.end)
+            around = (self.start <= x) | (x <= self.end)  # across the end of the turn
+            value = np.where(inside if self.start <= self.end else around, value, 0.0)
+        return np.abs(value) * np.sign(ds) if self.against else value
+
+
+@dataclass(frozen=True, kw_only=True)
+class SlideLoadSpec(LoadSpec):
+    """A load on the follower of a translating cam, over its travel.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.SlideLoadSpec(formula="10 + u").at([0.0, 5.0], [0.0, 0.0], [1.0, 1.0])
+    array([10., 15.])
+    """
+
+    _angle: ClassVar[str] = "u"
+    _whole: ClassVar[float] = 0.0
+
+    place: Row | None = param(
+        LENGTH,
+        default=None,
+        ge=0,
+        le=LONGEST,
+        min_length=2,
+        word="at",
+        example=[0, 60],
+        doc="travels of the table, from 0",
+    )
+    start: float | None = param(
+        LENGTH, default=None, ge=0, le=LONGEST, word="from", example=20, doc="where the load begins"
+    )
+    end: float | None = param(
+        LENGTH, default=None, ge=0, le=LONGEST, word="to", example=40, doc="where the load ends"
+    )

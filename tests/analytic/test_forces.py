@@ -1,0 +1,259 @@
+"""Forces of cams obey virtual work, keep the balance of power, and agree with closed forms."""
+
+from __future__ import annotations
+
+import math
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+import gearcam as gc
+from gearcam.cams.burdens import Loads
+from gearcam.cams.statics import Statics, solve
+from gearcam.kinds.cam.forces import loads_of, places
+
+CAM = """
+kind = "cam"
+name = "held"
+motion = [
+    { type = "rise", angle_deg = 120, law = "LAW", lift_mm = 12 },
+    { type = "dwell", angle_deg = 40 },
+    { type = "return", angle_deg = 130, law = "LAW" },
+    { type = "dwell", angle_deg = "rest" },
+]
+follower = { FOLLOWER }
+cam = { prime_radius_mm = 40 }
+"""
+
+ROLLER = 'type = "roller", roller_radius_mm = 9, offset_mm = 5'
+FLAT = 'type = "flat"'
+KNIFE = 'type = "point"'
+SWINGS = 'motion = "oscillating", pivot_distance_mm = 70'
+ARM = f'type = "roller", roller_radius_mm = 9, arm_mm = 62, {SWINGS}'
+SWUNG = f'type = "flat", {SWINGS}'
+
+FRICTION = {
+    "friction.joint": 0.1,
+    "friction.guide": 0.12,
+    "friction.roller": 0.15,
+    "friction.flank": 0.1,
+    "friction.journal_radius_mm": [8, 4],
+    "friction.guide_length_mm": 50,
+}
+
+PROFILES = (
+    "plate_cam_offset_roller", "plate_cam_oscillating", "groove_cam", "conjugate_cams", "yoke_cam",
+    "flat_follower", "tappet", "translating_cam", "eccentric_cam", "valve_lever",
+)  # fmt: skip
+
+
+def held(follower: str, law: str = "3-4-5", **changes: Any) -> Any:
+    text = CAM.replace("FOLLOWER", follower).replace("LAW", law)
+    if "oscillating" in follower:
+        text = text.replace("lift_mm = 12", "lift_deg = 11")
+    if "flat" in follower:
+        text = text.replace("prime_radius_mm = 40", "base_radius_mm = 40")
+    return gc.build(gc.loads(text).with_(changes))
+
+
+@cache
+def profile(name: str) -> Any:
+    return gc.load(f"profiles/{name}.toml")
+
+
+def loaded(name: str, **friction: float) -> Any:
+    """A profile that works against a force or torque that changes over its lift."""
+    design = profile(name)
+    swings = design.follower.oscillating
+    changes = {"load": [{"formula": "2 + 3*s" if swings else "80 + 5*s"}], **friction}
+    slides = design.form == "translating"
+    return gc.build(design.with_(changes | {"drive": {f"speed_{'mm_s' if slides else 'rpm'}": 90}}))
+
+
+def studied(result: Any) -> tuple[Statics, Loads, np.ndarray]:
+    loads, x = loads_of(result), places(result)
+    motion = loads.motion(x)
+    share = lambda radius: result.design.follower.dragged(result.design.friction, radius)  # noqa: E731
+    burden, friction = loads.burden(motion), result.design.friction
+    found = solve(result.cam.touches, loads.support, x, motion[2], burden, friction, share)
+    return found, loads, x
+
+
+@pytest.mark.parametrize("name", PROFILES)
+def test_without_friction_the_driver_does_the_virtual_work(name: str) -> None:
+    found, _, _ = studied(loaded(name))
+    assert not found.lifted.any()
+    assert found.torque == pytest.approx(found.useful, abs=1e-10 * abs(found.useful).max())
+
+
+@pytest.mark.parametrize("name", PROFILES)
+def test_power_in_is_power_out_and_losses(name: str) -> None:
+    found, _, _ = studied(loaded(name, **FRICTION))
+    moved = found.carrying >= 0
+    assert moved.mean() > 0.95
+    out = found.useful + sum(found.lost.values())
+    assert found.torque[moved] == pytest.approx(out[moved], abs=1e-9 * abs(out[moved]).max())
+    assert all((values[moved] >= 0.0).all() for values in found.lost.values())
+    assert sum(values[moved].sum() for values in found.lost.values()) > 0.0
+
+
+@pytest.mark.parametrize("name", PROFILES)
+def test_efficiencies_lie_between_0_and_1(name: str) -> None:
+    found, _, _ = studied(loaded(name, **FRICTION))
+    told = found.efficiency[np.isfinite(found.efficiency)]
+    assert told.size > 50
+    assert ((told > 0.0) & (told < 1.0)).all()
+
+
+@pytest.mark.parametrize(("at", "length"), [(60.0, 120.0), (150.0, 30.0)])
+def test_a_stem_with_a_roller_by_the_textbook(at: float, length: float) -> None:
+    """000 eqs. (3.67) and (3.69): both cases of the guide."""
+    friction = {"guide": 0.15, "guide_length_mm": length, "guide_at_mm": at}
+    result = held(ROLLER, friction=friction, load=[{"force_n": 200}])
+    found, _, x = studied(result)
+    motion = result.motion(x)
+    alpha = np.radians(np.abs(motion["pressure_angle_deg"]))
+    sense = np.sign(motion["velocity_mm_per_rad"])
+    height = math.sqrt(40.0**2 - 5.0**2) + motion["lift_mm"]
+    # the contact is below the centre, on the normal: the arm of the force is that of the centre
+    arm = np.abs(at - height)
+    tipping = arm > 0.5 * length
+    assert tipping.all() if length < 100 else not tipping.any()
+    mu = 0.15 * np.where(tipping, 2.0 * arm / length, 1.0)
+    expected = 200.0 / (np.cos(alpha) * (1.0 - sense * mu * np.tan(alpha)))
+    moving = np.abs(motion["velocity_mm_per_rad"]) > 1e-6
+    assert found.force[moving] == pytest.approx(expected[moving], rel=1e-9)
+
+
+def test_a_flat_face_by_the_textbook() -> None:
+    """000 eq. (3.109)."""
+    friction = {"guide": 0.15, "guide_length_mm": 60}
+    result = held(FLAT, friction=friction, load=[{"force_n": 200}])
+    found, _, x = studied(result)
+    velocity = result.motion(x)["velocity_mm_per_rad"]
+    moving = np.abs(velocity) > 1e-6
+    expected = 200.0 / (1.0 - 2.0 * 0.15 * velocity / 60.0)
+    assert found.force[moving] == pytest.approx(expected[moving], rel=1e-9)
+    assert found.reactions["guide_n"] == pytest.approx(0.0, abs=1e-9)
+    assert found.reactions["guide_moment_nmm"] == pytest.approx(-found.force * velocity, abs=1e-7)
+
+
+def test_an_arm_on_its_pin() -> None:
+    """The moment of the normal force less that of the circle of friction is the load's."""
+    friction = {"joint": 0.2, "journal_radius_mm": [9, 1]}
+    result = held(ARM, friction=friction, load=[{"torque_nm": 3.0}])
+    found, _, x = studied(result)
+    motion = result.motion(x)
+    alpha = np.radians(motion["pressure_angle_deg"])
+    circle = 9.0 * math.sin(math.atan(0.2))
+    sense = np.sign(motion["velocity_deg_per_rad"])
+    moving = np.abs(motion["velocity_deg_per_rad"]) > 1e-6
+    expected = 3000.0 / (62.0 * np.cos(alpha) - sense * circle)
+    assert found.force[moving] == pytest.approx(expected[moving], rel=1e-9)
+    assert found.reactions["pivot_n"] == pytest.approx(found.force, rel=1e-12)
+
+
+@pytest.mark.parametrize("follower", [ROLLER, KNIFE])
+def test_a_stem_locks_at_the_angle_of_the_textbook(follower: str) -> None:
+    """000 eq. (3.82): ``tan(alpha + phi) = 1/mu``, here of a guide that does not tip."""
+    steep = follower.replace("offset_mm = 5", "offset_mm = 0")
+    mu = 0.6
+    friction = {"guide": mu, "guide_length_mm": 2000, "guide_at_mm": 50, "flank": 0.3}
+    small = {"cam.prime_radius_mm": 10, "follower.roller_radius_mm": 2} if "roller" in steep else {}
+    small |= {"cam.prime_radius_mm": 10}
+    text = CAM.replace("FOLLOWER", steep).replace("LAW", "3-4-5")
+    text = text.replace("lift_mm = 12", "lift_mm = 60")
+    design = gc.loads(text).with_({**small, "friction": friction, "load": [{"force_n": 10}]})
+    result = gc.build(design)
+    found, _, x = studied(result)
+    motion = result.motion(x)
+    alpha = np.radians(motion["pressure_angle_deg"])
+    phi = 0.0 if "roller" in follower else math.atan(0.3)
+    rising = motion["velocity_mm_per_rad"] > 1e-9
+    expected = rising & (np.tan(alpha + phi) >= 1.0 / mu)
+    expected |= rising & (alpha + phi >= 0.5 * math.pi)
+    assert 0 < expected.sum() < rising.sum()
+    assert (found.locked == expected).all()
+
+
+def test_the_spring_of_a_harmonic_motion_by_its_closed_form() -> None:
+    """``m*h/2*(pi*w/beta)^2`` at the top, where the stiffness gives its share."""
+    speed, mass, stiffness = 1800.0 * math.pi / 30.0, 0.4, 8.0
+    changes = {
+        "mass": [{"mass_kg": mass}],
+        "spring": [{"stiffness_n_mm": stiffness, "preload_n": "solve"}],
+        "drive": {"speed_rpm": 1800},
+    }
+    result = held(ROLLER, "harmonic", **changes)
+    loads = loads_of(result)
+    rate = math.pi / math.radians(120.0) * speed
+    inertia = 1e-3 * mass * 6.0 * rate**2
+    assert loads.solved["preload"] == pytest.approx(inertia - stiffness * 12.0, rel=1e-9)
+    # with the solved preload it lets go at that very speed
+    assert loads.release is not None
+    assert loads.release[0] == pytest.approx(speed, rel=1e-9)
+    changes["spring"] = [{"stiffness_n_mm": "solve", "preload_n": 100}]
+    assert loads_of(held(ROLLER, "harmonic", **changes)).solved["stiffness"] == pytest.approx(
+        (inertia - 100.0) / 12.0, rel=1e-9
+    )
+
+
+@pytest.mark.parametrize("law", ["cycloidal", "3-4-5", "modified-sine"])
+def test_a_solved_spring_just_holds(law: str) -> None:
+    spring = [{"stiffness_n_mm": 3.0, "preload_n": "solve"}]
+    changes = {"mass": [{"mass_kg": 0.4}], "drive": {"speed_rpm": 900}, "spring": spring}
+    found, loads, _ = studied(held(ROLLER, law, **changes))
+    assert not found.lifted.any()
+    assert 0.0 <= np.nanmin(found.force) < 1e-3 * np.nanmax(found.force)
+    spring[0]["preload_n"] = 0.999 * loads.solved["preload"]
+    assert studied(held(ROLLER, law, **changes))[0].lifted.any()
+
+
+def test_gravity_weighs_a_follower() -> None:
+    """A stem that stands weighs m*g; an arm at an angle the moment of its centre of mass."""
+    changes = {"mass": [{"mass_kg": 2.0}], "gravity": {"direction_deg": -90}}
+    found, _, _ = studied(held(ROLLER, **changes))
+    assert found.against == pytest.approx(2.0 * 9.80665)
+    arm = {"mass": [{"mass_kg": 2.0, "inertia_kg_m2": 0.01, "center_mm": 30}]}
+    result = held(ARM, **(changes | arm))
+    found, loads, x = studied(result)
+    p = result.follower.start + loads.motion(x)[1]
+    assert found.against == pytest.approx(2.0 * 9.80665 * 30.0 * np.cos(p))
+
+
+@pytest.mark.parametrize("follower", [ROLLER, ARM, SWUNG, FLAT])
+def test_weight_and_inertia_load_the_support_and_its_friction(follower: str) -> None:
+    """A closed solution still balances if other forces press on guide or pivot."""
+    mass: dict[str, float] = {"mass_kg": 1.5}
+    mass |= {"inertia_kg_m2": 0.004, "center_mm": 40} if "oscillating" in follower else {}
+    changes = {"mass": [mass], "gravity": {"direction_deg": -40}, "drive": {"speed_rpm": 60}}
+    spring = {"preload_nm": 9.0} if "oscillating" in follower else {"preload_n": 90.0}
+    found, _, _ = studied(held(follower, **changes, **FRICTION, spring=[spring]))
+    assert not found.lifted.any()
+    assert not found.locked.any()
+    out = found.useful + sum(found.lost.values())
+    assert found.torque == pytest.approx(out, abs=1e-9 * abs(out).max())
+
+
+@pytest.mark.parametrize("name", ["groove_cam", "conjugate_cams", "yoke_cam"])
+def test_the_sign_of_the_load_tells_the_wall_that_carries(name: str) -> None:
+    result = gc.build(profile(name).with_({"load": [{"formula": "100*cos(theta)"}]}))
+    found, _, _ = studied(result)
+    assert set(found.carrying) == {0, 1}
+    assert ((found.against > 0.0) == (found.carrying == 0)).all()
+    assert (found.force >= 0.0).all()
+
+
+def test_a_mirrored_cam_has_the_same_forces() -> None:
+    changes = {"load": [{"force_n": 50}], **FRICTION}
+    one, other = (
+        gc.build(held(ROLLER, **changes, **{"cam.rotation": way}).design) for way in ("ccw", "cw")
+    )
+    first, second = (one.study("forces").columns, other.study("forces").columns)
+    for name, values in first.items():
+        sign = (
+            -1.0 if name in ("guide_n", "guide_moment_nmm", "guide_low_n", "guide_high_n") else 1.0
+        )
+        assert values == pytest.approx(sign * second[name], nan_ok=True)
