@@ -1,0 +1,242 @@
+"""Rises, returns and dwells in the rows of a lift: where they are, roughly.
+
+The *noise* is read from the sixth divided differences of the rows, in which a smooth lift vanishes;
+of their sizes the smaller three quarters count, as corners make large ones. The lift *stands still*
+where its slope, a line through as few rows as tell a twentieth of the mean slope from noise, is
+within four standard deviations of zero. Between such stretches, and where the slope changes its
+sign, lie rises and returns. `gearcam.laws.lift_model` refines the boundaries.
+
+Source: derived anew.
+"""
+
+from __future__ import annotations
+
+import math
+from itertools import groupby
+from typing import Final
+
+import numpy as np
+
+from gearcam.base.errors import beyond_limit
+from gearcam.base.numerals import formatted
+from gearcam.laws.lift_model import Model, Rows, place_of
+from gearcam.laws.motion.base import MOTION_LAWS
+from gearcam.laws.phases_of_lift import TURN
+from gearcam.numeric.arrays import Array, Ints
+
+FEWEST: Final = 36
+"""Fewest rows of a turn."""
+
+FEWEST_OF_MOVE: Final = 5
+"""Fewest rows of a rise or return: a law, its boundaries and a row to spare."""
+
+_ORDER: Final = 6
+_SMALLER: Final = 0.75
+_TRIMMED: Final = 0.6073
+"""Root mean square of the smaller three quarters of normal numbers, over their deviation."""
+
+_FLOOR: Final = 1e-9
+"""Least noise over the total lift: rounding."""
+
+_SURE: Final = 4.0
+"""Standard deviations that are no chance."""
+
+_CREEP: Final = 0.05
+"""Slope, over the mean one, that the window must be able to tell from noise."""
+
+_STILL: Final = 1e-3
+"""Slope, over the mean one, below which the lift stands still without any noise."""
+
+_LOUD: Final = 25.0
+"""Total lift over the noise below which no law could be found."""
+
+
+def noise_of(theta: Array, lift: Array) -> float:
+    """Return the standard deviation of the noise of a closed lift in rows.
+
+    Parameters
+    ----------
+    theta : (n,) array, rad
+        Rising, within a turn.
+    lift : (n,) array, mm or rad
+        Lifts.
+
+    Returns
+    -------
+    float, mm or rad
+        At least rounding.
+    """
+    index, turns = _windows(len(theta), _ORDER + 1)
+    places, values = theta[index] + turns * TURN, lift[index]
+    apart = places[:, :, None] - places[:, None, :] + np.eye(_ORDER + 1)
+    weights = 1.0 / (apart / apart.max()).prod(axis=2)
+    weights /= np.linalg.norm(weights, axis=1, keepdims=True)
+    sizes = np.sort(np.abs((weights * values).sum(axis=1)))
+    smaller = sizes[: max(1, int(_SMALLER * len(sizes)))]
+    return max(
+        float(np.sqrt((smaller**2).mean())) / _TRIMMED,
+        _FLOOR * float(np.ptp(lift)),
+    )
+
+
+def _windows(count: int, width: int) -> tuple[Ints, Ints]:
+    """Return the numbers of rows around each row, and the turns by which they are away."""
+    index = np.arange(count)[:, None] + np.arange(width) - width // 2
+    return index % count, index // count
+
+
+def first_model(rows: Rows, unit: tuple[float, str]) -> Model:
+    """Return a model of the moves that rows show, all with the law 3-4-5.
+
+    Parameters
+    ----------
+    rows : Rows
+        The rows.
+    unit : (float, str)
+        Factor from lifts to their unit in output, and that unit, for messages.
+
+    Returns
+    -------
+    Model
+
+    Raises
+    ------
+    InfeasibleError
+        If there are too few rows, the lift is lost in noise, or a move takes too few rows.
+    """
+    if len(rows.theta) < FEWEST:
+        raise beyond_limit("the lift has too few rows", "", len(rows.theta), FEWEST, unit="rows")
+    scale, name = unit
+    extent = float(np.ptp(rows.lift))
+    if extent < _LOUD * rows.noise:
+        what = f"the lift is lost in its noise, {formatted(scale * rows.noise, 3)} {name}"
+        rule = f"a total lift of at least {_LOUD:g} times the noise; measure again, or average"
+        raise beyond_limit(what, "", scale * extent, scale * _LOUD * rows.noise, rule, unit=name)
+    runs = _runs(rows)
+    moves = [number for number, (sign, _) in enumerate(runs) if sign]
+    starts, ends, levels, tied = [], [], [], []
+    for number in moves:
+        low, high = (_bound(rows, runs, number, end) for end in (0, 1))
+        levels.append(low[1])
+        start, end = _stretch(rows, runs[number][1], low, high)
+        starts.append(start)
+        ends.append(end)
+        tied.append(runs[(number + 1) % len(runs)][0] != 0)
+    return _ring(np.array(starts), np.array(ends), np.array(levels), tuple(tied))
+
+
+def _ring(starts: Array, ends: Array, levels: Array, tied: tuple[bool, ...]) -> Model:
+    """Return a model; angles are made to rise, and boundaries without a dwell one."""
+    count = len(starts)
+    for k in range(1, count):
+        starts[k] += TURN * math.ceil((starts[k - 1] - starts[k]) / TURN)
+    ends = starts + (ends - starts) % TURN
+    following = np.append(starts[1:], starts[0] + TURN)
+    middle = 0.5 * (ends + following)
+    over = np.array(tied) | (ends > following)
+    ends = np.where(over, middle, ends)
+    starts = starts.copy()
+    for k in np.flatnonzero(over).tolist():
+        starts[(k + 1) % count] = middle[k] - (TURN if k == count - 1 else 0.0)
+    law = MOTION_LAWS["3-4-5"].example
+    return Model(laws=(law,) * count, starts=starts, ends=ends, levels=levels, tied=tied)
+
+
+def _slopes(rows: Rows) -> tuple[Array, Array]:
+    """Return the slopes at rows, and from which size on they are no noise."""
+    mean, count = 2.0 * float(np.ptp(rows.lift)) / TURN, len(rows.theta)
+    slope, width = np.zeros(count), 5
+    least = np.full(count, math.inf)
+    while True:
+        index, turns = _windows(count, width)
+        places, values = rows.theta[index] + turns * TURN, rows.lift[index]
+        places = places - places.mean(axis=1, keepdims=True)
+        square = (places**2).sum(axis=1)
+        slope = (places * values).sum(axis=1) / square
+        least = _SURE * rows.noise / np.sqrt(square)
+        if float(np.median(least)) <= _CREEP * mean or width + 2 > count // 12:
+            return slope, np.maximum(least, _STILL * mean)
+        width += 2
+
+
+def _runs(rows: Rows) -> list[tuple[int, Ints]]:
+    """Return what the lift does, 1, -1 or 0, and the rows of it, in a ring."""
+    slope, least = _slopes(rows)
+    signs = np.where(np.abs(slope) <= least, 0, np.sign(slope)).astype(int)
+    for sign, run in _groups(signs):
+        if sign and _blip(run, rows):
+            signs[run] = 0
+    for sign, run in _groups(signs):
+        before, after = signs[run[0] - 1], signs[(run[-1] + 1) % len(signs)]
+        if not sign and len(run) < 3 and before != after:  # it turns
+            signs[run] = before
+    return [part for sign, run in _groups(signs) for part in _halves(sign, run, slope, least)]
+
+
+def _halves(sign: int, run: Ints, slope: Array, least: Array) -> list[tuple[int, Ints]]:
+    """Return a move, cut where it nearly stops: every law has one peak of velocity."""
+    speed = np.abs(slope[run])
+    peaks = np.minimum(np.maximum.accumulate(speed), np.maximum.accumulate(speed[::-1])[::-1])
+    row = int(np.argmax(peaks - speed))
+    depth = float(peaks[row] - speed[row])
+    if not sign or depth < max(0.5 * peaks[row], 2.0 * float(least[run[row]])):
+        return [(sign, run)]
+    halves = (run[:row], run[row:])
+    return [part for half in halves for part in _halves(sign, half, slope, least)]
+
+
+def _blip(run: Ints, rows: Rows) -> bool:
+    """Whether a move is noise."""
+    change = abs(float(rows.lift[run[-1]] - rows.lift[run[0]]))
+    return change < 2.0 * _SURE * rows.noise
+
+
+def _groups(signs: Ints) -> list[tuple[int, Ints]]:
+    """Return the runs of equal signs in a ring."""
+    begin = int(np.argmax(signs != np.roll(signs, 1)))
+    order = np.roll(np.arange(len(signs)), -begin)
+    return [
+        (int(sign), np.array(list(group)))
+        for sign, group in groupby(order.tolist(), key=signs.__getitem__)
+    ]
+
+
+def _bound(rows: Rows, runs: list[tuple[int, Ints]], number: int, end: int) -> tuple[float, float]:
+    """Return how far a move may go, rad, and its level there: at its start, 0, or end, 1."""
+    sign, run = runs[(number + (1 if end else -1)) % len(runs)]
+    if sign == 0:
+        far = int(run[len(run) // 4 if end else -1 - len(run) // 4])  # half a dwell is left
+        return float(rows.theta[far]), float(np.mean(rows.lift[run]))
+    row = int(runs[number][1][-1 if end else 0])
+    return float(rows.theta[row]), float(rows.lift[row])
+
+
+def _stretch(
+    rows: Rows, run: Ints, low: tuple[float, float], high: tuple[float, float]
+) -> tuple[float, float]:
+    """Return start and end of a move, rad, of which rows cross a fifth and four fifths.
+
+    Refused are moves of too few rows.
+    """
+    if len(run) < FEWEST_OF_MOVE:
+        word = "rise" if high[1] > low[1] else "return"
+        where = " to ".join(f"{math.degrees(float(rows.theta[one])):.6g}" for one in run[[0, -1]])
+        rule = "more rows, or a lift without jumps"
+        raise beyond_limit(
+            f"a {word} takes too few rows",
+            "",
+            len(run),
+            FEWEST_OF_MOVE,
+            f"at {where} deg; {rule}",
+            unit="rows",
+        )
+    theta = np.unwrap(rows.theta[run], period=TURN)
+    first = theta[0] - (theta[0] - low[0]) % TURN
+    last = theta[-1] + (high[0] - theta[-1]) % TURN
+    done = (rows.lift[run] - low[1]) / (high[1] - low[1])
+    places = np.interp([0.2, 0.8], np.maximum.accumulate(done), theta)
+    law, falling = MOTION_LAWS["3-4-5"].example, bool(high[1] < low[1])
+    shares = [place_of(law, part, falling=falling) for part in (0.2, 0.8)]
+    width = (places[1] - places[0]) / (shares[1] - shares[0])
+    start = float(places[0] - width * shares[0])
+    return max(start, float(first)), min(start + float(width), float(last))
