@@ -27,6 +27,7 @@ GROUPS: Final = {
     "forces": "Forces (`gearcam forces`)",
     "followed profiles": "Followed profile (`gearcam follow`)",
     "precision of cams": "Precision (`gearcam precision`)",
+    "fitted lifts": "Fitted lift (`gearcam follow --fit`)",
 }
 """Headings of groups of checks, by what they examine."""
 

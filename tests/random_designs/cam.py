@@ -250,7 +250,8 @@ def _studies(d: Draw, design: dict[str, Any], size: float) -> None:
     if d.chance(0.15):
         design["precision"] = _precision(d, design, size)
     if d.chance(0.03):
-        design["follow"] = {"file": "measured.csv", "wall": d.pick(["1", "inner", "outer"])}
+        wall = d.pick(["1", "inner", "outer"])
+        design["follow"] = {"file": "measured.csv", "wall": wall, "fit": True}
 
 
 def design(d: Draw, index: int) -> dict[str, Any]:

@@ -17,17 +17,23 @@ import numpy as np
 from gearcam.base.findings import ROUNDING, Remark, check
 from gearcam.base.numerals import formatted, rounded_down, shortened
 from gearcam.base.quantities import ANGLE, LENGTH, Param
+from gearcam.base.registry import name_of
 from gearcam.cams.cam import Cam
 from gearcam.cams.followers import Follower
-from gearcam.cams.spec import FOLLOWED, KIND, PRECISION
+from gearcam.cams.spec import FITTED, FOLLOWED, KIND, PRECISION
 from gearcam.cams.wall import PitchMotion, Wall
+from gearcam.laws.motion.base import MOTION_LAWS
 
 if TYPE_CHECKING:
     from gearcam.cams.follow import Followed
     from gearcam.cams.precision import LiftError
+    from gearcam.laws.lift_fit import FittedLift
 
 _MISSED: Final = 0.1
 """Part of the whole lift by which wear cannot change the lift of a cam's own profile."""
+
+_UNLIKE: Final = 2.0
+"""Residual of a fitted phase over the noise, both as root mean square, that is no chance."""
 
 
 def pressure_limit(follower: Follower, given: float) -> float:
@@ -368,3 +374,56 @@ def lift_error(deviation: LiftError, limit: float) -> Iterator[Remark]:  # noqa:
             unit=unit,
             limit=scale * wanted,
         )
+
+
+@check("unknown-law", kind=FITTED)
+def unknown_law(fitted: tuple[Wall, FittedLift], limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Warn if no motion law moves as a measured lift does.
+
+    The residual of a rise or return is more than twice the noise, both as root mean square.
+
+    Looks at: each rise and return of a fitted lift.
+    """
+    (scale, unit), lift = fitted[0].follower.lift_unit, fitted[1]
+    for k in range(len(lift.model.laws)):
+        residual = float(np.sqrt(np.mean(lift.missed[lift.on(k)] ** 2)))
+        if residual > _UNLIKE * lift.rows.noise:
+            word = "return" if lift.model.falling(k) else "rise"
+            yield Remark(
+                f"No motion law moves like this {word}: the nearest one misses it by "
+                f"{formatted(scale * residual, 3)} {unit} (rms), and the noise is "
+                f"{formatted(scale * lift.rows.noise, 3)} {unit}. To copy the lift as it is, give "
+                f"its rows as [motion] with smoothing_tolerance_{unit}.",
+                _measured(fitted, k),
+                scale * residual,
+                unit=unit,
+                limit=scale * _UNLIKE * lift.rows.noise,
+            )
+
+
+@check("laws-alike", kind=FITTED, severity="note")
+def laws_alike(fitted: tuple[Wall, FittedLift], limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Say which motion laws cannot be told apart in a measured lift.
+
+    Their sums of squares differ by less than 16 variances of the noise.
+
+    Looks at: each rise and return of a fitted lift.
+    """
+    lift = fitted[1]
+    for k, others in enumerate(lift.alike):
+        if others:
+            names = [name_of(MOTION_LAWS, one.law) for one in others]
+            yield Remark(
+                f"Cannot be told apart at this noise: {name_of(MOTION_LAWS, lift.model.laws[k])}, "
+                f"{', '.join(names)}.",
+                _measured(fitted, k),
+            )
+
+
+def _measured(fitted: tuple[Wall, FittedLift], k: int) -> str:
+    """Return where a move is, in the angles of what was measured."""
+    wall, model = fitted[0], fitted[1].model
+    driver, turn = wall.carrier.driver, 2.0 * math.pi
+    start, end = (driver.text(float(one[k]) % turn) for one in (model.starts, model.ends))
+    word = "return" if model.falling(k) else "rise"
+    return _at(wall, f"{word} from {start} to {end}")

@@ -35,6 +35,9 @@ PRECISION: Final = "precision of cams"
 FORCES: Final = "forces"
 """The checks of a study of forces."""
 
+FITTED: Final = "fitted lifts"
+"""The checks of lifts whose motion laws were found."""
+
 POINTED: Final = ("knife-edge", "point")
 """Two words for a follower without a radius."""
 

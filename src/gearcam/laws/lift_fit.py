@@ -9,8 +9,9 @@ the first is the true one, where d is what the second misses of it, with the dev
 misses least. By the same rule dwells are left out, and moves of one direction are joined.
 
 The variance is that of what the best model misses, or of the noise in the rows if that is larger,
-times the number of neighbouring rows whose errors are alike (the sum of the autocorrelation), as in
-a profile of few chords.
+times the number of neighbouring rows whose errors are alike (the sum of the autocorrelation). An
+error that is known to be shared, that of a profile's chords, counts as alike over a twentieth of
+the turn.
 
 Sizes are rounded one after the other to the roundest number within two standard deviations, as long
 as the sum of squares grows by less than ``9*v`` when the others have adapted themselves.
@@ -29,7 +30,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from gearcam.laws.lift_model import Model, Name, Rows, improved, misfit, number_of, place_of
+from gearcam.laws.lift_model import LiftModel, LiftRows, Name, improved, misfit, number_of, place_of
 from gearcam.laws.lift_phases import first_model, noise_of
 from gearcam.laws.motion.base import MOTION_LAWS
 from gearcam.laws.phases_of_lift import (
@@ -39,7 +40,7 @@ from gearcam.laws.phases_of_lift import (
     ReturnPhase,
     RisePhase,
 )
-from gearcam.numeric.arrays import Array
+from gearcam.numeric.arrays import Array, Mask
 
 _APART: Final = 16.0
 """Least difference of sums of squares, in variances, that tells two models apart."""
@@ -50,7 +51,7 @@ _ROUNDED: Final = 9.0
 _NEAR: Final = 2.0
 """Standard deviations within which sizes are rounded, and which their errors are."""
 
-_SWEEPS: Final = 4
+_SWEEPS: Final = 3
 
 _ROUGH: Final = 1e-2
 """How well laws are fitted first: fall of the sum of squares in a step, over the sum."""
@@ -58,7 +59,7 @@ _ROUGH: Final = 1e-2
 _TWICE: Final = 2.0
 """Sum of squares of laws that are fitted to the end, over the least one."""
 
-_MORE: Final = 1.5
+_MORE: Final = 1.15
 """Mean square of what laws leave, over that of the noise, above which laws with numbers are tried
 from the start."""
 
@@ -68,6 +69,10 @@ _INSET: Final = 0.08
 _PAIRED: Final = 6
 """Laws that are tried in pairs: those that suit a move best."""
 
+
+_EXPLAINED: Final = 4.0
+"""Mean square of what laws leave, over that of the noise, from which on none of them explains the
+rows, and pairs of them need not be compared."""
 
 _SPAN: Final = (0.2, 0.8)
 _LAG: Final = 20
@@ -83,7 +88,7 @@ _EDGE: Final = 0.02
 
 
 @dataclass(frozen=True, kw_only=True)
-class Alike:
+class AlikeLaw:
     """A law that a move may as well have.
 
     Parameters
@@ -105,22 +110,22 @@ class FittedLift:
 
     Parameters
     ----------
-    model : Model
+    model : LiftModel
         With rounded sizes.
-    rows : Rows
+    rows : LiftRows
         The rows.
     variance : float
         Of the noise, times the number of rows whose errors are alike, mm2 or rad2.
-    alike : tuple of k tuples of Alike
+    alike : tuple of k tuples of AlikeLaw
         Other laws that cannot be told from that of each move.
     deviations : mapping of Name to float
         Standard deviations of the parameters before rounding, rad, mm or rad, or a number.
     """
 
-    model: Model
-    rows: Rows
+    model: LiftModel
+    rows: LiftRows
     variance: float
-    alike: tuple[tuple[Alike, ...], ...]
+    alike: tuple[tuple[AlikeLaw, ...], ...]
     deviations: dict[Name, float]
 
     @cached_property
@@ -132,6 +137,11 @@ class FittedLift:
     def missed(self) -> Array:
         """The rows less the lift of the program, mm or rad."""
         return self.rows.lift - self.lift
+
+    def on(self, k: int) -> Mask:
+        """Return whether each row is on a move."""
+        move, over = self.model.move_at(self.rows.theta)
+        return (move == k) & ~over
 
     def error(self, name: Name) -> float:
         """Return the error of a boundary, rad: two deviations, and what other laws make of it."""
@@ -205,7 +215,7 @@ def fit_lift(theta: Array, lift: Array, unit: tuple[float, str], error: float = 
     unit : (float, str)
         Factor from lifts to their unit in output, and that unit.
     error : float, mm or rad
-        Error of the lifts that is not seen in the rows.
+        Error of the lifts that neighbouring rows share, so that it is not seen in the rows.
 
     Returns
     -------
@@ -216,12 +226,18 @@ def fit_lift(theta: Array, lift: Array, unit: tuple[float, str], error: float = 
     InfeasibleError
         If no phases can be found (see `gearcam.laws.lift_phases.first_model`).
     """
-    rows = Rows(theta=theta, lift=lift, noise=math.hypot(noise_of(theta, lift), error))
+    noise = math.hypot(noise_of(theta, lift), error)
+    rows = LiftRows(theta=theta, lift=lift, noise=noise, error=error)
     model = _chosen(first_model(rows, unit), rows)
     simple = _untied(_simplified(model, rows), rows)
     if len(simple.laws) != len(model.laws) or simple.tied != model.tied:
         model = _chosen(simple, rows)
     model, tried = _settled(model, rows)
+    good = model.squares(rows) <= _EXPLAINED * len(theta) * rows.noise**2
+    for k in (k for k, tied in enumerate(model.tied) if tied and good):
+        pairs = [improved(one, rows) for one in _in_pairs(model, model, k, rows)]
+        for one in (k, (k + 1) % len(model.laws)):
+            tried[one] += pairs
     variance = variance_of(model, rows)
     most = model.squares(rows) + _APART * variance
     alike = tuple(
@@ -253,7 +269,7 @@ def _candidates(*, numbers: bool) -> Iterator[tuple[Any, bool]]:
                 yield law(), True
 
 
-def _with(model: Model, k: int, law: Any, *, free: bool) -> Model:
+def _with(model: LiftModel, k: int, law: Any, *, free: bool) -> LiftModel:
     """Return the model with another law of a move, which crosses the same two lifts as before."""
     start, width = float(model.starts[k]), float(model.ends[k] - model.starts[k])
     starts, ends, falling = model.starts.copy(), model.ends.copy(), model.falling(k)
@@ -273,7 +289,7 @@ def _with(model: Model, k: int, law: Any, *, free: bool) -> Model:
     return replace(model, laws=laws, starts=starts, ends=ends, free=numbers)
 
 
-def _tried(model: Model, k: int, rows: Rows, *, numbers: bool) -> list[Model]:
+def _tried(model: LiftModel, k: int, rows: LiftRows, *, numbers: bool) -> list[LiftModel]:
     """Return the model with every law of a move, fitted, and roughly those that are far off."""
     found = []
     for law, free in _candidates(numbers=numbers):
@@ -295,7 +311,7 @@ def _at_end(law: Any) -> bool:
     return not low + edge < getattr(law, name) < high - edge
 
 
-def _simplest(models: Sequence[Model], k: int, rows: Rows, variance: float) -> Model:
+def _simplest(models: Sequence[LiftModel], k: int, rows: LiftRows, variance: float) -> LiftModel:
     """Return of the models that cannot be told from the best the simplest, then the best."""
     squares = [one.squares(rows) for one in models]
     least = min(squares)
@@ -307,34 +323,32 @@ def _simplest(models: Sequence[Model], k: int, rows: Rows, variance: float) -> M
     return models[min(good)[2]]
 
 
-def _best(models: Iterable[Model], rows: Rows) -> Model:
+def _best(models: Iterable[LiftModel], rows: LiftRows) -> LiftModel:
     """Return the model that misses least of rows."""
     return min(models, key=lambda one: one.squares(rows))
 
 
-def _chosen(model: Model, rows: Rows) -> Model:
+def _chosen(model: LiftModel, rows: LiftRows) -> LiftModel:
     """Return the model with the best laws.
 
     Laws are tried move by move beside the others, from one law in all moves, as in most cams, or
-    from the laws that suit each move alone. If more than noise is left, moves without a dwell
-    between them are tried in pairs, and then laws with free numbers.
+    from the laws that suit each move alone. Moves without a dwell between them are tried in pairs
+    too. Laws with free numbers are tried if more than noise is left.
     """
     laws = [law for law, _ in _candidates(numbers=False)]
     every = [_every(model, [law] * len(model.laws)) for law in laws]
-    order = [_alone(model, k, rows, laws) for k in range(len(model.laws))]
-    every.append(_every(model, [some[0] for some in order]))
+    every.append(_every(model, [_alone(model, k, rows, laws)[0] for k in range(len(model.laws))]))
     found = _best((improved(one, rows, _ROUGH) for one in every), rows)
-    for step in (False, order, True):
-        if isinstance(step, list):
-            found = _by_pairs(model, found, step, rows)
-        else:
-            found = _by_moves(model, found, rows, numbers=step)
-        if found.squares(rows) <= _MORE * len(rows.theta) * rows.noise**2:
-            break
+    found = _by_moves(model, found, rows, numbers=False)
+    for k, tied in enumerate(found.tied):
+        if tied:
+            found = _best([found, *_in_pairs(model, found, k, rows)], rows)
+    if found.squares(rows) > _MORE * len(rows.theta) * rows.noise**2:
+        found = _by_moves(model, found, rows, numbers=True)
     return improved(found, rows)
 
 
-def _by_moves(model: Model, found: Model, rows: Rows, *, numbers: bool) -> Model:
+def _by_moves(model: LiftModel, found: LiftModel, rows: LiftRows, *, numbers: bool) -> LiftModel:
     """Return a model with the best law of each move beside the others.
 
     Every trial begins with the boundaries of the first model, which are those that rows show:
@@ -350,23 +364,24 @@ def _by_moves(model: Model, found: Model, rows: Rows, *, numbers: bool) -> Model
     return found
 
 
-def _by_pairs(model: Model, found: Model, order: Sequence[Sequence[Any]], rows: Rows) -> Model:
-    """Return a model with the best laws of moves that follow each other without a dwell."""
-    for k, tied in enumerate(found.tied):
-        following = (k + 1) % len(found.laws)
-        if not tied:
-            continue
-        pairs = product(order[k][:_PAIRED], order[following][:_PAIRED])
-        laws = [{k: one, following: other} for one, other in pairs]
-        tried = (
-            _every(model, [some.get(n, law) for n, law in enumerate(found.laws)], found.free)
-            for some in laws
+def _in_pairs(model: LiftModel, found: LiftModel, k: int, rows: LiftRows) -> list[LiftModel]:
+    """Return the model with the laws that suit a move and the next best, in all pairs."""
+    laws = [law for law, _ in _candidates(numbers=False)]
+    following = (k + 1) % len(found.laws)
+    both = [_alone(model, one, rows, laws)[:_PAIRED] for one in (k, following)]
+    every = ({k: one, following: other} for one, other in product(*both))
+    free = found.free - {k, following}
+    return [
+        improved(
+            _every(model, [pair.get(n, law) for n, law in enumerate(found.laws)], free),
+            rows,
+            _ROUGH,
         )
-        found = _best([found, *(improved(one, rows, _ROUGH) for one in tried)], rows)
-    return found
+        for pair in every
+    ]
 
 
-def _alone(model: Model, k: int, rows: Rows, laws: Iterable[Any]) -> list[Any]:
+def _alone(model: LiftModel, k: int, rows: LiftRows, laws: Iterable[Any]) -> list[Any]:
     """Return laws in the order of what they miss of a move, without what is beside it."""
     start, end = float(model.starts[k]), float(model.ends[k])
     before, after = (float(model.gaps()[1][one]) for one in (k - 1, k))
@@ -380,14 +395,14 @@ def _alone(model: Model, k: int, rows: Rows, laws: Iterable[Any]) -> list[Any]:
     return sorted(laws, key=lambda law: misfit(law, theta, lift, start, end))
 
 
-def _every(model: Model, laws: Sequence[Any], free: Collection[int] = ()) -> Model:
+def _every(model: LiftModel, laws: Sequence[Any], free: Collection[int] = ()) -> LiftModel:
     """Return the model with other laws in all moves."""
     for k, law in enumerate(laws):
         model = _with(model, k, law, free=k in free)
     return model
 
 
-def _settled(model: Model, rows: Rows) -> tuple[Model, list[list[Model]]]:
+def _settled(model: LiftModel, rows: LiftRows) -> tuple[LiftModel, list[list[LiftModel]]]:
     """Return the model with the simplest laws, and for each move the models with every law."""
     tried = []
     for _ in range(_SWEEPS):
@@ -401,32 +416,34 @@ def _settled(model: Model, rows: Rows) -> tuple[Model, list[list[Model]]]:
     return model, tried
 
 
-def _same(one: Model, model: Model, k: int) -> bool:
+def _same(one: LiftModel, model: LiftModel, k: int) -> bool:
     """Whether two models have a law of one name in a move."""
     return type(one.laws[k]) is type(model.laws[k]) and (k in one.free) == (k in model.free)
 
 
-def _alike(models: Sequence[Model], model: Model, k: int, rows: Rows) -> Iterator[Alike]:
+def _alike(
+    models: Sequence[LiftModel], model: LiftModel, k: int, rows: LiftRows
+) -> Iterator[AlikeLaw]:
     """Yield other laws of a move in the order of what they miss, each name once."""
     seen = {type(model.laws[k])}
     for one in sorted(models, key=lambda one: (k in one.free, one.squares(rows))):
         law = one.laws[k]
         if type(law) not in seen:
             seen.add(type(law))
-            yield Alike(law=law, start=float(one.starts[k]), end=float(one.ends[k]))
+            yield AlikeLaw(law=law, start=float(one.starts[k]), end=float(one.ends[k]))
 
 
 # --- noise -------------------------------------------------------------------------------------
 
 
-def variance_of(model: Model, rows: Rows) -> float:
+def variance_of(model: LiftModel, rows: LiftRows) -> float:
     """Return the variance of the noise, times the number of rows whose errors are alike.
 
     Parameters
     ----------
-    model : Model
+    model : LiftModel
         The best one.
-    rows : Rows
+    rows : LiftRows
         The rows.
 
     Returns
@@ -442,13 +459,13 @@ def variance_of(model: Model, rows: Rows) -> float:
         if together <= 2.0 / math.sqrt(count):
             break
         alike += 2.0 * together
-    return max(rows.noise**2, square / left) * alike
+    return max(rows.noise**2, square / left) * alike + rows.error**2 * count / _LAG
 
 
 # --- structure ---------------------------------------------------------------------------------
 
 
-def _simplified(model: Model, rows: Rows) -> Model:
+def _simplified(model: LiftModel, rows: LiftRows) -> LiftModel:
     """Return the model without dwells, and with moves joined, that noise does not show."""
     allowed = _APART * rows.noise**2  # what a wrong model leaves is no noise
     found = True
@@ -461,7 +478,7 @@ def _simplified(model: Model, rows: Rows) -> Model:
     return model
 
 
-def _simpler(model: Model, rows: Rows) -> Iterator[Model]:
+def _simpler(model: LiftModel, rows: LiftRows) -> Iterator[LiftModel]:
     """Yield models with a dwell less, narrow ones first, or a move less."""
     dwells = model.gaps()[1]
     for k in np.argsort(dwells).tolist():
@@ -476,7 +493,7 @@ def _simpler(model: Model, rows: Rows) -> Iterator[Model]:
             )
 
 
-def _joined(model: Model, k: int) -> Model:
+def _joined(model: LiftModel, k: int) -> LiftModel:
     """Return the model with a move and the next as one."""
     count = len(model.laws)
     if k == count - 1:  # over the end of the turn: the first comes last
@@ -502,7 +519,7 @@ def _joined(model: Model, k: int) -> Model:
     )
 
 
-def _untied(model: Model, rows: Rows) -> Model:
+def _untied(model: LiftModel, rows: LiftRows) -> LiftModel:
     """Return the model with dwells where rows show that there is one."""
     for k in range(len(model.laws)):
         if model.tied[k]:
@@ -519,7 +536,7 @@ def _untied(model: Model, rows: Rows) -> Model:
 # --- sizes -------------------------------------------------------------------------------------
 
 
-def _deviations(model: Model, variance: float, rows: Rows) -> dict[Name, float]:
+def _deviations(model: LiftModel, variance: float, rows: LiftRows) -> dict[Name, float]:
     """Return the standard deviations of the parameters that are fitted."""
     _, columns = model.jacobian(rows.theta)
     inverse = np.linalg.pinv(columns.T @ columns, rcond=1e-14, hermitian=True)
@@ -527,13 +544,13 @@ def _deviations(model: Model, variance: float, rows: Rows) -> dict[Name, float]:
     return dict(zip(model.names(), sizes.tolist(), strict=True))
 
 
-def _rounded(model: Model, rows: Rows, variance: float, scale: float) -> Model:
+def _rounded(model: LiftModel, rows: LiftRows, variance: float, scale: float) -> LiftModel:
     """Return the model with all sizes rounded (see the module docstring)."""
     places = ("start", "end")
     names = sorted(model.names(), key=lambda one: (one[0] not in places, one[1], one[0] == "end"))
     for name in names:
         deviation = _deviations(model, variance, rows)[name]
-        squares = model.squares(rows)
+        squares, one = model.squares(rows), model
         for target in _round_values(model, name, deviation, scale):
             moved = model.moved({name: target - model.value(name)})
             one = improved(replace(moved, fixed=model.fixed | {name}), rows)
@@ -543,7 +560,7 @@ def _rounded(model: Model, rows: Rows, variance: float, scale: float) -> Model:
     return model
 
 
-def _round_values(model: Model, name: Name, deviation: float, scale: float) -> Iterator[float]:
+def _round_values(model: LiftModel, name: Name, deviation: float, scale: float) -> Iterator[float]:
     """Yield values of a parameter, the roundest first; of a boundary the width that ends there."""
     kind, k = name
     value, unit, base = model.value(name), 1.0, 0.0

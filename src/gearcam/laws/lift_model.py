@@ -23,7 +23,7 @@ import numpy as np
 
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.phases_of_lift import TURN
-from gearcam.numeric.arrays import Array
+from gearcam.numeric.arrays import Array, Ints, Mask
 
 _CELLS: Final = 512
 """Cells of the table of a law: the error of cubics is below 1e-10."""
@@ -38,10 +38,14 @@ _ROUNDING: Final = 1e-12
 """Rounding of widths, rad: that of the dwell at a tied boundary is 0."""
 
 _STEPS: Final = 40
+_FEW: Final = 12
 _HALVINGS: Final = 12
 
 _OFF: Final = 1e-4
 """Step of the difference by the number of a law."""
+
+_RELATIVE: Final = 1e-5
+"""The same over the sum of squares: what is left of a wrong law need not be found to the end."""
 
 _IMPROVED: Final = 1e-3
 """Fall of the sum of squares, over the variance of the noise, at which steps end."""
@@ -51,7 +55,7 @@ Name = tuple[str, int]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Rows:
+class LiftRows:
     """A lift in rows.
 
     Parameters
@@ -62,11 +66,14 @@ class Rows:
         Lifts.
     noise : float, mm or rad
         Standard deviation of their noise, above 0.
+    error : float, mm or rad
+        The part of it that neighbouring rows share.
     """
 
     theta: Array
     lift: Array
     noise: float
+    error: float = 0.0
 
     @cached_property
     def step(self) -> float:
@@ -122,7 +129,7 @@ def share(law: Any, x: Array, *, falling: bool = False) -> tuple[Array, Array]:
 
 
 def exact_share(law: Any, x: Array, *, falling: bool) -> Array:
-    """Return the share of a move that is done, without a table (see `share`)."""
+    """Return the share of a move that a `law` has done at `x`, up or `falling`, without a table."""
     rise = law.build(Tolerances())
     if falling and rise.mirrored:
         return 1.0 - rise.function(1.0 - x)
@@ -130,7 +137,7 @@ def exact_share(law: Any, x: Array, *, falling: bool) -> Array:
 
 
 def place_of(law: Any, done: float, *, falling: bool) -> float:
-    """Return the share of the angle at which a share of a move is `done`."""
+    """Return at what share of the angle a `law` has `done` a share of a move, up or `falling`."""
     places = _table(law)[0]
     values = share(law, places, falling=falling)[0]
     return float(np.interp(done, np.maximum.accumulate(values), places))
@@ -173,7 +180,7 @@ def misfit(law: Any, theta: Array, lift: Array, start: float, end: float) -> flo
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Model:
+class LiftModel:
     """A ring of moves (see the module docstring).
 
     Parameters
@@ -238,7 +245,7 @@ class Model:
             case _:
                 return float(getattr(self.laws[k], fields(self.laws[k])[0].name))
 
-    def moved(self, changes: dict[Name, float]) -> Model:
+    def moved(self, changes: dict[Name, float]) -> LiftModel:
         """Return the model with parameters changed by so much."""
         starts, ends, levels = self.starts.copy(), self.ends.copy(), self.levels.copy()
         laws, count = list(self.laws), len(self.laws)
@@ -262,13 +269,13 @@ class Model:
         """Whether a move is a return."""
         return bool(self.levels[(k + 1) % len(self.levels)] < self.levels[k])
 
-    def move_at(self, theta: Array) -> tuple[Array, Array]:
+    def move_at(self, theta: Array) -> tuple[Ints, Mask]:
         """Return for cam angles the move at them or before them, and whether it is over."""
         x = self.starts[0] + (theta - self.starts[0]) % TURN
         move = np.searchsorted(self.starts, x, side="right") - 1
         return move, x >= self.ends[move]
 
-    def _shares(self, theta: Array) -> Iterator[tuple[int, Array, Array, Array, Array]]:
+    def _shares(self, theta: Array) -> Iterator[tuple[int, Mask, Mask, Array, Array]]:
         """Yield of each move its number, the rows on it and after it, and shares of angle and lift.
 
         The derivative of the share of the lift comes last.
@@ -329,7 +336,7 @@ class Model:
             columns.append(column)
         return lift, np.array(columns).reshape(-1, len(theta)).T
 
-    def squares(self, rows: Rows) -> float:
+    def squares(self, rows: LiftRows) -> float:
         """Return the sum of squares of what it misses of rows."""
         return float(((self.lift(rows.theta) - rows.lift) ** 2).sum())
 
@@ -337,7 +344,7 @@ class Model:
         """Return the widths of moves and of the dwells after them, rad."""
         return self.ends - self.starts, self.following - self.ends
 
-    def tie(self, k: int) -> Model:
+    def tie(self, k: int) -> LiftModel:
         """Return the model without the dwell after a move: its middle is the boundary."""
         middle = 0.5 * (float(self.ends[k]) + float(self.following[k]))
         starts, ends, following = self.starts.copy(), self.ends.copy(), (k + 1) % len(self.laws)
@@ -347,26 +354,26 @@ class Model:
         return replace(self, starts=starts, ends=ends, tied=tied)
 
 
-def improved(model: Model, rows: Rows, rough: float = 0.0) -> Model:
+def improved(model: LiftModel, rows: LiftRows, rough: float = 0.0) -> LiftModel:
     """Return the model with the least sum of squares of what it misses of rows.
 
     A dwell that the steps would make narrower than nothing is left out.
 
     Parameters
     ----------
-    model : Model
+    model : LiftModel
         Where to begin.
-    rows : Rows
+    rows : LiftRows
         The rows.
     rough : float
-        Fall of the sum of squares, over the sum, at which steps end; 0 for the least sum.
+        Fall of the sum of squares in a step, over the sum, at which steps end at the latest.
 
     Returns
     -------
-    Model
+    LiftModel
     """
     squares = model.squares(rows)
-    for _ in range(_STEPS):
+    for _ in range(_FEW if rough else _STEPS):
         lift, columns = model.jacobian(rows.theta)
         if not columns.shape[1]:
             break
@@ -379,12 +386,12 @@ def improved(model: Model, rows: Rows, rough: float = 0.0) -> Model:
             continue
         before = squares
         model, squares = _shortened(model, changes, squares, rows)
-        if before - squares <= max(_IMPROVED * rows.noise**2, rough * squares):
+        if before - squares <= max(_IMPROVED * rows.noise**2, max(rough, _RELATIVE) * squares):
             break
     return model
 
 
-def _lost_dwell(model: Model, changes: dict[Name, float], rows: Rows) -> int | None:
+def _lost_dwell(model: LiftModel, changes: dict[Name, float], rows: LiftRows) -> int | None:
     """Return the narrow dwell that a step closes, None if there is none."""
     widths, dwells = model.gaps()[1], model.moved(changes).gaps()[1]
     narrow = _NARROW * rows.step
@@ -397,8 +404,8 @@ def _lost_dwell(model: Model, changes: dict[Name, float], rows: Rows) -> int | N
 
 
 def _shortened(
-    model: Model, changes: dict[Name, float], squares: float, rows: Rows
-) -> tuple[Model, float]:
+    model: LiftModel, changes: dict[Name, float], squares: float, rows: LiftRows
+) -> tuple[LiftModel, float]:
     """Return the model after as much of a step as keeps widths positive and squares falling."""
     least, part = _KEPT * np.array(model.gaps()), 1.0
     for _ in range(_HALVINGS):

@@ -19,7 +19,7 @@ import numpy as np
 
 from gearcam.base.errors import beyond_limit
 from gearcam.base.numerals import formatted
-from gearcam.laws.lift_model import Model, Rows, place_of
+from gearcam.laws.lift_model import LiftModel, LiftRows, place_of
 from gearcam.laws.motion.base import MOTION_LAWS
 from gearcam.laws.phases_of_lift import TURN
 from gearcam.numeric.arrays import Array, Ints
@@ -27,8 +27,11 @@ from gearcam.numeric.arrays import Array, Ints
 FEWEST: Final = 36
 """Fewest rows of a turn."""
 
-FEWEST_OF_MOVE: Final = 5
-"""Fewest rows of a rise or return: a law, its boundaries and a row to spare."""
+FEWEST_OF_MOVE: Final = 3
+"""Fewest rows on a rise or return, without its flat ends: the law and its boundaries need them."""
+
+_FLAT: Final = 0.02
+"""Share of a move that belongs to its flat ends."""
 
 _ORDER: Final = 6
 _SMALLER: Final = 0.75
@@ -85,19 +88,19 @@ def _windows(count: int, width: int) -> tuple[Ints, Ints]:
     return index % count, index // count
 
 
-def first_model(rows: Rows, unit: tuple[float, str]) -> Model:
+def first_model(rows: LiftRows, unit: tuple[float, str]) -> LiftModel:
     """Return a model of the moves that rows show, all with the law 3-4-5.
 
     Parameters
     ----------
-    rows : Rows
+    rows : LiftRows
         The rows.
     unit : (float, str)
         Factor from lifts to their unit in output, and that unit, for messages.
 
     Returns
     -------
-    Model
+    LiftModel
 
     Raises
     ------
@@ -125,7 +128,7 @@ def first_model(rows: Rows, unit: tuple[float, str]) -> Model:
     return _ring(np.array(starts), np.array(ends), np.array(levels), tuple(tied))
 
 
-def _ring(starts: Array, ends: Array, levels: Array, tied: tuple[bool, ...]) -> Model:
+def _ring(starts: Array, ends: Array, levels: Array, tied: tuple[bool, ...]) -> LiftModel:
     """Return a model; angles are made to rise, and boundaries without a dwell one."""
     count = len(starts)
     for k in range(1, count):
@@ -139,10 +142,10 @@ def _ring(starts: Array, ends: Array, levels: Array, tied: tuple[bool, ...]) -> 
     for k in np.flatnonzero(over).tolist():
         starts[(k + 1) % count] = middle[k] - (TURN if k == count - 1 else 0.0)
     law = MOTION_LAWS["3-4-5"].example
-    return Model(laws=(law,) * count, starts=starts, ends=ends, levels=levels, tied=tied)
+    return LiftModel(laws=(law,) * count, starts=starts, ends=ends, levels=levels, tied=tied)
 
 
-def _slopes(rows: Rows) -> tuple[Array, Array]:
+def _slopes(rows: LiftRows) -> tuple[Array, Array]:
     """Return the slopes at rows, and from which size on they are no noise."""
     mean, count = 2.0 * float(np.ptp(rows.lift)) / TURN, len(rows.theta)
     slope, width = np.zeros(count), 5
@@ -159,7 +162,7 @@ def _slopes(rows: Rows) -> tuple[Array, Array]:
         width += 2
 
 
-def _runs(rows: Rows) -> list[tuple[int, Ints]]:
+def _runs(rows: LiftRows) -> list[tuple[int, Ints]]:
     """Return what the lift does, 1, -1 or 0, and the rows of it, in a ring."""
     slope, least = _slopes(rows)
     signs = np.where(np.abs(slope) <= least, 0, np.sign(slope)).astype(int)
@@ -170,10 +173,10 @@ def _runs(rows: Rows) -> list[tuple[int, Ints]]:
         before, after = signs[run[0] - 1], signs[(run[-1] + 1) % len(signs)]
         if not sign and len(run) < 3 and before != after:  # it turns
             signs[run] = before
-    return [part for sign, run in _groups(signs) for part in _halves(sign, run, slope, least)]
+    return [part for sign, run in _groups(signs) for part in _cut(sign, run, slope, least)]
 
 
-def _halves(sign: int, run: Ints, slope: Array, least: Array) -> list[tuple[int, Ints]]:
+def _cut(sign: int, run: Ints, slope: Array, least: Array) -> list[tuple[int, Ints]]:
     """Return a move, cut where it nearly stops: every law has one peak of velocity."""
     speed = np.abs(slope[run])
     peaks = np.minimum(np.maximum.accumulate(speed), np.maximum.accumulate(speed[::-1])[::-1])
@@ -181,11 +184,11 @@ def _halves(sign: int, run: Ints, slope: Array, least: Array) -> list[tuple[int,
     depth = float(peaks[row] - speed[row])
     if not sign or depth < max(0.5 * peaks[row], 2.0 * float(least[run[row]])):
         return [(sign, run)]
-    halves = (run[:row], run[row:])
-    return [part for half in halves for part in _halves(sign, half, slope, least)]
+    parts = (run[:row], run[row:])
+    return [one for part in parts for one in _cut(sign, part, slope, least)]
 
 
-def _blip(run: Ints, rows: Rows) -> bool:
+def _blip(run: Ints, rows: LiftRows) -> bool:
     """Whether a move is noise."""
     change = abs(float(rows.lift[run[-1]] - rows.lift[run[0]]))
     return change < 2.0 * _SURE * rows.noise
@@ -201,7 +204,9 @@ def _groups(signs: Ints) -> list[tuple[int, Ints]]:
     ]
 
 
-def _bound(rows: Rows, runs: list[tuple[int, Ints]], number: int, end: int) -> tuple[float, float]:
+def _bound(
+    rows: LiftRows, runs: list[tuple[int, Ints]], number: int, end: int
+) -> tuple[float, float]:
     """Return how far a move may go, rad, and its level there: at its start, 0, or end, 1."""
     sign, run = runs[(number + (1 if end else -1)) % len(runs)]
     if sign == 0:
@@ -212,28 +217,23 @@ def _bound(rows: Rows, runs: list[tuple[int, Ints]], number: int, end: int) -> t
 
 
 def _stretch(
-    rows: Rows, run: Ints, low: tuple[float, float], high: tuple[float, float]
+    rows: LiftRows, run: Ints, low: tuple[float, float], high: tuple[float, float]
 ) -> tuple[float, float]:
     """Return start and end of a move, rad, of which rows cross a fifth and four fifths.
 
     Refused are moves of too few rows.
     """
-    if len(run) < FEWEST_OF_MOVE:
+    done = (rows.lift[run] - low[1]) / (high[1] - low[1])
+    inside = int(((done > _FLAT) & (done < 1.0 - _FLAT)).sum())
+    if inside < FEWEST_OF_MOVE:
         word = "rise" if high[1] > low[1] else "return"
         where = " to ".join(f"{math.degrees(float(rows.theta[one])):.6g}" for one in run[[0, -1]])
-        rule = "more rows, or a lift without jumps"
-        raise beyond_limit(
-            f"a {word} takes too few rows",
-            "",
-            len(run),
-            FEWEST_OF_MOVE,
-            f"at {where} deg; {rule}",
-            unit="rows",
-        )
+        note = f"at {where} deg; measure at smaller steps there; a jump has no law"
+        what, least = f"a {word} takes too few rows", FEWEST_OF_MOVE
+        raise beyond_limit(what, "", inside, least, note, unit="rows")
     theta = np.unwrap(rows.theta[run], period=TURN)
     first = theta[0] - (theta[0] - low[0]) % TURN
     last = theta[-1] + (high[0] - theta[-1]) % TURN
-    done = (rows.lift[run] - low[1]) / (high[1] - low[1])
     places = np.interp([0.2, 0.8], np.maximum.accumulate(done), theta)
     law, falling = MOTION_LAWS["3-4-5"].example, bool(high[1] < low[1])
     shares = [place_of(law, part, falling=falling) for part in (0.2, 0.8)]

@@ -12,7 +12,9 @@ from gearcam.numeric.arrays import Array, Plane, as_complex
 _COLUMNS = ("x_mm", "y_mm")
 
 
-def read_closed(file: str, *, what: str, outer: bool = False) -> tuple[Plane, Array]:
+def read_closed(
+    file: str, *, what: str, outer: bool = False, also: str = ""
+) -> tuple[Plane, Array]:
     """Return a closed outline.
 
     Parameters
@@ -24,6 +26,8 @@ def read_closed(file: str, *, what: str, outer: bool = False) -> tuple[Plane, Ar
         What it should be, for messages: "a profile".
     outer : bool
         Whether to take the outline on the layer OUTER rather than INNER.
+    also : str
+        What else would be allowed, for messages.
 
     Returns
     -------
@@ -45,7 +49,9 @@ def read_closed(file: str, *, what: str, outer: bool = False) -> tuple[Plane, Ar
         vertices, _ = read_rows(file).columns(_COLUMNS)
     except (UnreadableError, ValueError) as error:
         rule = "a DXF file with one closed outline, or a CSV file with the columns x_mm, y_mm"
-        raise DesignError([Problem(f"not {what}: {error}", file=file, allowed=rule)]) from error
+        raise DesignError(
+            [Problem(f"not {what}: {error}", file=file, allowed=rule + also)]
+        ) from error
     return straight(vertices)
 
 

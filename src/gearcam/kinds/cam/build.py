@@ -373,6 +373,7 @@ class CamResult(PartsResult):
         profile: str | Path | ArrayLike,
         *,
         wall: str | None = None,
+        fit: bool = False,
         progress: Progress | None = None,
     ) -> StudyResult:
         """Return the motion of the design's follower on a given profile.
@@ -385,6 +386,10 @@ class CamResult(PartsResult):
         wall : str, optional
             Key of the wall, for conjugate cams or a groove; by default the first. Walls of a
             groove are followed by a roller as wide as the groove.
+        fit : bool
+            Whether to find the phases, motion laws and sizes that make this motion. The profile may
+            then be a CSV file of the lift, with the columns theta_deg (or angle_deg) and lift_mm or
+            lift_deg.
         progress : callable, optional
             Called with a stage's name, the stages done and their number.
 
@@ -396,13 +401,13 @@ class CamResult(PartsResult):
         Raises
         ------
         InfeasibleError
-            If the follower cannot rest on the profile.
+            If the follower cannot rest on the profile, or no phases can be found.
         DesignError
             If it is not a profile, or the file cannot be read.
         """
         from gearcam.kinds.cam.studies import follow
 
-        return follow(self, profile, wall, progress)
+        return follow(self, profile, wall, progress, fit=fit)
 
 
 def _ending(one: PitchMotion) -> str:

@@ -49,7 +49,8 @@ def read_profile(file: str | Path | ArrayLike, wall: Wall) -> tuple[Plane, Array
     """
     if not isinstance(file, str | os.PathLike):
         return straight(points("profile", file))
-    return read_closed(os.fspath(file), what="a profile", outer=wall.side < 0)
+    also = "; with fit (--fit) also a CSV file of the lift: theta_deg, and lift_mm or lift_deg"
+    return read_closed(os.fspath(file), what="a profile", outer=wall.side < 0, also=also)
 
 
 def followed(

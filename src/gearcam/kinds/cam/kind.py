@@ -6,7 +6,7 @@ from functools import partial
 from typing import Final
 
 from gearcam.base.registry import DeferredMapping, deferred
-from gearcam.cams.spec import FOLLOWED, FORCES, PRECISION
+from gearcam.cams.spec import FITTED, FOLLOWED, FORCES, PRECISION
 from gearcam.cams.spec import KIND as CAM
 from gearcam.designs.kind import Main
 from gearcam.designs.table import table_of
@@ -66,7 +66,7 @@ KIND: Final = Kind(
     later=later,
     formats=CAM_FORMATS,
     check_modules=("gearcam.cams.checks", "gearcam.cams.force_checks", "gearcam.parts.checks"),
-    check_groups=(CAM, PARTS, FOLLOWED, FORCES, PRECISION),
+    check_groups=(CAM, PARTS, FOLLOWED, FITTED, FORCES, PRECISION),
     study_tables={name: name for name in ("follow", "forces", "precision", "accuracy")},
     example={
         "motion": [

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Final
 
+import numpy as np
+
 from gearcam.base.errors import DesignError, Problem
 from gearcam.kinds.shared import accuracy_study
 from gearcam.results.kind import Study
@@ -17,16 +19,22 @@ if TYPE_CHECKING:
     from gearcam.kinds.cam.build import CamResult
     from gearcam.results.result import Progress
 
+_FILE: Final = "followed.csv"
+
 
 def follow(
     result: CamResult,
     profile: str | Path | ArrayLike,
     wall: str | None = None,
     progress: Progress | None = None,
+    *,
+    fit: bool = False,
 ) -> StudyResult:
     """Return the motion of a cam's follower on a given profile (see `CamResult.follow`)."""
     from gearcam.kinds.cam.follow import followed, read_profile
 
+    if fit:
+        return _fit(result, profile, wall, progress)
     chosen = result.wall(wall)
     if progress is not None:
         progress("profile", 0, 2)
@@ -39,19 +47,61 @@ def follow(
     return StudyResult(
         result=result,
         study=FOLLOW,
-        file="followed.csv",
+        file=_FILE,
         table=columns,
         group=facts,
         study_findings=found,
     )
 
 
+def _fit(
+    result: CamResult,
+    profile: str | Path | ArrayLike,
+    wall: str | None,
+    progress: Progress | None,
+) -> StudyResult:
+    """Return the same with the design that has this motion."""
+    from gearcam.kinds.cam import fit as fitting
+
+    fitting.demand_fit(result.design)
+    chosen = result.wall(wall)
+    rows = fitting.read_lift(profile, chosen)
+    if rows is None:
+        study = follow(result, profile, wall, progress)
+        columns, facts, found = fitting.of_turn(study), dict(study.group), study.study_findings
+        scale = chosen.follower.lift_unit[0]
+        theta, lift = np.radians(columns["theta_deg"]), columns["s"] / scale
+        error = float(np.sqrt(np.mean(columns["error"] ** 2))) / scale
+    else:
+        (theta, lift), found, error = rows, (), None
+        columns, facts = fitting.compared(chosen, theta, lift)
+    if progress is not None:
+        progress("fit", 0, 1)
+    with result.stage("fit"):
+        one = fitting.fit(result, chosen, theta, lift, error=error, source=profile)
+        columns, facts = columns | one.columns, facts | {"fit": one.facts}
+    return StudyResult(
+        result=result,
+        study=FOLLOW,
+        file=_FILE,
+        table=columns,
+        group=facts,
+        study_findings=(*found, *one.findings),
+        drawn=one.charts,
+        pages={fitting.FILE: one.page},
+    )
+
+
 def _follow(result: CamResult, progress: Progress | None) -> StudyResult:
     given = result.design.follow
-    return follow(result, given.file or "", given.wall, progress)
+    return follow(result, given.file or "", given.wall, progress, fit=given.fit)
 
 
 def _demand(design: Any) -> None:
+    if design.follow.fit:
+        from gearcam.kinds.cam.fit import demand_fit
+
+        demand_fit(design)
     if design.follow.file is None:
         rule = "a DXF or CSV file of a closed profile"
         problem = Problem("is missing", file=design.source, key="follow.file", allowed=rule)
@@ -61,7 +111,8 @@ def _demand(design: Any) -> None:
 FOLLOW: Final = Study(
     name="follow",
     key="followed",
-    doc="Compute the follower motion on a given profile; write DIR/NAME/followed.csv.",
+    doc="Compute the follower motion on a given profile; write DIR/NAME/followed.csv. With --fit "
+    "find the design that moves like this; write DIR/NAME/fitted.toml too.",
     done="followed",
     table="follow",
     compute=_follow,

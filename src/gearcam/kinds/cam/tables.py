@@ -94,6 +94,11 @@ class FollowSpec(ShortRepr):
         "first if left out",
         example="outer",
     )
+    fit: bool = param(
+        default=False,
+        doc="whether to find the phases, motion laws and sizes that make this motion; the file may "
+        "then be a CSV of the lift, with columns theta_deg and lift_mm or lift_deg",
+    )
 
 
 def _tolerance(quantity: Quantity = LENGTH, *, doc: str) -> Any:

@@ -1,0 +1,86 @@
+"""Documents of designs as text in TOML, with no more keys than needed."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from gearcam.base.errors import DesignError
+from gearcam.designs.design import Design, design
+
+
+def least_document(given: Design) -> dict[str, Any]:
+    """Return the document of a design without keys that say what holds without them.
+
+    Parameters
+    ----------
+    given : Design
+        The design.
+
+    Returns
+    -------
+    dict
+        Of which `gearcam.design` makes an equal design.
+    """
+    document = given.to_dict()
+    for title, table in list(document.items()):
+        if isinstance(table, dict):
+            for key in list(table):
+                left = {name: value for name, value in document[title].items() if name != key}
+                document = _if_equal(given, document, {**document, title: left})
+            rest = {name: value for name, value in document.items() if name != title}
+            document = document if document[title] else _if_equal(given, document, rest)
+    return document
+
+
+def _if_equal(given: Design, document: dict[str, Any], smaller: dict[str, Any]) -> dict[str, Any]:
+    """Return the smaller document if it is that of the same design."""
+    try:
+        return smaller if design(smaller, given.source) == given else document
+    except DesignError:
+        return document
+
+
+def toml_text(document: Mapping[str, Any], comments: Sequence[str] = ()) -> str:
+    """Return a document as text in TOML.
+
+    Parameters
+    ----------
+    document : mapping
+        Of a design without nested designs: values, tables of values, lists of tables.
+    comments : sequence of str
+        Lines at the top, without the sign of a comment.
+
+    Returns
+    -------
+    str
+    """
+    return "\n".join([*(f"# {line}".rstrip() for line in comments), *_lines(document), ""])
+
+
+def _lines(document: Mapping[str, Any]) -> Iterator[str]:
+    for key, value in document.items():
+        if not _tables(value):
+            yield f"{key} = {_text(value)}"
+    for key, value in document.items():
+        for table in _tables(value):
+            yield ""
+            yield f"[{key}]" if isinstance(value, Mapping) else f"[[{key}]]"
+            yield from (f"{name} = {_text(one)}" for name, one in table.items())
+
+
+def _tables(value: Any) -> Sequence[Mapping[str, Any]]:
+    """Return the tables that a value is made of, none if it is none."""
+    if isinstance(value, Mapping):
+        return (value,)
+    listed = isinstance(value, Sequence) and not isinstance(value, str)
+    return value if listed and value and all(isinstance(one, Mapping) for one in value) else ()
+
+
+def _text(value: Any) -> str:
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        return f"[{', '.join(map(_text, value))}]"
+    if isinstance(value, float):
+        return repr(int(value)) if value.is_integer() and abs(value) < 1e15 else repr(value)
+    return json.dumps(value, ensure_ascii=False)
