@@ -9,6 +9,7 @@ from itertools import pairwise
 from typing import Any, Final
 
 import mpmath
+import numpy as np
 
 mp: Any = mpmath
 DEGREE = mp.pi / 180
@@ -383,6 +384,21 @@ READ: Final = math.radians(110)
 WORST, FIRST, LAST = _undercut()
 HIGHEST = math.hypot(10, math.sqrt(60**2 - 10**2) + 27.6) - 8
 
+OPENING = 75 / 360 * 60 / 2600
+"""Seconds that the valve of the train takes to open."""
+
+
+def _preload(mass: float, stiffness: float, lift: float, time: float) -> float:
+    """Least preload below a rise 3-4-5: where the derivative of m*s'' + k*s has a root."""
+    rise = np.polynomial.Polynomial([0, 0, 0, 10, -15, 6]) * lift
+    force = 1e-3 * mass / time**2 * rise.deriv(2) + stiffness * rise
+    roots = force.deriv().roots()
+    inside = roots[(abs(roots.imag) < 1e-9) & (roots.real > 0) & (roots.real < 1)].real
+    return -float(force(inside).min())
+
+
+PRELOAD = _preload(0.11, 20, 9, OPENING)
+
 CAM_NUMBERS: dict[str, dict[str, Number]] = {
     "plate_cam_offset_roller": {
         "cam.pressure_angle_deg.rise_max": (15.466010, 5e-7),
@@ -452,6 +468,10 @@ CAM_NUMBERS: dict[str, dict[str, Number]] = {
         "motion.lift.max": (27.6, 1e-13),
         "cam.profile.radius_mm.max": (HIGHEST, 1e-12),
         "cam.profile.radius_mm.min": (52.0, 1e-12),
+    },
+    "valve_train": {
+        "motion.peak_velocity_mm_s": (15 / 8 * 9 / OPENING, 1e-12),
+        "forces.spring.preload_n": (PRELOAD, 1e-8),
     },
     "valve_lever": {
         "cam.start_angle_deg": (DEG * math.asin(51 / 70), 1e-12),

@@ -246,6 +246,29 @@ def test_the_sign_of_the_load_tells_the_wall_that_carries(name: str) -> None:
     assert (found.force >= 0.0).all()
 
 
+def test_the_pivot_by_the_law_of_newton() -> None:
+    """Its force, that of the cam and the weight accelerate the centre of mass, by differences."""
+    mass, speed = 1.5, 60 * math.pi / 30
+    arm = {"mass_kg": mass, "inertia_kg_m2": 0.004, "center_mm": 40}
+    changes = {"mass": [arm], "gravity": {"direction_deg": -40}, "drive": {"speed_rpm": 60}}
+    result = held(ARM, "cycloidal", **changes, spring=[{"preload_nm": 9}], **FRICTION)
+    found, _, x = studied(result)
+    program, start = result.program, result.follower.start
+
+    def centre(x: np.ndarray) -> np.ndarray:  # the arm points from (70, 0) towards the cam
+        return 70.0 - 40.0 * np.exp(-1j * (start + program.derivatives(x, 0)[0]))
+
+    step, inside = 1e-4, (x > 0.1) & (x < 2.0)
+    x = x[inside]
+    second = (centre(x + step) - 2.0 * centre(x) + centre(x - step)) / step**2
+    weight = mass * 9.80665 * np.exp(-1j * math.radians(40.0))
+    pivot = found.reactions["pivot_x_n"] + 1j * found.reactions["pivot_y_n"]
+    forces = pivot + found.bearing + weight
+    needed = 1e-3 * mass * speed**2 * second
+    assert np.abs(needed).max() > 0.05
+    assert np.abs(forces[inside] - needed).max() < 1e-4 * np.abs(needed).max()
+
+
 def test_a_mirrored_cam_has_the_same_forces() -> None:
     changes = {"load": [{"force_n": 50}], **FRICTION}
     one, other = (

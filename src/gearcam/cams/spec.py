@@ -146,6 +146,12 @@ class FollowerSpec(ShortRepr):
         """Radius of its round face, mm; 0 of a point."""
         return self.roller_radius or self.dome_radius or 0.0
 
+    def without_friction(self, friction: FrictionSpec) -> list[str]:
+        """Return the coefficients that it needs and `friction` leaves out."""
+        ends = "roller" if self.type == "roller" else "flank"
+        needed = (ends, "joint") if self.oscillating else (ends, "guide", "joint")
+        return [name for name in needed if not getattr(friction, name)]
+
     def dragged(self, friction: FrictionSpec, radius: float) -> float:
         """Return tangential over normal force at the contact.
 

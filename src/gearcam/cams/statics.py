@@ -96,6 +96,14 @@ class Touch(ShortRepr):
         unit = normal + share * np.sign(slide) * tangent
         return Push(at=at, unit=unit, normal=normal), slide
 
+    def along(self, x: Array) -> Array:
+        """Return how far the contact has come along its wall, mm, at rising positions (n,)."""
+        x, s, ds = self._state(x)
+        wall, touching = self.wall, self.wall.follower
+        inset = wall.side * touching.radius
+        path, _ = touching.trace(wall.carrier, x, touching.start + s, ds, inset)
+        return np.concatenate([[0.0], np.cumsum(np.abs(np.diff(path)))])
+
     def curvature(self, x: Array) -> Array:
         """Return the relative curvature of wall and follower, 1/mm; nan where undercut."""
         x, _, _ = self._state(x)
@@ -125,6 +133,8 @@ class Statics(ShortRepr):
         Loads against a rise.
     useful : (n,) array, N mm or N
         Work of the loads, per unit of the driver's position.
+    moving : (n,) bool array
+        Where the follower is not at rest.
     lost : dict of str to (n,) array, N mm or N
         Work of friction by places: contact, support, bearing.
     reactions : dict of str to (n,) array
@@ -143,6 +153,7 @@ class Statics(ShortRepr):
     torque: Array
     against: Array
     useful: Array
+    moving: Mask
     lost: dict[str, Array]
     reactions: dict[str, Array]
     bearing: Array
@@ -150,11 +161,15 @@ class Statics(ShortRepr):
 
     @property
     def efficiency(self) -> Array:
-        """Work that arrives over work that is put in; nan at rest and where all is lost."""
-        put, got = self.torque, self.useful
-        forward, backward = (put > 0.0) & (got > 0.0), (put < 0.0) & (got < 0.0)
+        """Work that arrives over work that is put in; nan at rest and where all is lost.
+
+        From the losses, not from the torque: near rest that would be a quotient of rounding.
+        """
+        work, losses = np.where(self.moving, self.useful, np.nan), sum(self.lost.values())
         with np.errstate(divide="ignore", invalid="ignore"):
-            return np.where(forward, got / put, np.where(backward, put / got, np.nan))
+            driven, driving = work / (work + losses), 1.0 + losses / work
+        share = np.where(work > 0.0, driven, driving)
+        return np.where(share > 0.0, share, np.nan)
 
 
 def sense_of(ds: Array) -> Array:
@@ -235,6 +250,7 @@ def solve(
         torque=torque,
         against=burden.against,
         useful=burden.against * ds,
+        moving=burden.sense != 0.0,
         lost=lost,
         reactions=reactions,
         bearing=bearing,

@@ -7,7 +7,7 @@ Other rules, such as increasing knots and valid formulas, are checked only when 
 from __future__ import annotations
 
 from collections import ChainMap
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any, Final
 
 from gearcam.base.quantities import REQUIRED
@@ -139,12 +139,14 @@ def _branch(kind: DesignKind, main: Schema) -> Schema:
             **({kind.main.title: main} if kind.main else {}),
         }
         | {title: {"$ref": f"#/$defs/{kind.name}-{title}"} for title in (*kind.tables, "limits")},
-        **_all_of([*_rules(kind.rules, ChainMap(*fields)), *_variants(kind.variants)]),
+        **_all_of(
+            [*_rules(kind.rules, ChainMap(*fields)), *_variants(kind.variants, kind.several)]
+        ),
     }
 
 
-def _variants(variants: Variants | None) -> Iterator[Schema]:
-    """Yield what tables may have and must have, for each variant."""
+def _variants(variants: Variants | None, several: Sequence[str]) -> Iterator[Schema]:
+    """Yield what tables may have and must have, for each variant; of `several` each of them."""
     if variants is None:
         return
     for value in variants.entries:
@@ -155,8 +157,9 @@ def _variants(variants: Variants | None) -> Iterator[Schema]:
             table = variants.table(title, value)
             needed = [key for key, entry in table.entries.items() if entry.required]
             keys = {"propertyNames": {"enum": [*table.entries]}, "required": needed}
-            tables[title] = {**keys, **_all_of(_rules_of(table))}
-            required += [title] if needed else []
+            rule = {**keys, **_all_of(_rules_of(table))}
+            tables[title] = {"items": rule} if title in several else rule
+            required += [title] if needed and title not in several else []
         yield {
             "if": {"properties": {variants.title: chosen}, "required": [variants.title]},
             "then": {"properties": tables, "required": required},

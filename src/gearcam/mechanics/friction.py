@@ -76,9 +76,3 @@ class FrictionSpec(ShortRepr):
             return 0.0
         share = self.journal_radius[1] / radius * math.sin(math.atan(self.roller))
         return math.tan(math.asin(min(share, 1.0)))
-
-    @property
-    def left_out(self) -> tuple[str, ...]:
-        """Names of coefficients that are 0."""
-        names = ("joint", "guide", "roller", "flank")
-        return tuple(name for name in names if not getattr(self, name))

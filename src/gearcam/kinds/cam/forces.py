@@ -174,7 +174,7 @@ def study_forces(result: CamResult, study: Study, progress: Progress | None) -> 
         table=columns,
         group=_facts(result, loads, loaded, release),
         study_findings=found,
-        drawn=partial(_charts, result, columns),
+        drawn=partial(_charts, result, x, columns),
     )
 
 
@@ -231,6 +231,7 @@ def _facts(
     """Return the facts of the study."""
     statics, design = loaded.statics, result.design
     effort, scale = design.drive.effort
+    without = design.follower.without_friction(design.friction)
     tree: Tree = {
         "normal_n": _extreme(loaded, statics.force, "normal force", "N"),
         effort: _extreme(
@@ -246,11 +247,7 @@ def _facts(
         "lifted": bool(statics.lifted.any()),
         "reversals": _reversals(statics),
         "spring": _spring(loads) or None,
-        "friction": Fact(
-            "none of " + ", ".join(design.friction.left_out), "friction left out", shown=True
-        )
-        if design.friction.left_out
-        else None,
+        "friction": Fact(", ".join(without), "friction left out", shown=True) if without else None,
     }
     if release is not None:
         speed, where = release
@@ -331,8 +328,25 @@ _TITLES: Final = {
 """Titles and axes of charts by columns."""
 
 
-def _charts(result: CamResult, columns: Mapping[str, Any]) -> dict[str, Chart]:
-    """Return charts of forces over the driver."""
+def _along(result: CamResult, x: Array, columns: Mapping[str, Any]) -> Chart | None:
+    """Return the chart of the contact pressure along each wall."""
+    pressure = np.ma.filled(columns["pressure_mpa"], np.nan)
+    if not np.isfinite(pressure).any():
+        return None
+    lines = tuple(
+        Line(
+            label=f"{touch.key} wall" if touch.key else "profile",
+            x=touch.along(x),
+            y=np.where(columns["wall"] == number, pressure, np.nan),
+        )
+        for number, touch in enumerate(result.cam.touches, start=1)
+    )
+    where, title = "from the contact at the start, mm", "Contact pressure along the profile"
+    return Chart(title=title, x=f"arc length {where}", y="contact pressure, MPa", lines=lines)
+
+
+def _charts(result: CamResult, x: Array, columns: Mapping[str, Any]) -> dict[str, Chart]:
+    """Return charts of forces over the driver, and of the pressure along the profile."""
     column, label = places_of(result)
     limits = {"pressure_mpa": result.design.limits.get("contact_pressure", 0.0)}
     limits["torque_nm"] = result.design.limits.get("drive_torque", 0.0) / TORQUE.factor
@@ -350,4 +364,5 @@ def _charts(result: CamResult, columns: Mapping[str, Any]) -> dict[str, Chart]:
             limits=(Limit(label="limit", value=most),) if most else (),
             marks=knots_of(result),
         )
-    return charts
+    along = _along(result, x, columns)
+    return charts if along is None else charts | {"profile_pressure": along}
