@@ -25,12 +25,12 @@ def least_document(given: Design) -> dict[str, Any]:
     """
     document = given.to_dict()
     for title, table in list(document.items()):
-        if isinstance(table, dict):
-            for key in list(table):
-                left = {name: value for name, value in document[title].items() if name != key}
-                document = _if_equal(given, document, {**document, title: left})
+        for key in list(table) if isinstance(table, dict) else ():
+            left = {name: value for name, value in document[title].items() if name != key}
+            document = _if_equal(given, document, {**document, title: left})
+        if not document[title]:
             rest = {name: value for name, value in document.items() if name != title}
-            document = document if document[title] else _if_equal(given, document, rest)
+            document = _if_equal(given, document, rest)
     return document
 
 

@@ -48,7 +48,7 @@ FILE: Final = "fitted.toml"
 
 
 def read_lift(file: Any, wall: Wall) -> tuple[Array, Array] | None:
-    """Return the rows of a lift in a CSV file, None if it holds something else.
+    """Return the rows of a lift in a CSV file, None if it is something else, or cannot be read.
 
     Parameters
     ----------
@@ -75,9 +75,12 @@ def read_lift(file: Any, wall: Wall) -> tuple[Array, Array] | None:
     needed = f"rows of theta_deg and lift_{unit} over a whole turn"
     try:
         rows = read_rows(name)
-        head = rows.cells[0]
-        if not {"lift_mm", "lift_deg"} & set(head):
-            return None
+    except ColumnsError:
+        return None
+    head = rows.cells[0]
+    if not {"lift_mm", "lift_deg"} & set(head):
+        return None
+    try:
         angle = next((one for one in _ANGLES if one in head), _ANGLES[0])
         points, lines = rows.columns((angle, f"lift_{unit}"))
     except ColumnsError as error:

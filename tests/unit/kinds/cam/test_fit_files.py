@@ -138,6 +138,11 @@ def test_lifts_without_phases_are_refused(tmp_path: Path) -> None:
         result.follow(few, fit=True)
 
 
+def test_a_missing_file_is_no_profile_either(tmp_path: Path) -> None:
+    with pytest.raises(DesignError, match=r"(?s)not a profile.*no such file.*--fit"):
+        gearcam.build(gearcam.load(PLATE)).follow(tmp_path / "none.csv", fit=True)
+
+
 @pytest.mark.parametrize("name", ["yoke_cam", "translating_cam"])
 def test_forms_whose_phases_fill_no_turn_are_refused(name: str) -> None:
     result = gearcam.build(gearcam.load(PROFILES / f"{name}.toml"))
