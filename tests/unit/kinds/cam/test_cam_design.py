@@ -205,8 +205,9 @@ def test_the_template_reads_and_what_it_tells_of_may_be_written(kind: str) -> No
     assert loads(template(kind)).name == f"my_{kind}".replace("-", "_")
     for title in (*KINDS[kind].tables, "limits"):
         known = KINDS[kind].table(title)
+        head = f"[[{title}]]" if title in KINDS[kind].several else f"[{title}]"
         (part,) = re.findall(
-            rf"^(?:# )?\[{title}\](.*?)(?=^(?:# )?\[|\Z)", text, re.MULTILINE | re.DOTALL
+            rf"^(?:# )?{re.escape(head)}(.*?)(?=^(?:# )?\[|\Z)", text, re.MULTILINE | re.DOTALL
         )
         shown = re.findall(r"^(?:# )?(\w+) = (.*?) +#", part, re.MULTILINE)
         bare = re.findall(r"^# (\w+)  +#", part, re.MULTILINE)
