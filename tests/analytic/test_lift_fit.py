@@ -189,6 +189,20 @@ def test_three_levels_and_two_rises_in_a_row() -> None:
     demand_found(fitted, moves)
 
 
+def test_equal_levels_are_equal() -> None:
+    moves = [
+        Move("cycloidal", 10, 70, 0, 5),
+        Move("cycloidal", 90, 150, 5, 0),
+        Move("modified-sine", 180, 240, 0, 9),
+        Move("modified-sine", 260, 340, 9, 0),
+    ]
+    fitted = fit_lift(*rows(moves, 3e-3, 360), (1.0, "mm"))
+    demand_found(fitted, moves)
+    assert sorted(fitted.model.levels.tolist()) == pytest.approx([0, 0, 5, 9], abs=1e-12)
+    lifts = [one.lift for one in fitted.phases() if isinstance(one, RisePhase)]
+    assert lifts == [5.0, 5.0, 9.0, None]
+
+
 def test_the_number_of_a_law_is_found() -> None:
     q = 0.3
     lift = integral(integral(odd(lambda x: np.where(x < q, 1.0, 0.0))(FINE)))

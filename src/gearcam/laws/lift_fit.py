@@ -160,7 +160,8 @@ class FittedLift:
         """
         model = self.model
         first, low = model.lowest, float(model.levels[model.lowest])
-        lowest = [k for k in range(len(model.laws)) if model.levels[k] <= low + self.rows.noise]
+        near = low + 1e-9 * float(np.ptp(model.levels))
+        lowest = [k for k in range(len(model.laws)) if model.levels[k] <= near]
         for k in lowest:
             dwell = model.ends[k - 1] - (TURN if k == 0 else 0.0)
             turns = TURN * math.ceil((dwell - _tiny(self)) / TURN)
@@ -548,8 +549,11 @@ def _rounded(model: LiftModel, rows: LiftRows, variance: float, scale: float) ->
     """Return the model with all sizes rounded (see the module docstring)."""
     places = ("start", "end")
     names = sorted(model.names(), key=lambda one: (one[0] not in places, one[1], one[0] == "end"))
+    model = replace(model, ground=model.lowest)  # another level may be rounded to the same
     for name in names:
-        deviation = _deviations(model, variance, rows)[name]
+        deviation = _deviations(model, variance, rows).get(name)
+        if deviation is None:  # its dwell was closed
+            continue
         squares, one = model.squares(rows), model
         for target in _round_values(model, name, deviation, scale):
             moved = model.moved({name: target - model.value(name)})

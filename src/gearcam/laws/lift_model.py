@@ -195,6 +195,8 @@ class LiftModel:
         Whether no dwell follows a move.
     fixed : frozenset of Name
         Parameters that are not fitted.
+    ground : int or None
+        The move whose level the others are above; by default the lowest.
     free : frozenset of int
         Moves of whose laws the number is fitted.
     """
@@ -205,6 +207,7 @@ class LiftModel:
     levels: Array
     tied: tuple[bool, ...]
     fixed: frozenset[Name] = frozenset()
+    ground: int | None = None
     free: frozenset[int] = frozenset()
 
     @property
@@ -219,8 +222,8 @@ class LiftModel:
 
     @property
     def lowest(self) -> int:
-        """The move before which the lift is lowest."""
-        return int(np.argmin(self.levels))
+        """The move before which the lift is lowest; of several the one that was chosen."""
+        return int(np.argmin(self.levels)) if self.ground is None else self.ground
 
     def names(self) -> Iterator[Name]:
         """Yield the parameters that are fitted."""
