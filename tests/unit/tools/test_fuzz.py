@@ -283,7 +283,7 @@ def test_whatever_is_broken_is_read_or_refused_in_words(tmp_path: Path) -> None:
 
 
 def test_a_tenth_is_broken() -> None:
-    broken = [design(kind, 1, index).broken for kind in MAKERS for index in range(500)]
+    broken = [design(kind, 1, index).broken for kind in MAKERS for index in range(1000)]
     assert 0.08 < sum(map(bool, broken)) / len(broken) < 0.12
 
 
