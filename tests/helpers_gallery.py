@@ -399,7 +399,23 @@ def _preload(mass: float, stiffness: float, lift: float, time: float) -> float:
 
 PRELOAD = _preload(0.11, 20, 9, OPENING)
 
+
+def _edge(angle: float, lift: float, limit: float) -> float:
+    """Largest s'/tan(limit) - s of a cycloidal rise: where s'' = s'*tan(limit); deg, mm."""
+    beta, slope = math.radians(angle), math.tan(math.radians(limit))
+    x = 2.0 * math.atan(2.0 * math.pi / (beta * slope))
+    return lift * ((1.0 - math.cos(x)) / (beta * slope) - (x - math.sin(x)) / (2.0 * math.pi))
+
+
+PACKING = [_edge(angle, 40.0, 32.0) for angle in (130.0, 100.0)]
+PACKING_OFFSET = 0.5 * (PACKING[0] - PACKING[1]) * math.tan(math.radians(32.0))
+
 CAM_NUMBERS: dict[str, dict[str, Number]] = {
+    "packaging_cam": {
+        # the corner of the lines of the pressure angle on the rise and on the return
+        "cam.prime_radius_mm": (math.hypot(0.5 * sum(PACKING), PACKING_OFFSET), 1e-5),
+        "cam.offset_mm": (PACKING_OFFSET, 1e-5),
+    },
     "plate_cam_offset_roller": {
         "cam.pressure_angle_deg.rise_max": (15.466010, 5e-7),
         "cam.pressure_angle_deg.rise.max": (7.969733, 5e-7),

@@ -9,8 +9,8 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+from gearcam.designs.toml import toml_text
 from helpers_built import built
-from random_designs.toml import toml
 
 ELLIPSE = {"type": "ellipse", "eccentricity": 0.2}
 CIRCLE = {"type": "constant"}
@@ -388,5 +388,5 @@ def followed(document: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[st
 def job_of(document: Mapping[str, Any], folder: Path) -> Any:
     """The shared result of a design that is read from its file."""
     file = folder / "design.toml"
-    file.write_text(toml(document), encoding="utf-8")
+    file.write_text(toml_text(document), encoding="utf-8")
     return built(file)

@@ -25,8 +25,8 @@ from typing import Any, Final
 
 from compare_files import MORE, Difference, called, folders, told
 from compare_sides import GALLERY, ROOT, Side, tree_of
+from gearcam.designs.toml import toml_text
 from random_designs.designs import MAKERS, design
-from random_designs.toml import toml
 
 SHOWN: Final = 30
 """Largest number of places listed."""
@@ -135,7 +135,7 @@ def renamed(text: str, renames: Mapping[str, str]) -> str:
             document.setdefault(old_title, {})[old_key] = document[title].pop(key)
             if not document[title]:
                 del document[title]
-    return toml(document)
+    return toml_text(document)
 
 
 def differences(

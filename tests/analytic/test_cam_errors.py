@@ -18,11 +18,11 @@ import numpy as np
 import pytest
 
 import gearcam
+from gearcam.designs.toml import toml_text
 from gearcam.kinds.cam.accuracy import error_rows
 from helpers_cam_truth import faults, judged, rows
 from random_designs.cam import design as cam
 from random_designs.draw import Draw
-from random_designs.toml import toml
 from witness.lifts import formula
 
 mp: Any = mpmath.mp
@@ -75,7 +75,7 @@ def random_faults(number: int) -> list[str] | None:
     """The same of a design at random; None where it cannot be made."""
     design = drawn(number)
     try:
-        result = gearcam.build(gearcam.loads(toml(design)))
+        result = gearcam.build(gearcam.loads(toml_text(design)))
         _ = result.profiles
     except gearcam.GearcamError:
         return None
@@ -90,7 +90,7 @@ def smooth(follower: str, text: str) -> dict[str, Any]:
 
 
 def with_motion(design: Mapping[str, Any], motion: Any) -> Any:
-    return gearcam.build(replace(gearcam.loads(toml(design)), motion=motion))
+    return gearcam.build(replace(gearcam.loads(toml_text(design)), motion=motion))
 
 
 @pytest.mark.parametrize("number", [10, 41, 55, 246])
@@ -165,7 +165,7 @@ def test_estimates_of_rows_are_honest(follower: str, text: str, count: int) -> N
 
 def test_estimates_that_are_too_small_or_too_large_are_seen() -> None:
     design = drawn(41)
-    told, true = told_and_true(gearcam.build(gearcam.loads(toml(design))), design)
+    told, true = told_and_true(gearcam.build(gearcam.loads(toml_text(design))), design)
     assert len(true) >= 7
     assert {"lift_mm", "profile_mm"} <= {*true} & {*told}
     for name in true:

@@ -8,7 +8,7 @@ import tomllib
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, Final
 
-from random_designs.toml import toml
+from gearcam.designs.toml import toml_text
 
 Files = Mapping[str, str]
 
@@ -54,7 +54,7 @@ def shrunk(files: Files, fails: Callable[[Files], bool], patience: float) -> dic
 def _document(text: str) -> dict[str, Any] | None:
     try:
         document = tomllib.loads(text)
-        return document if tomllib.loads(toml(document)) == document else None
+        return document if tomllib.loads(toml_text(document)) == document else None
     except (ValueError, RecursionError):
         return None
 
@@ -76,8 +76,8 @@ def _documents(text: str) -> Iterator[str]:
         made = copy.deepcopy(document)
         owner, last = _owner(made, path)
         del owner[last]
-        if toml(made) != text:
-            yield toml(made)
+        if toml_text(made) != text:
+            yield toml_text(made)
     for path in _paths(document):
         made = copy.deepcopy(document)
         owner, last = _owner(made, path)
@@ -88,7 +88,7 @@ def _documents(text: str) -> Iterator[str]:
             owner[last] = float(f"{value:.{digits}g}")
             if owner[last] == value:
                 break
-            yield toml(made)
+            yield toml_text(made)
 
 
 def _paths(node: Any, at: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:

@@ -7,8 +7,8 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Any, Final
 
+from gearcam.designs.toml import toml_text
 from random_designs.draw import Draw, short
-from random_designs.toml import toml
 
 Document = dict[str, Any]
 Place = tuple[dict[str, Any] | list[Any], Any]
@@ -61,7 +61,7 @@ def broken(d: Draw, document: Document, tables: Mapping[str, str]) -> dict[str, 
     drawn = d.random.choices(ways, weights)[0]
     if drawn in _WAYS:
         drawn(d, made)
-    texts = {f"{document['name']}.toml": toml(made), **tables}
+    texts = {f"{document['name']}.toml": toml_text(made), **tables}
     if drawn in _OF_TEXTS:
         one = d.pick([*texts])
         texts[one] = drawn(d, texts[one])

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from typing import Any, Final
 
+from gearcam.kinds.cam.tables import GOALS
 from gearcam.laws.motion.base import MOTION_LAWS
 from random_designs.blank import blank
 from random_designs.draw import Draw, short
@@ -16,6 +17,9 @@ from random_designs.output import asked, drive, forces, studies
 
 FOLLOWERS: Final = ("knife-edge", "roller", "flat", "domed", "point", "roller", "flat", "domed")
 """Followers, which take turns; a point is a knife edge."""
+
+_SOLVABLE: Final = ("offset_mm", "pivot_distance_mm", "arm_mm", "roller_radius_mm")
+"""Sizes of a follower that may be solved for."""
 
 _DEGREES: Final = 40
 """Angle drawn instead of a lift or a travel of one radius, deg."""
@@ -245,6 +249,24 @@ def _precision(d: Draw, design: dict[str, Any], size: float) -> dict[str, Any]:
     return made
 
 
+def _solved(d: Draw, design: dict[str, Any], size: float) -> None:
+    """Ask for sizes of a disc cam, sometimes with a goal and ranges."""
+    follower, cam = design["follower"], design["cam"]
+    key = "base_radius_mm" if "base_radius_mm" in cam else "prime_radius_mm"
+    keys = [(cam, key), *((follower, one) for one in follower if one in _SOLVABLE)]
+    for table, one in keys:
+        if one == key or d.chance(0.4):
+            table[one] = "solve"
+    if d.chance(0.3):
+        design["goal"] = {d.pick(["minimize", "maximize"]): d.pick([*GOALS])}
+    if d.chance(0.3):
+        design["bounds"] = {
+            one: [short(size * d.even(0.1, 1)), short(size * d.even(2, 5))]
+            for one in ("prime_radius_mm", "base_radius_mm", *_SOLVABLE)
+            if d.chance(0.5)
+        }
+
+
 def _studies(d: Draw, design: dict[str, Any], size: float) -> None:
     studies(d, design, "cam", d.pick(["accuracy", "precision"]))
     if d.chance(0.15):
@@ -296,5 +318,7 @@ def design(d: Draw, index: int) -> dict[str, Any]:
     made["output"] |= asked(d, _SHARES)
     drive(d, made, "speed_mm_s" if made["cam"].get("form") == "translating" else "speed_rpm")
     forces(d, made, swings)
+    if made["cam"].get("form", "disc") == "disc" and d.chance(0.06):
+        _solved(d, made, size)
     _studies(d, made, size)
     return made

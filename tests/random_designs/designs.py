@@ -11,12 +11,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
+from gearcam.designs.toml import toml_text
 from random_designs import cam, gear_pair
 from random_designs.broken import broken
 from random_designs.documented import places, value
 from random_designs.draw import Draw
 from random_designs.output import limits, tables_as_files
-from random_designs.toml import toml
 
 BROKEN: Final = 0.1
 """Share of designs with an error, which may be refused."""
@@ -75,4 +75,4 @@ def design(kind: str, seed: int, index: int) -> Drawn:
     if d.chance(_ANYWHERE):
         table, key, node = d.pick([*places(document)])
         table[key] = value(d, key, node)
-    return Drawn(files={f"{name}.toml": toml(document), **tables})
+    return Drawn(files={f"{name}.toml": toml_text(document), **tables})

@@ -131,6 +131,8 @@ class Param:
     constant_at : float, "mean" or None
         Value at which the ratio of a law is constant: the search for remedies moves towards it;
         "mean" is the mean ratio.
+    solvable : bool
+        Whether "solve" may be given in the place of a value, which the program then finds.
     """
 
     quantity: Quantity = NUMBER
@@ -151,6 +153,7 @@ class Param:
     when: tuple[str, ...] = ()
     other: Param | None = None
     constant_at: float | Literal["mean"] | None = None
+    solvable: bool = False
 
     def __post_init__(self) -> None:
         if self.gt == 0.0 and self.quantity.least:
@@ -189,15 +192,18 @@ def allowance(*, doc: str) -> Any:
     return param(LENGTH, default=0.0, doc=doc, **bounds)
 
 
-def positive_length(*, example: float | None = None, default: Any = None, doc: str) -> Any:
+def positive_length(
+    *, example: float | None = None, default: Any = None, doc: str, solvable: bool = False
+) -> Any:
     """Return a dataclass field of a length above 0, up to `LONGEST`.
 
     Parameters
     ----------
-    example, default, doc
+    example, default, doc, solvable
         See `param`; the default None means that it may be left out.
     """
-    return param(LENGTH, default=default, gt=0, le=LONGEST, example=example, doc=doc)
+    rest: dict[str, Any] = {"example": example, "doc": doc, "solvable": solvable}
+    return param(LENGTH, default=default, gt=0, le=LONGEST, **rest)
 
 
 def fixed(value: Any) -> Any:

@@ -763,7 +763,7 @@ class Arm(Round):
         (s, c), x, y = sin_cos(p), self.pivot.real, self.pivot.imag
         s = self.hand * s
         across, against = x * s, -x * c
-        if y:
+        if np.any(y):
             across, against = across + y * c, against + y * s
         return (c, s), (across, against + self.hand * self.arm)
 

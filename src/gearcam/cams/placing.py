@@ -18,11 +18,16 @@ Sources: 000 section 3.4.2 (3.14), (3.15); section 3.4.3 (3.28).
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
 
 from gearcam.base.errors import Adjustment, InfeasibleError, beyond_limit
 from gearcam.base.numerals import formatted
 from gearcam.cams.followers import Arm, FlatArm, FlatStem, Follower, Round, Stem
 from gearcam.cams.spec import CamSpec, FollowerSpec, PlateFollower
+from gearcam.numeric.arrays import Array
 
 
 def make_follower(follower: FollowerSpec, cam: CamSpec) -> Follower:
@@ -115,6 +120,46 @@ def make_follower_over_plate(follower: PlateFollower) -> Round:
     pivot = complex(-_given(follower.pivot_distance, "a pivot distance"), height)
     start = -math.asin(height / arm)
     return Arm(start=start, radius=follower.radius, arm=arm, pivot=pivot, hand=-1)
+
+
+def followers_of(spec: FollowerSpec, sizes: Mapping[str, Array]) -> tuple[Follower, Array]:
+    """Return the followers of candidates as one with arrays, and how far they are out of reach.
+
+    Parameters
+    ----------
+    spec : FollowerSpec
+        The kind of follower, and the offset of its face.
+    sizes : mapping of str to (n,) array, mm
+        ``radius``, the prime radius or the base radius of a flat follower, ``offset``, ``pivot``,
+        ``arm``, ``roller``.
+
+    Returns
+    -------
+    follower : Follower
+        Its sizes are (n, 1) arrays.
+    reach : (n,) array
+        An excess: above 0 where it cannot touch the cam at zero lift.
+    """
+    column: dict[str, Any] = {name: np.asarray(value)[:, None] for name, value in sizes.items()}
+    radius, roller = column["radius"], column["roller"]
+    if spec.flat and not spec.oscillating:
+        return FlatStem(start=radius), np.full(len(radius), -1.0)
+    if spec.flat:
+        sine = (radius + spec.face_offset) / column["pivot"]
+        start = np.arcsin(np.clip(sine, -1.0, 1.0))
+        face = FlatArm(start=start, pivot=column["pivot"], offset=spec.face_offset)
+        return face, (np.abs(sine) - 1.0)[:, 0]
+    inside = roller / radius - 1.0
+    if not spec.oscillating:
+        room = (radius - column["offset"]) * (radius + column["offset"])
+        start = np.sqrt(np.maximum(room, 0.0))
+        stem = Stem(start=start, radius=roller, offset=column["offset"])
+        return stem, np.maximum(np.abs(column["offset"]) / radius - 1.0, inside)[:, 0]
+    pivot, arm = column["pivot"], column["arm"]
+    cosine = (pivot**2 + arm**2 - radius**2) / (2.0 * pivot * arm)
+    start = np.arccos(np.clip(cosine, -1.0, 1.0))
+    swing = Arm(start=start, radius=roller, arm=arm, pivot=pivot + 0j)
+    return swing, np.maximum(np.abs(cosine) - 1.0, inside)[:, 0]
 
 
 def _arm(pivot: float, arm: float, radius: float, size: float) -> Arm:

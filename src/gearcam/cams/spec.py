@@ -64,9 +64,9 @@ def form_param(name: str) -> Any:
     return param(TEXT, default=name, doc="the form of the cam")
 
 
-def _aside(*, doc: str) -> Any:
+def _aside(**rest: Any) -> Any:
     """Return a length to either side."""
-    return param(LENGTH, default=0.0, ge=-LONGEST, le=LONGEST, doc=doc)
+    return param(LENGTH, default=0.0, ge=-LONGEST, le=LONGEST, **rest)
 
 
 _NO_TYPE: Final = "does not apply to a {} follower"
@@ -113,19 +113,24 @@ class FollowerSpec(ShortRepr):
         choices=("translating", "oscillating"),
         doc="motion of the follower",
     )
-    roller_radius: float | None = positive_length(doc="radius of the roller")
+    roller_radius: float | None = positive_length(doc="radius of the roller", solvable=True)
     dome_radius: float | None = positive_length(
         example=60, doc="radius of the face of a domed follower"
     )
     offset: float = _aside(
+        solvable=True,
         doc="offset of a translating follower's line of motion from the cam's axis; a positive one "
-        "lowers the pressure angle of the rise"
+        "lowers the pressure angle of the rise",
     )
     arm: float | None = positive_length(
-        example=60, doc="distance from the pivot of an oscillating follower to its roller's centre"
+        example=60,
+        solvable=True,
+        doc="distance from the pivot of an oscillating follower to its roller's centre",
     )
     pivot_distance: float | None = positive_length(
-        example=70, doc="distance from the cam's axis to the pivot of an oscillating follower"
+        example=70,
+        solvable=True,
+        doc="distance from the cam's axis to the pivot of an oscillating follower",
     )
     face_offset: float = _aside(
         doc="offset of the face of an oscillating flat follower from its pivot, towards the cam"
@@ -262,10 +267,12 @@ class CamSpec(ShortRepr):
 
     form: str = form_param("disc")
     prime_radius: float | None = positive_length(
-        doc="prime radius: from the cam's axis to the centre of a round follower at zero lift"
+        solvable=True,
+        doc="prime radius: from the cam's axis to the centre of a round follower at zero lift",
     )
     base_radius: float | None = positive_length(
         example=34,
+        solvable=True,
         doc="base radius: from the cam's axis to the profile at zero lift; give it instead of "
         "prime_radius_mm, and always with a flat follower",
     )

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
-from gearcam.base.quantities import OPPOSITES, REQUIRED, Param, params_of
+from gearcam.base.quantities import OPPOSITES, REQUIRED, Param, Solve, params_of
 
 
 @dataclass(frozen=True)
@@ -189,6 +189,8 @@ def _entry(name: str, param: Param, hint: Any, default: Any) -> Key:
         items = typing.get_args(hint)
         length = 0 if items[-1] is Ellipsis else len(items)
         hint, literal = _split(items[0])
+    if param.solvable:
+        (literal,) = typing.get_args(Solve)
     return Key(name, param.key(name), param, hint, length, literal, default)
 
 

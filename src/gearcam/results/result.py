@@ -534,9 +534,15 @@ class Result(NotebookView):
             with self.stage(name):
                 contents |= self.files(name, measured)
             self.sizes = {file: len(content) for file, content in contents.items()}
+        contents |= self.more_files
         tell("writing")
         facts = self.facts.with_groups(measured)
         return self.put(directory, contents, facts, self.findings, keep=False)
+
+    @property
+    def more_files(self) -> dict[str, bytes]:
+        """Contents of files, by name, that are written with any format."""
+        return {}
 
     def put(
         self,

@@ -17,6 +17,7 @@ import gearcam
 from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.cli import main
 from gearcam.console import remedy_lines, wrapped
+from gearcam.designs.toml import toml_text
 from gearcam.gears.checks import largest_module
 from gearcam.gears.rack_limits import contact_bound
 from gearcam.gears.subject import CheckedPair
@@ -40,7 +41,6 @@ from helpers_remedies import (
     pair,
 )
 from helpers_sampling import few
-from random_designs.toml import toml
 
 DESIGNS = {name: (made[0], made[-1]) for name, made in (REFUSED | ERRORS).items()}
 
@@ -361,11 +361,11 @@ def test_a_sound_design_needs_no_remedy(folder: Path) -> None:
 
 def test_the_command_tells_what_was_built(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = folder / "told.toml"
-    file.write_text(toml(DESIGNS["shift"][0]), encoding="utf-8")
+    file.write_text(toml_text(DESIGNS["shift"][0]), encoding="utf-8")
     assert main(["check", str(file), "-o", str(folder)]) == 3
     told = capsys.readouterr().err
     assert "was built without errors:\n    pair.x = 0." in told
-    file.write_text(toml(DESIGNS["short teeth"][0]), encoding="utf-8")
+    file.write_text(toml_text(DESIGNS["short teeth"][0]), encoding="utf-8")
     assert main(["check", str(file), "-o", str(folder)]) == 1
     assert "    rack.addendum = 0." in capsys.readouterr().out
 

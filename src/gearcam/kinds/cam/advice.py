@@ -111,7 +111,7 @@ def _sizes(search: Search) -> Iterator[Adjustment]:
 def _reach(search: Search) -> float:
     """Return how far a follower and its lift reach, mm."""
     result: Any = search.result
-    follower = result.design.follower
+    follower = result.solved.follower
     lift = 0.0
     with suppress(InfeasibleError):
         lift = float(np.ptp(result.program.range)) * (

@@ -16,7 +16,8 @@ from gearcam.base.errors import ABOVE, beyond_limit
 from gearcam.base.findings import Finding, in_order, run_checks
 from gearcam.cams.carriers import ROUNDING
 from gearcam.cams.checks import KIND
-from gearcam.kinds.cam.design import CamDesign
+from gearcam.designs.design import document_of
+from gearcam.kinds.cam.design import CamDesign, unknowns
 from gearcam.kinds.cam.forms.base import FORMS, Form
 from gearcam.kinds.cam.tables import CamBlank
 from gearcam.laws.program import Program
@@ -34,12 +35,13 @@ if TYPE_CHECKING:
     from gearcam.cams.carriers import Carrier, DriverAxis
     from gearcam.cams.followers import Follower
     from gearcam.cams.wall import PitchMotion, Wall
+    from gearcam.kinds.cam.solve import Solution
     from gearcam.parts.body import Part
     from gearcam.parts.checks import CheckedParts
     from gearcam.pictures.drawings import Drawing
     from gearcam.results.result import Progress, StudyResult
 
-_HINTED: Final = ("pressure-angle", "jamming", "coarse-rows")
+_HINTED: Final = ("pressure-angle", "jamming", "sharp-profile", "undercut", "coarse-rows")
 """Findings whose messages name values that help."""
 
 _MOST_STEPS: Final = 1e6
@@ -76,6 +78,31 @@ class CamResult(PartsResult):
         """The lift over a turn."""
         with self.stage("program"):
             return self.form.program()
+
+    @cached_property
+    def solution(self) -> Solution | None:
+        """The sizes that the design asks for; None if it gives them all."""
+        if not unknowns(document_of(self.design)):
+            return None
+        from gearcam.kinds.cam.solve import solved
+
+        with self.stage("solve"):
+            return solved(self)
+
+    @property
+    def solved(self) -> CamDesign:
+        """The design with all its sizes."""
+        return self.design if self.solution is None else self.solution.design
+
+    @property
+    def more_files(self) -> dict[str, bytes]:
+        """The design with the sizes that it asks for, as a file (see `Result.more_files`)."""
+        if self.solution is None:
+            return {}
+        from gearcam.designs.toml import design_text
+
+        text = design_text(self.solution.design, f"{self.design.name} with its solved sizes")
+        return {"solved.toml": text.encode()}
 
     @cached_property
     def form(self) -> Form[Any, Any, Any]:

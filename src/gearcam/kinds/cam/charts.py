@@ -146,7 +146,17 @@ def _curvature(result: CamResult) -> Chart:
 
 _DERIVED: Final = ("velocity", "acceleration", "jerk")
 
+
+def _sizes(result: CamResult) -> Chart | None:
+    if result.solution is None:
+        return None
+    from gearcam.kinds.cam.solve import region
+
+    return region(result)
+
+
 CHARTS: Final[Charts] = {
+    "sizes": _sizes,
     "lift": partial(_of_lift, "lift"),
     "pressure_angle": _pressure_angle,
     "curvature": _curvature,

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, get_args
 
+from gearcam.base.quantities import Solve
 from gearcam.base.registry import classes_in, name_of
 from gearcam.base.rules import Rule, only_with
 from gearcam.cams.spec import FOLLOWERS, POINTED, CamSpec, FollowerSpec
@@ -16,7 +17,15 @@ from gearcam.designs.table import table_of
 from gearcam.designs.validate import placed_faults
 from gearcam.kinds.cam.forms.base import FORMS, VARIANTS
 from gearcam.kinds.cam.motion import circumstances, motion_of, whole_turns
-from gearcam.kinds.cam.tables import CamBlank, CamOutputSpec, FollowSpec, ForcesSpec, PrecisionSpec
+from gearcam.kinds.cam.tables import (
+    BoundsSpec,
+    CamBlank,
+    CamOutputSpec,
+    FollowSpec,
+    ForcesSpec,
+    GoalSpec,
+    PrecisionSpec,
+)
 from gearcam.kinds.shared import AccuracySpec
 from gearcam.laws.motion.base import MOTION_LAWS
 from gearcam.laws.phases_of_lift import PHASES, RisePhase
@@ -78,6 +87,10 @@ class CamDesign(Design):
         Tolerances of its sizes, for the study of the errors that they make.
     accuracy : AccuracySpec
         Settings of the study of error against run time.
+    bounds : BoundsSpec
+        Ranges of sizes that are solved for.
+    goal : GoalSpec
+        What their solution has least or most of.
 
     Examples
     --------
@@ -111,6 +124,8 @@ class CamDesign(Design):
     follow: FollowSpec = field(default_factory=FollowSpec)
     precision: PrecisionSpec = field(default_factory=PrecisionSpec)
     accuracy: AccuracySpec = field(default_factory=AccuracySpec)
+    bounds: BoundsSpec = field(default_factory=BoundsSpec)
+    goal: GoalSpec = field(default_factory=GoalSpec)
 
     def _settle(self) -> None:
         if isinstance(self.motion, Sequence) and not isinstance(self.motion, str):
@@ -180,8 +195,33 @@ def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
     yield from _tool_faults(output, follower)
     if "follower" in found.parts:
         yield from _load_faults(found, document)
-    if {"cam", "follower"} <= found.parts.keys():
+    asked = unknowns(document)
+    if asked:
+        yield from _unsolvable(document, asked)
+    elif {"cam", "follower"} <= found.parts.keys():
         yield from FORMS[VARIANTS.meant(document)].faults(found.parts, document)
+
+
+def unknowns(document: Mapping[str, Any]) -> list[str]:
+    """Return the keys of the sizes in a `document` that are to be solved for."""
+    (word,) = get_args(Solve)
+    return [
+        f"{title}.{key}"
+        for title in ("cam", "follower")
+        if isinstance(table := document.get(title), Mapping)
+        for key, value in table.items()
+        if value == word
+    ]
+
+
+def _unsolvable(document: Mapping[str, Any], asked: Sequence[str]) -> Iterator[Fault]:
+    """Yield the faults of sizes that cannot be solved for in this design."""
+    form = VARIANTS.meant(document)
+    for key in asked:
+        title, name = key.split(".")
+        if not FORMS[form].solvable:
+            message, known = f'"solve" is not available for a {form} cam', "a length"
+            yield Fault((title, name), message, allowed=known)
 
 
 def _load_faults(found: Examined, document: Mapping[str, Any]) -> Iterator[Fault]:

@@ -51,6 +51,7 @@ def facts(result: CamResult) -> Facts:
         "motion": _motion(result),
         "cam": _cam(result),
         "part": _part(result) or None,
+        "solution": _solution(result),
         "accuracy": result.accuracy,
     }
     headline = ("motion.total_lift", f"cam.{result.form.leading}")
@@ -83,6 +84,20 @@ def _motion(result: CamResult) -> Tree:
     }
 
 
+def _solution(result: CamResult) -> Tree | None:
+    """Return the sizes that were solved for, and the limits that decide on them."""
+    found = result.solution
+    if found is None:
+        return None
+    sizes = {key.split(".")[1]: (key, value) for key, value in found.sizes.items()}
+    tree: Tree = {
+        name: Fact(value, f"{key}, solved", shown=True) for name, (key, value) in sizes.items()
+    }
+    if found.deciding:
+        tree["decided_by"] = Fact(", ".join(found.deciding), "decided by", shown=True)
+    return tree
+
+
 def _timed(result: CamResult) -> Tree:
     """Return the peaks of the derivatives by time that are finite; none without a speed."""
     program, drive = result.program, result.design.drive
@@ -104,7 +119,7 @@ def _deviation(program: Program, scale: float, unit: str) -> Fact | None:
 
 
 def _cam(result: CamResult) -> Tree:
-    design, given = result.design, result.design.follower
+    design, given = result.solved, result.solved.follower
     return {
         "form": design.cam.form,
         "follower": f"{given.motion} {given.type}",

@@ -56,8 +56,10 @@ def hinted(result: CamResult, findings: tuple[Finding, ...]) -> tuple[Finding, .
         Of its checks.
     """
     sentence = cache(partial(_sentence, result))  # several findings may be about one motion
+    rounder = cache(partial(_rounder, result))
     hints: Mapping[str, Callable[[Finding], Iterable[str]]] = {
         "coarse-rows": lambda finding: _smoother(result, finding),
+        **dict.fromkeys(("sharp-profile", "undercut"), lambda _: rounder()),
         **dict.fromkeys(
             ("pressure-angle", "jamming"),
             lambda finding: [sentence(finding.code, _motion_of(result, finding))],
@@ -114,7 +116,7 @@ def _first_that_keeps(
         """Return changes, and the slope of the steepest angle over that of the limit, less 1."""
         changes = resized(result, number, float(f"{start + count * step:.10g}"))
         # another size has the same lift
-        other = type(result)(result.design.with_(changes), result.tolerances)
+        other = type(result)(result.solved.with_(changes), result.tolerances)
         steep = _steep(result, code, number, other.form.make(result.program))
         slopes = [_slope(one.value) / _slope(one.limit) - 1.0 for one in steep]
         return changes, max(slopes, default=0.0)
@@ -154,7 +156,7 @@ def resized(result: CamResult, number: int, size: float) -> dict[str, float]:
     size : float, mm
         The radius; of the second of conjugate cams that at the highest lift.
     """
-    document, motion = document_of(result.design), result.cam.motions[number]
+    document, motion = document_of(result.solved), result.cam.motions[number]
     follower = motion.follower
     if number:
         if value_at(document, "cam.prime_radius2_mm"):
@@ -206,6 +208,23 @@ def _sentence(result: CamResult, code: str, number: int) -> str:
         f"No prime radius up to {formatted(_MOST * _need(motion), 3)} mm keeps the limit: it takes "
         f"a larger angle or a smaller lift{unless}."
     )
+
+
+def _rounder(result: CamResult) -> tuple[str, ...]:
+    """Return a sentence with each size that alone keeps all limits, or none."""
+    if not result.form.solvable or result.cam.least_base_radius is not None:
+        return ()  # of a face the check itself names the radius
+    from gearcam.kinds.cam.solve import alone
+
+    document = document_of(result.solved)
+    given = (
+        key
+        for key in ("cam.prime_radius_mm", "cam.base_radius_mm", "follower.roller_radius_mm")
+        if value_at(document, key)
+    )
+    sizes = {key: alone(result, key) for key in given}
+    found = [f"{key} = {formatted(value, 10)}" for key, value in sizes.items() if value is not None]
+    return (f"With {' or '.join(found)} it keeps all limits.",) if found else ()
 
 
 def _motion_of(result: CamResult, finding: Finding) -> int:
@@ -261,7 +280,7 @@ def _smoother(result: CamResult, finding: Finding) -> Iterator[str]:
     table, lead, error = result.design.motion, result.cam.motions[0], finding.value or 0.0
     if isinstance(table, MotionTable) and lead.program.fall < _SCATTERED:
         oscillating, lever = lead.follower.angular, lead.follower.lever
-        entries = turn_tables()[0].bound([result.design.follower.motion]).entries.values()
+        entries = turn_tables()[0].bound([result.solved.follower.motion]).entries.values()
         entry = next(one for one in entries if one.name == "smoothing_tolerance")
         given = 2.0 * (table.smoothing_tolerance or 0.0)
         asked = (entry.outward(max(share * error / lever, given)) for share in _SHARES)

@@ -20,7 +20,14 @@ from gearcam.kinds.cam.design import (
 )
 from gearcam.kinds.cam.forms.base import VARIANTS, Form
 from gearcam.kinds.cam.motion import TITLE, examine_motion, homes
-from gearcam.kinds.cam.tables import CAM_FORMATS, FollowSpec, ForcesSpec, PrecisionSpec
+from gearcam.kinds.cam.tables import (
+    CAM_FORMATS,
+    BoundsSpec,
+    FollowSpec,
+    ForcesSpec,
+    GoalSpec,
+    PrecisionSpec,
+)
 from gearcam.kinds.shared import AccuracySpec
 from gearcam.mechanics.friction import FrictionSpec
 from gearcam.mechanics.mass import GravitySpec, MassSpec
@@ -57,6 +64,8 @@ KIND: Final = Kind(
         "follow": partial(table_of, "follow", FollowSpec),
         "precision": partial(table_of, "precision", PrecisionSpec),
         "accuracy": partial(table_of, "accuracy", AccuracySpec),
+        "bounds": partial(table_of, "bounds", BoundsSpec),
+        "goal": partial(table_of, "goal", GoalSpec),
     },
     variants=VARIANTS,
     several=("load", "spring", "mass"),

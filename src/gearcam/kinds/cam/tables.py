@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -14,6 +14,7 @@ from gearcam.base.quantities import (
     FINEST,
     LEAST_ALLOWANCE,
     LENGTH,
+    LONGEST,
     TEXT,
     Param,
     Quantity,
@@ -23,6 +24,7 @@ from gearcam.base.quantities import (
     params_of,
     positive_length,
 )
+from gearcam.base.rules import Breach, excludes
 from gearcam.designs.outputs import FORMATS, OutputSpec, files_param, pose_param, studies_param
 from gearcam.parts.blank import WheelBlank
 
@@ -239,3 +241,70 @@ class CamOutputSpec(OutputSpec):
         example=8,
         doc="radius of the cutter of the tool path; the follower's, or half a groove, if left out",
     )
+
+
+def _range(*, doc: str) -> Any:
+    """Return the range of a size that is solved for."""
+    return param(LENGTH, default=None, ge=-LONGEST, le=LONGEST, example=[20, 60], doc=doc)
+
+
+@dataclass(frozen=True, kw_only=True)
+class BoundsSpec(ShortRepr):
+    """Ranges within which sizes are found whose value is "solve": least, largest.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.BoundsSpec(offset=(0.0, 10.0))
+    BoundsSpec(offset=(0, 10))
+    """
+
+    prime_radius: tuple[float, float] | None = _range(doc="range of cam.prime_radius_mm")
+    base_radius: tuple[float, float] | None = _range(doc="range of cam.base_radius_mm")
+    offset: tuple[float, float] | None = _range(doc="range of follower.offset_mm")
+    pivot_distance: tuple[float, float] | None = _range(doc="range of follower.pivot_distance_mm")
+    arm: tuple[float, float] | None = _range(doc="range of follower.arm_mm")
+    roller_radius: tuple[float, float] | None = _range(doc="range of follower.roller_radius_mm")
+
+    def problems(self) -> Iterator[Breach]:
+        """Yield ranges that are empty."""
+        for name, pair in vars(self).items():
+            if pair is not None and not pair[0] < pair[1]:
+                yield name, None, "is an empty range", "the least value, then a larger one"
+
+
+GOALS: Final = {
+    "cam.profile.radius_mm.max": "largest radius of the profile",
+    "cam.pressure_angle_deg.max": "largest pressure angle",
+    "cam.curvature.profile_convex_min_mm": "least convex radius of the profile",
+}
+"""What a solved cam may have least or most of."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class GoalSpec(ShortRepr):
+    """What is least, or largest, of the cams whose sizes keep all limits.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.GoalSpec(maximize="cam.curvature.profile_convex_min_mm")
+    GoalSpec(maximize='cam.curvature.profile_convex_min_mm')
+    """
+
+    minimize: str | None = param(
+        TEXT,
+        default=None,
+        choices=tuple(GOALS),
+        example="cam.profile.radius_mm.max",
+        doc="fact that is to be least; the largest radius of the profile if left out",
+    )
+    maximize: str | None = param(
+        TEXT,
+        default=None,
+        choices=tuple(GOALS),
+        example="cam.curvature.profile_convex_min_mm",
+        doc="fact that is to be largest",
+    )
+
+    rules = (excludes("maximize", "minimize"),)

@@ -12,9 +12,9 @@ import pytest
 import gearcam as gc
 from gearcam.base.errors import DesignError, InfeasibleError, Problem
 from gearcam.base.tolerances import DEFAULT
+from gearcam.designs.toml import toml_text
 from gearcam.gears.pair import GearPair, lobes_of
 from gearcam.laws.ratio.span import RING, Lobes
-from random_designs.toml import toml
 
 ELLIPSE = {"type": "ellipse", "eccentricity": 0.1}
 
@@ -22,7 +22,7 @@ ELLIPSE = {"type": "ellipse", "eccentricity": 0.1}
 def built(law: dict[str, Any], teeth: Sequence[float], **tables: Any) -> GearPair:
     pair = {"type": "internal", "module_mm": 2, "teeth": teeth} | tables.pop("pair", {})
     document = {"kind": "gear-pair", "name": "ring", "law": law, "pair": pair, **tables}
-    return gc.build(gc.loads(toml(document))).pair
+    return gc.build(gc.loads(toml_text(document))).pair
 
 
 def only(caught: pytest.ExceptionInfo[DesignError]) -> Problem:

@@ -28,7 +28,9 @@ from gearcam.mechanics.drive import DriveSpec
 from gearcam.mechanics.load import LoadSpec
 
 if TYPE_CHECKING:
+    from gearcam.base.tolerances import Tolerances
     from gearcam.kinds.cam.build import CamResult
+    from gearcam.kinds.cam.design import CamDesign
     from gearcam.numeric.contour import Contour
     from gearcam.parts.body import Part
     from gearcam.pictures.drawings import Drawing, Path
@@ -45,6 +47,21 @@ ROWS: Final = (
 C = TypeVar("C", bound=Cam)
 S = TypeVar("S", bound=CamSpec)
 F = TypeVar("F", bound=FollowerSpec)
+
+
+def lift_program(design: CamDesign, tolerances: Tolerances) -> Program:
+    """Return the lift of a `design` over a turn, which does not depend on sizes.
+
+    Parameters
+    ----------
+    design : CamDesign
+        The design.
+    tolerances : Tolerances
+        Internal accuracy.
+    """
+    motion = design.motion
+    make = partial(make_program, motion) if isinstance(motion, Sequence) else motion.program
+    return make(tolerances, oscillating=design.follower.oscillating)
 
 
 class Form(ABC, Generic[C, S, F]):
@@ -75,6 +92,9 @@ class Form(ABC, Generic[C, S, F]):
     moves: ClassVar[str] = "turning"
     """What the cam does, a circumstance of `gearcam.base.quantities`: units depend on it."""
 
+    solvable: ClassVar[bool] = False
+    """Whether its sizes can be solved for."""
+
     half_turns: ClassVar[bool] = False
     """Whether phases may fill half a turn; the other half is then its opposite."""
 
@@ -83,7 +103,7 @@ class Form(ABC, Generic[C, S, F]):
 
     def __init__(self, result: CamResult) -> None:
         self.result = result
-        self.design = result.design
+        self.design = result.solved
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.result!r})"
@@ -145,9 +165,7 @@ class Form(ABC, Generic[C, S, F]):
 
     def program(self) -> Program:
         """Return the lift that the design asks for."""
-        motion = self.design.motion
-        make = partial(make_program, motion) if isinstance(motion, Sequence) else motion.program
-        return make(self.result.tolerances, oscillating=self.follower.oscillating)
+        return lift_program(self.design, self.result.tolerances)
 
     @abstractmethod
     def make(self, program: Program) -> C:

@@ -128,6 +128,7 @@ class Disc(Plates[DiscCam, CamSpec, FollowerSpec]):
     """A plate with one wall."""
 
     name = "disc"
+    solvable = True
     doc = "a plate whose edge is the profile"
 
     def make(self, program: Program) -> DiscCam:

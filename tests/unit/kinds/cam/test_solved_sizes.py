@@ -1,0 +1,294 @@
+"""Sizes that are solved for: against another optimiser, random tries, and the checks themselves."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import gearcam as gc
+from gearcam.base.errors import DesignError, InfeasibleError
+from gearcam.kinds.cam.solve import Task, solved
+from helpers_sampling import few
+
+THETA = np.linspace(0.0, 2.0 * math.pi, 721)[:-1] + 1e-9
+PROGRAMS: dict[str, tuple[tuple[float, float, float], str, str, float]] = {
+    "cycloidal": ((100, 80, 80), "cycloidal", "cycloidal", 20.0),
+    "modified sine": ((120, 30, 150), "modified-sine", "modified-sine", 12.0),
+    "polynomial": ((60, 40, 90), "3-4-5", "cycloidal", 6.0),
+    "no dwell": ((180, 0, 180), "cycloidal", "3-4-5", 25.0),
+    "quick return": ((200, 60, 60), "modified-sine", "3-4-5", 8.0),
+}
+
+
+def motion(name: str, *, swing: bool = False) -> list[dict[str, Any]]:
+    (up, dwell, down), rise, back, lift = PROGRAMS[name]
+    size = {"lift_deg": 1.2 * lift} if swing else {"lift_mm": lift}
+    phases: list[dict[str, Any]] = [{"type": "rise", "angle_deg": up, "law": rise, **size}]
+    phases += [{"type": "dwell", "angle_deg": dwell}] if dwell else []
+    phases.append({"type": "return", "angle_deg": down, "law": back})
+    rest = 360 - up - dwell - down
+    return phases + ([{"type": "dwell", "angle_deg": "rest"}] if rest else [])
+
+
+def stem(name: str, **tables: Any) -> dict[str, Any]:
+    follower = {"type": "roller", "roller_radius_mm": 5, "offset_mm": "solve"}
+    cam = {"prime_radius_mm": "solve"}
+    return {
+        "kind": "cam",
+        "name": "c",
+        "motion": motion(name),
+        "follower": follower,
+        "cam": cam,
+    } | tables
+
+
+def arm(name: str, **tables: Any) -> dict[str, Any]:
+    follower = {
+        "type": "roller", "motion": "oscillating", "roller_radius_mm": 5, "arm_mm": 70,
+        "pivot_distance_mm": "solve",
+    }  # fmt: skip
+    cam = {"prime_radius_mm": "solve"}
+    return {
+        "kind": "cam",
+        "name": "c",
+        "motion": motion(name, swing=True),
+        "follower": follower,
+        "cam": cam,
+    } | tables
+
+
+def witness(result: Any, sizes: Mapping[str, float]) -> tuple[float, float]:
+    """Return size and largest excess of a cam, from its pitch curve as a curve of dense points."""
+    follower = result.design.follower
+    s = result.program.derivatives(THETA, 0)[0]
+    prime, roller, limit = sizes["prime"], follower.roller_radius, math.radians(30.0)
+    if follower.oscillating:
+        pivot, length, limit = sizes["pivot"], follower.arm, math.radians(45.0)
+        cosine = (pivot**2 + length**2 - prime**2) / (2.0 * pivot * length)
+        if abs(cosine) >= 1.0:
+            return math.inf, 1.0
+        angle = math.acos(cosine) + s
+        if angle.max() >= math.pi:
+            return math.inf, 1.0
+        centre, direction = pivot - length * np.exp(-1j * angle), 1j * np.exp(-1j * angle)
+    else:
+        if abs(sizes["offset"]) >= prime:
+            return math.inf, 1.0
+        height = math.sqrt(prime**2 - sizes["offset"] ** 2) + s
+        centre, direction = sizes["offset"] + 1j * height, np.full(len(s), 1j)
+    turned = np.exp(-1j * THETA)
+    path = centre * turned
+    step = THETA[1] - THETA[0]
+    tangent = derivative(path, step)
+    normal = 1j * tangent / np.abs(tangent)  # outward of a clockwise curve
+    pressure = np.abs(np.angle(normal / (direction * turned)))
+    bend = -(derivative(np.unwrap(np.angle(tangent)) + THETA, step) - 1.0) / np.abs(tangent)
+    size = float(np.abs(path).max()) - roller
+    excess = [
+        math.tan(min(pressure.max(), 1.57)) / math.tan(limit) - 1.0,
+        float(bend.max()) * (roller + 1.0) - 1.0,
+        float(-bend.min()) * (0.15 - roller) - 1.0,
+    ]
+    if follower.oscillating:
+        excess.append(size / sizes["pivot"] - 1.0)
+    return size, max(excess)
+
+
+def derivative(values: np.ndarray, step: float) -> np.ndarray:
+    """Return central differences of the fourth order of a periodic function."""
+    one, two = (np.roll(values, -k) - np.roll(values, k) for k in (1, 2))
+    return (8.0 * one - two) / (12.0 * step)
+
+
+def evolved(cost: Any, bounds: list[tuple[float, float]]) -> float:
+    """Return the least cost found by differential evolution (Storn and Price, 1997)."""
+    random = np.random.default_rng(1)
+    low, high = np.array(bounds).T
+    points = random.uniform(low, high, (20, len(low)))
+    costs = np.array([cost(one) for one in points])
+    for _ in range(40):
+        for k in range(len(points)):
+            a, b, c = points[random.permutation(len(points))[:3]]
+            tried = np.where(random.random(len(low)) < 0.8, a + 0.7 * (b - c), points[k])
+            value = cost(np.clip(tried, low, high))
+            if value < costs[k]:
+                points[k], costs[k] = np.clip(tried, low, high), value
+    return float(costs.min())
+
+
+CASES = [*((stem, name) for name in PROGRAMS), *((arm, name) for name in PROGRAMS)]
+
+
+@pytest.mark.parametrize(("make", "name"), few(CASES, 3))
+def test_no_other_optimiser_finds_a_smaller_cam(make: Any, name: str) -> None:
+    result = gc.build(gc.design(make(name)))
+    found = result.solution
+    second = "pivot" if make is arm else "offset"
+    key = "follower.pivot_distance_mm" if make is arm else "follower.offset_mm"
+    own = {"prime": found.sizes["cam.prime_radius_mm"], second: found.sizes[key]}
+    size, excess = witness(result, own)
+    assert excess < 1e-3  # of dense points
+    assert size == pytest.approx(result.facts["cam.profile.radius_mm.max"], rel=1e-6)
+
+    def cost(x: np.ndarray) -> float:
+        other, beyond = witness(result, {"prime": x[0], second: x[1]})
+        return other + 1e3 * beyond if beyond > 0.0 else other
+
+    around = [(0.5 * own["prime"], 1.6 * own["prime"]), (0.5 * own[second], 1.5 * own[second])]
+    if make is stem:
+        around[1] = (-own["prime"], own["prime"])
+    best = evolved(cost, around)
+    assert size * (1.0 - 1e-3) < best < size * (1.0 + 2e-2)
+
+
+@pytest.mark.parametrize(("make", "name"), CASES[::3])
+def test_random_tries_find_no_smaller_cam(make: Any, name: str) -> None:
+    result = gc.build(gc.design(make(name)))
+    task = Task(result.design, result.program)
+    random = np.random.default_rng(3)
+    count = 10_000
+    sizes = {name: np.full(count, value) for name, value in task.known.items()}
+    for key, one in task.names.items():
+        middle = result.solution.sizes[key]
+        reach = abs(result.solution.sizes["cam.prime_radius_mm"])
+        sizes[one] = middle + random.uniform(-0.8, 0.8, count) * reach
+    found = task.sizing.measured(sizes, coarse=True)
+    kept = found.worst <= 0.0
+    assert kept.sum() > 50
+    size = result.facts["cam.profile.radius_mm.max"]
+    smaller = kept & (found.goal < size)  # as far as some places of the lift tell
+    exact = task.sizing.measured({name: one[smaller] for name, one in sizes.items()})
+    assert not (exact.worst <= 0.0).any()
+
+
+@pytest.mark.parametrize(("make", "name"), CASES)
+def test_a_solved_cam_has_no_finding_and_decides_by_its_limits(make: Any, name: str) -> None:
+    result = gc.build(gc.design(make(name)))
+    assert not {one.code for one in result.findings} & {
+        "pressure-angle", "jamming", "sharp-profile", "undercut",
+    }  # fmt: skip
+    assert result.solution.deciding
+
+
+def test_a_wedge_of_two_pressure_angles_is_the_closed_form() -> None:
+    """000, fig. 3.41: s0 >= (s' - e)/tan(a) - s on rises, (e - s')/tan(a) - s on returns."""
+    result = gc.build(gc.design(stem("cycloidal")))
+    theta = np.linspace(0.0, 2.0 * math.pi, 200_001)
+    s, ds = result.program.derivatives(theta, 1)
+    slope = math.tan(math.radians(30.0))
+    rise = np.max(ds / slope - s)  # s0 + e/tan(a) on its line
+    back = np.max(-ds / slope - s)
+    height, offset = 0.5 * (rise + back), 0.5 * (rise - back) * slope
+    sizes = result.solution.sizes
+    assert sizes["follower.offset_mm"] == pytest.approx(offset, abs=2e-5)
+    assert sizes["cam.prime_radius_mm"] == pytest.approx(math.hypot(height, offset), abs=2e-5)
+    assert result.solution.deciding == (
+        "pressure angle on the rise", "pressure angle on the return",
+    )  # fmt: skip
+
+
+def test_a_solved_design_is_a_file_that_builds(tmp_path: Path) -> None:
+    document = stem("modified sine", output={"files": ["csv"]})
+    result = gc.build(gc.design(document))
+    written = result.write(tmp_path)
+    assert "solved.toml" in written.files
+    again = gc.build(gc.load(tmp_path / "c" / "solved.toml"))
+    assert again.solution is None
+    assert again.findings == result.findings
+    assert again.facts["cam.prime_radius_mm"] == result.facts["cam.prime_radius_mm"]
+    assert result.facts["solution.prime_radius_mm"] == result.facts["cam.prime_radius_mm"]
+
+
+def test_a_roller_is_as_large_as_the_profile_allows() -> None:
+    document = stem("cycloidal", cam={"prime_radius_mm": 60})
+    document["follower"] = {"type": "roller", "roller_radius_mm": "solve", "offset_mm": 2}
+    result = gc.build(gc.design(document))
+    assert result.facts["cam.curvature.profile_convex_min_mm"] == pytest.approx(1.0, abs=1e-5)
+
+
+def test_flat_followers_are_solved_for() -> None:
+    document = {
+        "kind": "cam", "name": "c", "motion": motion("polynomial"), "follower": {"type": "flat"},
+        "cam": {"base_radius_mm": "solve"}, "limits": {"profile_radius_mm": 3},
+    }  # fmt: skip
+    result = gc.build(gc.design(document))
+    theta = np.linspace(0.0, 2.0 * math.pi, 400_001)
+    s, _, second = result.program.derivatives(theta, 2)
+    assert result.facts["cam.base_radius_mm"] == pytest.approx(3.0 - (s + second).min(), abs=1e-5)
+
+
+def test_a_bore_and_bounds_are_kept() -> None:
+    document = stem("polynomial", blank={"bore_diameter_mm": 60}, limits={"wall_mm": 4})
+    result = gc.build(gc.design(document))
+    assert result.facts["cam.base_radius_mm"] == pytest.approx(34.0, abs=2e-3)
+    assert "wall around the bore" in result.solution.deciding
+    document = stem("cycloidal", bounds={"offset_mm": [0, 10]})
+    assert gc.build(gc.design(document)).solution.sizes["follower.offset_mm"] >= 0.0
+
+
+def test_another_goal_is_reached() -> None:
+    document = stem(
+        "cycloidal",
+        bounds={"prime_radius_mm": [30, 60]},
+        goal={"minimize": "cam.pressure_angle_deg.max"},
+    )
+    result = gc.build(gc.design(document))
+    assert result.solution.sizes["cam.prime_radius_mm"] == pytest.approx(60.0, abs=1e-5)
+    rise, back = (result.facts[f"cam.pressure_angle_deg.{one}_max"] for one in ("rise", "return"))
+    assert rise == pytest.approx(back, rel=1e-5)
+
+
+def test_the_limit_that_has_to_give_is_named_and_works() -> None:
+    document = stem("cycloidal", bounds={"prime_radius_mm": [20, 30]})
+    with pytest.raises(InfeasibleError, match="pressure angle would be") as caught:
+        _ = gc.build(gc.design(document)).solved
+    error = caught.value
+    assert error.where == "limits.pressure_angle_deg"
+    assert error.value is not None
+    eased = gc.design(document).with_({"limits.pressure_angle_deg": error.value})
+    assert gc.build(eased).solution.sizes["cam.prime_radius_mm"] <= 30.0
+    tighter = gc.design(document).with_({"limits.pressure_angle_deg": error.value - 0.01})
+    with pytest.raises(InfeasibleError):
+        _ = gc.build(tighter).solved
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"cam.form": "yoke", "cam.prime_radius_mm": "solve"}, "not available for a yoke cam"),
+        ({"bounds.offset_mm": [3, 3]}, "is an empty range"),
+        ({"goal.minimize": "mass"}, "radius_mm.max"),
+        ({"cam.prime_radius_mm": "solv"}, "did you mean solve"),
+    ],
+)
+def test_mistakes_are_named(change: dict[str, Any], message: str) -> None:
+    with pytest.raises(DesignError, match=message):
+        gc.design(stem("cycloidal")).with_(change)
+
+
+def test_a_swinging_follower_without_a_length_is_refused() -> None:
+    document = arm("cycloidal")
+    document["follower"] |= {"arm_mm": "solve", "roller_radius_mm": "solve"}
+    with pytest.raises(InfeasibleError, match="no length of the swinging follower"):
+        _ = solved(gc.build(gc.design(document)))
+
+
+def test_a_finding_about_a_radius_names_sizes_that_keep_all_limits() -> None:
+    cam, limits = {"prime_radius_mm": 40}, {"profile_radius_mm": 12}
+    document = stem("cycloidal", cam=cam, limits=limits)
+    document["follower"] = {"type": "roller", "roller_radius_mm": 21, "offset_mm": -2.8}
+    design = gc.design(document)
+    (finding,) = (one for one in gc.build(design).findings if one.code == "sharp-profile")
+    named = dict(re.findall(r"(\w+\.\w+_mm) = ([\d.]+)", finding.message))
+    assert {*named} == {"cam.prime_radius_mm", "follower.roller_radius_mm"}
+    for key, value in named.items():
+        assert gc.build(design.with_({key: float(value)})).findings == ()
+    shy = float(named["follower.roller_radius_mm"]) + 1e-3
+    again = gc.build(design.with_({"follower.roller_radius_mm": shy})).findings
+    assert [one.code for one in again] == ["sharp-profile"]
