@@ -263,7 +263,6 @@ def _solved(d: Draw, design: dict[str, Any], size: float) -> None:
         design["bounds"] = {
             one: [short(size * d.even(0.1, 1)), short(size * d.even(2, 5))]
             for one in ("prime_radius_mm", "base_radius_mm", *_SOLVABLE)
-            if d.chance(0.5)
         }
 
 
