@@ -9,7 +9,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from gearcam.designs.toml import toml_text
+from gearcam.designs.writing import toml_text
 from helpers_built import built
 
 ELLIPSE = {"type": "ellipse", "eccentricity": 0.2}

@@ -25,7 +25,7 @@ from typing import Any, Final
 
 from compare_files import MORE, Difference, called, folders, told
 from compare_sides import GALLERY, ROOT, Side, tree_of
-from gearcam.designs.toml import toml_text
+from gearcam.designs.writing import toml_text
 from random_designs.designs import MAKERS, design
 
 SHOWN: Final = 30

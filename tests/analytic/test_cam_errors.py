@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 
 import gearcam
-from gearcam.designs.toml import toml_text
+from gearcam.designs.writing import toml_text
 from gearcam.kinds.cam.accuracy import error_rows
 from helpers_cam_truth import faults, judged, rows
 from random_designs.cam import design as cam

@@ -8,7 +8,7 @@ import tomllib
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, Final
 
-from gearcam.designs.toml import toml_text
+from gearcam.designs.writing import toml_text
 
 Files = Mapping[str, str]
 

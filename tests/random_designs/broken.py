@@ -7,7 +7,7 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Any, Final
 
-from gearcam.designs.toml import toml_text
+from gearcam.designs.writing import toml_text
 from random_designs.draw import Draw, short
 
 Document = dict[str, Any]

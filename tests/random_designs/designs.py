@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from gearcam.designs.toml import toml_text
+from gearcam.designs.writing import toml_text
 from random_designs import cam, gear_pair
 from random_designs.broken import broken
 from random_designs.documented import places, value

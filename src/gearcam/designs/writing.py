@@ -48,7 +48,7 @@ def toml_text(document: Mapping[str, Any], comments: Sequence[str] = ()) -> str:
     Parameters
     ----------
     document : mapping
-        Of a design without nested designs: values, tables of values, lists of tables.
+        Of a design: values, tables of values, lists of tables; mappings in them stand in line.
     comments : sequence of str
         Lines at the top, without the sign of a comment.
 
@@ -81,6 +81,8 @@ def _tables(value: Any) -> Sequence[Mapping[str, Any]]:
 def _text(value: Any) -> str:
     if isinstance(value, Sequence) and not isinstance(value, str):
         return f"[{', '.join(map(_text, value))}]"
+    if isinstance(value, Mapping):
+        return f"{{ {', '.join(f'{key} = {_text(one)}' for key, one in value.items())} }}"
     if isinstance(value, float):
         return repr(int(value)) if value.is_integer() and abs(value) < 1e15 else repr(value)
     return json.dumps(value, ensure_ascii=False)

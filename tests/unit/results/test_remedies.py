@@ -17,7 +17,7 @@ import gearcam
 from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.cli import main
 from gearcam.console import remedy_lines, wrapped
-from gearcam.designs.toml import toml_text
+from gearcam.designs.writing import toml_text
 from gearcam.gears.checks import largest_module
 from gearcam.gears.rack_limits import contact_bound
 from gearcam.gears.subject import CheckedPair

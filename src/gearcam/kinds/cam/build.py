@@ -99,9 +99,10 @@ class CamResult(PartsResult):
         """The design with the sizes that it asks for, as a file (see `Result.more_files`)."""
         if self.solution is None:
             return {}
-        from gearcam.designs.toml import design_text
+        from gearcam.designs.writing import least_document, toml_text
 
-        text = design_text(self.solution.design, f"{self.design.name} with its solved sizes")
+        comment = f"{self.design.name} with its solved sizes"
+        text = toml_text(least_document(self.solution.design), [comment])
         return {"solved.toml": text.encode()}
 
     @cached_property

@@ -12,7 +12,7 @@ import pytest
 import gearcam as gc
 from gearcam.base.errors import DesignError, InfeasibleError, Problem
 from gearcam.base.tolerances import DEFAULT
-from gearcam.designs.toml import toml_text
+from gearcam.designs.writing import toml_text
 from gearcam.gears.pair import GearPair, lobes_of
 from gearcam.laws.ratio.span import RING, Lobes
 
