@@ -49,7 +49,7 @@ PROFILES = (
 )  # fmt: skip
 
 
-def held(follower: str, law: str = "3-4-5", **changes: Any) -> Any:
+def held(follower: str, law: str = "3-4-5", /, **changes: Any) -> Any:
     text = CAM.replace("FOLLOWER", follower).replace("LAW", law)
     if "oscillating" in follower:
         text = text.replace("lift_mm = 12", "lift_deg = 11")

@@ -20,7 +20,7 @@ SPEED = {"drive": {"speed_rpm": 600}}
 MASS = {"mass": [{"mass_kg": 0.4}]}
 
 
-def study(name: str = "eccentric_cam", **changes: Any) -> Any:
+def study(name: str = "eccentric_cam", /, **changes: Any) -> Any:
     return gc.build(gc.load(f"profiles/{name}.toml").with_(changes)).study("forces")
 
 
