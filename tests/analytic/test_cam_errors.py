@@ -93,7 +93,7 @@ def with_motion(design: Mapping[str, Any], motion: Any) -> Any:
     return gearcam.build(replace(gearcam.loads(toml_text(design)), motion=motion))
 
 
-@pytest.mark.parametrize("number", [10, 41, 55, 246])
+@pytest.mark.parametrize("number", [10, 41, 55, 247])
 def test_estimates_of_random_cams_are_honest(number: int) -> None:
     assert random_faults(number) == []
 
