@@ -12,6 +12,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tools"))
 import before_cases
 import cam_cases
 import cases
+import design_cases
 import law_cases
 import needs
 import ring_cases
@@ -55,6 +56,7 @@ def main() -> int:
         law_cases.against_ellipse,
         ring_cases.against_external,
         solid_cases.against_booleans,
+        design_cases.of_cams,
         before_cases.against_before,
         before_cases.large_growth,
     ):

@@ -46,7 +46,8 @@ _STARTS: Final = 6
 """Best candidates around which the search looks more closely."""
 
 _TRUST: Final = 0.05
-"""First range of trust, as a share of the range of each size."""
+_NEAR: Final = 2e-3
+"""First range of trust, as a share of the range of each size; the second near a solution."""
 
 _SHARE: Final = 1e-3
 """Step of differences, in ranges of trust."""
@@ -54,8 +55,14 @@ _SHARE: Final = 1e-3
 _FINEST: Final = 1e-9
 """Range of trust at which the search ends."""
 
-_NEARLY: Final = 1e-5
+_STILL: Final = 1e-12
+"""Step that is rounding."""
+
+_NEARLY: Final = 1e-4
 """Range of trust at which the search by some places of the lift ends."""
+
+_SLIGHT: Final = 1e-6
+"""Share of the merit, by some places of the lift, that is not worth another step."""
 
 _MOST_STEPS: Final = 60
 """Largest number of linear programs."""
@@ -440,7 +447,8 @@ def _descended(sizing: Sizing, space: _Space, start: Array, *, coarse: bool = Fa
     Goals and excesses are replaced by their tangents within a range of trust; the least largest
     goal of those is at a corner of the region that they leave.
     """
-    trust, best = _TRUST, start
+    best = start
+    trust, end, gain = (_TRUST, _NEARLY, _SLIGHT) if coarse else (_NEAR, _FINEST, _GAIN)
 
     def measured(points: Array) -> Measured:
         return sizing.measured(space.sizes(points), coarse=coarse)
@@ -457,16 +465,19 @@ def _descended(sizing: Sizing, space: _Space, start: Array, *, coarse: bool = Fa
         goals = found.goals if feasible else found.parts
         limits = found.parts if feasible else np.empty((0, goals.shape[1]))
         move = _corner(goals, limits, step, best[0], trust)
+        if np.abs(move).max() < _STILL:
+            break
         tried = np.clip(best + move * np.array([[1.0], [0.5], [0.25]]), 0.0, 1.0)
         scores = merit(measured(np.concatenate([best, tried])))
         first = int(np.argmin(scores))
         if first:
-            gained = (scores[0] - scores[first]) > _GAIN * abs(scores[0])
             best = tried[first - 1 : first]
-            trust *= (2.0 if gained else 1.0) if first == 1 else 0.5
+            trust *= 2.0 if first == 1 else 0.5
+            if scores[0] - scores[first] < gain * abs(scores[0]):
+                break
         else:
             trust *= 0.3
-        if trust < (_NEARLY if coarse else _FINEST):
+        if trust < end:
             break
     return best
 
