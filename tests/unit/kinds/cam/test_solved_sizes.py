@@ -292,3 +292,13 @@ def test_a_finding_about_a_radius_names_sizes_that_keep_all_limits() -> None:
     shy = float(named["follower.roller_radius_mm"]) + 1e-3
     again = gc.build(design.with_({"follower.roller_radius_mm": shy})).findings
     assert [one.code for one in again] == ["sharp-profile"]
+
+
+def test_a_pivot_that_is_solved_for_stands_beside_the_cam() -> None:
+    result = gc.build(gc.design(arm("cycloidal")))
+    task = Task(result.design, result.program)
+    sizes = {**task.known, "radius": 60.0, "pivot": 50.0}
+    found = task.measured(sizes)
+    given = {"cam.prime_radius_mm": 60.0, "follower.pivot_distance_mm": 50.0}
+    radius = gc.build(result.design.with_(given)).facts["cam.profile.radius_mm.max"]
+    assert float(found.excess["pivot"][0, 0]) == pytest.approx(radius / 50.0 - 1.0, rel=1e-6)
