@@ -436,9 +436,12 @@ class _Space:
 
 
 def _rank(found: Measured) -> tuple[Array, Array]:
-    """Return by what candidates are compared: their excess, and of those without one their goal."""
+    """Return by what candidates are compared: their excess, and of those near limits their goal.
+
+    Descents end slightly on either side of their limits: no reason to prefer one that is within.
+    """
     worst = found.worst
-    return np.where(worst > 0.0, worst, -np.inf), found.goal
+    return np.where(worst > _LOST, worst, -np.inf), found.goal
 
 
 def _descended(sizing: Sizing, space: _Space, start: Array, *, coarse: bool = False) -> Array:

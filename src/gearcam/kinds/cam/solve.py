@@ -87,8 +87,8 @@ _ASIDE: Final = 10.0
 _TRIES: Final = 24
 """Steps from the smallest cam to one with room, each half as long as the next."""
 
-_ROUNDING: Final = 1e-9
-"""Excess that is rounding."""
+_SLIGHT: Final = 1e-6
+"""Excess of the end of a search, from which the steps to a cam with room lead."""
 
 _AROUND: Final = 0.8
 _GRID: Final = 81
@@ -137,7 +137,7 @@ def solved(result: CamResult) -> Solution:
     task = Task(result.design, lift_program(result.design, result.tolerances))
     best, inner = smallest(task.sizing, task.known, task.unknown)
     found = task.measured(best)
-    if found.worst[0] > _ROUNDING:
+    if found.worst[0] > _SLIGHT:
         raise task.refusal(found)
     # towards the cams that keep the limits with room, until the checks agree in whole digits
     for share in (0.0, *(2.0**-k for k in range(_TRIES, -1, -1))):
@@ -307,13 +307,13 @@ class Task:
         beyond = {
             _LIMITS[name]
             for name, one in found.excess.items()
-            if one.max() > 0.0 and name in _LIMITS
+            if one.max() > _SLIGHT and name in _LIMITS
         }
         for key, words, names in sorted(beyond):
             freed = replace(self.sizing, free=names)
             best, _ = smallest(freed, self.known, self.unknown)
             kept = self.measured(best, freed)
-            if kept.worst[0] > _ROUNDING or not math.isfinite(kept.goal[0]):
+            if kept.worst[0] > _SLIGHT or not math.isfinite(kept.goal[0]):
                 continue
             least, limit = self._limit_at(names[0], best, float(kept.goal[0]))
             return InfeasibleError(

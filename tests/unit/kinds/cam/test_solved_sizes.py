@@ -167,6 +167,30 @@ def test_random_tries_find_no_smaller_cam(make: Any, name: str) -> None:
     assert not (exact.worst <= 0.0).any()
 
 
+# program, arm, roller, prime radius, pivot distance, limits of the pressure angle and the profile
+KNOWN = [
+    ("polynomial", 69.5, 4.06, 60.0, 80.8, 28.835, 37.5352),
+    ("polynomial", 93.8, 2.41, 65.9, 115.4, 19.344, 39.8348),
+    ("quick return", 101.1, 5.17, 81.1, 148.4, 31.291, 45.5643),
+]
+
+
+@pytest.mark.parametrize("known", KNOWN)
+def test_a_cam_that_is_known_to_keep_its_limits_is_not_smaller_than_the_solution(
+    known: tuple[str, float, float, float, float, float, float],
+) -> None:
+    name, length, roller, prime, pivot, angle, convex = known
+    document = arm(name, limits={"pressure_angle_deg": angle, "profile_radius_mm": convex})
+    document["follower"] |= {"arm_mm": length, "roller_radius_mm": roller}
+    sizes = {"cam.prime_radius_mm": prime, "follower.pivot_distance_mm": pivot}
+    given = gc.build(gc.design(document).with_(sizes))
+    found = gc.build(gc.design(document))
+    assert not given.findings
+    assert not found.findings
+    size = "cam.profile.radius_mm.max"
+    assert found.facts[size] <= given.facts[size]
+
+
 @pytest.mark.parametrize(("make", "name"), CASES)
 def test_a_solved_cam_has_no_finding_and_decides_by_its_limits(make: Any, name: str) -> None:
     result = gc.build(gc.design(make(name)))
