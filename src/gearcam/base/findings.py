@@ -103,10 +103,13 @@ class Remark(NamedTuple):
     limit: float = math.nan
 
 
-Look = Callable[[Any, float], Iterable[Remark]]
+Limits = Mapping[str, float | tuple[float, ...]]
+"""Limits by name, in mm and rad; a pair where a limit may have two values."""
+
+Look = Callable[[Any, Any], Iterable[Remark]]
 """The function of a check: ``look(subject, limit)``, the limit in mm or rad, nan without one."""
 
-Run = Callable[[Any, float], Iterator[Finding]]
+Run = Callable[[Any, Any], Iterator[Finding]]
 """The same, yielding findings."""
 
 
@@ -175,7 +178,7 @@ def check(
     unit = unit or quantity.unit
     severities = (severity,) if isinstance(severity, str) else severity
 
-    def finding(remark: Remark, limit: float) -> Finding:
+    def finding(remark: Remark, limit: Any) -> Finding:
         bound = limit / quantity.factor if math.isnan(remark.limit) else remark.limit
         return Finding(
             code=code,
@@ -189,7 +192,7 @@ def check(
 
     def register(look: Look) -> Run:
         @wraps(look)
-        def run(subject: Any, value: float) -> Iterator[Finding]:
+        def run(subject: Any, value: Any) -> Iterator[Finding]:
             return (finding(remark, value) for remark in look(subject, value))
 
         for one in (kind,) if isinstance(kind, str) else kind:
@@ -203,26 +206,26 @@ def check(
     return register
 
 
-def limit_of(kind: str, code: str, limits: Mapping[str, float]) -> float:
-    """Return the limit of a check.
+def limit_of(kind: str, code: str, limits: Limits) -> Any:
+    """Return the limit of a check: a number, or a pair where it may have two values.
 
     Parameters
     ----------
     kind, code : str
         Kind of subject and code of the check.
-    limits : mapping of str to float
+    limits : mapping of str to float or tuple of float
         Limits set by the design, by name, in internal units.
 
     Returns
     -------
-    float
+    float or tuple of float
         The limit set by the design, else the default, in internal units; nan without a limit.
     """
     limit = CHECKS[kind, code].limit
     return float("nan") if limit is None else limits.get(limit[0], limit[2])
 
 
-def run_checks(kind: str, subject: Any, limits: Mapping[str, float]) -> tuple[Finding, ...]:
+def run_checks(kind: str, subject: Any, limits: Limits) -> tuple[Finding, ...]:
     """Run every check of a kind of design on a built subject.
 
     Parameters
@@ -231,7 +234,7 @@ def run_checks(kind: str, subject: Any, limits: Mapping[str, float]) -> tuple[Fi
         Kind of subject, such as ``gear-pair``.
     subject : object
         What the checks examine.
-    limits : mapping of str to float
+    limits : mapping of str to float or tuple of float
         Limits set by the design, by name, in internal units; others keep their defaults.
 
     Returns

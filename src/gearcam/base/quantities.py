@@ -119,7 +119,9 @@ class Param:
     word : str
         The word of the key if a field cannot have this name, such as ``from``.
     both : bool
-        Whether a single value may be given for both wheels.
+        Whether a single value may be given for two, such as both wheels.
+    order : str
+        Which of two values comes first.
     function : bool
         Whether Python functions may be given instead of a text.
     nested : tuple of str
@@ -148,6 +150,7 @@ class Param:
     example: Any = None
     word: str = ""
     both: bool = False
+    order: str = "driver first"
     function: bool = False
     nested: tuple[str, ...] = ()
     when: tuple[str, ...] = ()

@@ -36,9 +36,28 @@ _UNLIKE: Final = 2.0
 """Residual of a fitted phase over the noise, both as root mean square, that is no chance."""
 
 
-def pressure_limit(follower: Follower, given: float) -> float:
-    """Return the largest pressure angle of a `follower`, rad: `given`, the default where nan."""
-    return follower.pressure_limit if math.isnan(given) else given
+def pressure_limits(
+    follower: Follower | type[Follower], given: float | tuple[float, ...]
+) -> dict[str, float]:
+    """Return the largest pressure angles of a follower on rises and returns, rad.
+
+    Parameters
+    ----------
+    follower : Follower
+        The follower, or its class.
+    given : float or (float, float), rad
+        For both or each; nan: the default of the follower.
+
+    Returns
+    -------
+    dict of str to float, rad
+        By the kinds of phases, ``rise`` and ``return``.
+    """
+    pair = np.broadcast_to(given, 2).tolist()
+    return {
+        kind: follower.pressure_limit if math.isnan(one) else one
+        for kind, one in zip(("rise", "return"), pair, strict=True)
+    }
 
 
 def driven(cam: Cam, motion: PitchMotion) -> tuple[str, ...]:
@@ -78,20 +97,22 @@ def _at(motion: PitchMotion, place: str) -> str:
             ANGLE,
             gt=0,
             lt=90,
+            both=True,
+            order="rise first",
             example=30,
-            doc="largest pressure angle; 30 translating, 45 oscillating",
+            doc="largest pressure angle of rises and returns; 30 translating, 45 oscillating",
         ),
         math.nan,
     ),
 )
-def pressure_angle(cam: Cam, limit: float) -> Iterator[Remark]:
+def pressure_angle(cam: Cam, limit: float | tuple[float, ...]) -> Iterator[Remark]:
     """Warn of large pressure angles on rises and returns.
 
     Looks at: the pressure angle: the larger it is, the larger is the side force on the follower.
     """
     for motion in cam.motions:
-        largest = pressure_limit(motion.follower, limit)
-        yield from _steep(motion, ("rise", "return"), largest)
+        for kind, largest in pressure_limits(motion.follower, limit).items():
+            yield from _steep(motion, (kind,), largest)
 
 
 @check(

@@ -1026,7 +1026,7 @@ class FlatArm(Face):
 
     def held(self, friction: FrictionSpec, highest: float) -> Support:  # noqa: ARG002
         """Return its pivot (see `Follower.held`)."""
-        return Pivot(at=complex(self.pivot), spin=self.spin)
+        return Pivot(at=self.pivot + 0j, spin=self.spin)
 
     def mass_point(self, p: Array, distance: float) -> Plane:
         """Return a point on the parallel to the face through the pivot (see `Follower`)."""

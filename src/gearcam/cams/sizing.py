@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Final, NamedTuple
@@ -27,12 +27,16 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from gearcam.base.display import ShortRepr
+from gearcam.cams.burdens import Motion
 from gearcam.cams.carriers import Rotating
 from gearcam.cams.curve import CamCurve
 from gearcam.cams.followers import Contact, Follower
 from gearcam.cams.placing import followers_of
 from gearcam.cams.spec import FollowerSpec
+from gearcam.cams.statics import pushing
+from gearcam.cams.supports import Burden
 from gearcam.laws.program import Program
+from gearcam.mechanics.friction import FrictionSpec
 from gearcam.numeric.arrays import Array, Mask
 from gearcam.numeric.jets import Jet
 
@@ -85,8 +89,9 @@ _REGULAR: Final = 1e-9
 _ROOM: Final = 1e-9
 """Rounding of a corner, in ranges of trust."""
 
-_INNER: Final = (1e-4, 1e-5, 1e-6, 1e-7)
-"""Ranges around the solution in which candidates with room are sought."""
+_INNER: Final = (1e-4, 1e-5, 1e-6, 1e-7, 1e-3, 1e-2)
+"""Ranges around the solution in which candidates with room are sought; the last where friction
+makes a kink of a limit, along which the search ends too early."""
 
 _BETWEEN: Final = 4
 """Places for each of the survey: between them cubics are exact to the last digits of a size."""
@@ -96,6 +101,28 @@ _COARSE: Final = 9
 
 _APART: Final = 0.05
 """Least distance of two starts, as a share of the range."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Load(ShortRepr):
+    """What the contact of a cam carries, and what it can bear.
+
+    Parameters
+    ----------
+    burden : callable
+        ``burden(motion)`` returns what the cam has to move.
+    friction : FrictionSpec
+        Coefficients.
+    dragged : callable
+        ``dragged(radius)`` returns tangential over normal force of ends, (n, 1), mm.
+    most : float, N/mm
+        Product of normal force and relative curvature at which the pressure is at its limit.
+    """
+
+    burden: Callable[[Motion], Burden]
+    friction: FrictionSpec
+    dragged: Callable[[Any], Any]
+    most: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -170,9 +197,12 @@ class Sizing:
         Whether the pivot has to stand beside the cam: where its distance is asked for.
     from_base : bool
         Whether the size ``radius`` is the base radius of a round follower.
+    load : Load, optional
+        What the cam has to move, where the contact pressure is limited.
     goal : (str, float)
-        What is to be least: ``size``, the largest radius of the profile, ``pressure``, the tangent
-        of the largest pressure angle, or ``convex``, the least convex radius; times a factor.
+        What is to be least: ``size``, the largest radius of the profile, ``pressure``, ``rise``
+        or ``back``, the tangent of the largest pressure angle of all phases, rises or returns, or
+        ``convex``, the least convex radius; times a factor.
     free : tuple of str
         Names of limits that do not bind; the largest excess of them is to be least instead.
     """
@@ -182,6 +212,7 @@ class Sizing:
     limits: SizeLimits
     beside: bool = False
     from_base: bool = False
+    load: Load | None = None
     goal: tuple[str, float] = ("size", 1.0)
     free: tuple[str, ...] = ()
 
@@ -200,7 +231,11 @@ class Sizing:
         roller = np.asarray(sizes["roller"])
         with np.errstate(all="ignore"):  # out of reach
             far = _distance(follower, high) - roller
-            values, excess = self._of_contact(follower, roller, coarse=coarse)
+            places = self._coarse if coarse else self._fine
+            contact = self._contact(follower, places)
+            values, excess = self._of_contact(contact, places, roller)
+            if self.load is not None:
+                excess["contact"] = self._pressed(self.load, follower, contact, places)
             excess["reach"] = np.maximum(reach, _passed(follower, low, high))[None]
             if self.limits.wall > 0.0:
                 near = _distance(follower, low) - roller
@@ -225,12 +260,29 @@ class Sizing:
         curve = CamCurve(program=self.program, follower=follower, carrier=Rotating())
         return curve.contact_of(places.lift, places.order)
 
+    def _pressed(self, load: Load, follower: Follower, contact: Contact, places: _Places) -> Array:
+        """Return the excess of the contact pressure, by its square, of each phase, (k, n)."""
+        s, ds, d2s = places.lift[:3]
+        ends, carrier = follower.radius, Rotating()
+        support = follower.held(load.friction, self.program.range[1])
+        at, tangent = follower.trace(carrier, np.zeros_like(s), follower.start + s, ds, ends)
+        past = carrier.passing(at) - support.velocity(at) * ds
+        push, _ = pushing(at, tangent, past, load.dragged(ends))
+        force, left = support.normal_force(
+            push, load.burden((places.theta, s, ds, d2s)), load.friction
+        )
+        bend = contact.turning.c[0] / contact.pitch_speed.c[0]
+        # 1/(1/bend - radius) + 1/radius
+        relative = 1.0 / (ends * (1.0 - bend * ends)) if follower.has_centre else bend
+        product = np.where(left > 0.0, np.maximum(force, 0.0), np.inf) * relative
+        excess = product / load.most - 1.0
+        return np.stack([excess[:, where].max(axis=1) for _, where in places.phases])
+
     def _of_contact(
-        self, follower: Follower, roller: Array, *, coarse: bool
+        self, contact: Contact, places: _Places, roller: Array
     ) -> tuple[dict[str, Array], dict[str, Array]]:
         """Return largest pressure angle and least convex radius, and the excesses of limits."""
-        limits, places = self.limits, self._coarse if coarse else self._fine
-        contact = self._contact(follower, places)
+        limits = self.limits
         steep, bent = contact.across / contact.along, contact.turning / contact.pitch_speed
         shape = (len(roller), len(places.step))
         moving = np.minimum(contact.along.c[0], contact.pitch_speed.c[0])
@@ -244,21 +296,23 @@ class Sizing:
             return _largest(values, slopes, places.step[where])
 
         excess = {"undercut": np.where(backward, np.inf, -1.0)[None]}
-        slopes = []
+        slopes: dict[str, Array] = {}
         for name, limit in (("rise", limits.rise), ("back", limits.back)):
             parts = [
                 most(steep, sign, where) for where in places.of_kind(name) for sign in (1.0, -1.0)
             ]
             if parts:
-                slopes += parts
-                excess[name] = np.stack(parts) / math.tan(limit) - 1.0
+                slopes[name] = np.stack(parts)
+                excess[name] = slopes[name] / math.tan(limit) - 1.0
         bends = np.stack([most(bent, 1.0, where) for _, where in places.phases])
         excess["convex"] = bends * (roller + limits.convex) - 1.0
         if limits.hollow > 0.0:
             hollows = np.stack([most(bent, -1.0, where) for _, where in places.phases])
             excess["hollow"] = hollows * (limits.hollow - roller) - 1.0
-        steepest = np.stack(slopes) if slopes else np.zeros((1, len(roller)))
-        return {"pressure": steepest, "convex": 1.0 / bends - roller}, excess
+        level = np.zeros((1, len(roller)))
+        steepest = np.concatenate([*slopes.values()]) if slopes else level
+        values = {"rise": level, "back": level, "pressure": steepest} | slopes
+        return values | {"convex": 1.0 / bends - roller}, excess
 
     @cached_property
     def _fine(self) -> _Places:
@@ -275,6 +329,8 @@ class _Places:
 
     Parameters
     ----------
+    theta : (m,) array, rad
+        Cam angles.
     lift : (4 or 3, m) array
         Lift and derivatives.
     step : (m,) array, rad
@@ -285,6 +341,7 @@ class _Places:
         Whether slopes are wanted, so that extremes between places are found.
     """
 
+    theta: Array
     lift: Array
     step: Array
     phases: tuple[tuple[str, Mask], ...]
@@ -322,6 +379,7 @@ class _Places:
         if rest.any():
             phases.append(("rest", np.repeat(rest, theta.shape[1])))
         return cls(
+            theta=theta.ravel(),
             lift=lift.reshape(3 + order, -1),
             step=step.ravel(),
             phases=tuple(phases),
@@ -393,7 +451,20 @@ def smallest(
             break
     near = np.concatenate([_descended(sizing, space, start, coarse=True) for start in starts])
     ranks = _rank(sizing.measured(space.sizes(near), coarse=True))
-    best = _descended(sizing, space, near[np.lexsort(ranks[::-1])[:1]])
+    return _ended(sizing, space, near[np.lexsort(ranks[::-1])[:1]])
+
+
+def smallest_from(
+    sizing: Sizing, known: Mapping[str, float], unknown: Unknowns, start: Mapping[str, float]
+) -> tuple[dict[str, float], dict[str, float]]:
+    """Return the smallest candidate near a start (see `smallest`)."""
+    space = _Space(known, unknown)
+    return _ended(sizing, space, _descended(sizing, space, space.point(start), coarse=True))
+
+
+def _ended(sizing: Sizing, space: _Space, near: Array) -> tuple[dict[str, float], dict[str, float]]:
+    """Return the end of a search, and a candidate with room."""
+    best = _descended(sizing, space, near)
     return space.one(best), space.one(_inside(sizing, space, best))
 
 
@@ -430,6 +501,16 @@ class _Space:
             found[name] = low + (high - low) * share if even else low * (high / low) ** share
         return found
 
+    def point(self, sizes: Mapping[str, float]) -> Array:
+        """Return the point, (1, d), of sizes."""
+        shares = [
+            (sizes[name] - low) / (high - low)
+            if low <= 0.0
+            else math.log(sizes[name] / low) / math.log(high / low)
+            for name, (low, high) in self.unknown.items()
+        ]
+        return np.clip([shares], 0.0, 1.0)
+
     def one(self, point: Array) -> dict[str, float]:
         """Return the sizes of a point, (1, d), as numbers."""
         return {name: float(value[0]) for name, value in self.sizes(point).items()}
@@ -458,7 +539,7 @@ def _descended(sizing: Sizing, space: _Space, start: Array, *, coarse: bool = Fa
 
     def merit(found: Measured) -> Array:
         beyond = np.maximum(found.worst, 0.0)
-        return np.where(beyond > _LOST, _FAR * (1.0 + beyond), found.goal + weight * beyond)
+        return np.where(beyond > _LOST, _FAR * beyond, found.goal + weight * beyond)
 
     weight = _WEIGHT * float(np.abs(measured(start).goal[0]))
     for _ in range(_MOST_STEPS):

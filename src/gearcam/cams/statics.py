@@ -31,10 +31,38 @@ from gearcam.cams.followers import Follower
 from gearcam.cams.supports import Burden, Push, Support
 from gearcam.cams.wall import Wall
 from gearcam.mechanics.friction import FrictionSpec
-from gearcam.numeric.arrays import Array, Ints, Mask
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 
 _AT_REST = 1e-12
 """Velocity over the largest below which the follower is at rest: rounding."""
+
+
+def pushing(
+    at: Plane, tangent: Plane, past: Plane, share: Array | float, side: int = 1
+) -> tuple[Push, Array]:
+    """Return the force of a profile on what touches it, and the speed of sliding.
+
+    Parameters
+    ----------
+    at, tangent : (n,) complex arrays, mm and 1
+        Points of contact, and tangents of the profile, clockwise.
+    past : (n,) complex array, mm per unit of the driver's position
+        Velocity of the cam past the follower there.
+    share : float or (n,) array
+        Tangential force over normal force.
+    side : {1, -1}
+        Whether the follower is outside the profile.
+
+    Returns
+    -------
+    push : Push
+        Its force.
+    slide : (n,) array, mm per unit of the driver's position
+        Velocity along the tangent.
+    """
+    normal = side * 1j * tangent
+    slide = (past * np.conj(tangent)).real
+    return Push(at=at, unit=normal + share * np.sign(slide) * tangent, normal=normal), slide
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -90,11 +118,8 @@ class Touch(ShortRepr):
         at, tangent = touching.trace(wall.carrier, np.zeros_like(x), touching.start + s, own, inset)
         if self.across:
             at, tangent = -at, -tangent
-        normal = wall.side * 1j * tangent
         past = wall.carrier.passing(at) - support.velocity(at) * ds
-        slide = (past * np.conj(tangent)).real
-        unit = normal + share * np.sign(slide) * tangent
-        return Push(at=at, unit=unit, normal=normal), slide
+        return pushing(at, tangent, past, share, wall.side)
 
     def along(self, x: Array) -> Array:
         """Return how far the contact has come along its wall, mm, at rising positions (n,)."""

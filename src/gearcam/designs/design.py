@@ -21,6 +21,7 @@ from typing import Any, ClassVar, Final, Self
 
 from gearcam.base.display import cut
 from gearcam.base.errors import DesignError, InfeasibleError, Problem
+from gearcam.base.findings import Limits
 from gearcam.base.quantities import FILE_KEYS
 from gearcam.base.reading import UnreadableError, read
 from gearcam.designs.examine import examine, examine_file
@@ -54,7 +55,7 @@ class Design:
         Name of the design and of its output folder: letters, digits, ``_ - .``
     source : str
         The design file; empty for a design made in Python.
-    limits : mapping of str to float
+    limits : mapping of str to float or tuple of float
         Limits of checks by name, in mm and rad; others have their defaults.
     output : OutputSpec
         Files to write and their tolerance.
@@ -81,7 +82,7 @@ class Design:
 
     name: str
     source: str = ""
-    limits: Mapping[str, float] = field(default_factory=dict)
+    limits: Limits = field(default_factory=dict)
     output: OutputSpec = field(default_factory=OutputSpec)
     examined: InitVar[bool] = False
 

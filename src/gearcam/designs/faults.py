@@ -149,7 +149,7 @@ def allowed(entry: Key, *, item: bool = False) -> str:
         return _single(entry)
     param = entry.param
     if param.both:
-        return f"{_single(entry)}, or two of them, driver first"
+        return f"{_single(entry)}, or two of them, {param.order}"
     if entry.length:
         count = f"{entry.length} "
     elif param.min_length:

@@ -276,7 +276,8 @@ class DesignKind:
                     key = param.key(name)
                     # nan: it depends on the design
                     value = None if math.isnan(default) else default
-                    entries[key] = Key(name, key, param, float, None, "", value)
+                    length = 2 if param.both else None
+                    entries[key] = Key(name, key, param, float, length, "", value)
         return Table("limits", None, entries)
 
 

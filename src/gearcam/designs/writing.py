@@ -28,6 +28,10 @@ def least_document(given: Design) -> dict[str, Any]:
         for key in list(table) if isinstance(table, dict) else ():
             left = {name: value for name, value in document[title].items() if name != key}
             document = _if_equal(given, document, {**document, title: left})
+            pair = document[title].get(key)
+            if isinstance(pair, list) and len(pair) == 2 and pair[0] == pair[1]:
+                single = {**document[title], key: pair[0]}
+                document = _if_equal(given, document, {**document, title: single})
         if not document[title]:
             rest = {name: value for name, value in document.items() if name != title}
             document = _if_equal(given, document, rest)

@@ -10,7 +10,7 @@ import numpy as np
 
 from gearcam.base.findings import limit_of
 from gearcam.base.numerals import formatted
-from gearcam.cams.checks import KIND, pressure_limit
+from gearcam.cams.checks import KIND, pressure_limits
 from gearcam.kinds.cam.build import pressure_column, rho_column
 from gearcam.parts import checks  # noqa: F401  (its checks register themselves)
 from gearcam.parts.blank import KIND as PARTS_KIND
@@ -74,7 +74,9 @@ def _pressure_angle(result: CamResult) -> Chart | None:
     if not any(np.any(table[pressure_column(one)]) for one in result.cam.motions):
         return None
     given = limit_of(KIND, "pressure-angle", result.design.limits)
-    limit = math.degrees(pressure_limit(result.follower, given))
+    found = pressure_limits(result.follower, given)
+    same = found["rise"] == found["return"]
+    limits = {"limit" if same else f"limit, {kind}": one for kind, one in found.items()}
     places, label = places_of(result)
     return Chart(
         title="Pressure angle",
@@ -89,7 +91,11 @@ def _pressure_angle(result: CamResult) -> Chart | None:
             for one in result.cam.motions
             for column in (pressure_column(one),)
         ),
-        limits=(Limit(label="limit", value=limit), Limit(label="limit", value=-limit)),
+        limits=tuple(
+            Limit(label=label, value=sign * math.degrees(one))
+            for label, one in limits.items()
+            for sign in (1.0, -1.0)
+        ),
         marks=knots_of(result),
     )
 

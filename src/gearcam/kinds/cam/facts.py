@@ -10,7 +10,7 @@ import numpy as np
 from gearcam.base.facts import Fact, Facts, extent
 from gearcam.base.findings import limit_of
 from gearcam.base.numerals import formatted
-from gearcam.cams.checks import KIND, pressure_limit
+from gearcam.cams.checks import KIND, pressure_limits
 from gearcam.parts.mass import part_facts
 
 if TYPE_CHECKING:
@@ -154,8 +154,8 @@ def pressure(result: CamResult, motion: PitchMotion) -> Tree:
     made: Tree = {}
     whose = f", {motion.called}" if motion.key else ""
     given = limit_of(KIND, "pressure-angle", result.design.limits)
-    limit = pressure_limit(result.follower, given)
-    for kind in ("rise", "return"):
+    largest = 0.0
+    for kind, limit in pressure_limits(result.follower, given).items():
         found = motion.pressure(kind)
         if found is not None:
             worst = max(found.low, found.high, key=lambda end: abs(end.value))
@@ -168,7 +168,8 @@ def pressure(result: CamResult, motion: PitchMotion) -> Tree:
                 shown=found.largest > 0.0,
             )
             made[kind] = Fact(ends_of(found, math.degrees(1.0)), unit="deg")
-    return made
+            largest = max(largest, found.largest)
+    return {"max": Fact(math.degrees(largest), unit="deg")} | made if made else made
 
 
 def _lost_motion(result: CamResult) -> Fact | None:

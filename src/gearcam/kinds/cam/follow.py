@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.base.facts import Fact
-from gearcam.base.findings import Finding, run_checks
+from gearcam.base.findings import Finding, Limits, run_checks
 from gearcam.cams.follow import follow
 from gearcam.cams.spec import FOLLOWED
 from gearcam.cams.wall import Wall
@@ -54,7 +53,7 @@ def read_profile(file: str | Path | ArrayLike, wall: Wall) -> tuple[Plane, Array
 
 
 def followed(
-    wall: Wall, outline: Plane, bulges: Array, theta: Array, limits: Mapping[str, float]
+    wall: Wall, outline: Plane, bulges: Array, theta: Array, limits: Limits
 ) -> tuple[dict[str, Array], dict[str, Any], tuple[Finding, ...]]:
     """Return the motion of a cam's follower on a profile.
 

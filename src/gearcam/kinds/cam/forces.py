@@ -10,13 +10,14 @@ import numpy as np
 
 from gearcam.base.errors import DesignError, InfeasibleError, Problem, beyond_limit
 from gearcam.base.facts import Fact, extent
-from gearcam.base.findings import run_checks
+from gearcam.base.findings import limit_of, run_checks
 from gearcam.base.quantities import TORQUE
 from gearcam.cams.burdens import Loads
 from gearcam.cams.force_checks import Loaded
 from gearcam.cams.spec import FORCES
 from gearcam.cams.statics import Statics, solve
 from gearcam.kinds.cam.charts import knots_of, places_of
+from gearcam.kinds.cam.hints import enlarged
 from gearcam.mechanics.hertz import half_width, line_pressure
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.pictures.charts import Chart, Limit, Line
@@ -110,6 +111,42 @@ def places(result: CamResult) -> Array:
     return with_both_sides(even, np.asarray(result.program.knots))
 
 
+def _under_load(result: CamResult) -> tuple[Loads, Array, Statics]:
+    """Return the loads of a cam, the positions that are studied, and the forces there."""
+    demand(result.design)
+    design, loads, x = result.design, loads_of(result), places(result)
+    motion = loads.motion(x)
+    statics = solve(
+        result.cam.touches,
+        loads.support,
+        x,
+        motion[2],
+        loads.burden(motion),
+        design.friction,
+        partial(design.follower.dragged, design.friction),
+    )
+    return loads, x, statics
+
+
+def largest_pressure(result: CamResult) -> float:
+    """Return the largest contact pressure of a cam, MPa; 0 without any contact under load.
+
+    Parameters
+    ----------
+    result : CamResult
+        The cam.
+
+    Raises
+    ------
+    DesignError, InfeasibleError
+        As those of the study.
+    """
+    _, _, statics = _under_load(result)
+    per_width = statics.force / result.form.contact_width
+    pressure = line_pressure(per_width, statics.curvature, result.design.material)
+    return float(np.nanmax(pressure, initial=0.0))
+
+
 def study_forces(result: CamResult, study: Study, progress: Progress | None) -> StudyResult:
     """Return the study of the forces of a cam (see `gearcam.cams.statics`).
 
@@ -132,23 +169,11 @@ def study_forces(result: CamResult, study: Study, progress: Progress | None) -> 
     InfeasibleError
         If the cam is impossible, or no stiffness keeps the follower on it.
     """
-    demand(result.design)
     if progress is not None:
         progress("forces", 0, 1)
     design, cam = result.design, result.cam
     with result.stage("forces"):
-        loads = loads_of(result)
-        x = places(result)
-        motion = loads.motion(x)
-        statics = solve(
-            cam.touches,
-            loads.support,
-            x,
-            motion[2],
-            loads.burden(motion),
-            design.friction,
-            partial(design.follower.dragged, design.friction),
-        )
+        loads, x, statics = _under_load(result)
         per_width = statics.force / result.form.contact_width
         pressure = line_pressure(per_width, statics.curvature, design.material)
         width = half_width(per_width, statics.curvature, design.material)
@@ -165,7 +190,7 @@ def study_forces(result: CamResult, study: Study, progress: Progress | None) -> 
             torque=scale * statics.torque if turns else np.full(x.shape, np.nan),
             release=design.drive.words(release[0]) if release else "",
         )
-        found = run_checks(FORCES, loaded, design.limits)
+        found = enlarged(result, run_checks(FORCES, loaded, design.limits))
     columns = _columns(result, x, statics, pressure, width)
     return StudyResult(
         result=result,
@@ -348,8 +373,11 @@ def _along(result: CamResult, x: Array, columns: Mapping[str, Any]) -> Chart | N
 def _charts(result: CamResult, x: Array, columns: Mapping[str, Any]) -> dict[str, Chart]:
     """Return charts of forces over the driver, and of the pressure along the profile."""
     column, label = places_of(result)
-    limits = {"pressure_mpa": result.design.limits.get("contact_pressure", 0.0)}
-    limits["torque_nm"] = result.design.limits.get("drive_torque", 0.0) / TORQUE.factor
+    given = result.design.limits
+    limits = {
+        "pressure_mpa": limit_of(FORCES, "contact-pressure", given),
+        "torque_nm": limit_of(FORCES, "drive-torque", given) / TORQUE.factor,
+    }
     charts = {}
     for name, (title, axis) in _TITLES.items():
         values = np.ma.filled(columns[name], np.nan) if name in columns else None

@@ -227,6 +227,34 @@ def _rounder(result: CamResult) -> tuple[str, ...]:
     return (f"With {' or '.join(found)} it keeps all limits.",) if found else ()
 
 
+def enlarged(result: CamResult, findings: Iterable[Finding]) -> tuple[Finding, ...]:
+    """Return findings of a study of forces; a contact pressure names the cam that keeps its limit.
+
+    Parameters
+    ----------
+    result : CamResult
+        Of the cam.
+    findings : iterable of Finding
+        Of the study.
+    """
+    from gearcam.kinds.cam.solve import alone
+
+    found: list[Finding] = []
+    for one in findings:
+        if one.code == "contact-pressure" and result.form.solvable:
+            key = next(
+                key
+                for key in ("cam.prime_radius_mm", "cam.base_radius_mm")
+                if value_at(document_of(result.solved), key)
+            )
+            size = alone(result, key, {"limits.contact_pressure_mpa": one.limit})
+            if size is not None:
+                hint = f"With {key} = {formatted(size, 10)} it keeps all limits."
+                one = replace(one, message=f"{one.message} {hint}")
+        found.append(one)
+    return tuple(found)
+
+
 def _motion_of(result: CamResult, finding: Finding) -> int:
     """Return which of a cam's motions a finding is about."""
     keyed = (k for k, one in enumerate(result.cam.motions) if one.key)

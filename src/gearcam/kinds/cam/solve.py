@@ -12,8 +12,9 @@ Refused: limits that no sizes keep, with the least change of a limit that helps.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -22,11 +23,21 @@ from gearcam.base.display import ShortRepr
 from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.base.findings import CHECKS, limit_of
 from gearcam.base.numerals import formatted
-from gearcam.cams.checks import KIND
+from gearcam.cams.checks import KIND, pressure_limits
 from gearcam.cams.placing import followers_of
-from gearcam.cams.sizing import SIZES, Measured, SizeLimits, Sizing, smallest
+from gearcam.cams.sizing import (
+    SIZES,
+    Load,
+    Measured,
+    SizeLimits,
+    Sizing,
+    smallest,
+    smallest_from,
+)
+from gearcam.cams.spec import FORCES
 from gearcam.designs.design import document_of
 from gearcam.kinds.cam.design import CamDesign, unknowns
+from gearcam.kinds.cam.forces import largest_pressure, loads_of
 from gearcam.kinds.cam.forms.base import lift_program
 from gearcam.kinds.cam.tables import GOALS
 from gearcam.parts.checks import KIND as PARTS_KIND
@@ -54,18 +65,21 @@ _MOST: Final = 100.0
 _DIGITS: Final = 6
 """Digits of solved sizes, after the point of a millimetre."""
 
+_PRINTED: Final = 9
+"""Digits of a limit that has to give: all of its thousandths."""
+
 _KEPT: Final = ("pressure-angle", "jamming", "sharp-profile", "undercut")
 """Checks whose limits a solution keeps."""
 
-_PRESSURE: Final = ("pressure_angle_deg", "the pressure angle", ("rise", "back"))
 _LIMITS: Final = {
-    "rise": _PRESSURE,
-    "back": _PRESSURE,
-    "convex": ("profile_radius_mm", "the least convex radius of the profile", ("convex",)),
-    "hollow": ("tool_diameter_mm", "twice the least concave radius", ("hollow",)),
-    "wall": ("wall_mm", "the wall around the bore", ("wall",)),
+    "rise": ("pressure_angle_deg", "deg", "the pressure angle"),
+    "back": ("pressure_angle_deg", "deg", "the pressure angle"),
+    "convex": ("profile_radius_mm", "mm", "the least convex radius of the profile"),
+    "hollow": ("tool_diameter_mm", "mm", "twice the least concave radius"),
+    "wall": ("wall_mm", "mm", "the wall around the bore"),
+    "contact": ("contact_pressure_mpa", "MPa", "the contact pressure"),
 }
-"""Key and words of limits, and what they limit, by the names of excesses."""
+"""Key, unit and words of limits, by the names of excesses."""
 
 _WORDS: Final = {
     "rise": "pressure angle on the rise",
@@ -73,13 +87,14 @@ _WORDS: Final = {
     "convex": "least convex radius",
     "hollow": "tool",
     "wall": "wall around the bore",
+    "contact": "contact pressure",
     "pivot": "pivot beside the cam",
     "reach": "reach of the follower",
     "undercut": "undercut",
 }
 """Limits in words, by the names of excesses."""
 
-_GOALS: Final = dict(zip(GOALS, ("size", "pressure", "convex"), strict=True))
+_GOALS: Final = dict(zip(GOALS, ("size", "pressure", "rise", "back", "convex"), strict=True))
 
 _ASIDE: Final = 10.0
 """Default range of an offset, over the size of the follower with its lift."""
@@ -90,6 +105,10 @@ _TRIES: Final = 24
 _SLIGHT: Final = 1e-6
 """Excess of the end of a search, from which the steps to a cam with room lead."""
 
+_ROUNDS: Final = 6
+_AGREED: Final = 1e-5
+"""Largest number of searches under a contact pressure, and sizes, mm, in which they agree."""
+
 _AROUND: Final = 0.8
 _GRID: Final = 81
 """Range, in sizes of the solution, and places of the chart of the region."""
@@ -98,12 +117,18 @@ _DECIDES: Final = 1e-6
 """Excess from which a limit decides on the size."""
 
 
+Found = tuple[dict[str, float], dict[str, float]]
+"""All sizes, mm, by the names of `SIZES`: the smallest cam, and one that has room."""
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Solution(ShortRepr):
     """The sizes that a design asked for.
 
     Parameters
     ----------
+    task : Task
+        What was asked for.
     design : CamDesign
         The design with them.
     sizes : mapping of str to float, mm
@@ -112,6 +137,7 @@ class Solution(ShortRepr):
         What would exceed its limit with a smaller cam, in words.
     """
 
+    task: Task
     design: CamDesign
     sizes: Mapping[str, float]
     deciding: tuple[str, ...]
@@ -135,21 +161,20 @@ def solved(result: CamResult) -> Solution:
         If no sizes within the bounds keep the limits.
     """
     task = Task(result.design, lift_program(result.design, result.tolerances))
-    best, inner = smallest(task.sizing, task.known, task.unknown)
-    found = task.measured(best)
-    if found.worst[0] > _SLIGHT:
-        raise task.refusal(found)
+    found = task.found()
+    if task.pressure:
+        task, found = _pressed(result, task, found)
+    best, inner = found
     # towards the cams that keep the limits with room, until the checks agree in whole digits
     for share in (0.0, *(2.0**-k for k in range(_TRIES, -1, -1))):
-        sizes = {
-            key: round(best[name] + share * (inner[name] - best[name]), _DIGITS)
-            for key, name in task.names.items()
-        }
+        between = {name: best[name] + share * (inner[name] - best[name]) for name in best}
+        sizes = {key: round(size, _DIGITS) for key, size in task.by_key(between).items()}
         design = result.design.with_(sizes)
         if task.keeps(type(result)(design, result.tolerances)):
-            close = (name for name, one in found.excess.items() if one.max() > -_DECIDES)
+            excess = task.measured(best).excess.items()
+            close = (name for name, one in excess if one.max() > -_DECIDES)
             deciding = tuple(dict.fromkeys(_WORDS[name] for name in close))
-            return Solution(design=design, sizes=sizes, deciding=deciding)
+            return Solution(task=task, design=design, sizes=sizes, deciding=deciding)
     raise InfeasibleError(
         "no sizes that keep all limits could be confirmed",
         where=task.keys[0],
@@ -157,7 +182,37 @@ def solved(result: CamResult) -> Solution:
     )
 
 
-def alone(result: CamResult, key: str) -> float | None:
+def _pressed(result: CamResult, task: Task, found: Found) -> tuple[Task, Found]:
+    """Return the task under a limit of the contact pressure, and what it finds.
+
+    Weights of a swinging follower depend on its place: the loads are those on the last cam, until
+    it does not change.
+    """
+    for _ in range(_ROUNDS):
+        before = task.by_key(found[0])
+        cam = type(result)(result.design.with_(before), result.tolerances)
+        if task.sizing.load is None and largest_pressure(cam) <= task.pressure:
+            break  # the other limits keep it
+        task = Task(task.design, task.program, _load_on(cam, task.pressure))
+        found = task.found()
+        after = task.by_key(found[0])
+        if all(abs(after[key] - before[key]) < _AGREED for key in after):
+            break
+    return task, found
+
+
+def _load_on(cam: CamResult, most: float) -> Load:
+    """Return what a cam carries under a largest pressure, MPa."""
+    design, width = cam.design, cam.form.contact_width
+    return Load(
+        burden=loads_of(cam).burden,
+        friction=design.friction,
+        dragged=np.vectorize(partial(design.follower.dragged, design.friction), otypes=[float]),
+        most=math.pi * width * most**2 / design.material.contact_modulus,
+    )
+
+
+def alone(result: CamResult, key: str, more: Mapping[str, Any] | None = None) -> float | None:
     """Return the value of one size, mm, with which a cam keeps all limits; None if there is none.
 
     Parameters
@@ -166,8 +221,10 @@ def alone(result: CamResult, key: str) -> float | None:
         Of a cam that does not.
     key : str
         The key of the size.
+    more : mapping, optional
+        Other changes of the design.
     """
-    asked = result.solved.with_({key: "solve"})
+    asked = result.solved.with_({key: "solve"} | dict(more or {}))
     try:
         return solved(type(result)(asked, result.tolerances)).sizes[key]
     except (DesignError, InfeasibleError):
@@ -183,10 +240,13 @@ class Task:
         The design.
     program : Program
         Its lift.
+    load : Load, optional
+        What the cam has to move, where the contact pressure is limited.
     """
 
-    def __init__(self, design: CamDesign, program: Program) -> None:
+    def __init__(self, design: CamDesign, program: Program, load: Load | None = None) -> None:
         self.design, self.program = design, program
+        self.pressure = float(limit_of(FORCES, "contact-pressure", design.limits))
         self.keys = unknowns(document_of(design))
         self.names = {key: _NAMES[key] for key in self.keys}
         follower, cam = design.follower, design.cam
@@ -209,8 +269,36 @@ class Task:
             limits=self._limits(),
             beside="pivot" in self.unknown,
             from_base=cam.base_radius is not None and self.kind.has_centre,
+            load=load,
             goal=self._goal(),
         )
+
+    def found(self) -> Found:
+        """Return the smallest cam, and one that keeps the limits with room.
+
+        Raises
+        ------
+        InfeasibleError
+            If no sizes keep the limits.
+        """
+        found = smallest(self.sizing, self.known, self.unknown)
+        if self._kept(found):
+            return found
+        best, names, excess = self._freed(self.measured(found[0]))
+        if excess <= 0.0:  # the limits can be kept, only the search ended too early
+            found = smallest_from(self.sizing, self.known, self.unknown, best)
+            if self._kept(found):
+                return found
+        raise self._refused(names, best, max(excess, 0.0))
+
+    def _kept(self, found: Found) -> bool:
+        """Return whether the limits are kept, but for what a step to a cam with room removes."""
+        best, inner = found
+        return bool(self.measured(best).worst[0] <= _SLIGHT or self.measured(inner).worst[0] < 0.0)
+
+    def by_key(self, sizes: Mapping[str, float]) -> dict[str, float]:
+        """Return the sizes that are asked for, mm, by their keys; given by the names of `SIZES`."""
+        return {key: sizes[name] for key, name in self.names.items()}
 
     def measured(self, sizes: Mapping[str, float], sizing: Sizing | None = None) -> Measured:
         """Return what is measured of one candidate.
@@ -251,18 +339,13 @@ class Task:
 
     def _limits(self) -> SizeLimits:
         design, limits = self.design, self.design.limits
-        largest = min(
-            usual_limit if math.isnan(given := limit_of(KIND, code, limits)) else given
-            for code, usual_limit in (
-                ("pressure-angle", self.kind.pressure_limit),
-                ("jamming", self.kind.jamming_limit),
-            )
-        )
+        largest = pressure_limits(self.kind, limit_of(KIND, "pressure-angle", limits))
+        jams = limit_of(KIND, "jamming", limits)
         blank: Any = design.blank
         bore = blank.bore
         return SizeLimits(
-            rise=largest,
-            back=largest,
+            rise=min(largest["rise"], self.kind.jamming_limit if math.isnan(jams) else jams),
+            back=largest["return"],
             convex=limit_of(KIND, "sharp-profile", limits),
             hollow=0.5 * limit_of(PARTS_KIND, "tool-too-large", limits),
             wall=0.5 * bore + limit_of(PARTS_KIND, "thin-wall", limits) if bore else 0.0,
@@ -287,6 +370,8 @@ class Task:
                 if any(True for _ in CHECKS[KIND, code].run(cam, limit_of(KIND, code, limits))):
                     return False
             blank: Any = self.design.blank
+            if self.pressure and largest_pressure(result) > self.pressure:
+                return False
             walls = blank.bore and result.part_subject
             return not walls or not any(
                 CHECKS[PARTS_KIND, "thin-wall"].run(
@@ -296,38 +381,57 @@ class Task:
         except InfeasibleError:
             return False
 
-    def refusal(self, found: Measured) -> InfeasibleError:
-        """Return the refusal of limits that no sizes keep, with one that helps.
+    def _freed(self, found: Measured) -> tuple[dict[str, float], tuple[str, ...], float]:
+        """Return the cam that keeps all limits but some, their names, and its excess over them.
 
-        Parameters
-        ----------
-        found : Measured
-            The candidate that is beyond them by the least.
+        Raises
+        ------
+        InfeasibleError
+            If more limits have to give.
         """
-        beyond = {
-            _LIMITS[name]
-            for name, one in found.excess.items()
-            if one.max() > _SLIGHT and name in _LIMITS
-        }
-        for key, words, names in sorted(beyond):
+        beyond = [name for name, one in found.excess.items() if one.max() > _SLIGHT]
+        for names in self._ways(beyond):
             freed = replace(self.sizing, free=names)
             best, _ = smallest(freed, self.known, self.unknown)
             kept = self.measured(best, freed)
-            if kept.worst[0] > _SLIGHT or not math.isfinite(kept.goal[0]):
-                continue
-            least, limit = self._limit_at(names[0], best, float(kept.goal[0]))
-            return InfeasibleError(
-                f"no sizes keep all limits: {words} would be {formatted(least, 4)}",
-                where=f"limits.{key}",
-                value=least,
-                limit=limit,
-                unit=key.rsplit("_", 1)[1],
-                nearest=f"{key} = {formatted(least, 4)} can be kept",
-            )
-        return InfeasibleError(
+            if kept.worst[0] <= _SLIGHT and math.isfinite(kept.goal[0]):
+                return best, names, float(kept.goal[0])
+        raise InfeasibleError(
             "no sizes within their ranges keep all limits",
             where=self.keys[0],
             nearest="wider ranges in [bounds], a smaller lift, or more angle for it",
+        )
+
+    def _ways(self, beyond: Sequence[str]) -> Iterator[tuple[str, ...]]:
+        """Yield which limits may give: one, or both pressure angles where one is not enough."""
+        limits, angles = self.sizing.limits, ("rise", "back")
+        same = limits.rise == limits.back
+        yield from ((name,) for name in _LIMITS if name in beyond and not (same and name in angles))
+        if any(name in beyond for name in angles):
+            yield angles
+
+    def _refused(
+        self, names: tuple[str, ...], sizes: Mapping[str, float], excess: float
+    ) -> InfeasibleError:
+        """Return the refusal that names which limit has to give, so that an excess is kept."""
+        key, unit, words = _LIMITS[names[0]]
+        least, limit = self._limit_at(names[0], sizes, excess)
+        near = formatted(least, _PRINTED)
+        limits = self.sizing.limits
+        if names[0] in ("rise", "back") and limits.rise != limits.back:
+            words = f"{words} of {'rises' if names[0] == 'rise' else 'returns'}"
+            pair = (
+                formatted(self._limit_at(name, sizes, excess * (name in names))[0], _PRINTED)
+                for name in ("rise", "back")
+            )
+            near = f"[{', '.join(pair)}]"
+        return InfeasibleError(
+            f"no sizes keep all limits: {words} would be {formatted(least, _PRINTED)}",
+            where=f"limits.{key}",
+            value=least,
+            limit=limit,
+            unit=unit,
+            nearest=f"{key} = {near} can be kept",
         )
 
     def _limit_at(
@@ -337,8 +441,11 @@ class Task:
         limits, roller = self.sizing.limits, sizes["roller"]
         safe = 1e-3
         if name in ("rise", "back"):
-            least = math.degrees(math.atan(math.tan(limits.rise) * (1.0 + excess)))
-            return math.ceil(least / safe) * safe, math.degrees(limits.rise)
+            limit = limits.rise if name == "rise" else limits.back
+            least = math.degrees(math.atan(math.tan(limit) * (1.0 + excess)))
+            return math.ceil(least / safe) * safe, math.degrees(limit)
+        if name == "contact":
+            return math.ceil(self.pressure * math.sqrt(1.0 + excess)), self.pressure
         if name == "convex":
             value, limit = (roller + limits.convex) / (1.0 + excess) - roller, limits.convex
         elif name == "hollow":
@@ -362,7 +469,7 @@ def region(result: CamResult) -> Chart | None:
 
     if result.solution is None or len(result.solution.sizes) != 2:
         return None
-    task = Task(result.design, result.program)
+    task = result.solution.task
     first, second = sorted(task.names, key=lambda key: task.names[key] == "radius")
     chosen = result.solution.sizes
     reach = _AROUND * max(abs(chosen[first]), abs(chosen[second]))

@@ -276,6 +276,8 @@ class BoundsSpec(ShortRepr):
 GOALS: Final = {
     "cam.profile.radius_mm.max": "largest radius of the profile",
     "cam.pressure_angle_deg.max": "largest pressure angle",
+    "cam.pressure_angle_deg.rise_max": "largest pressure angle of the rises",
+    "cam.pressure_angle_deg.return_max": "largest pressure angle of the returns",
     "cam.curvature.profile_convex_min_mm": "least convex radius of the profile",
 }
 """What a solved cam may have least or most of."""

@@ -326,3 +326,117 @@ def test_a_pivot_that_is_solved_for_stands_beside_the_cam() -> None:
     given = {"cam.prime_radius_mm": 60.0, "follower.pivot_distance_mm": 50.0}
     radius = gc.build(result.design.with_(given)).facts["cam.profile.radius_mm.max"]
     assert float(found.excess["pivot"][0, 0]) == pytest.approx(radius / 50.0 - 1.0, rel=1e-6)
+
+
+def loaded(document: dict[str, Any], most: float, **tables: Any) -> dict[str, Any]:
+    spring = {"stiffness_n_mm": 8, "preload_n": 120}
+    mass = {"mass_kg": 1.2}
+    if document["follower"].get("motion") == "oscillating":
+        spring = {"stiffness_nm_rad": 40, "preload_nm": 9}
+        mass = {"mass_kg": 0.8, "center_mm": 50, "inertia_kg_m2": 0.003}
+    return document | {
+        "spring": [spring], "mass": [mass], "drive": {"speed_rpm": 200},
+        "limits": {"contact_pressure_mpa": most},
+    } | tables  # fmt: skip
+
+
+def test_the_base_radius_of_a_face_under_a_contact_pressure_is_the_closed_form() -> None:
+    document = stem("cycloidal", cam={"base_radius_mm": "solve", "thickness_mm": 12.0})
+    document["follower"] = {"type": "flat"}
+    result = gc.build(gc.design(loaded(document, 300.0)))
+    theta = np.linspace(0.0, 2.0 * math.pi, 200001)[:-1]
+    s, _, d2s = result.program.derivatives(theta, 2)
+    force = 120.0 + 8.0 * s + 1.2e-3 * (200.0 * math.pi / 30.0) ** 2 * d2s
+    modulus = 0.5 * 206000.0 / (1.0 - 0.3**2)
+    # p^2 = N*E/(pi*b*rho) of the radius of curvature rho = base + s + s"
+    base = float(np.max(force * modulus / (math.pi * 12.0 * 300.0**2) - s - d2s))
+    assert result.solution.sizes["cam.base_radius_mm"] == pytest.approx(base, abs=2e-3)
+    assert result.solution.deciding == ("contact pressure",)
+
+
+FRICTION = {
+    "guide": 0.1, "guide_length_mm": 50, "joint": 0.08, "roller": 0.05,
+    "journal_radius_mm": [10, 2], "flank": 0.1,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("gravity", [{}, {"gravity": {"direction_deg": -60}}])
+@pytest.mark.parametrize("kind", ["stem", "arm", "dome", "swinging face"])
+def test_the_contact_pressure_of_a_solved_cam_is_at_its_limit(
+    kind: str, gravity: dict[str, Any]
+) -> None:
+    document = stem("modified sine") if kind in ("stem", "dome") else arm("modified sine")
+    if kind == "dome":
+        document["follower"] = {"type": "domed", "dome_radius_mm": 9, "offset_mm": "solve"}
+    if kind == "swinging face":
+        document["follower"] = {
+            "type": "flat", "motion": "oscillating", "pivot_distance_mm": 130,
+        }  # fmt: skip
+        document["cam"] = {"base_radius_mm": "solve"}
+    tables = {"friction": FRICTION} | gravity
+    free = gc.build(gc.design(loaded(document, 0.0, **tables)))
+    most = round(0.87 * free.study("forces").facts["forces.pressure_mpa"], 1)
+    result = gc.build(gc.design(loaded(document, most, **tables)))
+    assert "contact pressure" in result.solution.deciding
+    assert not result.findings
+    found = result.study("forces").facts["forces.pressure_mpa"]
+    assert most * (1.0 - 1e-3) < found <= most
+    size = "cam.profile.radius_mm.max"
+    assert result.facts[size] > free.facts[size]
+
+
+def test_pressure_angles_of_rises_and_returns_have_limits_of_their_own() -> None:
+    limits = {"pressure_angle_deg": [24, 38], "profile_radius_mm": 1}
+    result = gc.build(gc.design(stem("cycloidal", limits=limits)))
+    facts = result.facts
+    assert facts["cam.pressure_angle_deg.rise_max"] == pytest.approx(24.0, abs=1e-3)
+    assert facts["cam.pressure_angle_deg.return_max"] == pytest.approx(38.0, abs=1e-3)
+    assert not result.findings
+    swapped = result.solved.with_({"limits.pressure_angle_deg": [38, 24]})
+    (finding,) = gc.build(swapped).findings
+    assert finding.limit == pytest.approx(24.0)
+    assert "return" in finding.where
+
+
+def test_the_pressure_angle_that_has_to_give_is_named_alone() -> None:
+    document = stem("cycloidal", limits={"pressure_angle_deg": [12, 40]})
+    document["cam"] = {"prime_radius_mm": 38.0}
+    with pytest.raises(InfeasibleError, match="pressure angle of rises would be") as caught:
+        _ = gc.build(gc.design(document)).solution
+    (near,) = re.findall(r"pressure_angle_deg = (\[[^]]*\])", str(caught.value))
+    assert near.endswith(", 40]")
+    document["limits"] = {"pressure_angle_deg": [float(one) for one in near[1:-1].split(",")]}
+    assert not gc.build(gc.design(document)).findings
+
+
+def test_a_contact_pressure_that_has_to_give_is_named_and_works() -> None:
+    document = loaded(stem("polynomial"), 400.0, bounds={"prime_radius_mm": [12, 16]})
+    with pytest.raises(InfeasibleError, match="contact pressure would be") as caught:
+        _ = gc.build(gc.design(document)).solution
+    (near,) = re.findall(r"contact_pressure_mpa = ([0-9.]+)", str(caught.value))
+    document["limits"]["contact_pressure_mpa"] = float(near)
+    assert not gc.build(gc.design(document)).findings
+
+
+def test_a_finding_about_contact_pressure_names_the_cam_that_keeps_it() -> None:
+    document = loaded(stem("cycloidal"), 450.0)
+    document["follower"]["offset_mm"] = 2.0
+    document["cam"] = {"prime_radius_mm": 24.0}
+    document["limits"]["pressure_angle_deg"] = 60.0
+    document["output"] = {"studies": ["forces"], "files": ["csv"]}
+    result = gc.build(gc.design(document))
+    (finding,) = result.study("forces").findings
+    (radius,) = re.findall(r"cam.prime_radius_mm = ([0-9.]+)", finding.message)
+    for factor, left in ((1.0, 0), (1.0 - 1e-3, 1)):
+        other = result.design.with_({"cam.prime_radius_mm": factor * float(radius)})
+        assert len(gc.build(other).study("forces").findings) == left
+
+
+@pytest.mark.parametrize("kind", ["rise", "return"])
+def test_the_pressure_angle_of_rises_or_returns_is_a_goal(kind: str) -> None:
+    goal = {"minimize": f"cam.pressure_angle_deg.{kind}_max"}
+    document = stem("cycloidal", goal=goal, bounds={"prime_radius_mm": [30, 45]})
+    found = gc.build(gc.design(document))
+    both = gc.build(gc.design(document | {"goal": {"minimize": "cam.pressure_angle_deg.max"}}))
+    assert found.facts[f"{goal['minimize']}"] < both.facts[goal["minimize"]]
+    assert found.facts["cam.pressure_angle_deg.max"] > both.facts["cam.pressure_angle_deg.max"]
