@@ -264,6 +264,8 @@ def _solved(d: Draw, design: dict[str, Any], size: float) -> None:
             one: [short(size * d.even(0.1, 1)), short(size * d.even(2, 5))]
             for one in ("prime_radius_mm", "base_radius_mm", *_SOLVABLE)
         }
+        there = {*cam, *follower}
+        design["bounds"] = {one: pair for one, pair in design["bounds"].items() if one in there}
 
 
 def _studies(d: Draw, design: dict[str, Any], size: float) -> None:

@@ -197,6 +197,8 @@ class Sizing:
         Whether the pivot has to stand beside the cam: where its distance is asked for.
     from_base : bool
         Whether the size ``radius`` is the base radius of a round follower.
+    slender : bool
+        Whether the roller may have half the prime radius at most.
     load : Load, optional
         What the cam has to move, where the contact pressure is limited.
     goal : (str, float)
@@ -212,6 +214,7 @@ class Sizing:
     limits: SizeLimits
     beside: bool = False
     from_base: bool = False
+    slender: bool = False
     load: Load | None = None
     goal: tuple[str, float] = ("size", 1.0)
     free: tuple[str, ...] = ()
@@ -240,6 +243,8 @@ class Sizing:
             if self.limits.wall > 0.0:
                 near = _distance(follower, low) - roller
                 excess["wall"] = 1.0 - near[None] / self.limits.wall
+            if self.slender:
+                excess["roller"] = 2.0 * roller[None] / _prime(follower) - 1.0
             if self.beside:
                 excess["pivot"] = far[None] / np.asarray(sizes["pivot"]) - 1.0
         excess = {name: np.where(np.isnan(one), np.inf, one) for name, one in excess.items()}
@@ -406,6 +411,11 @@ def _distance(follower: Any, lift: float) -> Array:
         height: Array = follower.line(p)[0][:, 0]
         return height
     return np.abs(follower.centre(p))[:, 0]
+
+
+def _prime(follower: Any) -> Array:
+    """Return the prime radius of followers with a centre, (n,), mm."""
+    return _distance(follower, 0.0)
 
 
 def _passed(follower: Any, low: float, high: float) -> Array:

@@ -15,7 +15,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, ClassVar, Final
+from typing import Any, ClassVar, Final, TypeGuard
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.numerals import formatted
@@ -292,6 +292,11 @@ class CamSpec(ShortRepr):
         return self.rotation == "cw"
 
 
+def _is_number(value: Any) -> TypeGuard[float]:
+    """Return whether a size is given, and not to be solved for."""
+    return isinstance(value, float)
+
+
 def size_problems(follower: FollowerSpec, cam: CamSpec) -> Iterator[Breach]:
     """Yield what is wrong with the size of a cam for its follower.
 
@@ -312,6 +317,6 @@ def size_problems(follower: FollowerSpec, cam: CamSpec) -> Iterator[Breach]:
         if prime is not None:
             message = "does not apply to a flat follower, which has no centre"
             yield "prime_radius", None, message, "base_radius_mm instead"
-    elif prime is not None and prime <= follower.radius:
+    elif _is_number(prime) and _is_number(follower.radius) and prime <= follower.radius:
         rule = f"above the follower's radius of {formatted(follower.radius)} mm"
         yield "prime_radius", None, "is not larger than the follower's radius", rule

@@ -52,6 +52,8 @@ class CamAdvice(Advice):
 
     def seek(self, search: Search, refusal: InfeasibleError | None) -> None:
         """Guide a `search` by changes that a `refusal` names, then by other sizes."""
+        if search.result.design.asked:
+            return  # the refusal of a size that is solved for names what has to give
         first = _walled(search, refusal) if refusal else _of_errors(search)
         search.follow([*first, *_sizes(search)])
 

@@ -16,8 +16,7 @@ from gearcam.base.errors import ABOVE, beyond_limit
 from gearcam.base.findings import Finding, in_order, run_checks
 from gearcam.cams.carriers import ROUNDING
 from gearcam.cams.checks import KIND
-from gearcam.designs.design import document_of
-from gearcam.kinds.cam.design import CamDesign, unknowns
+from gearcam.kinds.cam.design import CamDesign
 from gearcam.kinds.cam.forms.base import FORMS, Form
 from gearcam.kinds.cam.tables import CamBlank
 from gearcam.laws.program import Program
@@ -82,7 +81,7 @@ class CamResult(PartsResult):
     @cached_property
     def solution(self) -> Solution | None:
         """The sizes that the design asks for; None if it gives them all."""
-        if not unknowns(document_of(self.design)):
+        if not self.design.asked:
             return None
         from gearcam.kinds.cam.solve import solved
 
@@ -102,7 +101,8 @@ class CamResult(PartsResult):
         from gearcam.designs.writing import least_document, toml_text
 
         comment = f"{self.design.name} with its solved sizes"
-        text = toml_text(least_document(self.solution.design), [comment])
+        named = replace(self.solution.design, name=f"{self.design.name}_solved"[:100])
+        text = toml_text(least_document(named), [comment])
         return {"solved.toml": text.encode()}
 
     @cached_property

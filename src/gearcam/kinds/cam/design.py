@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final, get_args
 
 from gearcam.base.quantities import Solve
 from gearcam.base.registry import classes_in, name_of
 from gearcam.base.rules import Rule, only_with
 from gearcam.cams.spec import FOLLOWERS, POINTED, CamSpec, FollowerSpec
-from gearcam.designs.design import Design, Wanted
+from gearcam.designs.design import Design, Wanted, document_of
 from gearcam.designs.faults import Fault, quoted, show
 from gearcam.designs.kind import Examined
 from gearcam.designs.table import table_of
@@ -127,6 +128,11 @@ class CamDesign(Design):
     bounds: BoundsSpec = field(default_factory=BoundsSpec)
     goal: GoalSpec = field(default_factory=GoalSpec)
 
+    @cached_property
+    def asked(self) -> tuple[str, ...]:
+        """Keys of the sizes that are to be solved for."""
+        return tuple(unknowns(document_of(self)))
+
     def _settle(self) -> None:
         if isinstance(self.motion, Sequence) and not isinstance(self.motion, str):
             object.__setattr__(self, "motion", tuple(self.motion))
@@ -196,9 +202,8 @@ def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
     if "follower" in found.parts:
         yield from _load_faults(found, document)
     asked = unknowns(document)
-    if asked:
-        yield from _unsolvable(document, asked)
-    elif {"cam", "follower"} <= found.parts.keys():
+    yield from _unsolvable(document, asked)
+    if {"cam", "follower"} <= found.parts.keys():
         yield from FORMS[VARIANTS.meant(document)].faults(found.parts, document)
 
 
@@ -222,6 +227,19 @@ def _unsolvable(document: Mapping[str, Any], asked: Sequence[str]) -> Iterator[F
         if not FORMS[form].solvable:
             message, known = f'"solve" is not available for a {form} cam', "a length"
             yield Fault((title, name), message, allowed=known)
+    bounds = document.get("bounds")
+    ranges = bounds if isinstance(bounds, Mapping) else {}
+    names = [key.split(".")[1] for key in asked]
+    tables = [document[title] for title in ("cam", "follower") if title in document]
+    there = {key for table in tables if isinstance(table, Mapping) for key in table}
+    for name in ranges:
+        if name not in there and name in table_of("bounds", BoundsSpec).entries:
+            message = "has no effect: the design has no such size"
+            yield Fault(("bounds", name), message, ranges[name], "a range of a size that it has")
+    if {"arm_mm", "pivot_distance_mm"} <= {*names} and "arm_mm" not in ranges:
+        message = "cannot be solved together with the pivot distance without a range: the lift is "
+        message += "an angle, so that a shorter arm always makes a smaller cam"
+        yield Fault(("follower", "arm_mm"), message, "solve", "[bounds] arm_mm = [least, largest]")
 
 
 def _load_faults(found: Examined, document: Mapping[str, Any]) -> Iterator[Fault]:

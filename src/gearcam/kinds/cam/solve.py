@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
@@ -35,16 +36,14 @@ from gearcam.cams.sizing import (
     smallest_from,
 )
 from gearcam.cams.spec import FORCES
-from gearcam.designs.design import document_of
-from gearcam.kinds.cam.design import CamDesign, unknowns
+from gearcam.kinds.cam.design import CamDesign
 from gearcam.kinds.cam.forces import largest_pressure, loads_of
-from gearcam.kinds.cam.forms.base import lift_program
+from gearcam.kinds.cam.forms.base import CHORD_TOLERANCE, lift_program
 from gearcam.kinds.cam.tables import GOALS
 from gearcam.parts.checks import KIND as PARTS_KIND
 
 if TYPE_CHECKING:
     from gearcam.kinds.cam.build import CamResult
-    from gearcam.laws.program import Program
     from gearcam.numeric.arrays import Array
     from gearcam.pictures.charts import Chart
 
@@ -81,6 +80,9 @@ _LIMITS: Final = {
 }
 """Key, unit and words of limits, by the names of excesses."""
 
+_ANGLES: Final = ("rise", "back")
+"""Names of the excesses of pressure angles."""
+
 _WORDS: Final = {
     "rise": "pressure angle on the rise",
     "back": "pressure angle on the return",
@@ -91,6 +93,7 @@ _WORDS: Final = {
     "pivot": "pivot beside the cam",
     "reach": "reach of the follower",
     "undercut": "undercut",
+    "roller": "roller of half the prime radius",
 }
 """Limits in words, by the names of excesses."""
 
@@ -108,6 +111,15 @@ _SLIGHT: Final = 1e-6
 _ROUNDS: Final = 6
 _AGREED: Final = 1e-5
 """Largest number of searches under a contact pressure, and sizes, mm, in which they agree."""
+
+_NARROWEST: Final = 1e-9
+"""Least width of a range, mm: both ends may be one."""
+
+_MORE: Final = (0.0, 1e-3, 4e-3, 1.6e-2)
+"""What a limit that has to give gets beyond its excess until there is a solution."""
+
+_BEYOND: Final = 1.005
+"""Contact pressure that can be kept, over the least."""
 
 _AROUND: Final = 0.8
 _GRID: Final = 81
@@ -143,13 +155,15 @@ class Solution(ShortRepr):
     deciding: tuple[str, ...]
 
 
-def solved(result: CamResult) -> Solution:
+def solved(result: CamResult, *, advise: bool = True) -> Solution:
     """Return the solution of a design that asks for sizes.
 
     Parameters
     ----------
     result : CamResult
         Of the design.
+    advise : bool
+        Whether a refusal has to name a limit with which there is a solution.
 
     Returns
     -------
@@ -160,7 +174,7 @@ def solved(result: CamResult) -> Solution:
     InfeasibleError
         If no sizes within the bounds keep the limits.
     """
-    task = Task(result.design, lift_program(result.design, result.tolerances))
+    task = Task(result, advise=advise)
     found = task.found()
     if task.pressure:
         task, found = _pressed(result, task, found)
@@ -173,7 +187,8 @@ def solved(result: CamResult) -> Solution:
         if task.keeps(type(result)(design, result.tolerances)):
             excess = task.measured(best).excess.items()
             close = (name for name, one in excess if one.max() > -_DECIDES)
-            deciding = tuple(dict.fromkeys(_WORDS[name] for name in close))
+            words = (*(_WORDS[name] for name in close), *task.at_bounds(best))
+            deciding = tuple(dict.fromkeys(words))
             return Solution(task=task, design=design, sizes=sizes, deciding=deciding)
     raise InfeasibleError(
         "no sizes that keep all limits could be confirmed",
@@ -193,7 +208,7 @@ def _pressed(result: CamResult, task: Task, found: Found) -> tuple[Task, Found]:
         cam = type(result)(result.design.with_(before), result.tolerances)
         if task.sizing.load is None and largest_pressure(cam) <= task.pressure:
             break  # the other limits keep it
-        task = Task(task.design, task.program, _load_on(cam, task.pressure))
+        task = Task(result, _load_on(cam, task.pressure), advise=task.advise)
         found = task.found()
         after = task.by_key(found[0])
         if all(abs(after[key] - before[key]) < _AGREED for key in after):
@@ -226,7 +241,7 @@ def alone(result: CamResult, key: str, more: Mapping[str, Any] | None = None) ->
     """
     asked = result.solved.with_({key: "solve"} | dict(more or {}))
     try:
-        return solved(type(result)(asked, result.tolerances)).sizes[key]
+        return solved(type(result)(asked, result.tolerances), advise=False).sizes[key]
     except (DesignError, InfeasibleError):
         return None
 
@@ -236,18 +251,20 @@ class Task:
 
     Parameters
     ----------
-    design : CamDesign
-        The design.
-    program : Program
-        Its lift.
+    result : CamResult
+        Of the design.
     load : Load, optional
         What the cam has to move, where the contact pressure is limited.
+    advise : bool
+        Whether a refusal has to name a limit with which there is a solution.
     """
 
-    def __init__(self, design: CamDesign, program: Program, load: Load | None = None) -> None:
-        self.design, self.program = design, program
+    def __init__(self, result: CamResult, load: Load | None = None, *, advise: bool = True) -> None:
+        self.result, self.advise, design = result, advise, result.design
+        self.design, self.program = design, lift_program(design, result.tolerances)
+        program = self.program
         self.pressure = float(limit_of(FORCES, "contact-pressure", design.limits))
-        self.keys = unknowns(document_of(design))
+        self.keys = design.asked
         self.names = {key: _NAMES[key] for key in self.keys}
         follower, cam = design.follower, design.cam
         self.kind, _ = followers_of(follower, dict.fromkeys(SIZES, np.ones(1)))
@@ -269,6 +286,9 @@ class Task:
             limits=self._limits(),
             beside="pivot" in self.unknown,
             from_base=cam.base_radius is not None and self.kind.has_centre,
+            slender="roller" in self.unknown
+            and design.bounds.roller_radius is None
+            and self.kind.has_centre,
             load=load,
             goal=self._goal(),
         )
@@ -333,22 +353,52 @@ class Task:
         name = key.split(".")[1].removesuffix("_mm")
         given, scale = getattr(self.design.bounds, name), self._scale()
         if name == "offset":
-            return given or (-_ASIDE * scale, _ASIDE * scale)
-        low, high = given or (_LEAST * scale, _MOST * scale)
-        return max(low, _LEAST * min(scale, high)), high
+            low, high = given or (-_ASIDE * scale, _ASIDE * scale)
+        else:
+            low, high = given or (_LEAST * scale, _MOST * scale)
+            low = max(low, _LEAST * min(scale, high))
+        return low, max(high, low + _NARROWEST)
+
+    def at_bounds(self, sizes: Mapping[str, float]) -> Iterator[str]:
+        """Yield which sizes are at an end of their range, in words.
+
+        Raises
+        ------
+        InfeasibleError
+            If only the default range keeps the cam from growing without end.
+        """
+        for key, name in self.names.items():
+            ends, size = self.unknown[name], sizes[name]
+            if min(abs(size - end) for end in ends) > _DECIDES * max(map(abs, ends)):
+                continue
+            plain = key.split(".")[1]
+            given = getattr(self.design.bounds, plain.removesuffix("_mm")) is not None
+            if given:
+                yield f"{plain} at its bound"
+            elif name == "radius" and self.sizing.goal[0] != "size":
+                raise InfeasibleError(
+                    f"the best cam is the largest: nothing but the default range, up to "
+                    f"{formatted(ends[1], 3)} mm, limits it",
+                    where=f"bounds.{plain}",
+                    nearest=f"a range in [bounds], such as {plain} = "
+                    f"[{formatted(0.01 * ends[1], 2)}, {formatted(0.03 * ends[1], 2)}]",
+                )
+            else:
+                yield f"the default range of {plain}"
 
     def _limits(self) -> SizeLimits:
         design, limits = self.design, self.design.limits
         largest = pressure_limits(self.kind, limit_of(KIND, "pressure-angle", limits))
         jams = limit_of(KIND, "jamming", limits)
         blank: Any = design.blank
-        bore = blank.bore
+        bore, chords = blank.bore, design.output.chord_tolerance or CHORD_TOLERANCE
+        margin = blank.clearance + chords  # what the outline may be inside the profile
         return SizeLimits(
             rise=min(largest["rise"], self.kind.jamming_limit if math.isnan(jams) else jams),
             back=largest["return"],
             convex=limit_of(KIND, "sharp-profile", limits),
             hollow=0.5 * limit_of(PARTS_KIND, "tool-too-large", limits),
-            wall=0.5 * bore + limit_of(PARTS_KIND, "thin-wall", limits) if bore else 0.0,
+            wall=0.5 * bore + limit_of(PARTS_KIND, "thin-wall", limits) + margin if bore else 0.0,
         )
 
     def _goal(self) -> tuple[str, float]:
@@ -404,27 +454,46 @@ class Task:
 
     def _ways(self, beyond: Sequence[str]) -> Iterator[tuple[str, ...]]:
         """Yield which limits may give: one, or both pressure angles where one is not enough."""
-        limits, angles = self.sizing.limits, ("rise", "back")
-        same = limits.rise == limits.back
-        yield from ((name,) for name in _LIMITS if name in beyond and not (same and name in angles))
-        if any(name in beyond for name in angles):
-            yield angles
+        same = self.sizing.limits.rise == self.sizing.limits.back
+        for name in _LIMITS:
+            if name in beyond and not (same and name in _ANGLES):
+                yield (name,)
+        if any(name in beyond for name in _ANGLES):
+            yield _ANGLES
 
     def _refused(
         self, names: tuple[str, ...], sizes: Mapping[str, float], excess: float
     ) -> InfeasibleError:
-        """Return the refusal that names which limit has to give, so that an excess is kept."""
+        """Return the refusal that names which limit has to give, so that an excess is kept.
+
+        It names a value only if there is a solution with it.
+        """
         key, unit, words = _LIMITS[names[0]]
-        least, limit = self._limit_at(names[0], sizes, excess)
-        near = formatted(least, _PRINTED)
-        limits = self.sizing.limits
-        if names[0] in ("rise", "back") and limits.rise != limits.back:
-            words = f"{words} of {'rises' if names[0] == 'rise' else 'returns'}"
-            pair = (
-                formatted(self._limit_at(name, sizes, excess * (name in names))[0], _PRINTED)
-                for name in ("rise", "back")
+        pair = self.sizing.limits.rise != self.sizing.limits.back and names[0] in _ANGLES
+        if pair:
+            words += " of rises" if names[0] == "rise" else " of returns"
+        for more in _MORE:
+            least, limit = self._limit_at(names[0], sizes, excess + more)
+            value: Any = least
+            if pair:
+                value = [
+                    self._limit_at(name, sizes, (excess + more) * (name in names))[0]
+                    for name in _ANGLES
+                ]
+            if not self.advise:
+                break
+            other = self.design.with_({f"limits.{key}": value})
+            with suppress(InfeasibleError):
+                solved(type(self.result)(other, self.result.tolerances), advise=False)
+                break
+        else:
+            return InfeasibleError(
+                f"no sizes keep all limits: {words} is too much to ask for",
+                where=f"limits.{key}",
+                nearest="another limit, or wider ranges in [bounds]",
             )
-            near = f"[{', '.join(pair)}]"
+        shown = [formatted(one, _PRINTED) for one in (value if pair else [value])]
+        near = f"[{', '.join(shown)}]" if pair else shown[0]
         return InfeasibleError(
             f"no sizes keep all limits: {words} would be {formatted(least, _PRINTED)}",
             where=f"limits.{key}",
@@ -445,7 +514,9 @@ class Task:
             least = math.degrees(math.atan(math.tan(limit) * (1.0 + excess)))
             return math.ceil(least / safe) * safe, math.degrees(limit)
         if name == "contact":
-            return math.ceil(self.pressure * math.sqrt(1.0 + excess)), self.pressure
+            # the least is that of a cam without end
+            least = _BEYOND * self.pressure * math.sqrt(1.0 + excess)
+            return float(math.ceil(least)), self.pressure
         if name == "convex":
             value, limit = (roller + limits.convex) / (1.0 + excess) - roller, limits.convex
         elif name == "hollow":

@@ -250,7 +250,7 @@ def _range(*, doc: str) -> Any:
 
 @dataclass(frozen=True, kw_only=True)
 class BoundsSpec(ShortRepr):
-    """Ranges within which sizes are found whose value is "solve": least, largest.
+    """Ranges within which sizes are found whose value is "solve": least, largest; both may be one.
 
     Examples
     --------
@@ -269,8 +269,8 @@ class BoundsSpec(ShortRepr):
     def problems(self) -> Iterator[Breach]:
         """Yield ranges that are empty."""
         for name, pair in vars(self).items():
-            if pair is not None and not pair[0] < pair[1]:
-                yield name, None, "is an empty range", "the least value, then a larger one"
+            if pair is not None and not pair[0] <= pair[1]:
+                yield name, None, "is an empty range", "the least value, then the largest"
 
 
 GOALS: Final = {

@@ -13,6 +13,8 @@ import pytest
 
 import gearcam as gc
 from gearcam.base.errors import DesignError, InfeasibleError
+from gearcam.cli import main
+from gearcam.designs.writing import toml_text
 from gearcam.kinds.cam.solve import Task, solved
 from helpers_sampling import few
 
@@ -150,7 +152,7 @@ def test_no_other_optimiser_finds_a_smaller_cam(make: Any, name: str) -> None:
 @pytest.mark.parametrize(("make", "name"), CASES[::3])
 def test_random_tries_find_no_smaller_cam(make: Any, name: str) -> None:
     result = gc.build(gc.design(make(name)))
-    task = Task(result.design, result.program)
+    task = Task(result)
     random = np.random.default_rng(3)
     count = 10_000
     sizes = {name: np.full(count, value) for name, value in task.known.items()}
@@ -222,16 +224,24 @@ def test_a_solved_design_is_a_file_that_builds(tmp_path: Path) -> None:
     result = gc.build(gc.design(document))
     written = result.write(tmp_path)
     assert "solved.toml" in written.files
-    again = gc.build(gc.load(tmp_path / "c" / "solved.toml"))
+    file = tmp_path / "c" / "solved.toml"
+    again = gc.build(gc.load(file))
     assert again.solution is None
+    again.write(tmp_path)  # into a folder of its own
+    assert file.exists()
+    assert again.design.name == "c_solved"
     assert again.findings == result.findings
     assert again.facts["cam.prime_radius_mm"] == result.facts["cam.prime_radius_mm"]
     assert result.facts["solution.prime_radius_mm"] == result.facts["cam.prime_radius_mm"]
 
 
-def test_a_roller_is_as_large_as_the_profile_allows() -> None:
+def test_a_roller_is_as_large_as_the_profile_or_half_the_cam_allows() -> None:
     document = stem("cycloidal", cam={"prime_radius_mm": 60})
     document["follower"] = {"type": "roller", "roller_radius_mm": "solve", "offset_mm": 2}
+    half = gc.build(gc.design(document))
+    assert half.solution.sizes["follower.roller_radius_mm"] == pytest.approx(30.0, abs=1e-5)
+    assert half.solution.deciding == ("roller of half the prime radius",)
+    document["bounds"] = {"roller_radius_mm": [5, 60]}
     result = gc.build(gc.design(document))
     assert result.facts["cam.curvature.profile_convex_min_mm"] == pytest.approx(1.0, abs=1e-5)
 
@@ -286,7 +296,8 @@ def test_the_limit_that_has_to_give_is_named_and_works() -> None:
     ("change", "message"),
     [
         ({"cam.form": "yoke", "cam.prime_radius_mm": "solve"}, "not available for a yoke cam"),
-        ({"bounds.offset_mm": [3, 3]}, "is an empty range"),
+        ({"bounds.offset_mm": [3, 2]}, "is an empty range"),
+        ({"bounds.arm_mm": [3, 4]}, "the design has no such size"),
         ({"goal.minimize": "mass"}, "radius_mm.max"),
         ({"cam.prime_radius_mm": "solv"}, "did you mean solve"),
     ],
@@ -298,9 +309,61 @@ def test_mistakes_are_named(change: dict[str, Any], message: str) -> None:
 
 def test_a_swinging_follower_without_a_length_is_refused() -> None:
     document = arm("cycloidal")
-    document["follower"] |= {"arm_mm": "solve", "roller_radius_mm": "solve"}
+    document["follower"] |= {"arm_mm": "solve"}
+    with pytest.raises(DesignError, match="a shorter arm always makes a smaller cam"):
+        gc.design(document)
+    document["bounds"] = {"arm_mm": [40, 90]}
+    result = gc.build(gc.design(document))
+    assert result.solution.sizes["follower.arm_mm"] == 40.0
+    assert "arm_mm at its bound" in result.solution.deciding
+    document["follower"]["roller_radius_mm"] = "solve"
     with pytest.raises(InfeasibleError, match="no length of the swinging follower"):
         _ = solved(gc.build(gc.design(document)))
+
+
+def test_a_range_of_one_value_is_that_value() -> None:
+    document = stem("cycloidal", bounds={"prime_radius_mm": [52, 52]})
+    found = gc.build(gc.design(document)).solution
+    assert found.sizes["cam.prime_radius_mm"] == 52.0
+    assert "prime_radius_mm at its bound" in found.deciding
+
+
+def test_a_goal_that_only_the_default_range_limits_is_refused_with_a_range_that_works() -> None:
+    document = stem("cycloidal", goal={"minimize": "cam.pressure_angle_deg.max"})
+    with pytest.raises(InfeasibleError, match="the best cam is the largest") as caught:
+        _ = gc.build(gc.design(document)).solution
+    low, high = re.findall(r"prime_radius_mm = \[([0-9.]+), ([0-9.]+)\]", str(caught.value))[0]
+    document["bounds"] = {"prime_radius_mm": [float(low), float(high)]}
+    assert not gc.build(gc.design(document)).findings
+
+
+def test_a_refused_solution_is_told_without_other_remedies(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text = toml_text(stem("cycloidal", limits={"pressure_angle_deg": 5}, bounds=BOUNDS))
+    (tmp_path / "c.toml").write_text(text)
+    assert main(["build", str(tmp_path / "c.toml"), "-o", str(tmp_path)]) == 3
+    said = capsys.readouterr().err
+    assert "no sizes keep all limits: the pressure angle would be" in said
+    assert "bug" not in said
+
+
+BOUNDS = {"prime_radius_mm": [20, 30]}
+
+
+def test_a_wall_that_has_to_give_is_named_and_can_be_kept() -> None:
+    document = stem("cycloidal", bounds={"prime_radius_mm": [25, 45]}, limits={"wall_mm": 9})
+    document["blank"] = {"bore_diameter_mm": 70}
+    with pytest.raises(InfeasibleError, match="wall around the bore would be") as caught:
+        _ = gc.build(gc.design(document)).solution
+    document["limits"]["wall_mm"] = caught.value.value
+    assert not gc.build(gc.design(document)).findings
+
+
+def test_a_flat_follower_has_no_prime_radius_to_solve_for() -> None:
+    document = stem("cycloidal", follower={"type": "flat"})
+    with pytest.raises(DesignError, match="does not apply to a flat follower"):
+        gc.design(document)
 
 
 def test_a_finding_about_a_radius_names_sizes_that_keep_all_limits() -> None:
@@ -320,7 +383,7 @@ def test_a_finding_about_a_radius_names_sizes_that_keep_all_limits() -> None:
 
 def test_a_pivot_that_is_solved_for_stands_beside_the_cam() -> None:
     result = gc.build(gc.design(arm("cycloidal")))
-    task = Task(result.design, result.program)
+    task = Task(result)
     sizes = {**task.known, "radius": 60.0, "pivot": 50.0}
     found = task.measured(sizes)
     given = {"cam.prime_radius_mm": 60.0, "follower.pivot_distance_mm": 50.0}
