@@ -141,6 +141,16 @@ class Loads(ShortRepr):
         return found
 
     @cached_property
+    def lack(self) -> float:
+        """The force against a rise by which the loads are too small to hold the follower."""
+
+        def missing(motion: Motion) -> Array:
+            square = (self.speed or 0.0) ** 2
+            return -(self.held_still(motion) + self.inertia * square * motion[3])
+
+        return self._largest(missing)[0]
+
+    @cached_property
     def preload_at_rest(self) -> float:
         """The preload that is needed where a stiffness does nothing, N or N mm."""
         least = _BARELY * max(map(abs, self.program.range))

@@ -413,8 +413,9 @@ def unknown_law(fitted: tuple[Wall, FittedLift], limit: float) -> Iterator[Remar
             yield Remark(
                 f"No motion law moves like this {word}: the nearest one misses it by "
                 f"{formatted(scale * residual, 3)} {unit} (rms), and the noise is "
-                f"{formatted(scale * lift.rows.noise, 3)} {unit}. To copy the lift as it is, give "
-                f"its rows as [motion] with smoothing_tolerance_{unit}.",
+                f"{formatted(scale * lift.rows.noise, 3)} {unit}. Offset, roller, arm "
+                "and pivot are taken from the design: one of them may be another. To copy the lift "
+                f"as it is, give its rows as [motion] with smoothing_tolerance_{unit}.",
                 _measured(fitted, k),
                 scale * residual,
                 unit=unit,
@@ -424,7 +425,7 @@ def unknown_law(fitted: tuple[Wall, FittedLift], limit: float) -> Iterator[Remar
 
 @check("laws-alike", kind=FITTED, severity="note")
 def laws_alike(fitted: tuple[Wall, FittedLift], limit: float) -> Iterator[Remark]:  # noqa: ARG001
-    """Say which motion laws cannot be told apart in a measured lift.
+    """Say which motion laws cannot be distinguished in a measured lift.
 
     Their sums of squares differ by less than 16 variances of the noise.
 
@@ -435,8 +436,8 @@ def laws_alike(fitted: tuple[Wall, FittedLift], limit: float) -> Iterator[Remark
         if others:
             names = [name_of(MOTION_LAWS, one.law) for one in others]
             yield Remark(
-                f"Cannot be told apart at this noise: {name_of(MOTION_LAWS, lift.model.laws[k])}, "
-                f"{', '.join(names)}.",
+                "Cannot be distinguished at this noise: "
+                f"{name_of(MOTION_LAWS, lift.model.laws[k])}, {', '.join(names)}.",
                 _measured(fitted, k),
             )
 

@@ -37,6 +37,8 @@ class Loaded(ShortRepr):
         The lower yield stress.
     torque : (n,) array
         Of the driver, in N m; of a driver that slides nan.
+    holding : str
+        The preload that holds the follower on the cam, in words; empty without a spring.
     release : str
         At which speed the follower lifts off, in words; empty if unknown.
     """
@@ -48,6 +50,7 @@ class Loaded(ShortRepr):
     yields: float | None
     torque: Array
     release: str = ""
+    holding: str = ""
 
     def stretch(self, mask: Mask) -> str:
         """Return where a mask first holds, in words."""
@@ -93,6 +96,7 @@ def lift_off(loaded: Loaded, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     if lifted.any():
         message = "The follower lifts off the cam: it needs a stiffer spring or more preload"
         message += f"; it stays on it up to {loaded.release}." if loaded.release else "."
+        message += f" With {loaded.holding} it stays on the cam." if loaded.holding else ""
         yield Remark(message, loaded.stretch(lifted))
 
 

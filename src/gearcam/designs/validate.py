@@ -124,10 +124,10 @@ def rule_faults(table: Table, raw: Any, faults: Iterable[Fault], at: Path) -> It
     rules: Sequence[Rule] = getattr(table.owner, "rules", ())
     if not rules or not isinstance(raw, Mapping):
         return
-    both = any(entry.param.both for entry in table.entries.values())
+    pairs = {entry.name for entry in table.entries.values() if entry.param.both}
     breaches = (
-        (name, wheel if both and index is None else index, message, allowed)
-        for wheel in range(1 + both)
+        (name, wheel if name in pairs and index is None else index, message, allowed)
+        for wheel in range(1 + bool(pairs))
         for values in [_values(table, raw, faults, at, wheel)]
         for rule in rules
         for name, index, message, allowed in rule.breaches(values)

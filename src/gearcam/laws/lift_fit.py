@@ -5,8 +5,8 @@ For normal noise of variance v the sums of squares S_a, S_b of two laws differ b
 the first is the true one, where d is what the second misses of it, with the deviation
 ``2*d*sqrt(v)``. The true law then loses by ``S_a - S_b > T`` with a chance that is largest for
 ``d^2 = T``: that of ``sqrt(T/v)`` standard deviations. So laws whose sums differ by less than
-``16*v``, four deviations, *cannot be told apart*; of these the simplest is taken, then the one that
-misses least. By the same rule dwells are left out, and moves of one direction are joined.
+``16*v``, four deviations, *cannot be distinguished*; of these the simplest is taken, then the one
+that misses least. By the same rule dwells are left out, and moves of one direction are joined.
 
 The variance is that of what the best model misses, or of the noise in the rows if that is larger,
 times the number of neighbouring rows whose errors are alike (the sum of the autocorrelation). An
@@ -83,6 +83,9 @@ _GRIDS: Final = (5.0, 1.0, 0.5, *(part * 10.0**-k for k in range(1, 8) for part 
 
 _DIGITS: Final = 9
 
+_LEAST: Final = math.radians(0.01)
+"""Least angle of a phase."""
+
 _EDGE: Final = 0.02
 """Share of a range next to its ends, where the law is another one."""
 
@@ -117,7 +120,7 @@ class FittedLift:
     variance : float
         Of the noise, times the number of rows whose errors are alike, mm2 or rad2.
     alike : tuple of k tuples of AlikeLaw
-        Other laws that cannot be told from that of each move.
+        Other laws that cannot be distinguished from that of each move.
     deviations : mapping of Name to float
         Standard deviations of the parameters before rounding, rad, mm or rad, or a number.
     """
@@ -166,7 +169,9 @@ class FittedLift:
             dwell = model.ends[k - 1] - (TURN if k == 0 else 0.0)
             turns = TURN * math.ceil((dwell - _tiny(self)) / TURN)
             if dwell - _tiny(self) <= turns <= model.starts[k] + _tiny(self):
-                return k, turns
+                # a dwell that a design cannot have is left out
+                short = float(model.starts[k]) - turns < _LEAST
+                return k, float(model.starts[k]) if short else turns
         return first, float(model.starts[first])
 
     def phases(self) -> tuple[Phase, ...]:
@@ -192,7 +197,7 @@ def _tiny(fitted: FittedLift) -> float:
 
 
 def _dwell(width: float) -> Iterator[Phase]:
-    if width > math.radians(1e-7):
+    if width >= _LEAST:
         yield DwellPhase(angle=_angle(width))
 
 
@@ -227,7 +232,7 @@ def fit_lift(theta: Array, lift: Array, unit: tuple[float, str], error: float = 
     InfeasibleError
         If no phases can be found (see `gearcam.laws.lift_phases.first_model`).
     """
-    noise = math.hypot(noise_of(theta, lift), error)
+    noise = math.hypot(noise_of(theta, lift, 1.0 if error else unit[0]), error)
     rows = LiftRows(theta=theta, lift=lift, noise=noise, error=error)
     model = _chosen(first_model(rows, unit), rows)
     simple = _untied(_simplified(model, rows), rows)
@@ -313,7 +318,7 @@ def _at_end(law: Any) -> bool:
 
 
 def _simplest(models: Sequence[LiftModel], k: int, rows: LiftRows, variance: float) -> LiftModel:
-    """Return of the models that cannot be told from the best the simplest, then the best."""
+    """Return the simplest model that cannot be distinguished from the best; of such the best."""
     squares = [one.squares(rows) for one in models]
     least = min(squares)
     good = [

@@ -54,8 +54,17 @@ _LOUD: Final = 25.0
 """Total lift over the noise below which no law could be found."""
 
 
-def noise_of(theta: Array, lift: Array) -> float:
+_DIGITS: Final = 8
+"""Digits after the point to which values may be rounded."""
+
+_WHOLE: Final = 1e-12
+"""Distance from whole numbers, over the largest value, that is none."""
+
+
+def noise_of(theta: Array, lift: Array, scale: float = 1.0) -> float:
     """Return the standard deviation of the noise of a closed lift in rows.
+
+    That of their scatter, or of the rounding of their digits, which a dwell does not show.
 
     Parameters
     ----------
@@ -63,6 +72,8 @@ def noise_of(theta: Array, lift: Array) -> float:
         Rising, within a turn.
     lift : (n,) array, mm or rad
         Lifts.
+    scale : float
+        Factor to the unit in which they were written.
 
     Returns
     -------
@@ -79,7 +90,17 @@ def noise_of(theta: Array, lift: Array) -> float:
     return max(
         float(np.sqrt((smaller**2).mean())) / _TRIMMED,
         _FLOOR * float(np.ptp(lift)),
+        step_of(scale * lift) / scale / math.sqrt(12.0),
     )
+
+
+def step_of(values: Array) -> float:
+    """Return the power of ten of which all values (n,) are multiples; 0 if there is none."""
+    for digits in range(_DIGITS + 1):
+        whole = values * 10.0**digits
+        if np.abs(whole - np.round(whole)).max() < _WHOLE * max(1.0, float(np.abs(whole).max())):
+            return 10.0**-digits
+    return 0.0
 
 
 def _windows(count: int, width: int) -> tuple[Ints, Ints]:

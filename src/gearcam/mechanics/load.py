@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, ClassVar, Final
@@ -129,6 +130,11 @@ class LoadSpec(ShortRepr):
             try:
                 by_lift = parse(text, OF_LIFT)
             except FormulaError:
+                names = {*re.findall(r"[A-Za-z]\w*", text)}
+                if {"s", self._angle} <= names:
+                    what = f"s and {self._angle} cannot be mixed"
+                    allowed = f"a formula of {self._angle}, or one of the lift s"
+                    raise FormulaError(what, allowed=allowed) from None
                 raise error from None
             return lambda _, s: values(by_lift, s)
 

@@ -207,6 +207,12 @@ class FittedDesign:
         )
 
     @cached_property
+    def named_as_given(self) -> CamResult:
+        """The result of the fitted design, with the name of the given one."""
+        design = replace(self.design, name=self.result.design.name)
+        return type(self.result)(design, self.result.tolerances)
+
+    @cached_property
     def columns(self) -> dict[str, Array]:
         """The lift of the written design at the rows, and by what the rows are above it."""
         scale, rows = self.wall.follower.lift_unit[0], self.fitted.rows
@@ -272,8 +278,12 @@ class FittedDesign:
             ),
             "start_deg": start,
             "end_deg": end,
-            "start_error_deg": math.degrees(fitted.error(("start", k))),
-            "end_error_deg": math.degrees(fitted.error(("end", k))),
+            "start_error_deg": Fact(
+                math.degrees(fitted.error(("start", k))), f"error of its start, {word}", shown=True
+            ),
+            "end_error_deg": Fact(
+                math.degrees(fitted.error(("end", k))), f"error of its end, {word}", shown=True
+            ),
             "lift": scale * abs(float(model.after[k] - model.levels[k])),
             "rms": float(np.sqrt(np.mean(missed**2))),
             "largest": float(np.abs(missed).max()),
@@ -298,7 +308,7 @@ class FittedDesign:
         for phase in facts["phases"]:
             if phase["alike"]:
                 other = ", ".join(phase["alike"])
-                yield f"{phase['law'].meaning}: cannot be told from {other}"
+                yield f"{phase['law'].meaning}: cannot be distinguished from {other}"
 
     def charts(self) -> Mapping[str, Chart]:
         """Return the charts of both lifts and of the residual."""

@@ -11,6 +11,7 @@ import numpy as np
 from gearcam.base.errors import DesignError, InfeasibleError, Problem, beyond_limit
 from gearcam.base.facts import Fact, extent
 from gearcam.base.findings import limit_of, run_checks
+from gearcam.base.numerals import formatted, shortened
 from gearcam.base.quantities import TORQUE
 from gearcam.cams.burdens import Loads
 from gearcam.cams.force_checks import Loaded
@@ -189,6 +190,7 @@ def study_forces(result: CamResult, study: Study, progress: Progress | None) -> 
             yields=design.material.weakest,
             torque=scale * statics.torque if turns else np.full(x.shape, np.nan),
             release=design.drive.words(release[0]) if release else "",
+            holding=_holding(loads),
         )
         found = enlarged(result, run_checks(FORCES, loaded, design.limits))
     columns = _columns(result, x, statics, pressure, width)
@@ -201,6 +203,18 @@ def study_forces(result: CamResult, study: Study, progress: Progress | None) -> 
         study_findings=found,
         drawn=partial(_charts, result, x, columns),
     )
+
+
+def _holding(loads: Loads) -> str:
+    """Return what holds the follower on the cam, in words; empty without a spring."""
+    lack = loads.lack
+    if not loads.springs or lack <= 0.0:
+        return ""
+    key, scale = ("preload_nm", 1e-3) if loads.follower.angular else ("preload_n", 1.0)
+    force = loads.springs[0].force
+    given = loads.solved.get("preload", 0.0) if force == "solve" else float(force)
+    least = shortened(scale * (given + lack), scale * lack, 3)
+    return f"spring[0].{key} = {formatted(least)}"
 
 
 def _effort(result: CamResult) -> tuple[str, float]:
@@ -258,7 +272,9 @@ def _facts(
     effort, scale = design.drive.effort
     without = design.follower.without_friction(design.friction)
     tree: Tree = {
-        "normal_n": _extreme(loaded, statics.force, "normal force", "N"),
+        "normal_n": _extreme(
+            loaded, np.where(statics.lifted, 0.0, statics.force), "normal force", "N"
+        ),
         effort: _extreme(
             loaded,
             scale * statics.torque,

@@ -158,7 +158,13 @@ def _size_facts(
     value = scale * found.value * quantity.factor
     tree: Tree = {
         f"tolerance{suffix}": tolerance / quantity.factor,
-        per: Fact(value, f"sensitivity to {words}", place=found.place, unit=_per(unit, quantity)),
+        per: Fact(
+            value,
+            f"largest sensitivity to {words}",
+            place=found.place,
+            unit=_per(unit, quantity),
+            shown=not tolerance and not allowed,
+        ),
         f"deviation_{unit}": scale * found.value * tolerance,
     }
     if size in allowed:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -68,7 +69,8 @@ def _fit(
     rows = fitting.read_lift(profile, chosen)
     if rows is None:
         study = follow(result, profile, wall, progress)
-        columns, facts, found = fitting.of_turn(study), dict(study.group), study.study_findings
+        columns, found = fitting.of_turn(study), study.study_findings
+        facts: dict[str, Any] = dict(study.group)
         scale = chosen.follower.lift_unit[0]
         theta, lift = np.radians(columns["theta_deg"]), columns["s"] / scale
         error = float(np.sqrt(np.mean(columns["error"] ** 2))) / scale
@@ -80,8 +82,11 @@ def _fit(
     with result.stage("fit"):
         one = fitting.fit(result, chosen, theta, lift, error=error, source=profile)
         columns, facts = columns | one.columns, facts | {"fit": one.facts}
+    # the motion of the given design stands only for another one
+    facts |= {"largest_difference": replace(facts["largest_difference"], shown=False)}
+    found = tuple(finding for finding in found if finding.code != "other-profile")
     return StudyResult(
-        result=result,
+        result=one.named_as_given,
         study=FOLLOW,
         file=_FILE,
         table=columns,

@@ -87,7 +87,7 @@ def test_what_noise_hides_is_said(tmp_path: Path) -> None:
     assert all({"cycloidal", "3-4-5"} <= set(one.message.replace(",", "").replace(".", "").split())
                for one in notes)  # fmt: skip
     assert notes[0].severity == "note"
-    assert "cannot be told from" in study.files["fitted.toml"].decode()
+    assert "cannot be distinguished from" in study.files["fitted.toml"].decode()
 
 
 def test_a_motion_without_a_law_is_said(tmp_path: Path) -> None:
@@ -154,3 +154,29 @@ def test_a_lift_without_fit_is_no_profile(tmp_path: Path) -> None:
     file = written(tmp_path / "lift.csv", double_dwell(8.0))
     with pytest.raises(DesignError, match=r"(?s)not a profile.*--fit"):
         gearcam.build(gearcam.load(PLATE)).follow(file)
+
+
+@pytest.mark.parametrize("digits", [8, 2])
+def test_rows_without_scatter_have_the_noise_of_their_digits(digits: int, tmp_path: Path) -> None:
+    lift = double_dwell(8.0, noise=0.0)
+    rows = [f"{a:g},{s:.{digits}f}" for a, s in zip(ANGLES, lift, strict=True)]
+    file = tmp_path / "lift.csv"
+    file.write_text("\n".join(["theta_deg,lift_mm", *rows]) + "\n", encoding="ascii")
+    result = gearcam.build(gearcam.load(PLATE))
+    study = result.follow(file, fit=True)
+    assert not [one for one in study.study_findings if one.severity == "warning"]
+    assert study.facts["followed.fit.noise"] >= 10.0**-digits / math.sqrt(12.0) * (1.0 - 1e-9)
+    motion = loaded(study.files["fitted.toml"].decode()).to_dict()["motion"]
+    assert [one.get("law") for one in motion] == ["cycloidal", None, "cycloidal", None]
+    assert [one["angle_deg"] for one in motion[:3]] == [100.0, 50.0, 80.0]
+
+
+def test_a_fit_tells_of_the_design_that_was_found(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = written(tmp_path / "lift.csv", double_dwell(8.0))
+    assert main(["follow", str(PLATE), str(file), "--fit", "-o", str(tmp_path)]) == 0
+    said = capsys.readouterr().out
+    assert "lift 8 mm" in said
+    assert "error of its start, rise" in said
+    assert "difference from the lift of the design" not in said

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import math
+import re
 from pathlib import Path
 from typing import Any
 
@@ -88,6 +89,36 @@ def test_a_follower_that_lifts_off_is_told_with_the_speed_that_holds() -> None:
     for factor, expected in ((0.999, []), (1.001, ["lift-off"])):
         speed = {"drive": {"speed_rpm": factor * release}}
         assert codes(study(**MASS, **spring, **speed)) == expected
+
+
+def test_a_follower_that_lifts_off_is_told_with_the_preload_that_holds() -> None:
+    spring = {"stiffness_n_mm": 2, "preload_n": 20}
+    slow = study(**MASS, **SPEED, spring=[spring])
+    fast = {"drive": {"speed_rpm": 1.4 * slow.facts["forces.release_speed_rpm"]}}
+    found = study(**MASS, **fast, spring=[spring])
+    (finding,) = found.study_findings
+    least = float(
+        re.findall(r"With spring\[0\].preload_n = ([0-9.]+) it stays", finding.message)[0]
+    )
+    assert found.facts["forces.normal_n"]["min"] == 0.0
+    for preload, expected in ((least, []), (0.998 * least, ["lift-off"])):
+        held = [spring | {"preload_n": preload}]
+        assert codes(study(**MASS, **fast, spring=held)) == expected
+    solved = [spring | {"preload_n": "solve"}]
+    closed = study(**MASS, **fast, spring=solved)
+    assert least == pytest.approx(closed.facts["forces.spring.preload_n"], rel=1e-2)
+
+
+def test_what_cannot_be_mixed_is_told() -> None:
+    with pytest.raises(DesignError, match="s and theta cannot be mixed"):
+        study(load=[{"formula": "50 + 4*s + 30*sin(theta)"}])
+
+
+def test_a_missing_length_of_a_guide_is_one_fault() -> None:
+    with pytest.raises(DesignError) as caught:
+        study(**LOAD, friction={"guide": 0.1, "journal_radius_mm": [10, 3]})
+    (problem,) = caught.value.problems
+    assert problem.key == "friction.guide_length_mm"
 
 
 def test_limits_of_pressure_and_torque() -> None:

@@ -198,3 +198,14 @@ def test_the_command_takes_tolerances(tmp_path: Path, capsys: pytest.CaptureFixt
     assert "largest deviation of the lift, worst case" in shown
     assert "tolerance of arm allowed, with equal shares" in shown
     assert (tmp_path / "plate_cam_oscillating" / "precision.csv").is_file()
+
+
+def test_without_tolerances_the_largest_sensitivities_are_told() -> None:
+    result = gc.build(gc.load("profiles/plate_cam_offset_roller.toml"))
+    study = result.study("precision")
+    told = [one.meaning for one in study.facts.shown() if one.name.startswith("precision")]
+    assert "largest sensitivity to offset" in told
+    with_one = result.design.with_({"precision.offset_tolerance_mm": 0.1})
+    study = gc.build(with_one).study("precision")
+    told = [one.meaning for one in study.facts.shown() if one.name.startswith("precision")]
+    assert "largest sensitivity to offset" not in told
