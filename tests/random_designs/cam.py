@@ -262,10 +262,9 @@ def _solved(d: Draw, design: dict[str, Any], size: float) -> None:
     if d.chance(0.3):
         design["bounds"] = {
             one: [short(size * d.even(0.1, 1)), short(size * d.even(2, 5))]
-            for one in ("prime_radius_mm", "base_radius_mm", *_SOLVABLE)
+            for table, one in keys
+            if table[one] == "solve"
         }
-        there = {*cam, *follower}
-        design["bounds"] = {one: pair for one, pair in design["bounds"].items() if one in there}
 
 
 def _studies(d: Draw, design: dict[str, Any], size: float) -> None:

@@ -483,9 +483,13 @@ def _inside(sizing: Sizing, space: _Space, best: Array) -> Array:
     none = np.empty((0, 2 * best.shape[1] + 1))
     for reach in _INNER:
         step = _SHARE * reach
-        found = sizing.measured(space.sizes(_crossed(best, step)))
-        inner = best + _corner(found.parts, none, step, best[0], reach)
-        if sizing.measured(space.sizes(inner)).worst[0] < 0.0:
+        parts = sizing.measured(space.sizes(_crossed(best, step))).parts
+        # what no size changes may be at its limit
+        changed = np.ptp(np.where(np.isfinite(parts), parts, 0.0), axis=1) > _STILL
+        if not changed.any():
+            break
+        inner = best + _corner(parts[changed], none, step, best[0], reach)
+        if sizing.measured(space.sizes(inner)).parts[changed].max() < 0.0:
             return inner
     return best
 
@@ -549,9 +553,11 @@ def _descended(sizing: Sizing, space: _Space, start: Array, *, coarse: bool = Fa
 
     def merit(found: Measured) -> Array:
         beyond = np.maximum(found.worst, 0.0)
-        return np.where(beyond > _LOST, _FAR * beyond, found.goal + weight * beyond)
+        near = found.goal + weight * np.minimum(beyond, _LOST)
+        return np.where(beyond > _LOST, _FAR * beyond, near)
 
-    weight = _WEIGHT * float(np.abs(measured(start).goal[0]))
+    size = float(np.abs(measured(start).goal[0]))
+    weight = _WEIGHT * (size if 0.0 < size < math.inf else 1.0)
     for _ in range(_MOST_STEPS):
         step = _SHARE * trust
         found = measured(_crossed(best, step))
@@ -599,9 +605,11 @@ def _corner(goals: Array, limits: Array, step: float, place: Array, trust: float
     (goal, by_goal), (limit, by_limit) = tangents(goals), tangents(limits)
     reach = trust * np.abs(by_goal).sum(axis=1)
     high = goal + reach >= (goal - reach).max(initial=-np.inf)
-    near = limit + trust * np.abs(by_limit).sum(axis=1) >= 0.0
+    change = trust * np.abs(by_limit).sum(axis=1)
+    near = (limit + change >= 0.0) & (change > 0.0)
+    unit = np.abs(by_goal[high]).max(initial=0.0) or 1.0  # near a right angle slopes are steep
     rows = [
-        *(np.append(slope, -1.0) for slope in by_goal[high]),
+        *(np.append(slope, -unit) for slope in by_goal[high]),
         *(np.append(slope, 0.0) for slope in by_limit[near]),
         *np.eye(d, d + 1),
         *-np.eye(d, d + 1),

@@ -47,6 +47,10 @@ _MOST_STEPS: Final = 1e6
 """Largest number of steps of a table."""
 
 
+_NAMED: Final = 90
+"""Characters of a name that leave room for a word behind it."""
+
+
 class CamResult(PartsResult):
     """Result of the design of a cam, computed on demand.
 
@@ -101,7 +105,7 @@ class CamResult(PartsResult):
         from gearcam.designs.writing import least_document, toml_text
 
         comment = f"{self.design.name} with its solved sizes"
-        named = replace(self.solution.design, name=f"{self.design.name}_solved"[:100])
+        named = replace(self.solution.design, name=f"{self.design.name[:_NAMED]}_solved")
         text = toml_text(least_document(named), [comment])
         return {"solved.toml": text.encode()}
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final, get_args
 
+from gearcam.base.numerals import formatted, shortened
 from gearcam.base.quantities import Solve
 from gearcam.base.registry import classes_in, name_of
 from gearcam.base.rules import Rule, only_with
@@ -161,6 +162,16 @@ def _toleranced(sizes: str, key: str, *words: str) -> Rule:
 _ROUND: Final = tuple(name for name in FOLLOWERS if name != "flat")
 _TURNING: Final = tuple(name for name in FORMS if name != "translating")
 
+_ARMS: Final = {
+    "follower.roller_radius_mm": 5.0,
+    "blank.bore_diameter_mm": 2.5,
+    "cam.prime_radius_mm": 1.2,
+    "cam.base_radius_mm": 1.5,
+}
+_LONGER: Final = 3.0
+"""The least arm of a usual range, over sizes of the design, and the largest over the least."""
+
+
 RULES: Final = (
     _toleranced("radius", "follower.type", "roller", "domed"),
     _toleranced("offset axis face_angle roller_distance", "follower.motion", "translating"),
@@ -230,16 +241,34 @@ def _unsolvable(document: Mapping[str, Any], asked: Sequence[str]) -> Iterator[F
     bounds = document.get("bounds")
     ranges = bounds if isinstance(bounds, Mapping) else {}
     names = [key.split(".")[1] for key in asked]
-    tables = [document[title] for title in ("cam", "follower") if title in document]
-    there = {key for table in tables if isinstance(table, Mapping) for key in table}
+    known = ", ".join(names) or 'ranges of sizes whose value is "solve"'
     for name in ranges:
-        if name not in there and name in table_of("bounds", BoundsSpec).entries:
-            message = "has no effect: the design has no such size"
-            yield Fault(("bounds", name), message, ranges[name], "a range of a size that it has")
+        if name not in names and name in table_of("bounds", BoundsSpec).entries:
+            message = "has no effect: this size is not solved for"
+            yield Fault(("bounds", name), message, ranges[name], known)
     if {"arm_mm", "pivot_distance_mm"} <= {*names} and "arm_mm" not in ranges:
         message = "cannot be solved together with the pivot distance without a range: the lift is "
         message += "an angle, so that a shorter arm always makes a smaller cam"
-        yield Fault(("follower", "arm_mm"), message, "solve", "[bounds] arm_mm = [least, largest]")
+        near = f"[bounds] arm_mm = {_arms(document)}"
+        yield Fault(("follower", "arm_mm"), message, "solve", near)
+
+
+def _arms(document: Mapping[str, Any]) -> str:
+    """Return a range of arms that suits the sizes that a `document` gives, mm."""
+    sizes = (factor * _number(document, key) for key, factor in _ARMS.items())
+    least = max(sizes)
+    if not least:
+        return "[least, largest]"
+    ends = (formatted(shortened(size, 1.0, 2)) for size in (least, _LONGER * least))
+    return f"[{', '.join(ends)}]"
+
+
+def _number(document: Mapping[str, Any], key: str) -> float:
+    """Return a length in a `document`; 0 if it does not have it as a number above 0."""
+    title, name = key.split(".")
+    table = document.get(title)
+    value = table.get(name) if isinstance(table, Mapping) else None
+    return float(value) if isinstance(value, int | float) and value > 0.0 else 0.0
 
 
 def _load_faults(found: Examined, document: Mapping[str, Any]) -> Iterator[Fault]:

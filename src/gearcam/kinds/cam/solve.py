@@ -23,7 +23,7 @@ import numpy as np
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.base.findings import CHECKS, limit_of
-from gearcam.base.numerals import formatted
+from gearcam.base.numerals import decimal, formatted, shortened
 from gearcam.cams.checks import KIND, pressure_limits
 from gearcam.cams.placing import followers_of
 from gearcam.cams.sizing import (
@@ -97,6 +97,9 @@ _WORDS: Final = {
 }
 """Limits in words, by the names of excesses."""
 
+_FREE: Final = "the goal alone"
+"""What decides where no limit does."""
+
 _GOALS: Final = dict(zip(GOALS, ("size", "pressure", "rise", "back", "convex"), strict=True))
 
 _ASIDE: Final = 10.0
@@ -115,11 +118,17 @@ _AGREED: Final = 1e-5
 _NARROWEST: Final = 1e-9
 """Least width of a range, mm: both ends may be one."""
 
-_MORE: Final = (0.0, 1e-3, 4e-3, 1.6e-2)
+_MORE: Final = (0.0, 1e-4, 1e-3, 4e-3, 1.6e-2)
 """What a limit that has to give gets beyond its excess until there is a solution."""
 
 _BEYOND: Final = 1.005
 """Contact pressure that can be kept, over the least."""
+
+_FAR: Final = 0.5
+"""Share of the default range beyond which only the range keeps a cam from growing."""
+
+_USUAL: Final = (0.01, 0.03)
+"""Range of a usual cam, over the largest of the default range."""
 
 _AROUND: Final = 0.8
 _GRID: Final = 81
@@ -183,18 +192,23 @@ def solved(result: CamResult, *, advise: bool = True) -> Solution:
     for share in (0.0, *(2.0**-k for k in range(_TRIES, -1, -1))):
         between = {name: best[name] + share * (inner[name] - best[name]) for name in best}
         sizes = {key: round(size, _DIGITS) for key, size in task.by_key(between).items()}
-        design = result.design.with_(sizes)
+        design = _sized(result.design, sizes)
         if task.keeps(type(result)(design, result.tolerances)):
             excess = task.measured(best).excess.items()
             close = (name for name, one in excess if one.max() > -_DECIDES)
             words = (*(_WORDS[name] for name in close), *task.at_bounds(best))
-            deciding = tuple(dict.fromkeys(words))
+            deciding = tuple(dict.fromkeys(words)) or (_FREE,)
             return Solution(task=task, design=design, sizes=sizes, deciding=deciding)
     raise InfeasibleError(
         "no sizes that keep all limits could be confirmed",
         where=task.keys[0],
         nearest="give this size, or its range in [bounds]",
     )
+
+
+def _sized(design: CamDesign, sizes: Mapping[str, float]) -> CamDesign:
+    """Return a design with its sizes, mm, by their keys; their ranges have no effect any more."""
+    return design.with_({**sizes, "bounds": {}})
 
 
 def _pressed(result: CamResult, task: Task, found: Found) -> tuple[Task, Found]:
@@ -205,7 +219,7 @@ def _pressed(result: CamResult, task: Task, found: Found) -> tuple[Task, Found]:
     """
     for _ in range(_ROUNDS):
         before = task.by_key(found[0])
-        cam = type(result)(result.design.with_(before), result.tolerances)
+        cam = type(result)(_sized(result.design, before), result.tolerances)
         if task.sizing.load is None and largest_pressure(cam) <= task.pressure:
             break  # the other limits keep it
         task = Task(result, _load_on(cam, task.pressure), advise=task.advise)
@@ -369,22 +383,24 @@ class Task:
         """
         for key, name in self.names.items():
             ends, size = self.unknown[name], sizes[name]
-            if min(abs(size - end) for end in ends) > _DECIDES * max(map(abs, ends)):
-                continue
             plain = key.split(".")[1]
             given = getattr(self.design.bounds, plain.removesuffix("_mm")) is not None
-            if given:
-                yield f"{plain} at its bound"
-            elif name == "radius" and self.sizing.goal[0] != "size":
+            far = name == "radius" and self.sizing.goal[0] != "size" and not given
+            if far and size > _FAR * ends[1]:
                 raise InfeasibleError(
                     f"the best cam is the largest: nothing but the default range, up to "
-                    f"{formatted(ends[1], 3)} mm, limits it",
+                    f"{decimal(ends[1], 0)} mm, limits it",
                     where=f"bounds.{plain}",
                     nearest=f"a range in [bounds], such as {plain} = "
-                    f"[{formatted(0.01 * ends[1], 2)}, {formatted(0.03 * ends[1], 2)}]",
+                    f"[{', '.join(formatted(shortened(one * ends[1], 1.0, 2)) for one in _USUAL)}]",
                 )
+            end = min(ends, key=lambda end, size=size: abs(size - end))
+            if abs(size - end) > _DECIDES * max(map(abs, ends)):
+                continue
+            if given:
+                yield f"{plain} at its bound {formatted(end)} mm"
             else:
-                yield f"the default range of {plain}"
+                yield f"the default range of {plain} ([bounds] sets another)"
 
     def _limits(self) -> SizeLimits:
         design, limits = self.design, self.design.limits

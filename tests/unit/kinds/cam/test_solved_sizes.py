@@ -297,7 +297,8 @@ def test_the_limit_that_has_to_give_is_named_and_works() -> None:
     [
         ({"cam.form": "yoke", "cam.prime_radius_mm": "solve"}, "not available for a yoke cam"),
         ({"bounds.offset_mm": [3, 2]}, "is an empty range"),
-        ({"bounds.arm_mm": [3, 4]}, "the design has no such size"),
+        ({"bounds.arm_mm": [3, 4]}, "not solved for"),
+        ({"bounds.roller_radius_mm": [3, 4]}, "not solved for.*\n.*prime_radius_mm"),
         ({"goal.minimize": "mass"}, "radius_mm.max"),
         ({"cam.prime_radius_mm": "solv"}, "did you mean solve"),
     ],
@@ -315,7 +316,7 @@ def test_a_swinging_follower_without_a_length_is_refused() -> None:
     document["bounds"] = {"arm_mm": [40, 90]}
     result = gc.build(gc.design(document))
     assert result.solution.sizes["follower.arm_mm"] == 40.0
-    assert "arm_mm at its bound" in result.solution.deciding
+    assert "arm_mm at its bound 40 mm" in result.solution.deciding
     document["follower"]["roller_radius_mm"] = "solve"
     with pytest.raises(InfeasibleError, match="no length of the swinging follower"):
         _ = solved(gc.build(gc.design(document)))
@@ -325,7 +326,42 @@ def test_a_range_of_one_value_is_that_value() -> None:
     document = stem("cycloidal", bounds={"prime_radius_mm": [52, 52]})
     found = gc.build(gc.design(document)).solution
     assert found.sizes["cam.prime_radius_mm"] == 52.0
-    assert "prime_radius_mm at its bound" in found.deciding
+    assert "prime_radius_mm at its bound 52 mm" in found.deciding
+
+
+@pytest.mark.parametrize("radius", ["solve", 35.0, 90.0])
+def test_the_range_that_an_arm_needs_is_named_and_works(radius: Any) -> None:
+    document = arm("polynomial", cam={"prime_radius_mm": radius})
+    document["follower"]["arm_mm"] = "solve"
+    with pytest.raises(DesignError) as caught:
+        gc.design(document)
+    (ends,) = re.findall(r"arm_mm = \[([0-9.]+), ([0-9.]+)\]", str(caught.value))
+    document["bounds"] = {"arm_mm": [float(end) for end in ends]}
+    assert not gc.build(gc.design(document)).findings
+
+
+def test_an_end_of_the_default_range_is_told() -> None:
+    document = stem("polynomial", cam={"prime_radius_mm": 60.0})
+    document["follower"] = {"type": "roller", "roller_radius_mm": "solve"}
+    document["goal"] = {"maximize": "cam.curvature.profile_convex_min_mm"}
+    found = gc.build(gc.design(document)).solution
+    assert found.deciding == ("the default range of roller_radius_mm ([bounds] sets another)",)
+
+
+# some starts of the search press almost at a right angle, or are out of reach
+STEEP = [
+    (arm, {"prime_radius_mm": 90.0}, {}),
+    (arm, {"prime_radius_mm": 90.0}, {"maximize": "cam.pressure_angle_deg.max"}),
+    (arm, {"prime_radius_mm": 60.0}, {"minimize": "cam.pressure_angle_deg.rise_max"}),
+]
+
+
+@pytest.mark.parametrize(("make", "cam", "goal"), STEEP)
+def test_a_search_passes_steep_starts(make: Any, cam: dict[str, Any], goal: dict[str, Any]) -> None:
+    result = gc.build(gc.design(make("polynomial", cam=cam, goal=goal)))
+    assert not result.findings
+    free = goal.get("minimize") is not None
+    assert (result.solution.deciding == ("the goal alone",)) == free
 
 
 def test_a_goal_that_only_the_default_range_limits_is_refused_with_a_range_that_works() -> None:
@@ -358,6 +394,30 @@ def test_a_wall_that_has_to_give_is_named_and_can_be_kept() -> None:
         _ = gc.build(gc.design(document)).solution
     document["limits"]["wall_mm"] = caught.value.value
     assert not gc.build(gc.design(document)).findings
+
+
+def test_a_wall_that_no_size_changes_leaves_room_for_the_others() -> None:
+    document = stem("cycloidal", cam={"prime_radius_mm": 52}, limits={"wall_mm": 9})
+    document["blank"] = {"bore_diameter_mm": 80}
+    with pytest.raises(InfeasibleError, match="wall around the bore would be") as caught:
+        _ = gc.build(gc.design(document)).solution
+    assert caught.value.value == pytest.approx(7.0, abs=2e-3)  # 52 - 5 - 40, less a chord
+    document["limits"]["wall_mm"] = caught.value.value
+    result = gc.build(gc.design(document))
+    assert not result.findings
+    assert "wall around the bore" in result.solution.deciding
+
+
+def test_the_name_of_a_solved_file_is_another_however_long_it_is() -> None:
+    document = stem("cycloidal") | {"name": "c" * 100}
+    (text,) = gc.build(gc.design(document)).more_files.values()
+    assert f'name = "{"c" * 90}_solved"' in text.decode()
+
+
+def test_a_solved_file_has_no_ranges_without_an_effect() -> None:
+    document = stem("cycloidal", bounds={"prime_radius_mm": [52, 52]})
+    (text,) = gc.build(gc.design(document)).more_files.values()
+    assert "bounds" not in text.decode()
 
 
 def test_a_flat_follower_has_no_prime_radius_to_solve_for() -> None:
