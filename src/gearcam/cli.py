@@ -255,6 +255,12 @@ _COMMANDS: Final = (
         deferred("gearcam.compare.command:arguments"),
     ),
     Command(
+        "sweep",
+        "Build thousands of variants of a design; write DIR/sweep.csv and sweep.html.",
+        deferred("gearcam.sweep.command:sweep"),
+        deferred("gearcam.sweep.command:arguments"),
+    ),
+    Command(
         "view",
         "Show a design in the browser; update the page when the file is saved.",
         deferred("gearcam.view.command:view"),

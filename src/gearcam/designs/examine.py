@@ -18,7 +18,7 @@ from gearcam.base.errors import DesignError
 from gearcam.base.quantities import REQUIRED
 from gearcam.base.reading import UnreadableError, read
 from gearcam.designs.faults import MISSING, TOO_DEEP, Fault, dotted, is_deep, quoted, show
-from gearcam.designs.kind import KINDS, DesignKind, Examined
+from gearcam.designs.kind import FAMILY, KINDS, DesignKind, Examined
 from gearcam.designs.lines import Path, line_at, lines_of
 from gearcam.designs.reader import LARGEST, decoded, document_in, find_tables
 from gearcam.designs.slips import STRONG, SURE, did_you_mean, hinted, key_hint, nearest
@@ -194,6 +194,9 @@ def _top_faults(document: Mapping[str, Any], kind: DesignKind) -> Iterator[Fault
         tables = all(isinstance(item, Mapping) for item in items)
         what = "table" if tables else f"key (its value is {show(value)})"
         yield Fault((key,), f"unknown {what}", value, rule, hint)
+    for title in FAMILY:
+        if not isinstance(value := document.get(title, {}), Mapping):
+            yield Fault((title,), f"{show(value)} is not a table", value, f"[{title}]")
 
 
 def _examine_name(document: Mapping[str, Any], stem: str, outcome: Examined) -> None:

@@ -152,6 +152,10 @@ class Variants:
         return [value for value in self.entries if key in self.table(title, value).entries]
 
 
+FAMILY: Final = ("sweep",)
+"""Titles of tables about many designs: a build leaves them out (see `gearcam.designs.family`)."""
+
+
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class DesignKind:
     """How designs of one kind are read and described.
@@ -230,7 +234,7 @@ class DesignKind:
     def titles(self) -> tuple[str, ...]:
         """The top-level keys and tables of a file of this kind."""
         main = (self.main.title,) if self.main else ()
-        return ("kind", "name", *main, *self.tables, "limits")
+        return ("kind", "name", *main, *self.tables, "limits", *FAMILY)
 
     def table(self, title: str) -> Table:
         """Return a table by its title: one of `tables`, or ``limits``."""

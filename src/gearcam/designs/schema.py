@@ -13,7 +13,7 @@ from typing import Any, Final
 from gearcam.base.quantities import REQUIRED
 from gearcam.base.rules import Field, Fields, Rule
 from gearcam.designs.faults import description
-from gearcam.designs.kind import KINDS, DesignKind, Variants
+from gearcam.designs.kind import FAMILY, KINDS, DesignKind, Variants
 from gearcam.designs.table import Key, Table, default_of
 
 DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
@@ -138,7 +138,8 @@ def _branch(kind: DesignKind, main: Schema) -> Schema:
             },
             **({kind.main.title: main} if kind.main else {}),
         }
-        | {title: {"$ref": f"#/$defs/{kind.name}-{title}"} for title in (*kind.tables, "limits")},
+        | {title: {"$ref": f"#/$defs/{kind.name}-{title}"} for title in (*kind.tables, "limits")}
+        | {title: {"type": "object"} for title in FAMILY},
         **_all_of(
             [*_rules(kind.rules, ChainMap(*fields)), *_variants(kind.variants, kind.several)]
         ),

@@ -1,0 +1,46 @@
+"""What builds the variants of a sweep: the interface of engines."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from gearcam.base.display import ShortRepr
+from gearcam.designs.design import Design
+from gearcam.sweep.rows import Row
+
+Job = tuple[int, dict[str, Any]]
+"""Number and values of a variant."""
+
+CHUNK_S = 0.25
+"""Time that a chunk of variants should take, s."""
+
+MOST = 256
+"""Largest number of variants in a chunk."""
+
+
+class Engine(ABC, ShortRepr):
+    """What builds variants."""
+
+    @property
+    @abstractmethod
+    def name(self) -> str:
+        """In words, for messages."""
+
+    @abstractmethod
+    def run(self, base: Design, jobs: Iterable[Job]) -> Iterator[Row]:
+        """Yield the rows of variants as they come, in any order; each exactly once.
+
+        Parameters
+        ----------
+        base : Design
+            The design whose keys get other values.
+        jobs : iterable of (int, dict)
+            Numbers and values of variants; read as they are needed.
+        """
+
+
+def chunk_size(mean: float, most: int = MOST, seconds: float = CHUNK_S) -> int:
+    """Return the number of variants of a chunk by the `mean` time of one, s; 1 if it is unknown."""
+    return max(1, min(most, int(seconds / mean))) if mean > 0.0 else 1

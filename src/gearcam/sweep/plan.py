@@ -1,0 +1,146 @@
+"""Which variants a sweep has: all combinations of values, or samples.
+
+Samples are drawn from a generator with a seed: random ones, or a Latin hypercube, of which each
+axis has one sample in each of n equal parts of its range. The same seed gives the same variants.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Final, Literal
+
+import numpy as np
+
+from gearcam.base.display import ShortRepr
+from gearcam.base.errors import DesignError, Problem
+from gearcam.designs.design import Design, document_of, value_at
+from gearcam.numeric.arrays import Array
+from gearcam.sweep.axes import Axis
+
+MANY: Final = 1_000_000
+"""Number of variants above which a sweep has to be confirmed."""
+
+Sampling = Literal["grid", "random", "latin"]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Plan(ShortRepr):
+    """The variants of a sweep.
+
+    Parameters
+    ----------
+    base : Design
+        The design.
+    axes : sequence of Axis
+        What is given to its keys; at least one.
+    sampling : {"grid", "random", "latin"}
+        All combinations, or samples.
+    samples : int
+        Number of samples.
+    seed : int
+        Of the generator.
+
+    Raises
+    ------
+    DesignError
+        If an axis of a grid has no step, or no value of a key is allowed.
+    """
+
+    base: Design
+    axes: Sequence[Axis]
+    sampling: Sampling = "grid"
+    samples: int = 0
+    seed: int = 1
+
+    def __post_init__(self) -> None:
+        problems = [
+            Problem(
+                f"{axis.text} has no step",
+                key=axis.key,
+                allowed="from:to:step, or --random N or --latin N to draw samples from it",
+            )
+            for axis in self.axes
+            if self.sampling == "grid" and axis.sampled
+        ]
+        if problems:
+            raise DesignError(problems)
+        for axis in self.axes:
+            _demand_key(self.base, axis)
+
+    @property
+    def count(self) -> int:
+        """Number of variants."""
+        if self.sampling == "grid":
+            return math.prod(len(axis.values) for axis in self.axes)
+        return self.samples
+
+    def values(self, number: int) -> dict[str, Any]:
+        """Return the values of a variant by keys."""
+        if self.sampling == "grid":
+            found = {}
+            for axis in reversed(self.axes):  # the last one changes fastest
+                number, place = divmod(number, len(axis.values))
+                found[axis.key] = axis.values[place]
+            return {axis.key: found[axis.key] for axis in self.axes}
+        shares = zip(self.axes, self._shares[number].tolist(), strict=True)
+        return {axis.key: self._whole(axis, axis.at(u)) for axis, u in shares}
+
+    def _whole(self, axis: Axis, value: Any) -> Any:
+        return round(value) if axis.key in self._counts and axis.sampled else value
+
+    @cached_property
+    def _counts(self) -> set[str]:
+        """Keys whose values are whole numbers."""
+        document = document_of(self.base)
+        there = {axis.key: value_at(document, axis.key) for axis in self.axes}
+        return {key for key, value in there.items() if type(value) is int}
+
+    @cached_property
+    def _shares(self) -> Array:
+        random = np.random.default_rng(self.seed)
+        shape = (self.samples, len(self.axes))
+        if self.sampling == "random":
+            return random.random(shape)
+        places = np.array([random.permutation(self.samples) for _ in self.axes]).T
+        return (places.reshape(shape) + random.random(shape)) / self.samples
+
+    @cached_property
+    def mark(self) -> str:
+        """What tells this sweep from others: a hash of design and variants."""
+        content = {
+            "design": document_of(self.base),
+            "axes": [(axis.key, axis.text) for axis in self.axes],
+            "sampling": (self.sampling, self.samples, self.seed),
+        }
+        text = json.dumps(content, sort_keys=True, default=lambda one: getattr(one, "__name__", ""))
+        return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def _demand_key(base: Design, axis: Axis) -> None:
+    """Refuse a key of which no value is allowed: it does not exist, or its values are wrong."""
+    first: DesignError | None = None
+    for u in (0.0, 0.25, 0.5, 0.75, 1.0 - 1e-9):
+        try:
+            base.with_({axis.key: axis.at(u)})
+        except DesignError as error:
+            first = first or error
+        else:
+            return
+    if first is not None:
+        raise first
+
+
+def flattened(table: Mapping[str, Any], before: str = "") -> dict[str, Any]:
+    """Return a table with dotted keys instead of tables in tables."""
+    found: dict[str, Any] = {}
+    for key, value in table.items():
+        if isinstance(value, Mapping):
+            found |= flattened(value, f"{before}{key}.")
+        else:
+            found[f"{before}{key}"] = value
+    return found

@@ -1,0 +1,88 @@
+"""A variant built and measured: one row of a sweep."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+from gearcam import build
+from gearcam.base.display import ShortRepr
+from gearcam.base.errors import GearcamError
+from gearcam.designs.design import Design
+
+TOO_LARGE: Final = "it needs more memory than a variant may have"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Row(ShortRepr):
+    """What is known of one variant.
+
+    Parameters
+    ----------
+    number : int
+        Its place in the sweep, from 0.
+    values : mapping of str to value
+        Values by dotted keys.
+    facts : mapping of str to float or str
+        Facts by names, in their units; empty if it is refused.
+    findings : tuple of str
+        Codes of findings, errors first.
+    errors : int
+        How many of them are errors.
+    refusal : str
+        Why it cannot be made; empty if it can.
+    fault : bool
+        Whether the refusal is a fault of the program, not of the design.
+    time_s : float
+        Time to build and measure it.
+    """
+
+    number: int
+    values: Mapping[str, Any]
+    facts: Mapping[str, float | str] = field(default_factory=dict)
+    findings: tuple[str, ...] = ()
+    errors: int = 0
+    refusal: str = ""
+    fault: bool = False
+    time_s: float = 0.0
+
+    @property
+    def made(self) -> bool:
+        """Whether the variant can be made."""
+        return not self.refusal
+
+
+def measured(base: Design, number: int, values: Mapping[str, Any]) -> Row:
+    """Return the row of a variant; a variant that fails costs only itself.
+
+    Parameters
+    ----------
+    base : Design
+        The design.
+    number : int
+        Number of the variant.
+    values : mapping of str to value
+        Its values, in the units of a design file.
+    """
+    start = time.perf_counter()
+
+    def row(**more: Any) -> Row:
+        return Row(number=number, values=values, time_s=time.perf_counter() - start, **more)
+
+    try:
+        result = build(base.with_(values))
+        facts = result.record()
+        findings = result.findings
+        for study in result.studies.values():
+            findings = (*findings, *study.findings)
+    except GearcamError as error:
+        return row(refusal=" ".join(str(error).split()))
+    except MemoryError:
+        return row(refusal=TOO_LARGE)
+    except Exception as error:
+        return row(refusal=f"a fault of gearcam: {type(error).__name__}: {error}", fault=True)
+    codes = tuple(dict.fromkeys(one.code for one in findings))
+    errors = sum(one.severity == "error" for one in findings)
+    return row(facts=facts, findings=codes, errors=errors)

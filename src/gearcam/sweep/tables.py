@@ -1,0 +1,141 @@
+"""Tables of a sweep: CSV with a row for each variant, and Parquet where pyarrow is installed.
+
+Columns: ``number``; the values by keys; the facts by names; ``findings``, their codes; ``errors``,
+how many of them are errors; ``refusal``, the reason; ``time_s``, the only column that differs when
+a sweep is repeated. Rows stand by their numbers. What a variant does not have is an empty cell.
+"""
+
+from __future__ import annotations
+
+import csv
+import importlib.util
+import json
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import Any, Final
+
+from gearcam.sweep.rows import Row
+
+CSV: Final = "sweep.csv"
+PARQUET: Final = "sweep.parquet"
+
+_BATCH: Final = 5000
+"""Rows of Parquet that are in memory at once."""
+
+
+def fact_names(rows: Iterable[Row]) -> list[str]:
+    """Return the names of the facts of rows, in the order in which they first appear."""
+    names: dict[str, None] = {}
+    for row in rows:
+        names |= dict.fromkeys(row.facts)
+    return list(names)
+
+
+def records(
+    rows: Iterable[Row], keys: Sequence[str], facts: Sequence[str]
+) -> Iterator[dict[str, Any]]:
+    """Yield rows as dicts of columns.
+
+    Parameters
+    ----------
+    rows : iterable of Row
+        The rows.
+    keys, facts : sequence of str
+        Columns of values and facts.
+    """
+    for row in rows:
+        yield {
+            "number": row.number,
+            **{key: _cell(row.values[key]) for key in keys},
+            **{name: row.facts.get(name) for name in facts},
+            "findings": " ".join(row.findings),
+            "errors": row.errors,
+            "refusal": row.refusal,
+            "time_s": row.time_s,
+        }
+
+
+def _cell(value: Any) -> float | str:
+    """Return a value of a key as a number or a text."""
+    if isinstance(value, bool) or not isinstance(value, int | float | str):
+        return json.dumps(value)
+    return value
+
+
+def write_csv(path: Path, table: Iterable[dict[str, Any]]) -> None:
+    """Write rows, dicts of the same columns, at least one, as CSV.
+
+    Raises
+    ------
+    OSError
+        If it cannot be written.
+    """
+    with path.open("w", encoding="utf-8", newline="") as file:
+        writer: csv.DictWriter[str] | None = None
+        for record in table:
+            if writer is None:
+                writer = csv.DictWriter(file, list(record), lineterminator="\n")
+                writer.writeheader()
+            writer.writerow(record)
+
+
+def can_write_parquet() -> bool:
+    """Return whether pyarrow is installed."""
+    return importlib.util.find_spec("pyarrow") is not None
+
+
+def write_parquet(path: Path, table: Iterable[dict[str, Any]], texts: frozenset[str]) -> None:
+    """Write rows, dicts of the same columns, at least one, as Parquet.
+
+    Parameters
+    ----------
+    path : path
+        The file.
+    table : iterable of dict
+        The rows.
+    texts : frozenset of str
+        Columns that are texts; others are numbers.
+
+    Raises
+    ------
+    OSError
+        If it cannot be written.
+    """
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    writer: Any = None
+    batch: list[dict[str, Any]] = []
+
+    def write() -> None:
+        nonlocal writer
+        names = list(batch[0])
+        schema = pa.schema(
+            [(name, pa.string() if name in texts else _whole(name, pa)) for name in names]
+        )
+        if writer is None:
+            writer = pq.ParquetWriter(path, schema)
+        columns = {
+            name: [_as(record[name], text=name in texts) for record in batch] for name in names
+        }
+        writer.write_table(pa.table(columns, schema=schema))
+        batch.clear()
+
+    try:
+        for record in table:
+            batch.append(record)
+            if len(batch) == _BATCH:
+                write()
+        if batch:
+            write()
+    finally:
+        if writer is not None:
+            writer.close()
+
+
+def _whole(name: str, pa: Any) -> Any:
+    return pa.int64() if name in ("number", "errors") else pa.float64()
+
+
+def _as(value: Any, *, text: bool) -> Any:
+    return None if value is None else str(value) if text else value
