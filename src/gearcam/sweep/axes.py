@@ -30,8 +30,10 @@ from gearcam.base.numerals import formatted
 from gearcam.designs.design import path_of
 from gearcam.designs.faults import show
 
-FORM: Final = "values 0.1,0.2, a range from:to:step, from:to, log(1, 100, 20), normal(20, 0.01) or "
-FORM += "tolerance(20, 0.05)"
+FORM: Final = (
+    "values 0.1,0.2, a range from:to:step, from:to, log(1, 100, 20), normal(20, 0.01) or "
+    "tolerance(20, 0.05)"
+)
 """What may be written for a key."""
 
 _CALL: Final = re.compile(r"(log|normal|tolerance)\((.*)\)")
