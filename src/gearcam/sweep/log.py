@@ -48,9 +48,13 @@ class Log:
         try:
             self.path.parent.mkdir(parents=True, exist_ok=True)
             self._file: BinaryIO = self.path.open("a+b")
-            self._read()
         except OSError as error:
             raise WriteError(f"{self.path}: {error.strerror or error}") from error
+        try:
+            self._read()
+        except BaseException:
+            self._file.close()
+            raise
 
     def __enter__(self) -> Self:
         return self

@@ -25,6 +25,9 @@ from gearcam.sweep.axes import Axis
 MANY: Final = 1_000_000
 """Number of variants above which a sweep has to be confirmed."""
 
+_LOOKS: Final = (0.0, 0.25, 0.5, 0.75, 1.0 - 1e-9)
+"""Shares of a range at which it is tried whether a value is allowed."""
+
 Sampling = Literal["grid", "random", "latin"]
 
 
@@ -70,7 +73,7 @@ class Plan(ShortRepr):
         if problems:
             raise DesignError(problems)
         for axis in self.axes:
-            _demand_key(self.base, axis)
+            self._demand_key(axis)
 
     @property
     def count(self) -> int:
@@ -88,10 +91,24 @@ class Plan(ShortRepr):
                 found[axis.key] = axis.values[place]
             return {axis.key: found[axis.key] for axis in self.axes}
         shares = zip(self.axes, self._shares[number].tolist(), strict=True)
-        return {axis.key: self._whole(axis, axis.at(u)) for axis, u in shares}
+        return {axis.key: self._value(axis, u) for axis, u in shares}
 
-    def _whole(self, axis: Axis, value: Any) -> Any:
-        return round(value) if axis.key in self._counts and axis.sampled else value
+    def _value(self, axis: Axis, u: float) -> Any:
+        value = axis.at(u)
+        return round(value) if axis.sampled and axis.key in self._counts else value
+
+    def _demand_key(self, axis: Axis) -> None:
+        """Refuse a key of which no value is allowed: it does not exist, or its values are wrong."""
+        first: DesignError | None = None
+        for u in _LOOKS:
+            try:
+                self.base.with_({axis.key: self._value(axis, u)})
+            except DesignError as error:
+                first = first or error
+            else:
+                return
+        if first is not None:
+            raise first
 
     @cached_property
     def _counts(self) -> set[str]:
@@ -119,20 +136,6 @@ class Plan(ShortRepr):
         }
         text = json.dumps(content, sort_keys=True, default=lambda one: getattr(one, "__name__", ""))
         return hashlib.sha256(text.encode()).hexdigest()[:16]
-
-
-def _demand_key(base: Design, axis: Axis) -> None:
-    """Refuse a key of which no value is allowed: it does not exist, or its values are wrong."""
-    first: DesignError | None = None
-    for u in (0.0, 0.25, 0.5, 0.75, 1.0 - 1e-9):
-        try:
-            base.with_({axis.key: axis.at(u)})
-        except DesignError as error:
-            first = first or error
-        else:
-            return
-    if first is not None:
-        raise first
 
 
 def flattened(table: Mapping[str, Any], before: str = "") -> dict[str, Any]:

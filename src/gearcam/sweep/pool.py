@@ -17,18 +17,24 @@ from collections import deque
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Final
 
 from gearcam.designs.design import Design
 from gearcam.sweep.engine import Engine, Job, chunk_size
-from gearcam.sweep.rows import Row
-from gearcam.sweep.worker import Setup
+from gearcam.sweep.rows import Measure, Row, measured
+from gearcam.sweep.worker import READY, Setup
 
 SECONDS: Final = 300.0
 """Default limit of a variant's time, s."""
 
 MEMORY: Final = 4 << 30
 """Default limit of a process's memory, bytes."""
+
+_BEGIN: Final = (
+    "import sys; sys.path.insert(0, sys.argv[1]); from gearcam.sweep.worker import main; main()"
+)
+"""What a process runs, given the folder of the package."""
 
 _LOOK: Final = 0.5
 """Seconds after which a wait for rows looks for interruptions."""
@@ -48,11 +54,14 @@ class Processes(Engine):
         Largest time of a variant.
     memory : int
         Largest memory of a process, bytes.
+    measure : callable
+        ``measure(base, number, values)`` returns the row of a variant; a function of a module.
     """
 
     jobs: int
     seconds: float = SECONDS
     memory: int = MEMORY
+    measure: Measure = measured
 
     @property
     def name(self) -> str:
@@ -62,7 +71,11 @@ class Processes(Engine):
     def run(self, base: Design, jobs: Iterable[Job]) -> Iterator[Row]:
         """Yield the rows of variants (see `Engine.run`)."""
         setup = pickle.dumps(
-            Setup(path=list(sys.path), memory=self.memory, base=pickle.dumps(base))
+            Setup(
+                path=[str(Path(one).absolute()) for one in sys.path],
+                memory=self.memory,
+                task=pickle.dumps((base, self.measure)),
+            )
         )
         source = _Source(iter(jobs))
         found: queue.SimpleQueue[Row | BaseException | None] = queue.SimpleQueue()
@@ -166,8 +179,8 @@ class _Leader:
             else:
                 again = True
 
-    def _answer(self, process: subprocess.Popen[bytes]) -> Row | None:
-        """Return the next row of a process; None if it ended, or was ended since it is late."""
+    def _answer(self, process: subprocess.Popen[bytes]) -> Any:
+        """Return the next answer of a process; None if it ended, or was ended since it is late."""
 
         def end() -> None:
             self._late = True
@@ -187,12 +200,16 @@ class _Leader:
         with self._lock:
             if self._process is None:
                 self._process = subprocess.Popen(
-                    [sys.executable, "-m", "gearcam.sweep.worker"],
+                    [sys.executable, "-c", _BEGIN, str(Path(__file__).parents[2])],
                     stdin=subprocess.PIPE,
                     stdout=subprocess.PIPE,
                     env=os.environ | {"OPENBLAS_NUM_THREADS": "1"},
                 )
-                self._process.stdin.write(self._setup)  # pyright: ignore
+                with suppress(OSError):
+                    self._process.stdin.write(self._setup)  # pyright: ignore
+                    self._process.stdin.flush()  # pyright: ignore
+                if self._answer(self._process) != READY and not self._stopped:
+                    raise RuntimeError("a process of the sweep cannot begin")
             return self._process
 
     def _end(self) -> None:

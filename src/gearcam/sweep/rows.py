@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final
 
@@ -52,6 +52,10 @@ class Row(ShortRepr):
     def made(self) -> bool:
         """Whether the variant can be made."""
         return not self.refusal
+
+
+Measure = Callable[[Design, int, Mapping[str, Any]], Row]
+"""Makes the row of a variant of a design, from its number and values."""
 
 
 def measured(base: Design, number: int, values: Mapping[str, Any]) -> Row:

@@ -1,7 +1,8 @@
 """A process that builds variants: it reads jobs from its input and writes rows to its output.
 
-Both are pickled. The first input is a `Setup`, each further one a list of jobs, answered by a row
-each. What a library prints goes to the error stream. The process ends with its input.
+Both are pickled. The first input is a `Setup`, answered by `READY`; each further one is a list of
+jobs, answered by a row each. What a library prints goes to the error stream. The process ends with
+its input.
 """
 
 from __future__ import annotations
@@ -12,9 +13,12 @@ import signal
 import sys
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import Any, BinaryIO
+from typing import BinaryIO
 
 from gearcam.base.interrupts import SIGNALS
+
+READY = "ready"
+"""First output: jobs may come."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,13 +31,13 @@ class Setup:
         Folders of modules, which a design's functions may come from.
     memory : int
         Largest memory of the process, bytes.
-    base : bytes
-        The design, pickled.
+    task : bytes
+        The design, and the function that makes the row of a variant, pickled.
     """
 
     path: list[str]
     memory: int
-    base: bytes
+    task: bytes
 
 
 def main() -> None:
@@ -53,15 +57,16 @@ def _serve(jobs: BinaryIO, answers: BinaryIO) -> None:
     sys.path[:] = setup.path
     from gearcam.console import quieten
     from gearcam.numeric.arrays import keep_freed_memory
-    from gearcam.sweep.rows import measured
 
     quieten()
     keep_freed_memory()
     _limit(setup.memory)
-    base: Any = pickle.loads(setup.base)
+    base, measure = pickle.loads(setup.task)
+    pickle.dump(READY, answers)
+    answers.flush()
     while True:
         for number, values in pickle.load(jobs):
-            pickle.dump(measured(base, number, values), answers)
+            pickle.dump(measure(base, number, values), answers)
             answers.flush()
 
 
@@ -71,7 +76,3 @@ def _limit(memory: int) -> None:
         import resource
 
         resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
-
-
-if __name__ == "__main__":
-    main()

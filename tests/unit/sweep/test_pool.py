@@ -1,0 +1,149 @@
+"""Processes that build variants: each row once, whatever becomes of a process."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import threading
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import gearcam as gc
+from gearcam.sweep.engine import chunk_size
+from gearcam.sweep.pool import Processes
+from gearcam.sweep.rows import Row
+from helpers_sweep import BASE, odd
+
+
+def deeds(*words: str) -> list[tuple[int, dict[str, Any]]]:
+    return [(number, {"deed": word}) for number, word in enumerate(words)]
+
+
+def rows(wanted: Sequence[tuple[int, dict[str, Any]]], **settings: Any) -> dict[int, Row]:
+    found: dict[int, Row] = {}
+    for row in Processes(**{"jobs": 2, "measure": odd} | settings).run(BASE, iter(wanted)):
+        assert row.number not in found
+        found[row.number] = row
+    assert sorted(found) == [number for number, _ in wanted]
+    return found
+
+
+def test_each_variant_has_one_row_with_its_values() -> None:
+    jobs = deeds(*["work"] * 40, "print")
+    found = rows(jobs)
+    assert all(found[number].values == values for number, values in jobs)
+    assert len({row.facts["pid"] for row in found.values()}) == 2
+
+
+def test_a_variant_that_ends_its_process_once_is_built_once_more(tmp_path: Path) -> None:
+    found = rows(deeds("work", f"die {tmp_path / 'once'}", "work"), jobs=1)
+    assert not any(row.refusal for row in found.values())
+
+
+def test_a_variant_that_ends_its_process_twice_costs_only_itself() -> None:
+    found = rows(deeds("work", "die", "work", "work", "die"))
+    assert [bool(found[k].refusal) for k in range(5)] == [False, True, False, False, True]
+    assert "ended twice" in found[1].refusal
+
+
+def test_a_variant_that_hangs_costs_only_itself() -> None:
+    found = rows(deeds("work", "hang", "work", "work"), seconds=1.5)
+    assert [bool(found[k].refusal) for k in range(4)] == [False, True, False, False]
+    assert found[1].refusal == "it takes longer than 1.5 s"
+
+
+def test_a_variant_that_eats_memory_costs_only_itself() -> None:
+    found = rows(deeds("work", "eat", "work"), memory=2 << 30)
+    assert [bool(found[k].refusal) for k in range(3)] == [False, True, False]
+
+
+def test_a_process_that_is_killed_from_outside_costs_nothing() -> None:
+    jobs = ((number, {"deed": "work"}) for number in range(400))
+    found: list[int] = []
+    killed = 0
+    for row in Processes(jobs=2, measure=odd).run(BASE, jobs):
+        found.append(row.number)
+        if len(found) in (50, 150):
+            os.kill(int(row.facts["pid"]), signal.SIGKILL)
+            killed += 1
+    assert killed == 2
+    assert sorted(found) == list(range(400))
+
+
+def children() -> list[str]:
+    threads = Path("/proc/self/task").glob("*/children")
+    return [word for one in threads for word in one.read_text().split()]
+
+
+def test_no_process_is_left_when_the_rows_are_not_wanted_any_more() -> None:
+    before = set(children())
+    running = Processes(jobs=2, measure=odd).run(BASE, iter(deeds("work", *["hang"] * 3)))
+    next(running)
+    assert set(children()) > before
+    running.close()  # type: ignore[attr-defined]
+    assert set(children()) == before
+
+
+def test_jobs_are_read_as_they_are_needed() -> None:
+    read = 0
+
+    def jobs() -> Iterator[tuple[int, dict[str, Any]]]:
+        nonlocal read
+        for number in range(100_000):
+            read += 1
+            yield number, {"deed": "work"}
+
+    running = Processes(jobs=1, measure=odd).run(BASE, jobs())
+    next(running)
+    running.close()  # type: ignore[attr-defined]
+    assert read < 5000
+
+
+def test_an_error_in_the_jobs_is_raised() -> None:
+    def jobs() -> Iterator[tuple[int, dict[str, Any]]]:
+        yield 0, {"deed": "work"}
+        raise ValueError("no more")
+
+    with pytest.raises(ValueError, match="no more"):
+        list(Processes(jobs=2, measure=odd).run(BASE, jobs()))
+
+
+def test_rows_do_not_depend_on_the_number_of_processes() -> None:
+    jobs = [(k, {"law.eccentricity": 0.1 * k, "pair.teeth": [24, 24]}) for k in range(8)]
+    jobs.append((8, {"law.eccentricity": 2.0}))
+    one, two = (
+        {row.number: replace(row, time_s=0.0) for row in Processes(jobs=n).run(BASE, iter(jobs))}
+        for n in (1, 2)
+    )
+    assert one == two
+    direct = gc.build(BASE.with_(jobs[3][1]))
+    assert one[3].facts == direct.record()
+    assert "law.eccentricity" in one[8].refusal
+
+
+def test_chunks_take_about_a_quarter_of_a_second() -> None:
+    assert chunk_size(0.0) == 1
+    assert chunk_size(0.02) == 12
+    assert chunk_size(1e-5) == 256
+    assert chunk_size(3.0) == 1
+
+
+def test_threads_end_with_the_rows() -> None:
+    before = threading.active_count()
+    list(Processes(jobs=2, measure=odd).run(BASE, iter(deeds("work", "work"))))
+    time.sleep(0.05)
+    assert threading.active_count() == before
+
+
+def test_a_process_that_cannot_begin_is_a_fault_and_not_a_refusal(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(sys, "executable", "/bin/false")
+    with pytest.raises(RuntimeError, match="cannot begin"):
+        list(Processes(jobs=2, measure=odd).run(BASE, iter(deeds("work", "work"))))
