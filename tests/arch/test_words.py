@@ -13,7 +13,6 @@ from arch import rules
 BANNED = {
     "play": "backlash",
     "hang|hangs|hung": "register",
-    "job|jobs": "result",
     "feeds?": "rack travel",
     "strokes?": "profile segment",
     "tip curve": "addendum curve",

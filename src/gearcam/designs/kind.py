@@ -152,8 +152,9 @@ class Variants:
         return [value for value in self.entries if key in self.table(title, value).entries]
 
 
-FAMILY: Final = ("sweep",)
-"""Titles of tables about many designs: a build leaves them out (see `gearcam.designs.family`)."""
+FAMILY: Final = {"sweep": "what `gearcam sweep` gives to keys: values, ranges, distributions"}
+"""Tables about many designs, which a build leaves out, and what they say (see
+`gearcam.designs.family`)."""
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)

@@ -139,7 +139,7 @@ def _branch(kind: DesignKind, main: Schema) -> Schema:
             **({kind.main.title: main} if kind.main else {}),
         }
         | {title: {"$ref": f"#/$defs/{kind.name}-{title}"} for title in (*kind.tables, "limits")}
-        | {title: {"type": "object"} for title in FAMILY},
+        | {title: {"type": "object", "description": doc} for title, doc in FAMILY.items()},
         **_all_of(
             [*_rules(kind.rules, ChainMap(*fields)), *_variants(kind.variants, kind.several)]
         ),

@@ -42,5 +42,15 @@ class Engine(ABC, ShortRepr):
 
 
 def chunk_size(mean: float, most: int = MOST, seconds: float = CHUNK_S) -> int:
-    """Return the number of variants of a chunk by the `mean` time of one, s; 1 if it is unknown."""
+    """Return the number of variants of a chunk.
+
+    Parameters
+    ----------
+    mean : float, s
+        Mean time of one; 0 if it is unknown: then one is enough.
+    most : int
+        Largest number.
+    seconds : float, s
+        Time of a chunk.
+    """
     return max(1, min(most, int(seconds / mean))) if mean > 0.0 else 1

@@ -138,12 +138,12 @@ class Plan(ShortRepr):
         return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
-def flattened(table: Mapping[str, Any], before: str = "") -> dict[str, Any]:
+def flattened(table: Mapping[str, Any]) -> dict[str, Any]:
     """Return a table with dotted keys instead of tables in tables."""
     found: dict[str, Any] = {}
     for key, value in table.items():
         if isinstance(value, Mapping):
-            found |= flattened(value, f"{before}{key}.")
+            found |= {f"{key}.{inner}": one for inner, one in flattened(value).items()}
         else:
-            found[f"{before}{key}"] = value
+            found[key] = value
     return found

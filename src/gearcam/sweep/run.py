@@ -92,7 +92,21 @@ def head_of(plan: Plan) -> dict[str, Any]:
 
 
 def write_tables(log: Log, folder: Path) -> tuple[Tally, list[Path]]:
-    """Write the rows of a log as tables; return what they have and the files.
+    """Write the rows of a log as tables.
+
+    Parameters
+    ----------
+    log : Log
+        With the rows.
+    folder : path
+        Where to write.
+
+    Returns
+    -------
+    tally : Tally
+        What the rows have.
+    files : list of path
+        What was written; nothing without rows.
 
     Raises
     ------

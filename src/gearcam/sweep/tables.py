@@ -63,7 +63,14 @@ def _cell(value: Any) -> float | str:
 
 
 def write_csv(path: Path, table: Iterable[dict[str, Any]]) -> None:
-    """Write rows, dicts of the same columns, at least one, as CSV.
+    """Write rows as CSV.
+
+    Parameters
+    ----------
+    path : path
+        The file.
+    table : iterable of dict
+        The rows: values by the same columns; at least one.
 
     Raises
     ------
@@ -85,14 +92,14 @@ def can_write_parquet() -> bool:
 
 
 def write_parquet(path: Path, table: Iterable[dict[str, Any]], texts: frozenset[str]) -> None:
-    """Write rows, dicts of the same columns, at least one, as Parquet.
+    """Write rows as Parquet.
 
     Parameters
     ----------
     path : path
         The file.
     table : iterable of dict
-        The rows.
+        The rows, as for `write_csv`.
     texts : frozenset of str
         Columns that are texts; others are numbers.
 
