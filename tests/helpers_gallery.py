@@ -400,6 +400,16 @@ def _preload(mass: float, stiffness: float, lift: float, time: float) -> float:
 PRELOAD = _preload(0.11, 20, 9, OPENING)
 
 
+def _release(preload: float) -> float:
+    """Speed, rpm, at which the valve train of 20 N/mm needs a preload."""
+    low, high = 1000.0, 10000.0
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        needed = _preload(0.11, 20, 9, 75 / 360 * 60 / middle)
+        low, high = (middle, high) if needed < preload else (low, middle)
+    return low
+
+
 def _edge(angle: float, lift: float, limit: float) -> float:
     """Largest s'/tan(limit) - s of a cycloidal rise: where s'' = s'*tan(limit); deg, mm."""
     beta, slope = math.radians(angle), math.tan(math.radians(limit))
@@ -488,6 +498,10 @@ CAM_NUMBERS: dict[str, dict[str, Number]] = {
     "valve_train": {
         "motion.peak_velocity_mm_s": (15 / 8 * 9 / OPENING, 1e-12),
         "forces.spring.preload_n": (PRELOAD, 1e-8),
+    },
+    "valve_tolerances": {
+        "motion.peak_velocity_mm_s": (15 / 8 * 9 / OPENING, 1e-12),
+        "forces.release_speed_rpm": (_release(95), 1e-6),
     },
     "valve_lever": {
         "cam.start_angle_deg": (DEG * math.asin(51 / 70), 1e-12),
