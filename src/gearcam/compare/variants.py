@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import math
-import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
@@ -15,6 +14,7 @@ from gearcam.base.errors import DesignError, GearcamError, Problem
 from gearcam.designs import Design, load
 from gearcam.designs.design import path_of
 from gearcam.designs.faults import show
+from gearcam.designs.settings import listed_twice, setting_of, values_of
 from gearcam.pictures.scenes import Scene
 from gearcam.results.result import Result
 
@@ -54,34 +54,18 @@ def settings_of(texts: Sequence[str]) -> dict[str, list[Any]]:
     """Return the settings in `texts` as typed; raise `DesignError` if one cannot be read."""
     settings: dict[str, list[Any]] = {}
     for text in texts:
-        key, equals, words = (part.strip() for part in text.partition("="))
-        values = _values(words)
-        if not (path_of(key) and equals):
+        found = setting_of(text)
+        if found is None:
             raise _wrong(f"{show(text)} is not KEY=VALUE,...")
+        key, values = found[0], values_of(found[1])
         if key in settings:
             raise _wrong(f"{key} is set twice", "all values of a key in one list")
         if not values:
             raise _wrong(f"{key} has no value")
-        twice = [one for k, one in enumerate(values) if one in values[:k]]
-        if twice:
+        if twice := listed_twice(values):
             raise _wrong(f"{key}: {show(twice[0])} is listed twice", "each value once")
         settings[key] = values
     return settings
-
-
-def _values(words: str) -> list[Any]:
-    """Return values as in a design file; words may be without quotes."""
-    try:
-        return tomllib.loads(f"values = [{words}]")["values"]
-    except (ValueError, RecursionError):
-        return [_value(word.strip()) for word in words.split(",")]
-
-
-def _value(word: str) -> Any:
-    try:
-        return tomllib.loads(f"value = {word}")["value"]
-    except (ValueError, RecursionError):
-        return word
 
 
 def _wrong(message: str, allowed: str = _FORM) -> DesignError:

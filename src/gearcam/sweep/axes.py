@@ -18,7 +18,6 @@ from __future__ import annotations
 
 import math
 import re
-import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from statistics import NormalDist
@@ -27,8 +26,8 @@ from typing import Any, Final
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import DesignError, Problem
 from gearcam.base.numerals import formatted
-from gearcam.designs.design import path_of
 from gearcam.designs.faults import show
+from gearcam.designs.settings import listed_twice, setting_of, value_of, values_of
 
 FORM: Final = (
     "values 0.1,0.2, a range from:to:step, from:to, log(1, 100, 20), normal(20, 0.01) or "
@@ -115,8 +114,8 @@ def settings_of(texts: Sequence[str]) -> dict[str, str]:
     """
     settings: dict[str, str] = {}
     for text in texts:
-        key, equals, words = (part.strip() for part in text.partition("="))
-        if not (path_of(key) and equals and words):
+        key, words = setting_of(text) or ("", "")
+        if not words:
             problem = Problem(f"{show(text)} is not KEY=...", key="--set", allowed=FORM)
             raise DesignError([problem])
         if key in settings:
@@ -142,35 +141,19 @@ def _axis(key: str, written: Any) -> Axis:
         return _called(key, text, call[1], [_number(word, text) for word in call[2].split(",")])
     if ":" in text and not any(sign in text for sign in "[\"'"):
         return _range(key, text, text.split(":"))
-    return _listed(key, text, _values(text))
+    return _listed(key, text, values_of(text))
 
 
 def _listed(key: str, text: str, values: list[Any]) -> Axis:
     if not values:
         raise _UnreadableError("has no value")
-    twice = [one for k, one in enumerate(values) if one in values[:k]]
-    if twice:
+    if twice := listed_twice(values):
         raise _UnreadableError(f"{show(twice[0])} is listed twice", "each value once")
     return Axis(key=key, text=text, values=tuple(values))
 
 
-def _values(words: str) -> list[Any]:
-    """Return values as in a design file; words may be without quotes."""
-    try:
-        return tomllib.loads(f"values = [{words}]")["values"]
-    except (ValueError, RecursionError):
-        return [_value(word.strip()) for word in words.split(",")]
-
-
-def _value(word: str) -> Any:
-    try:
-        return tomllib.loads(f"value = {word}")["value"]
-    except (ValueError, RecursionError):
-        return word
-
-
 def _number(word: str, text: str) -> float | int:
-    value = _value(word.strip())
+    value = value_of(word)
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
         raise _UnreadableError(f"{show(text)}: {show(word.strip())} is not a number")
     return value
