@@ -123,6 +123,33 @@ def charts_page(title: str, charts: Sequence[Chart], text: str) -> bytes:
     return rendered("charts.html", values).encode()
 
 
+def sweep_page(title: str, words: Mapping[str, Any], content: Mapping[str, Any]) -> bytes:
+    """Return the page of a sweep.
+
+    Parameters
+    ----------
+    title : str
+        Its title.
+    words : mapping
+        ``lines`` at the top, ``reasons`` of refusals with their numbers, and names of ``constant``
+        facts.
+    content : mapping
+        Data for the script (see `gearcam.sweep.page`).
+
+    Returns
+    -------
+    bytes
+        HTML, UTF-8, including script, style and data.
+    """
+    values = {
+        "title": title,
+        "data": _embedded(content),
+        "style": _contents("page.css", "sweep.css"),
+        "script": _contents("sweep.js"),
+    }
+    return rendered("sweep.html", values | dict(words)).encode()
+
+
 def document(
     result: Result, measured: Mapping[str, Any] = MappingProxyType({}), *, seek: bool = True
 ) -> dict[str, Any]:

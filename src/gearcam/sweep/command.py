@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final
 
-from gearcam.base.errors import DesignError, Problem
+from gearcam.base.errors import DesignError, Problem, WriteError
 from gearcam.base.numerals import formatted
 from gearcam.commands import GOOD, IMPOSSIBLE, INTERRUPTED, Options, add_output, each
 from gearcam.console import complain, progress_bar, say
@@ -20,7 +20,7 @@ from gearcam.sweep.engine import Engine
 from gearcam.sweep.log import Log
 from gearcam.sweep.plan import MANY, Plan, flattened
 from gearcam.sweep.pool import MEMORY, SECONDS, Processes, default_jobs
-from gearcam.sweep.run import head_of, run, write_tables
+from gearcam.sweep.run import Tally, head_of, run, write_tables
 
 _TITLE: Final = "sweep"
 _SETTINGS: Final = ("random", "latin", "seed")
@@ -102,14 +102,44 @@ def _sweep(options: Options) -> int:
                 stopped = True
         taken = time.perf_counter() - start
         tally, files = write_tables(log, folder)
+        files += _page(plan, log, folder, tally)
     built = tally.rows - there
     rate = f" in {taken:.1f} s, {formatted(built / taken, 3)} a second" if built else ""
-    say(f"  {built} built{rate}; {tally.refused} refused, {tally.wrong} with errors")
+    say(f"  {built} built{rate}; {_counts(tally)}")
     say(f"  written to {folder}: {', '.join(one.name for one in files)}")
     if stopped:
         complain(f"interrupted: {tally.rows} of {plan.count} are there; the same command goes on")
         return INTERRUPTED
     return IMPOSSIBLE if tally.refused == tally.rows else GOOD
+
+
+def _counts(tally: Tally) -> str:
+    words = f"{tally.refused} refused, {tally.wrong} with errors"
+    return f"{words}, {tally.faults} by faults of gearcam" if tally.faults else words
+
+
+def _page(plan: Plan, log: Log, folder: Path, tally: Tally) -> list[Path]:
+    """Write the page of the rows that are there; return its file, none of too many rows.
+
+    Raises
+    ------
+    WriteError
+        If it cannot be written.
+    """
+    if not tally.rows or tally.rows > _DRAWN:
+        return []
+    from gearcam.sweep.page import PAGE, page, write_page
+
+    how = "all combinations" if plan.sampling == "grid" else f"{plan.sampling} samples"
+    lines = [
+        *(f"{axis.key} = {axis.text}" for axis in plan.axes),
+        f"{how}; {tally.rows} of {plan.count} built; {_counts(tally)}",
+    ]
+    try:
+        write_page(folder / PAGE, page(plan.base, list(log.rows()), lines))
+    except OSError as error:
+        raise WriteError(f"{folder / PAGE}: {error.strerror or error}") from error
+    return [folder / PAGE]
 
 
 def plan_of(options: Options) -> Plan:
@@ -148,6 +178,9 @@ def plan_of(options: Options) -> Plan:
         seed=seed,
     )
 
+
+_DRAWN: Final = 100_000
+"""Largest number of variants that a page shows."""
 
 _EVERY: Final = 10.0
 """Seconds between lines of progress where there is no terminal."""

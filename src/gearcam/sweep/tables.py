@@ -47,7 +47,7 @@ def records(
         yield {
             "number": row.number,
             **{key: _cell(row.values[key]) for key in keys},
-            **{name: row.facts.get(name) for name in facts},
+            **{name: row.facts.get(name) for name in facts if name not in row.values},
             "findings": " ".join(row.findings),
             "errors": row.errors,
             "refusal": row.refusal,

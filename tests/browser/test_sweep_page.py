@@ -1,0 +1,148 @@
+"""The page of a sweep in a browser."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from selenium.webdriver import ActionChains, Chrome
+from selenium.webdriver.common.by import By
+from selenium.webdriver.support.select import Select
+
+import gearcam as gc
+from gearcam.sweep.page import page
+from gearcam.sweep.rows import Row, measured
+from helpers_browser import PHONE, open_page, unfold, until
+from helpers_sweep import BASE
+
+
+@pytest.fixture(scope="module")
+def rows() -> list[Row]:
+    places = np.linspace(0.05, 0.5, 10)
+    made = [
+        measured(BASE, k, {"law.eccentricity": round(float(e), 3)}) for k, e in enumerate(places)
+    ]
+    return [*made, measured(BASE, 10, {"law.eccentricity": 3.0})]
+
+
+@pytest.fixture
+def opened(browser: Chrome, rows: list[Row], tmp_path: Path) -> Chrome:
+    file = tmp_path / "sweep.html"
+    file.write_bytes(page(BASE, rows, ["law.eccentricity = 0.05:0.5:0.05"]))
+    open_page(browser, file)
+    return browser
+
+
+def text(browser: Chrome, place: str) -> str:
+    return browser.find_element(By.ID, place).text
+
+
+def drawn(browser: Chrome, place: str) -> int:
+    """Return how many pixels of a canvas are not empty."""
+    return browser.execute_script(
+        "const one = document.getElementById(arguments[0]);"
+        "const all = one.getContext('2d').getImageData(0, 0, one.width, one.height).data;"
+        "let count = 0; for (let k = 3; k < all.length; k += 4) count += all[k] > 0;"
+        "return count;",
+        place,
+    )
+
+
+def test_all_charts_are_drawn_without_complaint(opened: Chrome) -> None:
+    assert drawn(opened, "points") > 500
+    assert drawn(opened, "axes") > 500
+    assert "11 of 11 variants are kept" in text(opened, "shown")
+    assert "refused" in text(opened, "shown")
+    assert opened.find_elements(By.CSS_SELECTOR, "#spreads canvas")
+    assert not opened.get_log("browser")
+
+
+def test_a_range_on_an_axis_keeps_its_variants(opened: Chrome) -> None:
+    axes = opened.find_element(By.ID, "axes")
+    opened.execute_script("arguments[0].scrollIntoView({block: 'center'})", axes)
+    count = len(opened.find_elements(By.CSS_SELECTOR, "#choice input:checked"))
+    left = -axes.size["width"] / 2 + axes.size["width"] / count / 2
+    # the first axis is the eccentricity, up to 3; its lower half has all but the refused one
+    ActionChains(opened).move_to_element_with_offset(
+        axes, int(left), 20
+    ).click_and_hold().move_by_offset(0, 140).release().perform()
+    until(lambda: "10 of 11" in text(opened, "shown"))
+    ActionChains(opened).move_to_element_with_offset(axes, int(left), 20).click().perform()
+    until(lambda: "11 of 11" in text(opened, "shown"))
+
+
+def test_a_click_shows_a_design_file_that_makes_these_facts(
+    opened: Chrome, rows: list[Row]
+) -> None:
+    Select(opened.find_element(By.ID, "y")).select_by_value("pair.center_distance_mm")
+    place: list[float] = opened.execute_script("return places().at(6)")
+    points = opened.find_element(By.ID, "points")
+    ActionChains(opened).move_to_element_with_offset(
+        points, int(place[0] - points.size["width"] / 2), int(place[1] - points.size["height"] / 2)
+    ).click().perform()
+    written = until(lambda: opened.find_elements(By.CSS_SELECTOR, "#variant pre"))[0].text
+    design = gc.loads(written)
+    assert design.name == f"{BASE.name}_6"
+    built: dict[str, Any] = gc.build(design).record()
+    assert {**built, "name": BASE.name} == rows[6].facts
+    assert f"gearcam build {BASE.name}_6.toml" in text(opened, "variant")
+
+
+def test_the_front_is_that_of_all_pairs(browser: Chrome, tmp_path: Path) -> None:
+    random = np.random.default_rng(5)
+    values = random.normal(size=(300, 2)).round(2)
+    made = [
+        Row(
+            number=k,
+            values={"law.eccentricity": float(k)},
+            facts={"a": float(a), "b": float(b)},
+            errors=int(k % 7 == 0),
+        )
+        for k, (a, b) in enumerate(values)
+    ]
+    file = tmp_path / "front.html"
+    file.write_bytes(page(BASE, made, [], {"a": 1.0, "b": -1.0}))
+    open_page(browser, file)
+    good = [k for k in range(300) if k % 7]
+    front = {
+        k
+        for k in good
+        if not any(
+            values[j, 0] <= values[k, 0]
+            and values[j, 1] >= values[k, 1]
+            and tuple(values[j]) != tuple(values[k])
+            for j in good
+        )
+    }
+    rows = browser.find_elements(By.CSS_SELECTOR, "#front tr td:first-child")
+    assert {int(one.text) for one in rows} == front
+    Select(browser.find_element(By.NAME, "b")).select_by_value("")
+    rows = until(lambda: browser.find_elements(By.CSS_SELECTOR, "#front tr td:first-child"))
+    least = min(values[k, 0] for k in good)
+    assert {int(one.text) for one in rows} == {k for k in good if values[k, 0] == least}
+
+
+def test_it_is_read_on_a_phone_and_in_the_dark(
+    browser: Chrome, rows: list[Row], tmp_path: Path
+) -> None:
+    file = tmp_path / "sweep.html"
+    file.write_bytes(page(BASE, rows, []))
+    open_page(browser, file, PHONE, prefers_color_scheme="dark")
+    unfold(browser)
+    wide = browser.execute_script("return document.documentElement.scrollWidth")
+    assert wide <= PHONE[0]
+    assert drawn(browser, "points") > 200
+
+
+def test_a_hundred_thousand_variants_open(browser: Chrome, tmp_path: Path) -> None:
+    made = [
+        Row(number=k, values={"law.eccentricity": k / 1e5}, facts={"a": (k * 37 % 1000) / 7.0})
+        for k in range(100_000)
+    ]
+    file = tmp_path / "many.html"
+    file.write_bytes(page(BASE, made, []))
+    assert len(json.dumps(open_page(browser, file)["numbers"])) > 100_000
+    until(lambda: "Each 5th is drawn" in text(browser, "shown"))
