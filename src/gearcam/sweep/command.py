@@ -20,7 +20,7 @@ from gearcam.sweep.engine import Engine
 from gearcam.sweep.log import Log
 from gearcam.sweep.plan import MANY, Plan, flattened
 from gearcam.sweep.pool import MEMORY, SECONDS, Processes, default_jobs
-from gearcam.sweep.run import Tally, head_of, run, write_tables
+from gearcam.sweep.run import Tally, head_of, run, write_tables, written_whole
 
 _TITLE: Final = "sweep"
 _SETTINGS: Final = ("random", "latin", "seed")
@@ -128,7 +128,7 @@ def _page(plan: Plan, log: Log, folder: Path, tally: Tally) -> list[Path]:
     """
     if not tally.rows or tally.rows > _DRAWN:
         return []
-    from gearcam.sweep.page import PAGE, page, write_page
+    from gearcam.sweep.page import PAGE, page
 
     how = "all combinations" if plan.sampling == "grid" else f"{plan.sampling} samples"
     lines = [
@@ -136,7 +136,8 @@ def _page(plan: Plan, log: Log, folder: Path, tally: Tally) -> list[Path]:
         f"{how}; {tally.rows} of {plan.count} built; {_counts(tally)}",
     ]
     try:
-        write_page(folder / PAGE, page(plan.base, list(log.rows()), lines))
+        content = page(plan.base, list(log.rows()), lines)
+        written_whole(folder / PAGE, lambda path: path.write_bytes(content))
     except OSError as error:
         raise WriteError(f"{folder / PAGE}: {error.strerror or error}") from error
     return [folder / PAGE]

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Any, Final
 
 from gearcam.designs.design import Design, path_of
@@ -150,19 +149,3 @@ def file_text(base: Design, keys: Sequence[str]) -> str:
 
 def _has(place: Any, step: str | int) -> bool:
     return step < len(place) if isinstance(step, int) else step in place
-
-
-def write_page(path: Path, content: bytes) -> None:
-    """Write the page, whole or not at all.
-
-    Raises
-    ------
-    OSError
-        If it cannot be written.
-    """
-    part = path.with_suffix(".part")
-    try:
-        part.write_bytes(content)
-        part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)

@@ -122,11 +122,11 @@ def write_tables(log: Log, folder: Path) -> tuple[Tally, list[Path]]:
     keys, facts = list(first.values), list(tally.facts)
     written = [folder / CSV]
     try:
-        _whole(folder / CSV, lambda path: write_csv(path, records(log.rows(), keys, facts)))
+        written_whole(folder / CSV, lambda path: write_csv(path, records(log.rows(), keys, facts)))
         if can_write_parquet():
             texts = tally.texts | {name for name, text in tally.facts.items() if text}
             texts |= {"findings", "refusal"}
-            _whole(
+            written_whole(
                 folder / PARQUET,
                 lambda path: write_parquet(
                     path, records(log.rows(), keys, facts), frozenset(texts)
@@ -138,8 +138,21 @@ def write_tables(log: Log, folder: Path) -> tuple[Tally, list[Path]]:
     return tally, written
 
 
-def _whole(path: Path, write: Callable[[Path], None]) -> None:
-    """Write a file whole or not at all."""
+def written_whole(path: Path, write: Callable[[Path], Any]) -> None:
+    """Write a file whole or not at all.
+
+    Parameters
+    ----------
+    path : path
+        The file.
+    write : callable
+        ``write(part)`` writes it to another place.
+
+    Raises
+    ------
+    OSError
+        If it cannot be written.
+    """
     part = path.with_suffix(f"{path.suffix}.part")
     try:
         write(part)
