@@ -17,7 +17,7 @@
 # make help       list these targets
 #
 # The first call needs a network and Python 3.11 or later; PYTHON=/path/to/python selects one.
-# `make test` installs about 440 MB, and chromium if it runs as root on Debian.
+# `make test` installs about 830 MB, and chromium if it runs as root on Debian.
 
 SHELL  := /bin/sh
 VENV   := .venv
@@ -28,7 +28,7 @@ PYTHON ?=
 
 # Sections of requirements.lock to install; `make matrix` sets others.
 RUN    := run install
-TEST   := $(RUN) step plot test
+TEST   := $(RUN) step plot sweep optimize test
 
 # Two processes with a thread each, as the command has; what was compiled is kept, as compiling the
 # tests anew takes 10 s.

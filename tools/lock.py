@@ -25,6 +25,8 @@ SECTIONS = {
     "install": ["--group", "install"],
     "step": ["pyproject.toml", "--extra", "step"],
     "plot": ["pyproject.toml", "--extra", "plot"],
+    "sweep": ["pyproject.toml", "--extra", "sweep"],
+    "optimize": ["pyproject.toml", "--extra", "optimize"],
     "test": ["--group", "test"],
     "lint": ["--group", "lint"],
     "bench": ["--group", "bench"],
@@ -32,6 +34,7 @@ SECTIONS = {
     "lock": ["--group", "lock"],
 }
 TOOLS = ["--group", "install", "--group", "test"]
+_MORE = ["--extra", "sweep", "--extra", "optimize"]
 HEAD = """\
 # Written by `make lock`; installed by the Makefile, section by section.
 """
@@ -72,7 +75,7 @@ def sections(folder: Path) -> dict[str, list[str]]:
         known = [package for packages in made.values() for package in packages]
         made[name] = [package for package in resolve(*wanted, *held) if not has(known, package)]
     held = hold(folder, made["install"] + made["test"])
-    lowest = [*SECTIONS["step"], "--extra", "plot", *TOOLS, "--resolution", "lowest-direct"]
+    lowest = [*SECTIONS["step"], "--extra", "plot", *_MORE, *TOOLS, "--resolution", "lowest-direct"]
     return made | {"lowest": resolve(*lowest, *held)}
 
 

@@ -261,6 +261,12 @@ _COMMANDS: Final = (
         deferred("gearcam.sweep.command:arguments"),
     ),
     Command(
+        "optimize",
+        "Search the best of a design's variants; write DIR/best.toml and optimize.html.",
+        deferred("gearcam.sweep.optimize:optimize"),
+        deferred("gearcam.sweep.optimize:arguments"),
+    ),
+    Command(
         "view",
         "Show a design in the browser; update the page when the file is saved.",
         deferred("gearcam.view.command:view"),

@@ -122,6 +122,8 @@ class Param:
         Whether a single value may be given for two, such as both wheels.
     order : str
         Which of two values comes first.
+    alone : bool
+        Whether a single value may be given for a list of one.
     function : bool
         Whether Python functions may be given instead of a text.
     nested : tuple of str
@@ -151,6 +153,7 @@ class Param:
     word: str = ""
     both: bool = False
     order: str = "driver first"
+    alone: bool = False
     function: bool = False
     nested: tuple[str, ...] = ()
     when: tuple[str, ...] = ()

@@ -150,6 +150,8 @@ def allowed(entry: Key, *, item: bool = False) -> str:
     param = entry.param
     if param.both:
         return f"{_single(entry)}, or two of them, {param.order}"
+    if param.alone:
+        return f"{_single(entry)}, or a list of them"
     if entry.length:
         count = f"{entry.length} "
     elif param.min_length:

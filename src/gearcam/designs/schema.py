@@ -207,9 +207,10 @@ def _property(key: Key) -> Schema:
     single = _single(key)
     if key.length is None:
         return single | words
+    alone = key.param.both or key.param.alone
     counts = {"minItems": key.length or key.param.min_length, "maxItems": key.length}
     many = {"type": "array", "items": single} | {name: n for name, n in counts.items() if n}
-    return words | {"anyOf": [single, many]} if key.param.both else many | words
+    return words | {"anyOf": [single, many]} if alone else many | words
 
 
 def _single(key: Key) -> Schema:

@@ -62,6 +62,8 @@ class Key:
         """Convert a valid value from the unit of the file into mm or rad; lists become tuples."""
         if self.param.both and not isinstance(value, list | tuple):
             value = (value, value)
+        if self.param.alone and not isinstance(value, list | tuple):
+            value = (value,)
         if isinstance(value, list | tuple):
             return tuple(self._inward(item) for item in value)
         return self._inward(value)
@@ -76,6 +78,8 @@ class Key:
         value = value.tolist() if hasattr(value, "tolist") else value
         if self.param.both and not isinstance(value, list | tuple):
             value = (value, value)
+        if self.param.alone and isinstance(value, list | tuple) and len(value) == 1:
+            value = value[0]
         if isinstance(value, list | tuple):
             return [self._outward(item) for item in value]
         return self._outward(value)

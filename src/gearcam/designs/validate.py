@@ -74,7 +74,8 @@ def _of_value(key: Key, value: Any, path: Path) -> Iterator[Fault]:
     if key.param.nested and isinstance(value, Mapping | str):
         return  # it is no design: its faults have been found
     faults: list[Fault | None] = []
-    if key.length is None or (key.param.both and not isinstance(value, list)):
+    alone = key.param.both or key.param.alone
+    if key.length is None or (alone and not isinstance(value, list)):
         faults = [value_fault(path, value, key, item=key.length is not None)]
     else:
         items = enumerate(value if isinstance(value, list) else ())

@@ -1,4 +1,4 @@
-"""What several kinds of design have alike: the study of error against run time."""
+"""What several kinds of design have alike: the study of error against run time, and goals."""
 
 from __future__ import annotations
 
@@ -40,6 +40,61 @@ class AccuracySpec(ShortRepr):
     repeat: int = param(
         COUNT, default=5, ge=1, le=1000, doc="number of runs; the median time is reported"
     )
+
+
+METHODS: Final = ("random", "nsga2", "tpe", "scipy")
+"""How `gearcam optimize` may search."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class GoalSpec(ShortRepr):
+    """What is to be least or largest: of a cam's sizes that are "solve", and of variants.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.GoalSpec(minimize=("pair.center_distance_mm",), trials=300)
+    GoalSpec(minimize=('pair.center_distance_mm',), trials=300)
+    """
+
+    minimize: tuple[str, ...] | None = param(
+        TEXT,
+        default=None,
+        min_length=1,
+        alone=True,
+        example="cam.profile.radius_mm.max",
+        doc="fact that is to be least, by its name in summary.json",
+    )
+    maximize: tuple[str, ...] | None = param(
+        TEXT,
+        default=None,
+        min_length=1,
+        alone=True,
+        example="cam.curvature.profile_convex_min_mm",
+        doc="fact that is to be largest",
+    )
+    method: str | None = param(
+        TEXT,
+        default=None,
+        choices=METHODS,
+        example="scipy",
+        doc="how `gearcam optimize` searches; by the kind of variables if left out",
+    )
+    trials: int = param(
+        COUNT, default=200, ge=1, le=1_000_000, doc="largest number of variants that it builds"
+    )
+    seed: int = param(COUNT, default=1, ge=0, le=10**9, doc="of its random numbers")
+    findings: str = param(
+        TEXT,
+        default="error",
+        choices=("error", "warning"),
+        doc="findings that the best must not have: errors, or warnings too",
+    )
+
+    @property
+    def signs(self) -> dict[str, float]:
+        """1 of facts that are to be least, -1 of those that are to be largest, by name."""
+        return dict.fromkeys(self.minimize or (), 1.0) | dict.fromkeys(self.maximize or (), -1.0)
 
 
 @cache

@@ -13,9 +13,9 @@ from gearcam.base.errors import DesignError, Problem, WriteError
 from gearcam.base.numerals import formatted
 from gearcam.commands import GOOD, IMPOSSIBLE, INTERRUPTED, Options, add_output, each
 from gearcam.console import complain, progress_bar, say
-from gearcam.designs.design import load
+from gearcam.designs.design import Design, load
 from gearcam.designs.family import family_of
-from gearcam.sweep.axes import FORM, axes_of, settings_of
+from gearcam.sweep.axes import FORM, Axis, axes_of, settings_of
 from gearcam.sweep.engine import Engine
 from gearcam.sweep.log import Log
 from gearcam.sweep.plan import MANY, Plan, flattened
@@ -151,15 +151,8 @@ def plan_of(options: Options) -> Plan:
     DesignError
         If nothing is to be varied, or what is given cannot be read.
     """
-    file = options["file"]
-    base, table = load(file), dict(family_of(file).get(_TITLE, {}))
-    given = {name: table.pop(name, None) for name in _SETTINGS}
+    base, axes, given = axes_given(options)
     given |= {name: options[name] for name in _SETTINGS if options[name] is not None}
-    axes = {one.key: one for one in axes_of(flattened(table), _TITLE)}
-    axes |= {one.key: one for one in axes_of(settings_of(options["settings"]))}
-    if not axes:
-        problem = Problem("nothing is to be varied", allowed="--set KEY=..., or a table [sweep]")
-        raise DesignError([problem])
     for name in ("random", "latin"):
         if given[name] is not None and not (isinstance(given[name], int) and given[name] > 0):
             problem = Problem(
@@ -173,11 +166,35 @@ def plan_of(options: Options) -> Plan:
     seed = 1 if given["seed"] is None else given["seed"]
     return Plan(
         base=base,
-        axes=tuple(axes.values()),
+        axes=axes,
         sampling=sampling,
         samples=given[sampling] if sampling != "grid" else 0,
         seed=seed,
     )
+
+
+def axes_given(options: Options) -> tuple[Design, tuple[Axis, ...], dict[str, Any]]:
+    """Return the design of a command's file, what is varied, and the other keys of ``[sweep]``.
+
+    Parameters
+    ----------
+    options : mapping
+        With ``file`` and ``settings``, which come before those of the file.
+
+    Raises
+    ------
+    DesignError
+        If nothing is to be varied, or what is given cannot be read.
+    """
+    file = options["file"]
+    base, table = load(file), dict(family_of(file).get(_TITLE, {}))
+    given = {name: table.pop(name, None) for name in _SETTINGS}
+    axes = {one.key: one for one in axes_of(flattened(table), _TITLE)}
+    axes |= {one.key: one for one in axes_of(settings_of(options["settings"]))}
+    if not axes:
+        problem = Problem("nothing is to be varied", allowed="--set KEY=..., or a table [sweep]")
+        raise DesignError([problem])
+    return base, tuple(axes.values()), given
 
 
 _DRAWN: Final = 100_000

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import Any
 
 from gearcam.base.display import ShortRepr
@@ -39,6 +40,17 @@ class Engine(ABC, ShortRepr):
         jobs : iterable of (int, dict)
             Numbers and values of variants; read as they are needed.
         """
+
+    @contextmanager
+    def session(self, base: Design) -> Iterator[Callable[[Sequence[Job]], Iterator[Row]]]:
+        """Yield a function that yields the rows of some variants, for several lots of them.
+
+        Parameters
+        ----------
+        base : Design
+            The design whose keys get other values.
+        """
+        yield lambda jobs: self.run(base, jobs)
 
 
 def chunk_size(mean: float, most: int = MOST, seconds: float = CHUNK_S) -> int:

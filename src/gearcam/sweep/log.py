@@ -32,6 +32,8 @@ class Log:
         Folder of the file; created if it is missing.
     head : dict
         What tells the sweep from others.
+    name : str
+        Name of the file.
 
     Raises
     ------
@@ -41,8 +43,10 @@ class Log:
         If the file cannot be written.
     """
 
-    def __init__(self, folder: str | os.PathLike[str], head: dict[str, Any]) -> None:
-        self.path = Path(folder) / LOG
+    def __init__(
+        self, folder: str | os.PathLike[str], head: dict[str, Any], name: str = LOG
+    ) -> None:
+        self.path = Path(folder) / name
         self.head = head
         self._places: dict[int, int] = {}
         try:

@@ -136,7 +136,8 @@ def file_text(base: Design, keys: Sequence[str]) -> str:
     document["name"] = "@@name@@"
     full = base.to_dict()
     for number, key in enumerate(keys):
-        place, whole = document, full
+        place: Any = document
+        whole: Any = full
         *steps, last = path_of(key)
         for step in steps:
             inner = whole[step] if _has(whole, step) else {}

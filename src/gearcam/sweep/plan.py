@@ -91,9 +91,18 @@ class Plan(ShortRepr):
                 found[axis.key] = axis.values[place]
             return {axis.key: found[axis.key] for axis in self.axes}
         shares = zip(self.axes, self._shares[number].tolist(), strict=True)
-        return {axis.key: self._value(axis, u) for axis, u in shares}
+        return {axis.key: self.value(axis, u) for axis, u in shares}
 
-    def _value(self, axis: Axis, u: float) -> Any:
+    def value(self, axis: Axis, u: float) -> Any:
+        """Return a value of an axis, whole for keys of whole numbers.
+
+        Parameters
+        ----------
+        axis : Axis
+            One of the axes.
+        u : float
+            Share of its range, in [0, 1).
+        """
         value = axis.at(u)
         return round(value) if axis.sampled and axis.key in self._counts else value
 
@@ -102,7 +111,7 @@ class Plan(ShortRepr):
         first: DesignError | None = None
         for u in _LOOKS:
             try:
-                self.base.with_({axis.key: self._value(axis, u)})
+                self.base.with_({axis.key: self.value(axis, u)})
             except DesignError as error:
                 first = first or error
             else:

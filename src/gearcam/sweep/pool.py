@@ -14,8 +14,8 @@ import subprocess
 import sys
 import threading
 from collections import deque
-from collections.abc import Iterable, Iterator
-from contextlib import suppress
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
@@ -35,6 +35,9 @@ _BEGIN: Final = (
     "import sys; sys.path.insert(0, sys.argv[1]); from gearcam.sweep.worker import main; main()"
 )
 """What a process runs, given the folder of the package."""
+
+_LOT: Final = 4
+"""Jobs of a lot that one process takes at once: others wait for the end of the lot."""
 
 _LOOK: Final = 0.5
 """Seconds after which a wait for rows looks for interruptions."""
@@ -77,7 +80,7 @@ class Processes(Engine):
                 task=pickle.dumps((base, self.measure)),
             )
         )
-        source = _Source(iter(jobs))
+        source = jobs if isinstance(jobs, _Lots) else _Source(iter(jobs))
         found: queue.SimpleQueue[Row | BaseException | None] = queue.SimpleQueue()
         leaders = [_Leader(source, found, setup, self.seconds) for _ in range(self.jobs)]
         for one in leaders:
@@ -99,6 +102,47 @@ class Processes(Engine):
             for one in leaders:
                 one.thread.join()
 
+    @contextmanager
+    def session(self, base: Design) -> Iterator[Callable[[Sequence[Job]], Iterator[Row]]]:
+        """Yield a function for several lots, built by the same processes (see `Engine`)."""
+        lots = _Lots()
+        rows = self.run(base, lots)
+
+        def built(jobs: Sequence[Job]) -> Iterator[Row]:
+            lots.put(jobs)
+            for _ in jobs:
+                yield next(rows)
+
+        try:
+            yield built
+        finally:
+            lots.put(None)
+            rows.close()  # pyright: ignore
+
+
+class _Lots(Iterable[Job]):
+    """Jobs that come in lots; it is empty between them, and at its end."""
+
+    def __init__(self) -> None:
+        self._jobs: deque[Job] = deque()
+        self._more, self._ended = threading.Condition(), False
+
+    def __iter__(self) -> Iterator[Job]:
+        while chunk := self.take(1):
+            yield from chunk
+
+    def put(self, jobs: Sequence[Job] | None) -> None:
+        """Give jobs; None: there are no more."""
+        with self._more:
+            self._jobs.extend(jobs or ())
+            self._ended |= jobs is None
+            self._more.notify_all()
+
+    def take(self, count: int) -> list[Job]:
+        with self._more:
+            self._more.wait_for(lambda: self._jobs or self._ended)
+            return [self._jobs.popleft() for _ in range(min(count, _LOT, len(self._jobs)))]
+
 
 class _Source:
     """Jobs for several threads."""
@@ -116,7 +160,7 @@ class _Leader:
 
     def __init__(
         self,
-        source: _Source,
+        source: _Source | _Lots,
         found: queue.SimpleQueue[Row | BaseException | None],
         setup: bytes,
         seconds: float,

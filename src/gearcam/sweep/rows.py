@@ -10,6 +10,7 @@ from typing import Any, Final
 from gearcam import build
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import GearcamError
+from gearcam.base.findings import Finding
 from gearcam.designs.design import Design
 
 TOO_LARGE: Final = "it needs more memory than a variant may have"
@@ -29,8 +30,11 @@ class Row(ShortRepr):
         Facts by names, in their units; empty if it is refused.
     findings : tuple of str
         Codes of findings, errors first.
-    errors : int
-        How many of them are errors.
+    errors, warnings : int
+        How many of them are errors and warnings.
+    excess : float
+        By how much their limits are exceeded, as shares of them: the sum over errors, and over
+        warnings if the design counts them (``[goal] findings``).
     refusal : str
         Why it cannot be made; empty if it can.
     fault : bool
@@ -44,6 +48,8 @@ class Row(ShortRepr):
     facts: Mapping[str, float | str] = field(default_factory=dict)
     findings: tuple[str, ...] = ()
     errors: int = 0
+    warnings: int = 0
+    excess: float = 0.0
     refusal: str = ""
     fault: bool = False
     time_s: float = 0.0
@@ -89,4 +95,15 @@ def measured(base: Design, number: int, values: Mapping[str, Any]) -> Row:
         return row(refusal=f"a fault of gearcam: {type(error).__name__}: {error}", fault=True)
     codes = tuple(dict.fromkeys(one.code for one in findings))
     errors = sum(one.severity == "error" for one in findings)
-    return row(facts=facts, findings=codes, errors=errors)
+    warnings = sum(one.severity == "warning" for one in findings)
+    goal: Any = getattr(base, "goal", None)
+    counted = ("error", "warning")[: 1 + (goal is not None and goal.findings == "warning")]
+    excess = sum(_excess(one) for one in findings if one.severity in counted)
+    return row(facts=facts, findings=codes, errors=errors, warnings=warnings, excess=excess)
+
+
+def _excess(finding: Finding) -> float:
+    """Return by how much a finding is beyond its limit, as a share of it; 1 without numbers."""
+    if finding.value is None or not finding.limit:
+        return 1.0
+    return max(abs(finding.value / finding.limit - 1.0), 1e-12)

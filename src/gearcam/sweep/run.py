@@ -14,8 +14,6 @@ from gearcam.sweep.log import Log
 from gearcam.sweep.plan import Plan
 from gearcam.sweep.rows import Row
 from gearcam.sweep.tables import (
-    CSV,
-    PARQUET,
     can_write_parquet,
     records,
     write_csv,
@@ -91,7 +89,7 @@ def head_of(plan: Plan) -> dict[str, Any]:
     return {"sweep": plan.mark, "file": plan.base.source, "variants": plan.count}
 
 
-def write_tables(log: Log, folder: Path) -> tuple[Tally, list[Path]]:
+def write_tables(log: Log, folder: Path, stem: str = "sweep") -> tuple[Tally, list[Path]]:
     """Write the rows of a log as tables.
 
     Parameters
@@ -100,6 +98,8 @@ def write_tables(log: Log, folder: Path) -> tuple[Tally, list[Path]]:
         With the rows.
     folder : path
         Where to write.
+    stem : str
+        Names of the files without their ends.
 
     Returns
     -------
@@ -120,19 +120,20 @@ def write_tables(log: Log, folder: Path) -> tuple[Tally, list[Path]]:
         return tally, []
     first = next(log.rows())
     keys, facts = list(first.values), list(tally.facts)
-    written = [folder / CSV]
+    table, more = folder / f"{stem}.csv", folder / f"{stem}.parquet"
+    written = [table]
     try:
-        written_whole(folder / CSV, lambda path: write_csv(path, records(log.rows(), keys, facts)))
+        written_whole(table, lambda path: write_csv(path, records(log.rows(), keys, facts)))
         if can_write_parquet():
             texts = tally.texts | {name for name, text in tally.facts.items() if text}
             texts |= {"findings", "refusal"}
             written_whole(
-                folder / PARQUET,
+                more,
                 lambda path: write_parquet(
                     path, records(log.rows(), keys, facts), frozenset(texts)
                 ),
             )
-            written.append(folder / PARQUET)
+            written.append(more)
     except OSError as error:
         raise WriteError(f"{error.filename or folder}: {error.strerror or error}") from error
     return tally, written

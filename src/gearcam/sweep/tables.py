@@ -16,9 +16,6 @@ from typing import Any, Final
 
 from gearcam.sweep.rows import Row
 
-CSV: Final = "sweep.csv"
-PARQUET: Final = "sweep.parquet"
-
 _BATCH: Final = 5000
 """Rows of Parquet that are in memory at once."""
 

@@ -20,15 +20,15 @@ from gearcam.designs.validate import placed_faults
 from gearcam.kinds.cam.forms.base import FORMS, VARIANTS
 from gearcam.kinds.cam.motion import circumstances, motion_of, whole_turns
 from gearcam.kinds.cam.tables import (
+    GOALS,
     BoundsSpec,
     CamBlank,
     CamOutputSpec,
     FollowSpec,
     ForcesSpec,
-    GoalSpec,
     PrecisionSpec,
 )
-from gearcam.kinds.shared import AccuracySpec
+from gearcam.kinds.shared import AccuracySpec, GoalSpec
 from gearcam.laws.motion.base import MOTION_LAWS
 from gearcam.laws.phases_of_lift import PHASES, RisePhase
 from gearcam.mechanics.drive import DriveSpec
@@ -92,7 +92,7 @@ class CamDesign(Design):
     bounds : BoundsSpec
         Ranges of sizes that are solved for.
     goal : GoalSpec
-        What their solution has least or most of.
+        What their solution, or that of `gearcam optimize`, has least or most of.
 
     Examples
     --------
@@ -238,6 +238,8 @@ def _unsolvable(document: Mapping[str, Any], asked: Sequence[str]) -> Iterator[F
         if not FORMS[form].solvable:
             message, known = f'"solve" is not available for a {form} cam', "a length"
             yield Fault((title, name), message, allowed=known)
+    if asked:
+        yield from _unknown_goals(document.get("goal"))
     bounds = document.get("bounds")
     ranges = bounds if isinstance(bounds, Mapping) else {}
     names = [key.split(".")[1] for key in asked]
@@ -269,6 +271,21 @@ def _number(document: Mapping[str, Any], key: str) -> float:
     table = document.get(title)
     value = table.get(name) if isinstance(table, Mapping) else None
     return float(value) if isinstance(value, int | float) and value > 0.0 else 0.0
+
+
+def _unknown_goals(goal: Any) -> Iterator[Fault]:
+    """Yield goals that sizes cannot be solved for."""
+    known, found = ", ".join(GOALS), list[str]()
+    for key in ("minimize", "maximize"):
+        given = goal.get(key, []) if isinstance(goal, Mapping) else []
+        for name in [given] if isinstance(given, str) else given:
+            if name not in GOALS:
+                message = f"{show(name)}: sizes are not solved for this fact"
+                yield Fault(("goal", key), message, name, known)
+            elif found:
+                message = f"{show(name)}: sizes are solved for one goal"
+                yield Fault(("goal", key), message, name, f"{found[0]} alone")
+            found.append(name)
 
 
 def _load_faults(found: Examined, document: Mapping[str, Any]) -> Iterator[Fault]:

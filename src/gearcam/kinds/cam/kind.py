@@ -25,10 +25,9 @@ from gearcam.kinds.cam.tables import (
     BoundsSpec,
     FollowSpec,
     ForcesSpec,
-    GoalSpec,
     PrecisionSpec,
 )
-from gearcam.kinds.shared import AccuracySpec
+from gearcam.kinds.shared import AccuracySpec, GoalSpec
 from gearcam.mechanics.friction import FrictionSpec
 from gearcam.mechanics.mass import GravitySpec, MassSpec
 from gearcam.mechanics.material import MaterialSpec

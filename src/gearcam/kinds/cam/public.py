@@ -9,8 +9,15 @@ from gearcam.kinds.cam.forms.conjugate import ConjugateFollower, ConjugateSpec
 from gearcam.kinds.cam.forms.groove import GrooveFollower, GrooveSpec
 from gearcam.kinds.cam.forms.translating import PlateBlank, PlateOutput, PlateSpec
 from gearcam.kinds.cam.forms.yoke import YokeFollower, YokeSpec
-from gearcam.kinds.cam.tables import CamBlank, CamOutputSpec, FollowSpec, ForcesSpec, PrecisionSpec
-from gearcam.kinds.shared import AccuracySpec
+from gearcam.kinds.cam.tables import (
+    BoundsSpec,
+    CamBlank,
+    CamOutputSpec,
+    FollowSpec,
+    ForcesSpec,
+    PrecisionSpec,
+)
+from gearcam.kinds.shared import AccuracySpec, GoalSpec
 from gearcam.laws.motion_formula import MotionFormula
 from gearcam.laws.motion_table import MotionTable
 from gearcam.laws.phases_of_lift import DwellPhase, ReturnPhase, RisePhase, SegmentPhase
@@ -23,12 +30,13 @@ from gearcam.mechanics.spring import SpringSpec
 from gearcam.parts.blank import WheelBlank
 
 __all__ = [
-    "AccuracySpec", "CamBlank", "CamDesign", "CamOutputSpec", "CamResult", "CamSpec",
+    "AccuracySpec", "BoundsSpec", "CamBlank", "CamDesign", "CamOutputSpec", "CamResult", "CamSpec",
     "ConjugateFollower", "ConjugateSpec", "DriveSpec", "DwellPhase", "FollowSpec", "FollowerSpec",
-    "ForcesSpec", "FrictionSpec", "GravitySpec", "GrooveFollower", "GrooveSpec", "LoadSpec",
-    "MassSpec", "MaterialSpec", "MotionFormula", "MotionTable", "PlateBlank", "PlateFollower",
-    "PlateOutput", "PlateSpec", "PrecisionSpec", "ReturnPhase", "RisePhase", "SegmentPhase",
-    "SlideDriveSpec", "SlideLoadSpec", "SpringSpec", "WheelBlank", "YokeFollower", "YokeSpec",
+    "ForcesSpec", "FrictionSpec", "GoalSpec", "GravitySpec", "GrooveFollower", "GrooveSpec",
+    "LoadSpec", "MassSpec", "MaterialSpec", "MotionFormula", "MotionTable", "PlateBlank",
+    "PlateFollower", "PlateOutput", "PlateSpec", "PrecisionSpec", "ReturnPhase", "RisePhase",
+    "SegmentPhase", "SlideDriveSpec", "SlideLoadSpec", "SpringSpec", "WheelBlank", "YokeFollower",
+    "YokeSpec",
 ]  # fmt: skip
 
 PUBLIC = {name: globals()[name] for name in __all__}

@@ -418,9 +418,9 @@ class Task:
         )
 
     def _goal(self) -> tuple[str, float]:
-        goal = self.design.goal
-        named = goal.maximize or goal.minimize or next(iter(GOALS))
-        return _GOALS[named], -1.0 if goal.maximize else 1.0
+        signs = self.design.goal.signs or {next(iter(GOALS)): 1.0}
+        ((named, sign),) = signs.items()
+        return _GOALS[named], sign
 
     def keeps(self, result: CamResult) -> bool:
         """Return whether a cam has no finding about the limits.

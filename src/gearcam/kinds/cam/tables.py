@@ -24,7 +24,7 @@ from gearcam.base.quantities import (
     params_of,
     positive_length,
 )
-from gearcam.base.rules import Breach, excludes
+from gearcam.base.rules import Breach
 from gearcam.designs.outputs import FORMATS, OutputSpec, files_param, pose_param, studies_param
 from gearcam.parts.blank import WheelBlank
 
@@ -280,33 +280,4 @@ GOALS: Final = {
     "cam.pressure_angle_deg.return_max": "largest pressure angle of the returns",
     "cam.curvature.profile_convex_min_mm": "least convex radius of the profile",
 }
-"""What a solved cam may have least or most of."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class GoalSpec(ShortRepr):
-    """What is least, or largest, of the cams whose sizes keep all limits.
-
-    Examples
-    --------
-    >>> import gearcam as gc
-    >>> gc.GoalSpec(maximize="cam.curvature.profile_convex_min_mm")
-    GoalSpec(maximize='cam.curvature.profile_convex_min_mm')
-    """
-
-    minimize: str | None = param(
-        TEXT,
-        default=None,
-        choices=tuple(GOALS),
-        example="cam.profile.radius_mm.max",
-        doc="fact that is to be least; the largest radius of the profile if left out",
-    )
-    maximize: str | None = param(
-        TEXT,
-        default=None,
-        choices=tuple(GOALS),
-        example="cam.curvature.profile_convex_min_mm",
-        doc="fact that is to be largest",
-    )
-
-    rules = (excludes("maximize", "minimize"),)
+"""What a cam whose sizes are solved for may have least or most of."""

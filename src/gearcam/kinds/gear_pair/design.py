@@ -18,7 +18,7 @@ from gearcam.designs.outputs import OutputSpec, pose_param, studies_param
 from gearcam.designs.table import Table, table_of
 from gearcam.designs.validate import faults_of, parameters_of
 from gearcam.gears.spec import PairSpec, Rack, RingSpec, StepsSpec
-from gearcam.kinds.shared import AccuracySpec
+from gearcam.kinds.shared import AccuracySpec, GoalSpec
 from gearcam.laws.ratio.base import LAWS
 from gearcam.mechanics.drive import DriveSpec
 from gearcam.meshing.settings import ErrorsSpec, MeshingSpec
@@ -89,6 +89,8 @@ class GearPairDesign(Design):
         Phases and mounting of a meshing study.
     errors : ErrorsSpec
         Errors of mounting and making, for their study.
+    goal : GoalSpec
+        What `gearcam optimize` seeks.
     accuracy : AccuracySpec
         Settings of the study of error against run time.
 
@@ -118,6 +120,7 @@ class GearPairDesign(Design):
     meshing: MeshingSpec = field(default_factory=MeshingSpec)
     errors: ErrorsSpec = field(default_factory=ErrorsSpec)
     accuracy: AccuracySpec = field(default_factory=AccuracySpec)
+    goal: GoalSpec = field(default_factory=GoalSpec)
 
     @property
     def law_type(self) -> str:

@@ -23,7 +23,7 @@ from gearcam.kinds.gear_pair.design import (
     planetary,
     problems,
 )
-from gearcam.kinds.shared import AccuracySpec
+from gearcam.kinds.shared import AccuracySpec, GoalSpec
 from gearcam.mechanics.drive import DriveSpec
 from gearcam.meshing.settings import ERRORS, ErrorsSpec, MeshingSpec
 from gearcam.meshing.settings import KIND as MESHING
@@ -61,6 +61,7 @@ KIND: Final = Kind(
             "meshing": MeshingSpec,
             "errors": ErrorsSpec,
             "accuracy": AccuracySpec,
+            "goal": GoalSpec,
         }.items()
     },
     required=("pair",),

@@ -5,13 +5,14 @@ from __future__ import annotations
 from gearcam.gears.spec import PairSpec, Rack, RingSpec, StepsSpec
 from gearcam.kinds.gear_pair.design import GearPairDesign, PairOutputSpec
 from gearcam.kinds.gear_pair.result import GearPairResult
-from gearcam.kinds.shared import AccuracySpec
+from gearcam.kinds.shared import AccuracySpec, GoalSpec
 from gearcam.mechanics.drive import DriveSpec
 from gearcam.meshing.settings import ErrorsSpec, MeshingSpec
 from gearcam.parts.blank import Blank
 
 __all__ = [
     "AccuracySpec", "Blank", "DriveSpec", "ErrorsSpec", "GearPairDesign", "GearPairResult",
+    "GoalSpec",
     "MeshingSpec", "PairOutputSpec", "PairSpec", "Rack", "RingSpec", "StepsSpec",
 ]  # fmt: skip
 

@@ -1,0 +1,191 @@
+"""The best of a family: variants that have least or most of some facts, and break no limit.
+
+A *trial* is a variant that a method asks for. What the log has already is not built again: methods
+ask for the same trials again, so that a search that was ended goes on.
+
+Refused: goals that are no facts of the design, and searches in which no variant can be taken.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+import numpy as np
+
+from gearcam.base.display import ShortRepr
+from gearcam.base.errors import DesignError, InfeasibleError, Problem
+from gearcam.designs.faults import show
+from gearcam.designs.slips import nearest
+from gearcam.numeric.arrays import Array
+from gearcam.sweep.engine import Job
+from gearcam.sweep.log import Log
+from gearcam.sweep.methods import Spent
+from gearcam.sweep.plan import Plan
+from gearcam.sweep.rows import Row
+
+_REFUSED: Final = 1e6
+"""Violation of variants that cannot be made: above that of any finding."""
+
+_NONE: Final = 1e12
+"""Goal of variants that cannot be made."""
+
+FRONT: Final = 20
+"""Largest number of designs that are written of several goals."""
+
+
+@dataclass(eq=False, kw_only=True)
+class Trials(ShortRepr):
+    """The trials of a search.
+
+    Parameters
+    ----------
+    plan : Plan
+        What is varied.
+    signs : mapping of str to float
+        1 of facts that are to be least, -1 of those that are to be largest.
+    warnings : bool
+        Whether the best must not have warnings either.
+    most : int
+        Largest number of trials.
+    log : Log
+        Rows that are there, and new ones.
+    build : callable
+        ``build(jobs)`` yields the rows of variants.
+    progress : callable, optional
+        Called with the trials so far, their largest number, and the best in words.
+    rows : list of Row
+        The trials so far.
+    """
+
+    plan: Plan
+    signs: Mapping[str, float]
+    warnings: bool
+    most: int
+    log: Log
+    build: Callable[[Sequence[Job]], Iterator[Row]]
+    progress: Callable[[int, int], Any] | None = None
+    rows: list[Row] = field(default_factory=list)
+
+    def evaluate(self, points: Array) -> tuple[Array, Array]:
+        """Return goals, (n, m), and violations, (n,), of points of the unit cube, (n, d).
+
+        Raises
+        ------
+        Spent
+            If all trials are used.
+        """
+        if len(self.rows) >= self.most:
+            raise Spent
+        new = self._rows_of(points[: self.most - len(self.rows)])
+        goals = np.full((len(points), len(self.signs)), _NONE)
+        broken = np.full(len(points), _REFUSED)
+        for place, row in enumerate(new):
+            if row.made:
+                goals[place] = [sign * _fact(row, name) for name, sign in self.signs.items()]
+                broken[place] = self.broken(row)
+        return goals, broken
+
+    def _rows_of(self, points: Array) -> list[Row]:
+        """Return the rows of points: from the log, or built and appended to it."""
+        axes, first = self.plan.axes, len(self.rows)
+        values = [
+            {axis.key: self.plan.value(axis, float(u)) for axis, u in zip(axes, one, strict=True)}
+            for one in points
+        ]
+        numbers = range(first, first + len(values))
+        jobs = list(zip(numbers, values, strict=True))
+        known = {
+            number: row
+            for number, one in jobs
+            if number in self.log and (row := self.log.row(number)).values == one
+        }
+        for row in self.build([job for job in jobs if job[0] not in known]):
+            self.log.append(row)
+            known[row.number] = row
+            if self.progress is not None:
+                self.progress(first + len(known), self.most)
+        new = [known[number] for number in numbers]
+        self.rows += new
+        return new
+
+    def broken(self, row: Row) -> float:
+        """Return by how much a trial breaks what must not be broken; 0 if it may be taken."""
+        if not row.made:
+            return _REFUSED
+        count = row.errors + (row.warnings if self.warnings else 0)
+        return row.excess if count else 0.0
+
+    @property
+    def good(self) -> list[Row]:
+        """The trials that may be taken and have all goals."""
+        return [
+            row
+            for row in self.rows
+            if self.broken(row) == 0.0 and all(_fact(row, name) < _NONE for name in self.signs)
+        ]
+
+    def goals(self, row: Row) -> tuple[float, ...]:
+        """Return the goals of a trial, which are to be least."""
+        return tuple(sign * _fact(row, name) for name, sign in self.signs.items())
+
+    def best(self) -> list[Row]:
+        """Return the trials that no other one surpasses, by their first goal; one of one goal.
+
+        Raises
+        ------
+        InfeasibleError
+            If none may be taken.
+        """
+        good = {self.goals(row): row for row in reversed(self.good)}  # the first of equal ones
+        if not good:
+            raise self._refusal()
+        front: list[tuple[float, ...]] = []
+        for one in sorted(good):
+            if not any(all(a <= b for a, b in zip(other, one, strict=True)) for other in front):
+                front.append(one)
+        return [good[one] for one in front]
+
+    def _refusal(self) -> InfeasibleError:
+        """Return the refusal of a search without a variant that may be taken."""
+        reasons = Counter(row.refusal or ", ".join(row.findings) for row in self.rows)
+        why, count = reasons.most_common(1)[0]
+        return InfeasibleError(
+            f"none of {len(self.rows)} variants can be taken; {count} of them: {why}",
+            where="sweep",
+            nearest="other ranges, or more trials",
+        )
+
+
+def _fact(row: Row, name: str) -> float:
+    value = row.facts.get(name, _NONE)
+    return float(value) if isinstance(value, int | float) else _NONE
+
+
+def demand_facts(signs: Mapping[str, float], row: Row) -> None:
+    """Refuse goals that are no numbers among the facts of a row.
+
+    Parameters
+    ----------
+    signs : mapping of str to float
+        Goals by names.
+    row : Row
+        Of a variant that can be made.
+
+    Raises
+    ------
+    DesignError
+        With the nearest names.
+    """
+    known = [name for name, value in row.facts.items() if isinstance(value, int | float)]
+    problems = []
+    for name in signs:
+        if name not in known:
+            near = nearest(name, known)
+            message = f"{show(name)} is no number among the facts of this design"
+            allowed = f"such as {near}" if near else "a fact by its name in summary.json"
+            problems.append(Problem(message, key="goal", allowed=allowed))
+    if problems:
+        raise DesignError(problems)

@@ -1,0 +1,149 @@
+"""The command ``optimize``: what it finds, writes and refuses."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import polars as pl
+import pytest
+
+import gearcam as gc
+from gearcam.cli import main
+
+CAM = """
+kind = "cam"
+[[motion]]
+type = "rise"
+law = "cycloidal"
+angle_deg = 100
+lift_mm = 20
+[[motion]]
+type = "return"
+law = "3-4-5"
+angle_deg = 80
+[[motion]]
+type = "dwell"
+angle_deg = "rest"
+[follower]
+type = "roller"
+roller_radius_mm = 5
+[cam]
+prime_radius_mm = 60
+[output]
+files = ["csv"]
+[sweep]
+cam.prime_radius_mm = "20:100"
+follower.offset_mm = "-20:20"
+[goal]
+minimize = "cam.profile.radius_mm.max"
+findings = "warning"
+trials = 240
+"""
+
+PAIR = """
+kind = "gear-pair"
+[law]
+type = "ellipse"
+eccentricity = 0.3
+[pair]
+module_mm = 1
+teeth = [24, 24]
+[output]
+files = ["csv"]
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    Path("cam.toml").write_text(CAM)
+    Path("pair.toml").write_text(PAIR)
+    return tmp_path
+
+
+def test_the_smallest_cam_is_that_of_its_solved_sizes(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["optimize", "cam.toml", "-o", "out"]) == 0
+    said = capsys.readouterr().out
+    assert "scipy, since there is one goal over numbers; 240 trials" in said
+    best = gc.build(gc.load("out/best.toml"))
+    assert not best.findings
+    asked = {"cam.prime_radius_mm": "solve", "follower.offset_mm": "solve"}
+    solved = gc.build(gc.load("cam.toml").with_(asked))
+    size = "cam.profile.radius_mm.max"
+    assert solved.facts[size] <= best.facts[size] < solved.facts[size] * (1.0 + 1e-3)
+    assert {one.name for one in (folder / "out").iterdir()} >= {
+        "optimize.log", "optimize.csv", "optimize.html", "best.toml",
+    }  # fmt: skip
+
+
+def test_a_search_goes_on_from_its_log_and_is_the_same_for_two_processes(folder: Path) -> None:
+    words = ["optimize", "pair.toml", "--minimize", "mesh.acceleration_max", "--trials", "30"]
+    words += ["--maximize", "pair.ratio.max", "--set", "law.eccentricity=0.1:0.5:0.02"]
+    words += ["--set", "pair.teeth=[21,21],[24,24]"]
+    assert main([*words, "-o", "one", "--jobs", "1"]) == 0
+    assert main([*words, "-o", "two", "--jobs", "2"]) == 0
+    tables = [pl.read_csv(f"{name}/optimize.csv").drop("time_s") for name in ("one", "two")]
+    assert tables[0].equals(tables[1])
+    log = folder / "one" / "optimize.log"
+    lines = log.read_bytes().splitlines(keepends=True)
+    log.write_bytes(b"".join(lines[:12]))
+    assert main([*words, "-o", "one", "--jobs", "1"]) == 0
+    assert log.read_bytes().splitlines(keepends=True)[:12] == lines[:12]
+    assert pl.read_csv("one/optimize.csv").drop("time_s").equals(tables[0])
+    # several goals: the trials that no other one surpasses, each a file that builds
+    found = sorted((folder / "one").glob("best-*.toml"))
+    goals = tables[0].select("mesh.acceleration_max", "pair.ratio.max").rows()
+    front = {
+        (a, b)
+        for a, b in goals
+        if not any(c <= a and d >= b and (c, d) != (a, b) for c, d in goals)
+    }
+    records = [gc.build(gc.load(one)).record() for one in found]
+    assert {(one["mesh.acceleration_max"], one["pair.ratio.max"]) for one in records} <= front
+    assert len(found) == min(20, len(front))
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ([], "no goal is given"),
+        (["--minimize", "pair.ratio.maxx"], "such as pair.ratio.max"),
+        (["--minimize", "gears.0.cutter"], "no number among the facts"),
+        (["--minimize", "pair.ratio.max", "--maximize", "pair.ratio.min", "--method", "scipy"],
+         "does not search several goals"),
+        (["--minimize", "pair.ratio.max", "--trials", "0"], "trials"),
+    ],
+)  # fmt: skip
+def test_mistakes_are_said_before_anything_runs(
+    folder: Path, words: list[str], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    settings = ["--set", "law.eccentricity=0.1:0.5"]
+    assert main(["optimize", "pair.toml", "-o", "out", *settings, *words]) == 2
+    assert message in capsys.readouterr().err
+    assert not (folder / "out").exists()
+
+
+def test_a_search_without_a_variant_that_can_be_taken_says_why(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["--set", "law.eccentricity=0.9:0.99", "--minimize", "pair.ratio.max"]
+    assert main(["optimize", "pair.toml", "-o", "out", *words, "--trials", "24"]) == 3
+    said = capsys.readouterr().err
+    assert "none of 24 variants can be taken" in said
+    assert (folder / "out" / "optimize.csv").exists()
+
+
+def test_sizes_that_are_solved_for_have_one_known_goal() -> None:
+    text = 'name = "cam"' + CAM.replace("prime_radius_mm = 60", 'prime_radius_mm = "solve"')
+    assert gc.loads(text).goal.signs == {"cam.profile.radius_mm.max": 1.0}
+    for goal, message in (
+        ('minimize = "motion.peak_velocity"', "sizes are not solved for this fact"),
+        (
+            'minimize = ["cam.profile.radius_mm.max", "cam.pressure_angle_deg.max"]',
+            "sizes are solved for one goal",
+        ),
+    ):
+        with pytest.raises(gc.DesignError, match=message):
+            gc.loads(text.replace('minimize = "cam.profile.radius_mm.max"', goal))
