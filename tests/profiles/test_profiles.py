@@ -53,6 +53,12 @@ EXPECTED: dict[str, dict[str, Number]] = {
         "gears[1].centrode.min_convex_radius_mm": (41.9606757804 / 2 * (1 - 0.3**2), 1e-9),
         "pair.ratio.max": (1.3 / 0.7, 1e-12),
     },
+    "quiet_ellipse": {
+        # both centrodes are ellipses with the half axis of half the distance: 4*a*E(e)
+        "gears[0].centrode.length_mm": (float(4 * 21 * mp.ellipe(mp.mpf("0.09"))), 1e-11),
+        "pair.ratio.max": (1.3 / 0.7, 1e-12),
+        "pair.center_distance_mm": (42.0, 1e-12),
+    },
     "formula": {
         "pair.center_distance_mm": (formula_distance(), 1e-11),
         "gears[0].centrode.min_convex_radius_mm": (formula_least_radius(), 1e-11),
