@@ -90,6 +90,7 @@ UNDERCUT: dict[str, list[list[int]]] = {
     "two_lobed_ellipse": [[9, 11, 27, 29], [2, 17, 20, 35]],
     "rounded_square": [[k + 8 * side for side in range(4) for k in (3, 4, 5, 6, 7)], []],
     "ellipse": [[], []],
+    "quiet_ellipse": [[], []],
     "formula": [[], []],
     "nail_machine_two_phase": [[], [15, 17, 18]],
     "nail_machine_three_phase": [[], [15, 16, 17, 18]],

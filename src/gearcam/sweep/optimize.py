@@ -46,8 +46,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     for name, what in (("minimize", "least"), ("maximize", "largest")):
         words = f"fact that is to be {what}; repeated for several goals"
         parser.add_argument(f"--{name}", action="append", metavar="FACT", help=words)
-    words = "how to search (default: by the kind of variables)"
-    parser.add_argument("--method", choices=METHODS, help=words)
+    words = f"how to search: {', '.join(METHODS)} (default: by the kind of variables)"
+    parser.add_argument("--method", choices=METHODS, metavar="METHOD", help=words)
     words = "largest number of variants (default: that of [goal], 200)"
     parser.add_argument("--trials", type=int, metavar="N", help=words)
     parser.add_argument("--seed", type=int, metavar="N", help="of random numbers (default: 1)")
