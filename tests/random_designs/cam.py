@@ -12,6 +12,7 @@ from gearcam.kinds.cam.tables import GOALS
 from gearcam.laws.motion.base import MOTION_LAWS
 from random_designs.blank import blank
 from random_designs.draw import Draw, short
+from random_designs.goals import seek
 from random_designs.laws import random_motion_law
 from random_designs.output import asked, drive, forces, studies
 
@@ -321,4 +322,5 @@ def design(d: Draw, index: int) -> dict[str, Any]:
     if made["cam"].get("form", "disc") == "disc" and d.chance(0.06):
         _solved(d, made, size)
     _studies(d, made, size)
+    seek(made, index, *GOALS)
     return made

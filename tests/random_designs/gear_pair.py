@@ -11,6 +11,7 @@ from typing import Any, Final
 from gearcam.laws.ratio.base import LAWS
 from random_designs.blank import blank
 from random_designs.draw import Draw, short
+from random_designs.goals import seek
 from random_designs.law_draw import Counts, LawDraw
 from random_designs.laws import random_law
 from random_designs.output import asked, drive, studies
@@ -181,4 +182,5 @@ def design(d: Draw, index: int) -> dict[str, Any]:
     made["output"] |= asked(d, _SHARES, min(1.0, _AFFORDABLE / _vertices(made)))
     _studies(d, made, module)
     drive(d, made)
+    seek(made, index, "pair.center_distance_mm", "mesh.acceleration_max")
     return made
