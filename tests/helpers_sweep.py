@@ -9,18 +9,20 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 import gearcam as gc
-from gearcam.sweep.rows import Row
+from gearcam.sweep.rows import Built
 
 BASE = gc.load(Path(__file__).parent.parent / "profiles" / "ellipse.toml")
 
 
-def odd(base: gc.Design, number: int, values: Mapping[str, Any]) -> Row:  # noqa: ARG001
+def odd(base: gc.Design, number: int, values: Mapping[str, Any]) -> Built:  # noqa: ARG001
     """Do what the value says; once only where it names a file that is made before."""
     deed, _, once = str(values["deed"]).partition(" ")
     if once:
         if Path(once).exists():
-            return Row(number=number, values=values, facts={"pid": 0.0})
+            return Built(number=number, values=values, facts={"pid": 0.0})
         Path(once).touch()
     if deed == "hang":
         time.sleep(1e3)
@@ -28,9 +30,26 @@ def odd(base: gc.Design, number: int, values: Mapping[str, Any]) -> Row:  # noqa
         try:
             bytearray(1 << 40)
         except MemoryError:
-            return Row(number=number, values=values, refusal="too large")
+            return Built(number=number, values=values, refusal="too large")
     if deed == "die":
         os.kill(os.getpid(), signal.SIGKILL)
+    if deed == "end its worker":
+        os.kill(os.getppid(), signal.SIGKILL)
+        time.sleep(1e3)
     if deed == "print":
         print("a library says something")
-    return Row(number=number, values=values, facts={"pid": float(os.getpid())})
+    return Built(number=number, values=values, facts={"pid": float(os.getpid())})
+
+
+def wavy(phi: Any) -> Any:
+    return 1.0 + 0.1 * np.cos(phi)
+
+
+def hanging(phi: Any) -> Any:
+    time.sleep(1e3)
+    return wavy(phi)
+
+
+def greedy(phi: Any) -> Any:
+    np.ones(1 << 33)
+    return wavy(phi)

@@ -31,7 +31,7 @@ def test_the_lift_off_speed_of_each_assembly_is_that_of_its_spring_and_mass() ->
         slow = d2s < 0
         square = np.min(force[slow] / (-1e-3 * values["mass[0].mass_kg"] * d2s[slow]))
         speed = math.sqrt(square) * 30 / math.pi
-        assert abs(row.facts["forces.release_speed_rpm"] / speed - 1.0) < 1e-6
+        assert abs(float(row.facts["forces.release_speed_rpm"]) / speed - 1.0) < 1e-6
 
 
 def test_the_samples_of_the_file_have_the_distribution_that_it_says() -> None:

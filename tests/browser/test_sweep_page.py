@@ -14,13 +14,13 @@ from selenium.webdriver.support.select import Select
 
 import gearcam as gc
 from gearcam.sweep.page import page
-from gearcam.sweep.rows import Row, measured
+from gearcam.sweep.rows import Built, measured
 from helpers_browser import PHONE, open_page, unfold, until
 from helpers_sweep import BASE
 
 
 @pytest.fixture(scope="module")
-def rows() -> list[Row]:
+def rows() -> list[Built]:
     places = np.linspace(0.05, 0.5, 10)
     made = [
         measured(BASE, k, {"law.eccentricity": round(float(e), 3)}) for k, e in enumerate(places)
@@ -29,7 +29,7 @@ def rows() -> list[Row]:
 
 
 @pytest.fixture
-def opened(browser: Chrome, rows: list[Row], tmp_path: Path) -> Chrome:
+def opened(browser: Chrome, rows: list[Built], tmp_path: Path) -> Chrome:
     file = tmp_path / "sweep.html"
     file.write_bytes(page(BASE, rows, ["law.eccentricity = 0.05:0.5:0.05"]))
     open_page(browser, file)
@@ -75,7 +75,7 @@ def test_a_range_on_an_axis_keeps_its_variants(opened: Chrome) -> None:
 
 
 def test_a_click_shows_a_design_file_that_makes_these_facts(
-    opened: Chrome, rows: list[Row]
+    opened: Chrome, rows: list[Built]
 ) -> None:
     Select(opened.find_element(By.ID, "y")).select_by_value("pair.center_distance_mm")
     place: list[float] = opened.execute_script("return places().at(6)")
@@ -95,7 +95,7 @@ def test_the_front_is_that_of_all_pairs(browser: Chrome, tmp_path: Path) -> None
     random = np.random.default_rng(5)
     values = random.normal(size=(300, 2)).round(2)
     made = [
-        Row(
+        Built(
             number=k,
             values={"law.eccentricity": float(k)},
             facts={"a": float(a), "b": float(b)},
@@ -126,7 +126,7 @@ def test_the_front_is_that_of_all_pairs(browser: Chrome, tmp_path: Path) -> None
 
 
 def test_it_is_read_on_a_phone_and_in_the_dark(
-    browser: Chrome, rows: list[Row], tmp_path: Path
+    browser: Chrome, rows: list[Built], tmp_path: Path
 ) -> None:
     file = tmp_path / "sweep.html"
     file.write_bytes(page(BASE, rows, []))
@@ -139,7 +139,7 @@ def test_it_is_read_on_a_phone_and_in_the_dark(
 
 def test_a_hundred_thousand_variants_open(browser: Chrome, tmp_path: Path) -> None:
     made = [
-        Row(number=k, values={"law.eccentricity": k / 1e5}, facts={"a": (k * 37 % 1000) / 7.0})
+        Built(number=k, values={"law.eccentricity": k / 1e5}, facts={"a": (k * 37 % 1000) / 7.0})
         for k in range(100_000)
     ]
     file = tmp_path / "many.html"

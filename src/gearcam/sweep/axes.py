@@ -44,7 +44,7 @@ _CUT: Final = 3.0
 
 
 @dataclass(frozen=True, kw_only=True)
-class Axis(ShortRepr):
+class Varied(ShortRepr):
     """What a sweep gives to one key.
 
     Parameters
@@ -76,7 +76,7 @@ class Axis(ShortRepr):
         return self.share(u)
 
 
-def axes_of(settings: Mapping[str, Any], key: str = "--set") -> tuple[Axis, ...]:
+def axes_of(settings: Mapping[str, Any], key: str = "--set") -> tuple[Varied, ...]:
     """Return the axes of settings.
 
     Parameters
@@ -131,7 +131,7 @@ class _UnreadableError(ValueError):
         self.allowed = allowed
 
 
-def _axis(key: str, written: Any) -> Axis:
+def _axis(key: str, written: Any) -> Varied:
     if not isinstance(written, str):
         values = written if isinstance(written, list) else [written]
         return _listed(key, show(written), values)
@@ -144,12 +144,12 @@ def _axis(key: str, written: Any) -> Axis:
     return _listed(key, text, values_of(text))
 
 
-def _listed(key: str, text: str, values: list[Any]) -> Axis:
+def _listed(key: str, text: str, values: list[Any]) -> Varied:
     if not values:
         raise _UnreadableError("has no value")
     if twice := listed_twice(values):
         raise _UnreadableError(f"{show(twice[0])} is listed twice", "each value once")
-    return Axis(key=key, text=text, values=tuple(values))
+    return Varied(key=key, text=text, values=tuple(values))
 
 
 def _number(word: str, text: str) -> float | int:
@@ -159,7 +159,7 @@ def _number(word: str, text: str) -> float | int:
     return value
 
 
-def _range(key: str, text: str, words: list[str]) -> Axis:
+def _range(key: str, text: str, words: list[str]) -> Varied:
     numbers = [_number(word, text) for word in words]
     if len(numbers) == 2:
         low, high = numbers
@@ -167,7 +167,7 @@ def _range(key: str, text: str, words: list[str]) -> Axis:
             raise _UnreadableError(
                 f"{show(text)} is an empty range", "from:to, the smaller number first"
             )
-        return Axis(key=key, text=text, share=lambda u: low + (high - low) * u)
+        return Varied(key=key, text=text, share=lambda u: low + (high - low) * u)
     if len(numbers) != 3:
         raise _UnreadableError(
             f"{show(text)} is not a range", "from:to:step, or from:to to be sampled"
@@ -181,7 +181,7 @@ def _range(key: str, text: str, words: list[str]) -> Axis:
             f"a step such as {near}",
         )
     count = math.floor((end - start) / step + _ROUNDING) + 1
-    return Axis(key=key, text=text, values=tuple(_steps(start, end, step, count)))
+    return Varied(key=key, text=text, values=tuple(_steps(start, end, step, count)))
 
 
 def _steps(start: float, end: float, step: float, count: int) -> list[float]:
@@ -194,7 +194,7 @@ def _steps(start: float, end: float, step: float, count: int) -> list[float]:
     return values
 
 
-def _called(key: str, text: str, name: str, numbers: list[float | int]) -> Axis:
+def _called(key: str, text: str, name: str, numbers: list[float | int]) -> Varied:
     if name == "log":
         return _logarithmic(key, text, numbers)
     if len(numbers) != 2 or not numbers[1] > 0:
@@ -205,7 +205,7 @@ def _called(key: str, text: str, name: str, numbers: list[float | int]) -> Axis:
     middle, width = numbers
     if name == "normal":
         normal = NormalDist(middle, width)
-        return Axis(
+        return Varied(
             key=key, text=text, share=lambda u: normal.inv_cdf(min(max(u, 1e-12), 1 - 1e-12))
         )
     unit, edge = NormalDist(), NormalDist().cdf(-_CUT)
@@ -213,10 +213,10 @@ def _called(key: str, text: str, name: str, numbers: list[float | int]) -> Axis:
     def within(u: float) -> float:
         return middle + width / _CUT * unit.inv_cdf(edge + (1.0 - 2.0 * edge) * u)
 
-    return Axis(key=key, text=text, share=within)
+    return Varied(key=key, text=text, share=within)
 
 
-def _logarithmic(key: str, text: str, numbers: list[float | int]) -> Axis:
+def _logarithmic(key: str, text: str, numbers: list[float | int]) -> Varied:
     low, high, *more = numbers if len(numbers) > 1 else (0, 0)
     if len(more) > 1 or not 0 < low < high or any(one != int(one) or one < 2 for one in more):
         allowed = "log(from, to) or log(from, to, number of values), with 0 < from < to"
@@ -226,7 +226,7 @@ def _logarithmic(key: str, text: str, numbers: list[float | int]) -> Axis:
         return low * (high / low) ** u
 
     if not more:
-        return Axis(key=key, text=text, share=between)
+        return Varied(key=key, text=text, share=between)
     last = int(more[0]) - 1
     values = [float(f"{between(k / last):.12g}") for k in range(last)]
-    return Axis(key=key, text=text, values=(*values, high))
+    return Varied(key=key, text=text, values=(*values, high))

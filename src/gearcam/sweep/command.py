@@ -15,11 +15,12 @@ from gearcam.commands import GOOD, IMPOSSIBLE, INTERRUPTED, Options, add_output,
 from gearcam.console import complain, progress_bar, say
 from gearcam.designs.design import Design, load
 from gearcam.designs.family import family_of
-from gearcam.sweep.axes import FORM, Axis, axes_of, settings_of
+from gearcam.sweep.axes import FORM, Varied, axes_of, settings_of
+from gearcam.sweep.child import MEMORY, SECONDS
 from gearcam.sweep.engine import Engine
 from gearcam.sweep.log import Log
 from gearcam.sweep.plan import MANY, Plan, flattened
-from gearcam.sweep.pool import MEMORY, SECONDS, Processes, default_jobs
+from gearcam.sweep.pool import Processes, default_jobs
 from gearcam.sweep.run import Tally, head_of, run, write_tables, written_whole
 
 _TITLE: Final = "sweep"
@@ -173,7 +174,7 @@ def plan_of(options: Options) -> Plan:
     )
 
 
-def axes_given(options: Options) -> tuple[Design, tuple[Axis, ...], dict[str, Any]]:
+def axes_given(options: Options) -> tuple[Design, tuple[Varied, ...], dict[str, Any]]:
     """Return the design of a command's file, what is varied, and the other keys of ``[sweep]``.
 
     Parameters

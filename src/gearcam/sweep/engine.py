@@ -5,11 +5,11 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, Final
 
 from gearcam.base.display import ShortRepr
 from gearcam.designs.design import Design
-from gearcam.sweep.rows import Row
+from gearcam.sweep.rows import Built
 
 Job = tuple[int, dict[str, Any]]
 """Number and values of a variant."""
@@ -19,6 +19,9 @@ CHUNK_S = 0.25
 
 MOST = 256
 """Largest number of variants in a chunk."""
+
+_LATELY: Final = 100
+"""Number of variants whose mean decides."""
 
 
 class Engine(ABC, ShortRepr):
@@ -30,7 +33,7 @@ class Engine(ABC, ShortRepr):
         """In words, for messages."""
 
     @abstractmethod
-    def run(self, base: Design, jobs: Iterable[Job]) -> Iterator[Row]:
+    def run(self, base: Design, jobs: Iterable[Job]) -> Iterator[Built]:
         """Yield the rows of variants as they come, in any order; each exactly once.
 
         Parameters
@@ -42,7 +45,7 @@ class Engine(ABC, ShortRepr):
         """
 
     @contextmanager
-    def session(self, base: Design) -> Iterator[Callable[[Sequence[Job]], Iterator[Row]]]:
+    def session(self, base: Design) -> Iterator[Callable[[Sequence[Job]], Iterator[Built]]]:
         """Yield a function that yields the rows of some variants, for several lots of them.
 
         Parameters
@@ -66,3 +69,19 @@ def chunk_size(mean: float, most: int = MOST, seconds: float = CHUNK_S) -> int:
         Time of a chunk.
     """
     return max(1, min(most, int(seconds / mean))) if mean > 0.0 else 1
+
+
+class Pace:
+    """The mean time of variants, of late; 0 while it is unknown."""
+
+    def __init__(self) -> None:
+        self.mean, self._count = 0.0, 0
+
+    def add(self, time_s: float) -> None:
+        """Count a variant that took this time."""
+        self._count += 1
+        self.mean += (time_s - self.mean) / min(self._count, _LATELY)
+
+    def chunk(self, seconds: float) -> int:
+        """Return the number of variants of a chunk that takes this time, s."""
+        return chunk_size(self.mean, seconds=seconds)

@@ -17,7 +17,7 @@ from types import TracebackType
 from typing import Any, BinaryIO, Final, Self
 
 from gearcam.base.errors import DesignError, Problem, WriteError
-from gearcam.sweep.rows import Row
+from gearcam.sweep.rows import Built
 
 LOG: Final = "sweep.log"
 """Name of the file."""
@@ -110,7 +110,7 @@ class Log:
         self._file.write(text.encode() + b"\n")
         self._file.flush()
 
-    def append(self, row: Row) -> None:
+    def append(self, row: Built) -> None:
         """Append a row.
 
         Raises
@@ -126,13 +126,13 @@ class Log:
             raise WriteError(f"{self.path}: {error.strerror or error}") from error
         self._places[row.number] = place
 
-    def row(self, number: int) -> Row:
+    def row(self, number: int) -> Built:
         """Return the row of a number that is there."""
         self._file.seek(self._places[number])
         content = json.loads(self._file.readline())
-        return Row(**content | {"findings": tuple(content["findings"])})
+        return Built(**content | {"findings": tuple(content["findings"])})
 
-    def rows(self) -> Iterator[Row]:
+    def rows(self) -> Iterator[Built]:
         """Yield all rows by their numbers."""
         for number in sorted(self._places):
             yield self.row(number)

@@ -1,6 +1,6 @@
 """Where an optimizer looks next: methods of kept libraries behind one interface.
 
-A variant is a point of the unit cube: each axis maps its share to a value (`Axis.at`). A method
+A variant is a point of the unit cube: each axis maps its share to a value (`Varied.at`). A method
 gets ``evaluate(points)``, which builds variants and returns their goals, which are to be least, and
 how far they break what must not be broken: 0 of those that may be taken. It runs until `evaluate`
 raises `Spent`. It asks for whole generations, so that what it does depends on its seed only, not
@@ -26,7 +26,7 @@ import numpy as np
 
 from gearcam.base.errors import MissingExtraError
 from gearcam.numeric.arrays import Array
-from gearcam.sweep.axes import Axis
+from gearcam.sweep.axes import Varied
 
 GENERATION: Final = 24
 """Variants that are asked for at once."""
@@ -48,12 +48,12 @@ class Spent(Exception):  # noqa: N818
     """All trials are used."""
 
 
-class Search(NamedTuple):
+class Quest(NamedTuple):
     """What a method needs.
 
     Parameters
     ----------
-    axes : sequence of d Axis
+    axes : sequence of d Varied
         What is varied.
     goals : int
         Number of goals.
@@ -63,30 +63,30 @@ class Search(NamedTuple):
         Of random numbers.
     """
 
-    axes: Sequence[Axis]
+    axes: Sequence[Varied]
     goals: int
     trials: int
     seed: int
 
     @property
-    def choices(self) -> list[Axis]:
+    def choices(self) -> list[Varied]:
         """The axes whose values have no order."""
         return [axis for axis in self.axes if not is_ordered(axis)]
 
 
-def is_ordered(axis: Axis) -> bool:
+def is_ordered(axis: Varied) -> bool:
     """Return whether the values of an axis are numbers."""
     return not axis.values or all(
         isinstance(one, int | float) and not isinstance(one, bool) for one in axis.values
     )
 
 
-def usual(search: Search, price: float) -> tuple[str, str]:
+def usual(search: Quest, price: float) -> tuple[str, str]:
     """Return the method for a search, and why.
 
     Parameters
     ----------
-    search : Search
+    search : Quest
         What is sought.
     price : float, s
         Time of one variant.
@@ -107,14 +107,14 @@ _FEW: Final = 1000
 """Number of trials up to which its time stays small."""
 
 
-def minimized(method: str, search: Search, evaluate: Evaluate) -> None:
-    """Search until all trials are used.
+def minimized(method: str, search: Quest, evaluate: Evaluate) -> None:
+    """Quest until all trials are used.
 
     Parameters
     ----------
     method : str
         One of those above.
-    search : Search
+    search : Quest
         What is sought.
     evaluate : callable
         Builds variants; raises `Spent` after the last.
@@ -129,7 +129,7 @@ def minimized(method: str, search: Search, evaluate: Evaluate) -> None:
     _METHODS[method](method, search, evaluate)
 
 
-def _random(_: str, search: Search, evaluate: Evaluate) -> None:
+def _random(_: str, search: Quest, evaluate: Evaluate) -> None:
     random = np.random.default_rng(search.seed)
     places = np.array([random.permutation(search.trials) for _ in search.axes]).T
     points = (places + random.random(places.shape)) / search.trials
@@ -138,7 +138,7 @@ def _random(_: str, search: Search, evaluate: Evaluate) -> None:
     raise Spent
 
 
-def _optuna(method: str, search: Search, evaluate: Evaluate) -> None:
+def _optuna(method: str, search: Quest, evaluate: Evaluate) -> None:
     try:
         import optuna
     except ImportError:
@@ -149,7 +149,8 @@ def _optuna(method: str, search: Search, evaluate: Evaluate) -> None:
         if method == "nsga2"
         else optuna.samplers.TPESampler(seed=search.seed)
     )
-    study = optuna.create_study(sampler=sampler, directions=["minimize"] * search.goals)
+    directions: Any = ["minimize"] * search.goals
+    study = optuna.create_study(sampler=sampler, directions=directions)
     many = GENERATION if method == "nsga2" else GENERATION // 4
     while True:
         trials = [study.ask() for _ in range(many)]
@@ -159,7 +160,7 @@ def _optuna(method: str, search: Search, evaluate: Evaluate) -> None:
             study.tell(trial, [float(one) for one in np.minimum(goals, _NONE)])
 
 
-def _suggested(trial: Any, axis: Axis) -> float:
+def _suggested(trial: Any, axis: Varied) -> float:
     """Return the share of a value that a trial of optuna suggests for an axis."""
     count = len(axis.values)
     if not count:
@@ -169,11 +170,12 @@ def _suggested(trial: Any, axis: Axis) -> float:
     return (trial.suggest_categorical(axis.key, list(range(count))) + 0.5) / count
 
 
-def _scipy(method: str, search: Search, evaluate: Evaluate) -> None:
+def _scipy(method: str, search: Quest, evaluate: Evaluate) -> None:
     try:
         from scipy import optimize
     except ImportError:
         raise MissingExtraError(f"searches by {method}", "optimize") from None
+    library: Any = optimize  # its types are narrower than what it takes
     best, least, largest = np.full(len(search.axes), 0.5), np.inf, 0.0
 
     def merit(points: Array) -> Array:
@@ -188,7 +190,7 @@ def _scipy(method: str, search: Search, evaluate: Evaluate) -> None:
         return found
 
     several = max(GENERATION, 4 * len(best))
-    optimize.differential_evolution(
+    library.differential_evolution(
         lambda points: merit(points.T),
         [(0.0, 1.0)] * len(best),
         rng=search.seed,
@@ -203,7 +205,7 @@ def _scipy(method: str, search: Search, evaluate: Evaluate) -> None:
     size = _SIMPLEX
     while True:
         corners = np.clip(best + size * np.vstack([np.zeros(len(best)), np.eye(len(best))]), 0, 1)
-        optimize.minimize(
+        library.minimize(
             lambda point: merit(np.clip(point, 0.0, 1.0)[None])[0],
             best,
             method="Nelder-Mead",
@@ -212,14 +214,14 @@ def _scipy(method: str, search: Search, evaluate: Evaluate) -> None:
         size = -0.5 * size
 
 
-def _first(search: Search, count: int) -> Array:
+def _first(search: Quest, count: int) -> Array:
     """Return a first generation: a Latin hypercube."""
     random = np.random.default_rng(search.seed)
     places = np.array([random.permutation(count) for _ in search.axes]).T
     return (places + random.random(places.shape)) / count
 
 
-_METHODS: Final[dict[str, Callable[[str, Search, Evaluate], None]]] = {
+_METHODS: Final[dict[str, Callable[[str, Quest, Evaluate], None]]] = {
     "random": _random,
     "nsga2": _optuna,
     "tpe": _optuna,

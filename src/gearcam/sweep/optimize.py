@@ -22,10 +22,10 @@ from gearcam.designs.writing import least_document, toml_text
 from gearcam.kinds.shared import METHODS
 from gearcam.sweep.command import axes_given, engine_arguments, engine_of, told
 from gearcam.sweep.log import Log
-from gearcam.sweep.methods import Search, Spent, minimized, usual
+from gearcam.sweep.methods import Quest, Spent, minimized, usual
 from gearcam.sweep.optimum import FRONT, Trials, demand_facts
 from gearcam.sweep.plan import Plan
-from gearcam.sweep.rows import Row, measured
+from gearcam.sweep.rows import Built, measured
 from gearcam.sweep.run import head_of, write_tables, written_whole
 
 LOG: Final = "optimize.log"
@@ -55,7 +55,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def optimize(options: Options) -> int:
-    """Search the best variants, write them, tables and a page, and return the exit code."""
+    """Quest the best variants, write them, tables and a page, and return the exit code."""
     work = partial(_optimize, options)
     return each([options["file"]], "optimized", work, debug=options["debug"])
 
@@ -70,7 +70,7 @@ def _optimize(options: Options, file: str) -> int:
         raise DesignError([problem])
     plan = Plan(base=base, axes=axes, sampling="random", samples=goal.trials, seed=goal.seed)
     price = _price(plan, goal.signs)
-    search = Search(plan.axes, len(goal.signs), goal.trials, goal.seed)
+    search = Quest(plan.axes, len(goal.signs), goal.trials, goal.seed)
     method, why = (goal.method, "") if goal.method else usual(search, price)
     if method == "scipy" and (search.goals > 1 or search.choices):
         what = "several goals" if search.goals > 1 else f"{search.choices[0].key}, a choice"
@@ -137,7 +137,7 @@ def _price(plan: Plan, signs: dict[str, float]) -> float:
     return 0.0
 
 
-def _write(trials: Trials, best: Sequence[Row], folder: Path) -> list[Path]:
+def _write(trials: Trials, best: Sequence[Built], folder: Path) -> list[Path]:
     """Write the best designs and the page; return the files.
 
     Raises
@@ -168,7 +168,7 @@ def _write(trials: Trials, best: Sequence[Row], folder: Path) -> list[Path]:
     return list(files)
 
 
-def _table(plan: Plan, trials: Trials, best: Sequence[Row]) -> Iterator[tuple[str, ...]]:
+def _table(plan: Plan, trials: Trials, best: Sequence[Built]) -> Iterator[tuple[str, ...]]:
     """Yield the rows of a table: goals and values of the given design and of the best."""
     given = measured(plan.base, 0, {})
     heads = ["best"] if len(best) == 1 else [f"best-{k}" for k in range(1, len(best) + 1)]

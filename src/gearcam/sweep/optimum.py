@@ -24,7 +24,7 @@ from gearcam.sweep.engine import Job
 from gearcam.sweep.log import Log
 from gearcam.sweep.methods import Spent
 from gearcam.sweep.plan import Plan
-from gearcam.sweep.rows import Row
+from gearcam.sweep.rows import Built
 
 _REFUSED: Final = 1e6
 """Violation of variants that cannot be made: above that of any finding."""
@@ -56,7 +56,7 @@ class Trials(ShortRepr):
         ``build(jobs)`` yields the rows of variants.
     progress : callable, optional
         Called with the trials so far, their largest number, and the best in words.
-    rows : list of Row
+    rows : list of Built
         The trials so far.
     """
 
@@ -65,9 +65,9 @@ class Trials(ShortRepr):
     warnings: bool
     most: int
     log: Log
-    build: Callable[[Sequence[Job]], Iterator[Row]]
+    build: Callable[[Sequence[Job]], Iterator[Built]]
     progress: Callable[[int, int], Any] | None = None
-    rows: list[Row] = field(default_factory=list)
+    rows: list[Built] = field(default_factory=list)
 
     def evaluate(self, points: Array) -> tuple[Array, Array]:
         """Return goals, (n, m), and violations, (n,), of points of the unit cube, (n, d).
@@ -88,7 +88,7 @@ class Trials(ShortRepr):
                 broken[place] = self.broken(row)
         return goals, broken
 
-    def _rows_of(self, points: Array) -> list[Row]:
+    def _rows_of(self, points: Array) -> list[Built]:
         """Return the rows of points: from the log, or built and appended to it."""
         axes, first = self.plan.axes, len(self.rows)
         values = [
@@ -111,7 +111,7 @@ class Trials(ShortRepr):
         self.rows += new
         return new
 
-    def broken(self, row: Row) -> float:
+    def broken(self, row: Built) -> float:
         """Return by how much a trial breaks what must not be broken; 0 if it may be taken."""
         if not row.made:
             return _REFUSED
@@ -119,7 +119,7 @@ class Trials(ShortRepr):
         return row.excess if count else 0.0
 
     @property
-    def good(self) -> list[Row]:
+    def good(self) -> list[Built]:
         """The trials that may be taken and have all goals."""
         return [
             row
@@ -127,11 +127,11 @@ class Trials(ShortRepr):
             if self.broken(row) == 0.0 and all(_fact(row, name) < _NONE for name in self.signs)
         ]
 
-    def goals(self, row: Row) -> tuple[float, ...]:
+    def goals(self, row: Built) -> tuple[float, ...]:
         """Return the goals of a trial, which are to be least."""
         return tuple(sign * _fact(row, name) for name, sign in self.signs.items())
 
-    def best(self) -> list[Row]:
+    def best(self) -> list[Built]:
         """Return the trials that no other one surpasses, by their first goal; one of one goal.
 
         Raises
@@ -159,19 +159,19 @@ class Trials(ShortRepr):
         )
 
 
-def _fact(row: Row, name: str) -> float:
+def _fact(row: Built, name: str) -> float:
     value = row.facts.get(name, _NONE)
     return float(value) if isinstance(value, int | float) else _NONE
 
 
-def demand_facts(signs: Mapping[str, float], row: Row) -> None:
+def demand_facts(signs: Mapping[str, float], row: Built) -> None:
     """Refuse goals that are no numbers among the facts of a row.
 
     Parameters
     ----------
     signs : mapping of str to float
         Goals by names.
-    row : Row
+    row : Built
         Of a variant that can be made.
 
     Raises

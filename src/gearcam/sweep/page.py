@@ -13,7 +13,7 @@ from typing import Any, Final
 from gearcam.designs.design import Design, path_of
 from gearcam.designs.writing import least_document, toml_text
 from gearcam.report.page import sweep_page
-from gearcam.sweep.rows import Row
+from gearcam.sweep.rows import Built
 
 PAGE: Final = "sweep.html"
 """Name of the file."""
@@ -27,7 +27,7 @@ _DIGITS: Final = 7
 
 def page(
     base: Design,
-    rows: Sequence[Row],
+    rows: Sequence[Built],
     lines: Sequence[str],
     goals: Mapping[str, float] | None = None,
 ) -> bytes:
@@ -37,7 +37,7 @@ def page(
     ----------
     base : Design
         The design.
-    rows : sequence of Row
+    rows : sequence of Built
         Its variants, at least one.
     lines : sequence of str
         What is said at the top.

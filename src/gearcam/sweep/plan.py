@@ -20,7 +20,7 @@ from gearcam.base.display import ShortRepr
 from gearcam.base.errors import DesignError, Problem
 from gearcam.designs.design import Design, document_of, value_at
 from gearcam.numeric.arrays import Array
-from gearcam.sweep.axes import Axis
+from gearcam.sweep.axes import Varied
 
 MANY: Final = 1_000_000
 """Number of variants above which a sweep has to be confirmed."""
@@ -39,7 +39,7 @@ class Plan(ShortRepr):
     ----------
     base : Design
         The design.
-    axes : sequence of Axis
+    axes : sequence of Varied
         What is given to its keys; at least one.
     sampling : {"grid", "random", "latin"}
         All combinations, or samples.
@@ -55,7 +55,7 @@ class Plan(ShortRepr):
     """
 
     base: Design
-    axes: Sequence[Axis]
+    axes: Sequence[Varied]
     sampling: Sampling = "grid"
     samples: int = 0
     seed: int = 1
@@ -93,12 +93,12 @@ class Plan(ShortRepr):
         shares = zip(self.axes, self._shares[number].tolist(), strict=True)
         return {axis.key: self.value(axis, u) for axis, u in shares}
 
-    def value(self, axis: Axis, u: float) -> Any:
+    def value(self, axis: Varied, u: float) -> Any:
         """Return a value of an axis, whole for keys of whole numbers.
 
         Parameters
         ----------
-        axis : Axis
+        axis : Varied
             One of the axes.
         u : float
             Share of its range, in [0, 1).
@@ -106,7 +106,7 @@ class Plan(ShortRepr):
         value = axis.at(u)
         return round(value) if axis.sampled and axis.key in self._counts else value
 
-    def _demand_key(self, axis: Axis) -> None:
+    def _demand_key(self, axis: Varied) -> None:
         """Refuse a key of which no value is allowed: it does not exist, or its values are wrong."""
         first: DesignError | None = None
         for u in _LOOKS:

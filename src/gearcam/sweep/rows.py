@@ -17,7 +17,7 @@ TOO_LARGE: Final = "it needs more memory than a variant may have"
 
 
 @dataclass(frozen=True, kw_only=True)
-class Row(ShortRepr):
+class Built(ShortRepr):
     """What is known of one variant.
 
     Parameters
@@ -60,11 +60,11 @@ class Row(ShortRepr):
         return not self.refusal
 
 
-Measure = Callable[[Design, int, Mapping[str, Any]], Row]
+Measure = Callable[[Design, int, Mapping[str, Any]], Built]
 """Makes the row of a variant of a design, from its number and values."""
 
 
-def measured(base: Design, number: int, values: Mapping[str, Any]) -> Row:
+def measured(base: Design, number: int, values: Mapping[str, Any]) -> Built:
     """Return the row of a variant; a variant that fails costs only itself.
 
     Parameters
@@ -78,8 +78,8 @@ def measured(base: Design, number: int, values: Mapping[str, Any]) -> Row:
     """
     start = time.perf_counter()
 
-    def row(**more: Any) -> Row:
-        return Row(number=number, values=values, time_s=time.perf_counter() - start, **more)
+    def row(**more: Any) -> Built:
+        return Built(number=number, values=values, time_s=time.perf_counter() - start, **more)
 
     try:
         result = build(base.with_(values))

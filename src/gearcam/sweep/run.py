@@ -12,7 +12,7 @@ from gearcam.base.errors import WriteError
 from gearcam.sweep.engine import Engine, Job
 from gearcam.sweep.log import Log
 from gearcam.sweep.plan import Plan
-from gearcam.sweep.rows import Row
+from gearcam.sweep.rows import Built
 from gearcam.sweep.tables import (
     can_write_parquet,
     records,
@@ -43,7 +43,7 @@ class Tally(ShortRepr):
     facts: dict[str, bool] = field(default_factory=dict)
     texts: set[str] = field(default_factory=set)
 
-    def add(self, row: Row) -> None:
+    def add(self, row: Built) -> None:
         """Count a row."""
         self.rows += 1
         self.refused += not row.made

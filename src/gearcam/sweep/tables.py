@@ -14,13 +14,13 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, Final
 
-from gearcam.sweep.rows import Row
+from gearcam.sweep.rows import Built
 
 _BATCH: Final = 5000
 """Rows of Parquet that are in memory at once."""
 
 
-def fact_names(rows: Iterable[Row]) -> list[str]:
+def fact_names(rows: Iterable[Built]) -> list[str]:
     """Return the names of the facts of rows, in the order in which they first appear."""
     names: dict[str, None] = {}
     for row in rows:
@@ -29,13 +29,13 @@ def fact_names(rows: Iterable[Row]) -> list[str]:
 
 
 def records(
-    rows: Iterable[Row], keys: Sequence[str], facts: Sequence[str]
+    rows: Iterable[Built], keys: Sequence[str], facts: Sequence[str]
 ) -> Iterator[dict[str, Any]]:
     """Yield rows as dicts of columns.
 
     Parameters
     ----------
-    rows : iterable of Row
+    rows : iterable of Built
         The rows.
     keys, facts : sequence of str
         Columns of values and facts.

@@ -1,28 +1,33 @@
 """A process that builds variants: it reads jobs from its input and writes rows to its output.
 
-Both are pickled. The first input is a `Setup`, answered by `READY`; each further one is a list of
-jobs, answered by a row each. What a library prints goes to the error stream. The process ends with
-its input.
+Both are pickled. The first input is a `Briefing`, answered by `READY`; each further one is a list
+of jobs, answered by a row each. What a library prints goes to the error stream. The process ends
+with its input, whatever it does then, and when it has had no jobs for a while.
 """
 
 from __future__ import annotations
 
 import os
 import pickle
+import queue
 import signal
 import sys
+import threading
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import BinaryIO
+from typing import Any, BinaryIO, Final
 
 from gearcam.base.interrupts import SIGNALS
 
 READY = "ready"
-"""First output: jobs may come."""
+"""First output: jobs may come. Otherwise it is the reason why they may not."""
+
+_IDLE: Final = 60.0
+"""Time without jobs after which the process ends, s."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Setup:
+class Briefing:
     """What a worker needs before its first job.
 
     Parameters
@@ -46,14 +51,13 @@ def main() -> None:
         signal.signal(number, signal.SIG_IGN)
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
-    try:
+    with suppress(BrokenPipeError, queue.Empty):
         _serve(sys.stdin.buffer, answers)
-    except (EOFError, BrokenPipeError):
-        os._exit(0)  # nothing is left to write
+    os._exit(0)  # nothing is left to write
 
 
 def _serve(jobs: BinaryIO, answers: BinaryIO) -> None:
-    setup: Setup = pickle.load(jobs)
+    setup: Briefing = pickle.load(jobs)
     sys.path[:] = setup.path
     from gearcam.console import quieten
     from gearcam.numeric.arrays import keep_freed_memory
@@ -61,13 +65,31 @@ def _serve(jobs: BinaryIO, answers: BinaryIO) -> None:
     quieten()
     keep_freed_memory()
     _limit(setup.memory)
-    base, measure = pickle.loads(setup.task)
-    pickle.dump(READY, answers)
-    answers.flush()
+
+    def answer(content: Any) -> None:
+        pickle.dump(content, answers)
+        answers.flush()
+
+    try:
+        base, measure = pickle.loads(setup.task)
+    except Exception as error:  # such as a module that is not there
+        answer(f"{type(error).__name__}: {error}")
+        return
+    answer(READY)
+    chunks: queue.SimpleQueue[Any] = queue.SimpleQueue()
+    threading.Thread(target=_feed, args=(jobs, chunks), daemon=True).start()
     while True:
-        for number, values in pickle.load(jobs):
-            pickle.dump(measure(base, number, values), answers)
-            answers.flush()
+        for number, values in chunks.get(timeout=_IDLE):
+            answer(measure(base, number, values))
+
+
+def _feed(jobs: BinaryIO, chunks: queue.SimpleQueue[Any]) -> None:
+    """Read chunks; end the process with its input, also while it builds a variant."""
+    try:
+        while True:
+            chunks.put(pickle.load(jobs))
+    finally:
+        os._exit(0)
 
 
 def _limit(memory: int) -> None:

@@ -8,13 +8,13 @@ import pytest
 
 from gearcam.base.errors import DesignError, WriteError
 from gearcam.sweep.log import LOG, Log
-from gearcam.sweep.rows import Row
+from gearcam.sweep.rows import Built
 
 HEAD = {"sweep": "abc", "file": "a.toml", "variants": 9}
 
 
-def row(number: int) -> Row:
-    return Row(
+def row(number: int) -> Built:
+    return Built(
         number=number,
         values={"law.eccentricity": 0.1 + 0.2 * number, "pair.teeth": [20, 20]},
         facts={"size_mm": 1.0 / 3.0, "cutter": "rack"},

@@ -11,13 +11,13 @@ import pytest
 
 from gearcam.numeric.arrays import Array
 from gearcam.sweep.axes import axes_of
-from gearcam.sweep.methods import METHODS_KNOWN, Search, Spent, minimized, usual
+from gearcam.sweep.methods import METHODS_KNOWN, Quest, Spent, minimized, usual
 
 SPAN = {"a": "0:1", "b": "0:1"}
 
 
 def searched(
-    method: str, search: Search, function: Callable[..., tuple[Any, float]]
+    method: str, search: Quest, function: Callable[..., tuple[Any, float]]
 ) -> list[tuple[list[Any], list[float], float]]:
     """Return values, goals and violations of all trials."""
     trials: list[tuple[list[Any], list[float], float]] = []
@@ -49,7 +49,7 @@ def corner(a: float, b: float) -> tuple[float, float]:
     [("scipy", 400, 1e-5), ("nsga2", 600, 0.02), ("tpe", 120, 0.05), ("random", 600, 0.1)],
 )
 def test_the_least_value_on_a_curved_limit_is_found(method: str, trials: int, error: float) -> None:
-    search = Search(axes_of(SPAN), 1, trials, 1)
+    search = Quest(axes_of(SPAN), 1, trials, 1)
     good = [goals[0] for _, goals, broken in searched(method, search, corner) if broken == 0.0]
     assert 0.6 <= min(good) < 0.6 + error
 
@@ -62,7 +62,7 @@ def mixed(teeth: int, law: str, share: float) -> tuple[float, float]:
 @pytest.mark.parametrize(("method", "trials"), [("nsga2", 600), ("tpe", 150)])
 def test_whole_numbers_and_choices_against_all_combinations(method: str, trials: int) -> None:
     axes = axes_of({"teeth": "20:50:1", "law": ["x", "y", "z"], "share": "0:1"})
-    found = min(searched(method, Search(axes, 1, trials, 3), mixed), key=lambda one: one[1])
+    found = min(searched(method, Quest(axes, 1, trials, 3), mixed), key=lambda one: one[1])
     least, best = min(
         (mixed(teeth, law, 0.4)[0], (teeth, law))
         for teeth, law in itertools.product(range(20, 51), "xyz")
@@ -75,7 +75,7 @@ def test_the_front_of_two_goals_has_the_area_of_the_true_one() -> None:
     def two(a: float, b: float) -> tuple[list[float], float]:
         return [a, (1.0 + b) * (1.0 - np.sqrt(a / (1.0 + b)))], 0.0  # ZDT1: best at b = 0
 
-    trials = searched("nsga2", Search(axes_of(SPAN), 2, 1000, 1), two)
+    trials = searched("nsga2", Quest(axes_of(SPAN), 2, 1000, 1), two)
     found = sorted(tuple(goals) for _, goals, _ in trials)
     area, height = 0.0, 1.0
     for x, y in found:
@@ -87,7 +87,7 @@ def test_the_front_of_two_goals_has_the_area_of_the_true_one() -> None:
 @pytest.mark.parametrize("method", METHODS_KNOWN)
 def test_trials_depend_on_the_seed_only(method: str) -> None:
     first, again, other = (
-        [values for values, *_ in searched(method, Search(axes_of(SPAN), 1, 96, seed), corner)]
+        [values for values, *_ in searched(method, Quest(axes_of(SPAN), 1, 96, seed), corner)]
         for seed in (1, 1, 2)
     )
     assert first == again
@@ -96,8 +96,8 @@ def test_trials_depend_on_the_seed_only(method: str) -> None:
 
 def test_the_usual_method_follows_variables_and_price() -> None:
     numbers, whole = axes_of(SPAN), axes_of({"teeth": "20:50:1"})
-    assert usual(Search(numbers, 1, 200, 1), 0.01)[0] == "scipy"
-    assert usual(Search(numbers, 2, 200, 1), 0.01)[0] == "nsga2"
-    assert usual(Search(whole, 1, 200, 1), 0.01)[0] == "nsga2"
-    assert usual(Search(whole, 1, 200, 1), 5.0)[0] == "tpe"
-    assert usual(Search(whole, 1, 5000, 1), 5.0)[0] == "nsga2"
+    assert usual(Quest(numbers, 1, 200, 1), 0.01)[0] == "scipy"
+    assert usual(Quest(numbers, 2, 200, 1), 0.01)[0] == "nsga2"
+    assert usual(Quest(whole, 1, 200, 1), 0.01)[0] == "nsga2"
+    assert usual(Quest(whole, 1, 200, 1), 5.0)[0] == "tpe"
+    assert usual(Quest(whole, 1, 5000, 1), 5.0)[0] == "nsga2"

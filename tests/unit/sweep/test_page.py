@@ -9,7 +9,7 @@ from typing import Any
 import gearcam as gc
 from gearcam.designs.writing import toml_text
 from gearcam.sweep.page import file_text, page
-from gearcam.sweep.rows import Row, measured
+from gearcam.sweep.rows import Built, measured
 from helpers_pairs import PROFILES
 from helpers_sweep import BASE
 
@@ -66,7 +66,7 @@ def test_columns_are_those_that_differ() -> None:
 def test_a_fact_with_the_name_of_a_key_is_one_column() -> None:
     base = gc.load(PROFILES / "valve_tolerances.toml")
     rows = [
-        Row(number=k, values={"cam.base_radius_mm": r}, facts={"cam.base_radius_mm": r, "a": r})
+        Built(number=k, values={"cam.base_radius_mm": r}, facts={"cam.base_radius_mm": r, "a": r})
         for k, r in enumerate((27.0, 28.0))
     ]
     names = [one["name"] for one in held(page(base, rows, []))["columns"]]
@@ -74,7 +74,7 @@ def test_a_fact_with_the_name_of_a_key_is_one_column() -> None:
 
 
 def test_goals_are_set_before() -> None:
-    rows = [Row(number=k, values={"a": k}, facts={"b": float(k), "c": -k}) for k in range(3)]
+    rows = [Built(number=k, values={"a": k}, facts={"b": float(k), "c": -k}) for k in range(3)]
     content = held(page(BASE, rows, [], {"b": 1.0, "c": -1.0}))
     assert content["goals"] == {"b": "1", "c": "-1"}
     assert content["y"] == "b"

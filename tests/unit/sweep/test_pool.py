@@ -17,7 +17,7 @@ import pytest
 import gearcam as gc
 from gearcam.sweep.engine import chunk_size
 from gearcam.sweep.pool import Processes
-from gearcam.sweep.rows import Row
+from gearcam.sweep.rows import Built
 from helpers_sweep import BASE, odd
 
 
@@ -25,8 +25,8 @@ def deeds(*words: str) -> list[tuple[int, dict[str, Any]]]:
     return [(number, {"deed": word}) for number, word in enumerate(words)]
 
 
-def rows(wanted: Sequence[tuple[int, dict[str, Any]]], **settings: Any) -> dict[int, Row]:
-    found: dict[int, Row] = {}
+def rows(wanted: Sequence[tuple[int, dict[str, Any]]], **settings: Any) -> dict[int, Built]:
+    found: dict[int, Built] = {}
     for row in Processes(**{"jobs": 2, "measure": odd} | settings).run(BASE, iter(wanted)):
         assert row.number not in found
         found[row.number] = row

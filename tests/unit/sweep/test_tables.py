@@ -8,11 +8,11 @@ import polars as pl
 import pytest
 
 from gearcam.sweep.log import Log
-from gearcam.sweep.rows import Row
+from gearcam.sweep.rows import Built
 from gearcam.sweep.run import Tally, write_tables
 
 ROWS = [
-    Row(
+    Built(
         number=0,
         values={"law.eccentricity": 0.1 + 0.2, "pair.teeth": [20, 24], "law.type": "a, b"},
         facts={"size_mm": 1.0 / 3.0, "cutter": "rack"},
@@ -20,13 +20,13 @@ ROWS = [
         errors=1,
         time_s=0.5,
     ),
-    Row(
+    Built(
         number=1,
         values={"law.eccentricity": 3, "pair.teeth": [20, 24], "law.type": "a, b"},
         refusal='"3" is too large',
         time_s=0.1,
     ),
-    Row(
+    Built(
         number=2,
         values={"law.eccentricity": 0.2, "pair.teeth": [20, 24], "law.type": "a, b"},
         facts={"size_mm": 2.0, "more": 1e-12},

@@ -1,0 +1,378 @@
+"""The engine of a cluster: the workers of a scheduler of dask.distributed.
+
+A chunk of variants is one task. A worker builds it by a child process for each of its threads, so
+that limits of time and memory hold there too. Chunks of a worker that ends are built by others.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import pickle
+import sys
+import threading
+import time
+import uuid
+import warnings
+from collections import Counter, deque
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from importlib.metadata import PackageNotFoundError, version
+from itertools import islice
+from socket import gethostname
+from typing import Any, Final
+
+from gearcam.base.errors import DesignError, MissingExtraError, Problem
+from gearcam.base.interrupts import unbroken
+from gearcam.designs.design import Design
+from gearcam.sweep.child import MEMORY, SECONDS, Child
+from gearcam.sweep.engine import Engine, Job, Pace
+from gearcam.sweep.rows import Built, Measure, measured
+
+_CHUNK_S: Final = 1.0
+"""Time that a chunk should take, s: a task costs the scheduler about a millisecond."""
+
+_AHEAD: Final = 2
+"""Chunks that wait or are built, for each thread of a worker."""
+
+_ANSWER_S: Final = 5.0
+"""Time in which a scheduler answers, s."""
+
+_LOOK_S: Final = 2.0
+"""Time between looks for workers that came or went, s."""
+
+_SAME: Final = ("python", "gearcam", "dask", "distributed", "numpy")
+"""What has the same version on all machines."""
+
+_LOGGERS: Final = ("distributed", "tornado", "asyncio")
+
+_KILLS: Final = "its worker ended twice while it was built alone"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cluster(Engine):
+    """The workers of a scheduler of dask.
+
+    Parameters
+    ----------
+    address : str
+        Of the scheduler, such as ``tcp://host:8786``.
+    seconds : float, s
+        Largest time of a variant.
+    memory : int
+        Largest memory of the process of a thread, bytes.
+    measure : callable
+        ``measure(base, number, values)`` returns the row of a variant; a function of a module.
+
+    Raises
+    ------
+    DesignError
+        If nothing answers at the address, or other versions are there.
+    MissingExtraError
+        If dask is not installed.
+    """
+
+    address: str
+    seconds: float = SECONDS
+    memory: int = MEMORY
+    measure: Measure = measured
+
+    def __post_init__(self) -> None:
+        found = _answered(self.address)
+        there = {f"the worker {name}": one for name, one in found["workers"].items()}
+        there["the scheduler"] = found["scheduler"]
+        _demand_same(_versions(), {name: _told(one["packages"]) for name, one in there.items()})
+
+    @property
+    def name(self) -> str:
+        """In words."""
+        return f"dask at {self.address}"
+
+    def run(self, base: Design, jobs: Iterable[Job]) -> Iterator[Built]:
+        """Yield the rows of variants (see `Engine.run`)."""
+        order = Order(
+            token=uuid.uuid4().hex,
+            task=pickle.dumps((base, self.measure)),
+            seconds=self.seconds,
+            memory=self.memory,
+            versions=_versions(),
+        )
+        with _connected(self.address) as client:
+            chunks = _Chunks(client, self.address, order, iter(jobs))
+            try:
+                yield from chunks.rows()
+            finally:
+                with unbroken():
+                    chunks.end()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Order:
+    """What workers need to build variants of a sweep; each gets it once.
+
+    Parameters
+    ----------
+    token : str
+        Tells the sweep from others.
+    task : bytes
+        The design, and the function that makes the row of a variant, pickled.
+    seconds : float, s
+        Largest time of a variant.
+    memory : int
+        Largest memory of a process, bytes.
+    versions : mapping of str to str
+        Of Python and packages, where the sweep was started.
+    """
+
+    token: str
+    task: bytes
+    seconds: float
+    memory: int
+    versions: Mapping[str, str]
+
+
+def identical(order: Order) -> Order:
+    """Return an order: as the result of a task it is made again when its workers end."""
+    return order
+
+
+_children: Final[dict[tuple[str, int], Child]] = {}
+"""Processes of this worker by sweep and thread."""
+
+_lock: Final = threading.Lock()
+
+
+def build_chunk(order: Order, chunk: bytes) -> bytes:
+    """Return the rows of a chunk of variants, for a thread of a worker; both are pickled.
+
+    Parameters
+    ----------
+    order : Order
+        Of the sweep.
+    chunk : bytes
+        Numbers and values of variants.
+    """
+    key = order.token, threading.get_ident()
+    with _lock:
+        if key not in _children:
+            _demand_same(order.versions, {f"the worker at {gethostname()}": _versions()})
+            _children[key] = Child(order.task, order.seconds, order.memory)
+        child = _children[key]
+    return pickle.dumps(list(child.rows(pickle.loads(chunk))))
+
+
+def dismiss(token: str) -> None:
+    """End the processes of a sweep on this worker."""
+    with _lock:
+        ended = [_children.pop(key) for key in list(_children) if key[0] == token]
+    for child in ended:
+        child.stop()
+
+
+class _Chunks:
+    """Chunks of variants that are built by the workers of a cluster."""
+
+    def __init__(self, client: Any, address: str, order: Order, jobs: Iterator[Job]) -> None:
+        from distributed import as_completed
+
+        self._client, self._address = client, address
+        self._token, self._jobs = order.token, jobs
+        self._order = client.submit(identical, order, pure=False)
+        self._waiting: dict[Any, list[Job]] = {}
+        self._done = as_completed(with_results=True, raise_errors=False, loop=client.loop)
+        self._pace = Pace()
+        self._most, self._look = 0, 0.0
+        self._suspects: deque[Job] = deque()
+        self._alone: Any = None
+        self._killed: Counter[int] = Counter()
+
+    def rows(self) -> Iterator[Built]:
+        """Yield a row for each job."""
+        self._fill()
+        while self._waiting:
+            future, result = next(self._done)
+            jobs = self._waiting.pop(future)
+            if future is self._alone:
+                self._alone = None
+            if future.status == "finished":
+                rows = pickle.loads(result)
+                for row in rows:
+                    self._pace.add(row.time_s)
+            else:
+                rows = self._failed(jobs, result[1] if isinstance(result, tuple) else result)
+            self._fill()
+            yield from rows
+
+    def end(self) -> None:
+        """Cancel what is not built and end the processes of the workers."""
+        with suppress(Exception):
+            self._client.cancel([*self._waiting, self._order])
+            self._client.sync(
+                self._client.run,
+                dismiss,
+                self._token,
+                on_error="ignore",
+                callback_timeout=_ANSWER_S,
+            )
+
+    def _fill(self) -> None:
+        """Submit as many chunks as the workers need."""
+        now = time.monotonic()
+        if now >= self._look:
+            self._most = max(1, sum(self._client.nthreads().values())) * _AHEAD
+            self._look = now + _LOOK_S
+        if self._suspects and self._alone is None:
+            self._alone = self._submit([self._suspects.popleft()])
+        while len(self._waiting) < self._most:
+            chunk = list(islice(self._jobs, self._pace.chunk(_CHUNK_S)))
+            if not chunk:
+                break
+            self._submit(chunk)
+
+    def _submit(self, chunk: list[Job]) -> Any:
+        future = self._client.submit(build_chunk, self._order, pickle.dumps(chunk), pure=False)
+        self._waiting[future] = chunk
+        self._done.add(future)
+        return future
+
+    def _failed(self, jobs: list[Job], error: BaseException) -> list[Built]:
+        """Return the rows of a chunk that failed: of a variant that ended its worker twice.
+
+        After a chunk with which workers end, its variants are built again one by one: the workers
+        that end with one of them take no others of these with them.
+        """
+        from distributed import CancelledError, KilledWorker
+
+        if isinstance(error, CancelledError):
+            raise _gone(self._address)
+        if isinstance(error, ModuleNotFoundError):
+            message = f"a worker has no module {error.name}"
+            allowed = "gearcam, and the modules of a design's functions, on all workers"
+            raise DesignError([Problem(message, key="--scheduler", allowed=allowed)])
+        if not isinstance(error, KilledWorker):
+            raise error
+        if len(jobs) > 1:
+            self._suspects.extend(jobs)
+            return []
+        number, values = jobs[0]
+        self._killed[number] += error.allowed_failures + 1
+        if self._killed[number] < 2:
+            self._suspects.append(jobs[0])
+            return []
+        return [Built(number=number, values=values, refusal=_KILLS)]
+
+
+@contextmanager
+def _connected(address: str) -> Iterator[Any]:
+    """Yield a client of a scheduler that has answered, without what dask logs."""
+    from distributed import Client
+
+    with _silent():
+        try:
+            client = Client(address, timeout=_ANSWER_S, set_as_default=False)
+        except OSError as error:
+            raise _gone(address) from error
+        try:
+            yield client
+        finally:
+            with unbroken(), suppress(Exception):
+                client.close(timeout=_ANSWER_S)
+
+
+def _answered(address: str) -> dict[str, Any]:
+    """Return the versions of packages of scheduler and workers.
+
+    Raises
+    ------
+    DesignError
+        If nothing answers.
+    MissingExtraError
+        If dask is not installed.
+    """
+    try:
+        from distributed import Client
+    except ImportError as error:
+        raise MissingExtraError("clusters", "sweep") from error
+
+    async def ask() -> dict[str, Any]:
+        options = {"timeout": _ANSWER_S, "set_as_default": False}
+        async with Client(address, asynchronous=True, **options) as client:
+            return await client.get_versions(packages=["gearcam"])
+
+    async def ask_once() -> dict[str, Any]:  # dask waits for ever for what answers to nothing
+        return await asyncio.wait_for(ask(), 1.5 * _ANSWER_S)
+
+    with _silent():
+        try:
+            return asyncio.run(ask_once())
+        except (ValueError, TypeError) as error:
+            why = str(error)
+        except Exception:
+            why = "no scheduler of dask answers"
+    allowed = (
+        "the address of a running scheduler, such as tcp://HOST:8786 (`dask scheduler` starts one)"
+    )
+    problem = Problem(f"{address}: {why}", key="--scheduler", allowed=allowed)
+    raise DesignError([problem])
+
+
+def _gone(address: str) -> DesignError:
+    message = f"{address}: the scheduler does not answer any more"
+    allowed = "the same command, which goes on, when it runs again"
+    return DesignError([Problem(message, key="--scheduler", allowed=allowed)])
+
+
+def _versions() -> dict[str, str]:
+    """Return the versions of Python and packages here; empty for what is not installed."""
+    found = {"python": sys.version}
+    for name in _SAME[1:]:
+        with suppress(PackageNotFoundError):
+            found[name] = version(name)
+    return _told(found)
+
+
+def _told(versions: Mapping[str, Any]) -> dict[str, str]:
+    """Return the versions that have to be the same; of Python without its last number."""
+    found = {name: str(versions.get(name) or "") for name in _SAME}
+    return found | {"python": ".".join(found["python"].split(".")[:2])}
+
+
+def _demand_same(here: Mapping[str, str], others: Mapping[str, Mapping[str, str]]) -> None:
+    """Refuse machines whose versions differ.
+
+    Parameters
+    ----------
+    here : mapping of str to str
+        The versions of this process.
+    others : mapping of str to mapping
+        Those of others, by their names.
+    """
+    for whose, there in others.items():
+        wrong = [
+            f"{name} {there[name]} instead of {here[name]}" if there[name] else f"no {name}"
+            for name in _SAME
+            if there[name] != here[name]
+        ]
+        if wrong:
+            wanted = ", ".join(f"{name} {one}" for name, one in here.items() if one)
+            message = f"{whose} has {', '.join(wrong)}"
+            allowed = f"the same on scheduler and workers: {wanted}"
+            raise DesignError([Problem(message, key="--scheduler", allowed=allowed)])
+
+
+@contextmanager
+def _silent() -> Iterator[None]:
+    """Keep what dask logs and warns of from the terminal."""
+    names = [name for name in logging.root.manager.loggerDict if name.split(".")[0] in _LOGGERS]
+    loggers = [logging.getLogger(name) for name in names]
+    before = [one.level for one in loggers]
+    try:
+        for one in loggers:
+            one.setLevel(logging.CRITICAL + 1)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            yield
+    finally:
+        for one, level in zip(loggers, before, strict=True):
+            one.setLevel(level)
