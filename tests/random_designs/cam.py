@@ -266,6 +266,8 @@ def _solved(d: Draw, design: dict[str, Any], size: float) -> None:
             for table, one in keys
             if table[one] == "solve"
         }
+    elif follower.get("offset_mm") == "solve":
+        design["bounds"] = {"offset_mm": [short(-size), short(size)]}
 
 
 def _studies(d: Draw, design: dict[str, Any], size: float) -> None:

@@ -298,7 +298,8 @@ def _answered(address: str) -> dict[str, Any]:
     async def ask() -> dict[str, Any]:
         options = {"timeout": _ANSWER_S, "set_as_default": False}
         async with Client(address, asynchronous=True, **options) as client:
-            return await client.get_versions(packages=["gearcam"])
+            asked: Any = client.get_versions(packages=["gearcam"])
+            return await asked
 
     async def ask_once() -> dict[str, Any]:  # dask waits for ever for what answers to nothing
         return await asyncio.wait_for(ask(), 1.5 * _ANSWER_S)
