@@ -308,7 +308,7 @@ function draw() {
     if (!drag) findFront();
     drawPoints(drag ? 3000 : undefined);
     drawAxes(drag ? 500 : undefined);
-    if (!drag || count <= 20000) drawSpreads();
+    if (!drag || count <= MOST.lines) drawSpreads();
     if (!drag) drawSmalls();
   });
 }
