@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,12 +12,13 @@ import numpy as np
 import pytest
 from selenium.webdriver import ActionChains, Chrome
 from selenium.webdriver.common.by import By
+from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.select import Select
 
 import gearcam as gc
 from gearcam.sweep.page import page
 from gearcam.sweep.rows import Built, measured
-from helpers_browser import PHONE, open_page, unfold, until
+from helpers_browser import PHONE, open_page, settle, unfold, until
 from helpers_sweep import BASE
 
 
@@ -91,9 +94,111 @@ def test_a_click_shows_a_design_file_that_makes_these_facts(
     assert f"gearcam build {BASE.name}_6.toml" in text(opened, "variant")
 
 
+def test_a_range_is_moved_and_all_are_kept_again(opened: Chrome) -> None:
+    axes = opened.find_element(By.ID, "axes")
+    opened.execute_script("arguments[0].scrollIntoView({block: 'center'})", axes)
+    count = len(opened.find_elements(By.CSS_SELECTOR, "#choice input:checked"))
+    left = int(-axes.size["width"] / 2 + axes.size["width"] / count / 2)
+    mouse = ActionChains(opened).move_to_element_with_offset(axes, left, 100)
+    mouse.click_and_hold().move_by_offset(0, 30).release().perform()
+    before = opened.execute_script("return [...ranges.values()][0]")
+    mouse = ActionChains(opened).move_to_element_with_offset(axes, left, 110)
+    mouse.click_and_hold().move_by_offset(0, -60).release().perform()
+    after = opened.execute_script("return [...ranges.values()][0]")
+    assert after[0] > before[0]
+    assert after[1] - after[0] == pytest.approx(before[1] - before[0])
+    opened.find_element(By.ID, "all").click()
+    until(lambda: "11 of 11" in text(opened, "shown"))
+
+
+def test_the_front_is_that_of_the_variants_that_are_kept(opened: Chrome, rows: list[Built]) -> None:
+    unfold(opened)
+    Select(opened.find_element(By.NAME, "pair.ratio.min")).select_by_value("-1")
+    place = "#front tr td:first-child"
+    best = until(lambda: opened.find_elements(By.CSS_SELECTOR, place))
+    assert [one.text for one in best] == ["0"]
+    opened.execute_script("ranges.set('law.eccentricity', [0.22, 1]); draw()")
+    until(lambda: [one.text for one in opened.find_elements(By.CSS_SELECTOR, place)] == ["4"])
+    ratios = [float(row.facts["pair.ratio.min"]) for row in rows[4:10]]
+    assert max(ratios) == ratios[0]
+
+
+def test_refused_variants_are_crosses_at_the_edge(opened: Chrome) -> None:
+    around = opened.execute_script(
+        "const [x, y] = places().at(10).map(Math.round);"
+        "return [...byId('points').getContext('2d').getImageData(x - 4, y - 4, 9, 9).data]"
+    )
+    red, green, blue, _ = np.array(around).reshape(-1, 4).T
+    assert np.max(red - np.maximum(green, blue)) > 80
+
+
+def test_shares_of_a_distribution(browser: Chrome, tmp_path: Path) -> None:
+    values = np.random.default_rng(3).normal(size=157).round(3)
+    made = [
+        Built(number=k, values={"k": k}, facts={"a": float(value)})
+        for k, value in enumerate(values)
+    ]
+    file = tmp_path / "spread.html"
+    file.write_bytes(page(BASE, made, []))
+    open_page(browser, file)
+    figures = browser.find_elements(By.CSS_SELECTOR, "#spreads figure")
+    words = next(one.text for one in figures if one.text.startswith("a\n"))
+    found = [float(one) for one in re.findall(r"%: ([-.e\d]+)", words)]
+    expected = np.percentile(values, [5, 25, 50, 75, 95])
+    np.testing.assert_allclose(found, expected, rtol=1e-5, atol=1e-6)
+
+
+def test_words_are_axes_and_stand_in_the_file(browser: Chrome, tmp_path: Path) -> None:
+    teeth = [[30, 30], [41, 41], [24, 24]]
+    made = [measured(BASE, k, {"pair.teeth": one}) for k, one in enumerate(teeth)]
+    file = tmp_path / "words.html"
+    file.write_bytes(page(BASE, made, []))
+    open_page(browser, file)
+    assert not browser.get_log("browser")
+    assert browser.find_element(By.ID, "x").get_attribute("value") == "pair.teeth"
+    browser.find_element(By.ID, "number").send_keys("2", Keys.ENTER)
+    written = until(lambda: browser.find_elements(By.CSS_SELECTOR, "#variant pre"))[0].text
+    built: dict[str, Any] = gc.build(gc.loads(written)).record()
+    assert {**built, "name": BASE.name} == made[2].facts
+
+
+def test_a_single_variant_is_shown(browser: Chrome, rows: list[Built], tmp_path: Path) -> None:
+    file = tmp_path / "one.html"
+    file.write_bytes(page(BASE, rows[:1], []))
+    open_page(browser, file)
+    assert not browser.get_log("browser")
+    assert "law.eccentricity" in text(browser, "variant")
+    assert not browser.find_element(By.ID, "points").is_displayed()
+
+
+def test_the_longest_name_is_cut(browser: Chrome, tmp_path: Path) -> None:
+    base = replace(BASE, name="n" * 100)
+    file = tmp_path / "name.html"
+    file.write_bytes(page(base, [Built(number=123456, values={"law.eccentricity": 0.2})], []))
+    open_page(browser, file)
+    written = browser.find_element(By.CSS_SELECTOR, "#variant pre").text
+    assert gc.loads(written).name == "n" * 80 + "_123456"
+
+
+def test_a_choice_by_chance_has_all_values_of_a_grid(browser: Chrome, tmp_path: Path) -> None:
+    made = [
+        Built(number=k, values={"a": k // 10, "b": k % 10}, facts={"c": float(k)})
+        for k in range(50_000)
+    ]
+    file = tmp_path / "grid.html"
+    file.write_bytes(page(BASE, made, []))
+    open_page(browser, file)
+    drawn_ones = np.array(browser.execute_script("return some(1, 2000)"))
+    assert len(set(drawn_ones)) == 2000
+    assert np.ptp(drawn_ones) > 49_000
+    counts = np.bincount(drawn_ones % 10, minlength=10)
+    assert counts.min() > 140  # of 200, standard deviation 13
+    assert counts.max() < 260
+
+
 def test_the_front_is_that_of_all_pairs(browser: Chrome, tmp_path: Path) -> None:
     random = np.random.default_rng(5)
-    values = random.normal(size=(300, 2)).round(2)
+    values = np.tile(random.normal(size=(150, 2)).round(2), (2, 1))  # equal ones are both best
     made = [
         Built(
             number=k,
@@ -119,8 +224,10 @@ def test_the_front_is_that_of_all_pairs(browser: Chrome, tmp_path: Path) -> None
     }
     rows = browser.find_elements(By.CSS_SELECTOR, "#front tr td:first-child")
     assert {int(one.text) for one in rows} == front
+    unfold(browser)
     Select(browser.find_element(By.NAME, "b")).select_by_value("")
-    rows = until(lambda: browser.find_elements(By.CSS_SELECTOR, "#front tr td:first-child"))
+    settle(browser)
+    rows = browser.find_elements(By.CSS_SELECTOR, "#front tr td:first-child")
     least = min(values[k, 0] for k in good)
     assert {int(one.text) for one in rows} == {k for k in good if values[k, 0] == least}
 
@@ -145,4 +252,4 @@ def test_a_hundred_thousand_variants_open(browser: Chrome, tmp_path: Path) -> No
     file = tmp_path / "many.html"
     file.write_bytes(page(BASE, made, []))
     assert len(json.dumps(open_page(browser, file)["numbers"])) > 100_000
-    until(lambda: "Each 5th is drawn" in text(browser, "shown"))
+    until(lambda: "100000 of 100000 variants are kept, 10000 are drawn" in text(browser, "shown"))

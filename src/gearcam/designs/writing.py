@@ -66,12 +66,12 @@ def toml_text(document: Mapping[str, Any], comments: Sequence[str] = ()) -> str:
 def _lines(document: Mapping[str, Any]) -> Iterator[str]:
     for key, value in document.items():
         if not _tables(value):
-            yield f"{key} = {_text(value)}"
+            yield f"{key} = {value_text(value)}"
     for key, value in document.items():
         for table in _tables(value):
             yield ""
             yield f"[{key}]" if isinstance(value, Mapping) else f"[[{key}]]"
-            yield from (f"{name} = {_text(one)}" for name, one in table.items())
+            yield from (f"{name} = {value_text(one)}" for name, one in table.items())
 
 
 def _tables(value: Any) -> Sequence[Mapping[str, Any]]:
@@ -82,11 +82,12 @@ def _tables(value: Any) -> Sequence[Mapping[str, Any]]:
     return value if listed and value and all(isinstance(one, Mapping) for one in value) else ()
 
 
-def _text(value: Any) -> str:
+def value_text(value: Any) -> str:
+    """Return a value of a document as text in TOML."""
     if isinstance(value, Sequence) and not isinstance(value, str):
-        return f"[{', '.join(map(_text, value))}]"
+        return f"[{', '.join(map(value_text, value))}]"
     if isinstance(value, Mapping):
-        return f"{{ {', '.join(f'{key} = {_text(one)}' for key, one in value.items())} }}"
+        return f"{{ {', '.join(f'{key} = {value_text(one)}' for key, one in value.items())} }}"
     if isinstance(value, float):
         return repr(int(value)) if value.is_integer() and abs(value) < 1e15 else repr(value)
     return json.dumps(value, ensure_ascii=False)

@@ -145,7 +145,7 @@ def sweep_page(title: str, words: Mapping[str, Any], content: Mapping[str, Any])
         "title": title,
         "data": _embedded(content),
         "style": _contents("page.css", "sweep.css"),
-        "script": _contents("sweep.js"),
+        "script": _contents("sweep.js", "sweep_page.js"),
     }
     return rendered("sweep.html", values | dict(words)).encode()
 

@@ -137,7 +137,7 @@ def _page(plan: Plan, log: Log, folder: Path, tally: Tally) -> list[Path]:
         f"{how}; {tally.rows} of {plan.count} built; {_counts(tally)}",
     ]
     try:
-        content = page(plan.base, list(log.rows()), lines)
+        content = page(plan.base, log.rows(), lines)
         written_whole(folder / PAGE, lambda path: path.write_bytes(content))
     except OSError as error:
         raise WriteError(f"{folder / PAGE}: {error.strerror or error}") from error

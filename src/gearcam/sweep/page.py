@@ -2,16 +2,26 @@
 
 The page holds the columns of values and facts that differ, and the text of a design file in which
 the values of a variant are put. So it needs nothing but itself, whatever the number of variants.
+Rows are read once, one by one.
 """
 
 from __future__ import annotations
 
+import base64
+import math
+import re
+from array import array
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
 from typing import Any, Final
 
+import numpy as np
+
+from gearcam.base.facts import text_of
 from gearcam.designs.design import Design, path_of
-from gearcam.designs.writing import least_document, toml_text
+from gearcam.designs.reader import find_tables
+from gearcam.designs.writing import least_document, toml_text, value_text
 from gearcam.report.page import sweep_page
 from gearcam.sweep.rows import Built
 
@@ -21,13 +31,122 @@ PAGE: Final = "sweep.html"
 _PICKED: Final = 12
 """Largest number of parallel axes at first."""
 
-_DIGITS: Final = 7
-"""Digits of facts in the page."""
+_REASONS: Final = 20
+"""Largest number of reasons at the top."""
+
+_NUMBER: Final = re.compile(r"(?<![\w.])[-+]?\d+(\.\d+)?([eE][-+]?\d+)?")
+"""A number in a reason: reasons that differ in nothing else are counted together."""
+
+_SHARES: Final = (5, 50, 95)
+"""Percentiles of the time that are told."""
+
+
+class _Column:
+    """Values of a key or a fact, in little memory.
+
+    Parameters
+    ----------
+    name : str
+        Of the key or fact.
+    given : bool
+        Whether it is a key.
+    """
+
+    def __init__(self, name: str, *, given: bool = False) -> None:
+        self.name, self.given = name, given
+        self._numbers = array("d")
+        self._texts: dict[int, str] = {}
+
+    def add(self, place: int, value: Any) -> None:
+        """Put the value of the row at a place; places before it without a value stay empty."""
+        number = isinstance(value, int | float) and not isinstance(value, bool)
+        self._fill(place)
+        self._numbers.append(value if number and math.isfinite(value) else math.nan)
+        if not number:
+            self._texts[place] = value_text(value) if self.given else str(value)
+
+    def _fill(self, count: int) -> None:
+        self._numbers.extend([math.nan] * (count - len(self._numbers)))
+
+    def content(self, count: int) -> dict[str, Any]:
+        """Return the column of a number of rows for the page.
+
+        ``words`` are the values if some are no numbers; the data are their places then.
+        """
+        self._fill(count)
+        words: list[str] = []
+        values: Any = self._numbers
+        if self._texts:
+            texts = [self._text(place) for place in range(count)]
+            places = {text: place for place, text in enumerate(dict.fromkeys(filter(None, texts)))}
+            words, values = list(places), [places.get(text, math.nan) for text in texts]
+        data = np.asarray(values, dtype="<f8" if self.given else "<f4")
+        there = data[np.isfinite(data)]
+        one = {"name": self.name, "input": self.given, "words": words}
+        one["differs"] = bool(there.size and there.min() < there.max())
+        if there.size and not one["differs"]:
+            one["value"] = words[0] if words else text_of(float(there[0]))
+        return one | {"data": base64.b64encode(data.tobytes()).decode()}
+
+    def _text(self, place: int) -> str:
+        number = self._numbers[place]
+        return self._texts.get(place) or ("" if math.isnan(number) else value_text(number))
+
+
+class _Rows:
+    """What a page needs of the rows of a sweep."""
+
+    def __init__(self, rows: Iterable[Built]) -> None:
+        self.columns: dict[str, _Column] = {}
+        self.numbers, self.errors = array("q"), array("q")
+        self.reasons, self.findings = dict[str, int](), dict[str, int]()
+        self.refused, self.found = array("q"), array("q")
+        self.times = array("d")
+        for place, row in enumerate(rows):
+            self._add(place, row)
+
+    def _add(self, place: int, row: Built) -> None:
+        for name, value in {**row.values, **row.facts, **row.values}.items():
+            given = name in row.values
+            if name not in self.columns:
+                self.columns[name] = _Column(name, given=given)
+            self.columns[name].add(place, value)
+        self.numbers.append(row.number)
+        self.errors.append(row.errors)
+        self.times.append(row.time_s)
+        self.refused.append(_place(self.reasons, row.refusal))
+        self.found.append(_place(self.findings, " ".join(row.findings)))
+
+    def contents(self) -> list[dict[str, Any]]:
+        """Return the columns: keys, then facts."""
+        columns = [one.content(len(self.numbers)) for one in self.columns.values()]
+        return sorted(columns, key=lambda one: not one["input"])
+
+    def counted(self) -> list[tuple[str, int]]:
+        """Return reasons with their numbers, the most frequent first."""
+        counts = Counter[str]()
+        for place, count in Counter(self.refused).items():
+            if place >= 0:
+                counts[_NUMBER.sub("…", list(self.reasons)[place])] += count
+        most = counts.most_common()
+        rest = sum(count for _, count in most[_REASONS:])
+        return [*most[:_REASONS], *([("other reasons", rest)] if rest else [])]
+
+    def time(self) -> str:
+        """Return a line about the time."""
+        values = np.percentile(np.asarray(self.times), _SHARES)
+        pairs = zip(_SHARES, values, strict=True)
+        return "time: " + ", ".join(f"{p} % up to {1e3 * value:.3g} ms" for p, value in pairs)
+
+
+def _place(places: dict[str, int], text: str) -> int:
+    """Return the place of a text among those that are there, -1 of none."""
+    return places.setdefault(text, len(places)) if text else -1
 
 
 def page(
     base: Design,
-    rows: Sequence[Built],
+    rows: Iterable[Built],
     lines: Sequence[str],
     goals: Mapping[str, float] | None = None,
 ) -> bytes:
@@ -37,8 +156,8 @@ def page(
     ----------
     base : Design
         The design.
-    rows : sequence of Built
-        Its variants, at least one.
+    rows : iterable of Built
+        Its variants, at least one, all with the same keys.
     lines : sequence of str
         What is said at the top.
     goals : mapping of str to float, optional
@@ -49,62 +168,36 @@ def page(
     bytes
         HTML, UTF-8, with all that it needs.
     """
-    keys = list(rows[0].values)
-    given = {key: [row.values[key] for row in rows] for key in keys}
-    facts: dict[str, None] = {}
-    for row in rows:
-        facts |= dict.fromkeys(name for name in row.facts if name not in given)
-    columns = [_column(key, values, given=True) for key, values in given.items()]
-    columns += [_column(name, [row.facts.get(name) for row in rows]) for name in facts]
-    varied = [one for one in columns if one is not None and _differs(one["values"])]
-    numbers = {one["name"] for one in varied}
-    texts = [name for name in facts if name not in numbers]
-    shown = _shown(base, numbers)
-    names = [one["name"] for one in varied]
+    known = _Rows(rows)
+    columns = known.contents()
+    varied = [one for one in columns if one["differs"]]
+    keys = [one["name"] for one in columns if one["input"]]
     inputs = [one["name"] for one in varied if one["input"]]
-    first = shown or [name for name in names if name not in inputs] or inputs
-    reasons = Counter(row.refusal for row in rows if row.refusal)
-    known = {reason: place for place, reason in enumerate(reasons)}
+    facts = [one["name"] for one in varied if not one["input"] and not one["words"]]
+    first = _shown(base, set(facts)) or facts or inputs
     content = {
         "name": base.name,
-        "numbers": [row.number for row in rows],
-        "keys": keys,
-        "given": given,
-        "columns": varied,
-        "refused": [known.get(row.refusal, -1) for row in rows],
-        "reasons": list(known),
-        "errors": [row.errors for row in rows],
-        "findings": [" ".join(row.findings) for row in rows],
+        "numbers": list(known.numbers),
+        "columns": [one for one in columns if one["differs"] or one["input"]],
+        "refused": list(known.refused),
+        "reasons": list(known.reasons),
+        "errors": list(known.errors),
+        "found": list(known.found),
+        "findings": list(known.findings),
         "file": file_text(base, keys),
         "goals": {name: str(round(sign)) for name, sign in (goals or {}).items()},
-        "picked": [*inputs, *first][:_PICKED],
+        "picked": list(dict.fromkeys([*inputs, *(goals or {}), *first]))[:_PICKED],
         "x": (inputs or first or [""])[0],
-        "y": next(iter(goals or first), ""),
+        "y": next((name for name in [*(goals or {}), *first] if name in facts), (first or [""])[0]),
         "ink": inputs[1] if len(inputs) > 1 else "",
     }
+    constant = [f"{one['name']} = {one['value']}" for one in columns if "value" in one]
+    count = len(known.numbers)
     return sweep_page(
-        f"{base.name}, {len(rows)} variants",
-        {"lines": lines, "reasons": reasons.most_common(), "constant": texts},
+        f"{base.name}, {count} variant{'s' if count > 1 else ''}",
+        {"lines": [*lines, known.time()], "reasons": known.counted(), "constant": constant},
         content,
     )
-
-
-def _column(name: str, values: list[Any], *, given: bool = False) -> dict[str, Any] | None:
-    """Return a column of numbers; None if it has none."""
-    numbers = [one if _is_number(one) else None for one in values]
-    if not any(one is not None for one in numbers):
-        return None
-    short = [None if one is None else float(f"{one:.{_DIGITS}g}") for one in numbers]
-    return {"name": name, "label": name, "input": given, "values": short}
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
-
-
-def _differs(values: Sequence[float | None]) -> bool:
-    there = [one for one in values if one is not None]
-    return min(there) < max(there)
 
 
 def _shown(base: Design, known: set[str]) -> list[str]:
@@ -112,11 +205,11 @@ def _shown(base: Design, known: set[str]) -> list[str]:
     from gearcam import build
     from gearcam.base.errors import GearcamError
 
-    result = build(base)
     try:
+        result = build(base)
         leading = [one.name for one in result.facts.leading()]
         studies = tuple(f"{one.study.key}." for one in result.studies.values())
-    except GearcamError:
+    except GearcamError:  # the design that is varied need not be possible itself
         return []
     leading.sort(key=lambda name: not name.startswith(studies))
     return [name for one in leading for name in (one, f"{one}.max", f"{one}.min") if name in known]
@@ -124,6 +217,8 @@ def _shown(base: Design, known: set[str]) -> list[str]:
 
 def file_text(base: Design, keys: Sequence[str]) -> str:
     """Return the text of a design file with marks in the places of values.
+
+    Files that it names are named from the root, so that it builds wherever it is saved.
 
     Parameters
     ----------
@@ -133,6 +228,7 @@ def file_text(base: Design, keys: Sequence[str]) -> str:
         Dotted keys: the value of the k-th is the text ``@@k@@``, that of the name ``@@name@@``.
     """
     document = least_document(base)
+    find_tables(document, Path.cwd())
     document["name"] = "@@name@@"
     full = base.to_dict()
     for number, key in enumerate(keys):
@@ -141,8 +237,8 @@ def file_text(base: Design, keys: Sequence[str]) -> str:
         *steps, last = path_of(key)
         for step in steps:
             inner = whole[step] if _has(whole, step) else {}
-            if not _has(place, step):
-                place[step] = inner
+            if not _has(place, step) or not isinstance(place[step], dict | list):
+                place[step] = inner  # also of a pair that is written as one value
             place, whole = place[step], inner
         place[last] = f"@@{number}@@"
     return toml_text(document)

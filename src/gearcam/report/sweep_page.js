@@ -1,0 +1,165 @@
+"use strict";
+// What is done on the page of a sweep: goals, a variant that is picked, ranges that are dragged.
+
+// --- the best ------------------------------------------------------------------------------------
+
+const MOST_ROWS = 200;
+
+function surpassing(goals) {
+  const rows = [];
+  for (let k = 0; k < count; k += 1) {
+    if (!kept[k] || sweep.errors[k]) continue;
+    const values = goals.map(([one, sign]) => sign * one.values[k]);
+    if (values.every(Number.isFinite)) rows.push([k, values]);
+  }
+  rows.sort(([, a], [, b]) => {
+    const j = a.findIndex((one, place) => one !== b[place]);
+    return j < 0 ? 0 : a[j] - b[j];
+  });
+  const best = [];  // sorted, so that a later row never surpasses an earlier one
+  for (const [k, values] of rows) {
+    const beaten = best.some(([, other]) => other.every((one, j) => one <= values[j])
+      && other.some((one, j) => one < values[j]));
+    if (!beaten) best.push([k, values]);
+  }
+  return best.map(([k]) => k);
+}
+
+function findFront() {
+  const goals = [...document.querySelectorAll("#goals select")].filter((one) => one.value)
+    .map((one) => [columns.get(one.name), Number(one.value)]);
+  front = goals.length ? surpassing(goals) : [];
+  const heads = [...inputs, ...goals.map(([one]) => one)];
+  const rows = front.slice(0, MOST_ROWS).map((k) => made("tr", {
+    tabIndex: 0, onclick: () => choose(k),
+    onkeydown: (event) => { if (event.key === "Enter") choose(k); },
+  }, ...[sweep.numbers[k], ...heads.map((one) => one.input ? written(one, k) : shown(one.values[k]))]
+    .map((textContent) => made("td", { textContent }))));
+  const more = front.length > MOST_ROWS ? `, the first ${MOST_ROWS} are listed` : "";
+  byId("front").replaceChildren(...(rows.length ? [
+    made("p", { textContent: `${front.length} of ${inside}${more}` }),
+    made("table", {}, made("tr", {}, ...["variant", ...heads.map((one) => one.name)]
+      .map((textContent) => made("th", { textContent }))), ...rows)] : []));
+}
+
+// --- one variant -----------------------------------------------------------------------------------
+
+function file(k) {
+  const name = `${sweep.name.slice(0, 80)}_${sweep.numbers[k]}`;
+  const text = sweep.file.replace(/"@@(name|\d+)@@"/g, (_, mark) =>
+    mark === "name" ? JSON.stringify(name) : written(inputs[mark], k));
+  return [name, text];
+}
+
+function choose(k) {
+  chosen = k;
+  byId("number").value = sweep.numbers[k];
+  const [name, text] = file(k);
+  const table = (pairs) => made("table", {}, ...pairs.map((pair) =>
+    made("tr", {}, ...pair.map((textContent) => made("td", { textContent })))));
+  const facts = [...columns.values()].filter((one) => !one.input && !Number.isNaN(one.values[k]));
+  const words = sweep.reasons[sweep.refused[k]] ? `refused, ${sweep.reasons[sweep.refused[k]]}`
+    : sweep.findings[sweep.found[k]] ?? "no findings";
+  const link = made("a", {
+    textContent: `Save ${name}.toml`, download: `${name}.toml`,
+    href: URL.createObjectURL(new Blob([text], { type: "application/toml" })),
+  });
+  const copy = made("button", { type: "button", textContent: "Copy",
+    onclick: async () => { await navigator.clipboard.writeText(text); copy.textContent = "Copied"; } });
+  byId("variant").replaceChildren(
+    made("p", {}, made("strong", { textContent: `Variant ${sweep.numbers[k]}` }), `: ${words}`),
+    table(inputs.map((one) => [one.name, written(one, k)])),
+    made("div", { className: "facts" }, table(facts.map((one) => [one.name, word(one, one.values[k])]))),
+    made("p", {}, link, " ", copy, " then ", made("code", { textContent: `gearcam build ${name}.toml` })),
+    made("pre", { textContent: text }));
+  if (columns.size) draw();
+}
+
+/** Show the variant that is nearest to a click, within 20 pixels. */
+function pick(event, { at }) {
+  let [best, least] = [-1, 400];
+  for (let k = 0; k < count; k += 1) {
+    if (!kept[k]) continue;
+    const [x, y] = at(k);
+    const square = (x - event.offsetX) ** 2 + (y - event.offsetY) ** 2;
+    if (square < least) [best, least] = [k, square];
+  }
+  if (best >= 0) choose(best);
+}
+
+// --- ranges ----------------------------------------------------------------------------------------
+
+let drag = null;
+
+function grab(event) {
+  const axes = picked();
+  const box = byId("axes").getBoundingClientRect();
+  const one = axes[Math.floor((event.clientX - box.left) / (box.width / axes.length))];
+  if (!one) return;
+  byId("axes").setPointerCapture(event.pointerId);
+  const high = box.height - AXIS.top - LOWEST;
+  const value = (y) => one.low + span(one) * (box.bottom - LOWEST - y) / high;
+  const old = ranges.get(one.name);
+  const from = value(event.clientY);
+  drag = { one, value, from, y: event.clientY, old: old && old[0] <= from && from <= old[1] ? old : null };
+}
+
+function pull(event) {
+  if (!drag || Math.abs(event.clientY - drag.y) < 3) return;
+  const to = drag.value(event.clientY);
+  const { one, from, old } = drag;
+  ranges.set(one.name, old ? old.map((end) => end + to - from) : [Math.min(from, to), Math.max(from, to)]);
+  drag.moved = true;
+  draw();
+}
+
+function release() {
+  if (!drag) return;
+  if (!drag.moved) ranges.delete(drag.one.name);
+  drag = null;
+  draw();
+}
+
+// --- start -----------------------------------------------------------------------------------------
+
+function start() {
+  const redraw = () => { makeCharts(); draw(); };
+  const option = (one) => made("option", { value: one.name, textContent: one.name });
+  for (const id of ["x", "y", "ink"]) {
+    byId(id).append(...(id === "ink" ? [made("option", { value: "", textContent: "none" })] : []),
+      ...[...columns.values()].map(option));
+    byId(id).value = sweep[id];
+    byId(id).onchange = redraw;
+  }
+  for (const one of columns.values()) {
+    byId("choice").append(made("label", {}, made("input", {
+      type: "checkbox", value: one.name, checked: sweep.picked.includes(one.name), onchange: redraw,
+    }), one.name));
+    if (one.input || one.words.length) continue;
+    const select = made("select", { name: one.name, onchange: draw },
+      ...[["", "–"], ["1", "small"], ["-1", "large"]].map(
+        ([value, textContent]) => made("option", { value, textContent })));
+    select.value = sweep.goals[one.name] ?? "";
+    byId("goals").append(made("label", {}, select, one.name));
+  }
+  byId("wanted").open = !Object.keys(sweep.goals).length;
+  byId("points").addEventListener("click", (event) => pick(event, places()));
+  byId("axes").addEventListener("pointerdown", grab);
+  byId("axes").addEventListener("pointermove", pull);
+  for (const end of ["pointerup", "pointercancel"]) byId("axes").addEventListener(end, release);
+  byId("all").onclick = () => { ranges.clear(); draw(); };
+  window.addEventListener("resize", draw);
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { readColours(); draw(); });
+  readColours();
+  redraw();
+}
+
+byId("number").onchange = () => {
+  const k = sweep.numbers.indexOf(Number(byId("number").value));
+  if (k >= 0) choose(k);
+};
+if (columns.size) start();
+else {
+  for (const one of document.querySelectorAll(".drawn")) one.hidden = true;
+  choose(0);
+}
