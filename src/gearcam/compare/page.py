@@ -137,7 +137,8 @@ def _over(scene: Scene, places: np.ndarray) -> Scene:
 def _laid_over(scenes: Sequence[Scene], numbers: Sequence[int]) -> dict[str, Any]:
     """Return a scene with the bodies of the first variant and the outlines of the others.
 
-    The `numbers` of the variants select the colours.
+    The `numbers` of the variants select the colours. Nothing is coloured by values, which would be
+    those of the first variant only.
     """
     first = scenes[0]
     others = [
@@ -148,7 +149,7 @@ def _laid_over(scenes: Sequence[Scene], numbers: Sequence[int]) -> dict[str, Any
     ]
     bodies = (*first.bodies, *(body for _, body in others))
     closed = all(one.closed for one in scenes)
-    data = scene_data(replace(first, bodies=bodies, closed=closed))
+    data = scene_data(replace(first, bodies=bodies, closed=closed, coloured=()))
     for (k, _), body in zip(others, data["bodies"][len(first.bodies) :], strict=True):
         chains = [*body["metal"], *body["floor"]]
         body["lines"] += [

@@ -87,6 +87,29 @@ class ContactPoints(ShortRepr):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
+class ColouredCurve(ShortRepr):
+    """A curve on a body that can be drawn in the colours of values along it.
+
+    Parameters
+    ----------
+    body : str
+        Name of the body.
+    places : (n,) array
+        Places of the driver that belong to its points, in the unit of the scene.
+    points : (n,) complex array, mm
+        Its points, in the frame of the body; neighbours are joined.
+    values : mapping of str to (n,) array
+        Values by quantity and unit, as on chart axes: ``contact pressure, MPa``. Nan where there is
+        none, or no point: the curve is not drawn there.
+    """
+
+    body: str
+    places: Array
+    points: Plane
+    values: Mapping[str, Array]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Scene(ShortRepr):
     """Moving bodies over a cycle of the driver.
 
@@ -108,6 +131,8 @@ class Scene(ShortRepr):
         Points of contact by name.
     pitch : (n,) complex array, mm, optional
         The pitch point.
+    coloured : tuple of ColouredCurve
+        Curves that the reader can have coloured; those of one quantity share a scale.
     """
 
     title: str
@@ -118,6 +143,7 @@ class Scene(ShortRepr):
     bodies: tuple[MovingBody, ...]
     contacts: Mapping[str, ContactPoints] = field(default_factory=dict)
     pitch: Plane | None = None
+    coloured: tuple[ColouredCurve, ...] = ()
 
     def __post_init__(self) -> None:
         for body in self.bodies:

@@ -8,6 +8,7 @@ prints; NaN and infinity become null.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any, Final
 
 import numpy as np
@@ -15,7 +16,14 @@ import numpy as np
 from gearcam.numeric.arrays import Array, Plane, as_pairs
 from gearcam.pictures import drawings
 from gearcam.pictures.charts import Chart
-from gearcam.pictures.scenes import SAGITTA, ContactPoints, MovingBody, Scene, extent
+from gearcam.pictures.scenes import (
+    SAGITTA,
+    ColouredCurve,
+    ContactPoints,
+    MovingBody,
+    Scene,
+    extent,
+)
 
 _MM: Final = 4
 """Decimals of lengths, mm: a tenth of a micrometre."""
@@ -46,8 +54,11 @@ def scene_data(scene: Scene) -> dict[str, Any]:
         filled by the even-odd rule), ``plates`` (index in ``metal`` of the first chain of each of
         several plates), ``lines`` (``layer``, ``points``, ``closed``, ``dashed``), ``turn``, ``x``
         and ``y`` (one number if constant), and ``teeth`` (``[first, last]`` vertices of
-        ``metal[0]``) or null.
+        ``metal[0]``) or null; ``coloured``, each with ``body``, ``points`` and ``values`` by label;
+        ``scales`` by label, each with ``least``, ``largest``, and where that is: ``place`` of the
+        driver, ``body``, ``x`` and ``y`` on it.
     """
+    names = dict.fromkeys(name for one in scene.coloured for name in one.values)
     return {
         "title": scene.title,
         "driver": scene.driver,
@@ -58,6 +69,8 @@ def scene_data(scene: Scene) -> dict[str, Any]:
         "bodies": [_body(body) for body in scene.bodies],
         "contacts": {name: _contacts(one) for name, one in scene.contacts.items()},
         "pitch": None if scene.pitch is None else _flat(scene.pitch),
+        "coloured": [_coloured(one) for one in scene.coloured],
+        "scales": {name: _scale(name, scene.coloured) for name in names},
     }
 
 
@@ -100,6 +113,29 @@ def _contacts(contacts: ContactPoints) -> dict[str, Any]:
         "fx": _rounded(contacts.force.real, _DIGITS),
         "fy": _rounded(contacts.force.imag, _DIGITS),
         "teeth": None if contacts.teeth is None else contacts.teeth.tolist(),
+    }
+
+
+def _coloured(curve: ColouredCurve) -> dict[str, Any]:
+    values = {name: _digits(one) for name, one in curve.values.items()}
+    return {"body": curve.body, "points": _flat(curve.points), "values": values}
+
+
+def _scale(name: str, curves: Sequence[ColouredCurve]) -> dict[str, Any]:
+    """Return the scale of a quantity on all curves, from its least to its largest value."""
+    own = [one for one in curves if name in one.values]
+    highest = max(own, key=lambda one: float(np.nanmax(one.values[name])))
+    k = int(np.nanargmax(highest.values[name]))
+    x, y = _flat(highest.points[k : k + 1])
+    ends = min(float(np.nanmin(one.values[name])) for one in own), highest.values[name][k]
+    least, largest = _digits(np.array(ends))
+    return {
+        "least": least,
+        "largest": largest,
+        "place": round(float(highest.places[k]), _MM),
+        "body": highest.body,
+        "x": x,
+        "y": y,
     }
 
 

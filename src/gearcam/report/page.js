@@ -20,6 +20,7 @@ const page = {
   // what is shown of the scene
   seen: {
     points: true, action: true, carry: true, pitch: false, contacts: [], lines: { PITCH: true },
+    colouring: "", // a label of values, or nothing
   },
   colours: palette(),
   playing: false,
@@ -218,6 +219,35 @@ function side() {
   page.seen.contacts = sets.length > 1 && one ? [one] : sets;
 }
 
+// The quantities that curves can be coloured by; the choice is kept while there is such a one.
+function colourings() {
+  const labels = Object.keys(page.scene.scales);
+  if (!labels.includes(page.seen.colouring)) page.seen.colouring = "";
+  const choice = element("colouring");
+  choice.replaceChildren();
+  for (const label of ["", ...labels]) {
+    add(choice, "option", { value: label }, label.split(", ")[0] || "nothing");
+  }
+  choice.value = page.seen.colouring;
+  element("colours").hidden = !labels.length;
+}
+
+// The scale of the colours, with the place of the largest value; empty for a draft without it.
+function legend() {
+  const { scene, seen } = page;
+  const scale = scene.scales[seen.colouring];
+  const home = element("scale");
+  home.replaceChildren();
+  if (!scale) return;
+  const unit = seen.colouring.split(", ")[1];
+  const range = add(home, "span", {}, brief(scale.least));
+  const bar = add(range, "span", { class: "bar", "aria-hidden": "true" });
+  for (let k = 1; k <= LEVELS; k++) add(bar, "i", { style: `background: var(--level-${k})` });
+  range.append(`${brief(scale.largest)} ${unit}`);
+  const [name, measure] = scene.driver.split(", ");
+  add(home, "span", { class: "most" }, `largest at ${name} = ${brief(scale.place)} ${measure}`);
+}
+
 function listen() {
   element("place").addEventListener("input", (event) => go(page.scene.places[event.target.value]));
   element("place").addEventListener("keydown", key);
@@ -234,6 +264,11 @@ function listen() {
   element("farther").addEventListener("click", () => parts.zoom(0.8));
   element("side").addEventListener("change", () => {
     side();
+    redraw();
+  });
+  element("colouring").addEventListener("change", (event) => {
+    page.seen.colouring = event.target.value;
+    legend();
     redraw();
   });
   element("svg").addEventListener("click", () => save(`${page.title}.svg`, svg(), "image/svg+xml"));
@@ -284,7 +319,11 @@ function show(next) {
 function present(whole) {
   const { scene } = page;
   parts.scene = scene;
-  if (whole) offer();
+  if (whole) {
+    offer();
+    colourings();
+  }
+  legend();
   element("place").max = scene.places.length - 1;
   page.place = Math.min(scene.places.at(-1), Math.max(scene.places[0], page.place));
   draw();

@@ -1,5 +1,7 @@
 // The parts in motion on a canvas: drawing, zoom and pan.
 
+const LEVELS = 10; // colours of a scale of values
+
 // Colours by name from the style sheet; on paper the light ones.
 function palette(paper = false) {
   const root = document.documentElement;
@@ -9,6 +11,7 @@ function palette(paper = false) {
   const names = ["ground", "text", "muted", "rule", "contact", "pitch", "centrode", "limit"];
   for (const k of [1, 2]) names.push(`fill-${k}`, `ink-${k}`, `floor-${k}`, `carry-${k}`);
   for (const k of [1, 2, 3, 4, 5, 6]) names.push(`line-${k}`);
+  for (let k = 1; k <= LEVELS; k++) names.push(`level-${k}`);
   const colours = Object.fromEntries(
     names.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]),
   );

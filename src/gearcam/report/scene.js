@@ -104,6 +104,53 @@ function toothOf(outline, [first, last]) {
   return first <= last ? tooth : tooth.concat(outline.slice(0, 2 * last + 2));
 }
 
+// The coloured pieces of a curve, by their colours and all together.
+function piecesOf(curve, label, scale) {
+  const known = (curve.pieces ??= new Map());
+  if (!known.has(label)) {
+    const levels = levelsOf(curve.points, curve.values[label], scale);
+    known.set(label, { body: curve.body, levels, whole: levels.flat() });
+  }
+  return known.get(label);
+}
+
+// The pieces by their colours: that of the larger of the values at the ends of a piece.
+function levelsOf(points, values, { least, largest }) {
+  const levels = Array.from({ length: LEVELS }, () => []);
+  let before = -1;
+  for (let k = 1; k < values.length; k++) {
+    const ends = [values[k - 1], values[k]];
+    const share = (Math.max(...ends) - least) / (largest - least || 1);
+    const level = ends.includes(null) ? -1 : Math.min(LEVELS - 1, Math.floor(LEVELS * share));
+    const piece = points.slice(2 * k - 2, 2 * k + 2);
+    if (level >= 0 && level === before) levels[level].at(-1).push(piece[2], piece[3]);
+    else if (level >= 0) levels[level].push(piece);
+    before = level;
+  }
+  return levels;
+}
+
+// Curves in the colours of values, large ones on top, within an edge that stands out from any
+// ground, and a ring around the largest.
+function* colouredMarks({ coloured, scales }, label, poses, pixel) {
+  const scale = scales[label];
+  const poseOf = (name) => poses.find((one) => one.name === name);
+  const curves = coloured
+    .filter((one) => label in one.values)
+    .map((one) => ({ ...piecesOf(one, label, scale), pose: poseOf(one.body) }));
+  for (const { whole, pose } of curves) {
+    yield { chains: whole, closed: false, ink: "text", width: 7, pose };
+  }
+  for (let k = 0; k < LEVELS; k++) {
+    for (const { levels, pose } of curves) {
+      yield { chains: levels[k], closed: false, ink: `level-${k + 1}`, width: 5, pose };
+    }
+  }
+  const ring = { ...dot(scale, 9 * pixel, null), pose: poseOf(scale.body) };
+  yield { ...ring, ink: "ground", width: 6 };
+  yield { ...ring, ink: "text", width: 2.5 };
+}
+
 /* The marks to draw, later ones on top. A mark has `chains` of points (flat, mm), `closed` or not,
    the names of the colours of its area (`fill`) and edges (`ink`), an optional `pose`, and its
    `width` and `dash` in units of `pixel`, mm. `seen` selects what is shown. */
@@ -125,6 +172,7 @@ function* marksOf(scene, place, cycles, seen, pixel) {
   }
   // Auxiliary lines are drawn on top of the bodies.
   for (const [k, body] of scene.bodies.entries()) yield* dashedMarks(body, poses[k], seen);
+  if (scene.scales[seen.colouring]) yield* colouredMarks(scene, seen.colouring, poses, pixel);
   if (seen.action) yield* actionMarks(found, pixel);
   if (seen.points) yield* found.map((one) => dot(one, 4 * pixel, "contact"));
   const pitch = seen.pitch && pitchAt(scene, place);

@@ -231,6 +231,15 @@ def test_outlines_are_laid_over_each_other_and_each_moves_by_its_own_law() -> No
     assert not any(line["dashed"] for one in gears[1:] for line in one["lines"])
 
 
+def test_variants_are_not_coloured_by_what_only_the_first_has() -> None:
+    variants = variants_of(
+        [str(PROFILES / "plate_cam_offset_roller.toml")], {"cam.prime_radius_mm": [30, 35]}
+    )
+    assert all(one.scene is not None and one.scene.coloured for one in variants)
+    scene = document(variants, "two")["scene"]
+    assert (scene["coloured"], scene["scales"]) == ([], {})
+
+
 def test_ways_of_different_length_are_shown_over_the_longest() -> None:
     files = [str(PROFILES / f"{name}.toml") for name in ("furnace_door_two_phase", "furnace_door")]
     variants = variants_of(files, COARSE)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import re
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from arch import rules
 from gearcam.numeric.pose import Pose
 from gearcam.pictures.charts import Chart, Limit, Line, MarkedPlace
 from gearcam.pictures.drawings import CENTRODE, OUTLINE, Feature, Path
-from gearcam.pictures.scenes import ContactPoints, MovingBody, Scene
+from gearcam.pictures.scenes import ColouredCurve, ContactPoints, MovingBody, Scene
 from gearcam.report.data import chart_data, scene_data
 from gearcam.report.page import blocks
 
@@ -107,6 +108,30 @@ def test_what_is_no_number_is_null_and_nothing_is_minus_zero():
     assert data["pitch"] == [None, 0.0, 1.0, 0.0]
     assert data["contacts"]["all"]["x"] == [None]
     assert "-0.0" not in json.dumps(data)
+
+
+def test_curves_of_one_quantity_share_a_scale():
+    """That ends at the largest value on any of them, and tells where this is."""
+    label, points = "contact pressure, MPa", np.array([1.0, 2.0 + 1j, complex(math.nan, 0.0)])
+    curves = [
+        ColouredCurve(
+            body=body,
+            places=np.array([0.0, start, 9.0]),
+            points=points + shift,
+            values={label: np.array(values)},
+        )
+        for body, start, shift, values in (
+            ("a", 4.0, 0j, [300.0, 100.0 / 3.0, math.nan]),
+            ("b", 5.0, 10j, [math.nan, 400.0, math.nan]),
+        )
+    ]
+    data = read(scene_data(replace(made("ellipse")[1], coloured=tuple(curves))))
+    first, second = data["coloured"]
+    assert first["values"][label] == [300.0, 33.333, None]
+    assert second["values"][label] == [None, 400.0, None]
+    assert (first["body"], first["points"][:4]) == ("a", [1.0, 0.0, 2.0, 1.0])
+    scale = {"least": 33.333, "largest": 400.0, "place": 5.0, "body": "b", "x": 2.0, "y": 11.0}
+    assert data["scales"] == {label: scale}
 
 
 def test_a_chart_is_read_back_to_six_digits():

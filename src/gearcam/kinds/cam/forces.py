@@ -359,7 +359,7 @@ def _spring(loads: Loads) -> Tree:
     return made
 
 
-_TITLES: Final = {
+TITLES: Final = {
     "normal_n": ("Normal force between cam and follower", "normal force, N"),
     "torque_nm": ("Torque of the cam", "torque, N m"),
     "drive_n": ("Force that drives the cam", "force, N"),
@@ -367,6 +367,9 @@ _TITLES: Final = {
     "efficiency": ("Efficiency", "efficiency"),
 }
 """Titles and axes of charts by columns."""
+
+COLOURS: Final = ("normal_n", "pressure_mpa")
+"""Columns that the profile can be coloured by."""
 
 
 def _along(result: CamResult, x: Array, columns: Mapping[str, Any]) -> Chart | None:
@@ -395,7 +398,7 @@ def _charts(result: CamResult, x: Array, columns: Mapping[str, Any]) -> dict[str
         "torque_nm": limit_of(FORCES, "drive-torque", given) / TORQUE.factor,
     }
     charts = {}
-    for name, (title, axis) in _TITLES.items():
+    for name, (title, axis) in TITLES.items():
         values = np.ma.filled(columns[name], np.nan) if name in columns else None
         if values is None or not np.isfinite(values).any():
             continue

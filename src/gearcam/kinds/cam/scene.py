@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from gearcam.kinds.cam.coloured import coloured
 from gearcam.numeric.pose import Pose
 from gearcam.pictures.drawings import CENTER, FOLLOWER, Feature, place
 from gearcam.pictures.scenes import PLACES, ContactPoints, MovingBody, Scene, still
@@ -66,6 +67,7 @@ def scene(result: CamResult, places: int = PLACES) -> Scene:
         start=driver.scale * (pose % (2.0 * math.pi) if carrier.around else pose),
         bodies=(*cams, follower, fixed),
         contacts=_contacts(result, theta, moving),
+        coloured=coloured(result, theta),
     )
 
 
