@@ -45,6 +45,7 @@ def test_cells_print_and_draw_what_is_stored(
     stored = nbformat.read(path, as_version=4)
     monkeypatch.chdir(tmp_path)
     plt.switch_backend("agg")
+    plt.close("all")  # what other tests of this process have left open
     names: dict[str, Any] = {}
     told = []
     for cell in stored.cells:
