@@ -12,6 +12,7 @@ import pytest
 import gearcam as gc
 from gearcam.cams.burdens import Loads
 from gearcam.cams.statics import Statics, solve
+from gearcam.cams.supports import StraightGuide
 from gearcam.kinds.cam.forces import loads_of, places
 
 CAM = """
@@ -244,6 +245,71 @@ def test_the_sign_of_the_load_tells_the_wall_that_carries(name: str) -> None:
     assert set(found.carrying) == {0, 1}
     assert ((found.against > 0.0) == (found.carrying == 0)).all()
     assert (found.force >= 0.0).all()
+
+
+def balanced(
+    pushed: list[Any], burden: tuple[float, complex, float], support: Any, friction: Any
+) -> tuple[int, float]:
+    """The touch and its normal force, by bisection of the balance of forces at one place.
+
+    `pushed` holds point of contact and unit force of each touch; `burden` load, force on the
+    support, sign of the velocity.
+    """
+    made, (against, resultant, sense) = [], burden
+    for number, (at, unit) in enumerate(pushed):
+
+        def left(force: float, at: complex = at, unit: complex = unit) -> float:
+            press = force * unit + resultant
+            if isinstance(support, StraightGuide):
+                along = (force * unit * np.conj(support.direction)).real
+                across = abs((press * np.conj(1j * support.direction)).real)
+                tip = abs((np.conj(at - support.middle) * unit).imag * force)
+                drag = friction.guide * max(across, 2.0 * tip / friction.guide_length)
+            else:
+                along = (np.conj(at - support.at) * force * unit).imag * support.spin
+                drag = friction.journal * math.sin(math.atan(friction.joint)) * abs(press)
+            return along - against - sense * drag
+
+        ends = 0.0, 1e7
+        if left(0.0) * left(ends[1]) <= 0.0:
+            for _ in range(100):
+                middle = 0.5 * sum(ends)
+                same = left(middle) * left(ends[1]) > 0.0
+                ends = (ends[0], middle) if same else (middle, ends[1])
+            made.append((number, ends[0]))
+    assert len(made) == 1
+    return made[0]
+
+
+@pytest.mark.parametrize("follower", [ROLLER, ARM])
+@pytest.mark.parametrize("pull", [-8.0, 170.0])
+def test_the_wall_that_carries_has_a_positive_force_with_friction(
+    follower: str, pull: float
+) -> None:
+    """A heavy follower, whose weight rubs in its support, against a small load of both signs."""
+    mass = {"mass_kg": 20.0}
+    load = [{"formula": "60*cos(3*theta)"}]
+    if "oscillating" in follower:
+        mass |= {"inertia_kg_m2": 0.04, "center_mm": 1}
+        load = [{"formula": "0.3*cos(3*theta)"}]
+    groove = {"cam.form": "groove", "cam.outer_diameter_mm": 160, "cam.groove_depth_mm": 5}
+    changes = {"mass": [mass], "gravity": {"direction_deg": pull}, "drive": {"speed_rpm": 6}}
+    friction = {**FRICTION, "friction.journal_radius_mm": [12, 4], "friction.joint": 0.2}
+    result = held(follower, load=load, **groove, **changes, **friction)
+    found, loads, x = studied(result)
+    motion = loads.motion(x)
+    burden, given = loads.burden(motion), result.design.friction
+    share = result.design.follower.dragged(given, result.follower.radius)
+    pushes = [touch.push(x, motion[2], loads.support, share)[0] for touch in result.cam.touches]
+    assert not found.lifted.any()
+    assert not found.locked.any()
+    assert set(found.carrying) == {0, 1}
+    for k in range(0, len(x), 7):
+        pushed = [(one.at[k], one.unit[k]) for one in pushes]
+        here = (burden.against[k], burden.resultant[k], burden.sense[k])
+        number, force = balanced(pushed, here, loads.support, given)
+        assert found.force[k] == pytest.approx(force, rel=1e-9, abs=1e-6)
+        assert force < 1e-6 or found.carrying[k] == number
 
 
 def test_the_pivot_by_the_law_of_newton() -> None:

@@ -1,9 +1,10 @@
 """Rigid body statics of a cam and its follower, at positions of the driver.
 
 A *touch* is a place where a cam can press on its follower: one of a disc cam, two where walls or
-rollers hold the follower from both sides. A touch only presses, so that the sign of the load tells
-which one carries. Where no touch can carry the follower *lifts off*; where friction leaves nothing
-of the normal force it is *locked*.
+rollers hold the follower from both sides. A touch only presses, so that the sign of the load, with
+the friction of what else presses on the support, tells which one carries
+(`gearcam.cams.supports`). Where no touch can carry the follower *lifts off*; where friction leaves
+nothing of the normal force it is *locked*.
 
 The contact force acts on the follower with its roller as one body: friction of the roller on its
 pin is a tangential force at its circumference. All work is per unit of the driver's position:
@@ -238,13 +239,15 @@ def solve(
     lost = {name: np.zeros(count) for name in ("contact", "support", "bearing")}
     torque, bearing = np.zeros(count), np.zeros(count, dtype=complex)
     curvature, reactions = np.full(count, np.nan), dict[str, Array]()
+    holding = burden.holding(support, friction)
     for number, touch in enumerate(touches):
         part = share(touch.end.radius)
         push, slide = touch.push(x, ds, support, part)
-        asked = burden.against * support.lifting(push.normal, push.at) >= 0.0
+        asked = holding * support.lifting(push.normal, push.at) >= 0.0
         found, left = support.normal_force(push, burden, friction)
         stuck = asked & (left <= 0.0)
-        carries = asked & (left > 0.0) & (found >= 0.0) & (carrying < 0)
+        carries = asked & (left > 0.0) & (carrying < 0)
+        found = np.maximum(found, 0.0)  # rounding, where the load passes through 0
         reserve = np.where(asked, left, reserve)
         locked |= stuck
         carrying[carries] = number

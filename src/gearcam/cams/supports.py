@@ -19,6 +19,14 @@ The first covers both cases of a guide: its ends press on the same side, or on o
 pivot's quadratic. The *reserve* is what is left of c by friction; where it is gone the follower is
 locked, whatever the force.
 
+A touch only presses. The left side is convex or concave in N, and beyond all bounds has the sign of
+c. So where the follower is not locked N > 0 exists if c and
+
+    Q + sigma*G(0)
+
+have the same sign: *holding* is this sum. It decides between two touches, and whether one touch
+keeps its follower. Without other forces on the support G(0) is 0, and it is the sign of the load.
+
 Sources: 000 eqs. (3.65) to (3.69), (3.90) to (3.99), (3.101) to (3.104); derived anew.
 
 Depends on numeric; numpy only.
@@ -74,6 +82,23 @@ class Burden:
     resultant: Plane
     sense: Array
 
+    def holding(self, support: Support, friction: FrictionSpec) -> Array:
+        """Return what presses the follower back, with the drag of its support, N or N mm.
+
+        Parameters
+        ----------
+        support : Support
+            What holds the follower.
+        friction : FrictionSpec
+            Coefficients of friction.
+
+        Returns
+        -------
+        (n,) array
+            Positive where a touch from below has to push, negative where one from above has to.
+        """
+        return self.against + self.sense * support.drag(self.resultant, friction)
+
 
 class Support(ABC, ShortRepr):
     """What holds a follower."""
@@ -116,6 +141,18 @@ class Support(ABC, ShortRepr):
             positive.
         reserve : (n,) array
             Share of the normal force's effect that friction leaves.
+        """
+
+    @abstractmethod
+    def drag(self, force: Plane, friction: FrictionSpec) -> Array:
+        """Return the friction of a moving follower without its cam, N or N mm.
+
+        Parameters
+        ----------
+        force : (n,) complex array, N
+            What presses on the support.
+        friction : FrictionSpec
+            Coefficients of friction.
         """
 
     @abstractmethod
@@ -170,11 +207,14 @@ class StraightGuide(Support):
         """Return accelerations along the guide (see `Support.hurrying`)."""
         return np.asarray(self.direction * d2s, dtype=np.complex128)
 
+    def _across(self, force: Plane) -> Array:
+        """Return the component of a force across the guide, N."""
+        return (force * np.conj(-1j * self.direction)).real
+
     def _sideways(self, push: Push, burden: Burden) -> tuple[Array, Array, Array]:
         """Return forces across the guide by N and of loads, and the moment about it by N."""
-        across = np.conj(-1j * self.direction)
         moment = (np.conj(push.at - self.middle) * push.unit).imag
-        return (push.unit * across).real, (burden.resultant * across).real, moment
+        return self._across(push.unit), self._across(burden.resultant), moment
 
     def normal_force(
         self, push: Push, burden: Burden, friction: FrictionSpec
@@ -197,6 +237,10 @@ class StraightGuide(Support):
         force = np.where(drag >= 0.0, hardest, roots.min(axis=0))
         least = np.where(drag > 0.0, left.min(axis=0), effect)
         return force, least / np.abs(plain)
+
+    def drag(self, force: Plane, friction: FrictionSpec) -> Array:
+        """Return the friction in the guide, N (see `Support.drag`)."""
+        return friction.guide * np.abs(self._across(force))
 
     def friction_of(
         self, force: Array, push: Push, burden: Burden, friction: FrictionSpec
@@ -268,12 +312,16 @@ class Pivot(Support):
         least = effect - np.maximum(sense, 0.0) * circle * size
         return force, least / np.abs(plain)
 
+    def drag(self, force: Plane, friction: FrictionSpec) -> Array:
+        """Return the moment of friction in the pivot, N mm (see `Support.drag`)."""
+        return self._circle(friction) * np.abs(force)
+
     def friction_of(
         self, force: Array, push: Push, burden: Burden, friction: FrictionSpec
     ) -> Array:
         """Return the moment of friction in the pivot, N mm (see `Support.friction_of`)."""
-        pressed = np.abs(force * push.unit + burden.resultant)
-        return self._circle(friction) * pressed * np.abs(burden.sense)
+        pressed = self.drag(force * push.unit + burden.resultant, friction)
+        return pressed * np.abs(burden.sense)
 
     def reactions(
         self,
