@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 from gearcam.base.errors import DesignError
 from gearcam.designs.design import Design, design
+from gearcam.designs.reader import find_tables
 
 
 def least_document(given: Design) -> dict[str, Any]:
     """Return the document of a design without keys that say what holds without them.
+
+    CSV files in it are named from the root, so that it may be written to any folder.
 
     Parameters
     ----------
@@ -35,6 +39,7 @@ def least_document(given: Design) -> dict[str, Any]:
         if not document[title]:
             rest = {name: value for name, value in document.items() if name != title}
             document = _if_equal(given, document, rest)
+    find_tables(document, Path.cwd())
     return document
 
 

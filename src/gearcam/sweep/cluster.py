@@ -20,12 +20,14 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
 from itertools import islice
+from pathlib import Path
 from socket import gethostname
 from typing import Any, Final
 
 from gearcam.base.errors import DesignError, MissingExtraError, Problem
 from gearcam.base.interrupts import unbroken
-from gearcam.designs.design import Design
+from gearcam.designs.design import Design, design, document_of
+from gearcam.designs.reader import find_tables
 from gearcam.sweep.child import MEMORY, SECONDS, Child
 from gearcam.sweep.engine import Engine, Job, Pace
 from gearcam.sweep.rows import Built, Measure, measured
@@ -93,7 +95,7 @@ class Cluster(Engine):
         """Yield the rows of variants (see `Engine.run`)."""
         order = Order(
             token=uuid.uuid4().hex,
-            task=pickle.dumps((base, self.measure)),
+            task=pickle.dumps((_from_root(base), self.measure)),
             seconds=self.seconds,
             memory=self.memory,
             versions=_versions(),
@@ -105,6 +107,13 @@ class Cluster(Engine):
             finally:
                 with unbroken():
                     chunks.end()
+
+
+def _from_root(base: Design) -> Design:
+    """Return a design that names CSV files from the root: workers run in other folders."""
+    document = document_of(base)
+    find_tables(document, Path.cwd())
+    return design(document, base.source)
 
 
 @dataclass(frozen=True, kw_only=True)

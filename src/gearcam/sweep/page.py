@@ -13,14 +13,12 @@ import re
 from array import array
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 
 from gearcam.base.facts import text_of
 from gearcam.designs.design import Design, path_of
-from gearcam.designs.reader import find_tables
 from gearcam.designs.writing import least_document, toml_text, value_text
 from gearcam.report.page import sweep_page
 from gearcam.sweep.rows import Built
@@ -218,7 +216,7 @@ def _shown(base: Design, known: set[str]) -> list[str]:
 def file_text(base: Design, keys: Sequence[str]) -> str:
     """Return the text of a design file with marks in the places of values.
 
-    Files that it names are named from the root, so that it builds wherever it is saved.
+    It builds wherever it is saved (see `least_document`).
 
     Parameters
     ----------
@@ -228,7 +226,6 @@ def file_text(base: Design, keys: Sequence[str]) -> str:
         Dotted keys: the value of the k-th is the text ``@@k@@``, that of the name ``@@name@@``.
     """
     document = least_document(base)
-    find_tables(document, Path.cwd())
     document["name"] = "@@name@@"
     full = base.to_dict()
     for number, key in enumerate(keys):

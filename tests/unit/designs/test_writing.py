@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
@@ -45,3 +46,11 @@ def test_texts_and_numbers_are_written_as_toml_has_them() -> None:
 def test_a_name_with_signs_is_kept() -> None:
     design = replace(gearcam.load(PROFILES / "ellipse.toml"), name="a-b_c")
     assert gearcam.loads(toml_text(least_document(design))).name == "a-b_c"
+
+
+def test_files_are_named_from_the_root(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(PROFILES)
+    design = gearcam.load("measured_cam.toml")
+    (tmp_path / "saved.toml").write_text(toml_text(least_document(design)))
+    monkeypatch.chdir(tmp_path)
+    assert gearcam.load("saved.toml") == gearcam.load(PROFILES / "measured_cam.toml")

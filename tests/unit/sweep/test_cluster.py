@@ -8,10 +8,12 @@ from typing import Any
 
 import pytest
 
+import gearcam as gc
 from gearcam.sweep import cluster
 from gearcam.sweep.cluster import Cluster
 from gearcam.sweep.pool import Processes
 from gearcam.sweep.rows import Built, measured
+from helpers_pairs import PROFILES
 from helpers_sweep import BASE, odd
 
 distributed = pytest.importorskip("distributed")
@@ -39,10 +41,10 @@ def deeds(*words: str) -> Jobs:
     return [(number, {"deed": word}) for number, word in enumerate(words)]
 
 
-def rows(local: Any, wanted: Jobs, **settings: Any) -> dict[int, Built]:
+def rows(local: Any, wanted: Jobs, base: gc.Design = BASE, **settings: Any) -> dict[int, Built]:
     engine = Cluster(**{"address": local.scheduler_address, "measure": odd} | settings)
     found: dict[int, Built] = {}
-    for row in engine.run(BASE, iter(wanted)):
+    for row in engine.run(base, iter(wanted)):
         assert row.number not in found
         found[row.number] = row
     assert sorted(found) == [number for number, _ in wanted]
@@ -57,3 +59,11 @@ def test_rows_are_those_of_processes_to_the_last_bit(local: Any) -> None:
         k: replace(row, time_s=0.0) for k, row in here.items()
     }
     assert 0 < sum(not row.made for row in there.values()) < 60
+
+
+def test_workers_find_the_files_that_a_design_names(
+    local: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(PROFILES)  # workers run in another folder
+    found = rows(local, [(0, {"pair.module_mm": 2})], gc.load("measured.toml"), measure=measured)
+    assert found[0].made

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,7 @@ import pytest
 
 import gearcam as gc
 from gearcam.cli import main
+from helpers_pairs import PROFILES
 
 CAM = """
 kind = "cam"
@@ -104,6 +106,21 @@ def test_a_search_goes_on_from_its_log_and_is_the_same_for_two_processes(folder:
     records = [gc.build(gc.load(one)).record() for one in found]
     assert {(one["mesh.acceleration_max"], one["pair.ratio.max"]) for one in records} <= front
     assert len(found) == min(20, len(front))
+
+
+def test_the_best_of_a_design_with_a_file_builds_from_any_folder(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (folder / "given").mkdir()
+    for end in ("toml", "csv"):
+        shutil.copy(PROFILES / f"measured_cam.{end}", folder / "given")
+    words = ["--set", "cam.prime_radius_mm=40:60", "--minimize", "cam.profile.radius_mm.max"]
+    words += ["--method", "random", "--trials", "2", "--jobs", "1", "-o", "out"]
+    assert main(["optimize", "given/measured_cam.toml", *words]) == 0
+    least = pl.read_csv("out/optimize.csv")["cam.profile.radius_mm.max"].min()
+    for place, file in (("out", "best.toml"), ("given", "../out/best.toml")):
+        monkeypatch.chdir(folder / place)
+        assert gc.build(gc.load(file)).facts["cam.profile.radius_mm.max"] == least
 
 
 @pytest.mark.parametrize(
