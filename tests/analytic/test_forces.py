@@ -212,6 +212,100 @@ def test_a_solved_spring_just_holds(law: str) -> None:
     assert studied(held(ROLLER, law, **changes))[0].lifted.any()
 
 
+RUBS = {"friction.guide": 0.8, "friction.guide_length_mm": 50}
+
+
+def test_the_spring_of_a_stem_that_rubs_by_its_closed_form() -> None:
+    """The weight of a stem across its guide holds it up on a return, by ``mu*m*g``."""
+    rpm, mass, stiffness = 700.0, 3.0, 8.0
+    changes: dict[str, Any] = {
+        "mass": [{"mass_kg": mass}],
+        "gravity": {"direction_deg": 0},
+        "spring": [{"stiffness_n_mm": stiffness, "preload_n": "solve"}],
+        "drive": {"speed_rpm": rpm},
+        **RUBS,
+    }
+    loads = loads_of(held(ROLLER, "harmonic", **changes))
+    inertia = 6e-3 * mass * (math.pi / math.radians(130.0) * rpm * math.pi / 30.0) ** 2
+    drag = 0.8 * mass * 9.80665
+    assert loads.solved["preload"] == pytest.approx(inertia - stiffness * 12.0 + drag, rel=1e-6)
+    assert loads.release is not None
+    assert loads.release[0] == pytest.approx(rpm * math.pi / 30.0, rel=1e-6)
+    assert loads.release[1] == pytest.approx(math.radians(160.0), abs=1e-6)
+    changes["spring"] = [{"stiffness_n_mm": "solve", "preload_n": 100}]
+    found = loads_of(held(ROLLER, "harmonic", **changes)).solved["stiffness"]
+    assert found == pytest.approx((inertia - 100.0 + drag) / 12.0, rel=1e-6)
+    # slowly, without a stiffness, it is the end of the return that needs it
+    changes["drive"] = {"speed_rpm": 1}
+    changes["spring"] = [{"stiffness_n_mm": 0, "preload_n": "solve"}]
+    slow = loads_of(held(ROLLER, "harmonic", **changes)).solved["preload"]
+    assert slow == pytest.approx(drag + inertia / rpm**2, rel=1e-6)
+
+
+@pytest.mark.parametrize("pull", [-90.0, 20.0])
+@pytest.mark.parametrize("law", ["cycloidal", "3-4-5"])
+def test_the_release_of_an_arm_that_rubs_by_its_balance_of_moments(law: str, pull: float) -> None:
+    """Moments about the pivot at many places, with accelerations by differences."""
+    mass, inertia, preload = 2.5, 0.004, 1.8
+    arm = {"mass_kg": mass, "inertia_kg_m2": inertia, "center_mm": 25}
+    changes = {"mass": [arm], "gravity": {"direction_deg": pull}, "drive": {"speed_rpm": 60}}
+    pin = {"friction.joint": 0.4, "friction.journal_radius_mm": [14, 1]}
+    spring = [{"preload_nm": preload, "stiffness_nm_rad": 2}]
+    result = held(ARM, law, **changes, **pin, spring=spring)
+    program, start = result.program, result.follower.start
+    x = (np.arange(60000) + 0.5) / 60000 * 2.0 * math.pi
+    s, ds, d2s = program.derivatives(x, 2)
+
+    def centre(x: np.ndarray) -> np.ndarray:
+        return -25.0 * np.exp(-1j * (start + program.derivatives(x, 0)[0]))
+
+    step = 1e-4
+    hurry = 1e-3 * mass * (centre(x + step) - 2.0 * centre(x) + centre(x - step)) / step**2
+    weight = mass * 9.80665 * np.exp(1j * math.radians(pull))
+    # a rise turns the arm clockwise: its weight is against it where it turns it back
+    against = 1e3 * preload + 2e3 * s + (np.conj(centre(x)) * weight).imag
+    sense = np.where(np.abs(ds) < 1e-9, 0.0, np.sign(ds))
+    circle = 14.0 * math.sin(math.atan(0.4))
+
+    def holds(speed: float) -> bool:
+        moment = against + 1e3 * inertia * speed**2 * d2s
+        return bool((moment + sense * circle * np.abs(weight - speed**2 * hurry) >= 0.0).all())
+
+    low, high = 0.0, 1e4
+    assert holds(low)
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if holds(middle) else (low, middle)
+    loads = loads_of(result)
+    assert loads.release is not None
+    assert loads.release[0] == pytest.approx(low, rel=1e-5)
+    # and the preload that is just enough at a higher speed
+    design = result.design.with_({"drive.speed_rpm": 1.3 * low * 30.0 / math.pi})
+    against -= 1e3 * preload
+    square = (1.3 * low) ** 2
+    needed = against + 1e3 * inertia * square * d2s
+    needed += sense * circle * np.abs(weight - square * hurry)
+    solved = loads_of(gc.build(design.with_({"spring[0].preload_nm": "solve"}))).solved
+    assert solved["preload"] == pytest.approx(-needed.min(), rel=1e-5)
+    lack = loads_of(gc.build(design)).lack
+    assert lack == pytest.approx(-needed.min() - 1e3 * preload, rel=1e-4)
+
+
+@pytest.mark.parametrize("follower", [ROLLER, ARM, SWUNG])
+def test_a_solved_spring_just_holds_a_follower_that_rubs(follower: str) -> None:
+    swings = "oscillating" in follower
+    mass = {"mass_kg": 3.0} | ({"inertia_kg_m2": 0.004, "center_mm": 40} if swings else {})
+    key = "preload_nm" if swings else "preload_n"
+    changes: dict[str, Any] = {
+        "mass": [mass], "drive": {"speed_rpm": 200}, "gravity": {"direction_deg": 15}, **FRICTION,
+    }  # fmt: skip
+    found, loads, _ = studied(held(follower, "harmonic", **changes, spring=[{key: "solve"}]))
+    assert not found.lifted.any()
+    scale = 1e-3 if swings else 1.0
+    less = [{key: 0.999 * scale * loads.solved["preload"]}]
+    assert studied(held(follower, "harmonic", **changes, spring=less))[0].lifted.any()
+
+
 def test_gravity_weighs_a_follower() -> None:
     """A stem that stands weighs m*g; an arm at an angle the moment of its centre of mass."""
     changes = {"mass": [{"mass_kg": 2.0}], "gravity": {"direction_deg": -90}}

@@ -1,14 +1,22 @@
 """The loads of a follower: springs, given loads, inertia and gravity, and the spring that holds it.
 
-Everything is *against* a rise: N along a guide, N mm about a pivot. A cam that only presses keeps
-its follower where this sum is not negative, whatever the friction: the normal force is a multiple
-of it. So the spring that just holds the follower is an extreme of the other loads,
+Everything is *against* a rise: N along a guide, N mm about a pivot. Weight and inertia also press
+on the support, and rub there. A cam that only presses keeps its follower where
+
+    Q + sigma*G(0) >= 0
+
+(`gearcam.cams.supports`): Q is the sum of the loads, sigma the sign of the velocity, and G(0) that
+friction. It presses a rising follower onto the cam, and holds one that returns back from it. So the
+spring that just holds the follower is an extreme of the rest, which is all else in that sum,
 
     preload = max(-(rest + k*s)),        stiffness = max(-(rest + F0)/s),
 
-and the speed at which a given spring lets go is the least of ``sqrt((F0 + k*s + loads)/(-m*s''))``
-where the acceleration is negative. Extremes lie at knots or are enclosed between neighbouring
-samples and divided until rounding: exact where they lie at a knot, as for a harmonic motion.
+and the speed W at which a given spring lets go is the least with ``a + b*W**2 + sigma*G(0) = 0``: a
+are the loads at rest, and b is the inertia times s''. In a guide G(0) does not depend on the speed,
+and ``W**2`` is ``(a + sigma*G(0))/(-b)``. On a pivot it is ``r*abs(P - W**2*H)`` with the weight P
+and the mass times acceleration H, and ``W**2`` the root of a square. Extremes lie at knots or are
+enclosed between neighbouring samples and divided until rounding: exact where they lie at a knot, as
+for a harmonic motion.
 
 Sources: classical (Norton, Rothbart); 000 section 3.5.
 
@@ -19,16 +27,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.cams.followers import Follower
-from gearcam.cams.statics import sense_of
 from gearcam.cams.supports import Burden, Support
 from gearcam.laws.program import Program
+from gearcam.mechanics.friction import FrictionSpec
 from gearcam.mechanics.load import LoadSpec
 from gearcam.mechanics.mass import MassSpec
 from gearcam.mechanics.spring import SpringSpec
@@ -42,6 +50,15 @@ _ROUNDS = 6
 
 _BARELY = 1e-9
 """Lift over the largest below which a stiffness does nothing."""
+
+_AT_REST = 1e-12
+"""Velocity over the largest below which the follower is at rest: rounding."""
+
+_INSIDE = 1e-3
+"""Way from an end of a piece to its middle at which it has its direction of motion."""
+
+_ROUNDING = 1e-12
+"""Load over that at rest that is rounding."""
 
 MM = 1e-3
 """Metres in a millimetre: N of kg mm/s2, and N m of N mm."""
@@ -68,6 +85,8 @@ class Loads(ShortRepr):
         As in the design; a mass acts by its inertia with a speed, and by its weight with gravity.
     pull : complex, m/s2
         Acceleration of gravity, in the frame of a cam that turns counter-clockwise.
+    friction : FrictionSpec
+        Coefficients of friction.
     """
 
     program: Program
@@ -78,6 +97,7 @@ class Loads(ShortRepr):
     given: Sequence[LoadSpec] = ()
     masses: Sequence[MassSpec] = ()
     pull: complex = 0j
+    friction: FrictionSpec = field(default_factory=FrictionSpec)
 
     @property
     def _unit(self) -> float:
@@ -106,10 +126,35 @@ class Loads(ShortRepr):
             total += pull
         return against, total
 
+    def _sense(self, motion: Motion) -> Array:
+        """Return the sign of velocities, 0 in dwells; where a phase begins or ends that within."""
+        x, _, ds, _ = motion
+        program, still = self.program, _AT_REST * self.program.peaks[0]
+        x, knots = x % program.period if program.closed else x, program.knots
+        piece = np.searchsorted(knots[1:-1], x, side="right")
+        middle = 0.5 * (knots[piece] + knots[piece + 1])
+        near = program.derivatives(x + _INSIDE * (middle - x), 1)[1]
+        ds = np.where(np.abs(ds) > still, ds, near)
+        return np.where(np.abs(ds) > still, np.sign(ds), 0.0)
+
+    def _hurry(self, motion: Motion) -> Plane:
+        """Return the masses times their accelerations at a speed of 1, N."""
+        _, s, ds, d2s = motion
+        total = np.zeros(s.shape, dtype=complex)
+        for one in self.masses:
+            centre = self.follower.mass_point(self.follower.start + s, one.center or 0.0)
+            total += MM * (one.mass or 0.0) * self.support.hurrying(centre, ds, d2s)
+        return total
+
+    def _pressing(self, motion: Motion) -> Plane:
+        """Return the force of weight and inertia on the support, N."""
+        weight = self._weights(motion[1])[1]
+        return weight - (self.speed or 0.0) ** 2 * self._hurry(motion)
+
     def still(self, motion: Motion) -> Array:
         """Return loads and weight against a rise, without springs and inertia."""
-        x, s, ds, _ = motion
-        sense = sense_of(ds)
+        x, s, _, _ = motion
+        sense = self._sense(motion)
         x = x % self.program.period if self.program.closed else x
         total, _ = self._weights(s)
         for one in self.given:
@@ -117,14 +162,15 @@ class Loads(ShortRepr):
         return total
 
     def known(self, motion: Motion) -> Array:
-        """Return all loads against a rise but what springs have to be solved for."""
+        """Return what holds the follower without what springs have to be solved for."""
         _, s, _, d2s = motion
         total = self.still(motion)
         for one in self.springs:
             rate, force = one.rate, one.force
             total = total + (0.0 if rate == "solve" else rate) * s
             total = total + (0.0 if force == "solve" else force)
-        return total + self.inertia * (self.speed or 0.0) ** 2 * d2s
+        drag = self.support.drag(self._pressing(motion), self.friction)
+        return total + self.inertia * (self.speed or 0.0) ** 2 * d2s + self._sense(motion) * drag
 
     @cached_property
     def solved(self) -> dict[str, float]:
@@ -145,8 +191,7 @@ class Loads(ShortRepr):
         """The force against a rise by which the loads are too small to hold the follower."""
 
         def missing(motion: Motion) -> Array:
-            square = (self.speed or 0.0) ** 2
-            return -(self.held_still(motion) + self.inertia * square * motion[3])
+            return -self.burden(motion).holding(self.support, self.friction)
 
         return self._largest(missing)[0]
 
@@ -173,15 +218,30 @@ class Loads(ShortRepr):
         if not self.inertia:
             return None
 
-        def slowness(motion: Motion) -> Array:
-            d2s = motion[3]
-            held = self.held_still(motion)
-            with np.errstate(divide="ignore", invalid="ignore"):
-                ratio = np.where(held > 0.0, -self.inertia * d2s / held, np.inf)
-            return np.where(d2s < 0.0, ratio, -np.inf)
-
-        most, where = self._largest(slowness)
+        most, where = self._largest(lambda motion: 1.0 / self._letting_go(motion))
         return (1.0 / math.sqrt(most), where) if most > 0.0 else None
+
+    def _letting_go(self, motion: Motion) -> Array:
+        """Return the squares of the speeds at which the follower lifts off; inf where at none."""
+        _, s, _, d2s = motion
+        sense, weight, hurry = self._sense(motion), self._weights(s)[1], self._hurry(motion)
+        a, b = self.held_still(motion), self.inertia * d2s
+
+        def drag(force: Plane) -> Array:
+            return np.abs(sense) * self.support.drag(force, self.friction)
+
+        # drag(weight - u*hurry)^2 = p^2 - 2*u*mixed + u^2*h^2, and (a + b*u)^2 is to equal it
+        p, h = drag(weight), drag(hurry)
+        mixed = 0.25 * (drag(weight + hurry) ** 2 - drag(weight - hurry) ** 2)
+        half = a * b + mixed
+        inside = (b * p) ** 2 + (a * h) ** 2 + 2.0 * a * b * mixed + mixed**2 - (h * p) ** 2
+        with np.errstate(divide="ignore", invalid="ignore"):
+            root = np.sqrt(inside)
+            squares = (a - p) * (a + p) / np.stack([root - half, -root - half])
+            # the other sign of the root belongs to the opposite velocity
+            own = sense * (a + b * squares) <= _ROUNDING * np.abs(a)
+        good = own & np.isfinite(squares) & (squares > 0.0) & (a + sense * p > 0.0)
+        return np.where(good, squares, np.inf).min(axis=0)
 
     def held_still(self, motion: Motion) -> Array:
         """Return the loads against a rise at a very low speed, with springs as solved."""
@@ -195,17 +255,11 @@ class Loads(ShortRepr):
 
     def burden(self, motion: Motion) -> Burden:
         """Return what the cam has to move."""
-        _, s, ds, d2s = motion
         square = (self.speed or 0.0) ** 2
-        weight = self._weights(s)[1]
-        for one in self.masses:
-            centre = self.follower.mass_point(self.follower.start + s, one.center or 0.0)
-            hurry = self.support.hurrying(centre, ds, d2s)
-            weight -= MM * (one.mass or 0.0) * square * hurry
         return Burden(
-            against=self.held_still(motion) + self.inertia * square * d2s,
-            resultant=weight,
-            sense=sense_of(ds),
+            against=self.held_still(motion) + self.inertia * square * motion[3],
+            resultant=self._pressing(motion),
+            sense=self._sense(motion),
         )
 
     def _largest(self, value: Callable[[Motion], Array]) -> tuple[float, float]:

@@ -34,8 +34,8 @@ from gearcam.cams.wall import Wall
 from gearcam.mechanics.friction import FrictionSpec
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 
-_AT_REST = 1e-12
-"""Velocity over the largest below which the follower is at rest: rounding."""
+_ROUNDING = 1e-12
+"""Load over the largest that is rounding."""
 
 
 def pushing(
@@ -198,11 +198,6 @@ class Statics(ShortRepr):
         return np.where(share > 0.0, share, np.nan)
 
 
-def sense_of(ds: Array) -> Array:
-    """Return the sign of velocities (n,), 0 at rest."""
-    return np.where(np.abs(ds) <= _AT_REST * np.abs(ds).max(initial=0.0), 0.0, np.sign(ds))
-
-
 def solve(
     touches: Sequence[Touch],
     support: Support,
@@ -240,6 +235,8 @@ def solve(
     torque, bearing = np.zeros(count), np.zeros(count, dtype=complex)
     curvature, reactions = np.full(count, np.nan), dict[str, Array]()
     holding = burden.holding(support, friction)
+    if len(touches) == 1:  # a spring that is solved for leaves rounding where it just holds
+        holding[np.abs(holding) <= _ROUNDING * np.abs(burden.against).max(initial=0.0)] = 0.0
     for number, touch in enumerate(touches):
         part = share(touch.end.radius)
         push, slide = touch.push(x, ds, support, part)

@@ -84,6 +84,7 @@ def loads_of(result: CamResult) -> Loads:
         given=design.load,
         masses=design.mass,
         pull=-pull.conjugate() if motion.clockwise else pull,
+        friction=design.friction,
     )
     if math.isinf(loads.solved.get("stiffness", 0.0)):
         raise _no_stiffness(loads)
