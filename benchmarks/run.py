@@ -17,6 +17,7 @@ import law_cases
 import needs
 import ring_cases
 import solid_cases
+import sweep_cases
 from gearcam.numeric.arrays import keep_freed_memory
 from measuring import Result, environment
 
@@ -56,6 +57,7 @@ def main() -> int:
         law_cases.against_ellipse,
         ring_cases.against_external,
         solid_cases.against_booleans,
+        sweep_cases.of_sweeps,
         design_cases.of_cams,
         before_cases.against_before,
         before_cases.large_growth,
