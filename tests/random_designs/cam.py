@@ -37,7 +37,7 @@ def _moved(d: Draw, kind: str, law: str) -> dict[str, Any]:
     return {"type": kind, **random_motion_law(d, law)}
 
 
-def _program(d: Draw, law: str, lift: float, unit: str) -> list[dict[str, Any]]:
+def motion_by_phases(d: Draw, law: str, lift: float, unit: str) -> list[dict[str, Any]]:
     """Return phases over a turn; `lift` in `unit`, which is mm or deg."""
     back = law if law == "3-4-5-6" or d.chance(0.3) else d.pick([*MOTION_LAWS])
     back = law if back == "3-4-5-6" else back
@@ -64,7 +64,7 @@ def _program(d: Draw, law: str, lift: float, unit: str) -> list[dict[str, Any]]:
     return phases
 
 
-def _turn(d: Draw, lift: float, unit: str) -> dict[str, Any]:
+def motion_of_turn(d: Draw, lift: float, unit: str) -> dict[str, Any]:
     """Return a motion of the whole turn: a power of half a wave, by rows or by a formula."""
     power = d.whole(1, 3)
     if d.chance(0.3):
@@ -298,9 +298,10 @@ def design(d: Draw, index: int) -> dict[str, Any]:
     lift = short(share * _DEGREES) if swings else short(share * size)
     if d.chance(0.5):
         wheel["rotation"] = d.pick(["ccw", "cw"])
-    phases = _program(d, law, lift, "deg" if swings else "mm")
+    unit = "deg" if swings else "mm"
+    program = motion_by_phases(d, law, lift, unit)
     output: dict[str, Any] = {"chord_tolerance_mm": min(1.0, short(size * d.log(1e-5, 1e-3)))}
-    made: dict[str, Any] = {"motion": phases, "follower": follower, "cam": wheel}
+    made: dict[str, Any] = {"motion": program, "follower": follower, "cam": wheel}
     if d.chance(0.5):
         made["blank"] = blank(d, 0.8 * size, 0.05 * size, both=False)
     made["output"] = output
@@ -312,11 +313,10 @@ def design(d: Draw, index: int) -> dict[str, Any]:
         output["theta_deg"] = d.even(-400, 400)
     if kind in ("flat", "knife-edge", "point") or d.chance(0.3):
         output["tool_radius_mm"] = short(size * d.log(0.02, 0.3))
-    unit = "deg" if swings else "mm"
     if d.chance(0.1):
-        made["motion"] = _turn(d, lift, unit)
+        made["motion"] = motion_of_turn(d, lift, unit)
     elif d.chance(0.1):
-        d.pick(phases)["angle_deg"] = "rest"
+        d.pick(program)["angle_deg"] = "rest"
     _form(d, made, size, lift)
     made["output"] |= asked(d, _SHARES)
     drive(d, made, "speed_mm_s" if made["cam"].get("form") == "translating" else "speed_rpm")

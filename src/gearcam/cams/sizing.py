@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Final, NamedTuple
@@ -236,7 +236,12 @@ class Sizing:
             far = _distance(follower, high) - roller
             places = self._coarse if coarse else self._fine
             contact = self._contact(follower, places)
-            values, excess = self._of_contact(contact, places, roller)
+            values, excess = self._angles(contact, places, len(roller))
+            if follower.has_centre:
+                radii, of_radii = self._round(contact, places, roller)
+            else:
+                radii, of_radii = self._flat(contact, places, far)
+            values["convex"], excess = radii, excess | of_radii
             if self.load is not None:
                 excess["contact"] = self._pressed(self.load, follower, contact, places)
             excess["reach"] = np.maximum(reach, _passed(follower, low, high))[None]
@@ -283,41 +288,55 @@ class Sizing:
         excess = product / load.most - 1.0
         return np.stack([excess[:, where].max(axis=1) for _, where in places.phases])
 
-    def _of_contact(
-        self, contact: Contact, places: _Places, roller: Array
+    def _angles(
+        self, contact: Contact, places: _Places, count: int
     ) -> tuple[dict[str, Array], dict[str, Array]]:
-        """Return largest pressure angle and least convex radius, and the excesses of limits."""
-        limits = self.limits
-        steep, bent = contact.across / contact.along, contact.turning / contact.pitch_speed
-        shape = (len(roller), len(places.step))
-        moving = np.minimum(contact.along.c[0], contact.pitch_speed.c[0])
-        backward = np.broadcast_to(moving <= 0.0, shape).any(axis=1)
+        """Return tangents of the largest pressure angles of phases, and the excesses of angles."""
+        level = np.zeros((1, count))
+        steep = contact.across / contact.along
+        values, excess = {"rise": level, "back": level}, {}
+        for name, limit in (("rise", self.limits.rise), ("back", self.limits.back)):
+            phases = [*places.of_kind(name)]
+            if phases:
+                both = [places.largest(sign * steep, phases, count) for sign in (1.0, -1.0)]
+                values[name] = np.concatenate(both)
+                excess[name] = values[name] / math.tan(limit) - 1.0
+        return values | {"pressure": np.concatenate([*values.values()])}, excess
 
-        def most(jet: Jet, sign: float, where: Mask) -> Array:
-            rows = [np.broadcast_to(sign * one, shape)[:, where] for one in jet.derivatives()]
-            if not places.order:
-                return rows[0].max(axis=1)
-            values, slopes = rows
-            return _largest(values, slopes, places.step[where])
+    def _round(
+        self, contact: Contact, places: _Places, roller: Array
+    ) -> tuple[Array, dict[str, Array]]:
+        """Return the least convex radii of phases, and the excesses of radii, of a round end.
 
-        excess = {"undercut": np.where(backward, np.inf, -1.0)[None]}
-        slopes: dict[str, Array] = {}
-        for name, limit in (("rise", limits.rise), ("back", limits.back)):
-            parts = [
-                most(steep, sign, where) for where in places.of_kind(name) for sign in (1.0, -1.0)
-            ]
-            if parts:
-                slopes[name] = np.stack(parts)
-                excess[name] = slopes[name] / math.tan(limit) - 1.0
-        bends = np.stack([most(bent, 1.0, where) for _, where in places.phases])
-        excess["convex"] = bends * (roller + limits.convex) - 1.0
+        By the curvature of the pitch curve, which passes 0 where a convex part becomes concave.
+        """
+        limits, phases, count = self.limits, [where for _, where in places.phases], len(roller)
+        bent = contact.turning / contact.pitch_speed
+        bends = places.largest(bent, phases, count)
+        excess = {
+            "undercut": _impossible(contact.along, contact.pitch_speed, count),
+            "convex": bends * (roller + limits.convex) - 1.0,
+        }
         if limits.hollow > 0.0:
-            hollows = np.stack([most(bent, -1.0, where) for _, where in places.phases])
+            hollows = places.largest(-bent, phases, count)
             excess["hollow"] = hollows * (limits.hollow - roller) - 1.0
-        level = np.zeros((1, len(roller)))
-        steepest = np.concatenate([*slopes.values()]) if slopes else level
-        values = {"rise": level, "back": level, "pressure": steepest} | slopes
-        return values | {"convex": 1.0 / bends - roller}, excess
+        return 1.0 / bends - roller, excess
+
+    def _flat(
+        self, contact: Contact, places: _Places, far: Array
+    ) -> tuple[Array, dict[str, Array]]:
+        """Return the least radii of phases, and the excesses of radii, under a face.
+
+        By the radius itself, which is negative where the profile is undercut. Its inverse has a
+        peak between the places of the lift where a radius is small.
+        """
+        limits, phases, count = self.limits, [where for _, where in places.phases], len(far)
+        radii = -places.largest(-(contact.pitch_speed / contact.turning), phases, count)
+        undercut = _impossible(contact.along, contact.turning, count)
+        beyond = (limits.convex - radii) / far
+        if limits.convex > 0.0:
+            return radii, {"undercut": undercut, "convex": beyond}
+        return radii, {"undercut": np.concatenate([undercut, beyond])}
 
     @cached_property
     def _fine(self) -> _Places:
@@ -352,6 +371,20 @@ class _Places:
     phases: tuple[tuple[str, Mask], ...]
     order: int
 
+    def largest(self, jet: Jet, phases: Sequence[Mask], count: int) -> Array:
+        """Return the largest values in some phases, (k, n), of n candidates.
+
+        With slopes, those between the places too.
+        """
+        shape = (count, len(self.step))
+        values, *slopes = (np.broadcast_to(one, shape) for one in jet.derivatives())
+        if not slopes:
+            return np.stack([values[:, where].max(axis=1) for where in phases])
+        (slope,) = slopes
+        return np.stack(
+            [_largest(values[:, where], slope[:, where], self.step[where]) for where in phases]
+        )
+
     def of_kind(self, name: str) -> Iterator[Mask]:
         """Yield which places are in the phases of a kind, ``rise`` or ``back``."""
         return (where for kind, where in self.phases if kind == name)
@@ -380,6 +413,8 @@ class _Places:
             for low, high in program.phases(kind):
                 cells = (low < middles) & (middles < high)
                 rest &= ~cells
+                if not cells.any():  # rows turn at their scatter within one cell
+                    continue
                 phases.append((name, np.repeat(cells, theta.shape[1])))
         if rest.any():
             phases.append(("rest", np.repeat(rest, theta.shape[1])))
@@ -390,6 +425,12 @@ class _Places:
             phases=tuple(phases),
             order=order,
         )
+
+
+def _impossible(one: Jet, other: Jet, count: int) -> Array:
+    """Return an excess, (1, n), that is infinite where a speed is not positive everywhere."""
+    back = np.minimum(one.c[0], other.c[0]) <= 0.0
+    return np.where(np.broadcast_to(back, (count, back.shape[-1])).any(axis=1), np.inf, -1.0)[None]
 
 
 def _largest(values: Array, slopes: Array, step: Array) -> Array:
@@ -626,6 +667,8 @@ def _corner(goals: Array, limits: Array, step: float, place: Array, trust: float
     corners = np.linalg.solve(square[regular], right[regular][:, :, None])[:, :, 0]
     room = (corners @ matrix.T - sides).max(axis=1)
     allowed = room <= _ROOM * max(trust, float(np.abs(sides).max()))
+    if not len(corners):  # nothing has a slope
+        return np.zeros(d)
     if not allowed.any():  # the limits cannot be kept within the range: as nearly as possible
         return corners[np.argmin(room), :d]
     return corners[allowed][np.argmin(corners[allowed][:, d]), :d]

@@ -6,7 +6,8 @@ limits that it was solved for. Among all cams that keep them it has the smallest
 ``[goal]`` names. Sizes are sought within ``[bounds]``, by default from a hundredth of the follower
 and its lift to a hundred times that.
 
-Refused: limits that no sizes keep, with the least change of a limit that helps.
+Refused: limits that no sizes keep, with the least change of a limit that helps; a lift whose
+velocity falls at once.
 """
 
 from __future__ import annotations
@@ -184,6 +185,7 @@ def solved(result: CamResult, *, advise: bool = True) -> Solution:
         If no sizes within the bounds keep the limits.
     """
     task = Task(result, advise=advise)
+    _demand_smooth_ends(task)
     found = task.found()
     if task.pressure:
         task, found = _pressed(result, task, found)
@@ -204,6 +206,18 @@ def solved(result: CamResult, *, advise: bool = True) -> Solution:
         where=task.keys[0],
         nearest="give this size, or its range in [bounds]",
     )
+
+
+def _demand_smooth_ends(task: Task) -> None:
+    """Refuse a lift whose velocity falls at once: the profile has a corner whatever its size."""
+    falls = [jump for jump in task.program.hard if jump.after < jump.before]
+    if falls:
+        at = formatted(math.degrees(falls[0].theta))
+        raise InfeasibleError(
+            "no sizes keep the profile from being undercut: the velocity falls at once",
+            where=f"motion, at {at} deg",
+            nearest="a law whose velocity is 0 at both ends, such as cycloidal, or a given size",
+        )
 
 
 def _sized(design: CamDesign, sizes: Mapping[str, float]) -> CamDesign:
@@ -533,7 +547,11 @@ class Task:
             # the least is that of a cam without end
             least = _BEYOND * self.pressure * math.sqrt(1.0 + excess)
             return float(math.ceil(least)), self.pressure
-        if name == "convex":
+        if name == "convex" and not self.kind.has_centre:
+            by_size = replace(self.sizing, goal=("size", 1.0))  # of which the excess is a share
+            size = float(self.measured(sizes, by_size).goal[0])
+            value, limit = limits.convex - size * excess, limits.convex
+        elif name == "convex":
             value, limit = (roller + limits.convex) / (1.0 + excess) - roller, limits.convex
         elif name == "hollow":
             value = 2.0 * ((limits.hollow - roller) / (1.0 + excess) + roller)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,10 @@ from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.cli import main
 from gearcam.designs.writing import toml_text
 from gearcam.kinds.cam.solve import Task, solved
+from gearcam.laws.motion.base import MOTION_LAWS
 from helpers_sampling import few
+from random_designs.cam import motion_by_phases, motion_of_turn
+from random_designs.draw import Draw
 
 THETA = np.linspace(0.0, 2.0 * math.pi, 721)[:-1] + 1e-9
 PROGRAMS: dict[str, tuple[tuple[float, float, float], str, str, float]] = {
@@ -255,6 +259,111 @@ def test_flat_followers_are_solved_for() -> None:
     theta = np.linspace(0.0, 2.0 * math.pi, 400_001)
     s, _, second = result.program.derivatives(theta, 2)
     assert result.facts["cam.base_radius_mm"] == pytest.approx(3.0 - (s + second).min(), abs=1e-5)
+
+
+def flat(number: int, unit: str = "mm", **follower: Any) -> dict[str, Any]:
+    """A flat follower with a random motion."""
+    d = Draw(f"flat {number}")
+    law, lift = [*MOTION_LAWS][number % len(MOTION_LAWS)], d.log(1, 30)
+    phased = d.chance(0.7)
+    moved = motion_by_phases(d, law, lift, unit) if phased else motion_of_turn(d, lift, unit)
+    return {
+        "kind": "cam", "name": "c", "motion": moved, "follower": {"type": "flat"} | follower,
+        "cam": {"base_radius_mm": "solve"}, "limits": {"profile_radius_mm": d.pick([0, 1, 5])},
+    }  # fmt: skip
+
+
+def falls(program: Any) -> bool:
+    """Whether the velocity falls at once somewhere: every profile is undercut there."""
+    return any(jump.after < jump.before for jump in program.hard)
+
+
+def least_base(program: Any, radius: float) -> float:
+    """The closed form: base + s + s'' is the radius of the profile, places on all pieces alike."""
+    inside = np.concatenate(
+        [np.linspace(low, high, 2003)[1:-1] for low, high in pairwise(program.cuts)]
+    )
+    s, _, second = program.derivatives(inside, 2)
+    at_ends = program.survey.values[[0, 2]][:, :, [0, -1]].sum(axis=0)
+    return radius - float(min((s + second).min(), at_ends.min()))
+
+
+@pytest.mark.parametrize("first", few(range(0, 400, 20), 10))
+def test_base_radii_of_random_flat_followers_are_the_closed_form(first: int) -> None:
+    met = 0
+    for number in range(first, first + 20):
+        document = flat(number)
+        result = gc.build(gc.design(document))
+        if falls(Task(result).program):
+            continue
+        found = result.solution
+        if not any("default range" in one for one in found.deciding):
+            met += 1
+            wanted = least_base(result.program, document["limits"]["profile_radius_mm"])
+            assert found.sizes["cam.base_radius_mm"] == pytest.approx(wanted, rel=1e-5), number
+    assert met > 10
+
+
+@pytest.mark.parametrize("number", few(range(24), 8))
+def test_no_smaller_swinging_flat_cam_keeps_its_limits(number: int) -> None:
+    """By the checks of the cams themselves."""
+    document = flat(number, "deg", motion="oscillating", pivot_distance_mm=80.0)
+    design = gc.design(document)
+    result = gc.build(design)
+    task = Task(result, advise=False)
+    if falls(task.program):
+        return
+
+    def keeps(base: float) -> bool:
+        return task.keeps(gc.build(design.with_({"cam.base_radius_mm": base})))
+
+    try:
+        base = result.solution.sizes["cam.base_radius_mm"]
+    except InfeasibleError:
+        assert not any(keeps(one) for one in np.geomspace(0.5, 150.0, 40))
+        return
+    assert keeps(base)
+    if not any("default range" in one for one in result.solution.deciding):
+        assert not keeps(base * (1.0 - 1e-4))
+        assert not any(keeps(one) for one in np.geomspace(0.5, base, 12)[:-1])
+
+
+def test_the_radius_that_a_flat_cam_can_have_is_named_and_can_be_kept() -> None:
+    document = {
+        "kind": "cam", "name": "c", "motion": motion("polynomial"), "follower": {"type": "flat"},
+        "cam": {"base_radius_mm": "solve"}, "bounds": {"base_radius_mm": [5, 30]},
+        "limits": {"profile_radius_mm": 40},
+    }  # fmt: skip
+    with pytest.raises(InfeasibleError, match="least convex radius of the profile") as caught:
+        _ = gc.build(gc.design(document)).solution
+    plain = gc.design(document | {"bounds": {}, "cam": {"base_radius_mm": 30}})
+    wanted = 30.0 - least_base(gc.build(plain).program, 0.0)
+    assert caught.value.value == pytest.approx(wanted, abs=2e-3)
+    document["limits"]["profile_radius_mm"] = caught.value.value
+    assert not gc.build(gc.design(document)).findings
+
+
+@pytest.mark.parametrize("follower", [{"type": "flat"}, {"type": "roller", "roller_radius_mm": 5}])
+def test_a_velocity_that_falls_at_once_is_named(follower: dict[str, Any]) -> None:
+    phases = motion("cycloidal")
+    phases[0]["law"] = "constant-velocity"
+    document = {
+        "kind": "cam", "name": "c", "motion": phases, "follower": follower,
+        "cam": {"base_radius_mm": "solve"},
+    }  # fmt: skip
+    with pytest.raises(InfeasibleError, match=r"velocity falls at once.*100 deg"):
+        _ = gc.build(gc.design(document)).solution
+    given = gc.build(gc.design(document).with_({"cam.base_radius_mm": 1e4}))
+    assert "undercut" in {one.code for one in given.findings}
+
+
+def test_rows_that_turn_within_a_cell_are_solved() -> None:
+    """A least lift just beside a row: the phase before it has no cell of its own."""
+    result = gc.build(gc.design(flat(2)))
+    program = Task(result).program
+    widths = [high - low for kind in ("rise", "return") for low, high in program.phases(kind)]
+    assert min(widths) < 1e-6
+    assert result.solution.sizes["cam.base_radius_mm"] > 0.0
 
 
 def test_a_bore_and_bounds_are_kept() -> None:
