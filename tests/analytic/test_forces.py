@@ -75,10 +75,12 @@ def loaded(name: str, **friction: float) -> Any:
 
 def studied(result: Any) -> tuple[Statics, Loads, np.ndarray]:
     loads, x = loads_of(result), places(result)
-    motion = loads.motion(x)
-    share = lambda radius: result.design.follower.dragged(result.design.friction, radius)  # noqa: E731
-    burden, friction = loads.burden(motion), result.design.friction
-    found = solve(result.cam.touches, loads.support, x, motion[2], burden, friction, share)
+    way = np.repeat(loads.ways, len(x))
+    x = np.concatenate([x[:: int(one)] for one in loads.ways])
+    motion, design = loads.motion(x, way), result.design
+    share = lambda radius: design.follower.dragged(design.friction, radius)  # noqa: E731
+    burden, friction = loads.burden(motion), design.friction
+    found = solve(result.cam.touches, loads.support, x, motion.ds, burden, friction, share, way)
     return found, loads, x
 
 
@@ -314,7 +316,7 @@ def test_gravity_weighs_a_follower() -> None:
     arm = {"mass": [{"mass_kg": 2.0, "inertia_kg_m2": 0.01, "center_mm": 30}]}
     result = held(ARM, **(changes | arm))
     found, loads, x = studied(result)
-    p = result.follower.start + loads.motion(x)[1]
+    p = result.follower.start + loads.motion(x).s
     assert found.against == pytest.approx(2.0 * 9.80665 * 30.0 * np.cos(p))
 
 
@@ -394,7 +396,7 @@ def test_the_wall_that_carries_has_a_positive_force_with_friction(
     motion = loads.motion(x)
     burden, given = loads.burden(motion), result.design.friction
     share = result.design.follower.dragged(given, result.follower.radius)
-    pushes = [touch.push(x, motion[2], loads.support, share)[0] for touch in result.cam.touches]
+    pushes = [touch.push(x, motion.ds, loads.support, share)[0] for touch in result.cam.touches]
     assert not found.lifted.any()
     assert not found.locked.any()
     assert set(found.carrying) == {0, 1}
@@ -440,3 +442,126 @@ def test_a_mirrored_cam_has_the_same_forces() -> None:
             -1.0 if name in ("guide_n", "guide_moment_nmm", "guide_low_n", "guide_high_n") else 1.0
         )
         assert values == pytest.approx(sign * second[name], nan_ok=True)
+
+
+PLATE = """
+kind = "cam"
+name = "plate"
+motion = [
+    { type = "rise", travel_mm = 60, law = "LAW", lift_mm = 15 },
+    { type = "dwell", travel_mm = 30 },
+    { type = "return", travel_mm = 40, law = "LAW" },
+]
+follower = { type = "roller", roller_radius_mm = 6 }
+cam = { form = "translating", walls = "WALLS", run_in_mm = 20, run_out_mm = 10, thickness_mm = 12 }
+blank = { height_mm = 60 }
+output = { studies = ["forces"] }
+"""
+
+
+def plate(law: str, walls: str = "lower", /, **changes: Any) -> Any:
+    return gc.build(gc.loads(PLATE.replace("LAW", law).replace("WALLS", walls)).with_(changes))
+
+
+def test_a_plate_presses_hardest_on_its_steeper_way() -> None:
+    """Ramps of 15 mm in 60 and in 40 mm: the second lifts as the plate comes back."""
+    mu = 0.2
+    friction = {"guide": mu, "guide_length_mm": 400, "guide_at_mm": 30, "roller": 0.15}
+    friction |= {"journal_radius_mm": [8, 3]}
+    result = plate("constant-velocity", friction=friction, load=[{"force_n": 200}])
+    found = result.study("forces")
+    # all friction of the roller acts at its circumference
+    phi = math.atan(result.design.friction.rolling(6.0))
+
+    def force(rise: float, run: float, sense: float) -> float:
+        alpha = math.atan(rise / run) + sense * phi
+        # the normal force, of the whole force 1/cos(phi) times as large
+        return 200.0 * math.cos(phi) / (math.cos(alpha) - sense * mu * math.sin(alpha))
+
+    columns = found.columns
+    travel, way, normal = (columns[one] for one in ("travel_mm", "direction", "normal_n"))
+    for low, high, run, sense in ((21, 79, 60, 1), (111, 149, 40, -1)):
+        inside = (low < travel) & (travel < high)
+        for one in (1, -1):
+            expected = force(15, run, one * sense)
+            assert normal[inside & (way == one)] == pytest.approx(expected, rel=1e-9)
+    assert found.facts["forces.normal_n.max"] == pytest.approx(force(15, 40, 1), rel=1e-9)
+    assert force(15, 40, 1) > 1.05 * force(15, 60, 1)
+    assert "on the way back" in found.group["normal_n"].place
+    most = found.facts["forces.pressure_mpa"]
+    assert most == pytest.approx(float(np.nanmax(columns["pressure_mpa"][way == -1])))
+    chart = found.charts["normal"]
+    assert [one.label for one in chart.lines] == ["normal force, forward", "normal force, back"]
+    (colours,) = result.scene(90).coloured
+    assert np.nanmax(colours.values["normal force, N"]) == pytest.approx(force(15, 40, 1))
+
+
+@pytest.mark.parametrize("walls", ["lower", "both"])
+def test_the_way_back_is_the_way_forward_over_the_mirrored_plate(walls: str) -> None:
+    changes: dict[str, Any] = {
+        "mass": [{"mass_kg": 2.0}], "gravity": {"direction_deg": -90},
+        "drive": {"speed_mm_s": 300}, **FRICTION,
+        "spring": [{"stiffness_n_mm": 2, "preload_n": 60}],
+        "load": [{"force_n": 40, "against": True}],
+    }  # fmt: skip
+    one = plate("3-4-5", walls, **changes).study("forces")
+    mirrored = [
+        {"type": "rise", "travel_mm": 40, "law": "3-4-5", "lift_mm": 15},
+        {"type": "dwell", "travel_mm": 30},
+        {"type": "return", "travel_mm": 60, "law": "3-4-5"},
+    ]
+    runs = {"cam.run_in_mm": 10, "cam.run_out_mm": 20}
+    other = plate("3-4-5", walls, motion=mirrored, **runs, **changes).study("forces")
+    for way in (1, -1):
+        mine, there = (
+            {name: np.ma.filled(values, np.nan)[study.columns["direction"] == sign]
+             for name, values in study.columns.items()}
+            for study, sign in ((one, way), (other, -way))
+        )  # fmt: skip
+        for name in ("normal_n", "drive_n", "bearing_n", "power_w", "losses_w", "wall", "load_n"):
+            at = 160.0 - there["travel_mm"]
+            expected = np.interp(mine["travel_mm"], at[::way], there[name][::way])
+            inner = np.min(np.abs(mine["travel_mm"] - np.array([[20, 80, 110, 150]]).T), axis=0) > 1
+            scale = np.nanmax(np.abs(expected))
+            assert mine[name][inner] == pytest.approx(expected[inner], abs=2e-3 * scale)
+
+
+def test_a_solved_spring_holds_a_plate_on_both_ways() -> None:
+    """With a weight across the guide both ways have returns: the harder of them counts."""
+    changes: dict[str, Any] = {
+        "mass": [{"mass_kg": 3.0}], "drive": {"speed_mm_s": 400}, "gravity": {"direction_deg": 0},
+        "friction": {"guide": 0.6, "guide_length_mm": 50}, "spring": [{"preload_n": "solve"}],
+    }  # fmt: skip
+    result = plate("harmonic", **changes)
+    loads = loads_of(result)
+    # the steeper ramp is a return forward: at its top inertia and friction lift the follower
+    top = 3e-3 * 7.5 * (math.pi / 40.0 * 400.0) ** 2 + 0.6 * 3.0 * 9.80665
+    assert loads.solved["preload"] == pytest.approx(top, rel=1e-6)
+    motion = [
+        {"type": "rise", "travel_mm": 40, "law": "harmonic", "lift_mm": 15},
+        {"type": "dwell", "travel_mm": 30},
+        {"type": "return", "travel_mm": 60, "law": "harmonic"},
+    ]
+    back = plate("harmonic", motion=motion, **changes)
+    assert loads_of(back).solved["preload"] == pytest.approx(top, rel=1e-6)
+    release = back.study("forces").group["release_speed_mm_s"]
+    assert release.value == pytest.approx(400.0, rel=1e-6)
+    assert release.place.endswith("on the way back")
+    assert not back.study("forces").facts["forces.lifted"]
+
+
+def test_forces_at_the_ends_of_a_phase_are_those_within() -> None:
+    """Where the pressure angle is 0: the spring, and the weight that rubs in the guide."""
+    weight = {"mass": [{"mass_kg": 3.0}], "gravity": {"direction_deg": 0}}
+    friction = {"guide": 0.3, "guide_length_mm": 50}
+    spring = [{"preload_n": 100}]
+    columns = plate("cycloidal", **weight, friction=friction, spring=spring).study("forces").columns
+    travel, way = columns["travel_mm"], columns["direction"]
+    drag = 0.3 * 3.0 * 9.80665
+    for low, high, lifts in ((20.0, 80.0, 1), (110.0, 150.0, -1)):
+        for one in (1, -1):
+            rows = np.flatnonzero((low <= travel) & (travel < high) & (way == one))
+            ends = columns["normal_n"][rows[[0, -1]]]
+            assert ends == pytest.approx(100.0 + one * lifts * drag, rel=1e-9)
+            before, after = rows[0] - 1, rows[-1] + 1
+            assert columns["normal_n"][[before, after]] == pytest.approx(100.0, rel=1e-9)

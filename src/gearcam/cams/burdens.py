@@ -29,6 +29,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -63,8 +64,25 @@ _ROUNDING = 1e-12
 MM = 1e-3
 """Metres in a millimetre: N of kg mm/s2, and N m of N mm."""
 
-Motion = tuple[Array, Array, Array, Array]
-"""Positions of the driver, lifts, their first and second derivatives."""
+
+class DrivenMotion(NamedTuple):
+    """The motion of a follower.
+
+    Parameters
+    ----------
+    x : (n,) array
+        Positions of the driver.
+    s, ds, d2s : (n,) arrays
+        Lifts, and their derivatives by the way of the driver.
+    way : 1 or -1, or (n,) array
+        Whether the driver goes forward, or back.
+    """
+
+    x: Array
+    s: Array
+    ds: Array
+    d2s: Array
+    way: Array | float = 1.0
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -104,10 +122,23 @@ class Loads(ShortRepr):
         """N or N mm in the unit of output, N or N m."""
         return 1e3 if self.follower.angular else 1.0
 
-    def motion(self, x: Array) -> Motion:
-        """Return the motion at positions (n,) of the driver."""
+    @property
+    def ways(self) -> tuple[float, ...]:
+        """Forward, 1, and of a cam that slides to and fro also back, -1."""
+        return (1.0,) if self.program.closed else (1.0, -1.0)
+
+    def motion(self, x: Array, way: Array | float = 1.0) -> DrivenMotion:
+        """Return the motion at positions of the driver.
+
+        Parameters
+        ----------
+        x : (n,) array
+            The positions.
+        way : 1 or -1, or (n,) array
+            Whether the driver goes forward, or back.
+        """
         s, ds, d2s = self.program.derivatives(x, 2)
-        return x, s, ds, d2s
+        return DrivenMotion(x, s, way * ds, d2s, way)
 
     @cached_property
     def inertia(self) -> float:
@@ -126,34 +157,34 @@ class Loads(ShortRepr):
             total += pull
         return against, total
 
-    def _sense(self, motion: Motion) -> Array:
+    def _sense(self, motion: DrivenMotion) -> Array:
         """Return the sign of velocities, 0 in dwells; where a phase begins or ends that within."""
-        x, _, ds, _ = motion
+        x, ds = motion.x, motion.ds
         program, still = self.program, _AT_REST * self.program.peaks[0]
         x, knots = x % program.period if program.closed else x, program.knots
         piece = np.searchsorted(knots[1:-1], x, side="right")
         middle = 0.5 * (knots[piece] + knots[piece + 1])
-        near = program.derivatives(x + _INSIDE * (middle - x), 1)[1]
+        near = motion.way * program.derivatives(x + _INSIDE * (middle - x), 1)[1]
         ds = np.where(np.abs(ds) > still, ds, near)
         return np.where(np.abs(ds) > still, np.sign(ds), 0.0)
 
-    def _hurry(self, motion: Motion) -> Plane:
+    def _hurry(self, motion: DrivenMotion) -> Plane:
         """Return the masses times their accelerations at a speed of 1, N."""
-        _, s, ds, d2s = motion
+        _, s, ds, d2s, _ = motion
         total = np.zeros(s.shape, dtype=complex)
         for one in self.masses:
             centre = self.follower.mass_point(self.follower.start + s, one.center or 0.0)
             total += MM * (one.mass or 0.0) * self.support.hurrying(centre, ds, d2s)
         return total
 
-    def _pressing(self, motion: Motion) -> Plane:
+    def _pressing(self, motion: DrivenMotion) -> Plane:
         """Return the force of weight and inertia on the support, N."""
-        weight = self._weights(motion[1])[1]
+        weight = self._weights(motion.s)[1]
         return weight - (self.speed or 0.0) ** 2 * self._hurry(motion)
 
-    def still(self, motion: Motion) -> Array:
+    def still(self, motion: DrivenMotion) -> Array:
         """Return loads and weight against a rise, without springs and inertia."""
-        x, s, _, _ = motion
+        x, s = motion.x, motion.s
         sense = self._sense(motion)
         x = x % self.program.period if self.program.closed else x
         total, _ = self._weights(s)
@@ -161,9 +192,9 @@ class Loads(ShortRepr):
             total = total + one.at(x, s, sense, per=self._unit)
         return total
 
-    def known(self, motion: Motion) -> Array:
+    def known(self, motion: DrivenMotion) -> Array:
         """Return what holds the follower without what springs have to be solved for."""
-        _, s, _, d2s = motion
+        s, d2s = motion.s, motion.d2s
         total = self.still(motion)
         for one in self.springs:
             rate, force = one.rate, one.force
@@ -190,7 +221,7 @@ class Loads(ShortRepr):
     def lack(self) -> float:
         """The force against a rise by which the loads are too small to hold the follower."""
 
-        def missing(motion: Motion) -> Array:
+        def missing(motion: DrivenMotion) -> Array:
             return -self.burden(motion).holding(self.support, self.friction)
 
         return self._largest(missing)[0]
@@ -200,30 +231,33 @@ class Loads(ShortRepr):
         """The preload that is needed where a stiffness does nothing, N or N mm."""
         least = _BARELY * max(map(abs, self.program.range))
 
-        def lack(motion: Motion) -> Array:
-            return np.where(motion[1] <= least, -self.known(motion), -np.inf)
+        def lack(motion: DrivenMotion) -> Array:
+            return np.where(motion.s <= least, -self.known(motion), -np.inf)
 
         return self._largest(lack)[0]
 
-    def _needed(self, motion: Motion) -> Array:
+    def _needed(self, motion: DrivenMotion) -> Array:
         """Return the stiffness that is needed at a lift, negative where none is."""
-        s, lack = motion[1], -self.known(motion)
+        s, lack = motion.s, -self.known(motion)
         least = _BARELY * max(map(abs, self.program.range))
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.where(s > least, lack / s, np.where(lack > 0.0, np.inf, -np.inf))
 
     @cached_property
-    def release(self) -> tuple[float, float] | None:
-        """The speed at which the follower lifts off, rad/s or mm/s, and where; None if never."""
+    def release(self) -> tuple[float, float, float] | None:
+        """The speed at which the follower lifts off, rad/s or mm/s, where, and on which way.
+
+        None if it never does.
+        """
         if not self.inertia:
             return None
 
-        most, where = self._largest(lambda motion: 1.0 / self._letting_go(motion))
-        return (1.0 / math.sqrt(most), where) if most > 0.0 else None
+        most, where, way = self._largest(lambda motion: 1.0 / self._letting_go(motion))
+        return (1.0 / math.sqrt(most), where, way) if most > 0.0 else None
 
-    def _letting_go(self, motion: Motion) -> Array:
+    def _letting_go(self, motion: DrivenMotion) -> Array:
         """Return the squares of the speeds at which the follower lifts off; inf where at none."""
-        _, s, _, d2s = motion
+        s, d2s = motion.s, motion.d2s
         sense, weight, hurry = self._sense(motion), self._weights(s)[1], self._hurry(motion)
         a, b = self.held_still(motion), self.inertia * d2s
 
@@ -243,36 +277,42 @@ class Loads(ShortRepr):
         good = own & np.isfinite(squares) & (squares > 0.0) & (a + sense * p > 0.0)
         return np.where(good, squares, np.inf).min(axis=0)
 
-    def held_still(self, motion: Motion) -> Array:
+    def held_still(self, motion: DrivenMotion) -> Array:
         """Return the loads against a rise at a very low speed, with springs as solved."""
-        _, s, _, _ = motion
-        total = self.still(motion)
+        s, total = motion.s, self.still(motion)
         for one in self.springs:
             rate, force = one.rate, one.force
             total = total + (self.solved["stiffness"] if rate == "solve" else rate) * s
             total = total + (self.solved["preload"] if force == "solve" else force)
         return total
 
-    def burden(self, motion: Motion) -> Burden:
+    def burden(self, motion: DrivenMotion) -> Burden:
         """Return what the cam has to move."""
         square = (self.speed or 0.0) ** 2
         return Burden(
-            against=self.held_still(motion) + self.inertia * square * motion[3],
+            against=self.held_still(motion) + self.inertia * square * motion.d2s,
             resultant=self._pressing(motion),
             sense=self._sense(motion),
         )
 
-    def _largest(self, value: Callable[[Motion], Array]) -> tuple[float, float]:
-        """Return the largest value over the turn, and where it is."""
+    def _largest(self, value: Callable[[DrivenMotion], Array]) -> tuple[float, float, float]:
+        """Return the largest value over the turn, or to and fro, where it is, and on which way."""
+        found = [self._largest_on(way, value) for way in self.ways]
+        return max(found, key=lambda one: one[0])
+
+    def _largest_on(
+        self, way: float, value: Callable[[DrivenMotion], Array]
+    ) -> tuple[float, float, float]:
+        """Return the largest value on one way (see `_largest`)."""
         cuts = np.unique(np.concatenate([self.program.cuts, self.program.knots]))
         low, high = cuts[:-1, None], np.nextafter(cuts[1:, None], -np.inf)
         x = low + (high - low) * np.linspace(0.0, 1.0, _SAMPLES)
-        found = value(self.motion(x.ravel())).reshape(x.shape)
+        found = value(self.motion(x.ravel(), way)).reshape(x.shape)
         for _ in range(_ROUNDS):
             best = np.argmax(found, axis=1)[:, None]
             low = np.take_along_axis(x, np.maximum(best - 1, 0), axis=1)
             high = np.take_along_axis(x, np.minimum(best + 1, x.shape[1] - 1), axis=1)
             x = low + (high - low) * np.linspace(0.0, 1.0, 33)
-            found = value(self.motion(x.ravel())).reshape(x.shape)
+            found = value(self.motion(x.ravel(), way)).reshape(x.shape)
         row, column = np.unravel_index(int(np.argmax(found)), found.shape)
-        return float(found[row, column]), float(x[row, column])
+        return float(found[row, column]), float(x[row, column]), way

@@ -19,6 +19,11 @@ from gearcam.mechanics.hertz import FIRST_YIELD
 from gearcam.numeric.arrays import Array, Mask
 
 
+def on_way(way: float) -> str:
+    """Return a way of a cam that slides to and fro, 1 or -1, in words."""
+    return f" on the way {'forward' if way > 0.0 else 'back'}"
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Loaded(ShortRepr):
     """A cam under its loads.
@@ -37,6 +42,8 @@ class Loaded(ShortRepr):
         The lower yield stress.
     torque : (n,) array
         Of the driver, in N m; of a driver that slides nan.
+    way : (n,) array, optional
+        Of a cam that slides to and fro: 1 forward, -1 back.
     holding : str
         The preload that holds the follower on the cam, in words; empty without a spring.
     release : str
@@ -49,23 +56,30 @@ class Loaded(ShortRepr):
     pressure: Array
     yields: float | None
     torque: Array
+    way: Array | None = None
     release: str = ""
     holding: str = ""
 
     def stretch(self, mask: Mask) -> str:
         """Return where a mask first holds, in words."""
         places = np.flatnonzero(mask)
-        breaks = np.flatnonzero(np.diff(places) > 1)
+        turned = np.zeros(len(places)) if self.way is None else self.way[places]
+        breaks = np.flatnonzero((np.diff(places) > 1) | (np.diff(turned) != 0.0))
         last = places[breaks[0]] if breaks.size else places[-1]
         low, high = (
             formatted(self.driver.scale * float(self.x[one]), 5) for one in (places[0], last)
         )
         more = f", and {breaks.size} more" if breaks.size else ""
-        return f"{self.driver.symbol} = {low} to {high} {self.driver.unit}{more}"
+        unit = self.driver.unit + self._on(int(places[0]))
+        return f"{self.driver.symbol} = {low} to {high} {unit}{more}"
 
     def at(self, index: int) -> str:
         """Return a place in words."""
-        return self.driver.place(float(self.x[index]))
+        return self.driver.place(float(self.x[index])) + self._on(index)
+
+    def _on(self, index: int) -> str:
+        """Return on which way a place is, in words; empty for a cam that turns."""
+        return "" if self.way is None else on_way(float(self.way[index]))
 
 
 @check("self-locking", kind=FORCES, severity="error")

@@ -27,7 +27,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from gearcam.base.display import ShortRepr
-from gearcam.cams.burdens import Motion
+from gearcam.cams.burdens import DrivenMotion
 from gearcam.cams.carriers import Rotating
 from gearcam.cams.curve import CamCurve
 from gearcam.cams.followers import Contact, Follower
@@ -119,7 +119,7 @@ class Load(ShortRepr):
         Product of normal force and relative curvature at which the pressure is at its limit.
     """
 
-    burden: Callable[[Motion], Burden]
+    burden: Callable[[DrivenMotion], Burden]
     friction: FrictionSpec
     dragged: Callable[[Any], Any]
     most: float
@@ -279,7 +279,7 @@ class Sizing:
         past = carrier.passing(at) - support.velocity(at) * ds
         push, _ = pushing(at, tangent, past, load.dragged(ends))
         force, left = support.normal_force(
-            push, load.burden((places.theta, s, ds, d2s)), load.friction
+            push, load.burden(DrivenMotion(places.theta, s, ds, d2s)), load.friction
         )
         bend = contact.turning.c[0] / contact.pitch_speed.c[0]
         # 1/(1/bend - radius) + 1/radius

@@ -94,7 +94,9 @@ class Touch(ShortRepr):
         s, ds = self.wall.program.derivatives(x, 1)
         return x, s, ds
 
-    def push(self, x: Array, ds: Array, support: Support, share: float) -> tuple[Push, Array]:
+    def push(
+        self, x: Array, ds: Array, support: Support, share: float, way: Array | float = 1.0
+    ) -> tuple[Push, Array]:
         """Return the force of the wall, and the speed of sliding.
 
         Parameters
@@ -105,12 +107,14 @@ class Touch(ShortRepr):
             What holds the follower.
         share : float
             Tangential force over normal force.
+        way : 1 or -1, or (n,) array
+            Whether the driver goes forward, or back.
 
         Returns
         -------
         push : Push
             Its force.
-        slide : (n,) array, mm per unit of x
+        slide : (n,) array, mm per unit of the driver's way
             Velocity of the cam past the follower's end, along the tangent.
         """
         _, s, own = self._state(x)
@@ -119,7 +123,7 @@ class Touch(ShortRepr):
         at, tangent = touching.trace(wall.carrier, np.zeros_like(x), touching.start + s, own, inset)
         if self.across:
             at, tangent = -at, -tangent
-        past = wall.carrier.passing(at) - support.velocity(at) * ds
+        past = way * wall.carrier.passing(at) - support.velocity(at) * ds
         return pushing(at, tangent, past, share, wall.side)
 
     def along(self, x: Array) -> Array:
@@ -206,6 +210,7 @@ def solve(
     burden: Burden,
     friction: FrictionSpec,
     share: Callable[[float], float],
+    way: Array | float = 1.0,
 ) -> Statics:
     """Return the forces of a cam on its follower.
 
@@ -223,6 +228,8 @@ def solve(
         Coefficients.
     share : callable
         ``share(radius)`` returns tangential over normal force of an end of that radius, mm.
+    way : 1 or -1, or (n,) array
+        Whether the driver goes forward, or back; velocities and torque are by its way.
 
     Returns
     -------
@@ -239,7 +246,7 @@ def solve(
         holding[np.abs(holding) <= _ROUNDING * np.abs(burden.against).max(initial=0.0)] = 0.0
     for number, touch in enumerate(touches):
         part = share(touch.end.radius)
-        push, slide = touch.push(x, ds, support, part)
+        push, slide = touch.push(x, ds, support, part, way)
         asked = holding * support.lifting(push.normal, push.at) >= 0.0
         found, left = support.normal_force(push, burden, friction)
         stuck = asked & (left <= 0.0)
@@ -250,7 +257,7 @@ def solve(
         carrying[carries] = number
         force = np.where(carries, found, force)
         carrier, pressed = touch.wall.carrier, np.where(carries, found, 0.0)
-        arm = (push.unit * np.conj(carrier.passing(push.at))).real
+        arm = way * (push.unit * np.conj(carrier.passing(push.at))).real
         drag = carrier.drag(pressed * push.unit, friction)
         torque += pressed * arm + drag
         bearing += pressed * push.unit

@@ -50,7 +50,10 @@ def coloured(result: CamResult, theta: Array) -> tuple[ColouredCurve, ...]:
     for number, touch in enumerate(result.cam.touches):
         points, pressure = _along(touch, x)
         values = {PRESSURE_ANGLE: np.degrees(np.abs(pressure))}
-        values |= {name: np.where(wall == number + 1, one, np.nan) for name, one in forces.items()}
+        values |= {
+            name: _largest(np.where(wall == number + 1, one, np.nan), len(x))
+            for name, one in forces.items()
+        }
         seen = {name: np.where(np.isnan(points), np.nan, one) for name, one in values.items()}
         curve = ColouredCurve(
             body=names[min(number, len(names) - 1)],
@@ -64,6 +67,11 @@ def coloured(result: CamResult, theta: Array) -> tuple[ColouredCurve, ...]:
         )
         curves.append(curve)
     return tuple(one for one in curves if one.values)
+
+
+def _largest(values: Array, count: int) -> Array:
+    """Return values at rising positions; of a cam that slides to and fro the larger of both."""
+    return values if len(values) == count else np.fmax(values[:count], values[count:][::-1])
 
 
 def _within(theta: Array, program: Program) -> Array:

@@ -14,7 +14,7 @@ from gearcam.base.findings import limit_of, run_checks
 from gearcam.base.numerals import formatted, shortened
 from gearcam.base.quantities import TORQUE
 from gearcam.cams.burdens import Loads
-from gearcam.cams.force_checks import Loaded
+from gearcam.cams.force_checks import Loaded, on_way
 from gearcam.cams.spec import FORCES
 from gearcam.cams.statics import Statics, solve
 from gearcam.kinds.cam.charts import knots_of, places_of
@@ -25,10 +25,10 @@ from gearcam.pictures.charts import Chart, Limit, Line
 from gearcam.results.result import StudyResult
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
     from gearcam.kinds.cam.build import CamResult
-    from gearcam.numeric.arrays import Array
+    from gearcam.numeric.arrays import Array, Ints
     from gearcam.results.kind import Study
     from gearcam.results.result import Progress
 
@@ -106,28 +106,34 @@ def _no_stiffness(loads: Loads) -> InfeasibleError:
 
 
 def places(result: CamResult) -> Array:
-    """Return the positions of the driver that are studied, on both sides of knots."""
+    """Return the positions of the driver that are studied, on both sides of knots.
+
+    They rise; a cam that slides comes back through them.
+    """
     period, count = result.program.period, result.design.forces.steps
     even = period * np.arange(count + 1.0) / count
     even[-1] = np.nextafter(period, 0.0)
     return with_both_sides(even, np.asarray(result.program.knots))
 
 
-def _under_load(result: CamResult) -> tuple[Loads, Array, Statics]:
-    """Return the loads of a cam, the positions that are studied, and the forces there."""
+def _under_load(result: CamResult) -> tuple[Loads, Array, Array, Statics]:
+    """Return the loads of a cam, the positions and ways that are studied, and the forces there."""
     demand(result.design)
     design, loads, x = result.design, loads_of(result), places(result)
-    motion = loads.motion(x)
+    way = np.repeat(loads.ways, len(x))
+    x = np.concatenate([x[:: int(one)] for one in loads.ways])
+    motion = loads.motion(x, way)
     statics = solve(
         result.cam.touches,
         loads.support,
         x,
-        motion[2],
+        motion.ds,
         loads.burden(motion),
         design.friction,
         partial(design.follower.dragged, design.friction),
+        way,
     )
-    return loads, x, statics
+    return loads, x, way, statics
 
 
 def largest_pressure(result: CamResult) -> float:
@@ -143,7 +149,7 @@ def largest_pressure(result: CamResult) -> float:
     DesignError, InfeasibleError
         As those of the study.
     """
-    _, _, statics = _under_load(result)
+    *_, statics = _under_load(result)
     per_width = statics.force / result.form.contact_width
     pressure = line_pressure(per_width, statics.curvature, result.design.material)
     return float(np.nanmax(pressure, initial=0.0))
@@ -175,7 +181,7 @@ def study_forces(result: CamResult, study: Study, progress: Progress | None) -> 
         progress("forces", 0, 1)
     design, cam = result.design, result.cam
     with result.stage("forces"):
-        loads, x, statics = _under_load(result)
+        loads, x, way, statics = _under_load(result)
         per_width = statics.force / result.form.contact_width
         pressure = line_pressure(per_width, statics.curvature, design.material)
         width = half_width(per_width, statics.curvature, design.material)
@@ -190,11 +196,12 @@ def study_forces(result: CamResult, study: Study, progress: Progress | None) -> 
             pressure=pressure,
             yields=design.material.weakest,
             torque=scale * statics.torque if turns else np.full(x.shape, np.nan),
+            way=way if len(loads.ways) > 1 else None,
             release=design.drive.words(release[0]) if release else "",
             holding=_holding(loads),
         )
         found = enlarged(result, run_checks(FORCES, loaded, design.limits))
-    columns = _columns(result, x, statics, pressure, width)
+    columns = _columns(result, loaded, width)
     return StudyResult(
         result=result,
         study=study,
@@ -202,7 +209,7 @@ def study_forces(result: CamResult, study: Study, progress: Progress | None) -> 
         table=columns,
         group=_facts(result, loads, loaded, release),
         study_findings=found,
-        drawn=partial(_charts, result, x, columns),
+        drawn=partial(_charts, result, loaded, columns),
     )
 
 
@@ -223,15 +230,15 @@ def _effort(result: CamResult) -> tuple[str, float]:
     return ("load_nm", 1e-3) if result.follower.angular else ("load_n", 1.0)
 
 
-def _columns(
-    result: CamResult, x: Array, statics: Statics, pressure: Array, width: Array
-) -> dict[str, Array]:
+def _columns(result: CamResult, loaded: Loaded, width: Array) -> dict[str, Array]:
     """Return the columns of ``forces.csv``."""
+    x, statics, pressure = loaded.x, loaded.statics, loaded.pressure
     driver, drive, motion = result.driver, result.design.drive, result.cam.motions[0]
     (load, load_scale), (effort, scale) = _effort(result), drive.effort
     sign = -1.0 if motion.clockwise else 1.0
     columns = {
         driver.column: driver.scale * x,
+        **({} if loaded.way is None else {"direction": loaded.way.astype(int)}),
         load: load_scale * statics.against,
         "normal_n": statics.force,
         "wall": statics.carrying + 1,
@@ -266,7 +273,7 @@ def _extreme(loaded: Loaded, values: Array, label: str, unit: str) -> Fact | Non
 
 
 def _facts(
-    result: CamResult, loads: Loads, loaded: Loaded, release: tuple[float, float] | None
+    result: CamResult, loads: Loads, loaded: Loaded, release: tuple[float, float, float] | None
 ) -> Tree:
     """Return the facts of the study."""
     statics, design = loaded.statics, result.design
@@ -292,12 +299,12 @@ def _facts(
         "friction": Fact(", ".join(without), "friction left out", shown=True) if without else None,
     }
     if release is not None:
-        speed, where = release
+        speed, where, way = release
         quantity = design.drive.quantity
         tree[f"release_speed{quantity.suffix}"] = Fact(
             speed / quantity.factor,
             "speed at which the follower lifts off",
-            place=result.driver.place(where),
+            place=result.driver.place(where) + (on_way(way) if len(loads.ways) > 1 else ""),
             unit=quantity.unit,
             shown=True,
         )
@@ -337,7 +344,7 @@ def _efficiency(loaded: Loaded) -> Tree | None:
 
 
 def _integral(x: Array, y: Array) -> float:
-    return float(np.sum(0.5 * (y[1:] + y[:-1]) * np.diff(x)))
+    return float(np.sum(0.5 * (y[1:] + y[:-1]) * np.abs(np.diff(x))))
 
 
 def _reversals(statics: Statics) -> int | None:
@@ -373,24 +380,35 @@ COLOURS: Final = ("normal_n", "pressure_mpa")
 """Columns that the profile can be coloured by."""
 
 
-def _along(result: CamResult, x: Array, columns: Mapping[str, Any]) -> Chart | None:
+def _on_each_way(loaded: Loaded) -> Iterator[tuple[str, Ints]]:
+    """Yield the name of each way, to follow a label, and its rows by rising positions."""
+    rows = np.arange(len(loaded.x))
+    if loaded.way is None:
+        yield "", rows
+    else:
+        yield ", forward", rows[loaded.way > 0.0]
+        yield ", back", rows[loaded.way < 0.0][::-1]
+
+
+def _along(result: CamResult, loaded: Loaded, columns: Mapping[str, Any]) -> Chart | None:
     """Return the chart of the contact pressure along each wall."""
     pressure = np.ma.filled(columns["pressure_mpa"], np.nan)
     if not np.isfinite(pressure).any():
         return None
     lines = tuple(
         Line(
-            label=f"{touch.key} wall" if touch.key else "profile",
-            x=touch.along(x),
-            y=np.where(columns["wall"] == number, pressure, np.nan),
+            label=(f"{touch.key} wall" if touch.key else "profile") + way,
+            x=touch.along(loaded.x[rows]),
+            y=np.where(columns["wall"] == number, pressure, np.nan)[rows],
         )
         for number, touch in enumerate(result.cam.touches, start=1)
+        for way, rows in _on_each_way(loaded)
     )
     where, title = "from the contact at the start, mm", "Contact pressure along the profile"
     return Chart(title=title, x=f"arc length {where}", y="contact pressure, MPa", lines=lines)
 
 
-def _charts(result: CamResult, x: Array, columns: Mapping[str, Any]) -> dict[str, Chart]:
+def _charts(result: CamResult, loaded: Loaded, columns: Mapping[str, Any]) -> dict[str, Chart]:
     """Return charts of forces over the driver, and of the pressure along the profile."""
     column, label = places_of(result)
     given = result.design.limits
@@ -408,9 +426,16 @@ def _charts(result: CamResult, x: Array, columns: Mapping[str, Any]) -> dict[str
             title=title,
             x=label,
             y=axis,
-            lines=(Line(label=axis.partition(",")[0], x=np.asarray(columns[column]), y=values),),
+            lines=tuple(
+                Line(
+                    label=axis.partition(",")[0] + way,
+                    x=np.asarray(columns[column])[rows],
+                    y=values[rows],
+                )
+                for way, rows in _on_each_way(loaded)
+            ),
             limits=(Limit(label="limit", value=most),) if most else (),
             marks=knots_of(result),
         )
-    along = _along(result, x, columns)
+    along = _along(result, loaded, columns)
     return charts if along is None else charts | {"profile_pressure": along}
