@@ -308,6 +308,37 @@ def test_a_solved_spring_just_holds_a_follower_that_rubs(follower: str) -> None:
     assert studied(held(follower, "harmonic", **changes, spring=less))[0].lifted.any()
 
 
+def test_no_speed_is_named_where_the_lowest_lift_the_follower_off() -> None:
+    """A load that pulls it off as a rise begins, where a fast cam presses the follower on."""
+    spring = [{"stiffness_n_mm": 20, "preload_n": 40}]
+    changes: dict[str, Any] = {"mass": [{"mass_kg": 0.4}], "spring": spring}
+    pulled = [{"force_n": -41, "from_deg": 0.5, "to_deg": 3}]
+    for load, drive, off in ((-41, 5, True), (-41, 600, False), (-39, 600, None)):
+        pulled[0]["force_n"] = load
+        result = held(ROLLER, "harmonic", load=pulled, drive={"speed_rpm": drive}, **changes)
+        found = result.study("forces")
+        # held at rest by 40 - 41 N and 20 N/mm times a lift of at most 0.02 mm
+        inertia = 0.4e-3 * 6.0 * (1.5 * drive * math.pi / 30.0) ** 2
+        lifted = inertia + load + 40.0 < 0.0
+        assert found.facts["forces.lifted"] == lifted == bool(off)
+        messages = [one.message for one in found.study_findings if one.code == "lift-off"]
+        assert any("lowest speeds" in one for one in messages) == (off is not None)
+        assert not any("up to" in one for one in messages)
+        if off is None:
+            assert "lifted_at_rest" not in found.group
+            assert found.facts["forces.release_speed_rpm"] > 600
+        else:
+            assert found.facts["forces.lifted_at_rest"] is True
+            assert "forces.release_speed_rpm" not in found.facts
+
+
+def test_a_follower_without_a_load_is_off_at_any_speed() -> None:
+    changes = {"mass": [{"mass_kg": 0.4}], "drive": {"speed_rpm": 5}}
+    group = held(ROLLER, "harmonic", **changes).study("forces").group
+    assert group["lifted_at_rest"].value is True
+    assert "release_speed_rpm" not in group
+
+
 def test_gravity_weighs_a_follower() -> None:
     """A stem that stands weighs m*g; an arm at an angle the moment of its centre of mass."""
     changes = {"mass": [{"mass_kg": 2.0}], "gravity": {"direction_deg": -90}}

@@ -247,16 +247,19 @@ class Loads(ShortRepr):
     def release(self) -> tuple[float, float, float] | None:
         """The speed at which the follower lifts off, rad/s or mm/s, where, and on which way.
 
-        None if it never does.
+        None if it never does; 0 if the loads do not hold it at the lowest speeds either.
         """
         if not self.inertia:
             return None
 
-        most, where, way = self._largest(lambda motion: 1.0 / self._letting_go(motion))
+        most, where, way = self._largest(self._looseness)
         return (1.0 / math.sqrt(most), where, way) if most > 0.0 else None
 
-    def _letting_go(self, motion: DrivenMotion) -> Array:
-        """Return the squares of the speeds at which the follower lifts off; inf where at none."""
+    def _looseness(self, motion: DrivenMotion) -> Array:
+        """Return one over the squares of the speeds at which the follower lifts off.
+
+        They are 0 where it lifts off at none, and infinite where at all that are low.
+        """
         s, d2s = motion.s, motion.d2s
         sense, weight, hurry = self._sense(motion), self._weights(s)[1], self._hurry(motion)
         a, b = self.held_still(motion), self.inertia * d2s
@@ -274,8 +277,10 @@ class Loads(ShortRepr):
             squares = (a - p) * (a + p) / np.stack([root - half, -root - half])
             # the other sign of the root belongs to the opposite velocity
             own = sense * (a + b * squares) <= _ROUNDING * np.abs(a)
-        good = own & np.isfinite(squares) & (squares > 0.0) & (a + sense * p > 0.0)
-        return np.where(good, squares, np.inf).min(axis=0)
+            good = own & np.isfinite(squares) & (squares > 0.0)
+            loose = np.where(good, 1.0 / squares, 0.0).max(axis=0)
+        held, slight = a + sense * p, _ROUNDING * np.abs(a).max(initial=0.0)
+        return np.where((held < -slight) | ((held <= slight) & (b < 0.0)), np.inf, loose)
 
     def held_still(self, motion: DrivenMotion) -> Array:
         """Return the loads against a rise at a very low speed, with springs as solved."""

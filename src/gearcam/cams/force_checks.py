@@ -48,6 +48,8 @@ class Loaded(ShortRepr):
         The preload that holds the follower on the cam, in words; empty without a spring.
     release : str
         At which speed the follower lifts off, in words; empty if unknown.
+    loose : str
+        Where it lifts off at the lowest speeds too, in words; empty if nowhere, or unknown.
     """
 
     x: Array
@@ -58,6 +60,7 @@ class Loaded(ShortRepr):
     torque: Array
     way: Array | None = None
     release: str = ""
+    loose: str = ""
     holding: str = ""
 
     def stretch(self, mask: Mask) -> str:
@@ -104,14 +107,19 @@ def self_locking(loaded: Loaded, limit: float) -> Iterator[Remark]:  # noqa: ARG
 def lift_off(loaded: Loaded, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Warn where the loads lift the follower off its cam.
 
-    Looks at: the loads against a rise, where no wall holds the follower from the other side.
+    Looks at: the loads against a rise, where no wall holds the follower from the other side, at
+    the speed of the drive and at the lowest speeds.
     """
     lifted = loaded.statics.lifted
     if lifted.any():
-        message = "The follower lifts off the cam: it needs a stiffer spring or more preload"
+        slow = ", at the lowest speeds too" if loaded.loose else ""
+        message = f"The follower lifts off the cam{slow}: it needs a stiffer spring or more preload"
         message += f"; it stays on it up to {loaded.release}." if loaded.release else "."
         message += f" With {loaded.holding} it stays on the cam." if loaded.holding else ""
         yield Remark(message, loaded.stretch(lifted))
+    elif loaded.loose:
+        message = "The follower lifts off the cam at the lowest speeds: it needs more preload."
+        yield Remark(message, loaded.loose)
 
 
 _PRESSURE: Final = (

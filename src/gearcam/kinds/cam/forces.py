@@ -197,7 +197,8 @@ def study_forces(result: CamResult, study: Study, progress: Progress | None) -> 
             yields=design.material.weakest,
             torque=scale * statics.torque if turns else np.full(x.shape, np.nan),
             way=way if len(loads.ways) > 1 else None,
-            release=design.drive.words(release[0]) if release else "",
+            release=design.drive.words(release[0]) if release and release[0] else "",
+            loose=_place(result, loads, release) if release and not release[0] else "",
             holding=_holding(loads),
         )
         found = enlarged(result, run_checks(FORCES, loaded, design.limits))
@@ -298,17 +299,25 @@ def _facts(
         "spring": _spring(loads) or None,
         "friction": Fact(", ".join(without), "friction left out", shown=True) if without else None,
     }
-    if release is not None:
-        speed, where, way = release
+    if release is not None and not release[0]:
+        label, place = "lifts off at the lowest speeds", _place(result, loads, release)
+        tree["lifted_at_rest"] = Fact(True, label, place=place, text="yes", shown=True)
+    elif release is not None:
         quantity = design.drive.quantity
         tree[f"release_speed{quantity.suffix}"] = Fact(
-            speed / quantity.factor,
+            release[0] / quantity.factor,
             "speed at which the follower lifts off",
-            place=result.driver.place(where) + (on_way(way) if len(loads.ways) > 1 else ""),
+            place=_place(result, loads, release),
             unit=quantity.unit,
             shown=True,
         )
     return tree
+
+
+def _place(result: CamResult, loads: Loads, release: tuple[float, float, float]) -> str:
+    """Return where a follower lifts off, in words."""
+    _, where, way = release
+    return result.driver.place(where) + (on_way(way) if len(loads.ways) > 1 else "")
 
 
 def _least(loaded: Loaded, values: Array, label: str) -> Fact | None:
