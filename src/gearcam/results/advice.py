@@ -164,7 +164,7 @@ def _sought(
         refusal, errors = _examined(result)
     elif not refusal.adjustments and not refusal.more_teeth:
         with suppress(InfeasibleError):
-            _ = result.checked
+            _ = result.checked_without_hints
             return Remedies()  # a study was refused, not the design
     if refusal is None and not errors:
         return Remedies()
@@ -188,7 +188,8 @@ def _sought(
 def _examined(result: Result) -> tuple[InfeasibleError | None, list[Finding]]:
     """Return why a design is refused, or its findings that are errors."""
     try:
-        return None, [finding for finding in result.checked if finding.severity == "error"]
+        found = result.checked_without_hints
+        return None, [finding for finding in found if finding.severity == "error"]
     except InfeasibleError as error:
         return error, []
 
@@ -320,7 +321,7 @@ class Search:
             other = self.changed(changes)
             if self.hopeless(other):
                 return None
-            findings = other.checked
+            findings = other.checked_without_hints
             demand_files(other)
         except InfeasibleError as error:
             if self.refusal is None or error.what != self.refusal.what:

@@ -123,15 +123,27 @@ class Result(NotebookView):
         """The findings of the checks of the design, errors first."""
 
     @cached_property
+    def checked_without_hints(self) -> tuple[Finding, ...]:
+        """The same findings; their messages need not name values that help.
+
+        For searches, which look at codes and numbers only: values that help are searched for, and
+        take longer than the checks.
+        """
+        return self.checked
+
+    @cached_property
     def findings(self) -> tuple[Finding, ...]:
         """The findings of all checks and of the studies that the design asks for, errors first."""
         return self.findings_with(self.studies.values())
 
+    @property
+    def findings_without_hints(self) -> tuple[Finding, ...]:
+        """The same findings; those of checks need not name values that help."""
+        return _merged(self.checked_without_hints, self.studies.values())
+
     def findings_with(self, studies: Collection[StudyResult]) -> tuple[Finding, ...]:
         """Return the findings of `studies`, and of the design what they do not repeat, in order."""
-        repeated = {code for one in studies for code in one.study.repeats}
-        kept = (one for one in self.checked if one.code not in repeated)
-        return in_order((*kept, *(finding for one in studies for finding in one.study_findings)))
+        return _merged(self.checked, studies)
 
     @property
     def studies(self) -> dict[str, StudyResult]:
@@ -294,9 +306,10 @@ class Result(NotebookView):
         [1.222, 1.857]
         """
         row = {"name": self.design.name, "kind": self.design.kind, **self.facts.record()}
+        findings = self.findings_without_hints
         for word in ("error", "warning", "note"):
-            row[f"findings.{word}s"] = sum(one.severity == word for one in self.findings)
-        return row | {"findings.codes": ", ".join(dict.fromkeys(one.code for one in self.findings))}
+            row[f"findings.{word}s"] = sum(one.severity == word for one in findings)
+        return row | {"findings.codes": ", ".join(dict.fromkeys(one.code for one in findings))}
 
     def to_dict(self) -> dict[str, Any]:
         """Return the content of ``summary.json`` without the list of files.
@@ -596,6 +609,13 @@ class Result(NotebookView):
             facts=facts,
             findings=tuple(findings),
         )
+
+
+def _merged(checked: Sequence[Finding], studies: Collection[StudyResult]) -> tuple[Finding, ...]:
+    """Return the findings of studies, and of the checks those that they do not repeat, in order."""
+    repeated = {code for one in studies for code in one.study.repeats}
+    kept = (one for one in checked if one.code not in repeated)
+    return in_order((*kept, *(finding for one in studies for finding in one.study_findings)))
 
 
 def _nothing(_: Scene) -> dict[str, ContactPoints]:

@@ -84,9 +84,7 @@ def measured(base: Design, number: int, values: Mapping[str, Any]) -> Built:
     try:
         result = build(base.with_(values))
         facts = result.record()
-        findings = result.findings
-        for study in result.studies.values():
-            findings = (*findings, *study.findings)
+        findings = result.findings_without_hints
     except GearcamError as error:
         return row(refusal=" ".join(str(error).split()))
     except MemoryError:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
+from dataclasses import replace
 from functools import cache
 from itertools import count
 from pathlib import Path
@@ -25,8 +26,9 @@ from gearcam.gears.track import LeastRadius
 from gearcam.laws.ratio.constant import Constant
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.results.advice import Remedies, Remedy
+from gearcam.sweep.rows import measured
 from helpers_built import fresh
-from helpers_pairs import job
+from helpers_pairs import PROFILES, job
 from helpers_remedies import (
     CIRCLE,
     ERRORS,
@@ -413,3 +415,23 @@ def test_a_larger_cam_is_no_remedy_for_chords_that_are_too_fine(tmp_path: Path) 
     found = gearcam.remedies(made, refused.value, patience=20.0).found
     assert [set(one.changes) for one in found] == [{"output.chord_tolerance_mm"}]
     gearcam.build(found[0].design).write(tmp_path / "out")
+
+
+def test_no_values_that_help_are_sought_for_candidates(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Searches and records look at codes and numbers of findings, which are the same without."""
+    design = gearcam.load(PROFILES / "undercut_cam.toml")
+    told = gearcam.build(design)
+    assert "it keeps all limits" in " ".join(one.message for one in told.findings)
+    plain = [replace(one, message="") for one in told.findings]
+
+    def never(*_: Any) -> None:
+        raise AssertionError("hints were sought")
+
+    monkeypatch.setattr("gearcam.kinds.cam.hints.hinted", never)
+    result = gearcam.build(design)
+    assert [replace(one, message="") for one in result.findings_without_hints] == plain
+    assert gearcam.remedies(result).found
+    assert result.record()["findings.warnings"] == sum(one.severity == "warning" for one in plain)
+    assert measured(design, 0, {}).errors == sum(one.severity == "error" for one in plain)
+    with pytest.raises(AssertionError):
+        _ = result.findings

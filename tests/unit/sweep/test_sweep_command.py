@@ -14,6 +14,7 @@ import pytest
 
 import gearcam as gc
 from gearcam.cli import main
+from gearcam.sweep.rows import measured
 from helpers_processes import ENVIRONMENT
 
 TEXT = """
@@ -83,6 +84,15 @@ def test_studies_named_by_the_output_are_in_the_table(file: str) -> None:
     words = ["--set", 'output.studies=["mesh"]', "--set", "meshing.steps=12", "-o", "out"]
     assert main(["sweep", file, *words, "--jobs", "1"]) == 0
     assert any(name.startswith("meshing.") for name in table().columns)
+
+
+def test_findings_are_counted_once_with_a_study_too() -> None:
+    design = gc.load("profiles/nail_machine_two_phase.toml")
+    studied = design.with_({"output.studies": ["mesh"], "meshing.steps": 12})
+    row = measured(studied, 0, {})
+    findings = gc.build(studied).findings
+    assert row.warnings == sum(one.severity == "warning" for one in findings) == 1
+    assert set(row.findings) == {one.code for one in findings}
 
 
 @pytest.mark.parametrize(

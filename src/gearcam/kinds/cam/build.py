@@ -387,13 +387,20 @@ class CamResult(PartsResult):
     @cached_property
     def checked(self) -> tuple[Finding, ...]:
         """Findings of the checks, errors first."""
+        found = self.checked_without_hints
+        if any(one.code in _HINTED for one in found):
+            from gearcam.kinds.cam.hints import hinted
+
+            with self.stage("checks"):
+                found = hinted(self, found)
+        return found
+
+    @cached_property
+    def checked_without_hints(self) -> tuple[Finding, ...]:
+        """Findings of the checks without values that help (see `Result.checked_without_hints`)."""
         cam = self.cam
         with self.stage("checks"):
             found = run_checks(KIND, cam, self.design.limits)
-            if any(one.code in _HINTED for one in found):
-                from gearcam.kinds.cam.hints import hinted
-
-                found = hinted(self, found)
         if self.ordered:
             subject = self.part_subject
             with self.stage("checks"):
