@@ -339,6 +339,65 @@ def test_a_follower_without_a_load_is_off_at_any_speed() -> None:
     assert "release_speed_rpm" not in group
 
 
+def lift_at(result: Any, degrees: float) -> float:
+    return float(result.program.derivatives(np.radians([degrees]), 0)[0][0])
+
+
+@pytest.mark.parametrize("follower", [ROLLER, ARM])
+@pytest.mark.parametrize("steps", [12, 720])
+def test_a_load_between_two_angles_is_seen_at_its_ends(follower: str, steps: int) -> None:
+    swings = "oscillating" in follower
+    key, size = ("torque_nm", 18.0) if swings else ("force_n", 300.0)
+    ends = [50.1234, 50.1334]
+    load = {key: size, "from_deg": ends[0], "to_deg": ends[1]}
+    result = held(follower, load=[load], forces={"steps": steps})
+    alpha = np.radians(result.motion(np.radians(ends))["pressure_angle_deg"])
+    force = 1e3 * size / 62.0 if swings else size
+    most = (force / np.cos(alpha)).max()
+    group = result.study("forces").group
+    assert group["normal_n"].value["max"] == pytest.approx(most, rel=1e-9)
+
+
+@pytest.mark.parametrize("steps", [12, 720])
+def test_a_table_of_loads_is_seen_at_its_places(steps: int) -> None:
+    table = {"table": [0, 300, 0, 0], "at_deg": [0, 77.777, 77.9, 360]}
+    result = held(ROLLER, load=[table], forces={"steps": steps})
+    alpha = np.radians(result.motion(np.radians([77.777]))["pressure_angle_deg"])
+    group = result.study("forces").group
+    expected = 300.0 / math.cos(alpha[0])
+    assert group["normal_n"].value["max"] == pytest.approx(expected, rel=1e-9)
+
+
+def test_the_spring_is_solved_for_loads_that_jump() -> None:
+    """The load is extreme as it ends, as it begins, and as another that presses has ended."""
+    drive = {"speed_rpm": 60}
+    spring = [{"preload_n": "solve"}]
+    rising = {"formula": "-s", "from_deg": 20, "to_deg": 70.1234}
+    falling = {"formula": "s - 12", "from_deg": 20.4321, "to_deg": 120}
+    pressing = {"force_n": 100, "from_deg": 0, "to_deg": 70.1234}
+    for load, place, sign in (
+        ([rising], 70.1234, -1.0),
+        ([falling], 20.4321, 1.0),
+        ([falling, pressing], 70.1234, 1.0),
+    ):
+        result = held(ROLLER, load=load, drive=drive, spring=spring)
+        lift = lift_at(result, place)
+        needed = lift if sign < 0.0 else 12.0 - lift
+        assert loads_of(result).solved["preload"] == pytest.approx(needed, rel=1e-9)
+        assert not result.study("forces").facts["forces.lifted"]
+    short = [{"force_n": -30, "from_deg": 50.1234, "to_deg": 50.1235}]
+    result = held(ROLLER, load=short, drive=drive, spring=spring)
+    assert loads_of(result).solved["preload"] == pytest.approx(30.0, rel=1e-12)
+
+
+def test_a_table_of_loads_may_jump() -> None:
+    table = {"table": [-5, -5, -25, -5, -5], "at_deg": [0, 33.333, 33.3331, 33.3331, 360]}
+    changes = {"drive": {"speed_rpm": 60}, "spring": [{"preload_n": "solve"}]}
+    result = held(ROLLER, load=[table], **changes)
+    assert loads_of(result).solved["preload"] == pytest.approx(25.0, rel=1e-9)
+    assert not result.study("forces").facts["forces.lifted"]
+
+
 def test_gravity_weighs_a_follower() -> None:
     """A stem that stands weighs m*g; an arm at an angle the moment of its centre of mass."""
     changes = {"mass": [{"mass_kg": 2.0}], "gravity": {"direction_deg": -90}}

@@ -127,6 +127,12 @@ class Loads(ShortRepr):
         """Forward, 1, and of a cam that slides to and fro also back, -1."""
         return (1.0,) if self.program.closed else (1.0, -1.0)
 
+    @property
+    def _breaks(self) -> list[Array]:
+        """Knots of the given loads, within the turn or travel."""
+        breaks = [np.asarray(one.knots) for one in self.given]
+        return [one[(one > 0.0) & (one < self.program.period)] for one in breaks]
+
     def motion(self, x: Array, way: Array | float = 1.0) -> DrivenMotion:
         """Return the motion at positions of the driver.
 
@@ -309,7 +315,7 @@ class Loads(ShortRepr):
         self, way: float, value: Callable[[DrivenMotion], Array]
     ) -> tuple[float, float, float]:
         """Return the largest value on one way (see `_largest`)."""
-        cuts = np.unique(np.concatenate([self.program.cuts, self.program.knots]))
+        cuts = np.unique(np.concatenate([self.program.cuts, self.program.knots, *self._breaks]))
         low, high = cuts[:-1, None], np.nextafter(cuts[1:, None], -np.inf)
         x = low + (high - low) * np.linspace(0.0, 1.0, _SAMPLES)
         found = value(self.motion(x.ravel(), way)).reshape(x.shape)

@@ -20,7 +20,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Final, NamedTuple
 
@@ -99,6 +99,9 @@ _BETWEEN: Final = 4
 _COARSE: Final = 9
 """Least number of places in a cell of a first look."""
 
+_CLOSE: Final = 1e-9
+"""Distance of cuts, as a share of the turn, within which they are one."""
+
 _APART: Final = 0.05
 """Least distance of two starts, as a share of the range."""
 
@@ -117,12 +120,15 @@ class Load(ShortRepr):
         ``dragged(radius)`` returns tangential over normal force of ends, (n, 1), mm.
     most : float, N/mm
         Product of normal force and relative curvature at which the pressure is at its limit.
+    knots : (k,) array, rad
+        Where loads jump or bend.
     """
 
     burden: Callable[[DrivenMotion], Burden]
     friction: FrictionSpec
     dragged: Callable[[Any], Any]
     most: float
+    knots: Array
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -340,11 +346,20 @@ class Sizing:
 
     @cached_property
     def _fine(self) -> _Places:
-        return _Places.of(self.program, 1)
+        return _Places.of(self._cut, 1)
 
     @cached_property
     def _coarse(self) -> _Places:
-        return _Places.of(self.program, 0)
+        return _Places.of(self._cut, 0)
+
+    @property
+    def _cut(self) -> Program:
+        """The lift, with cuts where loads jump or bend too."""
+        if self.load is None:
+            return self.program
+        cuts, apart = self.program.cuts, _CLOSE * self.program.period
+        near = np.abs(self.load.knots[:, None] - cuts).min(axis=1)
+        return replace(self.program, cuts=np.union1d(cuts, self.load.knots[near > apart]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -354,7 +369,7 @@ class _Places:
     Parameters
     ----------
     theta : (m,) array, rad
-        Cam angles.
+        Cam angles; at the ends of a cell slightly within, as loads may jump there.
     lift : (4 or 3, m) array
         Lift and derivatives.
     step : (m,) array, rad
@@ -406,6 +421,8 @@ class _Places:
             theta, lift = survey.places[:, some], survey.values[:3][:, :, some]
         step = np.pad(np.diff(theta, axis=1), ((0, 0), (0, 1)))
         middles = survey.places.mean(axis=1)
+        within = 1e-3 * _CLOSE * program.period
+        theta = np.clip(theta, theta[:, :1] + within, theta[:, -1:] - within)
 
         rest = np.ones(len(middles), dtype=bool)
         phases: list[tuple[str, Mask]] = []

@@ -145,6 +145,13 @@ class LoadSpec(ShortRepr):
         if not oscillating and self.torque is not None:
             yield "torque", None, "acts on a follower that does not swing", "force_n along its axis"
 
+    @property
+    def knots(self) -> tuple[float, ...]:
+        """Where it jumps or bends, rad or mm: the first numbers of what comes after."""
+        ends = () if self.start is None or self.end is None else (self.start, self.end)
+        # the end belongs to the load
+        return (*(self.place or ()), *ends[:1], *np.nextafter(ends[1:], np.inf).tolist())
+
     def at(self, x: Any, s: Any, ds: Any, *, per: float = 1.0) -> Array:
         """Return the load against a rise.
 

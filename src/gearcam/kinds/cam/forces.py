@@ -108,12 +108,14 @@ def _no_stiffness(loads: Loads) -> InfeasibleError:
 def places(result: CamResult) -> Array:
     """Return the positions of the driver that are studied, on both sides of knots.
 
-    They rise; a cam that slides comes back through them.
+    These are the knots of the lift and of the loads. The positions rise; a cam that slides comes
+    back through them.
     """
     period, count = result.program.period, result.design.forces.steps
     even = period * np.arange(count + 1.0) / count
     even[-1] = np.nextafter(period, 0.0)
-    return with_both_sides(even, np.asarray(result.program.knots))
+    knots = [result.program.knots, *(one.knots for one in result.design.load)]
+    return with_both_sides(even, np.concatenate(knots))
 
 
 def _under_load(result: CamResult) -> tuple[Loads, Array, Array, Statics]:

@@ -252,6 +252,7 @@ def _load_on(cam: CamResult, most: float) -> Load:
         friction=design.friction,
         dragged=np.vectorize(partial(design.follower.dragged, design.friction), otypes=[float]),
         most=math.pi * width * most**2 / design.material.contact_modulus,
+        knots=np.concatenate([np.zeros(0), *(one.knots for one in design.load)]),
     )
 
 

@@ -586,6 +586,22 @@ def test_the_base_radius_of_a_face_under_a_contact_pressure_is_the_closed_form()
     assert result.solution.deciding == ("contact pressure",)
 
 
+def test_a_load_between_two_angles_is_seen_at_its_ends() -> None:
+    """A short one, at its ends; and one that ends where a phase does."""
+    document = stem("cycloidal", cam={"base_radius_mm": "solve", "thickness_mm": 12.0})
+    document["follower"] = {"type": "flat"}
+    modulus = 0.5 * 206000.0 / (1.0 - 0.3**2)
+    rise = document["motion"][0]["angle_deg"]
+    for ends in ([30.001, 30.002], [0.0, float(rise)], [float(rise), rise + 0.001]):
+        load = [{"force_n": 4880, "from_deg": ends[0], "to_deg": ends[1]}]
+        result = gc.build(gc.design(loaded(document, 400.0, load=load)))
+        theta = np.linspace(*np.radians(ends), 20001)
+        s, _, d2s = result.program.derivatives(theta, 2)
+        force = 5000.0 + 8.0 * s + 1.2e-3 * (200.0 * math.pi / 30.0) ** 2 * d2s
+        base = float(np.max(force * modulus / (math.pi * 12.0 * 400.0**2) - s - d2s))
+        assert result.solution.sizes["cam.base_radius_mm"] == pytest.approx(base, abs=2e-3)
+
+
 FRICTION = {
     "guide": 0.1, "guide_length_mm": 50, "joint": 0.08, "roller": 0.05,
     "journal_radius_mm": [10, 2], "flank": 0.1,
