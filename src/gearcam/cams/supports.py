@@ -15,9 +15,10 @@ pivot of radius r    ``r*sin(arctan(mu))*abs(N*r + F)``
 ==================== ========================================================
 
 The first covers both cases of a guide: its ends press on the same side, or on opposite sides if
-``abs(M/R) > b/2``. Both equations have closed solutions: the guide's is piecewise linear, the
-pivot's quadratic. The *reserve* is what is left of c by friction; where it is gone the follower is
-locked, whatever the force.
+``abs(M/R) > b/2``. Weight and inertia of a guided follower act at the guide's middle, without a
+moment, as the place of its centre of mass is not asked for. Both equations have closed solutions:
+the guide's is piecewise linear, the pivot's quadratic. The *reserve* is what is left of c by
+friction; where it is gone the follower is locked, whatever the force.
 
 A touch only presses. The left side is convex or concave in N, and beyond all bounds has the sign of
 c. So where the follower is not locked N > 0 exists if c and
@@ -25,7 +26,9 @@ c. So where the follower is not locked N > 0 exists if c and
     Q + sigma*G(0)
 
 have the same sign: *holding* is this sum. It decides between two touches, and whether one touch
-keeps its follower. Without other forces on the support G(0) is 0, and it is the sign of the load.
+keeps its follower. (On a return a touch that takes much of the weight off the support may balance
+with the other sign too, by two forces; they are not counted.) Without other forces on the support
+G(0) is 0, and it is the sign of the load.
 
 Sources: 000 eqs. (3.65) to (3.69), (3.90) to (3.99), (3.101) to (3.104); derived anew.
 

@@ -595,7 +595,7 @@ def test_a_load_between_two_angles_is_seen_at_its_ends() -> None:
     for ends in ([30.001, 30.002], [0.0, float(rise)], [float(rise), rise + 0.001]):
         load = [{"force_n": 4880, "from_deg": ends[0], "to_deg": ends[1]}]
         result = gc.build(gc.design(loaded(document, 400.0, load=load)))
-        theta = np.linspace(*np.radians(ends), 20001)
+        theta = np.radians(np.linspace(ends[0], ends[1], 20001))
         s, _, d2s = result.program.derivatives(theta, 2)
         force = 5000.0 + 8.0 * s + 1.2e-3 * (200.0 * math.pi / 30.0) ** 2 * d2s
         base = float(np.max(force * modulus / (math.pi * 12.0 * 400.0**2) - s - d2s))
