@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
@@ -397,15 +397,38 @@ def lift_error(deviation: LiftError, limit: float) -> Iterator[Remark]:  # noqa:
         )
 
 
+class FittedMotion(NamedTuple):
+    """What the checks of a fit look at.
+
+    Parameters
+    ----------
+    wall : Wall
+        The wall whose lift was measured.
+    lift : FittedLift
+        What was found.
+    of_profile : bool
+        Whether the lift is that of a measured profile, and not given itself.
+    """
+
+    wall: Wall
+    lift: FittedLift
+    of_profile: bool
+
+
 @check("unknown-law", kind=FITTED)
-def unknown_law(fitted: tuple[Wall, FittedLift], limit: float) -> Iterator[Remark]:  # noqa: ARG001
+def unknown_law(fitted: FittedMotion, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Warn if no motion law moves as a measured lift does.
 
     The residual of a rise or return is more than twice the noise, both as root mean square.
 
     Looks at: each rise and return of a fitted lift.
     """
-    (scale, unit), lift = fitted[0].follower.lift_unit, fitted[1]
+    (scale, unit), lift = fitted.wall.follower.lift_unit, fitted.lift
+    sizes = (
+        "Offset, roller, arm and pivot are taken from the design: one of them may be another. "
+        if fitted.of_profile
+        else ""  # a lift that was given does not depend on them
+    )
     for k in range(len(lift.model.laws)):
         residual = float(np.sqrt(np.mean(lift.missed[lift.on(k)] ** 2)))
         if residual > _UNLIKE * lift.rows.noise:
@@ -413,9 +436,8 @@ def unknown_law(fitted: tuple[Wall, FittedLift], limit: float) -> Iterator[Remar
             yield Remark(
                 f"No motion law moves like this {word}: the nearest one misses it by "
                 f"{formatted(scale * residual, 3)} {unit} (rms), and the noise is "
-                f"{formatted(scale * lift.rows.noise, 3)} {unit}. Offset, roller, arm "
-                "and pivot are taken from the design: one of them may be another. To copy the lift "
-                f"as it is, give its rows as [motion] with smoothing_tolerance_{unit}.",
+                f"{formatted(scale * lift.rows.noise, 3)} {unit}. {sizes}To copy the lift as it "
+                f"is, give its rows as [motion] with smoothing_tolerance_{unit}.",
                 _measured(fitted, k),
                 scale * residual,
                 unit=unit,
@@ -424,14 +446,14 @@ def unknown_law(fitted: tuple[Wall, FittedLift], limit: float) -> Iterator[Remar
 
 
 @check("laws-alike", kind=FITTED, severity="note")
-def laws_alike(fitted: tuple[Wall, FittedLift], limit: float) -> Iterator[Remark]:  # noqa: ARG001
+def laws_alike(fitted: FittedMotion, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Say which motion laws cannot be distinguished in a measured lift.
 
     Their sums of squares differ by less than 16 variances of the noise.
 
     Looks at: each rise and return of a fitted lift.
     """
-    lift = fitted[1]
+    lift = fitted.lift
     for k, others in enumerate(lift.alike):
         if others:
             names = [name_of(MOTION_LAWS, one.law) for one in others]
@@ -442,9 +464,9 @@ def laws_alike(fitted: tuple[Wall, FittedLift], limit: float) -> Iterator[Remark
             )
 
 
-def _measured(fitted: tuple[Wall, FittedLift], k: int) -> str:
+def _measured(fitted: FittedMotion, k: int) -> str:
     """Return where a move is, in the angles of what was measured."""
-    wall, model = fitted[0], fitted[1].model
+    wall, model = fitted.wall, fitted.lift.model
     driver, turn = wall.carrier.driver, 2.0 * math.pi
     start, end = (driver.text(float(one[k]) % turn) for one in (model.starts, model.ends))
     word = "return" if model.falling(k) else "rise"

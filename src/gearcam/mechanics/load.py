@@ -6,7 +6,7 @@ import math
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, ClassVar, Final
+from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 import numpy as np
 
@@ -15,6 +15,9 @@ from gearcam.base.numerals import formatted
 from gearcam.base.quantities import ANGLE, FORCE, LENGTH, LONGEST, TEXT, TORQUE, Row, param
 from gearcam.base.rules import Breach, exactly_one, needs
 from gearcam.numeric.arrays import Array
+
+if TYPE_CHECKING:
+    from gearcam.laws.formula_syntax import FormulaError
 
 OF_LIFT: Final = "s"
 """Variable of formulas over the lift, mm or rad."""
@@ -129,14 +132,21 @@ class LoadSpec(ShortRepr):
         except FormulaError as error:
             try:
                 by_lift = parse(text, OF_LIFT)
-            except FormulaError:
-                names = {*re.findall(r"[A-Za-z]\w*", text)}
-                if {"s", self._angle} <= names:
-                    what = f"s and {self._angle} cannot be mixed"
-                    allowed = f"a formula of {self._angle}, or one of the lift s"
-                    raise FormulaError(what, allowed=allowed) from None
-                raise error from None
+            except FormulaError as other:
+                raise self._misread(text, error, other) from None
             return lambda _, s: values(by_lift, s)
+
+    def _misread(self, text: str, by_angle: FormulaError, by_lift: FormulaError) -> FormulaError:
+        """Return why a formula can be read neither as one of the angle nor as one of the lift."""
+        names = {*re.findall(r"[A-Za-z]\w*", text)}
+        if {OF_LIFT, self._angle} <= names:
+            what = f"{OF_LIFT} and {self._angle} cannot be mixed"
+            return type(by_angle)(
+                what, allowed=f"a formula of {self._angle}, or one of the lift {OF_LIFT}"
+            )
+        error, variable = (by_lift, OF_LIFT) if OF_LIFT in names else (by_angle, self._angle)
+        both = re.sub(rf"^{variable}\b", f"{self._angle} or the lift {OF_LIFT}", error.allowed)
+        return type(error)(error.what, column=error.column, allowed=both, hint=error.hint)
 
     def allowed_on(self, *, oscillating: bool) -> Iterator[Breach]:
         """Yield a force on a follower that swings, or a torque on one that does not."""

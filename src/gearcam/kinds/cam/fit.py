@@ -17,6 +17,7 @@ from gearcam.base.facts import Fact
 from gearcam.base.findings import Finding, run_checks
 from gearcam.base.numerals import formatted
 from gearcam.base.registry import name_of
+from gearcam.cams.checks import FittedMotion
 from gearcam.cams.spec import FITTED
 from gearcam.designs.writing import least_document, toml_text
 from gearcam.kinds.cam.tables import FollowSpec
@@ -45,6 +46,9 @@ _ANGLES: Final = ("theta_deg", "angle_deg")
 """Names of the column of angles."""
 
 FILE: Final = "fitted.toml"
+
+_ERROR_DIGITS: Final = 2
+"""Digits of errors as people read them."""
 
 
 def read_lift(file: Any, wall: Wall) -> tuple[Array, Array] | None:
@@ -224,7 +228,8 @@ class FittedDesign:
     @cached_property
     def findings(self) -> tuple[Finding, ...]:
         """Findings of the checks."""
-        return run_checks(FITTED, (self.wall, self.fitted), self.result.design.limits)
+        subject = FittedMotion(self.wall, self.fitted, self.of_profile)
+        return run_checks(FITTED, subject, self.result.design.limits)
 
     @cached_property
     def facts(self) -> dict[str, Any]:
@@ -232,20 +237,14 @@ class FittedDesign:
         (scale, unit), driver = self.wall.follower.lift_unit, self.wall.carrier.driver
         missed, rows = self.columns["missed"], self.fitted.rows
         worst = int(np.abs(missed).argmax())
+        error = partial(_error, unit=unit)
         return {
-            "noise": Fact(scale * rows.noise, "noise of the rows (rms)", unit=unit, shown=True),
-            "rms": Fact(
-                float(np.sqrt(np.mean(missed**2))),
-                "residual of the fit (rms)",
-                unit=unit,
-                shown=True,
-            ),
-            "largest": Fact(
+            "noise": error(scale * rows.noise, "noise of the rows (rms)"),
+            "rms": error(float(np.sqrt(np.mean(missed**2))), "residual of the fit (rms)"),
+            "largest": error(
                 float(missed[worst]),
                 "largest residual",
                 place=driver.place(float(rows.theta[worst])),
-                unit=unit,
-                shown=True,
             ),
             "begins_deg": math.degrees(self.fitted.begin[1]) % 360.0,
             "lowest": scale * self._low,
@@ -278,11 +277,11 @@ class FittedDesign:
             ),
             "start_deg": start,
             "end_deg": end,
-            "start_error_deg": Fact(
-                math.degrees(fitted.error(("start", k))), f"error of its start, {word}", shown=True
+            "start_error_deg": _error(
+                math.degrees(fitted.error(("start", k))), f"error of its start, {word}"
             ),
-            "end_error_deg": Fact(
-                math.degrees(fitted.error(("end", k))), f"error of its end, {word}", shown=True
+            "end_error_deg": _error(
+                math.degrees(fitted.error(("end", k))), f"error of its end, {word}"
             ),
             "lift": scale * abs(float(model.after[k] - model.levels[k])),
             "rms": float(np.sqrt(np.mean(missed**2))),
@@ -298,7 +297,7 @@ class FittedDesign:
     def _comments(self) -> Iterator[str]:
         facts, unit = self.facts, self.wall.follower.lift_unit[1]
         noise, rms, most = (
-            formatted(abs(facts[one].value), 3) for one in ("noise", "rms", "largest")
+            formatted(abs(facts[one].value), _ERROR_DIGITS) for one in ("noise", "rms", "largest")
         )
         yield f"fitted to {self.source}"
         yield f"residual {rms} {unit} (rms), {most} {unit} at most; noise {noise} {unit}"
@@ -337,6 +336,11 @@ class FittedDesign:
                 ),
             ),
         }
+
+
+def _error(value: float, meaning: str, **more: Any) -> Fact:
+    """Return the fact of an error, which is known to a digit or two."""
+    return Fact(value, meaning, shown=True, text=formatted(value, _ERROR_DIGITS), **more)
 
 
 def law_text(law: Any) -> str:

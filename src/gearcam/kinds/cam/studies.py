@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from gearcam.base.errors import DesignError, Problem
+from gearcam.base.facts import Fact
 from gearcam.kinds.shared import accuracy_study
 from gearcam.results.kind import Study
 from gearcam.results.result import StudyResult
@@ -85,7 +86,7 @@ def _fit(
     # the motion of the given design stands only for another one
     facts |= {"largest_difference": replace(facts["largest_difference"], shown=False)}
     found = tuple(finding for finding in found if finding.code != "other-profile")
-    return StudyResult(
+    study = StudyResult(
         result=one.named_as_given,
         study=FOLLOW,
         file=_FILE,
@@ -95,6 +96,11 @@ def _fit(
         drawn=one.charts,
         pages={fitting.FILE: one.page},
     )
+    # the headline of a build is that of the given design; that of the study itself is this one
+    _, *sizes = one.named_as_given.design_facts.headline
+    fit = {"design": Fact(", ".join(sizes), "fitted design", shown=True), **facts["fit"]}
+    lines = tuple(study.facts.lines(f"{FOLLOW.key}."))
+    return replace(study, group=facts | {"fit": fit}, lines=lines)
 
 
 def _follow(result: CamResult, progress: Progress | None) -> StudyResult:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ import pytest
 import gearcam
 from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.cli import main
+from gearcam.designs.writing import least_document, toml_text
 from gearcam.kinds.cam.design import CamDesign
 from helpers_files import table
 from helpers_pairs import PROFILES
@@ -100,6 +102,41 @@ def test_a_motion_without_a_law_is_said(tmp_path: Path) -> None:
     assert "smoothing_tolerance_mm" in warnings[0].message
     assert warnings[0].value is not None
     assert warnings[0].value > warnings[0].limit
+    assert "pivot" not in warnings[0].message  # the rows are the lift itself
+
+
+def test_the_sizes_of_the_follower_are_in_doubt_if_a_profile_moves_by_no_law() -> None:
+    given = gearcam.load(PLATE)
+    wave = "8*exp(3*(cos(theta) - 1))"
+    other = gearcam.build(given.with_({"motion": {"lift": wave}}))
+    study = gearcam.build(given).follow(other.cam.outline, fit=True)
+    warnings = [one for one in study.findings if one.code == "unknown-law"]
+    assert warnings
+    assert "Offset, roller, arm and pivot are taken from the design" in warnings[0].message
+
+
+def test_a_build_tells_the_fitted_design_and_errors_in_two_digits(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    written(tmp_path / "lift.csv", double_dwell(8.0, 0.01))
+    table = {"file": str(tmp_path / "lift.csv"), "fit": True}
+    changes = {"motion.0.lift_mm": 3, "output.studies": ["follow"], "output.files": ["csv"]}
+    placeholder = gearcam.load(PLATE).with_(changes | {"follow": table})
+    file = tmp_path / "plate.toml"
+    file.write_text(toml_text(least_document(placeholder)), encoding="utf-8")
+    assert main(["build", str(file), "-o", str(tmp_path)]) == 0
+    said = capsys.readouterr().out
+    assert re.search(r"fitted design +lift 8 mm, prime radius 30 mm\n", said)
+    errors = re.findall(r"(?:error of its|residual|noise of the rows).*?  +([0-9.e-]+) ", said)
+    assert len(errors) == 7
+    assert [one for one in errors if f"{float(one):.2g}" != one] == []
+    assert (
+        main(["follow", str(file), str(tmp_path / "lift.csv"), "--fit", "-o", str(tmp_path)]) == 0
+    )
+    head = capsys.readouterr().out.splitlines()[1]
+    assert (
+        head.strip() == "disc cam for a translating roller follower, lift 8 mm, prime radius 30 mm"
+    )
 
 
 REFUSED = {

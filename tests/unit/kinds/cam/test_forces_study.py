@@ -166,7 +166,12 @@ def test_a_table_is_joined_by_straight_lines() -> None:
         ({"load": [{"table": [1, 2], "at_deg": [0, 270]}]}, "360 deg as the last"),
         ({"load": [{"table": [1, 2, 3], "at_deg": [0, 360]}]}, "one for each value"),
         ({"load": [{"table": [1, 2, 3], "at_deg": [0, 90, 60]}]}, "rising values"),
-        ({"load": [{"formula": "3*y"}]}, "unknown name 'y'"),
+        ({"load": [{"formula": "3*y"}]}, "unknown name 'y'\n    allowed: theta or the lift s, pi"),
+        (
+            {"load": [{"formula": "3*s + u"}]},
+            "name 'u'\n    allowed: theta or the lift s",
+        ),
+        ({"load": [{"formula": "3*s +"}]}, "the formula ends too early"),
         ({"spring": [{"stiffness_n_mm": -1}]}, "0 to"),
         ({"spring": [{"on": "follower"}]}, "a stiffness, a preload, or both"),
         ({"spring": [{"stiffness_nm_rad": 1}]}, "stiffness_n_mm and preload_n"),
