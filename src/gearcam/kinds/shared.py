@@ -78,7 +78,7 @@ class GoalSpec(ShortRepr):
         default=None,
         choices=METHODS,
         example="scipy",
-        doc="how `gearcam optimize` searches; by the kind of variables if left out",
+        doc="how `gearcam optimize` searches; by goals and variables if left out",
     )
     trials: int = param(
         COUNT, default=200, ge=1, le=1_000_000, doc="largest number of variants that it builds"

@@ -46,7 +46,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     for name, what in (("minimize", "least"), ("maximize", "largest")):
         words = f"fact that is to be {what}; repeated for several goals"
         parser.add_argument(f"--{name}", action="append", metavar="FACT", help=words)
-    words = f"how to search: {', '.join(METHODS)} (default: by the kind of variables)"
+    words = f"how to search: {', '.join(METHODS)} (default: by goals and variables)"
     parser.add_argument("--method", choices=METHODS, metavar="METHOD", help=words)
     words = "largest number of variants (default: that of [goal], 200)"
     parser.add_argument("--trials", type=int, metavar="N", help=words)
@@ -72,10 +72,9 @@ def _optimize(options: Options, file: str) -> int:
     price = _price(plan, goal.signs)
     search = Quest(plan.axes, len(goal.signs), goal.trials, goal.seed)
     method, why = (goal.method, "") if goal.method else usual(search, price)
-    if method == "scipy" and (search.goals > 1 or search.choices):
-        what = "several goals" if search.goals > 1 else f"{search.choices[0].key}, a choice"
-        problem = Problem(f'"scipy" does not search {what}', key="goal.method", allowed="nsga2")
-        raise DesignError([problem])
+    if method == "scipy" and search.goals > 1:
+        message, allowed = '"scipy" searches for one goal', "nsga2 for several, or one goal"
+        raise DesignError([Problem(message, key="goal.method", allowed=allowed)])
     engine, folder = engine_of(options), Path(options["output"])
     stopped = False
     with Log(folder, {**head_of(plan), "method": method}, LOG) as log:
