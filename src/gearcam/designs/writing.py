@@ -29,17 +29,24 @@ def least_document(given: Design) -> dict[str, Any]:
     """
     document = given.to_dict()
     for title, table in list(document.items()):
-        for key in list(table) if isinstance(table, dict) else ():
-            left = {name: value for name, value in document[title].items() if name != key}
-            document = _if_equal(given, document, {**document, title: left})
-            pair = document[title].get(key)
-            if isinstance(pair, list) and len(pair) == 2 and pair[0] == pair[1]:
-                single = {**document[title], key: pair[0]}
-                document = _if_equal(given, document, {**document, title: single})
-        if not document[title]:
+        if isinstance(table, dict) or not table:
             rest = {name: value for name, value in document.items() if name != title}
             document = _if_equal(given, document, rest)
+        if title in document and isinstance(table, dict):
+            document = _with_least(given, document, title)
     find_tables(document, Path.cwd())
+    return document
+
+
+def _with_least(given: Design, document: dict[str, Any], title: str) -> dict[str, Any]:
+    """Return the document with no more keys in one of its tables than needed."""
+    for key in list(document[title]):
+        left = {name: value for name, value in document[title].items() if name != key}
+        document = _if_equal(given, document, {**document, title: left})
+        pair = document[title].get(key)
+        if isinstance(pair, list) and len(pair) == 2 and pair[0] == pair[1]:
+            single = {**document[title], key: pair[0]}
+            document = _if_equal(given, document, {**document, title: single})
     return document
 
 

@@ -52,13 +52,13 @@ def rows(local: Any, wanted: Jobs, base: gc.Design = BASE, **settings: Any) -> d
 
 
 def test_rows_are_those_of_processes_to_the_last_bit(local: Any) -> None:
-    jobs = [(k, {"law.eccentricity": 0.02 * k, "pair.teeth": [20, 20]}) for k in range(60)]
+    jobs = [(k, {"law.eccentricity": 0.08 * k, "pair.teeth": [20, 20]}) for k in range(16)]
     here = {row.number: row for row in Processes(jobs=1).run(BASE, iter(jobs))}
     there = rows(local, jobs, measure=measured)
     assert {k: replace(row, time_s=0.0) for k, row in there.items()} == {
         k: replace(row, time_s=0.0) for k, row in here.items()
     }
-    assert 0 < sum(not row.made for row in there.values()) < 60
+    assert 0 < sum(not row.made for row in there.values()) < 16
 
 
 def test_workers_find_the_files_that_a_design_names(

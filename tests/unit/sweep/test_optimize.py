@@ -40,7 +40,7 @@ follower.offset_mm = "-20:20"
 [goal]
 minimize = "cam.profile.radius_mm.max"
 findings = "warning"
-trials = 200
+trials = 150
 """
 
 PAIR = """
@@ -69,7 +69,7 @@ def test_the_smallest_cam_is_that_of_its_solved_sizes(
 ) -> None:
     assert main(["optimize", "cam.toml", "-o", "out"]) == 0
     said = capsys.readouterr().out
-    assert "scipy, since there is one goal; 200 trials" in said
+    assert "scipy, since there is one goal; 150 trials" in said
     best = gc.build(gc.load("out/best.toml"))
     assert not best.findings
     asked = {"cam.prime_radius_mm": "solve", "follower.offset_mm": "solve"}
@@ -82,30 +82,30 @@ def test_the_smallest_cam_is_that_of_its_solved_sizes(
 
 
 def test_a_search_goes_on_from_its_log_and_is_the_same_for_two_processes(folder: Path) -> None:
-    words = ["optimize", "pair.toml", "--minimize", "mesh.acceleration_max", "--trials", "26"]
-    words += ["--maximize", "pair.ratio.max", "--set", "law.eccentricity=0.1:0.5:0.02"]
-    words += ["--set", "pair.teeth=[21,21],[24,24]"]
+    goals = ("cam.profile.radius_mm.max", "cam.pressure_angle_deg.max")
+    words = ["optimize", "cam.toml", "--trials", "28", "--set", "motion[0].angle_deg=90:120:10"]
+    words += [word for name in goals for word in ("--minimize", name)]
     assert main([*words, "-o", "one", "--jobs", "1"]) == 0
     assert main([*words, "-o", "two", "--jobs", "2"]) == 0
     tables = [pl.read_csv(f"{name}/optimize.csv").drop("time_s") for name in ("one", "two")]
     assert tables[0].equals(tables[1])
     log = folder / "one" / "optimize.log"
     lines = log.read_bytes().splitlines(keepends=True)
-    log.write_bytes(b"".join(lines[:12]))
+    log.write_bytes(b"".join(lines[:20]))
     assert main([*words, "-o", "one", "--jobs", "1"]) == 0
-    assert log.read_bytes().splitlines(keepends=True)[:12] == lines[:12]
+    assert log.read_bytes().splitlines(keepends=True)[:20] == lines[:20]
     assert pl.read_csv("one/optimize.csv").drop("time_s").equals(tables[0])
     # several goals: the trials that no other one surpasses, each a file that builds
     found = sorted((folder / "one").glob("best-*.toml"))
-    goals = tables[0].select("mesh.acceleration_max", "pair.ratio.max").rows()
+    taken = tables[0].filter(pl.col("refusal").is_null() & pl.col("findings").is_null())
     front = {
         (a, b)
-        for a, b in goals
-        if not any(c <= a and d >= b and (c, d) != (a, b) for c, d in goals)
+        for a, b in taken.select(goals).rows()
+        if not any(c <= a and d <= b and (c, d) != (a, b) for c, d in taken.select(goals).rows())
     }
     records = [gc.build(gc.load(one)).record() for one in found]
-    assert {(one["mesh.acceleration_max"], one["pair.ratio.max"]) for one in records} <= front
-    assert len(found) == min(20, len(front))
+    assert {tuple(one[name] for name in goals) for one in records} == front
+    assert len(front) > 1
 
 
 def test_the_best_of_a_design_with_a_file_builds_from_any_folder(
@@ -147,9 +147,9 @@ def test_a_search_without_a_variant_that_can_be_taken_says_why(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     words = ["--set", "law.eccentricity=0.9:0.99", "--minimize", "pair.ratio.max"]
-    assert main(["optimize", "pair.toml", "-o", "out", *words, "--trials", "24"]) == 3
+    assert main(["optimize", "pair.toml", "-o", "out", *words, "--trials", "6"]) == 3
     said = capsys.readouterr().err
-    assert "none of 24 variants can be taken" in said
+    assert "none of 6 variants can be taken" in said
     assert (folder / "out" / "optimize.csv").exists()
 
 
