@@ -13,6 +13,7 @@ import pytest
 from selenium.webdriver import ActionChains, Chrome
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
+from selenium.webdriver.remote.webelement import WebElement
 from selenium.webdriver.support.select import Select
 
 import gearcam as gc
@@ -73,8 +74,53 @@ def test_a_range_on_an_axis_keeps_its_variants(opened: Chrome) -> None:
         axes, int(left), 20
     ).click_and_hold().move_by_offset(0, 140).release().perform()
     until(lambda: "10 of 11" in text(opened, "shown"))
-    ActionChains(opened).move_to_element_with_offset(axes, int(left), 20).click().perform()
+    ActionChains(opened).move_to_element_with_offset(axes, int(left), 40).click().perform()
     until(lambda: "11 of 11" in text(opened, "shown"))
+
+
+def end(browser: Chrome, fact: str, word: str) -> WebElement:
+    """The end of a range on the axis of a fact, at ``least`` or at ``most``."""
+    return browser.find_element(By.CSS_SELECTOR, f"[aria-label='{fact}, at {word}']")
+
+
+def test_the_ends_of_a_range_are_moved_by_keys(opened: Chrome) -> None:
+    """Eccentricities are 0.05 to 0.5, and 3, which is refused: the axis is 2.95 long."""
+    most, least = (end(opened, "law.eccentricity", word) for word in ("most", "least"))
+    reached = set()
+    for _ in range(60):
+        ActionChains(opened).send_keys(Keys.TAB).perform()
+        reached.add(opened.execute_script("return document.activeElement.ariaLabel"))
+    assert {f"law.eccentricity, at {word}" for word in ("least", "most")} <= reached
+    for keys, kept, value in (
+        ([Keys.PAGE_DOWN], "10 of 11", 2.705),
+        ([Keys.ARROW_UP, Keys.ARROW_RIGHT, Keys.ARROW_DOWN], "10 of 11", 2.7345),
+        ([Keys.HOME], "1 of 11", 0.05),
+        ([Keys.END], "11 of 11", 3.0),
+    ):
+        most.send_keys(*keys)
+        until(lambda kept=kept: f"{kept} variants are kept" in text(opened, "shown"))
+        assert float(most.get_attribute("aria-valuenow") or "") == pytest.approx(value)
+    least.send_keys(Keys.PAGE_UP)  # to 0.345
+    until(lambda: "5 of 11" in text(opened, "shown"))
+    assert float(most.get_attribute("aria-valuemin") or "") == pytest.approx(0.345)
+    assert least.get_attribute("aria-valuetext") == "0.345"
+    most.send_keys(Keys.HOME)  # not beyond the other end
+    until(lambda: "0 of 11" in text(opened, "shown"))
+    least.send_keys(Keys.ESCAPE)
+    until(lambda: "11 of 11" in text(opened, "shown"))
+
+
+def test_an_end_of_a_range_is_dragged(opened: Chrome) -> None:
+    most = end(opened, "law.eccentricity", "most")
+    opened.execute_script("arguments[0].scrollIntoView({block: 'center'})", most)
+    ActionChains(opened).click_and_hold(most).move_by_offset(0, 60).release().perform()
+    until(lambda: "10 of 11" in text(opened, "shown"))
+    low, high = opened.execute_script("return ranges.get('law.eccentricity')")
+    assert low == pytest.approx(0.05)
+    assert 1.5 < high < 2.8
+    ActionChains(opened).click(most).perform()  # takes the focus only
+    assert opened.execute_script("return ranges.get('law.eccentricity')") == [low, high]
+    assert opened.switch_to.active_element == most
 
 
 def test_a_click_shows_a_design_file_that_makes_these_facts(
@@ -156,6 +202,12 @@ def test_words_are_axes_and_stand_in_the_file(browser: Chrome, tmp_path: Path) -
     open_page(browser, file)
     assert not browser.get_log("browser")
     assert browser.find_element(By.ID, "x").get_attribute("value") == "pair.teeth"
+    least = end(browser, "pair.teeth", "least")
+    first = least.get_attribute("aria-valuetext")
+    least.send_keys(Keys.ARROW_UP)  # by one word
+    until(lambda: "2 of 3" in text(browser, "shown"))
+    assert least.get_attribute("aria-valuetext") != first
+    least.send_keys(Keys.HOME)
     browser.find_element(By.ID, "number").send_keys("2", Keys.ENTER)
     written = until(lambda: browser.find_elements(By.CSS_SELECTOR, "#variant pre"))[0].text
     built: dict[str, Any] = gc.build(gc.loads(written)).record()
@@ -242,6 +294,16 @@ def test_it_is_read_on_a_phone_and_in_the_dark(
     wide = browser.execute_script("return document.documentElement.scrollWidth")
     assert wide <= PHONE[0]
     assert drawn(browser, "points") > 200
+    # the axes scroll where their numbers need more room than the screen has
+    step, numbers = browser.execute_script(
+        "const pen = byId('axes').getContext('2d'), axes = picked();"
+        "return [byId('axes').clientWidth / axes.length, axes.flatMap((one) =>"
+        "  [one.low, one.high].map((value) => pen.measureText(word(one, value)).width))]"
+    )
+    assert max(numbers) < step - 6
+    last = browser.find_elements(By.CSS_SELECTOR, "#ends > *")[-1]
+    last.send_keys(Keys.PAGE_DOWN)  # the focus brings it into view
+    assert 0 < last.rect["x"] - browser.execute_script("return scrollX") < PHONE[0]
 
 
 def test_a_hundred_thousand_variants_open(browser: Chrome, tmp_path: Path) -> None:

@@ -183,15 +183,14 @@ function drawPoints(most = MOST.points) {
 
 const picked = () => [...document.querySelectorAll("#choice input:checked")]
   .map((box) => columns.get(box.value));
-const AXIS = { top: 44, bottom: 26 };
-const LOWEST = AXIS.bottom + 14;  // of a line to a value that is not there
+const AXIS = { top: 60, bottom: 36, least: 96 };  // room for labels and ends of ranges, pixels
 
 function drawAxes(most = MOST.lines) {
   const [pen, width, height] = begin(byId("axes"));
   const axes = picked();
   const step = width / Math.max(1, axes.length);
-  const high = height - AXIS.top - LOWEST;
-  const place = (one, value) => height - LOWEST - high * share(one, value);
+  const high = height - AXIS.top - AXIS.bottom;
+  const place = (one, value) => height - AXIS.bottom - high * share(one, value);
   const ink = axis("ink");
   const drawn = Math.min(inside, most);
   for (const pass of [0, 1]) {
@@ -212,6 +211,7 @@ function drawAxes(most = MOST.lines) {
   }
   pen.globalAlpha = 1;
   axes.forEach((one, number) => drawAxis(pen, one, step * (number + 0.5), step, height, place));
+  for (const end of byId("ends").children) putEnd(end, place);
   byId("thinned").textContent = inside > MOST.lines
     ? `${MOST.lines} of ${inside} are drawn as lines, ${MOST.small} in each small chart; ranges, `
       + "distributions and the best are those of all." : "";
@@ -220,16 +220,16 @@ function drawAxes(most = MOST.lines) {
 function drawAxis(pen, one, x, step, height, place) {
   pen.strokeStyle = colours.text;
   pen.fillStyle = colours.text;
-  pen.beginPath(); pen.moveTo(x, AXIS.top); pen.lineTo(x, height - LOWEST); pen.stroke();
+  pen.beginPath(); pen.moveTo(x, AXIS.top); pen.lineTo(x, height - AXIS.bottom); pen.stroke();
   pen.textAlign = "center";
   const lines = [""];
   for (const part of one.name.split(/(?<=[._ ])/)) {
     if (pen.measureText(lines.at(-1) + part).width > step - 8 && lines.at(-1)) lines.push("");
     lines[lines.length - 1] += part;
   }
-  lines.slice(-2).forEach((line, row) => pen.fillText(line, x, 12 + 14 * row, step));
-  pen.fillText(word(one, one.high), x, AXIS.top - 4, step);
-  pen.fillText(word(one, one.low), x, height - LOWEST + 14, step);
+  lines.slice(-2).forEach((line, row) => pen.fillText(line, x, 12 + 14 * row, step - 6));
+  pen.fillText(word(one, one.high), x, AXIS.top - 17, step - 6);
+  pen.fillText(word(one, one.low), x, height - AXIS.bottom + 26, step - 6);
   if (!ranges.has(one.name)) return;
   const [low, high] = ranges.get(one.name).map((value) => place(one, value));
   pen.fillStyle = colours.accent;
@@ -238,10 +238,39 @@ function drawAxis(pen, one, x, step, height, place) {
   pen.globalAlpha = 1;
 }
 
+const rangeOf = (one) => ranges.get(one.name) ?? [one.low, one.high];
+
+/** Put an end of a range, which takes keys, where it is, and tell its value. */
+function putEnd(element, place) {
+  const { fact, end } = element;
+  const range = rangeOf(fact).map((value) => Math.min(fact.high, Math.max(fact.low, value)));
+  element.style.top = `${place(fact, range[end]) - (end ? element.offsetHeight : 0)}px`;
+  for (const [name, value] of [["min", end ? range[0] : fact.low],
+    ["max", end ? fact.high : range[1]], ["now", range[end]],
+    ["text", word(fact, fact.words.length ? Math.round(range[end]) : range[end])]]) {
+    element.setAttribute(`aria-value${name}`, value);
+  }
+}
+
+/** Make the ends of the ranges on the axes: below one that is kept at least, above one at most. */
+function makeEnds() {
+  const axes = picked();
+  byId("lanes").style.minWidth = `${AXIS.least * axes.length}px`;
+  byId("ends").replaceChildren(...axes.flatMap((fact, number) => [0, 1].map((end) => {
+    const element = made("div", { fact, end, tabIndex: 0, className: end ? "most" : "least" });
+    element.style.left = `${100 * (number + 0.5) / axes.length}%`;
+    element.setAttribute("role", "slider");
+    element.setAttribute("aria-orientation", "vertical");
+    element.setAttribute("aria-label", `${fact.name}, at ${end ? "most" : "least"}`);
+    return element;
+  })));
+}
+
 const SMALL = { left: 4, right: 4, top: 4, bottom: 4 };
 
 /** Make the small charts and the distributions of what is picked. */
 function makeCharts() {
+  makeEnds();
   const figure = (one) => made("figure", {}, made("figcaption", { textContent: one.name }),
     made("canvas"), made("small"));
   byId("over").textContent = axis("x").name;

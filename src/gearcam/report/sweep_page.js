@@ -91,33 +91,65 @@ function pick(event, { at }) {
 
 let drag = null;
 
+/** Keep the variants in a range of a fact; the whole range keeps those without the fact too. */
+function keep(one, range) {
+  const [low, high] = range;
+  if (low <= one.low && high >= one.high) ranges.delete(one.name);
+  else ranges.set(one.name, range);
+  draw();
+}
+
+/** Return a range of which one end is moved, not beyond the other. */
+function moved(one, end, value) {
+  const range = [...rangeOf(one)];
+  range[end] = end ? Math.max(range[0], Math.min(one.high, value))
+    : Math.min(range[1], Math.max(one.low, value));
+  return range;
+}
+
 function grab(event) {
   const axes = picked();
   const box = byId("axes").getBoundingClientRect();
-  const one = axes[Math.floor((event.clientX - box.left) / (box.width / axes.length))];
+  const { fact, end } = event.target;
+  const one = fact ?? axes[Math.floor((event.clientX - box.left) / (box.width / axes.length))];
   if (!one) return;
-  byId("axes").setPointerCapture(event.pointerId);
-  const high = box.height - AXIS.top - LOWEST;
-  const value = (y) => one.low + span(one) * (box.bottom - LOWEST - y) / high;
+  event.target.setPointerCapture(event.pointerId);
+  const high = box.height - AXIS.top - AXIS.bottom;
+  const value = (y) => one.low + span(one) * (box.bottom - AXIS.bottom - y) / high;
   const old = ranges.get(one.name);
   const from = value(event.clientY);
-  drag = { one, value, from, y: event.clientY, old: old && old[0] <= from && from <= old[1] ? old : null };
+  drag = { one, end, value, from, y: event.clientY,
+    old: old && old[0] <= from && from <= old[1] ? old : null };
 }
 
 function pull(event) {
   if (!drag || Math.abs(event.clientY - drag.y) < 3) return;
   const to = drag.value(event.clientY);
-  const { one, from, old } = drag;
-  ranges.set(one.name, old ? old.map((end) => end + to - from) : [Math.min(from, to), Math.max(from, to)]);
+  const { one, end, from, old } = drag;
   drag.moved = true;
-  draw();
+  if (end !== undefined) keep(one, moved(one, end, to));
+  else keep(one, old ? old.map((each) => each + to - from) : [Math.min(from, to), Math.max(from, to)]);
 }
 
 function release() {
   if (!drag) return;
-  if (!drag.moved) ranges.delete(drag.one.name);
+  if (!drag.moved && drag.end === undefined) ranges.delete(drag.one.name);
   drag = null;
   draw();
+}
+
+const KEYS = { ArrowUp: 1, ArrowRight: 1, ArrowDown: -1, ArrowLeft: -1, PageUp: 10, PageDown: -10,
+  Home: -Infinity, End: Infinity };
+
+/** Move an end by keys: by a hundredth of the axis, by one word, by ten of them, all the way. */
+function press(event) {
+  const { fact, end } = event.target;
+  if (event.key === "Delete" || event.key === "Escape") { ranges.delete(fact.name); draw(); return; }
+  if (!(event.key in KEYS) || event.ctrlKey || event.altKey || event.metaKey) return;
+  event.preventDefault();
+  const step = fact.words.length ? 1 : span(fact) / 100;
+  const value = rangeOf(fact)[end];
+  keep(fact, moved(fact, end, (fact.words.length ? Math.round(value) : value) + step * KEYS[event.key]));
 }
 
 // --- start -----------------------------------------------------------------------------------------
@@ -144,9 +176,10 @@ function start() {
   }
   byId("wanted").open = !Object.keys(sweep.goals).length;
   byId("points").addEventListener("click", (event) => pick(event, places()));
-  byId("axes").addEventListener("pointerdown", grab);
-  byId("axes").addEventListener("pointermove", pull);
-  for (const end of ["pointerup", "pointercancel"]) byId("axes").addEventListener(end, release);
+  byId("lanes").addEventListener("pointerdown", grab);
+  byId("lanes").addEventListener("pointermove", pull);
+  for (const end of ["pointerup", "pointercancel"]) byId("lanes").addEventListener(end, release);
+  byId("ends").addEventListener("keydown", press);
   byId("all").onclick = () => { ranges.clear(); draw(); };
   window.addEventListener("resize", draw);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { readColours(); draw(); });
