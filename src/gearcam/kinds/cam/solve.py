@@ -194,7 +194,10 @@ def solved(result: CamResult, *, advise: bool = True) -> Solution:
     for share in (0.0, *(2.0**-k for k in range(_TRIES, -1, -1))):
         between = {name: best[name] + share * (inner[name] - best[name]) for name in best}
         sizes = {key: round(size, _DIGITS) for key, size in task.by_key(between).items()}
-        design = _sized(result.design, sizes)
+        try:
+            design = _sized(result.design, sizes)
+        except DesignError:  # rounded to a size that no follower can have
+            continue
         if task.keeps(type(result)(design, result.tolerances)):
             excess = task.measured(best).excess.items()
             close = (name for name, one in excess if one.max() > -_DECIDES)

@@ -357,6 +357,21 @@ def test_a_velocity_that_falls_at_once_is_named(follower: dict[str, Any]) -> Non
     assert "undercut" in {one.code for one in given.findings}
 
 
+@pytest.mark.parametrize("dome", [14.848, 15.3, 20.0])
+def test_a_dome_about_the_axis_is_told_from_one_beside_it(dome: float) -> None:
+    """The least prime radius is the dome's own, which no cam may have: a millionth more."""
+    rise = {"type": "rise", "law": "cycloidal", "angle_deg": 150, "lift_mm": 1}
+    document = {
+        "kind": "cam", "name": "c",
+        "motion": [rise, {"type": "return", "law": "cycloidal", "angle_deg": 210}],
+        "follower": {"type": "domed", "dome_radius_mm": dome},
+        "cam": {"prime_radius_mm": "solve"}, "limits": {"profile_radius_mm": 0},
+    }  # fmt: skip
+    found = gc.build(gc.design(document)).solution
+    assert found.sizes["cam.prime_radius_mm"] == pytest.approx(dome + 1e-6, abs=1e-9)
+    assert "reach of the follower" in found.deciding
+
+
 def test_rows_that_turn_within_a_cell_are_solved() -> None:
     """A least lift just beside a row: the phase before it has no cell of its own."""
     result = gc.build(gc.design(flat(2)))
