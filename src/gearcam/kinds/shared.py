@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Final
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.quantities import COUNT, TEXT, param
+from gearcam.base.rules import Breach
 
 if TYPE_CHECKING:
     from gearcam.designs.design import Design
@@ -90,6 +92,12 @@ class GoalSpec(ShortRepr):
         choices=("error", "warning"),
         doc="findings that the best must not have: errors, or warnings too",
     )
+
+    def problems(self) -> Iterator[Breach]:
+        """Yield facts with two goals: field, index, message, allowed."""
+        for number, name in enumerate(self.maximize or ()):
+            if name in (self.minimize or ()):
+                yield "maximize", number, "it is to be least too", "one goal for a fact"
 
     @property
     def signs(self) -> dict[str, float]:

@@ -53,7 +53,8 @@ class Log:
             self.path.parent.mkdir(parents=True, exist_ok=True)
             self._file: BinaryIO = self.path.open("a+b")
         except OSError as error:
-            raise WriteError(f"{self.path}: {error.strerror or error}") from error
+            place = error.filename or self.path
+            raise WriteError(f"{place}: {error.strerror or error}") from error
         try:
             self._read()
         except BaseException:
@@ -100,11 +101,23 @@ class Log:
         with suppress(ValueError):
             found = json.loads(line)
         if found != self.head:
-            known = isinstance(found, dict) and "file" in found
-            whose = f"the sweep of {found['file']} with other values" if known else "another sweep"
-            message = f"{self.path} is the log of {whose}"
+            message = f"{self.path} is the log of another sweep{self._differing(found)}"
             allowed = "another folder (-o), or the same design and settings to go on"
             raise DesignError([Problem(message, allowed=allowed)])
+
+    def _differing(self, found: Any) -> str:
+        """Return in words what the head of the file has instead of this one."""
+        if not isinstance(found, dict):
+            return ""
+        there = {
+            key: found[key] for key, one in self.head.items() if key in found and found[key] != one
+        }
+        there.pop("sweep", None)
+        words = [
+            f"{key}: {', '.join(one) if isinstance(one, list) else one}"
+            for key, one in there.items()
+        ]
+        return f" ({'; '.join(words) or 'another design or seed'})"
 
     def _write(self, text: str) -> None:
         self._file.write(text.encode() + b"\n")

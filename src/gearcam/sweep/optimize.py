@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -17,9 +17,10 @@ from gearcam.base.facts import lined_up, text_of
 from gearcam.base.numerals import formatted
 from gearcam.commands import GOOD, IMPOSSIBLE, INTERRUPTED, Options, add_output, each
 from gearcam.console import complain, infeasible_text, say
-from gearcam.designs.design import document_of, value_at
+from gearcam.designs.design import document_of, path_of, value_at
 from gearcam.designs.writing import least_document, toml_text
 from gearcam.kinds.shared import METHODS
+from gearcam.sweep.axes import Varied
 from gearcam.sweep.command import axes_given, engine_arguments, engine_of, told
 from gearcam.sweep.log import Log
 from gearcam.sweep.methods import Quest, Spent, minimized, usual
@@ -65,9 +66,10 @@ def _optimize(options: Options, file: str) -> int:
     given = {name: options[name] for name in ("minimize", "maximize", "method", "trials", "seed")}
     base = base.with_({f"goal.{key}": one for key, one in given.items() if one is not None})
     goal: Any = getattr(base, "goal", None)
-    if not goal.signs:
+    if goal is None or not goal.signs:
         problem = Problem("no goal is given", key="goal", allowed="minimize or maximize a fact")
         raise DesignError([problem])
+    _demand_variety(axes)
     plan = Plan(base=base, axes=axes, sampling="random", samples=goal.trials, seed=goal.seed)
     price = _price(plan, goal.signs)
     search = Quest(plan.axes, len(goal.signs), goal.trials, goal.seed)
@@ -77,10 +79,11 @@ def _optimize(options: Options, file: str) -> int:
         raise DesignError([Problem(message, key="goal.method", allowed=allowed)])
     engine, folder = engine_of(options), Path(options["output"])
     stopped = False
-    with Log(folder, {**head_of(plan), "method": method}, LOG) as log:
+    head = {**head_of(plan), "method": method, "goals": _goals(goal.signs)}
+    with Log(folder, head, LOG) as log:
         more = f", {len(log)} are there" if len(log) else ""
         reason = f", since {why}" if why else ""
-        say(f"{file}: {method}{reason}; {goal.trials} trials{more}; {engine.name}")
+        say(f"{file}: {method}{reason}; {_count(goal.trials)}{more}; {engine.name}")
         start = time.perf_counter()
         with told(file, 0) as progress, engine.session(base) as build:
             trials = Trials(
@@ -99,7 +102,7 @@ def _optimize(options: Options, file: str) -> int:
             except KeyboardInterrupt:
                 stopped = True
         taken = time.perf_counter() - start
-        say(f"  {len(trials.rows)} trials in {taken:.1f} s, {len(trials.good)} may be taken")
+        say(f"  {_count(len(trials.rows))} in {taken:.1f} s, {len(trials.good)} may be taken")
         _, files = write_tables(log, folder, _STEM)
         try:
             best = trials.best()[:FRONT]
@@ -110,10 +113,38 @@ def _optimize(options: Options, file: str) -> int:
     for line in lined_up(list(_table(plan, trials, best))):
         say(f"  {line}".rstrip())
     say(f"  written to {folder}: {', '.join(one.name for one in files)}")
+    for name in trials.unchanged:
+        complain(f"{file}: {name} is the same in all variants: what is varied does not change it")
     if stopped:
         complain("interrupted: the same command goes on")
         return INTERRUPTED
     return GOOD
+
+
+def _demand_variety(axes: Sequence[Varied]) -> None:
+    """Refuse a search in which nothing differs, or in which keys of the search itself do.
+
+    Raises
+    ------
+    DesignError
+        With what may be varied.
+    """
+    own = [axis.key for axis in axes if path_of(axis.key)[0] == "goal"]
+    if own:
+        problem = Problem("a goal is not varied", key=own[0], allowed="other keys of the design")
+        raise DesignError([problem])
+    if all(len(axis.values) == 1 for axis in axes):
+        message = f"{axes[0].key} has one value" if len(axes) == 1 else "each key has one value"
+        raise DesignError([Problem(message, allowed="several values, or a range from:to")])
+
+
+def _count(trials: int) -> str:
+    return f"{trials} trial{'s' if trials != 1 else ''}"
+
+
+def _goals(signs: Mapping[str, float]) -> list[str]:
+    """Return goals in words."""
+    return [f"{'least' if sign > 0 else 'largest'} {name}" for name, sign in signs.items()]
 
 
 def _price(plan: Plan, signs: dict[str, float]) -> float:
@@ -156,7 +187,7 @@ def _write(trials: Trials, best: Sequence[Built], folder: Path) -> list[Path]:
         files[folder / f"{end}.toml"] = text.encode()
     lines = [
         *(f"{axis.key} = {axis.text}" for axis in trials.plan.axes),
-        *(f"{'least' if one > 0 else 'largest'} {name}" for name, one in trials.signs.items()),
+        *_goals(trials.signs),
     ]
     files[folder / f"{_STEM}.html"] = page(base, trials.rows, lines, trials.signs)
     for path, content in files.items():

@@ -32,6 +32,9 @@ _REFUSED: Final = 1e6
 _NONE: Final = 1e12
 """Goal of variants that cannot be made."""
 
+_LISTED: Final = 3
+"""Largest number of facts that are listed for the beginning of their names."""
+
 FRONT: Final = 20
 """Largest number of designs that are written of several goals."""
 
@@ -148,6 +151,13 @@ class Trials(ShortRepr):
                 front.append(one)
         return [good[one] for one in front]
 
+    @property
+    def unchanged(self) -> list[str]:
+        """The goals that are the same in all variants, of two or more."""
+        made = [self.goals(row) for row in self.rows if row.made]
+        columns = zip(self.signs, zip(*made, strict=True), strict=True) if len(made) > 1 else ()
+        return [name for name, values in columns if len(set(values)) == 1]
+
     def _refusal(self) -> InfeasibleError:
         """Return the refusal of a search without a variant that may be taken."""
         reasons = Counter(row.refusal or ", ".join(row.findings) for row in self.rows)
@@ -179,13 +189,24 @@ def demand_facts(signs: Mapping[str, float], row: Built) -> None:
     DesignError
         With the nearest names.
     """
-    known = [name for name, value in row.facts.items() if isinstance(value, int | float)]
-    problems = []
-    for name in signs:
-        if name not in known:
-            near = nearest(name, known)
-            message = f"{show(name)} is no number among the facts of this design"
-            allowed = f"such as {near}" if near else "a fact by its name in summary.json"
-            problems.append(Problem(message, key="goal", allowed=allowed))
+    problems = [
+        _no_goal(name, sign, row) for name, sign in signs.items() if _fact(row, name) == _NONE
+    ]
     if problems:
         raise DesignError(problems)
+
+
+def _no_goal(name: str, sign: float, row: Built) -> Problem:
+    """Return what is wrong with a goal that is no number among the facts of a row."""
+    known = [one for one in row.facts if _fact(row, one) < _NONE]
+    near = nearest(name, known)
+    parts = [one for one in known if one.startswith(f"{name}.")][:_LISTED]
+    message = f"{show(name)} is no fact of this design"
+    if name in row.facts:
+        message, near = f"{show(name)} is no number: {show(row.facts[name])}", ""
+    allowed = (
+        f"such as {near or ', '.join(parts)}"
+        if near or parts
+        else "a number by its name in summary.json; those of a study with output.studies"
+    )
+    return Problem(message, key=f"goal.{'minimize' if sign > 0 else 'maximize'}", allowed=allowed)

@@ -28,6 +28,9 @@ MANY: Final = 1_000_000
 _LOOKS: Final = (0.0, 0.25, 0.5, 0.75, 1.0 - 1e-9)
 """Shares of a range at which it is tried whether a value is allowed."""
 
+_ROUNDING: Final = 1e-9
+"""By how much an end of a range may miss a whole number."""
+
 Sampling = Literal["grid", "random", "latin"]
 
 
@@ -104,10 +107,17 @@ class Plan(ShortRepr):
             Share of its range, in [0, 1).
         """
         value = axis.at(u)
-        return round(value) if axis.sampled and axis.key in self._counts else value
+        if axis.key not in self._wholes:
+            return value
+        least, largest = self._wholes[axis.key]
+        return min(max(round(value), least), largest)
 
     def _demand_key(self, axis: Varied) -> None:
         """Refuse a key of which no value is allowed: it does not exist, or its values are wrong."""
+        least, largest = self._wholes.get(axis.key, (0, 0))
+        if least > largest:
+            message = f"there is no whole number in {axis.text}"
+            raise DesignError([Problem(message, key=axis.key, allowed="a wider range")])
         first: DesignError | None = None
         for u in _LOOKS:
             try:
@@ -120,11 +130,14 @@ class Plan(ShortRepr):
             raise first
 
     @cached_property
-    def _counts(self) -> set[str]:
-        """Keys whose values are whole numbers."""
+    def _wholes(self) -> dict[str, tuple[int, int]]:
+        """The least and the largest value of ranges of whole numbers by their keys."""
         document = document_of(self.base)
-        there = {axis.key: value_at(document, axis.key) for axis in self.axes}
-        return {key for key, value in there.items() if type(value) is int}
+        return {
+            axis.key: (math.ceil(axis.at(0.0) - _ROUNDING), math.floor(axis.at(1.0) + _ROUNDING))
+            for axis in self.axes
+            if axis.sampled and type(value_at(document, axis.key)) is int
+        }
 
     @cached_property
     def _shares(self) -> Array:

@@ -86,7 +86,12 @@ def run(
 
 def head_of(plan: Plan) -> dict[str, Any]:
     """Return the first line of the log of a plan."""
-    return {"sweep": plan.mark, "file": plan.base.source, "variants": plan.count}
+    return {
+        "sweep": plan.mark,
+        "file": plan.base.source,
+        "variants": plan.count,
+        "varied": [f"{axis.key}={axis.text}" for axis in plan.axes],
+    }
 
 
 def write_tables(log: Log, folder: Path, stem: str = "sweep") -> tuple[Tally, list[Path]]:

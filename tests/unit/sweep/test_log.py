@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -10,7 +11,7 @@ from gearcam.base.errors import DesignError, WriteError
 from gearcam.sweep.log import LOG, Log
 from gearcam.sweep.rows import Built
 
-HEAD = {"sweep": "abc", "file": "a.toml", "variants": 9}
+HEAD = {"sweep": "abc", "file": "a.toml", "variants": 9, "varied": ["c=1"]}
 
 
 def row(number: int) -> Built:
@@ -61,20 +62,28 @@ def test_a_log_whose_first_line_was_cut_off_begins_anew(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ('{"sweep": "x", "file": "b.toml", "variants": 3}\n', "the sweep of b.toml with other"),
-        ("a letter\n", "another sweep"),
+        (
+            '{"sweep": "x", "file": "b.toml", "variants": 3, "varied": ["c=1", "d=2"]}\n',
+            r"another sweep \(file: b.toml; variants: 3; varied: c=1, d=2\)",
+        ),
+        (
+            '{"sweep": "x", "file": "a.toml", "variants": 9, "varied": ["c=1"]}\n',
+            r"another sweep \(another design or seed\)",
+        ),
+        ("a letter\n", "another sweep$"),
     ],
 )
 def test_the_log_of_another_sweep_is_refused_and_kept(
     tmp_path: Path, text: str, words: str
 ) -> None:
     (tmp_path / LOG).write_text(text)
-    with pytest.raises(DesignError, match=words):
+    with pytest.raises(DesignError) as caught:
         Log(tmp_path, HEAD)
+    assert re.search(words, caught.value.problems[0].message)
     assert (tmp_path / LOG).read_text() == text
 
 
 def test_a_folder_that_is_a_file_is_named(tmp_path: Path) -> None:
     (tmp_path / "out").touch()
-    with pytest.raises(WriteError, match="out"):
+    with pytest.raises(WriteError, match="out: "):
         Log(tmp_path / "out", HEAD)

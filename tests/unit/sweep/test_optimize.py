@@ -123,24 +123,46 @@ def test_the_best_of_a_design_with_a_file_builds_from_any_folder(
         assert gc.build(gc.load(file)).facts["cam.profile.radius_mm.max"] == least
 
 
+GOAL = ["--minimize", "pair.ratio.max"]
+
+
 @pytest.mark.parametrize(
     ("words", "message"),
     [
         ([], "no goal is given"),
-        (["--minimize", "pair.ratio.maxx"], "such as pair.ratio.max"),
-        (["--minimize", "gears.0.cutter"], "no number among the facts"),
-        (["--minimize", "pair.ratio.max", "--maximize", "pair.ratio.min", "--method", "scipy"],
-         "searches for one goal"),
-        (["--minimize", "pair.ratio.max", "--trials", "0"], "trials"),
+        (["--minimize", "pair.ratio.maxx"], "no fact of this design allowed: such as pair.ratio.m"),
+        (["--maximize", "mesh"], 'goal.maximize: "mesh" is no fact of this design allowed: such'),
+        (["--minimize", "gears.0.cutter"], 'is no number: "rack"'),
+        (["--minimize", "pair.ratio.max", "--maximize", "pair.ratio.max"], "to be least too"),
+        ([*GOAL, "--maximize", "pair.ratio.min", "--method", "scipy"], "searches for one goal"),
+        ([*GOAL, "--trials", "0"], "goal.trials: 0 is out of range"),
+        ([*GOAL, "--set", "law.eccentricity=0.5:0.1"], "the smaller number first"),
+        ([*GOAL, "--set", "law.eccentricity=0.1"], "law.eccentricity has one value"),
+        ([*GOAL, "--set", "goal.seed=1,2"], "a goal is not varied"),
+        ([*GOAL, "--set", "meshing.steps=12.2:12.8"], "there is no whole number in 12.2:12.8"),
+        ([*GOAL, "--jobs", "0"], "--jobs: is not above 0"),
     ],
-)  # fmt: skip
+)
 def test_mistakes_are_said_before_anything_runs(
     folder: Path, words: list[str], message: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    settings = ["--set", "law.eccentricity=0.1:0.5"]
+    settings = [] if "--set" in words else ["--set", "law.eccentricity=0.1:0.5"]
     assert main(["optimize", "pair.toml", "-o", "out", *settings, *words]) == 2
-    assert message in capsys.readouterr().err
+    assert message in " ".join(capsys.readouterr().err.split())
     assert not (folder / "out").exists()
+
+
+def test_a_goal_that_nothing_changes_and_another_goal_in_the_same_folder_are_said(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["optimize", "pair.toml", "-o", "out", "--trials", "3", "--jobs", "1"]
+    words += ["--set", "pair.face_width_mm=5:9"]
+    assert main([*words, "--minimize", "pair.ratio.max"]) == 0
+    assert "pair.ratio.max is the same in all variants" in capsys.readouterr().err
+    before = (folder / "out" / "optimize.log").read_bytes()
+    assert main([*words, "--maximize", "pair.ratio.max"]) == 2
+    assert "another sweep (goals: least pair.ratio.max)" in capsys.readouterr().err
+    assert (folder / "out" / "optimize.log").read_bytes() == before
 
 
 def test_a_search_without_a_variant_that_can_be_taken_says_why(

@@ -56,6 +56,10 @@ def test_a_range_of_whole_numbers_is_sampled_in_whole_numbers() -> None:
     assert {type(value) for value in values} == {int}
     assert min(values) >= 20
     assert max(values) <= 30
+    one = plan({"pair.teeth[0]": "20.2:22.8"}, sampling="random", samples=30)
+    assert {one.values(k)["pair.teeth[0]"] for k in range(30)} == {21, 22}
+    with pytest.raises(DesignError, match=r"there is no whole number in 20\.2:20\.8"):
+        plan({"pair.teeth[0]": "20.2:20.8"}, sampling="random", samples=3)
 
 
 @pytest.mark.parametrize(

@@ -124,7 +124,7 @@ def test_the_folder_of_another_sweep_is_left_alone(
     assert main(["sweep", file, "--set", "pair.module_mm=1,2", "-o", "out", "--jobs", "1"]) == 0
     before = Path("out/sweep.csv").read_bytes()
     assert main(["sweep", file, "--set", "pair.module_mm=1,3", "-o", "out"]) == 2
-    assert "is the log of the sweep of pair.toml" in capsys.readouterr().err
+    assert "another sweep (varied: pair.module_mm=1,2)" in capsys.readouterr().err
     assert Path("out/sweep.csv").read_bytes() == before
 
 
