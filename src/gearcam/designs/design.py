@@ -386,7 +386,7 @@ def design(document: Mapping[str, Any], source: str = "") -> Any:
     outcome = examine(plain)
     if outcome.faults:
         raise DesignError(fault.problem(source) for fault in outcome.faults)
-    return KINDS[plain["kind"]].design(source=source, examined=True, **outcome.parts)
+    return KINDS[outcome.kind].design(source=source, examined=True, **outcome.parts)
 
 
 def load(path: str | os.PathLike[str]) -> Design:
@@ -435,7 +435,7 @@ def loads(text: str, *, file: str = "") -> Design:
     outcome = examine_file(document, file)
     if outcome.faults:
         raise DesignError(problems_of(outcome.faults, text, file))
-    return KINDS[document["kind"]].design(source=file, examined=True, **outcome.parts)
+    return KINDS[outcome.kind].design(source=file, examined=True, **outcome.parts)
 
 
 def _plain(value: Any) -> Any:

@@ -86,6 +86,7 @@ def examine(document: Mapping[str, Any], *, stem: str = "", place: Place | None 
     if later is not None:
         outcome.faults.append(later)
         return outcome
+    outcome.kind = kind.name
     outcome.faults += _kind_faults(document)
     outcome.faults += _top_faults(document, kind)
     _examine_name(document, stem, outcome)
@@ -130,11 +131,16 @@ def _meant_kind(document: Mapping[str, Any]) -> DesignKind | None:
     """Return the kind of a document; if it is missing or misspelt the likeliest one, or None."""
     name = document.get("kind")
     if isinstance(name, str) and (near := name if name in KINDS else nearest(name, KINDS)):
-        return KINDS[near]
-    likely = {name: sum(title in document for title in kind.tables) for name, kind in KINDS.items()}
+        return KINDS[near].meant(document)
+    parts = {other for kind in KINDS.values() for other in kind.elsewhere.values()}
+    likely = {
+        name: sum(title in document for title in kind.tables)
+        for name, kind in KINDS.items()
+        if name not in parts
+    }
     most = max(likely.values())
     best = [name for name, count in likely.items() if count == most > 0]
-    return KINDS[best[0]] if len(best) == 1 else None
+    return KINDS[best[0]].meant(document) if len(best) == 1 else None
 
 
 def home_of(kind: DesignKind, key: str) -> str:
@@ -327,7 +333,7 @@ def _in_place(
     outcome = examine({"kind": name, **value}, stem=str(at[-1]), place=place)
     if outcome.faults:
         return None, [_outward(fault, at, KINDS[name].titles) for fault in outcome.faults]
-    return KINDS[name].design(source=place.file, examined=True, **outcome.parts), []
+    return KINDS[outcome.kind].design(source=place.file, examined=True, **outcome.parts), []
 
 
 def _outward(fault: Fault, at: Path, titles: tuple[str, ...]) -> Fault:
@@ -376,7 +382,7 @@ def _from_file(key: Key, value: str, at: Path, place: Place) -> tuple[Any, list[
             fault if fault.file else replace(fault, file=file, line=line_at(lines, fault.path))
             for fault in outcome.faults
         ]
-    return KINDS[document["kind"]].design(source=file, examined=True, **outcome.parts), []
+    return KINDS[outcome.kind].design(source=file, examined=True, **outcome.parts), []
 
 
 def nested_in(document: Mapping[str, Any]) -> Iterator[tuple[Path, Key, Any]]:

@@ -34,10 +34,13 @@ class Examined:
         All mistakes.
     parts : dict
         Parameter objects of valid parts, by the names of the fields of a design.
+    kind : str
+        The kind of design that it is; empty if it is not known.
     """
 
     faults: list[Fault] = field(default_factory=list)
     parts: dict[str, Any] = field(default_factory=dict)
+    kind: str = ""
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -192,6 +195,8 @@ class DesignKind:
     later : callable
         ``later(document)`` returns a fault for designs that are not supported, or None. No other
         fault is reported then.
+    elsewhere : mapping of str to str
+        Values of the key that decides on variants whose designs are of another kind, and that kind.
     formats : tuple of str
         Kinds of files that ``output.files`` may list.
     check_modules : tuple of str
@@ -220,6 +225,7 @@ class DesignKind:
     rules: tuple[Rule, ...] = ()
     problems: Callable[[Mapping[str, Any], Examined], Iterable[Fault]] = lambda *_: ()
     later: Callable[[Mapping[str, Any]], Fault | None] = lambda _: None
+    elsewhere: Mapping[str, str] = field(default_factory=dict)
     formats: tuple[str, ...]
     check_modules: tuple[str, ...] = ()
     check_groups: tuple[str, ...] = ()
@@ -236,6 +242,15 @@ class DesignKind:
         """The top-level keys and tables of a file of this kind."""
         main = (self.main.title,) if self.main else ()
         return ("kind", "name", *main, *self.tables, "limits", *FAMILY)
+
+    def meant(self, document: Mapping[str, Any]) -> DesignKind:
+        """Return the kind that a `document` of this kind is of: another one for some variants."""
+        if self.variants is None or not self.elsewhere:
+            return self
+        table = document.get(self.variants.title)
+        value = table.get(self.variants.key) if isinstance(table, Mapping) else None
+        name = self.elsewhere.get(value) if isinstance(value, str) else None
+        return KINDS[name] if name else self
 
     def table(self, title: str) -> Table:
         """Return a table by its title: one of `tables`, or ``limits``."""

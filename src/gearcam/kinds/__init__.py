@@ -11,3 +11,4 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from gearcam.kinds.cam.public import *  # noqa: F403
     from gearcam.kinds.gear_pair.public import *  # noqa: F403
+    from gearcam.kinds.spatial_cam.public import *  # noqa: F403

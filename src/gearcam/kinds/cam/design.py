@@ -9,16 +9,15 @@ from typing import TYPE_CHECKING, Any, Final, get_args
 
 from gearcam.base.numerals import formatted, shortened
 from gearcam.base.quantities import Solve
-from gearcam.base.registry import classes_in, name_of
 from gearcam.base.rules import Rule, only_with
 from gearcam.cams.spec import FOLLOWERS, POINTED, CamSpec, FollowerSpec
 from gearcam.designs.design import Design, Wanted, document_of
-from gearcam.designs.faults import Fault, quoted, show
+from gearcam.designs.faults import Fault, show
 from gearcam.designs.kind import Examined
 from gearcam.designs.table import table_of
 from gearcam.designs.validate import placed_faults
 from gearcam.kinds.cam.forms.base import FORMS, VARIANTS
-from gearcam.kinds.cam.motion import circumstances, motion_of, whole_turns
+from gearcam.kinds.cam.motion import phases_wanted
 from gearcam.kinds.cam.tables import (
     GOALS,
     BoundsSpec,
@@ -29,8 +28,6 @@ from gearcam.kinds.cam.tables import (
     PrecisionSpec,
 )
 from gearcam.kinds.shared import AccuracySpec, GoalSpec
-from gearcam.laws.motion.base import MOTION_LAWS
-from gearcam.laws.phases_of_lift import PHASES, RisePhase
 from gearcam.mechanics.drive import DriveSpec
 from gearcam.mechanics.friction import FrictionSpec
 from gearcam.mechanics.load import LoadSpec
@@ -47,8 +44,8 @@ if TYPE_CHECKING:
 NAME: Final = "cam"
 """As in a file."""
 
-LATER_FORMS: Final = ("cylinder",)
-"""Forms of cams that are planned but not available."""
+IN_SPACE: Final = {"cylinder": "spatial-cam"}
+"""Forms of cams whose designs are of another kind."""
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -144,13 +141,7 @@ class CamDesign(Design):
         return VARIANTS.of(self)
 
     def _wanted(self) -> Iterator[Wanted]:
-        if not isinstance(self.motion, Sequence) or isinstance(self.motion, str):
-            yield "motion", self.motion, (tuple, *whole_turns())
-            return
-        for number, phase in enumerate(self.motion):
-            yield f"motion[{number}]", phase, tuple(PHASES.values())
-            if isinstance(phase, RisePhase) and not name_of(MOTION_LAWS, phase.law):
-                yield f"motion[{number}].law", phase.law, tuple(classes_in(MOTION_LAWS).values())
+        return phases_wanted(self.motion)
 
 
 def _toleranced(sizes: str, key: str, *words: str) -> Rule:
@@ -187,22 +178,6 @@ RULES: Final = (
     only_with(("precision.swing_error",), "follower.motion", "oscillating"),
 )
 """Rules between the tables of a cam."""
-
-
-def motion_document(design: CamDesign) -> list[dict[str, Any]] | dict[str, Any]:
-    """Return the motion of a `design` as in a file."""
-    document = {"follower": {"motion": design.follower.motion}, "cam": {"form": design.form}}
-    return motion_of(design.motion, circumstances(document))
-
-
-def later(document: Mapping[str, Any]) -> Fault | None:
-    """Return the fault of a form of cams that is planned, or None."""
-    cam = document.get("cam")
-    form = cam.get("form") if isinstance(cam, Mapping) else None
-    if document.get("kind") != NAME or form not in LATER_FORMS:
-        return None
-    message = f"{show(form)}: {form} cams are planned, but not available yet"
-    return Fault(("cam", "form"), message, form, quoted(FORMS))
 
 
 def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:

@@ -8,18 +8,16 @@ from typing import Final
 from gearcam.base.registry import DeferredMapping, deferred
 from gearcam.cams.spec import FITTED, FOLLOWED, FORCES, PRECISION
 from gearcam.cams.spec import KIND as CAM
-from gearcam.designs.kind import Main
 from gearcam.designs.table import table_of
 from gearcam.kinds.cam.design import (
+    IN_SPACE,
     NAME,
     RULES,
     CamDesign,
-    later,
-    motion_document,
     problems,
 )
 from gearcam.kinds.cam.forms.base import VARIANTS, Form
-from gearcam.kinds.cam.motion import TITLE, examine_motion, homes
+from gearcam.kinds.cam.main import MOTION
 from gearcam.kinds.cam.tables import (
     CAM_FORMATS,
     BoundsSpec,
@@ -42,16 +40,7 @@ KIND: Final = Kind(
     doc="a cam with its follower",
     design=CamDesign,
     result=deferred(f"{_HERE}.build:CamResult"),
-    main=Main(
-        title=TITLE,
-        examine=examine_motion,
-        document=motion_document,
-        table=deferred(f"{_HERE}.describe:known"),
-        homes=homes,
-        schema=deferred(f"{_HERE}.describe:schema"),
-        template=deferred(f"{_HERE}.describe:lines"),
-        laws=deferred(f"{_HERE}.describe:laws"),
-    ),
+    main=MOTION,
     tables={
         **{title: partial(VARIANTS.union, title) for title in Form.tables},
         "spring": partial(table_of, "spring", SpringSpec),
@@ -71,7 +60,7 @@ KIND: Final = Kind(
     required=("follower", "cam"),
     rules=RULES,
     problems=problems,
-    later=later,
+    elsewhere=IN_SPACE,
     formats=CAM_FORMATS,
     check_modules=("gearcam.cams.checks", "gearcam.cams.force_checks", "gearcam.parts.checks"),
     check_groups=(CAM, PARTS, FOLLOWED, FITTED, FORCES, PRECISION),

@@ -9,10 +9,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cache, partial
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from gearcam.base.quantities import OPPOSITES
-from gearcam.base.registry import name_of
+from gearcam.base.registry import classes_in, name_of
+from gearcam.designs.design import Wanted
 from gearcam.designs.examine import chosen, home_of
 from gearcam.designs.faults import Fault, quoted, show
 from gearcam.designs.kind import KINDS, Examined
@@ -29,7 +30,8 @@ if TYPE_CHECKING:
     from gearcam.laws.motion_formula import MotionFormula
     from gearcam.laws.motion_table import MotionTable
 
-    Motion = Sequence[Phase] | MotionTable | MotionFormula
+Motion: TypeAlias = "Sequence[Phase] | MotionTable | MotionFormula"
+"""The motion of a cam: its phases, or that of the whole turn."""
 
 TITLE: Final = "motion"
 
@@ -304,6 +306,23 @@ def motion_of(motion: Motion, given: Circumstances) -> list[dict[str, Any]] | di
             table |= rise_table(law).document(phase.law)
         tables.append(table)
     return tables
+
+
+def motion_document(design: Any) -> list[dict[str, Any]] | dict[str, Any]:
+    """Return the motion of a `design` as in a file."""
+    document = {"follower": {"motion": design.follower.motion}, "cam": {"form": design.cam.form}}
+    return motion_of(design.motion, circumstances(document))
+
+
+def phases_wanted(motion: Any) -> Iterator[Wanted]:
+    """Yield the parts of a `motion` and the classes that they may have (see `Design`)."""
+    if not isinstance(motion, Sequence) or isinstance(motion, str):
+        yield TITLE, motion, (tuple, *whole_turns())
+        return
+    for number, phase in enumerate(motion):
+        yield f"{TITLE}[{number}]", phase, tuple(PHASES.values())
+        if isinstance(phase, RisePhase) and not name_of(MOTION_LAWS, phase.law):
+            yield f"{TITLE}[{number}].law", phase.law, tuple(classes_in(MOTION_LAWS).values())
 
 
 def homes() -> dict[str, str]:

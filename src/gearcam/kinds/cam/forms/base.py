@@ -30,7 +30,6 @@ from gearcam.mechanics.load import LoadSpec
 if TYPE_CHECKING:
     from gearcam.base.tolerances import Tolerances
     from gearcam.kinds.cam.build import CamResult
-    from gearcam.kinds.cam.design import CamDesign
     from gearcam.numeric.contour import Contour
     from gearcam.parts.body import Part
     from gearcam.pictures.drawings import Drawing, Path
@@ -49,13 +48,13 @@ S = TypeVar("S", bound=CamSpec)
 F = TypeVar("F", bound=FollowerSpec)
 
 
-def lift_program(design: CamDesign, tolerances: Tolerances) -> Program:
+def lift_program(design: Any, tolerances: Tolerances) -> Program:
     """Return the lift of a `design` over a turn, which does not depend on sizes.
 
     Parameters
     ----------
-    design : CamDesign
-        The design.
+    design : Design
+        With the fields ``motion`` and ``follower``.
     tolerances : Tolerances
         Internal accuracy.
     """

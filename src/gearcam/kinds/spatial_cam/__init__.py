@@ -1,0 +1,1 @@
+"""Cams in space: a cylinder with a groove or an edge that moves a roller along it."""

@@ -1,0 +1,251 @@
+"""The result of a cam in space: lift program, walls, checks and solid."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from functools import cached_property
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gearcam.base.errors import ABOVE, beyond_limit
+from gearcam.base.findings import Finding, in_order, run_checks
+from gearcam.base.numerals import formatted
+from gearcam.kinds.cam.public import lift_program
+from gearcam.kinds.spatial_cam.design import SpatialCamDesign
+from gearcam.laws.program import Program
+from gearcam.numeric.arguments import angles
+from gearcam.numeric.arrays import Array
+from gearcam.numeric.columns import Columns
+from gearcam.parts.solids import Mesh
+from gearcam.results.result import Result
+from gearcam.spatial.cam import SpatialCam, SpatialWall
+from gearcam.spatial.make import make_cylinder
+from gearcam.spatial.surface import Blank, surface
+
+if TYPE_CHECKING:
+    from trimesh import Trimesh
+
+STEM: Final = "cam"
+"""Stem of its files."""
+
+_TURN: Final = 2.0 * math.pi
+
+_MOST_STEPS: Final = 1e6
+"""Largest number of steps of a table."""
+
+
+class SpatialCamResult(Result):
+    """Result of the design of a cam in space, computed on demand.
+
+    Parameters
+    ----------
+    design : SpatialCamDesign
+        The design.
+    tolerances : Tolerances
+        Internal accuracy.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> result = gc.build(gc.load("profiles/cylinder_cam.toml"))
+    >>> [wall.key for wall in result.cam.walls]
+    ['upper', 'lower']
+    """
+
+    design: SpatialCamDesign
+    stages = MappingProxyType({"program": "program", "cam": "cam", "checks": "checked"})
+    before_studies = ("program", "cam")
+
+    @cached_property
+    def program(self) -> Program:
+        """The lift over a turn."""
+        with self.stage("program"):
+            return lift_program(self.design, self.tolerances)
+
+    @cached_property
+    def cam(self) -> SpatialCam:
+        """The cam; its walls and measures are computed on demand."""
+        program, design = self.program, self.design
+        with self.stage("cam"):
+            return make_cylinder(program, design.follower, design.cam, design.blank.bore)
+
+    @property
+    def blank(self) -> Blank:
+        """What it is made from."""
+        return Blank(length=self.design.cam.length, bore=self.design.blank.bore)
+
+    @property
+    def lift_unit(self) -> tuple[float, str]:
+        """Factor and unit of the lift in output."""
+        return (math.degrees(1.0), "deg") if self.design.follower.oscillating else (1.0, "mm")
+
+    @cached_property
+    def checked(self) -> tuple[Finding, ...]:
+        """Findings of the checks, errors first."""
+        from gearcam.spatial.checks import KIND
+
+        cam, blank = self.cam, self.blank
+        with self.stage("checks"):
+            return in_order(run_checks(KIND, (cam, blank), self.design.limits))
+
+    @property
+    def angles(self) -> Array:
+        """The cam angles of the motion's table, rad, in steps of the design, both ends."""
+        step = self.design.output.motion_step
+        least = _TURN / _MOST_STEPS
+        if step < least:
+            what = f"the table would have more than {_MOST_STEPS:.0f} rows"
+            value, limit = math.degrees(step), math.degrees(least)
+            raise beyond_limit(
+                what, "output.motion_step_deg", value, limit, near=ABOVE * limit, unit="deg"
+            )
+        return np.linspace(0.0, _TURN, max(2, round(_TURN / step) + 1))
+
+    def motion(self, theta: ArrayLike | None = None) -> Columns:
+        """Return the motion of the follower and the pressure angles.
+
+        Parameters
+        ----------
+        theta : (n,) array, rad, optional
+            Cam angles; by default those of ``motion.csv``.
+
+        Returns
+        -------
+        Columns
+            ``theta_deg``; ``lift_mm`` (of a follower that swings ``lift_deg``) and its derivatives
+            by the cam angle; ``pressure_angle_inner_deg``, ``pressure_angle_mean_deg`` and
+            ``pressure_angle_outer_deg``, the larger one of both walls at the roller's inner end, in
+            the middle and at the outside; with a speed also the derivatives by time.
+
+        Raises
+        ------
+        DesignError
+            If `theta` is not an array of finite numbers.
+        InfeasibleError
+            If the cam is impossible.
+        """
+        where = self.angles if theta is None else angles("theta", theta)
+        cam, (scale, unit) = self.cam, self.lift_unit
+        derivatives = self.program.derivatives(where, 3)
+        columns = {"theta_deg": np.degrees(where), f"lift_{unit}": scale * derivatives[0]}
+        names = ("velocity", "acceleration", "jerk")
+        for order, name in enumerate(names, start=1):
+            per = "rad" if order == 1 else f"rad{order}"
+            columns[f"{name}_{unit}_per_{per}"] = scale * derivatives[order]
+        for order, name in enumerate(names, start=1):
+            if self.design.drive.speed is not None:
+                per = "s" if order == 1 else f"s{order}"
+                factor = scale * self.design.drive.speed**order
+                columns[f"{name}_{unit}_{per}"] = factor * derivatives[order]
+        for word, x in zip(PLACES, (cam.inner, cam.mean_radius, cam.outer_radius), strict=True):
+            at = np.full((len(where), 1), x)
+            both = [cam.contact(where, at, side).pressure[:, 0] for side in cam.sides]
+            columns[f"pressure_angle_{word}_deg"] = np.degrees(np.max(both, axis=0))
+        return Columns(columns)
+
+    @property
+    def wall_angles(self) -> Array:
+        """The cam angles of solids and of ``walls.csv``, rad."""
+        return np.linspace(0.0, _TURN, self.steps, endpoint=False)
+
+    @property
+    def steps(self) -> int:
+        """Number of these angles: even, so that every second one makes a coarser solid."""
+        return 2 * math.ceil(math.pi / self.design.output.wall_step - 1e-9)
+
+    @cached_property
+    def mesh(self) -> Mesh:
+        """The cam as a closed mesh, mm.
+
+        Raises
+        ------
+        InfeasibleError
+            If a wall is undercut.
+        """
+        return self.mesh_of(self.steps, self.design.output.wall_points)
+
+    def mesh_of(self, steps: int, places: int) -> Mesh:
+        """Return the cam as a mesh with numbers of cam angles and of places along the roller."""
+        cam, blank = self.cam, self.blank
+        for wall in cam.walls:
+            _demand_whole(wall)
+        with self.stage("solid"):
+            made = surface(cam, blank, steps, places)
+            return Mesh(vertices=made.vertices, triangles=made.triangles)
+
+    @cached_property
+    def volume(self) -> tuple[float, float]:
+        """Volume of the mesh, mm^3, and its error, from the volume of a mesh of half the steps."""
+        places = self.design.output.wall_points
+        coarse = self.mesh_of(self.steps // 2, max(2, (places + 1) // 2)).volume
+        fine = self.mesh.volume
+        return fine, abs(fine - coarse) / 3.0
+
+    @cached_property
+    def chord_error(self) -> float:
+        """Largest distance of the walls from the middles of the mesh's edges, mm."""
+        theta = self.wall_angles
+        count = self.design.output.wall_points
+        worst = 0.0
+        for wall in self.cam.walls:
+            grid = wall.grid(theta, count).points
+            half = wall.grid(theta + math.pi / self.steps, count)
+            fine = wall.grid(theta, 2 * count - 1)
+            chords = 0.5 * (grid + np.roll(grid, -1, axis=0)) - half.points
+            across = 0.5 * (grid[:, 1:] + grid[:, :-1]) - fine.points[:, 1::2]
+            for off, normals in ((chords, half.normals), (across, fine.normals[:, 1::2])):
+                worst = max(worst, float(np.abs((off * normals).sum(axis=-1)).max()))
+        return worst
+
+    @property
+    def solid_asked(self) -> bool:
+        """Whether a file needs the solid."""
+        return not {"stl", "3mf", "glb", "report"}.isdisjoint(self.design.output.files)
+
+    @cached_property
+    def meshes(self) -> dict[str, Mesh]:
+        """The cam as a closed mesh of plain arrays by name, mm, as used for files."""
+        return {STEM: self.mesh}
+
+    @cached_property
+    def solids(self) -> dict[str, Trimesh]:
+        """The cam as a closed `trimesh.Trimesh` object by name, mm."""
+        from gearcam.export.mesh import trimeshes
+
+        return trimeshes(self.meshes)
+
+    def assembled(self, chords: float = 0.0) -> dict[str, Mesh]:  # noqa: ARG002
+        """Return the cam as a mesh (see `Result`)."""
+        return self.meshes
+
+    @property
+    def main_errors(self) -> Sequence[tuple[str, Sequence[str]]]:
+        """Errors that users act on (see `Result`)."""
+        return (
+            ("walls of the solid, between its points", ["chord_mm"]),
+            ("volume", ["volume_mm3"]),
+        )
+
+
+PLACES: Final = ("inner", "mean", "outer")
+"""Names of the roller's inner end, its middle and the outside, in columns."""
+
+
+def _demand_whole(wall: SpatialWall) -> None:
+    """Refuse a wall that the roller cuts away at another angle."""
+    if wall.spread.value > 0.0:
+        return
+    most = wall.largest_roller.value - 0.5 * wall.cam.clearance
+    at = formatted(math.degrees(wall.spread.theta), 5)
+    raise beyond_limit(
+        f"the {wall.key} wall is undercut at {at} deg, and has no whole surface",
+        "follower.roller_radius_mm",
+        wall.cam.roller.radius,
+        most,
+        "the limit is the largest roller without undercut",
+        near=most,
+    )

@@ -1,0 +1,145 @@
+"""The kind ``spatial-cam``: its design and its tables."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Final
+
+from gearcam.base.display import ShortRepr
+from gearcam.base.quantities import ANGLE, COUNT, fixed, param
+from gearcam.base.rules import distinct
+from gearcam.designs.design import Design, Wanted
+from gearcam.designs.outputs import OutputSpec, files_param, pose_param, studies_param
+from gearcam.kinds.cam.public import phases_wanted
+from gearcam.kinds.shared import GoalSpec
+from gearcam.mechanics.drive import DriveSpec
+from gearcam.spatial.spec import CylinderBlank, CylinderSpec, SpatialFollower
+
+if TYPE_CHECKING:
+    from gearcam.kinds.cam.public import Motion
+    from gearcam.kinds.spatial_cam.build import SpatialCamResult
+
+NAME: Final = "spatial-cam"
+"""As in a file."""
+
+SPATIAL_FORMATS: Final = ("dxf", "svg", "stl", "3mf", "glb", "csv", "report")
+"""What ``output.files`` may list."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpatialOutput(OutputSpec):
+    """Which files and studies of a cam in space are written, and how fine (see `OutputSpec`).
+
+    Parameters
+    ----------
+    pose : float, rad
+        Cam angle of the drawing.
+    chord_tolerance, kerf, dxf_curves, dxf_version
+        Its surfaces have steps instead, and what is drawn is not for cutting out.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.SpatialOutput(files=("stl", "csv"), wall_points=25)
+    SpatialOutput(files=('stl', 'csv'), wall_points=25)
+    """
+
+    files: tuple[str, ...] = files_param(SPATIAL_FORMATS)
+    studies: tuple[str, ...] = studies_param(("developed",))
+    wall_step: float = param(
+        ANGLE,
+        default=math.radians(0.5),
+        ge=0.01,
+        le=5,
+        doc="step of the cam angle in walls.csv and in solids",
+    )
+    wall_points: int = param(
+        COUNT, default=13, ge=2, le=500, doc="places along the roller in walls.csv and in solids"
+    )
+    motion_step: float = param(
+        ANGLE, default=math.radians(1), gt=0, le=90, doc="step of the cam angle in motion.csv"
+    )
+    pose: float = pose_param("theta", "cam angle of the drawing")
+
+    chord_tolerance: float | None = fixed(None)
+    kerf: float = fixed(0.0)
+    dxf_curves: str = fixed("lines")
+    dxf_version: str | None = fixed(None)
+
+    rules = (distinct("files", "format"), distinct("studies", "study"))
+
+
+@dataclass(frozen=True, kw_only=True)
+class DevelopedSpec(ShortRepr):
+    """Places of the study of walls that are constructed in the developed plane.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.DevelopedSpec(steps=360)
+    DevelopedSpec(steps=360)
+    """
+
+    steps: int = param(COUNT, default=360, ge=12, le=100000, doc="number of even cam angles")
+    radii: int = param(
+        COUNT, default=9, ge=2, le=500, doc="radii from the roller's inner end to the outside"
+    )
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class SpatialCamDesign(Design):
+    """The design of a cam in space with its follower (see `Design`).
+
+    Parameters
+    ----------
+    motion : sequence of Phase, MotionTable or MotionFormula
+        The lift over a turn of the cam.
+    follower : SpatialFollower
+        The roller and its guide.
+    cam : CylinderSpec
+        The cylinder.
+    drive : DriveSpec
+        Speed of the cam.
+    blank : CylinderBlank
+        Bore and density.
+    output : SpatialOutput
+        Files and how fine they are.
+    developed : DevelopedSpec
+        Settings of the study of the developed plane.
+    goal : GoalSpec
+        What `gearcam optimize` looks for.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> motion = gc.MotionFormula(lift="10*(1 - cos(theta))")
+    >>> size = gc.CylinderSpec(outer_diameter=80.0, length=60.0, lowest=20.0, groove_depth=10.0)
+    >>> follower = gc.SpatialFollower(roller_radius=6.0)
+    >>> gc.SpatialCamDesign(name="mine", motion=motion, follower=follower, cam=size)
+    <SpatialCamDesign "mine">
+    """
+
+    kind = NAME
+
+    if TYPE_CHECKING:
+
+        @property
+        def _built(self) -> SpatialCamResult: ...
+
+    motion: Motion
+    follower: SpatialFollower
+    cam: CylinderSpec
+    drive: DriveSpec = field(default_factory=DriveSpec)
+    blank: CylinderBlank = field(default_factory=CylinderBlank)
+    output: SpatialOutput = field(default_factory=SpatialOutput)
+    developed: DevelopedSpec = field(default_factory=DevelopedSpec)
+    goal: GoalSpec = field(default_factory=GoalSpec)
+
+    def _settle(self) -> None:
+        if isinstance(self.motion, Sequence) and not isinstance(self.motion, str):
+            object.__setattr__(self, "motion", tuple(self.motion))
+
+    def _wanted(self) -> Iterator[Wanted]:
+        return phases_wanted(self.motion)

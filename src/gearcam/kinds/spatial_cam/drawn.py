@@ -1,0 +1,106 @@
+"""What is drawn of a cam in space: its outside, unrolled.
+
+The sheet is seen from outside and wraps round the cylinder as it is: from left to right the azimuth
+in the cam's frame rises from 0 to 360 deg. Of a cam that turns counter-clockwise the cam angle
+therefore runs from right to left.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from gearcam.numeric.contour import Contour
+from gearcam.parts.shapes import Circle
+from gearcam.pictures.drawings import BLANK, FOLLOWER, GROOVE, PITCH, Drawing, Feature, Path
+
+if TYPE_CHECKING:
+    from gearcam.kinds.spatial_cam.build import SpatialCamResult
+    from gearcam.numeric.arrays import Array, Plane
+    from gearcam.spatial.cam import SpatialWall
+
+_STEPS: Final = 3600
+"""Cam angles of drawn curves."""
+
+_TOLERANCE: Final = 1e-3
+"""Chord tolerance that these stand for, mm."""
+
+
+def across(result: SpatialCamResult, theta: Array) -> Array:
+    """Return where the roller is on the sheet at cam angles, mm from the left."""
+    radius = result.cam.outer_radius
+    return radius * (theta if result.cam.clockwise else 2.0 * math.pi - theta)
+
+
+def centers(result: SpatialCamResult, theta: Array) -> Plane:
+    """Return the centre of the roller on the sheet at cam angles, mm."""
+    lift = result.program.derivatives(theta, 0)[0]
+    point, _ = result.cam.guide.placed(lift)
+    side = -1.0 if result.cam.clockwise else 1.0
+    return across(result, theta) + side * point[0, :, 1] + 1j * point[0, :, 2]
+
+
+def edge(result: SpatialCamResult, wall: SpatialWall) -> Plane:
+    """Return the edge of a wall on the sheet, from its left to its right end, mm."""
+    radius, turn = result.cam.outer_radius, 2.0 * math.pi
+    theta = np.linspace(0.0, turn, _STEPS, endpoint=False)
+    points = wall.contact(theta, wall.edge(theta)[:, None]).points[:, 0]
+    azimuth = np.arctan2(points[:, 1], points[:, 0]) * (-1.0 if result.cam.clockwise else 1.0)
+    order = np.argsort(azimuth % turn)
+    x, z = azimuth[order] % turn, points[order, 2]
+    at_ends = np.interp(0.0, [x[-1] - turn, x[0]], [z[-1], z[0]])
+    x = np.concatenate([[0.0], x, [turn]])
+    return radius * x + 1j * np.concatenate([[at_ends], z, [at_ends]])
+
+
+def _sheet(result: SpatialCamResult) -> Feature:
+    width = 2.0 * math.pi * result.cam.outer_radius
+    height = result.design.cam.length
+    return Feature(
+        layer=BLANK, shape=_contour(np.array([0, width, width + 1j * height, 1j * height]))
+    )
+
+
+def _contour(points: Plane) -> Contour:
+    return Contour(dense=tuple, points=points, tolerance=_TOLERANCE, chord_error=0.0)
+
+
+def developed_drawing(result: SpatialCamResult) -> Drawing:
+    """Return the sheet with the edges of the walls and the path of the roller's centre."""
+    theta = np.linspace(0.0, 2.0 * math.pi, _STEPS + 1)
+    edges = [
+        Feature(layer=wall.key.upper(), shape=Path(points=edge(result, wall), closed=False))
+        for wall in result.cam.walls
+    ]
+    path = Path(points=centers(result, theta), closed=False)
+    sheet = _sheet(result)
+    sheet = Feature(layer=BLANK, shape=Path(points=sheet.shape.points))  # pyright: ignore
+    return Drawing(name="developed", features=(sheet, *edges, Feature(layer=PITCH, shape=path)))
+
+
+def cut_away(result: SpatialCamResult) -> Feature:
+    """Return what is cut away of the sheet: the groove, or all above or below a wall."""
+    width, height = 2.0 * math.pi * result.cam.outer_radius, result.design.cam.length
+    lines = {wall.side: edge(result, wall) for wall in result.cam.walls}
+    upper = lines.get(1, np.array([1j * height, width + 1j * height]))
+    lower = lines.get(-1, np.array([0.0, width], dtype=np.complex128))
+    return Feature(layer=GROOVE, shape=_contour(np.concatenate([lower, upper[::-1]])))
+
+
+def roller(result: SpatialCamResult) -> Feature:
+    """Return the roller about the origin, as it is at the outside."""
+    size = 2.0 * result.design.follower.roller_radius
+    return Feature(layer=FOLLOWER, shape=Circle(center=0j, diameter=size))
+
+
+def picture(result: SpatialCamResult) -> Drawing:
+    """Return the sheet with its groove and the roller at the angle of the design."""
+    theta = np.array([result.design.output.pose % (2.0 * math.pi)])
+    at = complex(centers(result, theta)[0])
+    size = 2.0 * result.design.follower.roller_radius
+    shown = Feature(layer=FOLLOWER, shape=Circle(center=at, diameter=size))
+    path = Path(points=centers(result, np.linspace(0.0, 2.0 * math.pi, _STEPS + 1)), closed=False)
+    features = (_sheet(result), cut_away(result), Feature(layer=PITCH, shape=path), shown)
+    return Drawing(name="cam", features=features)

@@ -1,0 +1,153 @@
+"""Facts of a cam in space: what the console, the report and ``summary.json`` show."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from gearcam.base.facts import Fact, Facts, extent
+from gearcam.base.findings import limit_of
+from gearcam.base.numerals import formatted
+from gearcam.spatial import checks
+from gearcam.spatial.developed import largest_in_plane
+
+if TYPE_CHECKING:
+    from gearcam.kinds.spatial_cam.build import SpatialCamResult
+    from gearcam.spatial.cam import Spot
+
+Tree = dict[str, Any]
+
+
+def facts(result: SpatialCamResult) -> Facts:
+    """Return the facts of a cam in space, its `result`."""
+    design = result.design
+    tree: Tree = {
+        "motion": _motion(result),
+        "cam": _cam(result),
+        "solid": _solid(result),
+        "accuracy": _accuracy(result),
+    }
+    headline = ("motion.total_lift", "cam.outer_diameter_mm")
+    return Facts(tree, headline, f"{design.cam.form} cam for {design.follower.named}")
+
+
+def _motion(result: SpatialCamResult) -> Tree:
+    """Return lift and the peaks of its derivatives that are finite."""
+    program, (scale, unit) = result.program, result.lift_unit
+    low, high = program.range
+    tree: Tree = {
+        "unit": unit,
+        "lift": Fact(extent(low, high, scale), "lift", unit=unit),
+        "total_lift": Fact(scale * (high - low), "lift", unit=unit, shown=True),
+        "continuity": Fact(program.continuity, "continuity of the motion", unit=""),
+    }
+    speed, named = result.design.drive.speed, result.design.drive.named
+    names = ("velocity", "acceleration", "jerk")
+    for order, name in enumerate(names[: program.continuity + 1], start=1):
+        peak, power = program.peaks[order - 1], order if order > 1 else ""
+        tree[f"peak_{name}"] = Fact(scale * peak, f"largest {name}", unit=f"{unit}/rad{power}")
+        if speed is not None:
+            value = scale * peak * speed**order
+            label = f"largest {name}"
+            tree[f"peak_{name}_{unit}_s{power}"] = Fact(value, label, place=f"at {named}")
+    return tree
+
+
+def _cam(result: SpatialCamResult) -> Tree:
+    """Return sizes, pressure angles, and how much the walls spread."""
+    cam, given, follower = result.cam, result.design.cam, result.design.follower
+    tool = cam.tool
+    return {
+        "form": given.form,
+        "rotation": Fact(given.rotation, "cam turns"),
+        "outer_diameter_mm": Fact(given.outer_diameter, "outer diameter", shown=True),
+        "length_mm": given.length,
+        "floor_radius_mm": cam.floor,
+        "roller_radius_mm": follower.roller_radius,
+        "cone_deg": math.degrees(cam.roller.half_angle) or None,
+        "arm_mm": follower.arm,
+        "groove_width_mm": {
+            "outer": 2.0 * tool.radius_at(cam.outer_radius),
+            "floor": 2.0 * tool.radius_at(cam.floor),
+        }
+        if len(cam.sides) > 1
+        else None,
+        "pressure_angle_deg": _pressure(result),
+        "lost_motion_mm": None if cam.lost_motion is None else cam.lost_motion.value,
+        "largest_roller_mm": {
+            "in_space": _largest(cam.largest_roller, 0.5 * cam.clearance),
+            "in_developed_plane": largest_in_plane(cam, cam.floor) - 0.5 * cam.clearance,
+        },
+        "walls": {
+            wall.key: {
+                "least_spread_mm": Fact(
+                    wall.spread.value, "least spread of the wall", place=_place(wall.spread)
+                )
+            }
+            for wall in cam.walls
+        },
+    }
+
+
+def _largest(spot: Spot, off: float) -> Fact | None:
+    """Return the largest roller without undercut."""
+    if math.isinf(spot.value):
+        return None
+    return Fact(spot.value - off, "largest roller radius without undercut", place=_place(spot))
+
+
+def _place(spot: Spot) -> str:
+    angle = formatted(math.degrees(spot.theta), 5)
+    return f"at {angle} deg, {formatted(spot.x, 4)} mm from the axis"
+
+
+def _pressure(result: SpatialCamResult) -> Tree:
+    """Return the largest pressure angles: anywhere, on rises and returns, at the mean radius."""
+    cam = result.cam
+    limit = checks.pressure_limit(
+        cam, limit_of(checks.KIND, "pressure-angle", result.design.limits)
+    )
+
+    def largest(meaning: str, x: float | None = None, kind: str = "") -> Fact | None:
+        spot = cam.pressure(x, kind)
+        if spot is None:
+            return None
+        angle, most = math.degrees(spot.value), math.degrees(limit)
+        whole = x is None
+        return Fact(
+            angle, meaning, at_most=most if whole else None, place=_place(spot), shown=not kind
+        )
+
+    return {
+        "max": largest("largest pressure angle"),
+        "rise_max": largest("largest pressure angle, rise", kind="rise"),
+        "return_max": largest("largest pressure angle, return", kind="return"),
+        "at_mean_radius": largest("largest pressure angle at the mean radius", cam.mean_radius),
+    }
+
+
+def _solid(result: SpatialCamResult) -> Tree | None:
+    """Return the volume, and with a density the mass, where files or a density ask for them."""
+    density = result.design.blank.density
+    if not (result.solid_asked or density):
+        return None
+    volume, error = result.volume
+    return {
+        "volume_mm3": volume,
+        "volume_error_mm3": error,
+        "triangles": len(result.mesh.triangles),
+        "mass_kg": None if density is None else Fact(1e-9 * density * volume, "mass", shown=True),
+    }
+
+
+def _accuracy(result: SpatialCamResult) -> Tree | None:
+    if not result.solid_asked:
+        return None
+    return {
+        "chord_mm": result.chord_error,
+        "volume_mm3": result.volume[1],
+        "how": {
+            "chord_mm": "distance of the walls from the middles of the edges of the mesh",
+            "volume_mm3": "a third of the change from a mesh of half the steps",
+        },
+    }

@@ -1,0 +1,111 @@
+"""From the result of a cam in space to the contents of its files: one function a format."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from gearcam.report.file import report_files
+
+if TYPE_CHECKING:
+    from gearcam.kinds.spatial_cam.build import SpatialCamResult
+
+Files = dict[str, bytes]
+
+
+def _tables(result: SpatialCamResult, _: Any) -> Files:
+    """Return the walls and the motion as tables.
+
+    Files: walls.csv, motion.csv.
+
+    Points of the walls in the cam's frame over cam angle and place along the roller: x_mm is the
+    distance along the roller's axis, X_mm, Y_mm, Z_mm the point, nx, ny, nz the normal into the
+    metal; with the pressure angle. Lift, its derivatives and pressure angles over the cam angle.
+    """
+    from gearcam.export.table import table_bytes
+
+    theta, count = result.wall_angles, result.design.output.wall_points
+    side = -1.0 if result.cam.clockwise else 1.0
+    rows: dict[str, list[Any]] = {}
+    for wall in result.cam.walls:
+        grid = wall.grid(theta, count)
+        points, normals = grid.points.reshape(-1, 3).T, grid.normals.reshape(-1, 3).T
+        columns = {
+            "wall": np.full(points.shape[1], wall.key),
+            "theta_deg": np.degrees(np.repeat(theta, count)),
+            "x_mm": grid.x.ravel(),
+            "X_mm": points[0],
+            "Y_mm": side * points[1],
+            "Z_mm": points[2],
+            "nx": normals[0],
+            "ny": side * normals[1],
+            "nz": normals[2],
+            "pressure_angle_deg": np.degrees(grid.pressure.ravel()),
+        }
+        for name, values in columns.items():
+            rows.setdefault(name, []).append(values)
+    walls = {name: np.concatenate(values) for name, values in rows.items()}
+    motion = dict(result.motion())
+    return {"walls.csv": table_bytes(walls), "motion.csv": table_bytes(motion)}
+
+
+def _mesh(kind: str, result: SpatialCamResult, _: Any) -> Files:
+    from gearcam.export.mesh import glb_bytes, stl_bytes, threemf_bytes
+
+    to_bytes = {"stl": stl_bytes, "3mf": threemf_bytes, "glb": glb_bytes}[kind]
+    return {f"{name}.{kind}": to_bytes({name: mesh}, name) for name, mesh in result.meshes.items()}
+
+
+def _solid(kind: str) -> Callable[..., Files]:
+    """Return what makes meshes of a format."""
+    maker = partial(_mesh, kind)
+    maker.__doc__ = f"""Return the solid.
+
+    Files: cam.{kind}.
+
+    The cam as a closed solid in mm; the report states the errors of walls and volume.
+    """
+    return maker
+
+
+def _dxf(result: SpatialCamResult, _: Any) -> Files:
+    """Return the outside of the cam, unrolled, as DXF.
+
+    Files: developed.dxf.
+
+    The cylinder of the outer diameter, unrolled from the cam angle 0 to 360 deg, 1:1 in mm: the
+    edges of the true groove on UPPER and LOWER, the centre line on PITCH, the sheet on BLANK. To
+    wrap round the cylinder, as a template or to check; walls cut along it radially are not true.
+    """
+    from gearcam.export.dxf import DxfStyle, dxf_bytes
+    from gearcam.kinds.spatial_cam.drawn import developed_drawing
+
+    style = DxfStyle(tolerance=1e-3, curves="lines", version="R2010")
+    return {"developed.dxf": dxf_bytes(developed_drawing(result), style)}
+
+
+def _svg(result: SpatialCamResult, _: Any) -> Files:
+    """Return a picture of the unrolled cam.
+
+    Files: cam.svg.
+
+    The outside of the cam, unrolled, with its roller; not for cutting.
+    """
+    from gearcam.export.svg import svg_bytes
+    from gearcam.kinds.spatial_cam.drawn import picture
+
+    notes = result.facts.headline
+    return {"cam.svg": svg_bytes(picture(result), title=result.design.name, notes=notes)}
+
+
+FILES: Final[Mapping[str, Callable[..., Files]]] = {
+    "csv": _tables,
+    "dxf": _dxf,
+    "svg": _svg,
+    **{kind: _solid(kind) for kind in ("stl", "3mf", "glb")},
+    "report": report_files,
+}
+"""What makes the files of each format: contents by name."""

@@ -1,0 +1,70 @@
+"""The kind ``spatial-cam``: what a cam in space is read from and what is made of it."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Final
+
+from gearcam.base.registry import DeferredMapping, deferred
+from gearcam.designs.table import table_of
+from gearcam.kinds.cam.public import MOTION
+from gearcam.kinds.shared import GoalSpec
+from gearcam.kinds.spatial_cam.design import (
+    NAME,
+    SPATIAL_FORMATS,
+    DevelopedSpec,
+    SpatialCamDesign,
+    SpatialOutput,
+)
+from gearcam.mechanics.drive import DriveSpec
+from gearcam.results.kind import Kind
+from gearcam.spatial.spec import CylinderBlank, CylinderSpec, SpatialFollower
+
+_HERE: Final = "gearcam.kinds.spatial_cam"
+
+KIND: Final = Kind(
+    name=NAME,
+    doc="a cam in space with its roller",
+    design=SpatialCamDesign,
+    result=deferred(f"{_HERE}.build:SpatialCamResult"),
+    main=MOTION,
+    tables={
+        "follower": partial(table_of, "follower", SpatialFollower),
+        "cam": partial(table_of, "cam", CylinderSpec),
+        "drive": partial(table_of, "drive", DriveSpec),
+        "blank": partial(table_of, "blank", CylinderBlank),
+        "output": partial(table_of, "output", SpatialOutput),
+        "developed": partial(table_of, "developed", DevelopedSpec),
+        "goal": partial(table_of, "goal", GoalSpec),
+    },
+    required=("follower", "cam"),
+    formats=SPATIAL_FORMATS,
+    check_modules=("gearcam.spatial.checks",),
+    check_groups=("cams in space",),
+    study_tables={"developed": "developed"},
+    example={
+        "motion": [
+            {"type": "rise", "angle_deg": 150, "law": "cycloidal", "lift_mm": 25},
+            {"type": "dwell", "angle_deg": 30},
+            {"type": "return", "angle_deg": 150, "law": "cycloidal"},
+            {"type": "dwell", "angle_deg": "rest"},
+        ],
+        "follower": {"motion": "translating", "roller_radius_mm": 8, "cone_deg": "apex"},
+        "cam": {
+            "form": "cylinder",
+            "outer_diameter_mm": 100,
+            "length_mm": 60,
+            "lowest_mm": 17,
+            "groove_depth_mm": 12,
+        },
+        "blank": {"bore_diameter_mm": 20},
+        "output": {"files": ["stl", "csv", "report"]},
+    },
+    notes={"motion": "Phases of the motion, one after the other, 360 deg in all."},
+    facts=deferred(f"{_HERE}.facts:facts"),
+    files=DeferredMapping(f"{_HERE}.files:FILES"),
+    charts=DeferredMapping(f"{_HERE}.charts:CHARTS"),
+    scene=deferred(f"{_HERE}.scene:scene"),
+    studies=DeferredMapping(f"{_HERE}.studies:STUDIES"),
+    public=DeferredMapping(f"{_HERE}.public:PUBLIC"),
+)

@@ -1,0 +1,14 @@
+"""Public Python names of cams in space: designs, their parts, and results."""
+
+from __future__ import annotations
+
+from gearcam.kinds.spatial_cam.build import SpatialCamResult
+from gearcam.kinds.spatial_cam.design import DevelopedSpec, SpatialCamDesign, SpatialOutput
+from gearcam.spatial.spec import CylinderBlank, CylinderSpec, SpatialFollower
+
+__all__ = [
+    "CylinderBlank", "CylinderSpec", "DevelopedSpec", "SpatialCamDesign", "SpatialCamResult",
+    "SpatialFollower", "SpatialOutput",
+]  # fmt: skip
+
+PUBLIC = {name: globals()[name] for name in __all__}

@@ -1,0 +1,107 @@
+"""The study of walls that are constructed in the developed plane."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from gearcam.base.facts import Fact
+from gearcam.base.numerals import formatted
+from gearcam.pictures.charts import Chart, Line
+from gearcam.results.kind import Study
+from gearcam.results.result import StudyResult
+from gearcam.spatial.developed import developed
+
+if TYPE_CHECKING:
+    from gearcam.kinds.spatial_cam.build import SpatialCamResult
+    from gearcam.spatial.developed import Developed
+
+
+def _compute(result: SpatialCamResult, progress: Any) -> StudyResult:  # noqa: ARG001
+    """Return the errors of the developed plane."""
+    settings = result.design.developed
+    theta = np.linspace(0.0, 2.0 * math.pi, settings.steps, endpoint=False)
+    cam = result.cam
+    with result.stage("developed"):
+        walls = {wall.key: developed(wall, theta, settings.radii) for wall in cam.walls}
+    columns: dict[str, list[Any]] = {}
+    for key, found in walls.items():
+        shape = found.error.shape
+        rows = {
+            "wall": np.full(shape, key),
+            "theta_deg": np.degrees(found.theta)[:, None] * np.ones(shape),
+            "radius_mm": found.radius * np.ones(shape),
+            "azimuth_deg": (-1.0 if cam.clockwise else 1.0) * np.degrees(found.azimuth),
+            "z_mm": found.height,
+            "error_mm": found.error,
+        }
+        for name, values in rows.items():
+            columns.setdefault(name, []).append(values.ravel())
+    return StudyResult(
+        result=result,
+        study=DEVELOPED,
+        file="developed.csv",
+        table={name: np.concatenate(values) for name, values in columns.items()},
+        group=_facts(walls),
+        study_findings=(),
+        drawn=lambda: _charts(walls),
+    )
+
+
+def _facts(walls: Mapping[str, Developed]) -> dict[str, Any]:
+    """Return the largest play and the largest overlap with the roller."""
+    tree: dict[str, Any] = {}
+    for name, sign, meaning in (
+        ("play_mm", 1.0, "largest play of the roller at a wall of the developed plane"),
+        ("jam_mm", -1.0, "deepest such wall inside the roller"),
+    ):
+        key, found = max(walls.items(), key=lambda item: float((sign * item[1].error).max()))
+        k, j = np.unravel_index(np.argmax(sign * found.error), found.error.shape)
+        at = formatted(math.degrees(found.theta[k]), 5)
+        radius = formatted(float(found.radius[j]), 4)
+        tree[name] = Fact(
+            max(0.0, float(sign * found.error[k, j])),
+            meaning,
+            place=f"{key} wall, at {at} deg, {radius} mm from the axis",
+            shown=True,
+        )
+    largest = max(float(np.abs(one.error).max()) for one in walls.values())
+    return {"largest_mm": Fact(largest, "largest error of the developed plane"), **tree}
+
+
+def _charts(walls: Mapping[str, Developed]) -> dict[str, Chart]:
+    """Return the errors over the cam angle, at floor, mean radius and outside."""
+    lines = [
+        Line(
+            label=f"{key} wall, at {formatted(float(found.radius[j]), 4)} mm",
+            x=np.degrees(found.theta),
+            y=found.error[:, j],
+        )
+        for key, found in walls.items()
+        for j in (0, len(found.radius) // 2, len(found.radius) - 1)
+    ]
+    return {
+        "error": Chart(
+            title="Error of walls constructed in the developed plane: play above 0, jam below",
+            x="cam angle theta, deg",
+            y="error, mm",
+            lines=tuple(lines),
+        )
+    }
+
+
+DEVELOPED: Final = Study(
+    name="developed",
+    key="developed",
+    doc="Compute the error of walls that are constructed in the developed plane; write "
+    "DIR/NAME/developed.csv.",
+    done="compared",
+    table="developed",
+    compute=_compute,
+)
+
+STUDIES: Final = {DEVELOPED.name: DEVELOPED}
+"""Studies of cams in space."""

@@ -1,0 +1,183 @@
+"""The checks of cams in space: pressure angle, undercut, play, thin walls, slip, shocks.
+
+Importing this module registers them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Final
+
+from gearcam.base.findings import Remark, check
+from gearcam.base.numerals import formatted, shortened
+from gearcam.base.quantities import ANGLE, LENGTH, Param
+from gearcam.spatial.cam import SpatialCam
+from gearcam.spatial.guides import Straight
+from gearcam.spatial.surface import Blank
+
+KIND: Final = "cams in space"
+"""Their group."""
+
+SWINGING: Final = math.radians(45.0)
+ALONG: Final = math.radians(30.0)
+"""Default limits of the pressure angle of a follower on an arm and one that moves straight, rad."""
+
+_SLIP: Final = 0.02
+"""Share of its speed at which the surface of a roller may slip without a note."""
+
+
+def pressure_limit(cam: SpatialCam, given: float) -> float:
+    """Return the largest pressure angle, rad: the `given` one, or that of the follower if nan."""
+    default = ALONG if isinstance(cam.guide, Straight) else SWINGING
+    return default if math.isnan(given) else given
+
+
+def _at(theta: float) -> str:
+    return f"at {formatted(math.degrees(theta), 5)} deg"
+
+
+Subject = tuple[SpatialCam, Blank]
+"""What is checked: a cam and what it is made from."""
+
+
+@check(
+    "pressure-angle",
+    kind=KIND,
+    limit=(
+        "pressure_angle",
+        Param(
+            ANGLE,
+            gt=0,
+            lt=90,
+            example=30,
+            doc="largest pressure angle along the roller; 30 translating, 45 oscillating",
+        ),
+        math.nan,
+    ),
+)
+def pressure_angle(subject: Subject, limit: float) -> Iterator[Remark]:
+    """Warn of large pressure angles anywhere along the roller.
+
+    Looks at: the pressure angle between the inner end of the roller and the outside of the cam; it
+    is largest at the inner end.
+    """
+    cam, _ = subject
+    worst, largest = cam.pressure(), pressure_limit(cam, limit)
+    if worst is None or worst.value <= largest:
+        return
+    hint = ""
+    if isinstance(cam.guide, Straight):
+        radius = cam.program.peaks[0] / math.tan(largest) + cam.outer_radius - cam.inner
+        size = shortened(2.0 * radius, 1.0)
+        hint = f" With cam.outer_diameter_mm = {formatted(size)} it keeps the limit."
+    angle = math.degrees(worst.value)
+    yield Remark(
+        f"The pressure angle reaches {formatted(angle)} deg, {formatted(worst.x, 4)} mm from the "
+        f"axis.{hint}",
+        _at(worst.theta),
+        angle,
+        limit=math.degrees(largest),
+    )
+
+
+@check("undercut", kind=KIND, severity="error", unit="mm")
+def undercut(subject: Subject, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Report a wall that the roller cuts away at another cam angle.
+
+    Looks at: how walls spread in space. The condition in the developed plane allows larger rollers
+    than there is room for.
+    """
+    cam, _ = subject
+    for wall in cam.walls:
+        if wall.spread.value > 0.0:
+            continue
+        most = wall.largest_roller
+        radius = most.value - 0.5 * cam.clearance
+        radius = shortened(radius, -1.0) if radius > 0.0 else 0.0
+        hint = f" A roller_radius_mm of up to {formatted(radius)} does not." if radius > 0.0 else ""
+        yield Remark(
+            f"The roller cuts away a part of the {wall.key} wall at other angles, so that it does "
+            f"not lift the follower as asked.{hint}",
+            f"{wall.key} wall, {_at(wall.spread.theta)}, {formatted(wall.spread.x, 4)} mm from the "
+            "axis",
+            cam.roller.radius,
+            limit=radius,
+        )
+
+
+@check(
+    "lost-motion",
+    kind=KIND,
+    limit=("lost_motion", Param(LENGTH, ge=0, doc="largest lost motion between two walls"), 0.1),
+)
+def lost_motion(subject: Subject, limit: float) -> Iterator[Remark]:
+    """Warn of a follower that can move between the two walls.
+
+    Looks at: the clearance over the cosine of the pressure angle at the outside, where it is least.
+    """
+    cam, _ = subject
+    lost = cam.lost_motion
+    if lost is None or lost.value <= limit:
+        return
+    yield Remark(
+        f"The follower can move by {formatted(lost.value, 4)} mm while the cam does not.",
+        _at(lost.theta),
+        lost.value,
+    )
+
+
+@check(
+    "thin-wall",
+    kind=KIND,
+    limit=("wall_thickness", Param(LENGTH, ge=0, doc="least thickness of metal"), 2.0),
+)
+def thin_wall(subject: Subject, limit: float) -> Iterator[Remark]:
+    """Warn of little metal beside the walls or below the floor.
+
+    Looks at: the distance of the walls from the faces, and of the floor from the bore.
+    """
+    cam, blank = subject
+    low, high = cam.heights
+    half = cam.tool.radius_at(cam.outer_radius)
+    places = {
+        "between the lower wall and the lower face": (-1, low - half),
+        "between the upper wall and the upper face": (1, blank.length - high - half),
+        "between the floor and the bore": (0, cam.floor - blank.bore if blank.bore else math.inf),
+    }
+    for where, (side, thickness) in places.items():
+        if side in (0, *cam.sides) and thickness < limit:
+            yield Remark(
+                f"The metal {where} is {formatted(thickness, 4)} mm thick.", where, thickness
+            )
+
+
+@check("roller-slip", kind=KIND, severity="note")
+def roller_slip(subject: Subject, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Note a roller whose surface cannot roll along its whole length.
+
+    Looks at: radius of the roller over distance from the cam's axis, at both ends of the contact. A
+    cone with its tip on this axis rolls everywhere.
+    """
+    cam, _ = subject
+    inner, outer = (cam.roller.radius_at(x) / x for x in (cam.inner, cam.outer_radius))
+    slip = abs(1.0 - outer / inner)
+    if slip > _SLIP:
+        yield Remark(
+            f"The roller cannot roll along its whole length: at its ends the speeds differ by "
+            f"{formatted(100.0 * slip, 3)} %. A cone with its tip on the cam's axis "
+            '(cone_deg = "apex") does not slip.',
+        )
+
+
+@check("acceleration-jump", kind=KIND, severity="note")
+def acceleration_jump(subject: Subject, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Note a knot at which the acceleration jumps.
+
+    Looks at: knots where the acceleration jumps.
+    """
+    for jump in subject[0].program.jumps:
+        if jump.order == 2:
+            yield Remark(
+                "The acceleration jumps: the follower vibrates at high speed.", _at(jump.theta)
+            )

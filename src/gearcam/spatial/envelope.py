@@ -1,0 +1,212 @@
+"""The walls of a roller in closed form: its envelope for any rigid motion of its axis.
+
+A roller is a cylinder or a cone about an *axis* with the point P(theta) and the unit direction
+a(theta), both given in the frame of the cam with two derivatives. At the distance x along the axis
+its centre is Q = P + x*a, with the velocity v = P' + x*a' against the cam, and its radius is
+r(x) = r0 + (x - x0)*tan(g), g half the angle of the cone.
+
+The roller touches the cam where the normal n = cos(g)*m - sin(g)*a of its surface is perpendicular
+to the velocity of the point of contact X = Q + r*m. The direction m is perpendicular to a; with
+u = cos(g)*v + r*sin(g)*a' the condition is linear in it::
+
+    m . u = sin(g)*(a . v)
+
+so that m has two values, mirrored in the plane of a and u: the two *sides*. Side +1 is that of
+e x a, where e is the direction of u across the axis. For a cylinder m = n is perpendicular to
+both a and v.
+
+The *spread* of a wall is the area dX/dx by dX/dtheta on its surface, over dx and dtheta, positive
+where the roller leaves what it has made. A wall whose spread changes sign is undercut: the roller
+cuts it away at another angle. From F(x, psi, theta) = m.u - sin(g)*(a.v) = 0, psi the angle of m
+about the axis::
+
+    F_psi = t.u,  F_x = (m.a')/cos(g),
+    F_theta = m.u' - sin(g)*(a'.v + a.v') - cos(g)*(a'.m)*(a.v),  t = a x m
+
+Source: derived here; for parallel axes 000 section 3.4.5. Depends on numpy only.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+
+from gearcam.base.display import ShortRepr
+from gearcam.numeric.arrays import Array, Mask
+
+SIDES: Final = (1, -1)
+"""The sides of a roller."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Axis(ShortRepr):
+    """The axis of a roller in the frame of the cam, at n cam angles.
+
+    Parameters
+    ----------
+    point, direction : (3, n, 3) arrays, mm and 1
+        A point of it and its unit direction, with two derivatives by the cam angle.
+    way, swing : (n, 3) arrays
+        Derivatives of both by the lift: how the follower can move.
+    """
+
+    point: Array
+    direction: Array
+    way: Array
+    swing: Array
+
+
+@dataclass(frozen=True, kw_only=True)
+class Roller(ShortRepr):
+    """A roller.
+
+    Parameters
+    ----------
+    radius : float, mm
+        At the place `at`.
+    at : float, mm
+        A distance along its axis.
+    half_angle : float, rad
+        Half the angle of a cone that widens along its axis; 0 of a cylinder.
+    """
+
+    radius: float
+    at: float = 0.0
+    half_angle: float = 0.0
+
+    def radii(self, x: Array) -> Array:
+        """Return its radius, mm, at distances along its axis, mm."""
+        return self.radius + (x - self.at) * math.tan(self.half_angle)
+
+    def radius_at(self, x: float) -> float:
+        """Return its radius, mm, at one distance along its axis, mm."""
+        return float(self.radii(np.array(x)))
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Contact(ShortRepr):
+    """Where a roller touches one wall: at n cam angles, at k distances along its axis each.
+
+    Parameters
+    ----------
+    axis : Axis
+        The motion of its axis.
+    x, radius : (n, k) arrays, mm
+        Distances along the axis, and radii of the roller there.
+    half_angle : float, rad
+        Half the angle of its cone.
+    side : {1, -1}
+        The side.
+    """
+
+    axis: Axis
+    x: Array
+    radius: Array
+    half_angle: float
+    side: int
+
+    @cached_property
+    def _a(self) -> tuple[Array, Array, Array]:
+        """The direction of the axis and its derivatives, for every x."""
+        return tuple(one[:, None, :] for one in self.axis.direction)  # pyright: ignore
+
+    @cached_property
+    def _v(self) -> tuple[Array, Array]:
+        """Velocity and acceleration of the centre against the cam."""
+        x = self.x[..., None]
+        first, second = (
+            p[:, None, :] + x * a[:, None, :]
+            for p, a in zip(self.axis.point[1:], self.axis.direction[1:], strict=True)
+        )
+        return first, second
+
+    @cached_property
+    def _u(self) -> Array:
+        g, (_, a1, _), (v, _) = self.half_angle, self._a, self._v
+        return math.cos(g) * v + (math.sin(g) * self.radius)[..., None] * a1
+
+    @cached_property
+    def centers(self) -> Array:
+        """Centres of the roller, (n, k, 3), mm."""
+        return self.axis.point[0][:, None, :] + self.x[..., None] * self._a[0]
+
+    @cached_property
+    def _across(self) -> tuple[Array, Array]:
+        """The direction of u across the axis, and m . e; beyond 1 nothing is touched."""
+        (a, _, _), (v, _) = self._a, self._v
+        across = self._u - _dot(self._u, a)[..., None] * a
+        size = np.linalg.norm(across, axis=-1)
+        return across / size[..., None], math.sin(self.half_angle) * _dot(a, v) / size
+
+    @property
+    def exists(self) -> Mask:
+        """Whether the roller touches this wall, (n, k): not a cone that moves along its axis."""
+        return np.abs(self._across[1]) < 1.0
+
+    @cached_property
+    def radial(self) -> Array:
+        """The direction m from the centre to the point of contact, (n, k, 3); nan without one."""
+        along, share = self._across
+        with np.errstate(invalid="ignore"):
+            beside = self.side * np.sqrt(1.0 - share**2)
+        return share[..., None] * along + beside[..., None] * np.cross(along, self._a[0])
+
+    @cached_property
+    def points(self) -> Array:
+        """Points of the wall, (n, k, 3), mm, in the frame of the cam."""
+        return self.centers + self.radius[..., None] * self.radial
+
+    @cached_property
+    def normals(self) -> Array:
+        """Unit normals of the roller there, (n, k, 3): into the metal."""
+        g = self.half_angle
+        return math.cos(g) * self.radial - math.sin(g) * self._a[0]
+
+    @cached_property
+    def pressure(self) -> Array:
+        """Pressure angle, (n, k), rad: between the normal and how the centre can move."""
+        way = self.axis.way[:, None, :] + self.x[..., None] * self.axis.swing[:, None, :]
+        along = np.abs(_dot(self.normals, way))
+        return np.arctan2(np.linalg.norm(np.cross(self.normals, way), axis=-1), along)
+
+    @cached_property
+    def spread(self) -> Array:
+        """The spread of the wall, (n, k), mm; negative where it is undercut."""
+        g, r = self.half_angle, self.radius
+        cosine, sine = math.cos(g), math.sin(g)
+        (a, a1, a2), (v, v1), m = self._a, self._v, self.radial
+        t = np.cross(a, m)
+        u1 = cosine * v1 + (sine * r)[..., None] * a2
+        turned = _dot(a1, m)
+        by_psi = _dot(t, self._u)
+        by_x = turned / cosine
+        by_theta = _dot(m, u1) - sine * (_dot(a1, v) + _dot(a, v1)) - cosine * turned * _dot(a, v)
+        along = cosine * (_dot(a, v) - r * turned) + sine * _dot(m, v)
+        around = _dot(t, v) - r * by_theta / by_psi
+        return self.side * (around / cosine + along * r * by_x / by_psi)
+
+
+def touched(axis: Axis, roller: Roller, x: Array, side: int) -> Contact:
+    """Return where a roller touches a wall.
+
+    Parameters
+    ----------
+    axis : Axis
+        The motion of its axis, at n cam angles.
+    roller : Roller
+        Its shape.
+    x : (n, k) array, mm
+        Distances along its axis.
+    side : {1, -1}
+        The side.
+    """
+    radius, half_angle = roller.radii(x), roller.half_angle
+    return Contact(axis=axis, x=x, radius=radius, half_angle=half_angle, side=side)
+
+
+def _dot(one: Array, other: Array) -> Array:
+    return np.einsum("...i,...i->...", one, other)

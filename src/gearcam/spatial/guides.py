@@ -1,0 +1,171 @@
+"""How a follower moves the axis of its roller, and what the cam makes of it.
+
+A *guide* gives the axis of the roller in the fixed frame for a lift: along the cam (`Straight`), on
+an arm about a pivot (`Arm`), on a turret (`Turret`). The cam turns by theta meanwhile, so in its
+frame the axis is turned by -theta (`carried`).
+
+Frame: the cam's axis is z. The roller of `Straight` and `Arm` has its axis parallel to x and meets
+the cam at the azimuth 0; lift is along +z.
+
+Depends on envelope; numpy only.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+
+import numpy as np
+
+from gearcam.base.display import ShortRepr
+from gearcam.numeric.arrays import Array
+from gearcam.spatial.envelope import Axis
+
+
+class Guide(ABC, ShortRepr):
+    """What carries a roller."""
+
+    @abstractmethod
+    def placed(self, lift: Array) -> tuple[Array, Array]:
+        """Return the axis of the roller in the fixed frame.
+
+        Parameters
+        ----------
+        lift : (n,) array, mm or rad
+            The lift.
+
+        Returns
+        -------
+        point, direction : (3, n, 3) arrays
+            A point of the axis, mm, and its direction, with two derivatives by the lift.
+        """
+
+
+@dataclass(frozen=True, kw_only=True)
+class Straight(Guide):
+    """A follower that moves along the cam.
+
+    Parameters
+    ----------
+    height : float, mm
+        Height of the roller at zero lift.
+    """
+
+    height: float
+
+    def placed(self, lift: Array) -> tuple[Array, Array]:
+        """Return the axis of the roller (see `Guide.placed`)."""
+        point, direction = np.zeros((3, len(lift), 3)), np.zeros((3, len(lift), 3))
+        point[0, :, 2], point[1, :, 2] = self.height + lift, 1.0
+        direction[0, :, 0] = 1.0
+        return point, direction
+
+
+@dataclass(frozen=True, kw_only=True)
+class Arm(Guide):
+    """A follower that swings about an axis parallel to that of its roller.
+
+    Parameters
+    ----------
+    length : float, mm
+        From the pivot to the roller.
+    distance : float, mm
+        The pivot is at y = -`distance`.
+    start : float, rad
+        Angle of the arm from +y towards +z at zero lift.
+    height : float, mm
+        Height of the roller at zero lift.
+    """
+
+    length: float
+    distance: float
+    start: float
+    height: float
+
+    @property
+    def pivot(self) -> float:
+        """Height of the pivot, mm."""
+        return self.height - self.length * math.sin(self.start)
+
+    def placed(self, lift: Array) -> tuple[Array, Array]:
+        """Return the axis of the roller (see `Guide.placed`)."""
+        point, direction = np.zeros((3, len(lift), 3)), np.zeros((3, len(lift), 3))
+        y, z = self.length * np.cos(self.start + lift), self.length * np.sin(self.start + lift)
+        point[0, :, 1], point[0, :, 2] = y - self.distance, z + self.pivot
+        point[1, :, 1], point[1, :, 2] = -z, y
+        point[2, :, 1], point[2, :, 2] = -y, -z
+        direction[0, :, 0] = 1.0
+        return point, direction
+
+
+@dataclass(frozen=True, kw_only=True)
+class Turret(Guide):
+    """A wheel with radial rollers, its axis parallel to y beside the cam.
+
+    Distances along a roller's axis are measured from the axis of the turret, towards the cam.
+
+    Parameters
+    ----------
+    distance : float, mm
+        From the cam's axis to that of the turret.
+    start : float, rad
+        Angle of the roller from the common perpendicular towards +z at zero lift.
+    """
+
+    distance: float
+    start: float
+
+    def placed(self, lift: Array) -> tuple[Array, Array]:
+        """Return the axis of the roller (see `Guide.placed`)."""
+        point, direction = np.zeros((3, len(lift), 3)), np.zeros((3, len(lift), 3))
+        point[0, :, 0] = self.distance
+        c, s = np.cos(self.start + lift), np.sin(self.start + lift)
+        for order, (x, z) in enumerate(((-c, s), (s, c), (c, -s))):
+            direction[order, :, 0], direction[order, :, 2] = x, z
+        return point, direction
+
+
+def carried(guide: Guide, theta: Array, lift: Array, first: Array, second: Array) -> Axis:
+    """Return the axis of a roller in the frame of a cam that turns.
+
+    Parameters
+    ----------
+    guide : Guide
+        What carries the roller.
+    theta : (n,) array, rad
+        Cam angles.
+    lift, first, second : (n,) arrays
+        The lift and its derivatives by the cam angle.
+
+    Returns
+    -------
+    Axis
+    """
+    c, s = np.cos(theta), np.sin(theta)
+    back = np.zeros((len(theta), 3, 3))
+    back[:, 0, 0], back[:, 0, 1], back[:, 1, 0], back[:, 1, 1], back[:, 2, 2] = c, s, -s, c, 1.0
+
+    def turned(vector: Array) -> Array:
+        return np.einsum("nij,nj->ni", back, vector)
+
+    def by_angle(by_lift: Array) -> Array:
+        f = by_lift[0]
+        f1 = by_lift[1] * first[:, None]
+        f2 = by_lift[2] * first[:, None] ** 2 + by_lift[1] * second[:, None]
+        once = f1 - _about(f)
+        twice = f2 - 2.0 * _about(f1) + _about(_about(f))
+        return np.array([turned(one) for one in (f, once, twice)])
+
+    point, direction = guide.placed(lift)
+    return Axis(
+        point=by_angle(point),
+        direction=by_angle(direction),
+        way=turned(point[1]),
+        swing=turned(direction[1]),
+    )
+
+
+def _about(vector: Array) -> Array:
+    """Return z x vector."""
+    return np.stack([-vector[:, 1], vector[:, 0], np.zeros(len(vector))], axis=1)

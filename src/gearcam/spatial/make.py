@@ -1,0 +1,118 @@
+"""From the sizes of a design to a cam in space; refuses what cannot be.
+
+Refused: velocities that jump (a corner in space), a groove that leaves the cylinder, a floor at the
+bore, an arm that carries the roller past the middle of the cam.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from gearcam.base.errors import ABOVE, InfeasibleError, beyond_limit
+from gearcam.base.numerals import formatted
+from gearcam.laws.program import Program
+from gearcam.spatial.cam import SpatialCam
+from gearcam.spatial.envelope import Roller
+from gearcam.spatial.guides import Arm, Guide, Straight
+from gearcam.spatial.spec import WALLS, CylinderSpec, SpatialFollower
+
+
+def make_cylinder(
+    program: Program, follower: SpatialFollower, cam: CylinderSpec, bore: float
+) -> SpatialCam:
+    """Return a cylinder cam.
+
+    Parameters
+    ----------
+    program : Program
+        The lift over a turn.
+    follower : SpatialFollower
+        Its roller and how it is guided.
+    cam : CylinderSpec
+        The cylinder.
+    bore : float, mm
+        Radius of the bore.
+
+    Returns
+    -------
+    SpatialCam
+
+    Raises
+    ------
+    InfeasibleError
+        See above.
+    """
+    _demand_smooth(program)
+    depth = cam.groove_depth
+    length = follower.roller_length or depth
+    if length > depth:
+        what = "the roller reaches deeper than the groove"
+        raise beyond_limit(what, "follower.roller_length_mm", length, depth, near=depth)
+    if cam.floor <= bore:
+        most = cam.outer_radius - cam.floor_clearance - bore
+        what, note = "the floor of the groove is inside the bore", "the limit is where they meet"
+        raise beyond_limit(what, "cam.groove_depth_mm", depth, most, note)
+    made = SpatialCam(
+        program=program,
+        guide=_guide(program, follower, cam.lowest),
+        roller=Roller(
+            radius=follower.roller_radius,
+            at=cam.outer_radius,
+            half_angle=follower.half_angle(cam.outer_radius),
+        ),
+        inner=cam.outer_radius - length,
+        floor=cam.floor,
+        outer_radius=cam.outer_radius,
+        clearance=cam.roller_clearance,
+        sides=WALLS[cam.walls],
+        clockwise=cam.clockwise,
+    )
+    _demand_middle(made)
+    _demand_room(made, cam)
+    return made
+
+
+def _guide(program: Program, follower: SpatialFollower, lowest: float) -> Guide:
+    if not follower.oscillating:
+        return Straight(height=lowest)
+    low, high = program.range
+    arm = follower.arm or 0.0
+    start = -0.5 * (high - low) if follower.start is None else follower.start
+    distance = follower.pivot_distance or 0.5 * arm * (1.0 + math.cos(0.5 * (high - low)))
+    return Arm(length=arm, distance=distance, start=start, height=lowest)
+
+
+def _demand_smooth(program: Program) -> None:
+    for jump in program.hard:
+        where = f"motion, at {formatted(math.degrees(jump.theta), 5)} deg"
+        what = "the velocity jumps, so that the walls would have a corner"
+        raise InfeasibleError(
+            what, where=where, nearest="a motion law whose velocity is continuous"
+        )
+
+
+def _demand_middle(cam: SpatialCam) -> None:
+    """Refuse an arm that carries the end of the roller past the middle of the cam."""
+    theta = cam.program.survey.places.ravel()
+    point, _ = cam.guide.placed(cam.program.derivatives(theta, 0)[0])
+    aside = point[0, :, 1]
+    worst = float(np.abs(aside).max())
+    least = cam.tool.radius_at(cam.floor)
+    if worst >= least:
+        what = "the arm carries the roller so far aside that it leaves the middle of the cam"
+        note = "the limit is the roller's radius at its end"
+        raise beyond_limit(what, "follower.pivot_distance_mm", worst, least, note)
+
+
+def _demand_room(cam: SpatialCam, size: CylinderSpec) -> None:
+    """Refuse a groove that leaves the cylinder."""
+    low, high = cam.heights
+    half = cam.tool.radius_at(cam.outer_radius)
+    if -1 in cam.sides and low - half <= 0.0:
+        what, near = "the groove leaves the lower face of the cylinder", size.lowest + half - low
+        raise beyond_limit(what, "cam.lowest_mm", size.lowest, near, near=ABOVE * near, unit="mm")
+    if 1 in cam.sides and high + half >= size.length:
+        what, near = "the groove leaves the upper face of the cylinder", high + half
+        raise beyond_limit(what, "cam.length_mm", size.length, near, near=ABOVE * near, unit="mm")

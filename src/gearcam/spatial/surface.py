@@ -1,0 +1,219 @@
+"""The surface of a finished cam as triangles: rings around its axis, joined one to the next.
+
+A *ring* is a closed row of points around the axis, in the order of falling azimuth: one point for
+each cam angle, or those of a circle. From the bore up over the upper face, down the outside,
+through the groove and back over the lower face, every two neighbours are joined by triangles, so
+that the surface is closed by its making and needs no boolean operation.
+
+Rings of the same cam angles are joined point by point. The edge of a wall has its points at other
+azimuths than a circle; there the points of both are taken in the order of their azimuths, so that
+no triangle is longer around the cam than a step.
+
+The groove's floor: the end of the roller is a disc. It cuts the floor, a cylinder, with its line
+nearest to the cam's axis, and with its rim a ramp from the floor to the foot of the wall.
+
+All surfaces are met at their points, so that the volume converges with the square of the step.
+Refused: walls that are undercut, whose rings would cross. Depends on cam; numpy only.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from gearcam.base.display import ShortRepr
+from gearcam.numeric.arrays import Array, Ints, Mask
+from gearcam.spatial.cam import SpatialCam, SpatialWall
+
+_RAMP: Final = 4
+"""Steps of the ramp from the floor to a wall, for every twelve along the wall."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Blank(ShortRepr):
+    """What a cam is made from: a cylinder with a bore.
+
+    Parameters
+    ----------
+    length : float, mm
+        From z = 0 upwards.
+    bore : float, mm
+        Radius of the bore; 0 without one.
+    """
+
+    length: float
+    bore: float = 0.0
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Surface(ShortRepr):
+    """A closed surface of triangles, counter-clockwise seen from outside.
+
+    Parameters
+    ----------
+    vertices : (n, 3) array, mm
+        Its points.
+    triangles : (m, 3) array of int
+        Indices of points.
+    """
+
+    vertices: Array
+    triangles: Ints
+
+    @property
+    def volume(self) -> float:
+        """Enclosed volume, mm^3."""
+        a, b, c = (self.vertices[one] for one in self.triangles.T)
+        return float(np.einsum("ij,ij->", a, np.cross(b, c))) / 6.0
+
+
+def surface(cam: SpatialCam, blank: Blank, steps: int, places: int) -> Surface:
+    """Return the surface of a cam.
+
+    Parameters
+    ----------
+    cam : SpatialCam
+        The cam; its walls must not be undercut.
+    blank : Blank
+        What it is made from.
+    steps : int
+        Number of even cam angles.
+    places : int
+        Number of places along the roller on each wall.
+
+    Returns
+    -------
+    Surface
+    """
+    theta = np.linspace(0.0, 2.0 * math.pi, steps, endpoint=False)
+    rings = list(_rings(cam, blank, theta, places))
+    sizes = [len(ring.points) for ring in rings]
+    starts = np.cumsum([0, *sizes[:-1]])
+    faces = []
+    for k, ring in enumerate(rings):
+        after = (k + 1) % len(rings)
+        joined = _joined(ring, rings[after])  # points of the second ring follow those of the first
+        faces.append(joined + np.where(joined < sizes[k], starts[k], starts[after] - sizes[k]))
+    vertices, triangles = np.concatenate([ring.points for ring in rings]), np.concatenate(faces)
+    if cam.clockwise:
+        vertices, triangles = vertices * [1.0, -1.0, 1.0], triangles[:, ::-1]
+    return Surface(vertices=vertices, triangles=triangles)
+
+
+@dataclass(frozen=True, eq=False)
+class _Ring:
+    """Points around the axis; `apart`: at azimuths other than those of the ring that follows."""
+
+    points: Array
+    apart: bool = False
+
+
+def _rings(cam: SpatialCam, blank: Blank, theta: Array, places: int) -> Iterator[_Ring]:
+    """Yield the rings from the bore over the upper face and the groove to the lower face."""
+    walls = {wall.side: wall for wall in cam.walls}
+    outer = cam.outer_radius
+    yield _circle(theta, blank.bore, 0.0)
+    yield _circle(theta, blank.bore, blank.length)
+    if 1 in walls:
+        yield _Ring(_circle(theta, outer, blank.length).points, apart=True)
+        yield from _wall(walls[1], theta, places)
+    else:
+        yield _circle(theta, cam.floor, blank.length)
+    if -1 in walls:
+        *most, edge = reversed([*_wall(walls[-1], theta, places)])
+        yield from most
+        yield _Ring(edge.points, apart=True)
+        yield _circle(theta, outer, 0.0)
+    else:
+        yield _circle(theta, cam.floor, 0.0)
+
+
+def _circle(theta: Array, radius: float, height: float) -> _Ring:
+    """Return a circle, or its centre alone."""
+    if not radius:
+        return _Ring(np.array([[0.0, 0.0, height]]))
+    heights = np.full_like(theta, height)
+    return _Ring(np.stack([radius * np.cos(theta), -radius * np.sin(theta), heights], axis=1))
+
+
+def _wall(wall: SpatialWall, theta: Array, places: int) -> Iterator[_Ring]:
+    """Yield the rings of a wall, from its edge to its foot, and of the ramp down to the floor."""
+    points = wall.grid(theta, places).points
+    yield from (_Ring(points[:, k]) for k in range(places - 1, -1, -1))
+    yield from _ramp(wall, theta, places)
+
+
+def _ramp(wall: SpatialWall, theta: Array, places: int) -> Iterator[_Ring]:
+    """Yield the rings of the ramp below the foot of a wall, down to the floor."""
+    cam, count = wall.cam, max(1, round(_RAMP * (places - 1) / 12))
+    foot = wall.contact(theta, np.full((len(theta), 1), cam.floor))
+    axis = foot.axis
+    center, radius = foot.centers[:, 0], foot.radius
+    # directions in the end of the roller: across the plane of both axes, and along the cam
+    along = np.array([0.0, 0.0, 1.0])
+    across = np.cross(along, axis.direction[0])
+    towards = foot.radial[:, 0]
+    final = np.arctan2((towards * across).sum(axis=1), wall.side * (towards @ along))
+    aside = (center * across).sum(axis=1)
+    first = -np.arcsin(aside / radius[:, 0])
+    for k in range(count - 1, -1, -1):
+        angle = first + (final - first) * k / count
+        beside, up = np.sin(angle)[:, None] * across, np.cos(angle)[:, None] * along
+        yield _Ring(center + radius * (beside + wall.side * up))
+
+
+def _joined(ring: _Ring, other: _Ring) -> Ints:
+    """Return triangles between two rings; points of the second are counted after the first."""
+    count, more = len(ring.points), len(other.points)
+    here, there = np.arange(count), count + np.arange(more)
+    if count == 1 or more == 1:
+        several, apex = (there, here) if count == 1 else (here[::-1], there)
+        if count == more:
+            return np.empty((0, 3), dtype=np.int64)
+        return np.stack([np.repeat(apex, len(several)), np.roll(several, -1), several], axis=1)
+    if ring.apart:
+        return _zipped(_turns(ring), _turns(other))
+    after, beyond = np.roll(here, -1), np.roll(there, -1)
+    halves = [here, after, there], [after, beyond, there]
+    return np.concatenate([np.stack(half, axis=1) for half in halves])
+
+
+def _turns(ring: _Ring) -> Array:
+    """Return the azimuths of a ring's points, falling, as shares of a turn in [0, 1)."""
+    x, y = ring.points[:, 0], ring.points[:, 1]
+    return np.mod(np.arctan2(-y, x) / (2.0 * math.pi), 1.0)
+
+
+def _zipped(ring: Array, other: Array) -> Ints:
+    """Return triangles between two rings at azimuths of their own, in the order of these."""
+    count = len(ring)
+    places = np.concatenate([ring, other])
+    order = np.argsort(places, kind="stable")
+    first = order < count
+    # the last point of each ring that has been reached; at first the last of all
+    step = np.arange(len(order))
+    here, there = (_latest(order, which, step) for which in (first, ~first))
+    before = order[np.where(first, _previous(first), _previous(~first))]
+    return np.where(
+        first[:, None],
+        np.stack([before, order, there], axis=1),
+        np.stack([here, order, before], axis=1),
+    )
+
+
+def _latest(order: Ints, which: Mask, step: Ints) -> Ints:
+    """Return the latest point of one ring at each step; before its first point its last."""
+    last = np.maximum.accumulate(np.where(which, step, -1))
+    return order[np.where(last < 0, np.flatnonzero(which)[-1], last)]
+
+
+def _previous(which: Mask) -> Ints:
+    """Return the step of the point before of the same ring, around."""
+    places = np.flatnonzero(which)
+    found = np.zeros(len(which), dtype=np.int64)
+    found[places] = np.roll(places, 1)
+    return found
