@@ -420,6 +420,14 @@ def _edge(angle: float, lift: float, limit: float) -> float:
 PACKING = [_edge(angle, 40.0, 32.0) for angle in (130.0, 100.0)]
 PACKING_OFFSET = 0.5 * (PACKING[0] - PACKING[1]) * math.tan(math.radians(32.0))
 
+
+def _steepest_on_cone(lift: float, angle: float, x: float, radius: float, taper: float) -> float:
+    """Largest pressure angle of a cone of a radius at x, modified sine, deg."""
+    speed = lift / math.radians(angle) * 4.0 * math.pi / (4.0 + math.pi)
+    eta = math.atan(speed / (x + radius * taper))
+    return math.degrees(math.acos(math.cos(math.atan(taper)) * math.cos(eta)))
+
+
 CAM_NUMBERS: dict[str, dict[str, Number]] = {
     "packaging_cam": {
         # the corner of the lines of the pressure angle on the rise and on the return
@@ -433,6 +441,13 @@ CAM_NUMBERS: dict[str, dict[str, Number]] = {
         "cam.pressure_angle_deg.return.max": (-11.617196, 5e-7),
         "cam.curvature.pitch_rise_min_mm": (22.670419, 5e-7),
         "motion.peak_velocity": (2 * 10 / (math.pi / 2), 1e-12),
+    },
+    "cylinder_cam": {
+        # the normal of a cone with tan g = 0.11 is tilted by g; its contact is turned by eta,
+        # tan(eta) = s'/(x + r*tan(g)), r with the clearance
+        "cam.pressure_angle_deg.return_max": (_steepest_on_cone(60, 140, 82, 9.045, 0.11), 1e-9),
+        "cam.pressure_angle_deg.rise_max": (_steepest_on_cone(60, 150, 82, 9.045, 0.11), 1e-9),
+        "cam.groove_width_mm.floor": (2 * (11.025 - 18.5 * 0.11), 1e-12),
     },
     "groove_cam": {
         # the walls are parallels of a pitch curve of 221.58887350723 mm, 12.05 mm apart

@@ -290,12 +290,14 @@ def keys() -> Iterator[str]:
     yield table(KEY_HEADS, rows)
     for kind in ordered_kinds():
         yield f"## {TITLES[kind.name]}"
-        if kind.main == "law":
+        if kind.main and kind.main.title == "law":
             yield "### Gear pairs: `[law]`"
             yield f"The key `type` names the law: {listed(LAWS)}."
             yield "The keys of each law are in [laws.md](laws.md)."
-        else:
+        elif kind.name == "cam":
             yield from motion_section()
+        else:
+            yield "The motion, `[[motion]]` or `[motion]`, is as for [cams](#cams)."
         for title in (*kind.tables, "limits"):
             yield from table_section(kind, title)
 

@@ -17,13 +17,14 @@ NONE: Final = "-"
 KEY_HEADS: Final = ("key", "value", "default", "meaning")
 """Headings of the columns of keys."""
 
-TITLES: Final = {"gear-pair": "Gear pairs", "cam": "Cams"}
+TITLES: Final = {"gear-pair": "Gear pairs", "cam": "Cams", "spatial-cam": "Cams in space"}
 GROUPS: Final = {
     "teeth": "Law, centrodes and teeth",
     "meshing": "Meshing study (`gearcam mesh`)",
     "errors": "Errors of mounting and making (`gearcam errors`)",
     "parts": "Parts",
     "cams": "Motion and profile",
+    "cams in space": "Walls",
     "forces": "Forces (`gearcam forces`)",
     "followed profiles": "Followed profile (`gearcam follow`)",
     "precision of cams": "Precision (`gearcam precision`)",

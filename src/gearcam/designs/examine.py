@@ -11,6 +11,7 @@ import os
 import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path as FilePath
 from typing import Any, Final
 
@@ -132,11 +133,11 @@ def _meant_kind(document: Mapping[str, Any]) -> DesignKind | None:
     name = document.get("kind")
     if isinstance(name, str) and (near := name if name in KINDS else nearest(name, KINDS)):
         return KINDS[near].meant(document)
-    parts = {other for kind in KINDS.values() for other in kind.elsewhere.values()}
+    within = [kind.variants.elsewhere for kind in KINDS.values() if kind.variants]
     likely = {
         name: sum(title in document for title in kind.tables)
         for name, kind in KINDS.items()
-        if name not in parts
+        if not any(name in elsewhere.values() for elsewhere in within)
     }
     most = max(likely.values())
     best = [name for name, count in likely.items() if count == most > 0]
@@ -161,10 +162,15 @@ def _owners(what: str, has: Callable[[DesignKind], bool]) -> str:
     return f"this {what} belongs to kind = {quoted(owners)}" if owners else ""
 
 
-def _other_home(key: str) -> str:
-    def has(kind: DesignKind) -> bool:
-        return any(key in kind.table(title).entries for title in kind.tables)
+def _other_home(document: Mapping[str, Any], kind: DesignKind, key: str) -> str:
+    def has(other: DesignKind) -> bool:
+        return any(key in other.table(title).entries for title in other.tables)
 
+    written = document.get("kind")
+    if written != kind.name and isinstance(written, str) and written in KINDS:
+        given = KINDS[written]  # one of its variants is of another kind
+        if has(given) and given.variants:
+            return f"this key belongs to another {given.variants.title}.{given.variants.key}"
     return _owners("key", has)
 
 
@@ -268,7 +274,8 @@ def _examine_table(
     for at, given in items:
         content, foreign = _without_foreign(kind, document, title, given)
         content, below = _with_designs(table, content, at, place)
-        faults = [*below, *faults_of(table, content, home=home, far=_other_home, at=at)]
+        far = partial(_other_home, document, kind)
+        faults = [*below, *faults_of(table, content, home=home, far=far, at=at)]
         part, problems = None, list[Fault]()
         if isinstance(content, Mapping):
             part, problems = parameters_of(table, table.owner or dict, content, faults, at)

@@ -103,6 +103,8 @@ class Variants:
         What the key chooses, by its values; those of the default are the bases of the others.
     called : str
         Name of an entry in messages, such as ``a {} cam``.
+    elsewhere : mapping of str to str
+        Further values of the key whose designs are of another kind, and that kind.
     """
 
     title: str
@@ -110,6 +112,7 @@ class Variants:
     default: str
     entries: Mapping[str, WithTables]
     called: str
+    elsewhere: Mapping[str, str] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} of {self.title}.{self.key}>"
@@ -118,6 +121,11 @@ class Variants:
     def titles(self) -> tuple[str, ...]:
         """Titles of the tables that depend on the key."""
         return tuple(self.entries[self.default].tables)
+
+    @property
+    def values(self) -> tuple[str, ...]:
+        """All values of the key."""
+        return (*self.entries, *self.elsewhere)
 
     def meant(self, document: Mapping[str, Any]) -> str:
         """Return the value of the key in a `document`; the nearest one if it is misspelt."""
@@ -137,7 +145,7 @@ class Variants:
         if title != self.title:
             return table
         entry = table.entries[self.key]
-        entry = replace(entry, param=replace(entry.param, choices=tuple(self.entries)))
+        entry = replace(entry, param=replace(entry.param, choices=self.values))
         return Table(title, table.owner, {**table.entries, self.key: entry})
 
     def union(self, title: str) -> Table:
@@ -195,8 +203,6 @@ class DesignKind:
     later : callable
         ``later(document)`` returns a fault for designs that are not supported, or None. No other
         fault is reported then.
-    elsewhere : mapping of str to str
-        Values of the key that decides on variants whose designs are of another kind, and that kind.
     formats : tuple of str
         Kinds of files that ``output.files`` may list.
     check_modules : tuple of str
@@ -225,7 +231,6 @@ class DesignKind:
     rules: tuple[Rule, ...] = ()
     problems: Callable[[Mapping[str, Any], Examined], Iterable[Fault]] = lambda *_: ()
     later: Callable[[Mapping[str, Any]], Fault | None] = lambda _: None
-    elsewhere: Mapping[str, str] = field(default_factory=dict)
     formats: tuple[str, ...]
     check_modules: tuple[str, ...] = ()
     check_groups: tuple[str, ...] = ()
@@ -245,11 +250,11 @@ class DesignKind:
 
     def meant(self, document: Mapping[str, Any]) -> DesignKind:
         """Return the kind that a `document` of this kind is of: another one for some variants."""
-        if self.variants is None or not self.elsewhere:
+        if self.variants is None:
             return self
         table = document.get(self.variants.title)
         value = table.get(self.variants.key) if isinstance(table, Mapping) else None
-        name = self.elsewhere.get(value) if isinstance(value, str) else None
+        name = self.variants.elsewhere.get(value) if isinstance(value, str) else None
         return KINDS[name] if name else self
 
     def table(self, title: str) -> Table:

@@ -50,9 +50,30 @@ def schema() -> Schema:
         "type": "object",
         "required": ["kind"],
         "properties": {"kind": {"enum": list(KINDS), "description": "kind of design"}},
-        "allOf": [_when("kind", name, {"$ref": f"#/$defs/{name}"}) for name in KINDS],
+        "allOf": [_when("kind", name, _meant(kind)) for name, kind in KINDS.items()],
         "$defs": definitions,
     }
+
+
+def _meant(kind: DesignKind) -> Schema:
+    """Return the schema of a kind, or of another one for some variants."""
+    made: Schema = {"$ref": f"#/$defs/{kind.name}"}
+    variants = kind.variants
+    for value, name in variants.elsewhere.items() if variants else ():
+        chosen = {"properties": {variants.key: {"const": value}}, "required": [variants.key]}  # pyright: ignore
+        given = {"properties": {variants.title: chosen}, "required": [variants.title]}  # pyright: ignore
+        made = {"if": given, "then": {"$ref": f"#/$defs/{name}"}, "else": made}
+    return made
+
+
+def _names(kind: DesignKind) -> list[str]:
+    """Return the words for a kind in files: its name, and kinds whose variants it has."""
+    others = [
+        one.name
+        for one in KINDS.values()
+        if one.variants and kind.name in one.variants.elsewhere.values()
+    ]
+    return [kind.name, *others]
 
 
 def _when(key: str, value: str, then: Schema) -> Schema:
@@ -129,7 +150,7 @@ def _branch(kind: DesignKind, main: Schema) -> Schema:
         # the schema of all designs requires the kind; where one is nested its key says it
         "required": [*([kind.main.title] if kind.main else []), *kind.required],
         "properties": {
-            "kind": {"const": kind.name, "description": kind.doc},
+            "kind": {"enum": _names(kind), "description": kind.doc},
             "name": {
                 "type": "string",
                 "pattern": _NAME_PATTERN,

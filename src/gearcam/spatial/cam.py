@@ -24,8 +24,8 @@ from gearcam.base.display import ShortRepr
 from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.roots import bracketed_root
-from gearcam.spatial.envelope import Axis, Contact, Roller, touched
-from gearcam.spatial.guides import Guide, carried
+from gearcam.spatial.envelope import Roller, RollerAxis, RollerContact, touched
+from gearcam.spatial.guides import RollerGuide, carried
 
 NARROW: Final = 1e-9
 """Width, as a share of the turn and of the roller's length, to which an extreme is narrowed."""
@@ -66,7 +66,7 @@ class SpatialCam(ShortRepr):
     ----------
     program : Program
         The lift over a turn.
-    guide : Guide
+    guide : RollerGuide
         What carries the roller.
     roller : Roller
         Its shape.
@@ -85,7 +85,7 @@ class SpatialCam(ShortRepr):
     """
 
     program: Program
-    guide: Guide
+    guide: RollerGuide
     roller: Roller
     inner: float
     floor: float
@@ -109,11 +109,13 @@ class SpatialCam(ShortRepr):
         """Radius in the middle between the roller's inner end and the outside, mm."""
         return 0.5 * (self.inner + self.outer_radius)
 
-    def axis(self, theta: Array) -> Axis:
+    def axis(self, theta: Array) -> RollerAxis:
         """Return the axis of the roller in the frame of the cam, at cam angles, rad."""
         return carried(self.guide, theta, *self.program.derivatives(theta, 2))
 
-    def contact(self, theta: Array, x: Array, side: int, roller: Roller | None = None) -> Contact:
+    def contact(
+        self, theta: Array, x: Array, side: int, roller: Roller | None = None
+    ) -> RollerContact:
         """Return where the roller touches a wall.
 
         Parameters
@@ -236,7 +238,7 @@ class SpatialWall(ShortRepr):
         """Name in files and facts: ``upper`` or ``lower``."""
         return "upper" if self.side > 0 else "lower"
 
-    def contact(self, theta: Array, x: Array) -> Contact:
+    def contact(self, theta: Array, x: Array) -> RollerContact:
         """Return where the roller touches it (see `SpatialCam.contact`)."""
         return self.cam.contact(theta, x, self.side)
 
@@ -261,7 +263,7 @@ class SpatialWall(ShortRepr):
         low = np.full(len(theta), self.cam.floor)
         return bracketed_root(outside, low, np.full(len(theta), radius), _ROOT * radius)
 
-    def grid(self, theta: Array, count: int) -> Contact:
+    def grid(self, theta: Array, count: int) -> RollerContact:
         """Return the wall as a grid, from its foot to its edge.
 
         Parameters
@@ -302,7 +304,7 @@ class SpatialWall(ShortRepr):
             narrower = (shape.at - x) * math.tan(shape.half_angle)
 
             def spread(radius: Array) -> Array:
-                return Contact(
+                return RollerContact(
                     axis=axis,
                     x=x,
                     radius=radius - narrower,

@@ -1,4 +1,4 @@
-"""The checks of cams in space: pressure angle, undercut, play, thin walls, slip, shocks.
+"""The checks of cams in space: pressure angle, undercut, lost motion, thin walls, slip, shocks.
 
 Importing this module registers them.
 """
@@ -14,7 +14,7 @@ from gearcam.base.numerals import formatted, shortened
 from gearcam.base.quantities import ANGLE, LENGTH, Param
 from gearcam.spatial.cam import SpatialCam
 from gearcam.spatial.guides import Straight
-from gearcam.spatial.surface import Blank
+from gearcam.spatial.surface import Cylinder
 
 KIND: Final = "cams in space"
 """Their group."""
@@ -28,7 +28,15 @@ _SLIP: Final = 0.02
 
 
 def pressure_limit(cam: SpatialCam, given: float) -> float:
-    """Return the largest pressure angle, rad: the `given` one, or that of the follower if nan."""
+    """Return the largest pressure angle that is allowed, rad.
+
+    Parameters
+    ----------
+    cam : SpatialCam
+        The cam.
+    given : float, rad
+        The limit of the design; nan: that of the cam's follower.
+    """
     default = ALONG if isinstance(cam.guide, Straight) else SWINGING
     return default if math.isnan(given) else given
 
@@ -37,7 +45,7 @@ def _at(theta: float) -> str:
     return f"at {formatted(math.degrees(theta), 5)} deg"
 
 
-Subject = tuple[SpatialCam, Blank]
+Subject = tuple[SpatialCam, Cylinder]
 """What is checked: a cam and what it is made from."""
 
 

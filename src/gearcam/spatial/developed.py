@@ -6,7 +6,7 @@ the parallels of this curve at the radius of the roller; of a cone at its radius
 plane is wrapped back, and the wall of a cylinder is the same at all depths, cut in the radial
 direction. The truth is another surface: the error at a point of that wall is its distance from the
 nearest position of the roller, less the radius of the roller. Where it is positive the roller has
-*play*, where it is negative it *jams*.
+a *gap*, where it is negative it *jams*.
 
 Source: 000 section 3.4.5, eqs. (3.49)-(3.51), whose condition of undercut lacks a term. Depends on
 cam; numpy only.
@@ -45,7 +45,7 @@ class Developed(ShortRepr):
     azimuth, height : (n, k) arrays, rad and mm
         Where the points are, in the frame of the cam.
     error : (n, k) array, mm
-        Distance from the true wall along its normal: play is positive.
+        Distance from the true wall along its normal: a gap is positive.
     """
 
     theta: Array
@@ -85,7 +85,15 @@ def developed(wall: SpatialWall, theta: Array, count: int) -> Developed:
 
 
 def largest_in_plane(cam: SpatialCam, x: float) -> float:
-    """Return the largest radius of a roller without undercut in the plane of a radius `x`, mm."""
+    """Return the largest radius of a roller without undercut in a developed plane, mm.
+
+    Parameters
+    ----------
+    cam : SpatialCam
+        The cam.
+    x : float, mm
+        Radius of the cylinder that is developed.
+    """
 
     def radius(theta: Array, place: Array) -> Array:
         s, s1, s2 = cam.program.derivatives(theta, 2)

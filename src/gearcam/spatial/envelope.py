@@ -43,7 +43,7 @@ SIDES: Final = (1, -1)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Axis(ShortRepr):
+class RollerAxis(ShortRepr):
     """The axis of a roller in the frame of the cam, at n cam angles.
 
     Parameters
@@ -88,12 +88,12 @@ class Roller(ShortRepr):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Contact(ShortRepr):
+class RollerContact(ShortRepr):
     """Where a roller touches one wall: at n cam angles, at k distances along its axis each.
 
     Parameters
     ----------
-    axis : Axis
+    axis : RollerAxis
         The motion of its axis.
     x, radius : (n, k) arrays, mm
         Distances along the axis, and radii of the roller there.
@@ -103,7 +103,7 @@ class Contact(ShortRepr):
         The side.
     """
 
-    axis: Axis
+    axis: RollerAxis
     x: Array
     radius: Array
     half_angle: float
@@ -190,12 +190,12 @@ class Contact(ShortRepr):
         return self.side * (around / cosine + along * r * by_x / by_psi)
 
 
-def touched(axis: Axis, roller: Roller, x: Array, side: int) -> Contact:
+def touched(axis: RollerAxis, roller: Roller, x: Array, side: int) -> RollerContact:
     """Return where a roller touches a wall.
 
     Parameters
     ----------
-    axis : Axis
+    axis : RollerAxis
         The motion of its axis, at n cam angles.
     roller : Roller
         Its shape.
@@ -205,7 +205,7 @@ def touched(axis: Axis, roller: Roller, x: Array, side: int) -> Contact:
         The side.
     """
     radius, half_angle = roller.radii(x), roller.half_angle
-    return Contact(axis=axis, x=x, radius=radius, half_angle=half_angle, side=side)
+    return RollerContact(axis=axis, x=x, radius=radius, half_angle=half_angle, side=side)
 
 
 def _dot(one: Array, other: Array) -> Array:

@@ -1,11 +1,11 @@
 """How a follower moves the axis of its roller, and what the cam makes of it.
 
-A *guide* gives the axis of the roller in the fixed frame for a lift: along the cam (`Straight`), on
-an arm about a pivot (`Arm`), on a turret (`Turret`). The cam turns by theta meanwhile, so in its
-frame the axis is turned by -theta (`carried`).
+A *guide* gives the axis of the roller in the fixed frame for a lift: along the cam (`Straight`),
+on an arm about a pivot (`SwingArm`), on a turret (`Turret`). The cam turns by theta meanwhile, so
+in its frame the axis is turned by -theta (`carried`).
 
-Frame: the cam's axis is z. The roller of `Straight` and `Arm` has its axis parallel to x and meets
-the cam at the azimuth 0; lift is along +z.
+Frame: the cam's axis is z. The roller of `Straight` and `SwingArm` has its axis parallel to x and
+meets the cam at the azimuth 0; lift is along +z.
 
 Depends on envelope; numpy only.
 """
@@ -20,10 +20,10 @@ import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.numeric.arrays import Array
-from gearcam.spatial.envelope import Axis
+from gearcam.spatial.envelope import RollerAxis
 
 
-class Guide(ABC, ShortRepr):
+class RollerGuide(ABC, ShortRepr):
     """What carries a roller."""
 
     @abstractmethod
@@ -43,7 +43,7 @@ class Guide(ABC, ShortRepr):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Straight(Guide):
+class Straight(RollerGuide):
     """A follower that moves along the cam.
 
     Parameters
@@ -55,7 +55,7 @@ class Straight(Guide):
     height: float
 
     def placed(self, lift: Array) -> tuple[Array, Array]:
-        """Return the axis of the roller (see `Guide.placed`)."""
+        """Return the axis of the roller (see `RollerGuide.placed`)."""
         point, direction = np.zeros((3, len(lift), 3)), np.zeros((3, len(lift), 3))
         point[0, :, 2], point[1, :, 2] = self.height + lift, 1.0
         direction[0, :, 0] = 1.0
@@ -63,7 +63,7 @@ class Straight(Guide):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Arm(Guide):
+class SwingArm(RollerGuide):
     """A follower that swings about an axis parallel to that of its roller.
 
     Parameters
@@ -89,7 +89,7 @@ class Arm(Guide):
         return self.height - self.length * math.sin(self.start)
 
     def placed(self, lift: Array) -> tuple[Array, Array]:
-        """Return the axis of the roller (see `Guide.placed`)."""
+        """Return the axis of the roller (see `RollerGuide.placed`)."""
         point, direction = np.zeros((3, len(lift), 3)), np.zeros((3, len(lift), 3))
         y, z = self.length * np.cos(self.start + lift), self.length * np.sin(self.start + lift)
         point[0, :, 1], point[0, :, 2] = y - self.distance, z + self.pivot
@@ -100,7 +100,7 @@ class Arm(Guide):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Turret(Guide):
+class Turret(RollerGuide):
     """A wheel with radial rollers, its axis parallel to y beside the cam.
 
     Distances along a roller's axis are measured from the axis of the turret, towards the cam.
@@ -117,7 +117,7 @@ class Turret(Guide):
     start: float
 
     def placed(self, lift: Array) -> tuple[Array, Array]:
-        """Return the axis of the roller (see `Guide.placed`)."""
+        """Return the axis of the roller (see `RollerGuide.placed`)."""
         point, direction = np.zeros((3, len(lift), 3)), np.zeros((3, len(lift), 3))
         point[0, :, 0] = self.distance
         c, s = np.cos(self.start + lift), np.sin(self.start + lift)
@@ -126,12 +126,14 @@ class Turret(Guide):
         return point, direction
 
 
-def carried(guide: Guide, theta: Array, lift: Array, first: Array, second: Array) -> Axis:
+def carried(
+    guide: RollerGuide, theta: Array, lift: Array, first: Array, second: Array
+) -> RollerAxis:
     """Return the axis of a roller in the frame of a cam that turns.
 
     Parameters
     ----------
-    guide : Guide
+    guide : RollerGuide
         What carries the roller.
     theta : (n,) array, rad
         Cam angles.
@@ -140,7 +142,7 @@ def carried(guide: Guide, theta: Array, lift: Array, first: Array, second: Array
 
     Returns
     -------
-    Axis
+    RollerAxis
     """
     c, s = np.cos(theta), np.sin(theta)
     back = np.zeros((len(theta), 3, 3))
@@ -158,7 +160,7 @@ def carried(guide: Guide, theta: Array, lift: Array, first: Array, second: Array
         return np.array([turned(one) for one in (f, once, twice)])
 
     point, direction = guide.placed(lift)
-    return Axis(
+    return RollerAxis(
         point=by_angle(point),
         direction=by_angle(direction),
         way=turned(point[1]),

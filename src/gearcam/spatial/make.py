@@ -15,7 +15,7 @@ from gearcam.base.numerals import formatted
 from gearcam.laws.program import Program
 from gearcam.spatial.cam import SpatialCam
 from gearcam.spatial.envelope import Roller
-from gearcam.spatial.guides import Arm, Guide, Straight
+from gearcam.spatial.guides import RollerGuide, Straight, SwingArm
 from gearcam.spatial.spec import WALLS, CylinderSpec, SpatialFollower
 
 
@@ -74,14 +74,14 @@ def make_cylinder(
     return made
 
 
-def _guide(program: Program, follower: SpatialFollower, lowest: float) -> Guide:
+def _guide(program: Program, follower: SpatialFollower, lowest: float) -> RollerGuide:
     if not follower.oscillating:
         return Straight(height=lowest)
     low, high = program.range
     arm = follower.arm or 0.0
     start = -0.5 * (high - low) if follower.start is None else follower.start
     distance = follower.pivot_distance or 0.5 * arm * (1.0 + math.cos(0.5 * (high - low)))
-    return Arm(length=arm, distance=distance, start=start, height=lowest)
+    return SwingArm(length=arm, distance=distance, start=start, height=lowest)
 
 
 def _demand_smooth(program: Program) -> None:

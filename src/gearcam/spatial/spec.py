@@ -63,7 +63,7 @@ class SpatialFollower(ShortRepr):
         ge=0,
         lt=60,
         doc='half angle of a conical roller, which is thinner inside; "apex": its tip is on the '
-        "cam's axis, so that it rolls without slip",
+        "axis of the cam, so that it rolls without slip",
     )
     roller_length: float | None = positive_length(
         example=12,

@@ -21,7 +21,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
 
@@ -29,12 +28,9 @@ from gearcam.base.display import ShortRepr
 from gearcam.numeric.arrays import Array, Ints, Mask
 from gearcam.spatial.cam import SpatialCam, SpatialWall
 
-_RAMP: Final = 4
-"""Steps of the ramp from the floor to a wall, for every twelve along the wall."""
-
 
 @dataclass(frozen=True, kw_only=True)
-class Blank(ShortRepr):
+class Cylinder(ShortRepr):
     """What a cam is made from: a cylinder with a bore.
 
     Parameters
@@ -71,14 +67,14 @@ class Surface(ShortRepr):
         return float(np.einsum("ij,ij->", a, np.cross(b, c))) / 6.0
 
 
-def surface(cam: SpatialCam, blank: Blank, steps: int, places: int) -> Surface:
+def surface(cam: SpatialCam, blank: Cylinder, steps: int, places: int) -> Surface:
     """Return the surface of a cam.
 
     Parameters
     ----------
     cam : SpatialCam
         The cam; its walls must not be undercut.
-    blank : Blank
+    blank : Cylinder
         What it is made from.
     steps : int
         Number of even cam angles.
@@ -104,6 +100,35 @@ def surface(cam: SpatialCam, blank: Blank, steps: int, places: int) -> Surface:
     return Surface(vertices=vertices, triangles=triangles)
 
 
+def chord_error(cam: SpatialCam, steps: int, places: int) -> float:
+    """Return the largest distance of the walls from the triangles of their surface, mm.
+
+    Measured at the middles of all edges; of the two diagonals of a cell the worse one counts.
+
+    Parameters
+    ----------
+    cam, steps, places
+        As of `surface`.
+    """
+    theta = np.linspace(0.0, 2.0 * math.pi, 2 * steps, endpoint=False)
+    worst = 0.0
+    for wall in cam.walls:
+        fine = wall.grid(theta, 2 * places - 1)
+        points = np.concatenate([fine.points, fine.points[:1]])
+        here, after = points[:-2:2], points[2::2]
+        one, other = here[:, :-2:2], here[:, 2::2]
+        beyond, ahead = after[:, 2::2], after[:, :-2:2]
+        for middle, rows, columns in (
+            (0.5 * (here[:, ::2] + after[:, ::2]), 1, 0),
+            (0.5 * (one + other), 0, 1),
+            (0.5 * (one + beyond), 1, 1),
+            (0.5 * (other + ahead), 1, 1),
+        ):
+            true = fine.points[rows::2, columns::2], fine.normals[rows::2, columns::2]
+            worst = max(worst, float(np.abs(((middle - true[0]) * true[1]).sum(axis=-1)).max()))
+    return worst
+
+
 @dataclass(frozen=True, eq=False)
 class _Ring:
     """Points around the axis; `apart`: at azimuths other than those of the ring that follows."""
@@ -112,7 +137,7 @@ class _Ring:
     apart: bool = False
 
 
-def _rings(cam: SpatialCam, blank: Blank, theta: Array, places: int) -> Iterator[_Ring]:
+def _rings(cam: SpatialCam, blank: Cylinder, theta: Array, places: int) -> Iterator[_Ring]:
     """Yield the rings from the bore over the upper face and the groove to the lower face."""
     walls = {wall.side: wall for wall in cam.walls}
     outer = cam.outer_radius
@@ -149,7 +174,7 @@ def _wall(wall: SpatialWall, theta: Array, places: int) -> Iterator[_Ring]:
 
 def _ramp(wall: SpatialWall, theta: Array, places: int) -> Iterator[_Ring]:
     """Yield the rings of the ramp below the foot of a wall, down to the floor."""
-    cam, count = wall.cam, max(1, round(_RAMP * (places - 1) / 12))
+    cam, count = wall.cam, places - 1
     foot = wall.contact(theta, np.full((len(theta), 1), cam.floor))
     axis = foot.axis
     center, radius = foot.centers[:, 0], foot.radius
@@ -178,8 +203,8 @@ def _joined(ring: _Ring, other: _Ring) -> Ints:
     if ring.apart:
         return _zipped(_turns(ring), _turns(other))
     after, beyond = np.roll(here, -1), np.roll(there, -1)
-    halves = [here, after, there], [after, beyond, there]
-    return np.concatenate([np.stack(half, axis=1) for half in halves])
+    corners = [here, after, there], [after, beyond, there]
+    return np.concatenate([np.stack(one, axis=1) for one in corners])
 
 
 def _turns(ring: _Ring) -> Array:

@@ -286,7 +286,7 @@ def test_only_an_open_pair_solves_a_knot() -> None:
 def test_tables_of_another_kind_are_named_as_such() -> None:
     (problem,) = problems(PAIR + '\n[follower]\ntype = "roller"\n')
     assert problem.message == "unknown table"
-    assert problem.hint == 'this table belongs to kind = "cam"'
+    assert problem.hint == 'this table belongs to kind = "cam" or "spatial-cam"'
 
 
 @pytest.mark.parametrize(
@@ -302,7 +302,7 @@ def test_without_a_kind_the_likeliest_one_is_judged(text: str, wrong: set[str]) 
     found = problems(text)
     assert {problem.key for problem in found} == wrong
     (kind,) = [problem for problem in found if problem.key == "kind"]
-    assert kind.allowed == '"cam" or "gear-pair"'
+    assert kind.allowed == '"cam", "gear-pair" or "spatial-cam"'
 
 
 def test_splines_are_refused_in_r12_only() -> None:

@@ -62,8 +62,8 @@ SLIPS: dict[str, tuple[str, str, str, str, str]] = {
     "hold": (CAM, '"dwell"', '"hold"', "motion[1].type", "did you mean dwell?"),
     "brackets": (CAM, "[follower]", "[[follower]]", "follower", "in single brackets: [follower]"),
     "one phase": (CAM, "[[motion]]", "[motion]", "", "of these tables write [[motion]]"),
-    "a form to come": (CAM, '"disc"', '"cylinder"', "cam.form",
-                       '"disc", "groove", "conjugate", "yoke" or "translating"'),
+    "a form": (CAM, '"disc"', '"disk"', "cam.form",
+               '"disc", "groove", "conjugate", "yoke", "translating" or "cylinder"'),
 }  # fmt: skip
 
 

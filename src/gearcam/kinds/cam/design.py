@@ -44,9 +44,6 @@ if TYPE_CHECKING:
 NAME: Final = "cam"
 """As in a file."""
 
-IN_SPACE: Final = {"cylinder": "spatial-cam"}
-"""Forms of cams whose designs are of another kind."""
-
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class CamDesign(Design):

@@ -10,7 +10,6 @@ from gearcam.cams.spec import FITTED, FOLLOWED, FORCES, PRECISION
 from gearcam.cams.spec import KIND as CAM
 from gearcam.designs.table import table_of
 from gearcam.kinds.cam.design import (
-    IN_SPACE,
     NAME,
     RULES,
     CamDesign,
@@ -60,7 +59,6 @@ KIND: Final = Kind(
     required=("follower", "cam"),
     rules=RULES,
     problems=problems,
-    elsewhere=IN_SPACE,
     formats=CAM_FORMATS,
     check_modules=("gearcam.cams.checks", "gearcam.cams.force_checks", "gearcam.parts.checks"),
     check_groups=(CAM, PARTS, FOLLOWED, FITTED, FORCES, PRECISION),

@@ -24,7 +24,7 @@ from gearcam.parts.solids import Mesh
 from gearcam.results.result import Result
 from gearcam.spatial.cam import SpatialCam, SpatialWall
 from gearcam.spatial.make import make_cylinder
-from gearcam.spatial.surface import Blank, surface
+from gearcam.spatial.surface import Cylinder, chord_error, surface
 
 if TYPE_CHECKING:
     from trimesh import Trimesh
@@ -74,9 +74,9 @@ class SpatialCamResult(Result):
             return make_cylinder(program, design.follower, design.cam, design.blank.bore)
 
     @property
-    def blank(self) -> Blank:
+    def blank(self) -> Cylinder:
         """What it is made from."""
-        return Blank(length=self.design.cam.length, bore=self.design.blank.bore)
+        return Cylinder(length=self.design.cam.length, bore=self.design.blank.bore)
 
     @property
     def lift_unit(self) -> tuple[float, str]:
@@ -169,7 +169,13 @@ class SpatialCamResult(Result):
         return self.mesh_of(self.steps, self.design.output.wall_points)
 
     def mesh_of(self, steps: int, places: int) -> Mesh:
-        """Return the cam as a mesh with numbers of cam angles and of places along the roller."""
+        """Return the cam as a mesh.
+
+        Parameters
+        ----------
+        steps, places : int
+            Numbers of cam angles, and of places along the roller.
+        """
         cam, blank = self.cam, self.blank
         for wall in cam.walls:
             _demand_whole(wall)
@@ -187,19 +193,8 @@ class SpatialCamResult(Result):
 
     @cached_property
     def chord_error(self) -> float:
-        """Largest distance of the walls from the middles of the mesh's edges, mm."""
-        theta = self.wall_angles
-        count = self.design.output.wall_points
-        worst = 0.0
-        for wall in self.cam.walls:
-            grid = wall.grid(theta, count).points
-            half = wall.grid(theta + math.pi / self.steps, count)
-            fine = wall.grid(theta, 2 * count - 1)
-            chords = 0.5 * (grid + np.roll(grid, -1, axis=0)) - half.points
-            across = 0.5 * (grid[:, 1:] + grid[:, :-1]) - fine.points[:, 1::2]
-            for off, normals in ((chords, half.normals), (across, fine.normals[:, 1::2])):
-                worst = max(worst, float(np.abs((off * normals).sum(axis=-1)).max()))
-        return worst
+        """Largest distance of the walls from the mesh, mm."""
+        return chord_error(self.cam, self.steps, self.design.output.wall_points)
 
     @property
     def solid_asked(self) -> bool:

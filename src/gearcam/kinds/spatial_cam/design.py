@@ -78,8 +78,8 @@ class DevelopedSpec(ShortRepr):
     Examples
     --------
     >>> import gearcam as gc
-    >>> gc.DevelopedSpec(steps=360)
-    DevelopedSpec(steps=360)
+    >>> gc.DevelopedSpec(steps=720)
+    DevelopedSpec(steps=720)
     """
 
     steps: int = param(COUNT, default=360, ge=12, le=100000, doc="number of even cam angles")

@@ -29,13 +29,38 @@ _TOLERANCE: Final = 1e-3
 
 
 def across(result: SpatialCamResult, theta: Array) -> Array:
-    """Return where the roller is on the sheet at cam angles, mm from the left."""
+    """Return where the roller is on the sheet.
+
+    Parameters
+    ----------
+    result : SpatialCamResult
+        The cam.
+    theta : (n,) array, rad
+        Cam angles.
+
+    Returns
+    -------
+    (n,) array, mm
+        Distances from the left.
+    """
     radius = result.cam.outer_radius
     return radius * (theta if result.cam.clockwise else 2.0 * math.pi - theta)
 
 
 def centers(result: SpatialCamResult, theta: Array) -> Plane:
-    """Return the centre of the roller on the sheet at cam angles, mm."""
+    """Return the centre of the roller on the sheet.
+
+    Parameters
+    ----------
+    result : SpatialCamResult
+        The cam.
+    theta : (n,) array, rad
+        Cam angles.
+
+    Returns
+    -------
+    (n,) complex array, mm
+    """
     lift = result.program.derivatives(theta, 0)[0]
     point, _ = result.cam.guide.placed(lift)
     side = -1.0 if result.cam.clockwise else 1.0
@@ -43,7 +68,20 @@ def centers(result: SpatialCamResult, theta: Array) -> Plane:
 
 
 def edge(result: SpatialCamResult, wall: SpatialWall) -> Plane:
-    """Return the edge of a wall on the sheet, from its left to its right end, mm."""
+    """Return the edge of a wall on the sheet.
+
+    Parameters
+    ----------
+    result : SpatialCamResult
+        The cam.
+    wall : SpatialWall
+        One of its walls.
+
+    Returns
+    -------
+    (n,) complex array, mm
+        From the left to the right end.
+    """
     radius, turn = result.cam.outer_radius, 2.0 * math.pi
     theta = np.linspace(0.0, turn, _STEPS, endpoint=False)
     points = wall.contact(theta, wall.edge(theta)[:, None]).points[:, 0]

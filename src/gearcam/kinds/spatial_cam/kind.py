@@ -60,6 +60,12 @@ KIND: Final = Kind(
         "blank": {"bore_diameter_mm": 20},
         "output": {"files": ["stl", "csv", "report"]},
     },
+    processes={
+        "printing": {
+            "cam": {"roller_clearance_mm": 0.08, "floor_clearance_mm": 0.5},
+            "output": {"files": ["stl", "report"], "wall_step_deg": 1},
+        },
+    },
     notes={"motion": "Phases of the motion, one after the other, 360 deg in all."},
     facts=deferred(f"{_HERE}.facts:facts"),
     files=DeferredMapping(f"{_HERE}.files:FILES"),

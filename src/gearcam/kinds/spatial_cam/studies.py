@@ -52,10 +52,10 @@ def _compute(result: SpatialCamResult, progress: Any) -> StudyResult:  # noqa: A
 
 
 def _facts(walls: Mapping[str, Developed]) -> dict[str, Any]:
-    """Return the largest play and the largest overlap with the roller."""
+    """Return the widest gap and the deepest overlap with the roller."""
     tree: dict[str, Any] = {}
     for name, sign, meaning in (
-        ("play_mm", 1.0, "largest play of the roller at a wall of the developed plane"),
+        ("gap_mm", 1.0, "widest gap between the roller and a wall of the developed plane"),
         ("jam_mm", -1.0, "deepest such wall inside the roller"),
     ):
         key, found = max(walls.items(), key=lambda item: float((sign * item[1].error).max()))
@@ -85,7 +85,7 @@ def _charts(walls: Mapping[str, Developed]) -> dict[str, Chart]:
     ]
     return {
         "error": Chart(
-            title="Error of walls constructed in the developed plane: play above 0, jam below",
+            title="Error of walls constructed in the developed plane: a gap above 0, a jam below",
             x="cam angle theta, deg",
             y="error, mm",
             lines=tuple(lines),

@@ -73,13 +73,6 @@ from helpers_files import FLAT, RISE, ROLLER, SWINGING, changed, only, problems,
             "cam.prime_radius_mm",
             "not larger than the follower",
         ),
-        (
-            '"disc"',
-            '"cylinder"',
-            27,
-            "cam.form",
-            "cylinder cams are planned, but not available yet",
-        ),
         ('"disc"', '"disk"', 27, "cam.form", "mean disc"),
         ('"stl"', '"dxf"', 32, "output.files[1]", "listed twice"),
         ('"stl"', '"sld"', 32, "output.files[1]", "mean stl"),
@@ -251,11 +244,11 @@ def test_phases_that_can_be_read_are_judged_beside_those_that_cannot() -> None:
     }
 
 
-@pytest.mark.parametrize("form", ["cylinder"])
-def test_planned_forms_are_named_and_nothing_else_is_said(form: str) -> None:
-    problem = only(changed('"disc"', f'"{form}"\nwidth_mm = 3').replace("rise", "raise"))
-    assert problem.line == 27
-    assert f"{form} cams are planned, but not available yet" in problem.message
+def test_a_form_of_another_kind_is_judged_as_such() -> None:
+    found = problems(changed('"disc"', '"cylinder"'))
+    assert "cam.outer_diameter_mm" in {one.key for one in found}
+    (hint,) = {one.hint for one in found if one.key == "cam.thickness_mm"}
+    assert hint == "this key belongs to another cam.form"
 
 
 def test_keys_of_other_forms_are_reported_in_the_order_in_which_they_are_given() -> None:

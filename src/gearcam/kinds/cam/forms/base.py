@@ -233,6 +233,11 @@ FORMS: Registry[type[Form[Any, Any, Any]]] = Registry(
 
 
 VARIANTS: Final = Variants(
-    title="cam", key="form", default="disc", entries=FORMS, called="a {} cam"
+    title="cam",
+    key="form",
+    default="disc",
+    entries=FORMS,
+    called="a {} cam",
+    elsewhere={"cylinder": "spatial-cam"},
 )
 """The tables that depend on the form."""

@@ -1,0 +1,115 @@
+"""The surface of a cam in space: closed, its volume, and the roller that runs through it."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import manifold3d
+import numpy as np
+import pytest
+
+from gearcam.parts.solids import Mesh
+from gearcam.spatial.cam import SpatialCam
+from gearcam.spatial.surface import Cylinder, chord_error, surface
+from helpers_spatial import reference, swinging
+
+EXACT = 44298.298
+"""Volume of the groove of the reference cam, mm^3: two quadratures agree to 1e-4."""
+
+
+def mesh(cam: SpatialCam, steps: int = 720, places: int = 13, **blank: float) -> Mesh:
+    made = surface(cam, Cylinder(**({"length": 60.0} | blank)), steps, places)
+    return Mesh(vertices=made.vertices, triangles=made.triangles)
+
+
+def solid(made: Mesh) -> Any:
+    found = manifold3d.Manifold(manifold3d.Mesh64(made.vertices, made.triangles.astype(np.uint64)))
+    assert found.status() == manifold3d.Error.NoError
+    return found
+
+
+@pytest.mark.parametrize("clockwise", [False, True])
+@pytest.mark.parametrize("sides", [(1, -1), (1,), (-1,)])
+@pytest.mark.parametrize("bore", [0.0, 10.0])
+def test_surfaces_are_closed(clockwise: bool, sides: tuple[int, ...], bore: float) -> None:
+    cam = reference(height=15.0, sides=sides, clockwise=clockwise, clearance=0.1, half_angle=0.1)
+    made = mesh(cam, 180, 5, bore=bore)
+    assert made.watertight
+    assert made.volume > 0.0
+    assert solid(made).volume() == pytest.approx(made.volume, rel=1e-12)
+    assert solid(made).genus() == (1 if bore else 0)
+
+
+def test_the_surface_of_a_swinging_follower_is_closed() -> None:
+    cam = swinging()
+    low, _ = cam.heights
+    made = mesh(reference(program=cam.program, guide=cam.guide), length=60.0)
+    assert low < 0.0  # it only has to be closed
+    assert made.watertight
+
+
+def test_the_volume_converges_with_the_square_of_the_step() -> None:
+    cam = reference(height=15.0)
+    steps, whole = (180, 360, 720, 1440), math.pi * 40.0**2 * 60.0
+    errors = [whole - mesh(cam, n, 1 + n // 60).volume - EXACT for n in steps]
+    slopes = np.diff(np.log(np.abs(errors[:3]))) / np.diff(np.log(steps[:3]))
+    assert np.abs(slopes + 2.0).max() < 0.1
+    assert abs(errors[-1]) < 0.6
+
+
+def test_the_mirror_image_has_the_same_volume() -> None:
+    ways = [mesh(reference(height=15.0, clockwise=way), 360, 7).volume for way in (False, True)]
+    assert ways[0] == pytest.approx(ways[1], rel=1e-13)
+
+
+def test_the_chord_error_falls_with_the_square_of_the_step() -> None:
+    cam = reference(height=15.0)
+    errors = [chord_error(cam, n, 1 + n // 60) for n in (180, 360, 720)]
+    assert np.abs(np.diff(np.log2(errors)) + 2.0).max() < 0.1
+
+
+def roller(cam: SpatialCam, theta: float, more: float) -> Any:
+    """The roller as a prism of 720 sides about its axis, wider by so much, in the cam's frame."""
+    radius, depth = cam.roller.radius + more, cam.outer_radius + 5.0 - cam.inner
+    made = manifold3d.Manifold.cylinder(depth, radius, radius, 720)
+    lift = float(cam.program.derivatives(np.array([theta]), 0)[0][0])
+    return (
+        made.rotate((0.0, 90.0, 0.0))
+        .translate((cam.inner + 1e-3, 0.0, 15.0 + lift))
+        .rotate((0.0, 0.0, -math.degrees(theta)))
+    )
+
+
+def overlaps(body: Any, cam: SpatialCam, count: int, more: float) -> list[float]:
+    """Volumes that the roller shares with a cam at angles between those of its surface."""
+    angles = 2.0 * math.pi * (np.arange(count) + 0.37) / count
+    return [(body ^ roller(cam, float(theta), more)).volume() for theta in angles]
+
+
+COUNTS = [60, pytest.param(720, marks=pytest.mark.slow)]
+
+
+@pytest.mark.parametrize("count", COUNTS)
+@pytest.mark.parametrize("clearance", [0.0, 0.05])
+def test_the_roller_runs_through_the_groove(clearance: float, count: int) -> None:
+    """It neither overlaps beyond the chord error nor has a gap beyond that and the clearance."""
+    cam = reference(height=15.0, clearance=clearance, floor=27.99)
+    body, error = solid(mesh(cam)), chord_error(cam, 720, 13)
+    assert error < 2.5e-3
+    assert max(overlaps(body, cam, count, 0.5 * clearance - 1.1 * error)) == 0.0
+    assert min(overlaps(body, cam, count, 0.5 * clearance + 1.1 * error)) > 0.0
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_wall_that_is_off_by_5_um_is_found(side: int) -> None:
+    cam = reference(height=15.0)
+    made = mesh(cam)
+    (wall,) = (one for one in cam.walls if one.side == side)
+    grid = wall.grid(np.linspace(0.0, 2.0 * math.pi, 720, endpoint=False), 13)
+    known = {tuple(point): k for k, point in enumerate(made.vertices.tolist())}
+    places = [known[tuple(point)] for point in grid.points.reshape(-1, 3).tolist()]
+    moved = made.vertices.copy()
+    moved[places] -= 5e-3 * grid.normals.reshape(-1, 3)
+    body = solid(Mesh(vertices=moved, triangles=made.triangles))
+    assert max(overlaps(body, cam, 12, -1.1 * chord_error(cam, 720, 13))) > 0.0
