@@ -39,6 +39,7 @@ DRAWN = {
     "conjugate_cams": ("conjugate_cams", 420),
     "yoke_cam": ("yoke_cam", 420),
     "translating_cam": ("translating_cam", 640),
+    "cylinder_cam": ("cylinder_cam", 640),
 }
 """Pictures of assembled parts: profile, and width in pixels."""
 
