@@ -104,6 +104,8 @@ def _optimize(options: Options, file: str) -> int:
         taken = time.perf_counter() - start
         say(f"  {_count(len(trials.rows))} in {taken:.1f} s, {len(trials.good)} may be taken")
         _, files = write_tables(log, folder, _STEM)
+        if stopped and not trials.good:
+            return _interrupted()
         try:
             best = trials.best()[:FRONT]
         except InfeasibleError as error:
@@ -115,10 +117,13 @@ def _optimize(options: Options, file: str) -> int:
     say(f"  written to {folder}: {', '.join(one.name for one in files)}")
     for name in trials.unchanged:
         complain(f"{file}: {name} is the same in all variants: what is varied does not change it")
-    if stopped:
-        complain("interrupted: the same command goes on")
-        return INTERRUPTED
-    return GOOD
+    return _interrupted() if stopped else GOOD
+
+
+def _interrupted() -> int:
+    """Tell of an interruption and return the exit code."""
+    complain("interrupted: the same command goes on")
+    return INTERRUPTED
 
 
 def _demand_variety(axes: Sequence[Varied]) -> None:

@@ -105,14 +105,15 @@ class Trials(ShortRepr):
             for number, one in jobs
             if number in self.log and (row := self.log.row(number)).values == one
         }
-        for row in self.build([job for job in jobs if job[0] not in known]):
-            self.log.append(row)
-            known[row.number] = row
-            if self.progress is not None:
-                self.progress(first + len(known), self.most)
-        new = [known[number] for number in numbers]
-        self.rows += new
-        return new
+        try:
+            for row in self.build([job for job in jobs if job[0] not in known]):
+                self.log.append(row)
+                known[row.number] = row
+                if self.progress is not None:
+                    self.progress(first + len(known), self.most)
+        finally:  # an interruption leaves those that are built
+            self.rows += [known[number] for number in numbers if number in known]
+        return self.rows[first:]
 
     def broken(self, row: Built) -> float:
         """Return by how much a trial breaks what must not be broken; 0 if it may be taken."""

@@ -75,6 +75,7 @@ class Processes(Engine):
                     else:
                         yield item
         finally:
+            source.end()
             for one in leaders:
                 one.stop()
             for one in leaders:
@@ -94,7 +95,7 @@ class Processes(Engine):
         try:
             yield built
         finally:
-            lots.put(None)
+            lots.end()
             rows.close()  # pyright: ignore
 
 
@@ -109,11 +110,16 @@ class _Lots(Iterable[Job]):
         while chunk := self.take(1):
             yield from chunk
 
-    def put(self, jobs: Sequence[Job] | None) -> None:
-        """Give jobs; None: there are no more."""
+    def put(self, jobs: Sequence[Job]) -> None:
+        """Give jobs."""
         with self._more:
-            self._jobs.extend(jobs or ())
-            self._ended |= jobs is None
+            self._jobs.extend(jobs)
+            self._more.notify_all()
+
+    def end(self) -> None:
+        """Let nobody wait for more jobs."""
+        with self._more:
+            self._ended = True
             self._more.notify_all()
 
     def take(self, count: int) -> list[Job]:
@@ -131,6 +137,9 @@ class _Source:
     def take(self, count: int) -> list[Job]:
         with self._lock:
             return [job for _, job in zip(range(count), self._jobs, strict=False)]
+
+    def end(self) -> None:
+        """Nobody waits for jobs."""
 
 
 class _Leader:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import shutil
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +13,8 @@ import pytest
 
 import gearcam as gc
 from gearcam.cli import main
+from gearcam.sweep.pool import Processes
+from gearcam.sweep.rows import Built, measured
 from helpers_pairs import PROFILES
 
 CAM = """
@@ -163,6 +167,31 @@ def test_a_goal_that_nothing_changes_and_another_goal_in_the_same_folder_are_sai
     assert main([*words, "--maximize", "pair.ratio.max"]) == 2
     assert "another sweep (goals: least pair.ratio.max)" in capsys.readouterr().err
     assert (folder / "out" / "optimize.log").read_bytes() == before
+
+
+def test_an_interruption_keeps_what_is_built(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    ends = [0]
+
+    @contextmanager
+    def session(*_: Any) -> Iterator[Any]:
+        def build(jobs: Sequence[Any]) -> Iterator[Built]:
+            for number, values in jobs[: ends[0]]:
+                yield measured(gc.load("pair.toml"), number, values)
+            raise KeyboardInterrupt
+
+        yield build
+
+    monkeypatch.setattr(Processes, "session", session)
+    words = ["optimize", "pair.toml", "--set", "law.eccentricity=0.1:0.5", "-o", "out"]
+    for count in (0, 2):
+        ends[0] = count
+        assert main([*words, "--minimize", "pair.ratio.max"]) == 130
+        said = capsys.readouterr()
+        assert f"  {count} trials in" in said.out
+        assert "interrupted: the same command goes on" in said.err
+        assert (folder / "out" / "best.toml").exists() == (count > 0)
 
 
 def test_a_search_without_a_variant_that_can_be_taken_says_why(

@@ -147,3 +147,29 @@ def test_a_process_that_cannot_begin_is_a_fault_and_not_a_refusal(
     monkeypatch.setattr(sys, "executable", "/bin/false")
     with pytest.raises(RuntimeError, match="cannot begin"):
         list(Processes(jobs=2, measure=odd).run(BASE, iter(deeds("work", "work"))))
+
+
+def test_an_error_ends_a_session_in_which_another_process_waits_for_jobs(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(sys, "executable", "/bin/false")
+    errors: list[str] = []
+
+    def search() -> None:
+        with Processes(jobs=2, measure=odd).session(BASE) as build:
+            try:
+                list(build(deeds("work")))
+            except RuntimeError as error:
+                errors.append(str(error))
+
+    thread = threading.Thread(target=search, daemon=True)
+    thread.start()
+    thread.join(20.0)
+    assert not thread.is_alive()
+    assert len(errors) == 1
+
+
+def test_lots_of_a_session_are_built_by_the_same_processes() -> None:
+    with Processes(jobs=1, measure=odd).session(BASE) as build:
+        lots = [list(build(deeds("work", "work"))) for _ in range(3)]
+    assert len({row.facts["pid"] for rows in lots for row in rows}) == 1
