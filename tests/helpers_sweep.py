@@ -26,6 +26,8 @@ def odd(base: gc.Design, number: int, values: Mapping[str, Any]) -> Built:  # no
         Path(once).touch()
     if deed == "hang":
         time.sleep(1e3)
+    if deed == "nap":
+        time.sleep(0.1)
     if deed == "eat":
         try:
             bytearray(1 << 40)
@@ -33,7 +35,7 @@ def odd(base: gc.Design, number: int, values: Mapping[str, Any]) -> Built:  # no
             return Built(number=number, values=values, refusal="too large")
     if deed == "die":
         os.kill(os.getpid(), signal.SIGKILL)
-    if deed == "end its worker":
+    if deed == "end-worker":
         os.kill(os.getppid(), signal.SIGKILL)
         time.sleep(1e3)
     if deed == "print":

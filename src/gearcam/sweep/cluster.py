@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import math
 import pickle
 import sys
 import threading
@@ -15,7 +16,7 @@ import time
 import uuid
 import warnings
 from collections import Counter, deque
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
@@ -29,7 +30,7 @@ from gearcam.base.interrupts import unbroken
 from gearcam.designs.design import Design, design, document_of
 from gearcam.designs.reader import find_tables
 from gearcam.sweep.child import MEMORY, SECONDS, Child
-from gearcam.sweep.engine import Engine, Job, Pace
+from gearcam.sweep.engine import MOST, Engine, Job, Pace
 from gearcam.sweep.rows import Built, Measure, measured
 
 _CHUNK_S: Final = 1.0
@@ -93,6 +94,18 @@ class Cluster(Engine):
 
     def run(self, base: Design, jobs: Iterable[Job]) -> Iterator[Built]:
         """Yield the rows of variants (see `Engine.run`)."""
+        with self._chunks(base) as chunks:
+            yield from chunks.rows(iter(jobs))
+
+    @contextmanager
+    def session(self, base: Design) -> Iterator[Callable[[Sequence[Job]], Iterator[Built]]]:
+        """Yield a function for several lots, built by the same processes (see `Engine`)."""
+        with self._chunks(base) as chunks:
+            yield chunks.lot
+
+    @contextmanager
+    def _chunks(self, base: Design) -> Iterator[_Chunks]:
+        """Yield what builds variants of a design by the workers; end it then."""
         order = Order(
             token=uuid.uuid4().hex,
             task=pickle.dumps((_from_root(base), self.measure)),
@@ -101,9 +114,9 @@ class Cluster(Engine):
             versions=_versions(),
         )
         with _connected(self.address) as client:
-            chunks = _Chunks(client, self.address, order, iter(jobs))
+            chunks = _Chunks(client, self.address, order)
             try:
-                yield from chunks.rows()
+                yield chunks
             finally:
                 with unbroken():
                     chunks.end()
@@ -182,34 +195,42 @@ def dismiss(token: str) -> None:
 class _Chunks:
     """Chunks of variants that are built by the workers of a cluster."""
 
-    def __init__(self, client: Any, address: str, order: Order, jobs: Iterator[Job]) -> None:
+    def __init__(self, client: Any, address: str, order: Order) -> None:
         from distributed import as_completed
 
         self._client, self._address = client, address
-        self._token, self._jobs = order.token, jobs
+        self._token, self._jobs = order.token, iter(list[Job]())
         self._order = client.submit(identical, order, pure=False)
         self._waiting: dict[Any, list[Job]] = {}
         self._done = as_completed(with_results=True, raise_errors=False, loop=client.loop)
         self._pace = Pace()
-        self._most, self._look = 0, 0.0
+        self._largest, self._threads, self._look = MOST, 1, 0.0
         self._suspects: deque[Job] = deque()
         self._alone: Any = None
         self._killed: Counter[int] = Counter()
 
-    def rows(self) -> Iterator[Built]:
+    def lot(self, jobs: Sequence[Job]) -> Iterator[Built]:
+        """Yield a row for each job of a lot, of which all workers build a part."""
+        self._count()
+        self._largest = math.ceil(len(jobs) / self._threads)
+        return self.rows(iter(jobs))
+
+    def rows(self, jobs: Iterator[Job]) -> Iterator[Built]:
         """Yield a row for each job."""
+        self._jobs = jobs
         self._fill()
         while self._waiting:
             future, result = next(self._done)
-            jobs = self._waiting.pop(future)
-            if future is self._alone:
+            chunk, alone = self._waiting.pop(future), future is self._alone
+            if alone:
                 self._alone = None
             if future.status == "finished":
                 rows = pickle.loads(result)
                 for row in rows:
                     self._pace.add(row.time_s)
             else:
-                rows = self._failed(jobs, result[1] if isinstance(result, tuple) else result)
+                error = result[1] if isinstance(result, tuple) else result
+                rows = self._failed(chunk, error, alone=alone)
             self._fill()
             yield from rows
 
@@ -226,18 +247,25 @@ class _Chunks:
             )
 
     def _fill(self) -> None:
-        """Submit as many chunks as the workers need."""
-        now = time.monotonic()
-        if now >= self._look:
-            self._most = max(1, sum(self._client.nthreads().values())) * _AHEAD
-            self._look = now + _LOOK_S
-        if self._suspects and self._alone is None:
+        """Submit as many chunks as the workers need; of suspects one, and nothing else with it."""
+        self._count()
+        if self._suspects and not self._waiting:
             self._alone = self._submit([self._suspects.popleft()])
-        while len(self._waiting) < self._most:
-            chunk = list(islice(self._jobs, self._pace.chunk(_CHUNK_S)))
+        if self._suspects or self._alone is not None:
+            return
+        while len(self._waiting) < self._threads * _AHEAD:
+            size = min(self._pace.chunk(_CHUNK_S), self._largest)
+            chunk = list(islice(self._jobs, size))
             if not chunk:
                 break
             self._submit(chunk)
+
+    def _count(self) -> None:
+        """Count the threads of the workers, now and then."""
+        now = time.monotonic()
+        if now >= self._look:
+            self._threads = max(1, sum(self._client.nthreads().values()))
+            self._look = now + _LOOK_S
 
     def _submit(self, chunk: list[Job]) -> Any:
         future = self._client.submit(build_chunk, self._order, pickle.dumps(chunk), pure=False)
@@ -245,11 +273,11 @@ class _Chunks:
         self._done.add(future)
         return future
 
-    def _failed(self, jobs: list[Job], error: BaseException) -> list[Built]:
+    def _failed(self, jobs: list[Job], error: BaseException, *, alone: bool) -> list[Built]:
         """Return the rows of a chunk that failed: of a variant that ended its worker twice.
 
-        After a chunk with which workers end, its variants are built again one by one: the workers
-        that end with one of them take no others of these with them.
+        A worker that ends takes all that it has with it. So the variants of chunks with which
+        workers end are built again one by one, with nothing else on any worker.
         """
         from distributed import CancelledError, KilledWorker
 
@@ -261,7 +289,7 @@ class _Chunks:
             raise DesignError([Problem(message, key="--scheduler", allowed=allowed)])
         if not isinstance(error, KilledWorker):
             raise error
-        if len(jobs) > 1:
+        if not alone:
             self._suspects.extend(jobs)
             return []
         number, values = jobs[0]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import signal
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
@@ -9,6 +11,7 @@ from typing import Any
 import pytest
 
 import gearcam as gc
+from gearcam.base.errors import DesignError
 from gearcam.sweep import cluster
 from gearcam.sweep.cluster import Cluster
 from gearcam.sweep.pool import Processes
@@ -67,3 +70,49 @@ def test_workers_find_the_files_that_a_design_names(
     monkeypatch.chdir(PROFILES)  # workers run in another folder
     found = rows(local, [(0, {"pair.module_mm": 2})], gc.load("measured.toml"), measure=measured)
     assert found[0].made
+
+
+def test_lots_of_a_session_are_built_by_the_processes_of_all_workers(local: Any) -> None:
+    with Cluster(address=local.scheduler_address, measure=odd).session(BASE) as build:
+        pids = [
+            {row.facts["pid"] for row in build(deeds(*["nap"] * count))} for count in (4, 6, 1, 4)
+        ]
+    assert len(set.union(*pids)) == 2
+    assert len(pids[1]) == len(pids[3]) == 2
+
+
+def test_a_worker_that_is_killed_costs_nothing(local: Any) -> None:
+    wanted = deeds(*["nap"] * 16)
+    with Cluster(address=local.scheduler_address, measure=odd).session(BASE) as build:
+        found = []
+        for row in build(wanted):
+            if not found:
+                os.kill(pids(local)[0], signal.SIGKILL)
+            found.append(row.number)
+            assert row.made
+    assert sorted(found) == list(range(16))
+
+
+@pytest.mark.slow
+def test_a_variant_with_which_workers_end_costs_only_itself(local: Any) -> None:
+    found = rows(local, deeds("work", "end-worker", "work", "work"))
+    assert [row.made for _, row in sorted(found.items())] == [True, False, True, True]
+    assert "ended twice" in found[1].refusal
+
+
+def test_an_address_at_which_nothing_answers_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cluster, "_ANSWER_S", 0.3)
+    with pytest.raises(DesignError, match="no scheduler of dask answers"):
+        Cluster(address="tcp://127.0.0.1:1")
+
+
+def test_other_versions_are_named() -> None:
+    here = cluster._versions()
+    cluster._demand_same(here, {"the scheduler": here})
+    there = here | {"distributed": "2020.1", "gearcam": ""}
+    with pytest.raises(DesignError) as caught:
+        cluster._demand_same(here, {"the scheduler": here, "the worker a": there})
+    (problem,) = caught.value.problems
+    assert problem.message == (
+        f"the worker a has no gearcam, distributed 2020.1 instead of {here['distributed']}"
+    )
