@@ -20,15 +20,20 @@ from helpers_pairs import PROFILES
 from helpers_sweep import BASE, odd
 
 distributed = pytest.importorskip("distributed")
+dask = pytest.importorskip("dask")
 
 Jobs = Sequence[tuple[int, dict[str, Any]]]
 
 
 @pytest.fixture(scope="module")
 def local() -> Iterator[Any]:
-    """Two workers of one thread, as on two cores of other machines."""
+    """Two workers of one thread, as on two cores of other machines.
+
+    What a killed worker had is asked for as long as dask tries to connect: 30 s by default.
+    """
     with (
         cluster._silent(),
+        dask.config.set({"distributed.comm.timeouts.connect": "2s"}),
         distributed.LocalCluster(
             n_workers=2, threads_per_worker=1, dashboard_address=None, host="127.0.0.1"
         ) as made,
