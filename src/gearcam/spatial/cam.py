@@ -82,6 +82,9 @@ class SpatialCam(ShortRepr):
         The sides of the walls, of `gearcam.spatial.envelope.SIDES`.
     clockwise : bool
         Whether the cam turns clockwise: then it is the mirror image of what is computed.
+    apart : float, mm
+        Of a rib: distance of the axes of the two rollers that embrace it; each makes the wall on
+        its side of the rib. 0: one roller makes all walls.
     """
 
     program: Program
@@ -93,6 +96,7 @@ class SpatialCam(ShortRepr):
     clearance: float = 0.0
     sides: tuple[int, ...] = (1, -1)
     clockwise: bool = False
+    apart: float = 0.0
 
     @cached_property
     def walls(self) -> tuple[SpatialWall, ...]:
@@ -109,9 +113,22 @@ class SpatialCam(ShortRepr):
         """Radius in the middle between the roller's inner end and the outside, mm."""
         return 0.5 * (self.inner + self.outer_radius)
 
-    def axis(self, theta: Array) -> RollerAxis:
-        """Return the axis of the roller in the frame of the cam, at cam angles, rad."""
-        return carried(self.guide, theta, *self.program.derivatives(theta, 2))
+    def axis(self, theta: Array, side: int) -> RollerAxis:
+        """Return the axis of the roller that makes a wall, in the frame of the cam.
+
+        Parameters
+        ----------
+        theta : (n,) array, rad
+            Cam angles.
+        side : {1, -1}
+            The wall.
+        """
+        axis = carried(self.guide, theta, *self.program.derivatives(theta, 2))
+        if not self.apart:
+            return axis
+        point = axis.point.copy()
+        point[0, :, 2] -= 0.5 * side * self.apart  # the upper wall is made by the lower roller
+        return replace(axis, point=point)
 
     def contact(
         self, theta: Array, x: Array, side: int, roller: Roller | None = None
@@ -129,7 +146,7 @@ class SpatialCam(ShortRepr):
         roller : Roller, optional
             By default the `tool`.
         """
-        return touched(self.axis(theta), roller or self.tool, x, side)
+        return touched(self.axis(theta, side), roller or self.tool, x, side)
 
     def pressure(self, x: float | None = None, kind: str = "") -> Spot | None:
         """Return the largest pressure angle, rad, of either wall.
@@ -182,6 +199,21 @@ class SpatialCam(ShortRepr):
             return None
         steepest = self._steepest(self.outer_radius, self.outer_radius, self._turn)
         return replace(steepest, value=self.clearance / math.cos(steepest.value))
+
+    @cached_property
+    def least_rib(self) -> Spot | None:
+        """Least thickness of a rib along its normal, mm; None without one.
+
+        To first order: the distance of the rollers' axes across the walls, less both radii.
+        """
+        if not self.apart:
+            return None
+
+        def thickness(theta: Array, x: Array) -> Array:
+            contact = self.contact(theta, x, 1)
+            return self.apart * np.cos(contact.pressure) - 2.0 * contact.radius
+
+        return self.least(thickness, (self.inner, self.outer_radius))
 
     @cached_property
     def heights(self) -> tuple[float, float]:
@@ -254,7 +286,7 @@ class SpatialWall(ShortRepr):
         -------
         (n,) array, mm
         """
-        axis, radius = self.cam.axis(theta), self.cam.outer_radius
+        axis, radius = self.cam.axis(theta, self.side), self.cam.outer_radius
 
         def outside(x: Array) -> Array:
             contact = touched(axis, self.cam.tool, x[:, None], self.side)
@@ -300,7 +332,7 @@ class SpatialWall(ShortRepr):
         widest = _WIDEST * cam.outer_radius
 
         def critical(theta: Array, x: Array) -> Array:
-            axis = cam.axis(theta)
+            axis = cam.axis(theta, self.side)
             narrower = (shape.at - x) * math.tan(shape.half_angle)
 
             def spread(radius: Array) -> Array:

@@ -146,6 +146,9 @@ def thin_wall(subject: Subject, limit: float) -> Iterator[Remark]:
     Looks at: the distance of the walls from the faces, and of the floor from the bore.
     """
     cam, blank = subject
+    if cam.least_rib is not None:
+        yield from _thin_rib(cam, limit)
+        return
     low, high = cam.heights
     half = cam.tool.radius_at(cam.outer_radius)
     places = {
@@ -158,6 +161,16 @@ def thin_wall(subject: Subject, limit: float) -> Iterator[Remark]:
             yield Remark(
                 f"The metal {where} is {formatted(thickness, 4)} mm thick.", where, thickness
             )
+
+
+def _thin_rib(cam: SpatialCam, limit: float) -> Iterator[Remark]:
+    least = cam.least_rib
+    if least is not None and least.value < limit:
+        yield Remark(
+            f"The rib is about {formatted(least.value, 3)} mm thick where it is steep.",
+            f"rib, {_at(least.theta)}, {formatted(least.x, 4)} mm from the axis",
+            least.value,
+        )
 
 
 @check("roller-slip", kind=KIND, severity="note")

@@ -81,6 +81,7 @@ def developed(wall: SpatialWall, theta: Array, count: int) -> Developed:
     azimuth = (-theta + y / mean)[:, None] + half * (z1 / size / mean)[:, None]
     height = z[:, None] + half * (along / size)[:, None]
     gap = _gaps(cam, theta[:, None], radius, azimuth, height)
+    height -= 0.5 * wall.side * cam.apart
     return Developed(theta=theta, radius=radius, azimuth=azimuth, height=height, error=gap)
 
 

@@ -68,7 +68,9 @@ def make_cylinder(
         clearance=cam.roller_clearance,
         sides=WALLS[cam.walls],
         clockwise=cam.clockwise,
+        apart=0.0 if cam.rib is None else cam.rib + 2.0 * follower.roller_radius,
     )
+    _demand_rib(made, follower)
     _demand_middle(made)
     _demand_room(made, cam)
     return made
@@ -93,6 +95,21 @@ def _demand_smooth(program: Program) -> None:
         )
 
 
+def _demand_rib(cam: SpatialCam, follower: SpatialFollower) -> None:
+    """Refuse a rib under an arm, and one that its rollers cut through."""
+    if not cam.apart:
+        return
+    if follower.oscillating:
+        what = "two rollers on an arm do not embrace a rib"
+        raise InfeasibleError(what, where="cam.walls", nearest='a translating follower, or "both"')
+    least, rib = cam.least_rib, cam.apart - 2.0 * follower.roller_radius
+    if least is not None and least.value <= 0.0:
+        width = 2.0 * cam.tool.radius_at(least.x)
+        most = cam.apart * width / (least.value + width) - 2.0 * follower.roller_radius
+        what = f"the rollers cut through the rib at {formatted(math.degrees(least.theta), 5)} deg"
+        raise beyond_limit(what, "cam.rib_mm", rib, most, near=ABOVE * most)
+
+
 def _demand_middle(cam: SpatialCam) -> None:
     """Refuse an arm that carries the end of the roller past the middle of the cam."""
     theta = cam.program.survey.places.ravel()
@@ -110,6 +127,8 @@ def _demand_room(cam: SpatialCam, size: CylinderSpec) -> None:
     """Refuse a groove that leaves the cylinder."""
     low, high = cam.heights
     half = cam.tool.radius_at(cam.outer_radius)
+    if cam.apart:
+        half = 0.5 * cam.apart - half
     if -1 in cam.sides and low - half <= 0.0:
         what, near = "the groove leaves the lower face of the cylinder", size.lowest + half - low
         raise beyond_limit(what, "cam.lowest_mm", size.lowest, near, near=ABOVE * near, unit="mm")

@@ -28,7 +28,7 @@ from gearcam.base.rules import Breach, below, needed_with, only_with
 Apex = Literal["apex"]
 """In place of an angle: the tip of the cone is on the cam's axis."""
 
-WALLS = {"both": (1, -1), "upper": (1,), "lower": (-1,)}
+WALLS = {"both": (1, -1), "upper": (1,), "lower": (-1,), "rib": (1, -1)}
 """Sides of the walls by their word in a design."""
 
 _NO_ARM = "does not apply to a {} follower"
@@ -131,7 +131,8 @@ class CylinderSpec(ShortRepr):
         ge=0,
         le=LONGEST,
         example=20,
-        doc="height of the roller's axis at zero lift above the lower face",
+        doc="height of the roller's axis, or of the middle of a rib, at zero lift above the lower "
+        "face",
     )
     groove_depth: float = positive_length(
         default=REQUIRED, example=12, doc="depth of the groove, less than the cylinder's radius"
@@ -150,8 +151,11 @@ class CylinderSpec(ShortRepr):
         TEXT,
         default="both",
         choices=tuple(WALLS),
-        doc="walls of the cam: both of a groove, or the one above or below the roller, as of an "
-        "end cam",
+        doc="walls of the cam: both of a groove; the one above or below the roller, as of an end "
+        "cam; or a rib, embraced by two rollers of a translating follower",
+    )
+    rib: float | None = positive_length(
+        example=8, doc="thickness of a rib at the outside, where the follower rests"
     )
     rotation: str = param(
         TEXT,
@@ -161,6 +165,8 @@ class CylinderSpec(ShortRepr):
     )
 
     rules = (
+        only_with(("rib",), "walls", "rib", why="is given, but the walls are {}"),
+        needed_with(("rib",), "walls", "rib", why="is missing for a {}"),
         below(
             "groove_depth", "outer_diameter", why="the groove would cut through the cylinder",
         ),

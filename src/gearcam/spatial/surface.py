@@ -141,6 +141,9 @@ def _rings(cam: SpatialCam, blank: Cylinder, theta: Array, places: int) -> Itera
     """Yield the rings from the bore over the upper face and the groove to the lower face."""
     walls = {wall.side: wall for wall in cam.walls}
     outer = cam.outer_radius
+    if cam.apart:
+        yield from _rib(cam, blank, theta, places)
+        return
     yield _circle(theta, blank.bore, 0.0)
     yield _circle(theta, blank.bore, blank.length)
     if 1 in walls:
@@ -155,6 +158,19 @@ def _rings(cam: SpatialCam, blank: Cylinder, theta: Array, places: int) -> Itera
         yield _circle(theta, outer, 0.0)
     else:
         yield _circle(theta, cam.floor, 0.0)
+
+
+def _rib(cam: SpatialCam, blank: Cylinder, theta: Array, places: int) -> Iterator[_Ring]:
+    """Yield the rings of a rib on a core: the wall of the upper roller is the upper one here."""
+    below, above = cam.walls
+    yield _circle(theta, blank.bore, 0.0)
+    yield _circle(theta, blank.bore, blank.length)
+    yield _circle(theta, cam.floor, blank.length)
+    *most, edge = reversed([*_wall(above, theta, places)])
+    yield from most
+    yield _Ring(edge.points, apart=True)
+    yield from _wall(below, theta, places)
+    yield _circle(theta, cam.floor, 0.0)
 
 
 def _circle(theta: Array, radius: float, height: float) -> _Ring:

@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from gearcam.numeric.contour import Contour
+from gearcam.numeric.pose import Pose
 from gearcam.parts.shapes import Circle
-from gearcam.pictures.drawings import BLANK, FOLLOWER, GROOVE, PITCH, Drawing, Feature, Path
+from gearcam.pictures.drawings import BLANK, FOLLOWER, GROOVE, PITCH, Drawing, Feature, Path, place
 
 if TYPE_CHECKING:
     from gearcam.kinds.spatial_cam.build import SpatialCamResult
@@ -118,27 +119,37 @@ def developed_drawing(result: SpatialCamResult) -> Drawing:
     return Drawing(name="developed", features=(sheet, *edges, Feature(layer=PITCH, shape=path)))
 
 
-def cut_away(result: SpatialCamResult) -> Feature:
-    """Return what is cut away of the sheet: the groove, or all above or below a wall."""
+def cut_away(result: SpatialCamResult) -> tuple[Feature, ...]:
+    """Return what is cut away of the sheet: the groove, or all beside a wall or a rib."""
     width, height = 2.0 * math.pi * result.cam.outer_radius, result.design.cam.length
+    top = np.array([1j * height, width + 1j * height])
+    bottom = np.array([0.0, width], dtype=np.complex128)
     lines = {wall.side: edge(result, wall) for wall in result.cam.walls}
-    upper = lines.get(1, np.array([1j * height, width + 1j * height]))
-    lower = lines.get(-1, np.array([0.0, width], dtype=np.complex128))
-    return Feature(layer=GROOVE, shape=_contour(np.concatenate([lower, upper[::-1]])))
+    if result.cam.apart:
+        between = (lines[-1], top), (bottom, lines[1])
+    else:
+        between = ((lines.get(-1, bottom), lines.get(1, top)),)
+    return tuple(
+        Feature(layer=GROOVE, shape=_contour(np.concatenate([low, high[::-1]])))
+        for low, high in between
+    )
 
 
-def roller(result: SpatialCamResult) -> Feature:
-    """Return the roller about the origin, as it is at the outside."""
-    size = 2.0 * result.design.follower.roller_radius
-    return Feature(layer=FOLLOWER, shape=Circle(center=0j, diameter=size))
+def rollers(result: SpatialCamResult) -> tuple[Feature, ...]:
+    """Return the roller about the origin, or two above and below it, as they are at the outside."""
+    size, apart = 2.0 * result.design.follower.roller_radius, 0.5j * result.cam.apart
+    places = (apart, -apart) if apart else (0j,)
+    return tuple(
+        Feature(layer=FOLLOWER, shape=Circle(center=place, diameter=size)) for place in places
+    )
 
 
 def picture(result: SpatialCamResult) -> Drawing:
-    """Return the sheet with its groove and the roller at the angle of the design."""
+    """Return the sheet with what is cut away and the roller at the angle of the design."""
     theta = np.array([result.design.output.pose % (2.0 * math.pi)])
-    at = complex(centers(result, theta)[0])
-    size = 2.0 * result.design.follower.roller_radius
-    shown = Feature(layer=FOLLOWER, shape=Circle(center=at, diameter=size))
+    pose = Pose(0.0, complex(centers(result, theta)[0]))
     path = Path(points=centers(result, np.linspace(0.0, 2.0 * math.pi, _STEPS + 1)), closed=False)
-    features = (_sheet(result), cut_away(result), Feature(layer=PITCH, shape=path), shown)
+    shown = place(rollers(result), pose)
+    pitch = Feature(layer=PITCH, shape=path)
+    features = (_sheet(result), *cut_away(result), pitch, *shown)
     return Drawing(name="cam", features=features)

@@ -70,8 +70,12 @@ def _cam(result: SpatialCamResult) -> Tree:
             "outer": 2.0 * tool.radius_at(cam.outer_radius),
             "floor": 2.0 * tool.radius_at(cam.floor),
         }
-        if len(cam.sides) > 1
+        if len(cam.sides) > 1 and not cam.apart
         else None,
+        "rib_mm": given.rib,
+        "least_rib_mm": None
+        if cam.least_rib is None
+        else Fact(cam.least_rib.value, "least thickness of the rib", place=_place(cam.least_rib)),
         "pressure_angle_deg": _pressure(result),
         "lost_motion_mm": None if cam.lost_motion is None else cam.lost_motion.value,
         "largest_roller_mm": {

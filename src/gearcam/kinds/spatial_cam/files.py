@@ -22,8 +22,8 @@ def _tables(result: SpatialCamResult, _: Any) -> Files:
     Files: walls.csv, motion.csv.
 
     Points of the walls in the cam's frame over cam angle and place along the roller: x_mm is the
-    distance along the roller's axis, X_mm, Y_mm, Z_mm the point, nx, ny, nz the normal into the
-    metal; with the pressure angle. Lift, its derivatives and pressure angles over the cam angle.
+    distance along the roller's axis, X, Y, Z the point in mm, nx, ny, nz the normal into the metal;
+    with the pressure angle. Lift, its derivatives and pressure angles over the cam angle.
     """
     from gearcam.export.table import table_bytes
 
@@ -37,9 +37,9 @@ def _tables(result: SpatialCamResult, _: Any) -> Files:
             "wall": np.full(points.shape[1], wall.key),
             "theta_deg": np.degrees(np.repeat(theta, count)),
             "x_mm": grid.x.ravel(),
-            "X_mm": points[0],
-            "Y_mm": side * points[1],
-            "Z_mm": points[2],
+            "X": points[0],
+            "Y": side * points[1],
+            "Z": points[2],
             "nx": normals[0],
             "ny": side * normals[1],
             "nz": normals[2],
@@ -48,7 +48,9 @@ def _tables(result: SpatialCamResult, _: Any) -> Files:
         for name, values in columns.items():
             rows.setdefault(name, []).append(values)
     walls = {name: np.concatenate(values) for name, values in rows.items()}
-    motion = dict(result.motion())
+    table = result.motion()
+    short = dict(zip([*table][1:5], ("s", "ds", "d2s", "d3s"), strict=True))
+    motion = {short.get(name, name): values for name, values in table.items()}
     return {"walls.csv": table_bytes(walls), "motion.csv": table_bytes(motion)}
 
 

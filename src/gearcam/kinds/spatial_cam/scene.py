@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from gearcam.kinds.spatial_cam.charts import DRIVER
-from gearcam.kinds.spatial_cam.drawn import centers, picture, roller
+from gearcam.kinds.spatial_cam.drawn import centers, picture, rollers
 from gearcam.numeric.pose import Pose
 from gearcam.pictures.drawings import FOLLOWER
 from gearcam.pictures.scenes import PLACES, MovingBody, Scene
@@ -36,7 +36,7 @@ def scene(result: SpatialCamResult, places: int = PLACES) -> Scene:
     sheet = tuple(one for one in picture(result).features if one.kind != FOLLOWER)
     cam = MovingBody(name="cam", called="cam, unrolled", features=sheet, pose=still)
     moving = Pose(np.zeros(len(theta)), centers(result, theta))
-    follower = MovingBody(name="follower", called="roller", features=(roller(result),), pose=moving)
+    follower = MovingBody(name="follower", called="roller", features=rollers(result), pose=moving)
     return Scene(
         title=result.design.name,
         driver=DRIVER,
