@@ -54,9 +54,9 @@ def look_at(result: Any, written: BuildOutput) -> Iterator[Failure]:
 
 
 def _parts(result: Any) -> tuple[Part, ...]:
-    """Return the parts; none if they cannot be made, which is allowed if no file needs them."""
+    """Return the parts made of layers; none if they cannot be made, and no file needs them."""
     try:
-        return tuple(result.parts)
+        return tuple(getattr(result, "parts", ()))
     except InfeasibleError:
         return ()
 

@@ -47,14 +47,28 @@ def known_keys(node: Mapping[str, Any], given: Mapping[str, Any]) -> dict[str, A
         found |= known_keys(schema()["$defs"][node["$ref"].rpartition("/")[2]], given)
     found |= node.get("properties", {})
     for branch in node.get("allOf", ()):
-        asked = branch.get("if", {}).get("properties", {})
-        chosen = branch.get("then", branch)
+        chosen = _chosen(branch, given)
         # others are rules between keys, which have no keys of their own
-        if "$ref" in chosen and all(
-            given.get(key) == what.get("const") for key, what in asked.items()
-        ):
+        if "$ref" in chosen:
             found |= known_keys(chosen, given)
     return {key: _resolved(one) for key, one in found.items()}
+
+
+def _chosen(branch: Mapping[str, Any], given: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return what a branch of the schema leads to, for a table."""
+    while "if" in branch:
+        branch = branch.get("then" if _holds(branch["if"], given) else "else", {})
+    return branch
+
+
+def _holds(condition: Mapping[str, Any], given: Any) -> bool:
+    """Return whether keys have the values that a condition names."""
+    if not isinstance(given, Mapping):
+        return False
+    return all(
+        given.get(key) == what["const"] if "const" in what else _holds(what, given.get(key))
+        for key, what in condition.get("properties", {}).items()
+    )
 
 
 def _resolved(node: Mapping[str, Any]) -> Mapping[str, Any]:

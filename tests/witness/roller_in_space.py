@@ -19,12 +19,16 @@ TURN = 2.0 * math.pi
 
 @dataclass(frozen=True)
 class Mechanism:
-    """A roller on a cylinder cam: its axis (y, z) over the angle, and its radius along the axis."""
+    """A roller on a cylinder cam: its axis (y, z) over the angle, and its radius along the axis.
+
+    It begins at the distance `inner` from the axis of the cam.
+    """
 
     center: Callable[[Any], tuple[Any, Any]]
     radius: float
     at: float
     half_angle: float = 0.0
+    inner: float = -math.inf
 
     def height(self, theta: Any, radius: float, azimuth: float, side: int) -> Any:
         """Highest (lowest) point of the roller above a point of the cam; -side*inf beside it."""
@@ -33,7 +37,7 @@ class Mechanism:
         r = self.radius + (x - self.at) * math.tan(self.half_angle)
         with np.errstate(invalid="ignore"):
             half = np.sqrt(r**2 - (y - y_a) ** 2)
-        return np.where(np.isnan(half), -side * np.inf, z_a + side * half)
+        return np.where(np.isnan(half) | (x < self.inner), -side * np.inf, z_a + side * half)
 
     def wall(self, radius: float, azimuth: float, side: int, count: int = 2001) -> float:
         """Height of a wall at a radius and an azimuth, narrowed down to rounding."""

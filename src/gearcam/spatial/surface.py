@@ -21,12 +21,16 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.numeric.arrays import Array, Ints, Mask
 from gearcam.spatial.cam import SpatialCam, SpatialWall
+
+_COINCIDENT: Final = 1e-9
+"""Size of a cell within which points coincide, over the radius of the cylinder."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -94,10 +98,21 @@ def surface(cam: SpatialCam, blank: Cylinder, steps: int, places: int) -> Surfac
         after = (k + 1) % len(rings)
         joined = _joined(ring, rings[after])  # points of the second ring follow those of the first
         faces.append(joined + np.where(joined < sizes[k], starts[k], starts[after] - sizes[k]))
-    vertices, triangles = np.concatenate([ring.points for ring in rings]), np.concatenate(faces)
+    vertices, triangles = _welded(
+        np.concatenate([ring.points for ring in rings]), np.concatenate(faces), cam.outer_radius
+    )
     if cam.clockwise:
         vertices, triangles = vertices * [1.0, -1.0, 1.0], triangles[:, ::-1]
     return Surface(vertices=vertices, triangles=triangles)
+
+
+def _welded(vertices: Array, triangles: Ints, size: float) -> tuple[Array, Ints]:
+    """Return a mesh without points that coincide, such as those of a ramp in a dwell."""
+    cells = np.round(vertices / (_COINCIDENT * size)).astype(np.int64)
+    _, kept, index = np.unique(cells, axis=0, return_index=True, return_inverse=True)
+    a, b, c = index.ravel()[triangles].T
+    whole = (a != b) & (b != c) & (c != a)
+    return vertices[kept], np.stack([a, b, c], axis=1)[whole]
 
 
 def chord_error(cam: SpatialCam, steps: int, places: int) -> float:
