@@ -170,6 +170,15 @@ def test_the_smallest_cam_is_at_least_as_small_as_every_one_of_the_grid(
     assert least - step < family.of(found)[0] <= least
 
 
+def test_the_smallest_cam_is_that_of_its_solved_sizes(tmp_path: Path) -> None:
+    text = CAMS.text.replace('angle_deg = "rest"', "angle_deg = 80")
+    text = text.replace("angle_deg = 120", 'angle_deg = "rest"')
+    sought = {"cam.prime_radius_mm": "20:100", "follower.offset_mm": "-20:20"}
+    (found,) = Family(text, {SIZE: 1.0}, sought, {}).searched(tmp_path, 150)
+    solved = gc.build(gc.loads(text).with_(dict.fromkeys(sought, "solve"))).facts
+    assert solved[SIZE] <= float(found.facts[SIZE]) < solved[SIZE] * (1.0 + 3e-3)
+
+
 def area(front: Array, corner: Array) -> float:
     """The area of the goals that a front surpasses, up to a corner (its hypervolume)."""
     total, height = 0.0, corner[1]
