@@ -1,11 +1,14 @@
-"""The solids in a page: drawn when they are asked for, whole, turned by keys, and printed."""
+"""The solids in a page: drawn when they are asked for, whole, moved with the slider, turned
+by keys, and printed."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from selenium.webdriver import ActionChains, Chrome, Keys
 from selenium.webdriver.common.by import By
@@ -14,11 +17,25 @@ from gearcam.compare.page import document as document_of_variants
 from gearcam.compare.variants import variants_of
 from gearcam.report.file import solids_shown
 from gearcam.report.page import document, page
-from helpers_browser import LAPTOP, PHONE, complaints, open_page, requests, settle, until
+from helpers_browser import LAPTOP, PHONE, complaints, go, open_page, requests, settle, until
 from helpers_pairs import PROFILES
 
 NAIL = "nail_machine_two_phase"
 INSIDE = "const view = document.querySelector('#solids iframe').contentWindow;"
+ENDS = """
+const ends = [Infinity, -Infinity, Infinity, -Infinity], colours = new Set();
+view.scene.traverse((one) => {
+  if (!one.isMesh) return;
+  colours.add(one.material.color.getHex());
+  const places = one.geometry.attributes.position;
+  for (let k = 0; k < places.count; k++) {
+    const at = new view.THREE.Vector3().fromBufferAttribute(places, k);
+    at.applyMatrix4(one.matrixWorld).project(view.camera);
+    ends[0] = Math.min(ends[0], at.x); ends[1] = Math.max(ends[1], at.x);
+    ends[2] = Math.min(ends[2], at.y); ends[3] = Math.max(ends[3], at.y);
+  }
+});
+"""
 
 
 @pytest.fixture(scope="module")
@@ -46,19 +63,7 @@ def test_solids_are_drawn_whole_when_they_are_asked_for(
     open_page(browser, solids_page, size, prefers_color_scheme=scheme)
     assert browser.find_elements(By.TAG_NAME, "iframe") == []
     show(browser)
-    script = f"""{INSIDE}
-    const ends = [Infinity, -Infinity, Infinity, -Infinity], colours = new Set();
-    view.scene.traverse((one) => {{
-      if (!one.isMesh) return;
-      colours.add(one.material.color.getHex());
-      const places = one.geometry.attributes.position;
-      for (let k = 0; k < places.count; k++) {{
-        const at = new view.THREE.Vector3().fromBufferAttribute(places, k);
-        at.applyMatrix4(one.matrixWorld).project(view.camera);
-        ends[0] = Math.min(ends[0], at.x); ends[1] = Math.max(ends[1], at.x);
-        ends[2] = Math.min(ends[2], at.y); ends[3] = Math.max(ends[3], at.y);
-      }}
-    }});
+    script = f"""{INSIDE} {ENDS}
     return [ends, [...colours], view.scene.background.getHex(), view.innerWidth];
     """
     (left, right, low, high), colours, ground, width = browser.execute_script(script)
@@ -70,6 +75,104 @@ def test_solids_are_drawn_whole_when_they_are_asked_for(
     assert width < size[0]  # beside the view the page scrolls
     assert faults(browser) == []
     assert [one for one in requests(browser) if one.startswith(("http", "ws"))] == []
+
+
+CAM = "cylinder_cam"
+PLACED = """
+const matrices = {};
+document.querySelector('#solids iframe').contentWindow.scene.traverse((one) => {
+  if (one.isMesh) matrices[one.name] = one.matrixWorld.toArray();
+});
+return matrices;
+"""
+
+
+def placed(browser: Chrome) -> dict[str, np.ndarray]:
+    """The matrices of the solids where they are drawn."""
+    return {
+        name: np.array(one).reshape(4, 4).T for name, one in browser.execute_script(PLACED).items()
+    }
+
+
+@pytest.fixture(scope="module")
+def cam_page(built: Callable[[str], Any], tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("solids") / "cam.html"
+    result = built(CAM)
+    path.write_bytes(page(document(result), solids=solids_shown(result)))
+    return path
+
+
+def lifted(lift: float) -> np.ndarray:
+    matrix = np.eye(4)
+    matrix[2, 3] = lift
+    return matrix
+
+
+def turned(degrees: float, x: float = 0.0) -> np.ndarray:
+    matrix, angle = np.eye(4), math.radians(degrees)
+    matrix[0, :2] = math.cos(angle), -math.sin(angle)
+    matrix[1, :2] = math.sin(angle), math.cos(angle)
+    matrix[0, 3] = x
+    return matrix
+
+
+@pytest.mark.parametrize("size", [LAPTOP, PHONE])
+def test_cam_and_roller_follow_the_slider(
+    size: tuple[int, int], browser: Chrome, cam_page: Path, built: Callable[[str], Any]
+) -> None:
+    open_page(browser, cam_page, size)
+    go(browser, 120.0)  # before they are shown
+    show(browser)
+    slider = browser.find_element(By.ID, "place")
+    for place in (120.0, 75.0, 200.0, 359.5):
+        script = "arguments[0].value = arguments[1]; arguments[0].dispatchEvent(new Event('input'))"
+        browser.execute_script(script, slider, round(2 * place))
+        settle(browser)
+        lift = built(CAM).motion(np.radians([place]))["lift_mm"][0]
+        found = placed(browser)
+        assert found["cam"] == pytest.approx(turned(place), abs=1e-6)
+        assert found["roller"] == pytest.approx(lifted(25.0 + lift), abs=1e-4)
+    slider.send_keys(Keys.ARROW_LEFT)
+    settle(browser)
+    assert placed(browser)["cam"] == pytest.approx(turned(359.0), abs=1e-6)
+
+
+def test_wheels_follow_the_slider_by_the_poses_of_their_pictures(
+    browser: Chrome, solids_page: Path, built: Callable[[str], Any]
+) -> None:
+    open_page(browser, solids_page)
+    show(browser)
+    for place in (0.0, 41.5, 300.0):
+        go(browser, place)
+        phi2 = built(NAIL).motion(np.radians([place]))["phi2_deg"][0]
+        found = placed(browser)
+        assert found["gear1"] == pytest.approx(turned(-place), abs=1e-6)
+        assert found["gear2"] == pytest.approx(turned(phi2, 180.0), abs=1e-6)
+
+
+def test_solids_that_were_folded_are_moved_when_they_are_unfolded(
+    browser: Chrome, cam_page: Path
+) -> None:
+    open_page(browser, cam_page)
+    show(browser)
+    home = browser.find_element(By.CSS_SELECTOR, "#solids summary")
+    home.click()
+    go(browser, 90.0)
+    assert placed(browser)["cam"] == pytest.approx(turned(0.0), abs=1e-6)  # nothing is drawn
+    home.click()
+    settle(browser)
+    assert placed(browser)["cam"] == pytest.approx(turned(90.0), abs=1e-6)
+
+
+def test_solids_stay_in_sight_at_all_places(browser: Chrome, solids_page: Path) -> None:
+    """The wheels are not round: one that is in sight may leave it as it turns."""
+    open_page(browser, solids_page, PHONE)
+    show(browser)
+    for place in range(0, 360, 45):
+        go(browser, place)
+        left, right, low, high = browser.execute_script(f"{INSIDE} {ENDS} return ends;")
+        assert -1.0 < left < right < 1.0
+        assert -1.0 < low < high < 1.0
 
 
 def test_keys_turn_and_zoom(browser: Chrome, solids_page: Path) -> None:

@@ -131,7 +131,15 @@ def _over(scene: Scene, places: np.ndarray) -> Scene:
         return replace(body, pose=Pose(turn, np.interp(within, scene.places, shift)))
 
     bodies = tuple(moved(body) for body in scene.bodies)
-    return replace(scene, places=places, closed=False, bodies=bodies, contacts={}, pitch=None)
+    return replace(
+        scene,
+        places=places,
+        closed=False,
+        bodies=bodies,
+        contacts={},
+        pitch=None,
+        in_space={},
+    )
 
 
 def _laid_over(scenes: Sequence[Scene], numbers: Sequence[int]) -> dict[str, Any]:
@@ -149,7 +157,8 @@ def _laid_over(scenes: Sequence[Scene], numbers: Sequence[int]) -> dict[str, Any
     ]
     bodies = (*first.bodies, *(body for _, body in others))
     closed = all(one.closed for one in scenes)
-    data = scene_data(replace(first, bodies=bodies, closed=closed, coloured=()))
+    flat = replace(first, bodies=bodies, closed=closed, coloured=(), in_space={})  # without solids
+    data = scene_data(flat)
     for (k, _), body in zip(others, data["bodies"][len(first.bodies) :], strict=True):
         chains = [*body["metal"], *body["floor"]]
         body["lines"] += [

@@ -26,6 +26,8 @@ from gearcam.parts.solids import Mesh, SolidError, libraries
 if TYPE_CHECKING:
     from trimesh import Scene, Trimesh
 
+    from gearcam.numeric.pose import SpacePose
+
 HEADER_LENGTH: Final = 80
 """Bytes of an STL header."""
 
@@ -90,15 +92,18 @@ def glb_bytes(bodies: Mapping[str, Mesh], name: str) -> bytes:
 
 
 @libraries()
-def view_page(bodies: Mapping[str, Mesh]) -> str:
-    """Return trimesh's page to turn and zoom closed bodies (see `stl_bytes`).
+def view_page(bodies: Mapping[str, tuple[Mesh, SpacePose]]) -> str:
+    """Return trimesh's page to turn and zoom closed bodies (see `stl_bytes`) in their places.
 
-    It contains the bodies and all its scripts: it needs a browser with WebGL, but no network.
+    It contains the bodies and all its scripts: it needs a browser with WebGL, but no network. Each
+    body is an object of its name that can be moved: its points are those of its own frame.
     """
     from trimesh.scene import Camera
     from trimesh.viewer.notebook import scene_to_html
 
-    scene = _scene(bodies)
+    scene = _scene({name: mesh for name, (mesh, _) in bodies.items()})
+    for name, (_, pose) in bodies.items():
+        scene.graph.update(name, matrix=pose.matrix)
     scene.camera = Camera(name="camera", fov=(60.0, 45.0))  # a generated one has a random name
     scene.set_camera()
     return scene_to_html(scene)

@@ -24,7 +24,7 @@ from gearcam.base.errors import GearcamError, MissingExtraError
 from gearcam.base.numerals import formatted
 from gearcam.numeric.arrays import Array, Ints, Plane, as_pairs
 from gearcam.numeric.contour import Contour
-from gearcam.numeric.pose import Pose
+from gearcam.numeric.pose import SpacePose
 from gearcam.parts.body import Body, Layer, Mark, Part
 from gearcam.parts.shapes import circle_segments
 
@@ -72,12 +72,11 @@ class Mesh:
         twice = (x[b] - x[a]) * (y[c] - y[a]) - (x[c] - x[a]) * (y[b] - y[a])
         return float((twice * (z[a] + z[b] + z[c])).sum()) / 6
 
-    def placed(self, pose: Pose) -> Mesh:
+    def placed(self, pose: SpacePose) -> Mesh:
         """Return the mesh in its place."""
-        x, y, z = self.vertices.T
-        points = pose.apply(x + 1j * y)
-        moved = [points.real, points.imag, z + pose.height]
-        return Mesh(vertices=np.stack(moved, axis=1), triangles=self.triangles)
+        matrix = pose.matrix
+        moved = self.vertices @ matrix[:3, :3].T + matrix[:3, 3]
+        return Mesh(vertices=moved, triangles=self.triangles)
 
     @cached_property
     def watertight(self) -> bool:

@@ -21,7 +21,7 @@ import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.numeric.arrays import Array, Ints, Plane
-from gearcam.numeric.pose import Pose
+from gearcam.numeric.pose import Pose, SpacePose
 from gearcam.pictures.drawings import Feature, chains
 
 PLACES: Final = 720
@@ -133,6 +133,12 @@ class Scene(ShortRepr):
         The pitch point.
     coloured : tuple of ColouredCurve
         Curves that the reader can have coloured; those of one quantity share a scale.
+    in_space : mapping of str to SpacePose
+        By name, the n poses of solids that do not move as the body of their name; no turn jumps.
+    eye : tuple of 3 floats
+        Direction from which solids are seen at first.
+    up : tuple of 3 floats
+        Direction that is upwards then.
     """
 
     title: str
@@ -144,11 +150,17 @@ class Scene(ShortRepr):
     contacts: Mapping[str, ContactPoints] = field(default_factory=dict)
     pitch: Plane | None = None
     coloured: tuple[ColouredCurve, ...] = ()
+    in_space: Mapping[str, SpacePose] = field(default_factory=dict)
+    eye: tuple[float, float, float] = (0.3, -0.7, 1.0)
+    up: tuple[float, float, float] = (0.0, 1.0, 0.0)
 
     def __post_init__(self) -> None:
         for body in self.bodies:
             if not np.shape(body.pose.turn) == np.shape(body.pose.shift) == self.places.shape:
                 raise ValueError(f"{body.name}: needs a pose for each place of the driver")
+        for name, pose in self.in_space.items():
+            if not (len(self.places), 3) == (*np.shape(pose.turn), 3) == np.shape(pose.shift):
+                raise ValueError(f"{name}: needs a pose in space for each place of the driver")
         for name, contacts in self.contacts.items():
             if len(contacts.start) != len(self.places) + 1:
                 raise ValueError(f"{name}: needs contacts for each place of the driver")

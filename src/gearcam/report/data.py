@@ -14,6 +14,7 @@ from typing import Any, Final
 import numpy as np
 
 from gearcam.numeric.arrays import Array, Plane, as_pairs
+from gearcam.numeric.pose import SpacePose
 from gearcam.pictures import drawings
 from gearcam.pictures.charts import Chart
 from gearcam.pictures.scenes import (
@@ -56,7 +57,9 @@ def scene_data(scene: Scene) -> dict[str, Any]:
         and ``y`` (one number if constant), and ``teeth`` (``[first, last]`` vertices of
         ``metal[0]``) or null; ``coloured``, each with ``body``, ``points`` and ``values`` by label;
         ``scales`` by label, each with ``least``, ``largest``, and where that is: ``place`` of the
-        driver, ``body``, ``x`` and ``y`` on it.
+        driver, ``body``, ``x`` and ``y`` on it; ``solids`` by name, those that do not move as the
+        body of their name: each with ``axis``, ``turn``, ``x``, ``y`` and ``z``; ``eye`` and
+        ``up``, directions of the first view of solids.
     """
     names = dict.fromkeys(name for one in scene.coloured for name in one.values)
     return {
@@ -71,7 +74,15 @@ def scene_data(scene: Scene) -> dict[str, Any]:
         "pitch": None if scene.pitch is None else _flat(scene.pitch),
         "coloured": [_coloured(one) for one in scene.coloured],
         "scales": {name: _scale(name, scene.coloured) for name in names},
+        "solids": {name: _solid(pose) for name, pose in scene.in_space.items()},
+        "eye": list(scene.eye),
+        "up": list(scene.up),
     }
+
+
+def _solid(pose: SpacePose) -> dict[str, Any]:
+    shift = {name: _steady(one, _MM) for name, one in zip("xyz", pose.shift.T, strict=True)}
+    return {"axis": list(pose.axis), "turn": _steady(pose.turn, _RAD), **shift}
 
 
 def _body(body: MovingBody) -> dict[str, Any]:

@@ -62,7 +62,7 @@ def solids_shown(result: Result) -> dict[str, str]:
     # small teeth refuse the chords of the view: then those of the design are shown
     for chords in (CHORDS, 0.0):
         try:
-            solids = result.assembled(chords)
+            solids = result.standing(chords)
             return {"view": view_page(solids)} if solids else {}
         except GearcamError as error:
             refusal = str(error)

@@ -83,6 +83,8 @@ function redraw() {
 function draw() {
   parts.draw(page.place, page.cycles, page.seen, page.colours);
   charts.mark(page.place);
+  const poses = (place) => solidPosesOf(page.scene, place, page.cycles);
+  solids.move(poses, page.place, page.scene);
   const slider = element("place");
   const { index, part } = spotOf(page.scene.places, page.place);
   slider.value = index + Math.round(part);

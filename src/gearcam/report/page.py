@@ -41,7 +41,7 @@ DRAFT_PLACES: Final = 120
 _CHARTS: Final = ("uPlot/uPlot.iife.min.js", "parts.js", "saves.js", "charts.js")
 """Parts of the script that draw charts, each after those that it needs."""
 
-SCRIPTS: Final = ("scene.js", *_CHARTS, "blocks.js", "page.js", "solids.js")
+SCRIPTS: Final = ("scene.js", *_CHARTS, "blocks.js", "solids.js", "page.js")
 """Parts of the script of a page with moving parts."""
 
 STILL: Final = (*_CHARTS, "blocks.js", "charts_page.js", "solids.js")

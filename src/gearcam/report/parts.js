@@ -70,7 +70,9 @@ class Parts {
     this.own = scene;
     const [left, bottom, right, top] = scene.box;
     const shape = (right - left) / (top - bottom);
-    this.canvas.style.setProperty("--shape", Math.min(1.35, Math.max(0.8, shape)));
+    // a scene that is very flat gets a flatter canvas, with room to zoom
+    const flat = Math.min(2.2, Math.max(1.35, shape / 2));
+    this.canvas.style.setProperty("--shape", Math.min(flat, Math.max(0.8, shape)));
     if (this.fitted) this.fit();
   }
 

@@ -34,6 +34,18 @@ function posesOf(scene, place, cycles = 0) {
   }));
 }
 
+// Poses of solids by name: those of the bodies, and of what moves in space by itself.
+function solidPosesOf(scene, place, cycles = 0) {
+  const spot = spotOf(scene.places, place);
+  const poses = posesOf(scene, place, cycles).map((one) => [one.name, { axis: [0, 0, 1], ...one }]);
+  for (const [name, one] of Object.entries(scene.solids)) {
+    const turn = between(one.turn, spot) + cycles * gain(one.turn);
+    const [x, y, z] = [one.x, one.y, one.z].map((values) => between(values, spot));
+    poses.push([name, { axis: one.axis, turn, x, y, z }]);
+  }
+  return new Map(poses);
+}
+
 // The rows of contacts at one of the places by their teeth, or else by their order.
 function rowsAt(contacts, index) {
   const rows = new Map();

@@ -1,15 +1,19 @@
 // The view of the solids: a separate page in a frame, loaded when first opened. Its globals (scene,
-// camera, controls, render, THREE) serve to fit, colour and print it.
-"use strict";
+// camera, controls, render, THREE) serve to move, fit, colour and print it. Each solid is an object
+// with the name of its body.
 
-(() => {
+const solids = (() => {
   const home = document.querySelector("#solids details");
-  if (!home) return;
+  if (!home) return { move() {} };
   const dark = matchMedia("(prefers-color-scheme: dark)");
   const METAL = [0x4d7fb8, 0xb8803f, 0x5c8f5c]; // colours of the bodies in order
   const TURN = Math.PI / 18; // per arrow key, rad
   const ZOOM = 1.15; // factor per + or -
+  const AROUND = 24; // places at which all must be in sight
   let frame = null;
+  let posesAt = () => new Map(); // by name, at a place of the driver
+  let scene = { places: [0], eye: [0.3, -0.7, 1], up: [0, 1, 0] };
+  let place = 0;
 
   // The globals of the view; null until it is drawn.
   const view = () => {
@@ -22,8 +26,31 @@
     return canvas.getContext("webgl2") || canvas.getContext("webgl");
   };
 
+  // Show the solids at a place; what is folded is moved when it is opened.
+  function move(poses, at, shown) {
+    [posesAt, place, scene] = [poses, at, shown];
+    const inside = view();
+    if (!inside || !home.open) return;
+    pose(inside);
+    inside.render();
+  }
+
+  function pose(inside) {
+    for (const [name, { axis, turn, x, y, z }] of posesAt(place)) {
+      const body = inside.scene.getObjectByName(name);
+      if (!body) continue;
+      body.position.set(x, y, z ?? body.position.z); // in the plane: at its own height
+      body.quaternion.setFromAxisAngle(new inside.THREE.Vector3(...axis), turn);
+    }
+    inside.scene.updateMatrixWorld(true);
+  }
+
   function open() {
-    if (!home.open || frame) return;
+    if (!home.open) return;
+    if (frame) {
+      move(posesAt, place, scene);
+      return;
+    }
     if (!drawn()) {
       home.querySelector(".hint").textContent =
         "This browser cannot show solids: it has no WebGL.";
@@ -43,8 +70,11 @@
       requestAnimationFrame(ready);
       return;
     }
+    // the loader knows boxes only
+    inside.scene.traverse((one) => one.isMesh && one.geometry.computeBoundingSphere());
+    pose(inside);
     paint(inside);
-    inside.camera.position.copy(inside.controls.target).add(new inside.THREE.Vector3(0.3, -0.7, 1));
+    aim(inside);
     fit(inside);
     inside.addEventListener("resize", () => fit(inside));
     inside.addEventListener("keydown", key);
@@ -65,11 +95,39 @@
     inside.render();
   }
 
-  // Set the camera at the distance at which the bodies fit in the narrower direction.
-  function fit(inside) {
+  // Balls that contain the bodies at all places.
+  function balls(inside) {
+    const { places } = scene;
+    const now = place;
+    const found = [];
+    for (let k = 0; k <= AROUND; k++) {
+      place = places[Math.round((k * (places.length - 1)) / AROUND)];
+      pose(inside);
+      inside.scene.traverse((one) => {
+        if (!one.isMesh) return;
+        found.push(one.geometry.boundingSphere.clone().applyMatrix4(one.matrixWorld));
+      });
+    }
+    place = now;
+    pose(inside);
+    return found;
+  }
+
+  // Look at the middle of what the bodies reach.
+  function aim(inside) {
     const { camera, controls, THREE } = inside;
-    const bodies = new THREE.Box3().setFromObject(inside.scene);
-    const radius = bodies.getBoundingSphere(new THREE.Sphere()).radius;
+    const reached = new THREE.Box3();
+    for (const ball of balls(inside)) reached.union(ball.getBoundingBox(new THREE.Box3()));
+    reached.getCenter(controls.target);
+    camera.up.set(...scene.up);
+    camera.position.copy(controls.target).add(new THREE.Vector3(...scene.eye));
+  }
+
+  // Set the camera at the distance at which the bodies fit in the narrower direction, at all places.
+  function fit(inside) {
+    const { camera, controls } = inside;
+    const away = (ball) => ball.center.distanceTo(controls.target) + ball.radius;
+    const radius = Math.max(...balls(inside).map(away));
     const tall = Math.tan((camera.fov * Math.PI) / 360);
     const far = radius / Math.sin(Math.atan(tall * Math.min(1, camera.aspect)));
     const way = camera.position.clone().sub(controls.target).setLength(far);
@@ -118,4 +176,5 @@
   home.addEventListener("toggle", open);
   dark.addEventListener("change", () => view() && paint(view()));
   addEventListener("beforeprint", picture);
+  return { move };
 })();

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from trimesh import Trimesh
 
     from gearcam.export.dxf import DxfStyle
-    from gearcam.numeric.pose import Pose
+    from gearcam.numeric.pose import Pose, SpacePose
     from gearcam.parts.body import Part
     from gearcam.parts.solids import Mesh
     from gearcam.pictures.drawings import Drawing
@@ -160,12 +160,12 @@ class PartsResult(Result):
 
         return {part.name: solid(part) for part in self.parts}
 
-    def assembled(self, chords: float = 0.0) -> dict[str, Mesh]:
-        """Return the meshes in their places in the assembly (see `Result`)."""
+    def standing(self, chords: float = 0.0) -> dict[str, tuple[Mesh, SpacePose]]:
+        """Return the meshes and their places in the assembly (see `Result`)."""
         if (self.design.output.chord_tolerance or 0.0) < chords:
-            return self.with_chords(chords).assembled()
+            return self.with_chords(chords).standing()
         places = zip(self.meshes.items(), self.poses, strict=True)
-        return {name: mesh.placed(pose) for (name, mesh), pose in places}
+        return {name: (mesh, pose.in_space) for (name, mesh), pose in places}
 
     @property
     def dxf_style(self) -> DxfStyle:

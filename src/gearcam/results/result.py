@@ -35,6 +35,7 @@ from gearcam.results.written import BuildOutput, demand_formats, versions
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from gearcam.numeric.pose import SpacePose
     from gearcam.parts.solids import Mesh
     from gearcam.pictures.charts import Chart
     from gearcam.pictures.scenes import ContactPoints, Scene
@@ -268,8 +269,13 @@ class Result(NotebookView):
         tables = [{"note": note} for note in notes if note.value]
         return self.kind.facts(self).with_groups({"tables": tables})
 
-    def assembled(self, chords: float = 0.0) -> dict[str, Mesh]:  # noqa: ARG002
-        """Return the parts in their places as meshes, by name; empty without solids.
+    def standing(
+        self,
+        chords: float = 0.0,  # noqa: ARG002
+    ) -> dict[str, tuple[Mesh, SpacePose]]:
+        """Return the parts as meshes in their own frames, with their places, by name.
+
+        Empty without solids. How they move is in the scene, under the same names.
 
         Parameters
         ----------
@@ -277,6 +283,16 @@ class Result(NotebookView):
             Chord error of the outlines, if that of the design is smaller.
         """
         return {}
+
+    def assembled(self, chords: float = 0.0) -> dict[str, Mesh]:
+        """Return the parts in their places as meshes, by name; empty without solids.
+
+        Parameters
+        ----------
+        chords : float, mm
+            Chord error of the outlines, if that of the design is smaller.
+        """
+        return {name: mesh.placed(pose) for name, (mesh, pose) in self.standing(chords).items()}
 
     @property
     def main_errors(self) -> Sequence[tuple[str, Sequence[str]]]:

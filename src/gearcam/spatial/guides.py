@@ -7,7 +7,7 @@ in its frame the axis is turned by -theta (`carried`).
 Frame: the cam's axis is z. The roller of `Straight` and `SwingArm` has its axis parallel to x and
 meets the cam at the azimuth 0; lift is along +z.
 
-Depends on envelope; numpy only.
+Depends on envelope and poses; numpy only.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.numeric.arrays import Array
+from gearcam.numeric.pose import SpacePose
 from gearcam.spatial.envelope import RollerAxis
 
 
@@ -41,6 +42,16 @@ class RollerGuide(ABC, ShortRepr):
             A point of the axis, mm, and its direction, with two derivatives by the lift.
         """
 
+    @abstractmethod
+    def pose(self, lift: Array) -> SpacePose:
+        """Return the n poses of the roller in the fixed frame; in its own its axis is +x.
+
+        Parameters
+        ----------
+        lift : (n,) array, mm or rad
+            The lift.
+        """
+
 
 @dataclass(frozen=True, kw_only=True)
 class Straight(RollerGuide):
@@ -60,6 +71,10 @@ class Straight(RollerGuide):
         point[0, :, 2], point[1, :, 2] = self.height + lift, 1.0
         direction[0, :, 0] = 1.0
         return point, direction
+
+    def pose(self, lift: Array) -> SpacePose:
+        """Return the poses of the roller (see `RollerGuide.pose`)."""
+        return SpacePose((1.0, 0.0, 0.0), np.zeros(len(lift)), self.placed(lift)[0][0])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -98,6 +113,10 @@ class SwingArm(RollerGuide):
         direction[0, :, 0] = 1.0
         return point, direction
 
+    def pose(self, lift: Array) -> SpacePose:
+        """Return the poses of the roller (see `RollerGuide.pose`)."""
+        return SpacePose((1.0, 0.0, 0.0), self.start + lift, self.placed(lift)[0][0])
+
 
 @dataclass(frozen=True, kw_only=True)
 class Turret(RollerGuide):
@@ -124,6 +143,10 @@ class Turret(RollerGuide):
         for order, (x, z) in enumerate(((-c, s), (s, c), (c, -s))):
             direction[order, :, 0], direction[order, :, 2] = x, z
         return point, direction
+
+    def pose(self, lift: Array) -> SpacePose:
+        """Return the poses of the roller (see `RollerGuide.pose`)."""
+        return SpacePose((0.0, 1.0, 0.0), math.pi + self.start + lift, self.placed(lift)[0][0])
 
 
 def carried(

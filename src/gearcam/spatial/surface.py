@@ -19,7 +19,7 @@ Refused: walls that are undercut, whose rings would cross. Depends on cam; numpy
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -31,6 +31,12 @@ from gearcam.spatial.cam import SpatialCam, SpatialWall
 
 _COINCIDENT: Final = 1e-9
 """Size of a cell within which points coincide, over the radius of the cylinder."""
+
+_PIN: Final = 0.5
+"""Radius of the pin that is shown, over that of the roller at the outside."""
+
+_STUB: Final = 1.0
+"""Its length outside the cam, over the same."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,7 +96,41 @@ def surface(cam: SpatialCam, blank: Cylinder, steps: int, places: int) -> Surfac
     Surface
     """
     theta = np.linspace(0.0, 2.0 * math.pi, steps, endpoint=False)
-    rings = list(_rings(cam, blank, theta, places))
+    made = _closed(list(_rings(cam, blank, theta, places)), cam.outer_radius)
+    if not cam.clockwise:
+        return made
+    return Surface(vertices=made.vertices * [1.0, -1.0, 1.0], triangles=made.triangles[:, ::-1])
+
+
+def roller_surface(cam: SpatialCam, steps: int) -> Surface:
+    """Return the surface of the roller of a cam with the beginning of its pin outside the cam.
+
+    Parameters
+    ----------
+    cam : SpatialCam
+        The cam.
+    steps : int
+        Number of chords around it.
+
+    Returns
+    -------
+    Surface
+        In the frame of the roller: its axis is +x.
+    """
+    inside, outside = cam.inner, cam.outer_radius
+    thin, thick = (cam.roller.radius_at(x) for x in (inside, outside))
+    pin, end = _PIN * thick, outside + _STUB * thick
+    theta = np.linspace(0.0, 2.0 * math.pi, steps, endpoint=False)
+    profile = [(0.0, end), (pin, end), (pin, outside), (thick, outside), (thin, inside)]
+    made = _closed([_circle(theta, *one) for one in (*profile, (0.0, inside))], outside)
+    return Surface(vertices=np.roll(made.vertices, 1, axis=1), triangles=made.triangles)
+
+
+def _closed(rings: Sequence[_Ring], size: float) -> Surface:
+    """Return the surface through rings, each joined to the next, the last to the first.
+
+    `size` is the radius of the cylinder, mm.
+    """
     sizes = [len(ring.points) for ring in rings]
     starts = np.cumsum([0, *sizes[:-1]])
     faces = []
@@ -99,10 +139,8 @@ def surface(cam: SpatialCam, blank: Cylinder, steps: int, places: int) -> Surfac
         joined = _joined(ring, rings[after])  # points of the second ring follow those of the first
         faces.append(joined + np.where(joined < sizes[k], starts[k], starts[after] - sizes[k]))
     vertices, triangles = _welded(
-        np.concatenate([ring.points for ring in rings]), np.concatenate(faces), cam.outer_radius
+        np.concatenate([ring.points for ring in rings]), np.concatenate(faces), size
     )
-    if cam.clockwise:
-        vertices, triangles = vertices * [1.0, -1.0, 1.0], triangles[:, ::-1]
     return Surface(vertices=vertices, triangles=triangles)
 
 

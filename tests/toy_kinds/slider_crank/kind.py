@@ -161,9 +161,9 @@ class SliderCrank(Result):
         name, *_ = self.driven.motion()
         return {name: self.places, "slider_mm": along, "rate": rate, "rod_deg": np.degrees(angle)}
 
-    def assembled(self, chords: float = 0.0) -> dict[str, Any]:
+    def standing(self, chords: float = 0.0) -> dict[str, Any]:
         with within(self.at):
-            return self.driven.assembled(chords)
+            return self.driven.standing(chords)
 
     @cached_property
     def checked(self) -> tuple[Finding, ...]:

@@ -207,3 +207,28 @@ def test_of_several_walls_the_largest_error_is_shown():
     areas = [result.facts[f"accuracy.{wall}_area_mm2"] for wall in ("inner", "outer")]
     html = blocks(result, names=["accuracy"])["accuracy"]
     assert f'>area</th><td class="number">{max(areas):.2g} mm2<' in html
+
+
+def test_solids_that_move_in_space_are_told() -> None:
+    _, scene = made("cylinder_cam")
+    data = read(scene_data(scene))
+    assert (data["eye"], data["up"]) == ([1.0, -0.8, 0.6], [0.0, 0.0, 1.0])
+    assert [*data["solids"]] == ["cam", "roller"]
+    for name, pose in scene.in_space.items():
+        told = data["solids"][name]
+        assert told["axis"] == list(pose.axis)
+        assert told["turn"] + 0.0 * pose.turn == pytest.approx(pose.turn, abs=0.51e-7)
+        for key, values in zip("xyz", pose.shift.T, strict=True):
+            assert told[key] + 0.0 * values == pytest.approx(values, abs=0.51e-4)
+    # the roller stands at its lift, which is known in the middle of rise and dwell
+    assert data["solids"]["roller"]["turn"] == 0.0
+    assert data["solids"]["roller"]["z"][5] == pytest.approx(25.0 + 30.0)
+    assert data["solids"]["roller"]["z"][11] == 25.0 + 60.0
+    assert data["solids"]["cam"]["turn"][6] == pytest.approx(0.5 * math.pi, abs=1e-7)
+
+
+def test_a_pose_in_space_is_needed_for_each_place() -> None:
+    _, scene = made("cylinder_cam")
+    short = {"roller": scene.in_space["roller"][:-1]}
+    with pytest.raises(ValueError, match="roller: needs a pose in space for each place"):
+        replace(scene, in_space=short)

@@ -5,14 +5,19 @@ from __future__ import annotations
 import base64
 import json
 import re
+import tomllib
 from pathlib import Path
 from typing import Any
 
+import manifold3d
 import numpy as np
 import pytest
+import shapely
 import trimesh
 
 import gearcam
+from gearcam.numeric.arrays import as_pairs
+from gearcam.numeric.contour import Contour
 from gearcam.parts.solids import SolidError
 from gearcam.report.file import CHORDS, solids_shown
 from helpers_pairs import PROFILES
@@ -111,3 +116,90 @@ def test_a_page_holds_the_view_and_is_small(tmp_path: Path) -> None:
 def test_a_view_is_the_same_every_time() -> None:
     views = [solids_shown(build("ellipse"))["view"] for _ in range(2)]
     assert views[0] == views[1]
+
+
+MOVED = (
+    "cylinder_cam", "groove_cam", "conjugate_cams", "plate_cam_oscillating", "translating_cam",
+    "ellipse", "feeder", "ring_ellipse", "stepped_ellipse",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("name", MOVED)
+def test_solids_stand_where_the_scene_has_them_at_the_place_of_the_design(name: str) -> None:
+    """The page moves a solid by the poses of its name: they are of the same frame.
+
+    A cam in the plane stands unturned instead, as it is printed.
+    """
+    result = build(name)
+    scene, solids = result.scene(720), result.standing()
+    at = int(np.argmin(np.abs(scene.places - scene.start)))
+    bodies = {body.name: body for body in scene.bodies}
+    for key, (mesh, pose) in solids.items():
+        if key in scene.in_space:
+            assert pose.matrix == pytest.approx(scene.in_space[key][at].matrix, abs=1e-12)
+            continue
+        # corners of the solid are points of the outlines that move in the scene
+        steps = [one for one in scene.bodies if one.name == key]
+        shapes = [one.shape for step in steps for one in step.features]
+        shapes = [one for one in shapes if isinstance(one, Contour)]
+        outlines = shapely.multipoints(as_pairs(np.concatenate([one.points for one in shapes])))
+        corners = shapely.points(mesh.vertices[:, :2])
+        assert (shapely.distance(outlines, corners) < 1e-6).mean() > 0.5
+        if not name.endswith(("cam", "cams", "oscillating")):
+            drawn = bodies[key].pose[at].in_space.matrix
+            assert pose.matrix == pytest.approx(drawn, abs=1e-9)
+
+
+def carried(rotation: str, *, oscillating: bool) -> Any:
+    """The cylinder cam with one of both followers."""
+    given = tomllib.loads((PROFILES / "cylinder_cam.toml").read_text("utf-8"))
+    given |= {"name": "carried"}
+    given["cam"] |= {"rotation": rotation}
+    given["output"] = {"wall_step_deg": 1, "theta_deg": 30}
+    if oscillating:
+        given["follower"] |= {"motion": "oscillating", "arm_mm": 120}
+        given["motion"][0] |= {"lift_deg": given["motion"][0].pop("lift_mm") / 2.5}
+        given["cam"]["lowest_mm"] = 55 - 60 * 0.4
+    return gearcam.build(gearcam.design(given))
+
+
+def body(mesh: Any) -> manifold3d.Manifold:
+    found = manifold3d.Mesh64(mesh.vertices, mesh.triangles.astype(np.uint64))
+    return manifold3d.Manifold(found)
+
+
+@pytest.mark.parametrize("rotation", ["ccw", "cw"])
+@pytest.mark.parametrize("oscillating", [False, True])
+def test_the_roller_runs_through_the_groove_of_the_cam_that_turns(
+    rotation: str, oscillating: bool
+) -> None:
+    result = carried(rotation, oscillating=oscillating)
+    scene, solids = result.scene(24), result.standing(CHORDS)
+    assert [*solids] == [*scene.in_space] == ["cam", "roller"]
+    assert [*result.meshes] == ["cam"]
+
+    def overlap(place: int, behind: int = 0) -> float:
+        poses = scene.in_space
+        cam = body(solids["cam"][0].placed(poses["cam"][place]))
+        roller = body(solids["roller"][0].placed(poses["roller"][place - behind]))
+        return float((cam ^ roller).volume())
+
+    assert max(overlap(k) for k in range(25)) < 0.2  # chords of 1 deg; the roller has 6000 mm3
+    assert overlap(5, behind=1) > 100.0
+
+
+def test_two_rollers_run_along_a_rib() -> None:
+    given = tomllib.loads((PROFILES / "cylinder_cam.toml").read_text("utf-8"))
+    given |= {"name": "rib", "output": {"wall_step_deg": 1}}
+    given["cam"] |= {"walls": "rib", "rib_mm": 8, "lowest_mm": 30, "length_mm": 120}
+    result = gearcam.build(gearcam.design(given))
+    scene, solids = result.scene(12), result.standing(CHORDS)
+    assert [*solids] == [*scene.in_space] == ["cam", "roller_upper", "roller_lower"]
+    for place in (0, 3, 10):
+        upper, lower = (
+            body(solids[name][0].placed(scene.in_space[name][place])) for name in [*solids][1:]
+        )
+        cam = body(solids["cam"][0].placed(scene.in_space["cam"][place]))
+        assert (cam ^ upper).volume() + (cam ^ lower).volume() < 0.2
+        for moved, way in ((upper, -0.3), (lower, 0.3)):  # the rib is between them
+            assert (cam ^ moved.translate((0.0, 0.0, way))).volume() > 5.0

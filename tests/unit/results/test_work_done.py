@@ -353,7 +353,7 @@ def test_a_page_shows_solids_of_fewer_vertices(monkeypatch: pytest.MonkeyPatch) 
     result = gearcam.build(_design("ellipse", ("report",)))
     solids.solids_shown(result)
     assert shown.keys() == result.meshes.keys()
-    for name, mesh in shown.items():
+    for name, (mesh, _) in shown.items():
         assert 2 * len(mesh.vertices) < len(result.meshes[name].vertices)
 
 

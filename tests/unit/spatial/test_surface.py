@@ -11,7 +11,8 @@ import pytest
 
 from gearcam.parts.solids import Mesh
 from gearcam.spatial.cam import SpatialCam
-from gearcam.spatial.surface import Cylinder, chord_error, surface
+from gearcam.spatial.guides import RollerGuide, Turret
+from gearcam.spatial.surface import Cylinder, chord_error, roller_surface, surface
 from helpers_spatial import reference, swinging
 
 EXACT = 44298.298
@@ -136,3 +137,30 @@ def test_a_wall_that_is_off_by_5_um_is_found(side: int) -> None:
             moved[known[tuple(point)]] -= 5e-3 * normal
     body = solid(Mesh(vertices=moved, triangles=made.triangles))
     assert max(overlaps(body, cam, 12, -1.1 * chord_error(cam, 720, 13))) > 0.0
+
+
+@pytest.mark.parametrize("half_angle", [0.0, 0.1])
+def test_the_surface_of_a_roller_is_closed_and_has_its_volume(half_angle: float) -> None:
+    """Against a truncated cone and a cylinder of half its radius, as prisms of the same corners."""
+    cam = reference(half_angle=half_angle)
+    made = roller_surface(cam, 90)
+    body = Mesh(vertices=made.vertices, triangles=made.triangles)
+    assert body.watertight
+    area = 45.0 * math.sin(2.0 * math.pi / 90)  # of 90 chords about a circle of radius 1
+    thin = 8.0 - 12.0 * math.tan(half_angle)
+    cone = 12.0 / 3.0 * (8.0**2 + 8.0 * thin + thin**2)
+    assert body.volume == pytest.approx(area * (cone + 8.0 * 4.0**2), rel=1e-12)
+    assert (made.vertices[:, 0].min(), made.vertices[:, 0].max()) == (28.0, 48.0)
+
+
+TURRET = Turret(distance=90.0, start=-0.3)
+
+
+@pytest.mark.parametrize("guide", [reference().guide, swinging().guide, TURRET])
+def test_the_pose_of_a_roller_carries_its_axis_where_the_guide_does(guide: RollerGuide) -> None:
+    lift = np.linspace(0.0, 0.6, 5)
+    point, direction = guide.placed(lift)
+    matrix = guide.pose(lift).matrix
+    for x in (0.0, 12.5):
+        moved = matrix @ [x, 0.0, 0.0, 1.0]
+        assert moved[:, :3] == pytest.approx(point[0] + x * direction[0], abs=1e-12)

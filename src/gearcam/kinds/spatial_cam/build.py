@@ -20,17 +20,23 @@ from gearcam.laws.program import Program
 from gearcam.numeric.arguments import angles
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
+from gearcam.parts.shapes import circle_segments
 from gearcam.parts.solids import Mesh
 from gearcam.results.result import Result
 from gearcam.spatial.cam import SpatialCam, SpatialWall
 from gearcam.spatial.make import make_cylinder
-from gearcam.spatial.surface import Cylinder, chord_error, surface
+from gearcam.spatial.surface import Cylinder, chord_error, roller_surface, surface
 
 if TYPE_CHECKING:
     from trimesh import Trimesh
 
+    from gearcam.numeric.pose import SpacePose
+
 STEM: Final = "cam"
 """Stem of its files."""
+
+_SAGITTA: Final = 0.01
+"""Least chord error of the roller shown, mm."""
 
 _TURN: Final = 2.0 * math.pi
 
@@ -213,9 +219,17 @@ class SpatialCamResult(Result):
 
         return trimeshes(self.meshes)
 
-    def assembled(self, chords: float = 0.0) -> dict[str, Mesh]:  # noqa: ARG002
-        """Return the cam as a mesh (see `Result`)."""
-        return self.meshes
+    def standing(self, chords: float = 0.0) -> dict[str, tuple[Mesh, SpacePose]]:
+        """Return cam and rollers at the angle of the design, as meshes (see `Result`)."""
+        from gearcam.kinds.spatial_cam.scene import CAM, in_space
+
+        size = 2.0 * self.design.follower.roller_radius
+        made = roller_surface(self.cam, circle_segments(size, max(chords, _SAGITTA)))
+        roller = Mesh(vertices=made.vertices, triangles=made.triangles)
+        poses = in_space(self, np.array([self.design.output.pose]))
+        return {
+            name: (self.mesh if name == CAM else roller, pose[0]) for name, pose in poses.items()
+        }
 
     @property
     def main_errors(self) -> Sequence[tuple[str, Sequence[str]]]:

@@ -1,20 +1,32 @@
-"""The scene of a cam in space: its outside, unrolled, and the roller that runs along it."""
+"""The scene of a cam in space: its outside, unrolled, and the roller that runs along it.
+
+The solids move in space: the cam turns, the roller is lifted.
+"""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from dataclasses import replace
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from gearcam.kinds.spatial_cam.charts import DRIVER
 from gearcam.kinds.spatial_cam.drawn import centers, picture, rollers
-from gearcam.numeric.pose import Pose
+from gearcam.numeric.pose import Pose, SpacePose
 from gearcam.pictures.drawings import FOLLOWER
 from gearcam.pictures.scenes import PLACES, MovingBody, Scene
 
 if TYPE_CHECKING:
     from gearcam.kinds.spatial_cam.build import SpatialCamResult
+    from gearcam.numeric.arrays import Array
+
+CAM: Final = "cam"
+ROLLER: Final = "roller"
+"""Name of its solid; of two, those at a rib, the beginning of their names."""
+
+_EYE: Final = (1.0, -0.8, 0.6)
+"""The roller, at the azimuth 0, is in front then."""
 
 
 def scene(result: SpatialCamResult, places: int = PLACES) -> Scene:
@@ -34,9 +46,9 @@ def scene(result: SpatialCamResult, places: int = PLACES) -> Scene:
     theta = np.linspace(0.0, 2.0 * math.pi, places + 1)
     still = Pose(np.zeros(len(theta)), np.zeros(len(theta), dtype=np.complex128))
     sheet = tuple(one for one in picture(result).features if one.kind != FOLLOWER)
-    cam = MovingBody(name="cam", called="cam, unrolled", features=sheet, pose=still)
+    cam = MovingBody(name=CAM, called="cam, unrolled", features=sheet, pose=still)
     moving = Pose(np.zeros(len(theta)), centers(result, theta))
-    follower = MovingBody(name="follower", called="roller", features=rollers(result), pose=moving)
+    follower = MovingBody(name="follower", called=ROLLER, features=rollers(result), pose=moving)
     return Scene(
         title=result.design.name,
         driver=DRIVER,
@@ -44,4 +56,33 @@ def scene(result: SpatialCamResult, places: int = PLACES) -> Scene:
         closed=True,
         start=math.degrees(result.design.output.pose % (2.0 * math.pi)),
         bodies=(cam, follower),
+        in_space=in_space(result, theta),
+        eye=_EYE,
+        up=(0.0, 0.0, 1.0),
     )
+
+
+def in_space(result: SpatialCamResult, theta: Array) -> dict[str, SpacePose]:
+    """Return the poses of the solids of a cam in space.
+
+    Parameters
+    ----------
+    result : SpatialCamResult
+        The cam.
+    theta : (n,) array, rad
+        Cam angles.
+
+    Returns
+    -------
+    dict of str to SpacePose
+        Of the cam and of the roller or rollers, by name.
+    """
+    lift = result.program.derivatives(theta, 0)[0]
+    turned = SpacePose((0.0, 0.0, 1.0), theta, np.zeros((len(theta), 3)))
+    poses = {CAM: turned}
+    up = np.array([0.0, 0.0, 0.5 * result.cam.apart])
+    carried = result.cam.guide.pose(lift)
+    beside = {f"{ROLLER}_upper": up, f"{ROLLER}_lower": -up} if up.any() else {ROLLER: up}
+    for name, way in beside.items():
+        poses[name] = replace(carried, shift=carried.shift + way)
+    return {name: one.mirrored if result.cam.clockwise else one for name, one in poses.items()}
