@@ -17,6 +17,7 @@ import law_cases
 import needs
 import ring_cases
 import solid_cases
+import spatial_cases
 import sweep_cases
 from gearcam.numeric.arrays import keep_freed_memory
 from measuring import Result, environment
@@ -57,6 +58,7 @@ def main() -> int:
         law_cases.against_ellipse,
         ring_cases.against_external,
         solid_cases.against_booleans,
+        spatial_cases.of_cylinder_cams,
         sweep_cases.of_sweeps,
         design_cases.of_cams,
         before_cases.against_before,
