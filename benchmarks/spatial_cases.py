@@ -56,8 +56,8 @@ EXACT = math.pi * 40.0**2 * 60.0 - 44298.298
 
 _NOTE = """\
 Lift 30 mm in 120 deg, roller 8 mm, cylinder 80 mm, groove 12 mm. The chord error of the surface is
-{chord:.2f} um, its volume is {own:.2f} mm3 off; {rollers} rollers that manifold3d subtracts from the
-cylinder leave it {other:.1f} mm3 off, so that the same volume error would take more of them."""
+{chord:.2f} um, its volume is {own:.2f} mm3 off; {rollers} rollers that manifold3d subtracts leave
+it {other:.1f} mm3 off, so that the same volume error would take more of them."""
 
 
 def of_cylinder_cams() -> list[Result]:

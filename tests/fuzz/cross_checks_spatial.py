@@ -33,7 +33,7 @@ def doubts(result: SpatialCamResult) -> Iterator[tuple[str, str]]:
     place, words : str
         Place and description of a contradiction.
     """
-    cam, size = result.cam, result.design.cam.outer_diameter
+    cam, size = result.cam, 2.0 * result.cam.outer_radius
     theta = TURN / _ANGLES * (np.arange(float(_ANGLES)) + 0.37)
     places = cam.floor + (cam.outer_radius - cam.floor) * np.array([0.1, 0.9])
     for wall in cam.walls:

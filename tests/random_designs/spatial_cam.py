@@ -65,6 +65,8 @@ def design(d: Draw, index: int) -> dict[str, Any]:
     if d.chance(0.2):
         made["developed"] = {"steps": d.whole(12, 60), "radii": d.whole(2, 5)}
         made["output"]["studies"] = ["developed"]
+    if index % 13 == 7:  # by number: others draw the same as before
+        given["outer_diameter_mm"] = "solve"
     drive(d, made)
     seek(made, index, "cam.pressure_angle_deg.max", "cam.outer_diameter_mm")
     return made

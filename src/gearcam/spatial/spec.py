@@ -123,7 +123,7 @@ class CylinderSpec(ShortRepr):
 
     form: str = param(TEXT, default="cylinder", choices=("cylinder",), doc="the form of the cam")
     outer_diameter: float = positive_length(
-        default=REQUIRED, example=80, doc="diameter of the cylinder"
+        default=REQUIRED, example=80, doc="diameter of the cylinder", solvable=True
     )
     length: float = positive_length(default=REQUIRED, example=70, doc="length of the cylinder")
     lowest: float = param(
@@ -178,6 +178,11 @@ class CylinderSpec(ShortRepr):
         return self.rotation == "cw"
 
     @property
+    def asks(self) -> bool:
+        """Whether its diameter is to be found."""
+        return isinstance(self.outer_diameter, str)
+
+    @property
     def outer_radius(self) -> float:
         """Radius of the cylinder, mm."""
         return 0.5 * self.outer_diameter
@@ -189,7 +194,7 @@ class CylinderSpec(ShortRepr):
 
     def problems(self) -> Iterator[Breach]:
         """Yield contradictions: field, index, message, what is allowed."""
-        if self.floor <= 0.0:
+        if not self.asks and self.floor <= 0.0:
             most = self.outer_radius - self.floor_clearance
             rule = f"below {formatted(most)} mm, with the floor's clearance the cylinder's radius"
             yield "groove_depth", None, "the groove reaches the cam's axis", rule

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Final
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from trimesh import Trimesh
 
     from gearcam.numeric.pose import SpacePose
+    from gearcam.spatial.sizing import SolvedDiameter
 
 STEM: Final = "cam"
 """Stem of its files."""
@@ -39,6 +41,9 @@ _SAGITTA: Final = 0.01
 """Least chord error of the roller shown, mm."""
 
 _TURN: Final = 2.0 * math.pi
+
+_NAMED: Final = 90
+"""Characters of a name that leave room for a word behind it."""
 
 _MOST_STEPS: Final = 1e6
 """Largest number of steps of a table."""
@@ -73,9 +78,42 @@ class SpatialCamResult(Result):
             return lift_program(self.design, self.tolerances)
 
     @cached_property
+    def solution(self) -> SolvedDiameter | None:
+        """The outer diameter that the design asks for; None if it gives one."""
+        program, design = self.program, self.design
+        if not design.cam.asks:
+            return None
+        from gearcam.spatial.sizing import least_diameter
+
+        with self.stage("solve"):
+            return least_diameter(
+                program, design.follower, design.cam, design.blank.bore, design.limits
+            )
+
+    @cached_property
+    def solved(self) -> SpatialCamDesign:
+        """The design with all its sizes."""
+        found = self.solution
+        if found is None:
+            return self.design
+        size = replace(self.design.cam, outer_diameter=found.diameter)
+        return replace(self.design, cam=size, examined=True)
+
+    @property
+    def more_files(self) -> dict[str, bytes]:
+        """The design with the size that it asks for, as a file (see `Result.more_files`)."""
+        if self.solution is None:
+            return {}
+        from gearcam.designs.writing import least_document, toml_text
+
+        comment = f"{self.design.name} with its solved size"
+        named = replace(self.solved, name=f"{self.design.name[:_NAMED]}_solved", examined=True)
+        return {"solved.toml": toml_text(least_document(named), [comment]).encode()}
+
+    @cached_property
     def cam(self) -> SpatialCam:
         """The cam; its walls and measures are computed on demand."""
-        program, design = self.program, self.design
+        program, design = self.program, self.solved
         with self.stage("cam"):
             return make_cylinder(program, design.follower, design.cam, design.blank.bore)
 

@@ -24,6 +24,14 @@ def facts(result: SpatialCamResult) -> Facts:
     tree: Tree = {
         "motion": _motion(result),
         "cam": _cam(result),
+        "solution": None
+        if result.solution is None
+        else {
+            "outer_diameter_mm": Fact(
+                result.solution.diameter, "cam.outer_diameter_mm, solved", shown=True
+            ),
+            "decided_by": Fact(result.solution.decided_by, "decided by", shown=True),
+        },
         "solid": _solid(result),
         "accuracy": _accuracy(result),
     }
@@ -55,7 +63,7 @@ def _motion(result: SpatialCamResult) -> Tree:
 
 def _cam(result: SpatialCamResult) -> Tree:
     """Return sizes, pressure angles, and how much the walls spread."""
-    cam, given, follower = result.cam, result.design.cam, result.design.follower
+    cam, given, follower = result.cam, result.solved.cam, result.design.follower
     tool = cam.tool
     return {
         "form": given.form,
