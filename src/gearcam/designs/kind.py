@@ -254,7 +254,8 @@ class DesignKind:
             return self
         table = document.get(self.variants.title)
         value = table.get(self.variants.key) if isinstance(table, Mapping) else None
-        name = self.variants.elsewhere.get(value) if isinstance(value, str) else None
+        word = nearest(value, self.variants.values) if isinstance(value, str) else ""
+        name = self.variants.elsewhere.get(word)
         return KINDS[name] if name else self
 
     def table(self, title: str) -> Table:

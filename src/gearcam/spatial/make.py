@@ -7,16 +7,20 @@ bore, an arm that carries the roller past the middle of the cam.
 from __future__ import annotations
 
 import math
+from typing import Final
 
 import numpy as np
 
 from gearcam.base.errors import ABOVE, InfeasibleError, beyond_limit
-from gearcam.base.numerals import formatted
+from gearcam.base.numerals import formatted, shortened
 from gearcam.laws.program import Program
 from gearcam.spatial.cam import SpatialCam
 from gearcam.spatial.envelope import Roller
 from gearcam.spatial.guides import RollerGuide, Straight, SwingArm
 from gearcam.spatial.spec import WALLS, CylinderSpec, SpatialFollower
+
+_INSIDE: Final = 0.05
+"""How far inside the range of the pivot's distance the suggested one is, as a share of it."""
 
 
 def make_cylinder(
@@ -107,20 +111,29 @@ def _demand_rib(cam: SpatialCam, follower: SpatialFollower) -> None:
         width = 2.0 * cam.tool.radius_at(least.x)
         most = cam.apart * width / (least.value + width) - 2.0 * follower.roller_radius
         what = f"the rollers cut through the rib at {formatted(math.degrees(least.theta), 5)} deg"
-        raise beyond_limit(what, "cam.rib_mm", rib, most, near=ABOVE * most)
+        raise beyond_limit(what, "cam.rib_mm", rib, most, near=shortened(ABOVE * most, 1.0))
 
 
 def _demand_middle(cam: SpatialCam) -> None:
     """Refuse an arm that carries the end of the roller past the middle of the cam."""
+    if not isinstance(cam.guide, SwingArm):
+        return
     theta = cam.program.survey.places.ravel()
     point, _ = cam.guide.placed(cam.program.derivatives(theta, 0)[0])
-    aside = point[0, :, 1]
-    worst = float(np.abs(aside).max())
-    least = cam.tool.radius_at(cam.floor)
-    if worst >= least:
-        what = "the arm carries the roller so far aside that it leaves the middle of the cam"
-        note = "the limit is the roller's radius at its end"
-        raise beyond_limit(what, "follower.pivot_distance_mm", worst, least, note)
+    aside, radius = point[0, :, 1], cam.tool.radius_at(cam.floor)
+    if np.abs(aside).max() < radius:
+        return
+    distance = cam.guide.distance
+    least, most = float(aside.max()) + distance - radius, float(aside.min()) + distance + radius
+    if least >= most:
+        what = "the arm swings so far that the roller leaves the middle of the cam"
+        allowed = "a longer arm, a smaller lift or a larger roller"
+        raise InfeasibleError(what, where="follower.arm_mm", nearest=allowed)
+    what = "the pivot is where the roller does not stay on the middle of the cam"
+    limit, side = (least, 1.0) if distance <= least else (most, -1.0)
+    note = f"from {formatted(least)} to {formatted(most)} mm, both excluded"
+    near = shortened(limit + side * _INSIDE * (most - least), side)
+    raise beyond_limit(what, "follower.pivot_distance_mm", distance, limit, note, near=near)
 
 
 def _demand_room(cam: SpatialCam, size: CylinderSpec) -> None:
@@ -131,7 +144,11 @@ def _demand_room(cam: SpatialCam, size: CylinderSpec) -> None:
         half = 0.5 * cam.apart - half
     if -1 in cam.sides and low - half <= 0.0:
         what, near = "the groove leaves the lower face of the cylinder", size.lowest + half - low
-        raise beyond_limit(what, "cam.lowest_mm", size.lowest, near, near=ABOVE * near, unit="mm")
+        raise beyond_limit(
+            what, "cam.lowest_mm", size.lowest, near, near=shortened(ABOVE * near, 1.0), unit="mm"
+        )
     if 1 in cam.sides and high + half >= size.length:
         what, near = "the groove leaves the upper face of the cylinder", high + half
-        raise beyond_limit(what, "cam.length_mm", size.length, near, near=ABOVE * near, unit="mm")
+        raise beyond_limit(
+            what, "cam.length_mm", size.length, near, near=shortened(ABOVE * near, 1.0), unit="mm"
+        )
