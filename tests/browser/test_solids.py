@@ -19,6 +19,7 @@ from gearcam.report.file import solids_shown
 from gearcam.report.page import document, page
 from helpers_browser import LAPTOP, PHONE, complaints, go, open_page, requests, settle, until
 from helpers_pairs import PROFILES
+from helpers_view import served
 
 NAIL = "nail_machine_two_phase"
 INSIDE = "const view = document.querySelector('#solids iframe').contentWindow;"
@@ -247,3 +248,51 @@ def test_a_page_of_variants_is_drawn_and_moves(browser: Chrome, tmp_path: Path) 
     wide = "const e = document.scrollingElement; return [e.scrollWidth, e.clientWidth]"
     assert browser.execute_script(wide) == [PHONE[0], PHONE[0]]
     assert complaints(browser) == []
+
+
+def test_the_live_view_shows_the_solids_of_the_numbers_in_the_page(
+    browser: Chrome, tmp_path: Path
+) -> None:
+    file = tmp_path / "cam.toml"
+    text = (PROFILES / f"{CAM}.toml").read_text("utf-8")
+    file.write_text(text.partition("[output]")[0] + "[output]\nwall_step_deg = 3\n")
+    with served(file) as (server, view):
+        browser.get_log("browser")
+        browser.get(server.address)
+        until(lambda: browser.execute_script("return !!window.gearcam?.solids"))
+        until(lambda: browser.find_elements(By.ID, "save"))
+        assert browser.find_elements(By.TAG_NAME, "iframe") == []
+        show(browser)
+        go(browser, 170.0)
+        assert placed(browser)["cam"] == pytest.approx(turned(170.0), abs=1e-6)
+        assert placed(browser)["roller"] == pytest.approx(lifted(85.0), abs=1e-4)
+        camera = f"{INSIDE} view.camera.position.x += 50; return view.camera.position.toArray()"
+        seen = browser.execute_script(camera)
+        browser.execute_script(f"{INSIDE} view.old = true")
+        length = browser.find_element(By.CSS_SELECTOR, 'input[aria-label="cam.length_mm, number"]')
+        length.clear()
+        length.send_keys("120", Keys.ENTER)
+        tall = f"""
+            if (!document.querySelector('#solids [data-drawn]')) return 0;
+            {INSIDE} if (view.old) return 0;
+            return view.scene.getObjectByName('cam').geometry.boundingBox.max.z"""
+        assert until(lambda: browser.execute_script(tall)) == 120.0
+        assert placed(browser)["cam"] == pytest.approx(turned(170.0), abs=1e-6)
+        # seen from where it was
+        again = browser.execute_script(f"{INSIDE} return view.camera.position.toArray()")
+        assert again == pytest.approx(seen)
+        browser.find_element(By.CSS_SELECTOR, "#solids summary").click()
+        file.write_text(
+            file.read_text().replace("outer_diameter_mm = 200", "outer_diameter_mm = 210")
+        )
+        view.refresh()
+        until(lambda: "210 mm" in browser.find_element(By.ID, "verdict").text)
+        browser.find_element(By.CSS_SELECTOR, "#solids summary").click()
+        radius = f"""
+            if (!document.querySelector('#solids [data-drawn]')) return 0;
+            {INSIDE} const cam = view.scene.getObjectByName('cam');
+            cam.geometry.computeBoundingBox(); return cam.geometry.boundingBox.max.y"""
+        until(lambda: 104.8 < browser.execute_script(radius) <= 105.0)
+        wrong = faults(browser)
+        browser.get("about:blank")  # the page would ask for a server that has ended
+    assert wrong == []

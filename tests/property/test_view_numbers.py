@@ -192,3 +192,12 @@ def test_keys_go_there_and_back() -> None:
     for file in FILES:
         for key in numbers(file.read_text()):
             assert dotted(path_of(key)) == key
+
+
+def test_sliders_are_those_of_the_kind_that_the_document_means() -> None:
+    """A cylinder cam is written as a cam, whose tables have other keys."""
+    text = (PROFILES / "cylinder_cam.toml").read_text()
+    keys = {one["key"] for one in sliders(text, lambda _: True)}
+    missed = {key for key in numbers(text) if key not in keys}
+    assert {"cam.length_mm", "cam.lowest_mm", "cam.floor_clearance_mm"} <= keys
+    assert missed == set()

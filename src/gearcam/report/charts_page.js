@@ -20,10 +20,12 @@ function print(on) {
 
 function show(next) {
   page.shown = replaced(page.shown, next);
-  if (next.charts) charts.show(next.charts);
+  if (!next.charts) return;
+  charts.show(next.charts);
+  solids.renew();
 }
 
-window.gearcam = { show };
+window.gearcam = { show, solids };
 
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", repaint);
 window.addEventListener("beforeprint", () => print(true));

@@ -231,6 +231,17 @@
     tell("The live view has ended: the page no longer follows the file. Start gearcam view again.");
   }
 
+  // The solids of the numbers in the page.
+  async function solids() {
+    try {
+      return await post("solids", { changes: pending });
+    } catch {
+      ended();
+      return { stale: true };
+    }
+  }
+
+  window.gearcam.solids.from(solids);
   const events = new EventSource("events");
   events.onmessage = (event) => follow(event).catch(ended);
   events.onerror = ended;

@@ -316,6 +316,7 @@ function print(on) {
 function show(next) {
   page.shown = replaced(page.shown, next);
   present(Boolean(next.charts));
+  if (next.charts) solids.renew();
 }
 
 function present(whole) {
@@ -336,6 +337,7 @@ window.gearcam = {
   show,
   go,
   svg,
+  solids,
   get place() { return page.place; },
   poses: () => posesOf(page.scene, page.place, page.cycles),
 };

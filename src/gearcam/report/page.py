@@ -44,7 +44,7 @@ _CHARTS: Final = ("uPlot/uPlot.iife.min.js", "parts.js", "saves.js", "charts.js"
 SCRIPTS: Final = ("scene.js", *_CHARTS, "blocks.js", "solids.js", "page.js")
 """Parts of the script of a page with moving parts."""
 
-STILL: Final = (*_CHARTS, "blocks.js", "charts_page.js", "solids.js")
+STILL: Final = (*_CHARTS, "blocks.js", "solids.js", "charts_page.js")
 """Parts of the script of a page without moving parts."""
 
 _HOME: Final = Path(__file__).parent
@@ -72,7 +72,7 @@ def page(
     live : mapping, optional
         Data of the live view for its script; without them the page stands alone.
     solids : mapping, optional
-        A view of the solids (see `gearcam.report.file`).
+        A view of the solids (see `gearcam.report.file`); the live view asks for it itself.
 
     Returns
     -------
@@ -117,7 +117,7 @@ def charts_page(title: str, charts: Sequence[Chart], text: str) -> bytes:
         "text": text,
         "data": _embedded({"title": title, "charts": data}),
         "style": _contents("uPlot/uPlot.min.css", "page.css"),
-        "script": _contents(*_CHARTS, "blocks.js", "charts_page.js"),
+        "script": _contents(*STILL),
         "licence": _contents("uPlot/LICENSE"),
     }
     return rendered("charts.html", values).encode()

@@ -1,16 +1,21 @@
 // The view of the solids: a separate page in a frame, loaded when first opened. Its globals (scene,
 // camera, controls, render, THREE) serve to move, fit, colour and print it. Each solid is an object
-// with the name of its body.
+// with the name of its body. The live view asks the server for it, and again for each document.
 
 const solids = (() => {
   const home = document.querySelector("#solids details");
-  if (!home) return { move() {} };
+  if (!home) return { move() {}, renew() {}, from() {} };
   const dark = matchMedia("(prefers-color-scheme: dark)");
   const METAL = [0x4d7fb8, 0xb8803f, 0x5c8f5c]; // colours of the bodies in order
   const TURN = Math.PI / 18; // per arrow key, rad
   const ZOOM = 1.15; // factor per + or -
   const AROUND = 24; // places at which all must be in sight
+  const hint = home.querySelector(".hint");
+  const HINT = hint.textContent;
   let frame = null;
+  let load = null; // asks for the view where the page does not hold it
+  let asked = 0;
+  let late = true; // whether what is shown is not that of the document
   let posesAt = () => new Map(); // by name, at a place of the driver
   let scene = { places: [0], eye: [0.3, -0.7, 1], up: [0, 1, 0] };
   let place = 0;
@@ -47,27 +52,54 @@ const solids = (() => {
 
   function open() {
     if (!home.open) return;
-    if (frame) {
-      move(posesAt, place, scene);
-      return;
-    }
-    if (!drawn()) {
-      home.querySelector(".hint").textContent =
-        "This browser cannot show solids: it has no WebGL.";
-      return;
-    }
+    if (frame) move(posesAt, place, scene);
+    if (!late) return;
+    late = false;
+    if (!drawn()) hint.textContent = "This browser cannot show solids: it has no WebGL.";
+    else if (load) ask();
+    else show(JSON.parse(document.getElementById("solids-view").textContent));
+  }
+
+  // Ask for the view of another document; what is folded is asked for when it is opened.
+  function renew() {
+    if (!load) return;
+    late = true;
+    open();
+  }
+
+  async function ask() {
+    const turn = ++asked;
+    if (!frame) hint.textContent = "The solids are being made.";
+    const found = await load();
+    if (turn !== asked || found.stale) return;
+    hint.textContent = found.view ? HINT : whyNot(found);
+    show(found.view);
+  }
+
+  const whyNot = ({ error, refusal }) =>
+    error ? "There are no solids: the design cannot be made."
+      : refusal ? `The solids cannot be shown: ${refusal}` : "This design has no solids.";
+
+  // Put a view in the place of another one, seen from where that was.
+  function show(text) {
+    const before = view();
+    frame?.remove();
+    frame = null;
+    delete home.dataset.drawn;
+    if (!text) return;
     frame = document.createElement("iframe");
     frame.title = "The solids, to be turned and zoomed";
-    frame.srcdoc = JSON.parse(document.getElementById("solids-view").textContent);
+    frame.srcdoc = text;
     home.querySelector(".view").append(frame);
-    ready();
+    ready(frame, before && [before.camera, before.controls]);
   }
 
   // The view loads its data itself and does not report when it is done.
-  function ready() {
+  function ready(own, before) {
+    if (own !== frame) return;
     const inside = view();
     if (!inside) {
-      requestAnimationFrame(ready);
+      requestAnimationFrame(() => ready(own, before));
       return;
     }
     // the loader knows boxes only
@@ -76,6 +108,7 @@ const solids = (() => {
     paint(inside);
     aim(inside);
     fit(inside);
+    if (before) resume(inside, ...before);
     inside.addEventListener("resize", () => fit(inside));
     inside.addEventListener("keydown", key);
     home.dataset.drawn = "true";
@@ -139,6 +172,14 @@ const solids = (() => {
     inside.render();
   }
 
+  function resume({ camera, controls, render }, before, middle) {
+    camera.up.copy(before.up);
+    camera.position.copy(before.position);
+    controls.target.copy(middle.target);
+    controls.update();
+    render();
+  }
+
   function key(event) {
     const { camera, controls, THREE } = view();
     const way = camera.position.clone().sub(controls.target);
@@ -176,5 +217,5 @@ const solids = (() => {
   home.addEventListener("toggle", open);
   dark.addEventListener("change", () => view() && paint(view()));
   addEventListener("beforeprint", picture);
-  return { move };
+  return { move, renew, from: (ask) => (load = ask) };
 })();

@@ -191,7 +191,7 @@ def _entry(document: Mapping[str, Any], path: Path) -> Key | None:
     for at, key, inner in nested_in(document):
         if path[: len(at)] == at and isinstance(inner, Mapping):
             return _entry({"kind": key.param.nested[0], **inner}, path[len(at) :])
-    kind, (title, *rest) = KINDS[document["kind"]], path
+    kind, (title, *rest) = KINDS[document["kind"]].meant(document), path
     if kind.main and title == kind.main.title:
         raw = document[kind.main.title]
         if rest and isinstance(rest[0], int):

@@ -96,7 +96,7 @@ class Session:
         self._workers = workers
         self._notice = notice
         self._news = threading.Condition()
-        self._newest, self._search = _Newest(count), _Newest(1)
+        self._newest, self._search, self._models = _Newest(count), _Newest(1), _Newest(1)
         self._turn = self._whole = 0
 
     def refresh(self, content: bytes | None) -> None:
@@ -224,6 +224,31 @@ class Session:
         text = replaced(self.state.text, _values(asked.get("changes"), self.state))
         return self._search.run(
             lambda: _result(self._workers.submit(work.seek, text, self.file), self.file)
+        )
+
+    def solids(self, asked: Mapping[str, Any]) -> dict[str, Any] | None:
+        """Return a view of the solids of a design with changed numbers (see `work.solids`).
+
+        Parameters
+        ----------
+        asked : mapping
+            ``changes``, which may be none.
+
+        Returns
+        -------
+        dict or None
+            None if overtaken by a newer request.
+
+        Raises
+        ------
+        RequestError
+            If ``changes`` are not numbers of the file.
+        """
+        changes = asked.get("changes")
+        values = {} if changes == {} else _values(changes, self.state)
+        text = replaced(self.state.text, values)
+        return self._models.run(
+            lambda: _result(self._workers.submit(work.solids, text, self.file), self.file)
         )
 
     def save(self, asked: Mapping[str, Any]) -> dict[str, Any]:

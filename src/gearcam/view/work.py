@@ -21,6 +21,7 @@ from gearcam.console import fault_text, quieten, refusal_text, remedy_lines
 from gearcam.designs.design import Design, loads
 from gearcam.designs.reader import content_of, decoded
 from gearcam.numeric.arrays import keep_freed_memory
+from gearcam.report.file import solids_shown
 from gearcam.report.page import document, draft
 from gearcam.view.numbers import Values, equals, numbers, replaced, sliders, tidy
 
@@ -114,6 +115,24 @@ def seek(text: str, file: str) -> Reply:
         return {"lines": "\n".join(remedy_lines(sought)), "found": found}
 
     return _reply(answer, file)
+
+
+def solids(text: str, file: str) -> Reply:
+    """Make a view of the solids of a design.
+
+    Parameters
+    ----------
+    text : str
+        Of its file.
+    file : str
+        Its name.
+
+    Returns
+    -------
+    dict
+        As of `gearcam.report.file.solids_shown`.
+    """
+    return _reply(lambda: solids_shown(build(loads(text, file=file))), file)
 
 
 def follow(text: str, file: str, changes: Values, last: str, exact: bool) -> bytes:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import json
 import re
 import tomllib
@@ -13,7 +12,6 @@ import manifold3d
 import numpy as np
 import pytest
 import shapely
-import trimesh
 
 import gearcam
 from gearcam.numeric.arrays import as_pairs
@@ -21,25 +19,13 @@ from gearcam.numeric.contour import Contour
 from gearcam.parts.solids import SolidError
 from gearcam.report.file import CHORDS, solids_shown
 from helpers_pairs import PROFILES
+from helpers_solids import bodies_of
 
 
 def build(name: str, **changes: Any) -> Any:
     design = gearcam.load(PROFILES / f"{name}.toml")
     keys = {key.replace("__", "."): value for key, value in changes.items()}
     return gearcam.build(design.with_(keys) if keys else design)
-
-
-def bodies_of(view: str) -> dict[str, Any]:
-    """The meshes in a view, by name, where they stand."""
-    (data,) = re.findall(r'base64_data="([^"]+)"', view)
-    scene: Any = trimesh.load(
-        file_obj=trimesh.util.wrap_as_stream(base64.b64decode(data)), file_type="glb"
-    )
-    found = {}
-    for node in sorted(scene.graph.nodes_geometry):
-        place, name = scene.graph[node]
-        found[name] = scene.geometry[name].copy().apply_transform(place)
-    return found
 
 
 def test_wheels_stand_as_assembled() -> None:

@@ -63,7 +63,7 @@ def test_tokens_are_long_and_never_the_same(view: tuple[Server, Shown]) -> None:
         "/{token}/document?", "/{token}/#a", "/{token}/%64ocument", "/{token}/Document",
         "/{token}/document/", "/{token}/..%2f..%2fetc%2fpasswd", "/{token}/..\\..\\wheels.toml",
         "http://127.0.0.1/{token}/", "/{token}/document%00", "/{token}/follow", "/{token}/save",
-        "/{token}/remedies",
+        "/{token}/remedies", "/{token}/solids",
         "*", "/{half}", "/%ff{token}/",
     ],
 )  # fmt: skip
@@ -79,7 +79,7 @@ def test_a_token_that_is_not_the_right_one_opens_nothing(server: Server) -> None
     wrong = "A" * len(server.token)
     for route in ("", "document", "events"):
         assert ask(server, "", path=f"/{wrong}/{route}")[0].status == 404
-    for route in ("follow", "remedies", "save"):
+    for route in ("follow", "remedies", "solids", "save"):
         assert ask(server, "", WISH, path=f"/{wrong}/{route}")[0].status == 404
 
 
@@ -118,7 +118,7 @@ def test_its_own_origin_is_served(server: Server) -> None:
         assert ask(server, "follow", WISH, headers=headers)[0].status == 200
 
 
-@pytest.mark.parametrize("route", ["follow", "remedies", "save"])
+@pytest.mark.parametrize("route", ["follow", "remedies", "solids", "save"])
 @pytest.mark.parametrize(
     ("headers", "body", "status"),
     [

@@ -21,6 +21,7 @@ from gearcam.view.command import reporter
 from gearcam.view.session import RequestError, Session, State, _Newest
 from gearcam.view.watch import Watch
 from helpers_pairs import PROFILES
+from helpers_solids import bodies_of
 from helpers_view import DESIGN, SECONDS, Shown, shown
 
 NAIL = PROFILES / "nail_machine_two_phase.toml"
@@ -87,6 +88,22 @@ def test_a_refused_number_is_answered_with_remedies_that_build(view: Shown) -> N
     ((key, value),) = remedy["changes"].items()
     shown = json.loads(work.follow(text, "a.toml", {key: value}, key, exact=True))
     assert shown["error"] == ""
+
+
+def test_solids_are_made_when_they_are_asked_for_of_the_numbers_in_the_page(view: Shown) -> None:
+    views = []
+    for changes in ({}, {"pair.face_width_mm": 7}):
+        reply = view.session.solids({"changes": changes})
+        assert reply is not None
+        assert reply["error"] == ""
+        views.append(bodies_of(reply["view"]))
+    assert [sorted(one) for one in views] == 2 * [["gear1", "gear2"]]
+    assert [one["gear1"].bounds[1][2] for one in views] == [5.0, 7.0]
+    with pytest.raises(RequestError, match="wheels is not a number of the file"):
+        view.session.solids({"changes": {"pair.wheels": 3}})
+    reply = view.session.solids({"changes": {"pair.face_width_mm": -7}})
+    assert reply is not None
+    assert "face_width_mm" in reply["error"]
 
 
 def test_the_terminal_repeats_no_error_when_remedies_come(

@@ -272,6 +272,8 @@ class SpatialCamResult(Result):
     @property
     def main_errors(self) -> Sequence[tuple[str, Sequence[str]]]:
         """Errors that users act on (see `Result`)."""
+        if not self.solid_asked:
+            return ()
         return (
             ("walls of the solid, between its points", ["chord_mm"]),
             ("volume", ["volume_mm3"]),
