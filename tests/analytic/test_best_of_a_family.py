@@ -158,7 +158,7 @@ files = ["csv"]
 )
 
 
-@pytest.mark.parametrize(("method", "trials"), [(None, 144), ("tpe", 96)])
+@pytest.mark.parametrize(("method", "trials"), [(None, 96), ("scipy", 144)])
 def test_the_smallest_cam_is_at_least_as_small_as_every_one_of_the_grid(
     tmp_path: Path, method: str | None, trials: int
 ) -> None:

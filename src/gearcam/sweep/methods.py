@@ -9,14 +9,14 @@ on how many processes build.
 ======== ==========================================================================
 random   anything, without a library: a Latin hypercube
 nsga2    optuna's NSGA-II: several goals (Deb et al., 2002)
-tpe      optuna's tree-structured Parzen estimator: few trials of dear designs
+tpe      optuna's tree-structured Parzen estimator: one goal with choices; dear designs
 scipy    one goal: differential evolution, then a simplex (Nelder, Mead)
 ======== ==========================================================================
 
 All take whole numbers and choices. scipy's methods get one number: the goal, or where something is
 broken more than any goal. So they need no derivatives, which findings and refusals do not have.
-Choices have their order as listed there. For one goal over whole numbers and choices they come
-nearer with the same trials than NSGA-II, which needs thousands.
+Choices have their order as listed there, which may mean nothing. For one goal over whole numbers
+and choices both scipy and tpe come nearer with the same trials than NSGA-II, which needs thousands.
 """
 
 from __future__ import annotations
@@ -74,6 +74,11 @@ class Quest(NamedTuple):
     seed: int
 
     @property
+    def choices(self) -> bool:
+        """Whether some values have no order."""
+        return not all(is_ordered(axis) for axis in self.axes)
+
+    @property
     def mixed(self) -> bool:
         """Whether some values are whole numbers or choices."""
         return any(len(axis.values) > 1 for axis in self.axes)
@@ -98,7 +103,9 @@ def usual(search: Quest, price: float) -> tuple[str, str]:
     """
     if search.goals > 1:
         return "nsga2", "there are several goals"
-    if search.mixed and price > _DEAR and search.trials <= _FEW:
+    if search.trials <= _FEW and search.choices:
+        return "tpe", "some values are choices"
+    if search.trials <= _FEW and search.mixed and price > _DEAR:
         return "tpe", f"a variant takes {price:.2g} s"
     return "scipy", "there is one goal"
 

@@ -101,4 +101,8 @@ def test_the_usual_method_follows_variables_and_price() -> None:
     assert usual(Quest(whole, 1, 200, 1), 0.01)[0] == "scipy"
     assert usual(Quest(whole, 1, 200, 1), 5.0)[0] == "tpe"
     assert usual(Quest(whole, 1, 5000, 1), 5.0)[0] == "scipy"
+    choices = axes_of({"law": ["x", "y"]})
+    assert usual(Quest(choices, 1, 200, 1), 0.01)[0] == "tpe"
+    assert usual(Quest(choices, 1, 5000, 1), 0.01)[0] == "scipy"
+    assert usual(Quest(choices, 2, 200, 1), 0.01)[0] == "nsga2"
     assert usual(Quest(numbers, 1, 200, 1), 5.0)[0] == "scipy"
