@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -117,6 +118,15 @@ def test_stages_of_a_cam_have_order_two() -> None:
     found = climbed(CAM.format(law="4-5-6-7"), "outline", "solid", "contact")
     for stage in ("outline", "solid", "contact"):
         assert found.order(stage) == pytest.approx(2.0, abs=0.1)
+
+
+def test_the_solid_of_a_cam_in_space_has_order_one_in_points_of_its_surface() -> None:
+    """Twice as many in both directions make the error a quarter; its volume is stated so well."""
+    text = Path("profiles/cylinder_cam.toml").read_text("utf-8").replace('["developed"]', "[]")
+    found = climbed(f'name = "cylinder"\n{text}', "solid")
+    assert found.order("solid") == pytest.approx(1.0, abs=0.1)
+    own = next(rung for rung in found.of("solid") if rung.own)
+    assert own.error == pytest.approx(built(f'name = "cylinder"\n{text}').volume[1], rel=0.2)
 
 
 def test_the_lift_from_a_profile_is_off_by_no_more_than_its_chords_explain() -> None:

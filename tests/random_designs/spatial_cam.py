@@ -12,7 +12,7 @@ from gearcam.laws.motion.base import MOTION_LAWS
 from random_designs.cam import motion_by_phases, motion_of_turn
 from random_designs.draw import Draw, short
 from random_designs.goals import seek
-from random_designs.output import drive
+from random_designs.output import drive, studies
 
 _LAWS: Final = tuple(
     name
@@ -65,6 +65,7 @@ def design(d: Draw, index: int) -> dict[str, Any]:
     if d.chance(0.2):
         made["developed"] = {"steps": d.whole(12, 60), "radii": d.whole(2, 5)}
         made["output"]["studies"] = ["developed"]
+    studies(d, made, "solid")
     if index % 13 == 7:  # by number: others draw the same as before
         given["outer_diameter_mm"] = "solve"
     drive(d, made)

@@ -13,7 +13,7 @@ from gearcam.base.rules import distinct
 from gearcam.designs.design import Design, Wanted
 from gearcam.designs.outputs import OutputSpec, files_param, pose_param, studies_param
 from gearcam.kinds.cam.public import phases_wanted
-from gearcam.kinds.shared import GoalSpec
+from gearcam.kinds.shared import AccuracySpec, GoalSpec
 from gearcam.mechanics.drive import DriveSpec
 from gearcam.spatial.spec import CylinderBlank, CylinderSpec, SpatialFollower
 
@@ -47,7 +47,7 @@ class SpatialOutput(OutputSpec):
     """
 
     files: tuple[str, ...] = files_param(SPATIAL_FORMATS)
-    studies: tuple[str, ...] = studies_param(("developed",))
+    studies: tuple[str, ...] = studies_param(("developed", "accuracy"))
     wall_step: float = param(
         ANGLE,
         default=math.radians(0.5),
@@ -108,6 +108,8 @@ class SpatialCamDesign(Design):
         Files and how fine they are.
     developed : DevelopedSpec
         Settings of the study of the developed plane.
+    accuracy : AccuracySpec
+        Settings of the study of error against run time.
     goal : GoalSpec
         What `gearcam optimize` looks for.
 
@@ -135,6 +137,7 @@ class SpatialCamDesign(Design):
     blank: CylinderBlank = field(default_factory=CylinderBlank)
     output: SpatialOutput = field(default_factory=SpatialOutput)
     developed: DevelopedSpec = field(default_factory=DevelopedSpec)
+    accuracy: AccuracySpec = field(default_factory=AccuracySpec)
     goal: GoalSpec = field(default_factory=GoalSpec)
 
     def _settle(self) -> None:

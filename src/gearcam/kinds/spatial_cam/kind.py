@@ -8,7 +8,7 @@ from typing import Final
 from gearcam.base.registry import DeferredMapping, deferred
 from gearcam.designs.table import table_of
 from gearcam.kinds.cam.public import MOTION
-from gearcam.kinds.shared import GoalSpec
+from gearcam.kinds.shared import AccuracySpec, GoalSpec
 from gearcam.kinds.spatial_cam.design import (
     NAME,
     SPATIAL_FORMATS,
@@ -35,13 +35,14 @@ KIND: Final = Kind(
         "blank": partial(table_of, "blank", CylinderBlank),
         "output": partial(table_of, "output", SpatialOutput),
         "developed": partial(table_of, "developed", DevelopedSpec),
+        "accuracy": partial(table_of, "accuracy", AccuracySpec),
         "goal": partial(table_of, "goal", GoalSpec),
     },
     required=("follower", "cam"),
     formats=SPATIAL_FORMATS,
     check_modules=("gearcam.spatial.checks",),
     check_groups=("cams in space",),
-    study_tables={"developed": "developed"},
+    study_tables={name: name for name in ("developed", "accuracy")},
     example={
         "motion": [
             {"type": "rise", "angle_deg": 150, "law": "cycloidal", "lift_mm": 25},
@@ -72,5 +73,6 @@ KIND: Final = Kind(
     charts=DeferredMapping(f"{_HERE}.charts:CHARTS"),
     scene=deferred(f"{_HERE}.scene:scene"),
     studies=DeferredMapping(f"{_HERE}.studies:STUDIES"),
+    ladders=DeferredMapping(f"{_HERE}.ladder:LADDERS"),
     public=DeferredMapping(f"{_HERE}.public:PUBLIC"),
 )

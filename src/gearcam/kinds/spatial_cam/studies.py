@@ -10,6 +10,7 @@ import numpy as np
 
 from gearcam.base.facts import Fact
 from gearcam.base.numerals import formatted
+from gearcam.kinds.shared import accuracy_study
 from gearcam.pictures.charts import Chart, Line
 from gearcam.results.kind import Study
 from gearcam.results.result import StudyResult
@@ -103,5 +104,5 @@ DEVELOPED: Final = Study(
     compute=_compute,
 )
 
-STUDIES: Final = {DEVELOPED.name: DEVELOPED}
+STUDIES: Final = {one.name: one for one in (DEVELOPED, accuracy_study())}
 """Studies of cams in space."""
