@@ -44,13 +44,24 @@ DRAWN = {
 """Pictures of assembled parts: profile, and width in pixels."""
 
 
-def taken(url: str, place: float, size: tuple[int, int] = SIZE) -> bytes:
-    """Return a screenshot of the top of a page that shows a place of the driver, deg, PNG."""
-    options = Options()
-    options.binary_location = shutil.which("chromium") or sys.exit("there is no chromium")
-    for flag in ("--headless=new", "--no-sandbox", "--hide-scrollbars"):
-        options.add_argument(flag)
-    browser = Chrome(options=options, service=Service(shutil.which("chromedriver")))
+_PLACE_OF_SOLIDS = """
+const frame = document.querySelector("#solids iframe");
+const box = frame.getBoundingClientRect();
+return {x: box.x, y: box.y, width: box.width, height: box.height, scale: 1};
+"""
+
+
+def taken(url: str, place: float, size: tuple[int, int] = SIZE, *, solid: bool = False) -> bytes:
+    """Return a screenshot of a page that shows a place of the driver, deg, PNG.
+
+    Of its top, or of its solids.
+    """
+    flags = Options()
+    flags.binary_location = shutil.which("chromium") or sys.exit("there is no chromium")
+    drawing = ("--enable-unsafe-swiftshader", "--use-gl=angle", "--use-angle=swiftshader")
+    for flag in ("--headless=new", "--no-sandbox", "--hide-scrollbars", *drawing * solid):
+        flags.add_argument(flag)
+    browser = Chrome(options=flags, service=Service(shutil.which("chromedriver")))
     try:
         width, height = size
         metrics = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
@@ -60,8 +71,14 @@ def taken(url: str, place: float, size: tuple[int, int] = SIZE) -> bytes:
         browser.execute_async_script(wait)  # a live view builds its charts
         browser.execute_script("gearcam.go(arguments[0])", place)
         browser.execute_async_script(wait)  # charts are drawn a few at a time
-        shot = browser.execute_cdp_cmd("Page.captureScreenshot", {"format": "png"})
-        picture = Image.open(io.BytesIO(base64.b64decode(shot["data"]))).convert("RGB")
+        options: dict[str, object] = {"format": "png"}
+        if solid:
+            browser.execute_script("document.querySelector('#solids details').open = true")
+            for _ in range(4):  # the view loads its data itself
+                browser.execute_async_script(wait)
+            options["clip"] = browser.execute_script(_PLACE_OF_SOLIDS)
+        shot = browser.execute_cdp_cmd("Page.captureScreenshot", options)["data"]
+        picture = Image.open(io.BytesIO(base64.b64decode(shot))).convert("RGB")
         small = io.BytesIO()
         picture.quantize(128, dither=Image.Dither.NONE).save(small, "PNG", optimize=True)
         return small.getvalue()
@@ -105,6 +122,8 @@ if __name__ == "__main__":
         PICTURE.write_bytes(taken(report(PROFILE, folder), PLACE))
         cam = report(PROFILES / "plate_cam_offset_roller.toml", folder)
         (PICTURES / "report.png").write_bytes(taken(cam, 60.0, (1100, 1000)))
+        drum = report(PROFILES / "cylinder_cam.toml", folder)
+        (PICTURES / "cylinder_cam.png").write_bytes(taken(drum, 60.0, (1100, 4000), solid=True))
         (PICTURES / "live_view.png").write_bytes(live_view(folder))
         for name, (profile, width) in DRAWN.items():
             picture = drawn(PROFILES / f"{profile}.toml", width, folder)
