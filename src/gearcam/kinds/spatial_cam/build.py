@@ -21,6 +21,8 @@ from gearcam.laws.program import Program
 from gearcam.numeric.arguments import angles
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
+from gearcam.parts.bands import BandedBody
+from gearcam.parts.cam_bands import cam_bands
 from gearcam.parts.shapes import circle_segments
 from gearcam.parts.solids import Mesh
 from gearcam.results.result import Result
@@ -47,6 +49,10 @@ _NAMED: Final = 90
 
 _MOST_STEPS: Final = 1e6
 """Largest number of steps of a table."""
+
+
+_WITNESSES: Final = ((360, 13), (720, 25))
+"""Cam angles and places along the roller of two meshes that give the volume of a STEP solid."""
 
 
 class SpatialCamResult(Result):
@@ -240,10 +246,24 @@ class SpatialCamResult(Result):
         """Largest distance of the walls from the mesh, mm."""
         return chord_error(self.cam, self.steps, self.design.output.wall_points)
 
+    @cached_property
+    def bands(self) -> BandedBody:
+        """The cam as a solid of planes, cylinders and B-splines, as used for STEP.
+
+        Raises
+        ------
+        InfeasibleError
+            If a wall is undercut.
+        """
+        coarse, fine = (self.mesh_of(*size).volume for size in _WITNESSES)
+        error = (fine - coarse) / 3.0
+        with self.stage("bands"):
+            return cam_bands(self.cam, self.blank, STEM, (fine + error, abs(error)))
+
     @property
     def solid_asked(self) -> bool:
         """Whether a file needs the solid."""
-        return not {"stl", "3mf", "glb", "report"}.isdisjoint(self.design.output.files)
+        return not {"stl", "3mf", "glb", "step", "report"}.isdisjoint(self.design.output.files)
 
     @cached_property
     def meshes(self) -> dict[str, Mesh]:
@@ -274,8 +294,10 @@ class SpatialCamResult(Result):
         """Errors that users act on (see `Result`)."""
         if not self.solid_asked:
             return ()
+        exact = ("walls of the STEP solid, between its points", ["step_mm"])
         return (
             ("walls of the solid, between its points", ["chord_mm"]),
+            *([exact] if "step" in self.design.output.files else []),
             ("volume", ["volume_mm3"]),
         )
 

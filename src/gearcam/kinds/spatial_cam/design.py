@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 NAME: Final = "spatial-cam"
 """As in a file."""
 
-SPATIAL_FORMATS: Final = ("dxf", "svg", "stl", "3mf", "glb", "csv", "report")
+SPATIAL_FORMATS: Final = ("dxf", "svg", "stl", "3mf", "glb", "step", "csv", "report")
 """What ``output.files`` may list."""
 
 
