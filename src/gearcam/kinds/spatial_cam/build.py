@@ -16,6 +16,7 @@ from gearcam.base.errors import ABOVE, beyond_limit
 from gearcam.base.findings import Finding, in_order, run_checks
 from gearcam.base.numerals import formatted
 from gearcam.kinds.cam.public import lift_program
+from gearcam.kinds.shared import solved_file
 from gearcam.kinds.spatial_cam.design import SpatialCamDesign
 from gearcam.laws.program import Program
 from gearcam.numeric.arguments import angles
@@ -43,9 +44,6 @@ _SAGITTA: Final = 0.01
 """Least chord error of the roller shown, mm."""
 
 _TURN: Final = 2.0 * math.pi
-
-_NAMED: Final = 90
-"""Characters of a name that leave room for a word behind it."""
 
 _MOST_STEPS: Final = 1e6
 """Largest number of steps of a table."""
@@ -108,13 +106,7 @@ class SpatialCamResult(Result):
     @property
     def more_files(self) -> dict[str, bytes]:
         """The design with the size that it asks for, as a file (see `Result.more_files`)."""
-        if self.solution is None:
-            return {}
-        from gearcam.designs.writing import least_document, toml_text
-
-        comment = f"{self.design.name} with its solved size"
-        named = replace(self.solved, name=f"{self.design.name[:_NAMED]}_solved", examined=True)
-        return {"solved.toml": toml_text(least_document(named), [comment]).encode()}
+        return {} if self.solution is None else solved_file(self.solved)
 
     @cached_property
     def cam(self) -> SpatialCam:
