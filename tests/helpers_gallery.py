@@ -428,6 +428,18 @@ def _steepest_on_cone(lift: float, angle: float, x: float, radius: float, taper:
     return math.degrees(math.acos(math.cos(math.atan(taper)) * math.cos(eta)))
 
 
+def _left_by_mill(low: float, high: float, roller: float, tool: float) -> float:
+    """What an end mill leaves at both ends of a pass, cycloidal 12 mm in 160 deg, by search, mm."""
+    worst = 0.0
+    for k in range(20001):
+        speed = 12.0 / math.radians(160.0) * (1.0 - math.cos(2.0 * math.pi * k / 20000))
+        half = 0.5 * (math.atan(speed / low) - math.atan(speed / high))
+        aside = (roller - tool) * math.sin(half)
+        ahead = roller - (roller - tool) * math.cos(half)
+        worst = max(worst, math.hypot(aside, ahead) - tool)
+    return worst
+
+
 CAM_NUMBERS: dict[str, dict[str, Number]] = {
     "packaging_cam": {
         # the corner of the lines of the pressure angle on the rise and on the return
@@ -448,6 +460,12 @@ CAM_NUMBERS: dict[str, dict[str, Number]] = {
         "cam.pressure_angle_deg.return_max": (_steepest_on_cone(60, 140, 82, 9.045, 0.11), 1e-9),
         "cam.pressure_angle_deg.rise_max": (_steepest_on_cone(60, 150, 82, 9.045, 0.11), 1e-9),
         "cam.groove_width_mm.floor": (2 * (11.025 - 18.5 * 0.11), 1e-12),
+    },
+    "rotary_axis_cam": {
+        # cycloidal: 2*h/beta at the middle of both strokes, over the inner end of 15 mm
+        "cam.pressure_angle_deg.max": (DEG * math.atan(2 * 12 / math.radians(160) / 15), 1e-9),
+        # a pass of 5.5/4 mm above the floor: the tool 3 mm in the groove of 4.025 mm
+        "tool_path.rest_mm": (_left_by_mill(14.5, 14.5 + 5.5 / 4, 4.025, 3.0), 1e-7),
     },
     "groove_cam": {
         # the walls are parallels of a pitch curve of 221.58887350723 mm, 12.05 mm apart

@@ -34,7 +34,7 @@ ELSEWHERE = {
         "slider.py",
         "markup.py",
     ),
-    "feeds?": ("simple.py",),
+    "feeds?": ("simple.py", "tool.py", "milling.py", "milled.py", "gcode.py"),
     "idle": ("numerals.py", "paper.py"),
     "halves": ("sampling.py", "openings.py"),
 }

@@ -159,6 +159,8 @@ def kind_of(file: str) -> str:
     for stem in ("inspection", "tool_path", "curvature", "report"):
         if path.stem.startswith(stem):
             return stem.replace("_", "-")
+    if file in ("rotary_path.csv", "cam.nc"):
+        return "tool-path" if path.suffix == ".csv" else "gcode"
     return ("drawing-" if path.stem.endswith("_drawing") else "") + path.suffix[1:]
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
 from gearcam.base.display import ShortRepr
-from gearcam.base.quantities import ANGLE, COUNT, fixed, param
+from gearcam.base.quantities import ANGLE, COUNT, LENGTH, fixed, param
 from gearcam.base.rules import distinct
 from gearcam.designs.design import Design, Wanted
 from gearcam.designs.outputs import OutputSpec, files_param, pose_param, studies_param
@@ -16,6 +16,7 @@ from gearcam.kinds.cam.public import phases_wanted
 from gearcam.kinds.shared import AccuracySpec, GoalSpec
 from gearcam.mechanics.drive import DriveSpec
 from gearcam.spatial.spec import CylinderBlank, CylinderSpec, SpatialFollower
+from gearcam.spatial.tool import MillSpec
 
 if TYPE_CHECKING:
     from gearcam.kinds.cam.public import Motion
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 NAME: Final = "spatial-cam"
 """As in a file."""
 
-SPATIAL_FORMATS: Final = ("dxf", "svg", "stl", "3mf", "glb", "step", "csv", "report")
+SPATIAL_FORMATS: Final = ("dxf", "svg", "stl", "3mf", "glb", "csv", "report", "tool-path", "gcode")
 """What ``output.files`` may list."""
 
 
@@ -60,6 +61,13 @@ class SpatialOutput(OutputSpec):
     )
     motion_step: float = param(
         ANGLE, default=math.radians(1), gt=0, le=90, doc="step of the cam angle in motion.csv"
+    )
+    path_tolerance: float = param(
+        LENGTH,
+        default=0.005,
+        ge=5e-4,
+        le=1,
+        doc="how far the moves of a tool may be off its path, and how much they may leave on walls",
     )
     pose: float = pose_param("theta", "cam angle of the drawing")
 
@@ -104,6 +112,8 @@ class SpatialCamDesign(Design):
         Speed of the cam.
     blank : CylinderBlank
         Bore and density.
+    tool : MillSpec
+        The end mill of its tool path.
     output : SpatialOutput
         Files and how fine they are.
     developed : DevelopedSpec
@@ -135,6 +145,7 @@ class SpatialCamDesign(Design):
     cam: CylinderSpec
     drive: DriveSpec = field(default_factory=DriveSpec)
     blank: CylinderBlank = field(default_factory=CylinderBlank)
+    tool: MillSpec = field(default_factory=MillSpec)
     output: SpatialOutput = field(default_factory=SpatialOutput)
     developed: DevelopedSpec = field(default_factory=DevelopedSpec)
     accuracy: AccuracySpec = field(default_factory=AccuracySpec)

@@ -33,6 +33,7 @@ def facts(result: SpatialCamResult) -> Facts:
             "decided_by": Fact(result.solution.decided_by, "decided by", shown=True),
         },
         "solid": _solid(result),
+        "tool_path": _tool_path(result),
         "accuracy": _accuracy(result),
     }
     headline = ("motion.total_lift", "cam.outer_diameter_mm")
@@ -152,18 +153,33 @@ def _solid(result: SpatialCamResult) -> Tree | None:
     }
 
 
+def _tool_path(result: SpatialCamResult) -> Tree | None:
+    """Return tool, passes and what they leave, where a file asks for the path."""
+    if not result.path_asked:
+        return None
+    path = result.rotary
+    times = path.times(result.design.tool)
+    end, outside = path.tool
+    return {
+        "axes": Fact("X Y Z A" if path.crosswise else "X Z A", "axes of the machine", unit=""),
+        "tool_diameter_mm": {"end": 2.0 * end, "outside": 2.0 * outside},
+        "passes_in_depth": path.layers,
+        "turns": path.turns,
+        "moves": len(path.moves),
+        "rest_mm": Fact(path.rest, "most that is left on a wall", shown=True),
+        "chord_mm": Fact(path.chord, "distance of the moves from the path"),
+        "cutting_time_s": float(times.sum()),
+    }
+
+
 def _accuracy(result: SpatialCamResult) -> Tree | None:
     if not result.solid_asked:
         return None
-    exact = "step" in result.design.output.files
-    how = "distance of exact points from the B-splines, half-way between those interpolated"
     return {
         "chord_mm": result.chord_error,
-        "step_mm": result.bands.error if exact else None,
         "volume_mm3": result.volume[1],
         "how": {
             "chord_mm": "distance of the walls from the middles of all edges of the mesh",
-            "step_mm": how if exact else None,
             "volume_mm3": "a third of the change from a mesh of half the steps",
         },
     }

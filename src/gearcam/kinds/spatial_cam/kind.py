@@ -19,6 +19,7 @@ from gearcam.kinds.spatial_cam.design import (
 from gearcam.mechanics.drive import DriveSpec
 from gearcam.results.kind import Kind
 from gearcam.spatial.spec import CylinderBlank, CylinderSpec, SpatialFollower
+from gearcam.spatial.tool import MillSpec
 
 _HERE: Final = "gearcam.kinds.spatial_cam"
 
@@ -33,6 +34,7 @@ KIND: Final = Kind(
         "cam": partial(table_of, "cam", CylinderSpec),
         "drive": partial(table_of, "drive", DriveSpec),
         "blank": partial(table_of, "blank", CylinderBlank),
+        "tool": partial(table_of, "tool", MillSpec),
         "output": partial(table_of, "output", SpatialOutput),
         "developed": partial(table_of, "developed", DevelopedSpec),
         "accuracy": partial(table_of, "accuracy", AccuracySpec),

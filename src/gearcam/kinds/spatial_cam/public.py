@@ -5,10 +5,11 @@ from __future__ import annotations
 from gearcam.kinds.spatial_cam.build import SpatialCamResult
 from gearcam.kinds.spatial_cam.design import DevelopedSpec, SpatialCamDesign, SpatialOutput
 from gearcam.spatial.spec import CylinderBlank, CylinderSpec, SpatialFollower
+from gearcam.spatial.tool import MillSpec
 
 __all__ = [
-    "CylinderBlank", "CylinderSpec", "DevelopedSpec", "SpatialCamDesign", "SpatialCamResult",
-    "SpatialFollower", "SpatialOutput",
+    "CylinderBlank", "CylinderSpec", "DevelopedSpec", "MillSpec", "SpatialCamDesign",
+    "SpatialCamResult", "SpatialFollower", "SpatialOutput",
 ]  # fmt: skip
 
 PUBLIC = {name: globals()[name] for name in __all__}
