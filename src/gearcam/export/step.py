@@ -3,11 +3,12 @@
 AP214, in millimetres. Each part is one product of its name, with a solid for each of its steps;
 several parts form an assembly in which each is turned and shifted to its place. Flanks, tips and
 roots are B-spline faces within the tolerance, one for each smooth piece of the outline; bores, hubs
-and marks are cylinders and planes. The same parts give the same bytes: the file has a fixed date.
+and marks are cylinders and planes. Cams in space are solids of bands (`step_bands`). The same parts
+give the same bytes: the file has a fixed date.
 
-Refused: no parts at all; invalid solids (see `step_shapes`).
+Refused: no parts at all; invalid solids (see `step_shapes` and `step_bands`).
 
-Depends on drawings, parts, solids and `step_shapes`; on OCP, the binding of the CAD kernel OCCT,
+Depends on parts, `step_shapes` and `step_bands`; on OCP, the binding of the CAD kernel OCCT,
 only inside the functions: it is large, and an extra of the package.
 """
 
@@ -20,8 +21,10 @@ from contextlib import contextmanager
 from typing import Any, Final
 
 from gearcam.base.errors import MissingExtraError
+from gearcam.export.step_bands import banded_solid
 from gearcam.export.step_shapes import occt, solids_of
 from gearcam.numeric.pose import Pose
+from gearcam.parts.bands import BandedBody
 from gearcam.parts.body import Part
 from gearcam.parts.solids import SolidError
 
@@ -38,6 +41,9 @@ SETTINGS: Final = {
 }
 """Settings of the kernel's translator; they are global, so each use sets them all."""
 
+Item = Part | BandedBody
+"""What has a solid."""
+
 _MM: Final = 0.001
 """Millimetre, in metres."""
 
@@ -49,21 +55,22 @@ _TOKEN: Final = re.compile(r"'(gearcam-\d+)'")
 
 
 def step_bytes(
-    items: Sequence[tuple[Part, Pose]],
+    items: Sequence[tuple[Item, Pose]],
     name: str,
     tolerance: float,
-    made: dict[Part, Any] | None = None,
+    made: dict[Item, Any] | None = None,
 ) -> bytes:
     """Return parts as a STEP file.
 
     Parameters
     ----------
-    items : sequence of (Part, Pose)
+    items : sequence of (Part or BandedBody, Pose)
         One part, or those of an assembly with their places; a repeated part is one product.
     name : str
         Name of the assembly, and of the file without its ending.
     tolerance : float, mm
-        Largest distance of the faces from the dense points of the outlines.
+        Largest distance of the faces of parts from the dense points of the outlines; bands have
+        their own.
     made : dict, optional
         Cache of the parts' solids to that tolerance; new ones are added.
 
@@ -89,10 +96,16 @@ def step_bytes(
     tokens = {text: f"gearcam-{number}" for number, text in enumerate(texts)}
     with _silent(), _document() as document:
         made = {} if made is None else made
-        made |= {p: _joined(solids_of(p, tolerance)) for p in parts if p not in made}
+        made |= {p: _shape(p, tolerance) for p in parts if p not in made}
         _fill(document, items, {part: made[part] for part in parts}, tokens[name], tokens)
         written = _write(document, tokens[f"{name}.step"])
     return _normal(written.decode("ascii"), tokens).encode("ascii")
+
+
+def _shape(item: Item, tolerance: float) -> Any:
+    if isinstance(item, BandedBody):
+        return banded_solid(item)
+    return _joined(solids_of(item, tolerance))
 
 
 def _require() -> None:
@@ -152,8 +165,8 @@ def _joined(solids: Sequence[Any]) -> Any:
 
 def _fill(
     document: Any,
-    items: Sequence[tuple[Part, Pose]],
-    shapes: Mapping[Part, Any],
+    items: Sequence[tuple[Item, Pose]],
+    shapes: Mapping[Item, Any],
     name: str,
     names: Mapping[str, str],
 ) -> None:

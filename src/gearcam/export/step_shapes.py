@@ -30,7 +30,7 @@ from gearcam.parts.body import Edge, Layer, Part
 from gearcam.parts.shapes import Circle, Loop
 from gearcam.parts.solids import OVERSHOOT, SolidError, demand_volume
 
-COLLECTIONS: Final = ("Array1", "IndexedMap", "List", "Sequence")
+COLLECTIONS: Final = ("Array1", "Array2", "IndexedMap", "List", "Sequence")
 """Prefixes of names that are in one module of the binding; all others begin with their module."""
 
 RESOLUTION: Final = 1e-7

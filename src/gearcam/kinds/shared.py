@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import TYPE_CHECKING, Final
 
@@ -103,6 +103,30 @@ class GoalSpec(ShortRepr):
     def signs(self) -> dict[str, float]:
         """1 of facts that are to be least, -1 of those that are to be largest, by name."""
         return dict.fromkeys(self.minimize or (), 1.0) | dict.fromkeys(self.maximize or (), -1.0)
+
+
+_NAMED: Final = 90
+"""Characters of a name that leave room for a word behind it."""
+
+
+def solved_file(design: Design) -> dict[str, bytes]:
+    """Return a design with its solved sizes as a file.
+
+    Parameters
+    ----------
+    design : Design
+        With the sizes; its name gets a word more.
+
+    Returns
+    -------
+    dict of str to bytes
+        Its content by the name of the file.
+    """
+    from gearcam.designs.writing import least_document, toml_text
+
+    named = replace(design, name=f"{design.name[:_NAMED]}_solved", examined=True)
+    text = toml_text(least_document(named), [f"{design.name} with its solved sizes"])
+    return {"solved.toml": text.encode()}
 
 
 @cache

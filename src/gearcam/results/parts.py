@@ -299,11 +299,11 @@ def _mesh(kind: str, result: PartsResult, measured: Measured) -> Files:
 
 def _step(result: PartsResult, _: Measured) -> Files:
     """Return the parts, and their assembly, as STEP files."""
-    from gearcam.export.step import step_bytes
+    from gearcam.export.step import Item, step_bytes
     from gearcam.numeric.pose import UNMOVED
 
     parts, assembly, close = result.parts, result.assembly, _STEP_PART * result.profile_tolerance
-    shapes: dict[Part, Any] = {}
+    shapes: dict[Item, Any] = {}
     files = {
         f"{part.name}.step": step_bytes([(part, UNMOVED)], part.name, close, shapes)
         for part in parts

@@ -243,21 +243,62 @@ def _wall(wall: SpatialWall, theta: Array, places: int) -> Iterator[_Ring]:
 
 def _ramp(wall: SpatialWall, theta: Array, places: int) -> Iterator[_Ring]:
     """Yield the rings of the ramp below the foot of a wall, down to the floor."""
-    cam, count = wall.cam, places - 1
-    foot = wall.contact(theta, np.full((len(theta), 1), cam.floor))
-    axis = foot.axis
-    center, radius = foot.centers[:, 0], foot.radius
+    points = ramp(wall, theta, places)
+    yield from (_Ring(points[:, k]) for k in range(places - 2, -1, -1))
+
+
+def ramp(wall: SpatialWall, theta: Array, places: int) -> Array:
+    """Return the ramp below the foot of a wall as a grid, from the floor to the foot.
+
+    Parameters
+    ----------
+    wall : SpatialWall
+        The wall.
+    theta : (n,) array, rad
+        Cam angles.
+    places : int
+        Number of places around the end of the roller; even angles.
+
+    Returns
+    -------
+    (n, places, 3) array, mm
+    """
+    center, radius, across, first, turned = _rim(wall, theta)
+    angle = (first[:, None] + turned[:, None] * np.linspace(0.0, 1.0, places))[..., None]
+    up = np.array([0.0, 0.0, float(wall.side)])
+    rim = np.sin(angle) * across[:, None, :] + np.cos(angle) * up
+    return center[:, None, :] + radius[:, None, None] * rim
+
+
+def ramp_width(wall: SpatialWall, theta: Array) -> Array:
+    """Return the lengths of arc, mm, of a ramp from the floor to the foot; signed.
+
+    Parameters
+    ----------
+    wall : SpatialWall
+        The wall.
+    theta : (n,) array, rad
+        Cam angles.
+    """
+    _, radius, _, _, turned = _rim(wall, theta)
+    return radius * turned
+
+
+def _rim(wall: SpatialWall, theta: Array) -> tuple[Array, Array, Array, Array, Array]:
+    """Return the end of the roller: centre, radius, the direction along the floor, and angles.
+
+    The angles, rad: of the place nearest to the cam's axis from the direction of the cam's axis,
+    and from there to the foot of the wall.
+    """
+    foot = wall.contact(theta, np.full((len(theta), 1), wall.cam.floor))
+    center, radius = foot.centers[:, 0], foot.radius[:, 0]
     # directions in the end of the roller: across the plane of both axes, and along the cam
     along = np.array([0.0, 0.0, 1.0])
-    across = np.cross(along, axis.direction[0])
+    across = np.cross(along, foot.axis.direction[0])
     towards = foot.radial[:, 0]
     final = np.arctan2((towards * across).sum(axis=1), wall.side * (towards @ along))
-    aside = (center * across).sum(axis=1)
-    first = -np.arcsin(aside / radius[:, 0])
-    for k in range(count - 1, -1, -1):
-        angle = first + (final - first) * k / count
-        beside, up = np.sin(angle)[:, None] * across, np.cos(angle)[:, None] * along
-        yield _Ring(center + radius * (beside + wall.side * up))
+    first = -np.arcsin((center * across).sum(axis=1) / radius)
+    return center, radius, across, first, final - first
 
 
 def _joined(ring: _Ring, other: _Ring) -> Ints:

@@ -19,6 +19,7 @@ from gearcam.cams.checks import KIND
 from gearcam.kinds.cam.design import CamDesign
 from gearcam.kinds.cam.forms.base import FORMS, Form
 from gearcam.kinds.cam.tables import CamBlank
+from gearcam.kinds.shared import solved_file
 from gearcam.laws.program import Program
 from gearcam.numeric.arguments import angles, one_of
 from gearcam.numeric.arrays import Array
@@ -45,10 +46,6 @@ _HINTED: Final = ("pressure-angle", "jamming", "sharp-profile", "undercut", "coa
 
 _MOST_STEPS: Final = 1e6
 """Largest number of steps of a table."""
-
-
-_NAMED: Final = 90
-"""Characters of a name that leave room for a word behind it."""
 
 
 class CamResult(PartsResult):
@@ -100,14 +97,7 @@ class CamResult(PartsResult):
     @property
     def more_files(self) -> dict[str, bytes]:
         """The design with the sizes that it asks for, as a file (see `Result.more_files`)."""
-        if self.solution is None:
-            return {}
-        from gearcam.designs.writing import least_document, toml_text
-
-        comment = f"{self.design.name} with its solved sizes"
-        named = replace(self.solution.design, name=f"{self.design.name[:_NAMED]}_solved")
-        text = toml_text(least_document(named), [comment])
-        return {"solved.toml": text.encode()}
+        return {} if self.solution is None else solved_file(self.solution.design)
 
     @cached_property
     def form(self) -> Form[Any, Any, Any]:

@@ -16,11 +16,14 @@ from gearcam.base.errors import ABOVE, beyond_limit
 from gearcam.base.findings import Finding, in_order, run_checks
 from gearcam.base.numerals import formatted
 from gearcam.kinds.cam.public import lift_program
+from gearcam.kinds.shared import solved_file
 from gearcam.kinds.spatial_cam.design import SpatialCamDesign
 from gearcam.laws.program import Program
 from gearcam.numeric.arguments import angles
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
+from gearcam.parts.bands import BandedBody
+from gearcam.parts.cam_bands import cam_bands
 from gearcam.parts.shapes import circle_segments
 from gearcam.parts.solids import Mesh
 from gearcam.results.result import Result
@@ -43,11 +46,12 @@ _SAGITTA: Final = 0.01
 
 _TURN: Final = 2.0 * math.pi
 
-_NAMED: Final = 90
-"""Characters of a name that leave room for a word behind it."""
-
 _MOST_STEPS: Final = 1e6
 """Largest number of steps of a table."""
+
+
+_WITNESSES: Final = ((360, 13), (720, 25))
+"""Cam angles and places along the roller of two meshes that give the volume of a STEP solid."""
 
 
 class SpatialCamResult(Result):
@@ -103,13 +107,7 @@ class SpatialCamResult(Result):
     @property
     def more_files(self) -> dict[str, bytes]:
         """The design with the size that it asks for, as a file (see `Result.more_files`)."""
-        if self.solution is None:
-            return {}
-        from gearcam.designs.writing import least_document, toml_text
-
-        comment = f"{self.design.name} with its solved size"
-        named = replace(self.solved, name=f"{self.design.name[:_NAMED]}_solved", examined=True)
-        return {"solved.toml": toml_text(least_document(named), [comment]).encode()}
+        return {} if self.solution is None else solved_file(self.solved)
 
     @cached_property
     def cam(self) -> SpatialCam:
@@ -241,10 +239,24 @@ class SpatialCamResult(Result):
         """Largest distance of the walls from the mesh, mm."""
         return chord_error(self.cam, self.steps, self.design.output.wall_points)
 
+    @cached_property
+    def bands(self) -> BandedBody:
+        """The cam as a solid of planes, cylinders and B-splines, as used for STEP.
+
+        Raises
+        ------
+        InfeasibleError
+            If a wall is undercut.
+        """
+        coarse, fine = (self.mesh_of(*size).volume for size in _WITNESSES)
+        error = (fine - coarse) / 3.0
+        with self.stage("bands"):
+            return cam_bands(self.cam, self.blank, STEM, (fine + error, abs(error)))
+
     @property
     def solid_asked(self) -> bool:
         """Whether a file needs the solid."""
-        return not {"stl", "3mf", "glb", "report"}.isdisjoint(self.design.output.files)
+        return not {"stl", "3mf", "glb", "step", "report"}.isdisjoint(self.design.output.files)
 
     @cached_property
     def rotary(self) -> RotaryPath:
@@ -295,8 +307,10 @@ class SpatialCamResult(Result):
         """Errors that users act on (see `Result`)."""
         if not self.solid_asked:
             return ()
+        exact = ("walls of the STEP solid, between its points", ["step_mm"])
         return (
             ("walls of the solid, between its points", ["chord_mm"]),
+            *([exact] if "step" in self.design.output.files else []),
             ("volume", ["volume_mm3"]),
         )
 

@@ -25,7 +25,9 @@ if TYPE_CHECKING:
 NAME: Final = "spatial-cam"
 """As in a file."""
 
-SPATIAL_FORMATS: Final = ("dxf", "svg", "stl", "3mf", "glb", "csv", "report", "tool-path", "gcode")
+SPATIAL_FORMATS: Final = (
+    "dxf", "svg", "stl", "3mf", "glb", "step", "csv", "report", "tool-path", "gcode",
+)  # fmt: skip
 """What ``output.files`` may list."""
 
 

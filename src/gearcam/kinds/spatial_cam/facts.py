@@ -175,11 +175,15 @@ def _tool_path(result: SpatialCamResult) -> Tree | None:
 def _accuracy(result: SpatialCamResult) -> Tree | None:
     if not result.solid_asked:
         return None
+    exact = "step" in result.design.output.files
+    how = "distance of exact points from the B-splines, half-way between those interpolated"
     return {
         "chord_mm": result.chord_error,
+        "step_mm": result.bands.error if exact else None,
         "volume_mm3": result.volume[1],
         "how": {
             "chord_mm": "distance of the walls from the middles of all edges of the mesh",
+            "step_mm": how if exact else None,
             "volume_mm3": "a third of the change from a mesh of half the steps",
         },
     }

@@ -74,6 +74,21 @@ def _solid(kind: str) -> Callable[..., Files]:
     return maker
 
 
+def _step(result: SpatialCamResult, _: Any) -> Files:
+    """Return the solid for CAD.
+
+    Files: cam.step.
+
+    The cam as a solid for CAD and CAM: planes and cylinders are exact, walls are B-splines through
+    exact points; the report states their error. Needs `pip install "gearcam[step]"`.
+    """
+    from gearcam.export.step import step_bytes
+    from gearcam.numeric.pose import UNMOVED
+
+    body = result.bands
+    return {f"{body.name}.step": step_bytes([(body, UNMOVED)], body.name, body.error)}
+
+
 def _dxf(result: SpatialCamResult, _: Any) -> Files:
     """Return the outside of the cam, unrolled, as DXF.
 
@@ -109,6 +124,7 @@ FILES: Final[Mapping[str, Callable[..., Files]]] = {
     "dxf": _dxf,
     "svg": _svg,
     **{kind: _solid(kind) for kind in ("stl", "3mf", "glb")},
+    "step": _step,
     "report": report_files,
     **MILLED,
 }
