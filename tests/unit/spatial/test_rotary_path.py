@@ -304,6 +304,30 @@ def test_the_rest_falls_with_the_square_of_the_passes() -> None:
     assert slopes == [pytest.approx(2.0, abs=0.15)] * 2
 
 
+def test_a_pass_leaves_no_more_than_stated_at_its_worse_end() -> None:
+    """Walls of the rise in closed form at the angles of the moves, where these are on the path."""
+    given = {"tool": {"diameter_mm": 8, "depth_mm": 12}, "output": {"path_tolerance_mm": 1}}
+    result = gc.build(design(**given))
+    places = program_of(result).places[2:-1]
+    stated = result.to_dict()["tool_path"]["rest_mm"]
+    left = []
+    for angle in np.unique(places[:, 3] % 360.0):
+        theta = math.radians(360.0 - angle)
+        if 0.0 < theta < math.radians(120.0):
+            speed = 45.0 / math.pi * (1.0 - math.cos(3.0 * theta))
+            lift = 45.0 / math.pi * (theta - math.sin(3.0 * theta) / 3.0)
+            for x in (28.0, 34.0, 40.0):
+                for side in (1, -1):
+                    eta = math.atan(speed / x)
+                    y, z = 8.0 * side * math.sin(eta), 8.0 * side * math.cos(eta)
+                    c, s = math.cos(theta), math.sin(theta)
+                    point = [x * c + y * s, y * c - x * s, LOWEST + lift + z]
+                    left.append(nearness(np.array([point]), places, 4.0)[0])
+    assert max(left) == pytest.approx(stated, rel=0.1)
+    assert max(left) < stated + ROUNDED
+    assert min(left) > -ROUNDED
+
+
 def test_more_passes_are_taken_until_the_rest_is_small() -> None:
     given = {"tool": {"diameter_mm": 8, "depth_mm": 12}}
     tight = gc.build(design(**given)).to_dict()["tool_path"]
