@@ -25,6 +25,7 @@ GROUPS: Final = {
     "parts": "Parts",
     "cams": "Motion and profile",
     "cams in space": "Walls",
+    "solids of cams in space": "Solids",
     "forces": "Forces (`gearcam forces`)",
     "followed profiles": "Followed profile (`gearcam follow`)",
     "precision of cams": "Precision (`gearcam precision`)",

@@ -9,6 +9,8 @@ from typing import Any, Final
 import numpy as np
 
 from gearcam.kinds.spatial_cam.build import SpatialCamResult
+from gearcam.spatial.cam import SpatialWall
+from gearcam.spatial.trimmed import TrimmedWall
 from witness.roller_in_space import TURN, Mechanism
 
 _ANGLES: Final = 7
@@ -16,6 +18,12 @@ _ANGLES: Final = 7
 
 _RESOLUTION: Final = 1e-7
 """Allowed difference of heights, relative to the size of the cam."""
+
+_EVEN: Final = 1e-6
+"""Spread, over the radius of the cam, at which a wall is neither whole nor undercut."""
+
+_BRANCHES: Final = 1e-5
+"""Height over the size by which the search is wrong where two angles reach equally high."""
 
 
 def doubts(result: SpatialCamResult) -> Iterator[tuple[str, str]]:
@@ -45,11 +53,25 @@ def doubts(result: SpatialCamResult) -> Iterator[tuple[str, str]]:
 
         tool = cam.tool
         roller = Mechanism(center, tool.radius, tool.at, tool.half_angle, cam.floor)
-        points = wall.contact(theta, places * np.ones((_ANGLES, 1))).points.reshape(-1, 3)
-        for (x, y, z), at in zip(points.tolist(), np.repeat(theta, 2).tolist(), strict=True):
-            found = roller.wall(math.hypot(x, y), math.atan2(y, x), wall.side)
-            beyond = wall.side * (found - z)
-            cut = wall.spread.value <= 0.0
-            if beyond < -_RESOLUTION * size or (beyond > _RESOLUTION * size and not cut):
-                words = f"{wall.key} wall at {math.degrees(at)} deg is {beyond} mm off"
-                yield "wall", words
+        x = places * np.ones((_ANGLES, 1))
+        touched = wall.contact(theta, x)
+        points, spread = touched.points.reshape(-1, 3), touched.spread.ravel()
+        depth = TrimmedWall(wall=wall).depth(theta, x).ravel()
+        for k, (px, py, pz) in enumerate(points.tolist()):
+            found = roller.wall(math.hypot(px, py), math.atan2(py, px), wall.side)
+            beyond = wall.side * (found - pz)
+            for what in _contradictions(wall, beyond / size, float(spread[k]), depth[k] / size):
+                at = math.degrees(theta[k // len(places)])
+                yield "wall", f"{wall.key} wall at {at} deg {what}: {beyond} mm"
+
+
+def _contradictions(wall: SpatialWall, beyond: float, spread: float, depth: float) -> Iterator[str]:
+    """Yield what is wrong with how far the search is beyond a wall, over the size of the cam."""
+    if beyond < -_RESOLUTION:
+        yield "is beyond the search"
+    if beyond > _RESOLUTION and wall.spread.value > 0.0:
+        yield "is whole, but the search is beyond it"
+    if beyond <= 0.0 and spread < -_EVEN * wall.cam.outer_radius:
+        yield "is undercut, but the search is not beyond it"
+    if abs(depth - max(beyond, 0.0)) > _BRANCHES:
+        yield "is trimmed otherwise than the search finds"

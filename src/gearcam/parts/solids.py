@@ -12,7 +12,7 @@ Depends on parts; manifold3d only inside the functions.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property, singledispatch
@@ -77,6 +77,11 @@ class Mesh:
         matrix = pose.matrix
         moved = self.vertices @ matrix[:3, :3].T + matrix[:3, 3]
         return Mesh(vertices=moved, triangles=self.triangles)
+
+    @property
+    def mirrored(self) -> Mesh:
+        """The mirror image of the mesh in the plane y = 0."""
+        return Mesh(vertices=self.vertices * [1.0, -1.0, 1.0], triangles=self.triangles[:, ::-1])
 
     @cached_property
     def watertight(self) -> bool:
@@ -201,6 +206,40 @@ def _mesh(body: Manifold) -> Mesh:
     raw = body.to_mesh64()
     vertices = np.array(raw.vert_properties[:, :3], dtype=np.float64)
     return Mesh(vertices=vertices, triangles=np.array(raw.tri_verts, dtype=np.int64))
+
+
+@libraries()
+def carved(blank: Mesh, tools: Iterable[Array]) -> Mesh:
+    """Return a mesh less the convex hulls of points.
+
+    Parameters
+    ----------
+    blank : Mesh
+        Closed.
+    tools : iterable of (n, 3) array, mm
+        The corners of each hull.
+
+    Returns
+    -------
+    Mesh
+
+    Raises
+    ------
+    MissingExtraError
+        If manifold3d is not installed.
+    SolidError
+        If nothing is left, or the result is open.
+    """
+    import manifold3d
+
+    whole = manifold3d.Manifold(
+        manifold3d.Mesh64(blank.vertices, blank.triangles.astype(np.uint64))
+    )
+    hulls = [manifold3d.Manifold.hull_points(corners) for corners in tools]
+    mesh = _mesh(manifold3d.Manifold.batch_boolean([whole, *hulls], manifold3d.OpType.Subtract))
+    if not mesh.watertight:
+        raise SolidError("the carved solid is empty or open")
+    return mesh
 
 
 @dataclass(frozen=True, eq=False)

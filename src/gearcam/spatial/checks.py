@@ -13,11 +13,15 @@ from gearcam.base.findings import Remark, check
 from gearcam.base.numerals import formatted, shortened
 from gearcam.base.quantities import ANGLE, LENGTH, Param
 from gearcam.spatial.cam import SpatialCam
-from gearcam.spatial.guides import Straight
+from gearcam.spatial.guides import Straight, SwingArm
 from gearcam.spatial.surface import Cylinder
+from gearcam.spatial.trimmed import lost_lift
 
 KIND: Final = "cams in space"
 """Their group."""
+
+SOLID: Final = "solids of cams in space"
+"""The group of what is looked at where a solid is made."""
 
 SWINGING: Final = math.radians(45.0)
 ALONG: Final = math.radians(30.0)
@@ -89,29 +93,55 @@ def pressure_angle(subject: Subject, limit: float) -> Iterator[Remark]:
     )
 
 
-@check("undercut", kind=KIND, severity="error", unit="mm")
-def undercut(subject: Subject, limit: float) -> Iterator[Remark]:  # noqa: ARG001
-    """Report a wall that the roller cuts away at another cam angle.
+@check(
+    "undercut",
+    kind=KIND,
+    limit=("lost_lift", Param(LENGTH, ge=0, doc="largest lift that undercut may lose"), 0.01),
+    severity=("warning", "error"),
+)
+def undercut(subject: Subject, limit: float) -> Iterator[Remark]:
+    """Warn of a wall that the roller cuts away at another cam angle.
 
-    Looks at: how walls spread in space. The condition in the developed plane allows larger rollers
-    than there is room for.
+    It is an error where this costs more lift than the limit.
+
+    Looks at: how walls spread in space, and how far the follower can move towards the wall left.
+    The condition in the developed plane allows larger rollers than there is room for.
     """
     cam, _ = subject
     for wall in cam.walls:
         if wall.spread.value > 0.0:
             continue
-        most = wall.largest_roller
-        radius = most.value - 0.5 * cam.clearance
-        radius = shortened(radius, -1.0) if radius > 0.0 else 0.0
+        loss, guide = lost_lift(wall), cam.guide
+        lost = loss.way.value * (guide.length if isinstance(guide, SwingArm) else 1.0)
+        angle = ""
+        if isinstance(guide, SwingArm):
+            angle = f" ({formatted(math.degrees(loss.way.value), 3)} deg)"
+        most = wall.largest_roller.value - 0.5 * cam.clearance
+        radius = shortened(most, -1.0) if most > 0.0 else 0.0
         hint = f" A roller_radius_mm of up to {formatted(radius)} does not." if radius > 0.0 else ""
         yield Remark(
-            f"The roller cuts away a part of the {wall.key} wall at other angles, so that it does "
-            f"not lift the follower as asked.{hint}",
-            f"{wall.key} wall, {_at(wall.spread.theta)}, {formatted(wall.spread.x, 4)} mm from the "
-            "axis",
-            cam.roller.radius,
-            limit=radius,
+            f"The roller cuts up to {formatted(loss.depth.value, 3)} mm off the {wall.key} wall at "
+            "other angles. There the follower rests on an edge, and can move by "
+            f"{formatted(lost, 3)} mm{angle} beyond its lift.{hint}",
+            f"{wall.key} wall, {_at(loss.way.theta)}, {formatted(loss.way.x, 4)} mm from the axis",
+            lost,
+            limit=limit if lost > limit else math.inf,
+            severity="error" if lost > limit else "warning",
         )
+
+
+@check("carved-solid", kind=SOLID, severity="note", unit="mm")
+def carved_solid(subject: tuple[int, float], limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Note a solid that is not made from its walls, since one is undercut.
+
+    Looks at: the scallops that a roller leaves which is subtracted at many angles.
+    """
+    count, height = subject
+    yield Remark(
+        f"A wall is undercut: the solid is the blank less {count} positions of the roller, by "
+        f"manifold3d. Scallops between them are up to {formatted(height, 3)} mm high.",
+        value=height,
+    )
 
 
 @check(

@@ -102,6 +102,24 @@ def surface(cam: SpatialCam, blank: Cylinder, steps: int, places: int) -> Surfac
     return Surface(vertices=made.vertices * [1.0, -1.0, 1.0], triangles=made.triangles[:, ::-1])
 
 
+def blank_surface(cam: SpatialCam, blank: Cylinder, steps: int) -> Surface:
+    """Return the surface of what a cam is made from.
+
+    Parameters
+    ----------
+    cam, blank, steps
+        As of `surface`.
+
+    Returns
+    -------
+    Surface
+    """
+    theta = np.linspace(0.0, 2.0 * math.pi, steps, endpoint=False)
+    outer, length = cam.outer_radius, blank.length
+    corners = (blank.bore, 0.0), (blank.bore, length), (outer, length), (outer, 0.0)
+    return _closed([_circle(theta, *one) for one in corners], outer)
+
+
 def roller_surface(cam: SpatialCam, steps: int) -> Surface:
     """Return the surface of the roller of a cam with the beginning of its pin outside the cam.
 

@@ -25,12 +25,19 @@ from gearcam.numeric.columns import Columns
 from gearcam.parts.bands import BandedBody
 from gearcam.parts.cam_bands import cam_bands
 from gearcam.parts.shapes import circle_segments
-from gearcam.parts.solids import Mesh
+from gearcam.parts.solids import Mesh, carved
 from gearcam.results.result import Result
 from gearcam.spatial.cam import SpatialCam, SpatialWall
+from gearcam.spatial.carving import roller_corners, scallop
 from gearcam.spatial.make import make_cylinder
 from gearcam.spatial.milling import RotaryPath, rotary_path
-from gearcam.spatial.surface import Cylinder, chord_error, roller_surface, surface
+from gearcam.spatial.surface import (
+    Cylinder,
+    blank_surface,
+    chord_error,
+    roller_surface,
+    surface,
+)
 
 if TYPE_CHECKING:
     from trimesh import Trimesh
@@ -45,6 +52,12 @@ _SAGITTA: Final = 0.01
 """Least chord error of the roller shown, mm."""
 
 _TURN: Final = 2.0 * math.pi
+
+_CARVED: Final = 240
+"""Largest number of positions of the roller that cut a solid: a few seconds."""
+
+_ROUND: Final = 4
+"""Chords of its blank for each position: the error of its volume is that of the walls then."""
 
 _MOST_STEPS: Final = 1e6
 """Largest number of steps of a table."""
@@ -129,11 +142,14 @@ class SpatialCamResult(Result):
     @cached_property
     def checked(self) -> tuple[Finding, ...]:
         """Findings of the checks, errors first."""
-        from gearcam.spatial.checks import KIND
+        from gearcam.spatial.checks import KIND, SOLID
 
-        cam, blank = self.cam, self.blank
+        cam, blank, limits = self.cam, self.blank, self.design.limits
         with self.stage("checks"):
-            return in_order(run_checks(KIND, (cam, blank), self.design.limits))
+            found = [*run_checks(KIND, (cam, blank), limits)]
+            if self.solid_asked and self.carved:
+                found += run_checks(SOLID, (self.solid_steps, self.chord_error), limits)
+            return in_order(found)
 
     @property
     def angles(self) -> Array:
@@ -202,14 +218,18 @@ class SpatialCamResult(Result):
 
     @cached_property
     def mesh(self) -> Mesh:
-        """The cam as a closed mesh, mm.
+        """The cam as a closed mesh, mm."""
+        return self.mesh_of(self.solid_steps, self.design.output.wall_points)
 
-        Raises
-        ------
-        InfeasibleError
-            If a wall is undercut.
-        """
-        return self.mesh_of(self.steps, self.design.output.wall_points)
+    @property
+    def carved(self) -> bool:
+        """Whether the solid is made by cutting with the roller: a wall is undercut."""
+        return any(wall.spread.value <= 0.0 for wall in self.cam.walls)
+
+    @property
+    def solid_steps(self) -> int:
+        """Number of cam angles of the solid; less where it is carved, which takes long."""
+        return min(self.steps, _CARVED) if self.carved else self.steps
 
     def mesh_of(self, steps: int, places: int) -> Mesh:
         """Return the cam as a mesh.
@@ -220,9 +240,12 @@ class SpatialCamResult(Result):
             Numbers of cam angles, and of places along the roller.
         """
         cam, blank = self.cam, self.blank
-        for wall in cam.walls:
-            _demand_whole(wall)
         with self.stage("solid"):
+            if self.carved:
+                plain = blank_surface(cam, blank, _ROUND * steps)
+                whole = Mesh(vertices=plain.vertices, triangles=plain.triangles)
+                mesh = carved(whole, roller_corners(cam, blank, steps, places))
+                return mesh.mirrored if cam.clockwise else mesh
             made = surface(cam, blank, steps, places)
             return Mesh(vertices=made.vertices, triangles=made.triangles)
 
@@ -230,14 +253,15 @@ class SpatialCamResult(Result):
     def volume(self) -> tuple[float, float]:
         """Volume of the mesh, mm^3, and its error, from the volume of a mesh of half the steps."""
         places = self.design.output.wall_points
-        coarse = self.mesh_of(self.steps // 2, max(2, (places + 1) // 2)).volume
+        coarse = self.mesh_of(self.solid_steps // 2, max(2, (places + 1) // 2)).volume
         fine = self.mesh.volume
         return fine, abs(fine - coarse) / 3.0
 
     @cached_property
     def chord_error(self) -> float:
-        """Largest distance of the walls from the mesh, mm."""
-        return chord_error(self.cam, self.steps, self.design.output.wall_points)
+        """Largest distance of the walls from the mesh, mm; of a carved one its scallops."""
+        error = scallop if self.carved else chord_error
+        return error(self.cam, self.solid_steps, self.design.output.wall_points)
 
     @cached_property
     def bands(self) -> BandedBody:
@@ -248,6 +272,8 @@ class SpatialCamResult(Result):
         InfeasibleError
             If a wall is undercut.
         """
+        for wall in self.cam.walls:
+            _demand_whole(wall)
         coarse, fine = (self.mesh_of(*size).volume for size in _WITNESSES)
         error = (fine - coarse) / 3.0
         with self.stage("bands"):

@@ -10,10 +10,12 @@ from gearcam.base.findings import limit_of
 from gearcam.base.numerals import formatted
 from gearcam.spatial import checks
 from gearcam.spatial.developed import largest_in_plane
+from gearcam.spatial.guides import SwingArm
+from gearcam.spatial.trimmed import lost_lift
 
 if TYPE_CHECKING:
     from gearcam.kinds.spatial_cam.build import SpatialCamResult
-    from gearcam.spatial.cam import Spot
+    from gearcam.spatial.cam import SpatialWall, Spot
 
 Tree = dict[str, Any]
 
@@ -91,14 +93,31 @@ def _cam(result: SpatialCamResult) -> Tree:
             "in_space": _largest(cam.largest_roller, 0.5 * cam.clearance),
             "in_developed_plane": largest_in_plane(cam, cam.floor) - 0.5 * cam.clearance,
         },
-        "walls": {
-            wall.key: {
-                "least_spread_mm": Fact(
-                    wall.spread.value, "least spread of the wall", place=_place(wall.spread)
-                )
-            }
-            for wall in cam.walls
-        },
+        "walls": {wall.key: _wall(wall) for wall in cam.walls},
+    }
+
+
+def _wall(wall: SpatialWall) -> Tree:
+    """Return how much a wall spreads, and what undercut costs."""
+    tree: Tree = {
+        "least_spread_mm": Fact(
+            wall.spread.value, "least spread of the wall", place=_place(wall.spread)
+        )
+    }
+    if wall.spread.value > 0.0:
+        return tree
+    loss, guide = lost_lift(wall), wall.cam.guide
+    swings = isinstance(guide, SwingArm)
+    place = _place(loss.way)
+    return tree | {
+        "undercut_mm": Fact(
+            loss.depth.value, f"most taken off the {wall.key} wall", place=_place(loss.depth)
+        ),
+        "lost_lift_deg": Fact(math.degrees(loss.way.value), "lost lift", place=place)
+        if swings
+        else None,
+        "lost_lift_mm": None if swings else Fact(loss.way.value, "lost lift", place=place),
+        "lost_lift_error": math.degrees(loss.error) if swings else loss.error,
     }
 
 
@@ -182,7 +201,9 @@ def _accuracy(result: SpatialCamResult) -> Tree | None:
         "step_mm": result.bands.error if exact else None,
         "volume_mm3": result.volume[1],
         "how": {
-            "chord_mm": "distance of the walls from the middles of all edges of the mesh",
+            "chord_mm": "height of the scallops between the positions of the roller that cuts it"
+            if result.carved
+            else "distance of the walls from the middles of all edges of the mesh",
             "step_mm": how if exact else None,
             "volume_mm3": "a third of the change from a mesh of half the steps",
         },

@@ -43,7 +43,7 @@ KIND: Final = Kind(
     required=("follower", "cam"),
     formats=SPATIAL_FORMATS,
     check_modules=("gearcam.spatial.checks",),
-    check_groups=("cams in space",),
+    check_groups=("cams in space", "solids of cams in space"),
     study_tables={name: name for name in ("developed", "accuracy")},
     example={
         "motion": [

@@ -21,10 +21,13 @@ def _solid(result: SpatialCamResult) -> Ladder:
     """Return the error of the volume over the number of cam angles.
 
     Places along the roller are refined with them, so that the error falls with the number of
-    points. The truth is extrapolated from a level twice as fine as the finest and from that one.
+    points; those of a carved solid not beyond the design. The truth is extrapolated from a level
+    twice as fine as the finest and from that one.
     """
-    own, places = result.steps, result.design.output.wall_points
-    levels = sorted({max(_LEAST, own // part) for part in _PARTS} | {2 * own})
+    own, places = result.solid_steps, result.design.output.wall_points
+    levels = sorted({max(_LEAST, own // part) for part in _PARTS})
+    if not result.carved:  # carving takes the square of the time
+        levels.append(2 * own)
 
     def make(level: float) -> Mesh:
         return result.mesh_of(int(level), max(2, 1 + round((places - 1) * level / own)))

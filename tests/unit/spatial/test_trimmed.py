@@ -1,0 +1,159 @@
+"""Undercut walls: what the roller takes off, the lift that is lost, and the carved solid."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from gearcam.base.findings import run_checks
+from gearcam.parts.solids import Mesh, carved
+from gearcam.spatial.cam import SpatialCam, SpatialWall, Spot
+from gearcam.spatial.carving import roller_corners, scallop
+from gearcam.spatial.checks import KIND
+from gearcam.spatial.developed import largest_in_plane
+from gearcam.spatial.envelope import Roller
+from gearcam.spatial.surface import Cylinder, blank_surface, surface
+from gearcam.spatial.trimmed import TrimmedWall, lost_lift
+from helpers_spatial import reference, swinging
+from witness.roller_in_space import Mechanism
+
+_DENSE = 20001
+"""Near an edge two angles reach equally high: a coarser search takes the wrong one."""
+
+BLANK = Cylinder(length=110.0, bore=10.0)
+
+
+def cut(radius: float = 22.3, half_angle: float = 0.0, **more: Any) -> SpatialCam:
+    roller = Roller(radius=radius, at=40.0, half_angle=half_angle)
+    return reference(**({"height": 40.0, "roller": roller} | more))
+
+
+def mechanism(cam: SpatialCam, inner: float) -> Mechanism:
+    def center(at: Any) -> tuple[Any, Any]:
+        point, _ = cam.guide.placed(cam.program.derivatives(np.atleast_1d(at), 0)[0])
+        return point[0, :, 1], point[0, :, 2]
+
+    return Mechanism(center, cam.roller.radius, 40.0, cam.roller.half_angle, inner)
+
+
+CAMS = {
+    "cylinder": cut(),
+    "larger": cut(25.0),
+    "cone": cut(30.0, 0.2),
+    "arm": replace(swinging(), roller=Roller(radius=22.0, at=40.0), floor=27.5),
+}
+
+
+def test_a_roller_that_the_developed_plane_allows_is_cut_in_space() -> None:
+    cam = cut()
+    assert cam.largest_roller.value < 22.3 < largest_in_plane(cam, 28.0)
+    assert all(lost_lift(wall).depth.value > 3e-3 for wall in cam.walls)
+
+
+def test_nothing_is_lost_without_undercut() -> None:
+    for wall in cut(21.5).walls:
+        assert (lost_lift(wall).depth.value, lost_lift(wall).way.value) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("name", CAMS)
+def test_the_depth_is_that_of_the_search(name: str) -> None:
+    cam = CAMS[name]
+    search = mechanism(cam, cam.floor)
+    for wall in cam.walls:
+        spot = lost_lift(wall).depth
+        x, y, z = wall.contact(np.array([spot.theta]), np.array([[spot.x]])).points[0, 0]
+        found = search.wall(math.hypot(x, y), math.atan2(y, x), wall.side)
+        assert wall.side * (found - z) == pytest.approx(spot.value, abs=1e-7)
+
+
+def room(wall: SpatialWall, spot: Spot, more: float) -> float:
+    """Least height between the roller, moved on by so much, and the wall of the search."""
+    cam, search = wall.cam, mechanism(wall.cam, wall.cam.floor)
+    lift = float(cam.program.derivatives(np.array([spot.theta]), 0)[0][0])
+    point, _ = cam.guide.placed(np.array([lift + wall.side * more]))
+    y_a, z_a = point[0, 0, 1:]
+    radius = cam.roller.radius_at(spot.x)
+    near, size, least = 0.0, 1.5, math.inf
+    for _ in range(6):
+        rooms = {}
+        for angle in near + np.linspace(-size, size, 25):
+            y, z = y_a + radius * math.sin(angle), z_a + wall.side * radius * math.cos(angle)
+            if math.hypot(spot.x, y) <= cam.outer_radius:
+                wanted = math.hypot(spot.x, y), math.atan2(y, spot.x) - spot.theta
+                rooms[angle] = wall.side * (search.wall(*wanted, wall.side, _DENSE) - z)
+        near = min(rooms, key=lambda one: rooms[one])
+        least, size = min(least, rooms[near]), size / 8.0
+    return least
+
+
+@pytest.mark.parametrize("name", CAMS)
+def test_the_follower_moves_by_the_lost_lift_until_it_rests(name: str) -> None:
+    wall = CAMS[name].walls[0]
+    way = lost_lift(wall).way
+    assert way.value > 1e-4
+    assert room(wall, way, way.value) == pytest.approx(0.0, abs=5e-5)
+    assert room(wall, way, 0.0) > 1e-4
+
+
+def test_no_other_place_loses_more() -> None:
+    wall = CAMS["larger"].walls[0]
+    theta = np.linspace(0.0, 2.0 * math.pi, 301)
+    x = np.linspace(28.0, 36.0, 13) * np.ones((301, 1))
+    found = TrimmedWall(wall=wall).lost(theta, x)
+    most = lost_lift(wall).way.value
+    assert 0.9 * most < found.max() <= most + 1e-6
+
+
+@pytest.mark.parametrize(("limit", "severity"), [(5.4e-4, "error"), (5.5e-4, "warning")])
+def test_the_lost_lift_decides_whether_undercut_is_an_error(limit: float, severity: str) -> None:
+    found = [*run_checks(KIND, (cut(), BLANK), {"lost_lift": limit})]
+    both = [one for one in found if one.code == "undercut"]
+    assert [one.severity for one in both] == [severity, severity]
+    assert both[0].value == pytest.approx(5.4736e-4, abs=1e-7)
+
+
+def carving(cam: SpatialCam, steps: int, places: int) -> Mesh:
+    made = blank_surface(cam, BLANK, 4 * steps)
+    whole = Mesh(vertices=made.vertices, triangles=made.triangles)
+    return carved(whole, roller_corners(cam, BLANK, steps, places))
+
+
+ROUND = math.pi * (40.0**2 - 10.0**2) * 110.0
+
+
+def test_the_carved_solid_has_the_volume_of_the_search() -> None:
+    cam, count = cut(25.0), 90
+    search = mechanism(cam, cam.floor)
+    nodes, weights = np.polynomial.legendre.leggauss(6)
+    share = 0.5 + 0.5 * nodes
+    removed = 0.0
+    for u, weight in zip(share, weights, strict=True):
+        radius = 28.0 + 12.0 * u**2  # heights rise with the root of it
+        heights = [
+            search.wall(radius, azimuth, 1, 601) - search.wall(radius, azimuth, -1, 601)
+            for azimuth in 2.0 * math.pi * np.arange(count) / count
+        ]
+        removed += 0.5 * weight * 24.0 * u * radius * 2.0 * math.pi * float(np.mean(heights))
+    made = carving(cam, 180, 9)
+    assert made.watertight
+    assert ROUND - made.volume == pytest.approx(removed, rel=2e-3)
+
+
+@pytest.mark.parametrize(
+    "more", [{}, {"sides": (1,)}, {"sides": (-1,)}, {"apart": 24.0, "half_angle": 0.1}]
+)
+def test_carving_a_whole_groove_gives_its_surface(more: dict[str, Any]) -> None:
+    cam = cut(8.0, **more)
+    true = surface(cam, BLANK, 1440, 25).volume
+    errors = [carving(cam, n, n // 12).volume - true for n in (60, 120)]
+    assert errors[1] > 0.0
+    assert 2.5 < errors[0] / errors[1] < 5.0
+
+
+def test_scallops_fall_with_the_square_of_the_step() -> None:
+    heights = [scallop(cut(), steps, 33) for steps in (60, 120, 240)]
+    assert np.abs(np.diff(np.log2(heights)) + 2.0).max() < 0.15
