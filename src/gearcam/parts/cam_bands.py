@@ -38,7 +38,7 @@ _NONE: Final = 1e-10
 """Width of a ramp that is none, over the radius of the blank."""
 
 _APART: Final = 1e-5
-"""Least length of a sector that is cut where a ramp vanishes, rad."""
+"""Least length of a sector, rad."""
 
 _FIRST: Final = (9, 5)
 """Points along a sector and across it that are tried first."""
@@ -127,22 +127,38 @@ def _upwards(bands: tuple[SplineBand, SplineBand]) -> Iterator[SplineBand]:
 
 def _cuts(cam: SpatialCam) -> Array:
     """Return the ends of sectors, rad, from 0 to a turn."""
-    ends = cam.program.cuts_between(0.0, cam.program.period)
+    program = cam.program
+    jumps = [jump.theta for jump in program.jumps]
+    phases = [place for one in program.stretches for place in (one.start, one.end)]
+    given = np.mod([*jumps, *phases], program.period)
+    ends = _apart(np.array([0.0, program.period]), given.tolist())
     zeros = [
-        zero for wall in cam.walls for pair in pairwise(ends) for zero in _vanishing(wall, *pair)
+        zero
+        for wall in cam.walls
+        for pair in pairwise(program.cuts_between(0.0, program.period).tolist())
+        for zero in _vanishing(wall, *pair)
     ]
-    far = [zero for zero in zeros if np.abs(ends - zero).min() > _APART]
-    apart: list[float] = []
-    for zero in sorted(far):
-        if not apart or zero - apart[-1] > _APART:
-            apart.append(zero)
-    ends = np.union1d(ends, apart)
-    counts = np.ceil(np.diff(ends) / _QUARTER - 1e-9).astype(int)
+    ends = _apart(ends, zeros)
+    # a face that is a point at both ends is not read well: two points are cut apart
+    none, inside = (
+        np.all([_width(wall, theta) == 0.0 for wall in cam.walls], axis=0)
+        for theta in (ends, 0.5 * (ends[:-1] + ends[1:]))
+    )
+    least = 1 + (none[:-1] & none[1:] & ~inside)
+    counts = np.maximum(np.ceil(np.diff(ends) / _QUARTER - 1e-9).astype(int), least)
     rows = [
         np.linspace(low, high, count, endpoint=False)
         for (low, high), count in zip(pairwise(ends), counts, strict=True)
     ]
     return np.append(np.concatenate(rows), ends[-1])
+
+
+def _apart(ends: Array, more: list[float]) -> Array:
+    """Return the ends of sectors with those of others that are not next to one of them."""
+    for place in sorted(more):
+        if np.abs(ends - place).min() > _APART:
+            ends = np.union1d(ends, [place])
+    return ends
 
 
 def _vanishing(wall: SpatialWall, low: float, high: float) -> list[float]:
