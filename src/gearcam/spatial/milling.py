@@ -170,8 +170,10 @@ def rotary_path(cam: SpatialCam, tool: MillSpec, tolerance: float) -> RotaryPath
         turn += [[0], np.where(numbers > 0, numbers + begun, 0), [0]]
         rapid += [[True], np.zeros(len(points), dtype=bool), [True]]
         begun, turned = begun + int(numbers.max()), float(after[0, 3])
+    joined = np.concatenate(moves)
+    joined[:, 3] = np.maximum.accumulate(joined[:, 3])  # whole turns are off by rounding
     return RotaryPath(
-        moves=np.concatenate(moves),
+        moves=joined,
         turn=np.concatenate(turn),
         rapid=np.concatenate(rapid),
         layers=len(layers),

@@ -292,6 +292,7 @@ def test_the_table_is_the_program() -> None:
     places = program_of(result).places[1:]  # the first one lifts the tool
     assert np.abs(table[:, 1:5] - places).max() < 6e-5
     assert set(table[:, 0]) == set(range(9))
+    assert np.diff(table[:, 4]).min() >= 0.0
 
 
 def test_the_rest_falls_with_the_square_of_the_passes() -> None:
