@@ -57,6 +57,11 @@ def make_cylinder(
     if cam.floor <= bore:
         most = cam.outer_radius - cam.floor_clearance - bore
         what, note = "the floor of the groove is inside the bore", "the limit is where they meet"
+        if most <= 0.0:  # no groove has room: the bore is too large
+            wide = 2.0 * cam.floor
+            raise beyond_limit(
+                what, "blank.bore_diameter_mm", 2.0 * bore, wide, note, near=wide / ABOVE
+            )
         raise beyond_limit(what, "cam.groove_depth_mm", depth, most, note)
     made = SpatialCam(
         program=program,
