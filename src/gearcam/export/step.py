@@ -31,7 +31,7 @@ from gearcam.parts.solids import SolidError
 DATE: Final = "1970-01-01T00:00:00"
 """The date in a file: the same for all."""
 
-SETTINGS: Final = {
+SETTINGS: Final[dict[str, str | int]] = {
     "write.step.schema": "AP214IS",
     "write.step.unit": "MM",
     "xstep.cascade.unit": "MM",
@@ -40,6 +40,9 @@ SETTINGS: Final = {
     "write.step.assembly": 2,  # for more than one part
 }
 """Settings of the kernel's translator; they are global, so each use sets them all."""
+
+BANDED: Final = SETTINGS | {"write.surfacecurve.mode": 1}
+"""Settings for bands: edges also over the parameters of their faces, of which some are slim."""
 
 Item = Part | BandedBody
 """What has a solid."""
@@ -98,7 +101,8 @@ def step_bytes(
         made = {} if made is None else made
         made |= {p: _shape(p, tolerance) for p in parts if p not in made}
         _fill(document, items, {part: made[part] for part in parts}, tokens[name], tokens)
-        written = _write(document, tokens[f"{name}.step"])
+        banded = any(isinstance(part, BandedBody) for part in parts)
+        written = _write(document, tokens[f"{name}.step"], BANDED if banded else SETTINGS)
     return _normal(written.decode("ascii"), tokens).encode("ascii")
 
 
@@ -143,9 +147,9 @@ def _document() -> Iterator[Any]:
         application.Close(document)
 
 
-def _set_all() -> None:
+def _set_all(settings: Mapping[str, str | int]) -> None:
     occt.STEPControl_Controller.Init_s()  # there are no settings before this
-    for key, value in SETTINGS.items():
+    for key, value in settings.items():
         text = isinstance(value, str)
         setter = occt.Interface_Static.SetCVal_s if text else occt.Interface_Static.SetIVal_s
         if not setter(key, value):
@@ -202,9 +206,9 @@ def _set_name(label: Any, name: str) -> None:
     occt.TDataStd_Name.Set_s(label, occt.TCollection_ExtendedString(name, True))  # True: UTF-8
 
 
-def _write(document: Any, file: str) -> bytes:
+def _write(document: Any, file: str, settings: Mapping[str, str | int]) -> bytes:
     """Return the document as STEP, written by the kernel."""
-    _set_all()
+    _set_all(settings)
     writer = occt.STEPCAFControl_Writer()
     writer.SetNameMode(True)
     for other in (writer.SetColorMode, writer.SetLayerMode, writer.SetPropsMode):
