@@ -53,7 +53,8 @@ def test_a_rib_that_its_rollers_cut_through() -> None:
     with pytest.raises(InfeasibleError, match="cut through the rib") as caught:
         _ = gc.build(DESIGN.with_(thin)).cam
     near = caught.value.adjustments[0].near
-    least = gc.build(DESIGN.with_(thin | near)).cam.least_rib
+    least = gc.build(DESIGN.with_({**thin, **near})).cam.least_rib
+    assert least is not None
     assert least.value > 0.0
 
 
@@ -78,7 +79,7 @@ def test_a_bore_that_leaves_no_room_for_a_groove_is_named() -> None:
     assert caught.value.limit > 0.0
     near = caught.value.adjustments[0].near
     assert [*near] == ["blank.bore_diameter_mm"]
-    assert gc.build(DESIGN.with_(wide | near)).cam.walls
+    assert gc.build(DESIGN.with_({**wide, **near})).cam.walls
 
 
 def test_an_arm_that_swings_too_far() -> None:
