@@ -66,6 +66,7 @@ def design(d: Draw, index: int) -> dict[str, Any]:
         made["developed"] = {"steps": d.whole(12, 60), "radii": d.whole(2, 5)}
         made["output"]["studies"] = ["developed"]
     studies(d, made, "solid")
+    _milled(made, index, radius)
     if index % 13 == 7:  # by number: others draw the same as before
         given["outer_diameter_mm"] = "solve"
     drive(d, made)
@@ -87,6 +88,20 @@ def _arm(d: Draw, arm: float, lift: float) -> dict[str, Any]:
     if d.chance(0.2):
         found["start_deg"] = short(-lift * d.even(0.3, 0.7))
     return found
+
+
+def _milled(made: dict[str, Any], index: int, radius: float) -> None:
+    """Give some designs a tool and its paths, few a STEP file; by number, so that it draws none."""
+    files, follower = made["output"]["files"], made["follower"]
+    files += [word for word, k in (("tool-path", 3), ("gcode", 11)) if index % 17 == k]
+    files += ["step"] if index % 101 == 50 else []
+    if index % 17 in (3, 11):
+        made["output"]["path_tolerance_mm"] = short(2e-3 * radius)
+        made["tool"] = {"feed_mm_min": 100 + index, "spindle_rpm": 6000, "depth_mm": short(radius)}
+        if index % 2:
+            made["tool"] |= {"diameter_mm": short(1.6 * radius), "clearance_height_mm": 3}
+        if index % 3 == 0 and follower.get("cone_deg") != "apex":
+            made["tool"]["cone_deg"] = follower.get("cone_deg", 0)
 
 
 def _soften(motion: Any) -> None:

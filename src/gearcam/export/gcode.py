@@ -15,6 +15,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from gearcam.base.numerals import decimal
 from gearcam.numeric.arrays import Array
 
 _LONGEST: int = 70
@@ -46,7 +47,7 @@ def gcode_bytes(
     """
     lines = [f"({line})" for note in notes for line in _wrapped(note)]
     lines += ["G21 G90 G94 G17 G54", "G61", f"G0 Z{_short(moves[0, 2], 4)}"]
-    lines += [f"S{spindle:.0f} M3", *_moved(moves, per_minute, crosswise=crosswise)]
+    lines += [f"S{decimal(spindle, 0)} M3", *_moved(moves, per_minute, crosswise=crosswise)]
     lines += ["M5", "M30"]
     return ("\n".join(lines) + "\n").encode("ascii")
 
