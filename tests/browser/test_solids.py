@@ -48,7 +48,14 @@ def solids_page(built: Callable[[str], Any], tmp_path_factory: pytest.TempPathFa
 
 
 def show(browser: Chrome) -> None:
-    browser.find_element(By.CSS_SELECTOR, "#solids summary").click()
+    def unfolded() -> bool:
+        """Click once more if the page moved beneath the click, as while its charts are drawn."""
+        is_open = "return document.querySelector('#solids details').open"
+        if not browser.execute_script(is_open):
+            browser.find_element(By.CSS_SELECTOR, "#solids summary").click()
+        return browser.execute_script(is_open)
+
+    until(unfolded)
     until(lambda: browser.execute_script("return document.querySelector('#solids [data-drawn]')"))
 
 
