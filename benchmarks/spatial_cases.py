@@ -61,12 +61,12 @@ it {other:.1f} mm3 off, so that the same volume error would take more of them.""
 
 
 def of_cylinder_cams() -> list[Result]:
-    """(w), (x) The solid of a cylinder cam; a whole build."""
+    """(x), (y) The solid of a cylinder cam; a whole build."""
     return [_against_rollers(), _whole()]
 
 
 def _against_rollers() -> Result:
-    """(w) The surface at chords of 1 um against rollers subtracted by manifold3d."""
+    """(x) The surface at chords of 1 um against rollers subtracted by manifold3d."""
     result: Any = gearcam.build(gearcam.loads(REFERENCE))
     cam, blank = result.cam, result.blank
     (mine,) = in_turns({"surface at 1 um": lambda: surface(cam, blank, *FINE)}, 7)
@@ -79,7 +79,7 @@ def _against_rollers() -> Result:
     ratio = other.median / mine.median
     off = abs(surface(cam, blank, *FINE).volume - EXACT)
     return Result(
-        title="(w) The solid of a cylinder cam against rollers subtracted one by one",
+        title="(x) The solid of a cylinder cam against rollers subtracted one by one",
         asked="chords at most 1 um; at least 100 times faster, at a smaller volume error",
         found=f"{chord:.2f} um, {show(mine.median)}; {ratio:.0f} times faster",
         passed=chord <= 1.0 and ratio >= 100.0 and off < missed,
@@ -111,14 +111,14 @@ def _subtracted(result: SpatialCamResult) -> float:
 
 
 def _whole() -> Result:
-    """(x) The command that builds the reference cam with its solid."""
+    """(y) The command that builds the reference cam with its solid."""
     with tempfile.TemporaryDirectory() as folder:
         design = Path(folder) / "reference.toml"
         design.write_text(REFERENCE, encoding="utf-8")
         command = [sys.executable, "-m", "gearcam", "build", str(design), "-o", folder]
         found: list[Timing] = commands({"gearcam build, stl": command}, 7)
     return Result(
-        title="(x) A cylinder cam with its solid, as a whole process",
+        title="(y) A cylinder cam with its solid, as a whole process",
         asked="at most 1 s",
         found=show(found[0].median),
         passed=found[0].median <= 1.0,

@@ -59,13 +59,13 @@ first, from {breaks:.0f} workers on."""
 
 
 def of_sweeps() -> list[Result]:
-    """(t), (u), (v) Two workers, overhead, ten thousand pairs."""
+    """(u), (v), (w) Two workers, overhead, ten thousand pairs."""
     shares, own = _overhead()
     return [_gain(), shares, _pairs(own)]
 
 
 def _gain(count: int = 300, tries: int = 5) -> Result:
-    """(t) Designs per second of two processes against one."""
+    """(u) Designs per second of two processes against one."""
     samples: dict[int, list[float]] = {1: [], 2: []}
     for _, jobs in itertools.product(range(tries), samples):
         samples[jobs].append(_timed(Processes(jobs=jobs), count))
@@ -76,7 +76,7 @@ def _gain(count: int = 300, tries: int = 5) -> Result:
         "cores of this machine are not whole ones"
     )
     return Result(
-        title="(t) A sweep by two workers against one",
+        title="(u) A sweep by two workers against one",
         asked="at least 1.8 times the designs per second",
         found=f"{gain:.2f} times; {count / two.median:.0f} designs per second",
         passed=gain >= 1.8,
@@ -90,7 +90,7 @@ def _gain(count: int = 300, tries: int = 5) -> Result:
 
 
 def _overhead(short: int = 100, long: int = 500, tries: int = 5) -> tuple[Result, float]:
-    """(u) Overhead of each engine; and the time of scheduler and client for a row of dask, s."""
+    """(v) Overhead of each engine; and the time of scheduler and client for a row of dask, s."""
     samples: dict[str, list[float]] = {"processes": [], "dask": []}
     own = []
     with _local() as address:
@@ -109,7 +109,7 @@ def _overhead(short: int = 100, long: int = 500, tries: int = 5) -> tuple[Result
     timings = [Timing(f"a design by {name}", tuple(found)) for name, found in samples.items()]
     by_processes, by_dask = (timing.median / PAUSE_S - 1.0 for timing in timings)
     result = Result(
-        title="(u) Overhead of a sweep at 20 ms a design",
+        title="(v) Overhead of a sweep at 20 ms a design",
         asked="processes at most 3 %, dask at most 10 %",
         found=f"processes {100 * by_processes:.1f} %, dask {100 * by_dask:.1f} %",
         passed=by_processes <= 0.03 and by_dask <= 0.10,
@@ -119,7 +119,7 @@ def _overhead(short: int = 100, long: int = 500, tries: int = 5) -> tuple[Result
 
 
 def _pairs(own: float) -> Result:
-    """(v) Ten thousand pairs; a million on paper."""
+    """(w) Ten thousand pairs; a million on paper."""
     plan = _plan(PAIRS)
     marks: list[_Mark] = []
     start = time.perf_counter()
@@ -157,7 +157,7 @@ def _pairs(own: float) -> Result:
         breaks=design / own,
     )
     return Result(
-        title="(v) Ten thousand pairs in one sweep",
+        title="(w) Ten thousand pairs in one sweep",
         asked="memory flat: from row 5000 on at most 5 MB more, in each process",
         found=f"{PAIRS / late.time:.0f} designs per second, "
         + ", ".join(f"{grown:+.1f} MB where it {what}" for what, grown in growth.items()),
