@@ -77,7 +77,7 @@ def _against_rollers() -> Result:
     missed = abs(volumes[0] - EXACT)
     chord = 1e3 * chord_error(cam, *FINE)
     ratio = other.median / mine.median
-    off = abs(surface(cam, blank, *FINE).volume - EXACT)
+    off = abs(result.mesh_of(*FINE).volume - EXACT)
     return Result(
         title="(x) The solid of a cylinder cam against rollers subtracted one by one",
         asked="chords at most 1 um; at least 100 times faster, at a smaller volume error",

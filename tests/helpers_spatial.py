@@ -9,9 +9,11 @@ from gearcam.base.tolerances import DEFAULT
 from gearcam.laws.motion.base import MOTION_LAWS
 from gearcam.laws.phases_of_lift import DwellPhase, ReturnPhase, RisePhase
 from gearcam.laws.program import Program, make_program
+from gearcam.parts.solids import Mesh
 from gearcam.spatial.cam import SpatialCam
 from gearcam.spatial.envelope import Roller
 from gearcam.spatial.guides import Straight, SwingArm
+from gearcam.spatial.surface import Surface
 
 RISE = math.radians(120.0)
 PAUSE = math.radians(60.0)
@@ -51,3 +53,8 @@ def swinging() -> SpatialCam:
         length=60.0, distance=distance, start=-0.5 * swing, height=60.0 * math.sin(-swing / 2)
     )
     return reference(program=program(swing, "modified-sine", oscillating=True), guide=arm)
+
+
+def enclosed(made: Surface) -> float:
+    """Volume of a surface, mm^3."""
+    return Mesh(vertices=made.vertices, triangles=made.triangles).volume

@@ -91,6 +91,29 @@ def glb_bytes(bodies: Mapping[str, Mesh], name: str) -> bytes:
     return bytes(export_glb(scene, include_normals=False))
 
 
+def mesh_bytes(kind: str, bodies: Mapping[str, Mesh], name: str) -> bytes:
+    """Return closed bodies as a file of a format (see `stl_bytes`).
+
+    Parameters
+    ----------
+    kind : {"stl", "3mf", "glb"}
+        The format.
+    bodies : mapping of str to Mesh
+        Closed, mm, by name.
+    name : str
+        The name of the part or assembly.
+
+    Returns
+    -------
+    bytes
+    """
+    return _WRITERS[kind](bodies, name)
+
+
+_WRITERS: Final = {"stl": stl_bytes, "3mf": threemf_bytes, "glb": glb_bytes}
+"""What writes each format."""
+
+
 @libraries()
 def view_page(bodies: Mapping[str, tuple[Mesh, SpacePose]]) -> str:
     """Return trimesh's page to turn and zoom closed bodies (see `stl_bytes`) in their places.

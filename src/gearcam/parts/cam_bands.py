@@ -183,7 +183,7 @@ def _width(wall: SpatialWall, theta: Array) -> Array:
 
 def _fitted(wall: SpatialWall, cuts: Array) -> tuple[tuple[SplineBand, SplineBand], float]:
     """Return a wall and its ramp, from the edge to the floor, and their error, mm."""
-    mirror = np.array([1.0, -1.0 if wall.cam.clockwise else 1.0, 1.0])
+    mirror = np.array([1.0, wall.cam.hand, 1.0])
     grids: tuple[_Grid, _Grid] = (
         lambda theta, count: mirror * wall.grid(theta, count).points[:, ::-1],
         lambda theta, count: mirror * ramp(wall, theta, count)[:, ::-1],

@@ -278,7 +278,7 @@ def _svg(result: PartsResult, _: Measured) -> Files:
 
 def _mesh(kind: str, result: PartsResult, measured: Measured) -> Files:
     """Return the meshes of the parts, and of the assembly, in a format."""
-    from gearcam.export.mesh import glb_bytes, stl_bytes, threemf_bytes
+    from gearcam.export.mesh import mesh_bytes
     from gearcam.parts.solids import volume_error
 
     meshes = result.meshes
@@ -290,11 +290,10 @@ def _mesh(kind: str, result: PartsResult, measured: Measured) -> Files:
         }
         for part in result.parts
     }
-    to_bytes = {"stl": stl_bytes, "3mf": threemf_bytes, "glb": glb_bytes}[kind]
     scenes = {name: {name: mesh} for name, mesh in meshes.items()}
     if result.assembly:
         scenes[result.assembly] = result.assembled()
-    return {f"{stem}.{kind}": to_bytes(scene, stem) for stem, scene in scenes.items()}
+    return {f"{stem}.{kind}": mesh_bytes(kind, scene, stem) for stem, scene in scenes.items()}
 
 
 def _step(result: PartsResult, _: Measured) -> Files:

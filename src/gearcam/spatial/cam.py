@@ -21,6 +21,7 @@ from typing import Final
 import numpy as np
 
 from gearcam.base.display import ShortRepr
+from gearcam.base.numerals import formatted
 from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.roots import bracketed_root
@@ -56,6 +57,12 @@ class Spot:
     theta: float
     x: float
     value: float
+
+    @property
+    def place(self) -> str:
+        """Where it is, in words."""
+        angle = formatted(math.degrees(self.theta), 5)
+        return f"at {angle} deg, {formatted(self.x, 4)} mm from the axis"
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -102,6 +109,16 @@ class SpatialCam(ShortRepr):
     def walls(self) -> tuple[SpatialWall, ...]:
         """The walls, the upper one first."""
         return tuple(SpatialWall(cam=self, side=side) for side in self.sides)
+
+    @property
+    def undercut(self) -> bool:
+        """Whether the roller cuts away a part of a wall at another angle."""
+        return any(wall.undercut for wall in self.walls)
+
+    @property
+    def hand(self) -> float:
+        """What azimuths and y are multiplied by: -1 of a cam that turns clockwise, else 1."""
+        return -1.0 if self.clockwise else 1.0
 
     @property
     def tool(self) -> Roller:
@@ -308,6 +325,11 @@ class SpatialWall(ShortRepr):
         share = np.linspace(0.0, 1.0, count)
         low = self.cam.floor
         return self.contact(theta, low + share * (self.edge(theta)[:, None] - low))
+
+    @property
+    def undercut(self) -> bool:
+        """Whether the roller cuts away a part of it at another angle."""
+        return self.spread.value <= 0.0
 
     @cached_property
     def spread(self) -> Spot:

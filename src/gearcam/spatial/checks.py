@@ -9,7 +9,7 @@ import math
 from collections.abc import Iterator
 from typing import Final
 
-from gearcam.base.findings import Remark, check
+from gearcam.base.findings import Limits, Remark, check, limit_of
 from gearcam.base.numerals import formatted, shortened
 from gearcam.base.quantities import ANGLE, LENGTH, Param
 from gearcam.spatial.cam import SpatialCam
@@ -43,6 +43,19 @@ def pressure_limit(cam: SpatialCam, given: float) -> float:
     """
     default = ALONG if isinstance(cam.guide, Straight) else SWINGING
     return default if math.isnan(given) else given
+
+
+def allowed_pressure(cam: SpatialCam, limits: Limits) -> float:
+    """Return the largest pressure angle that a design allows, rad.
+
+    Parameters
+    ----------
+    cam : SpatialCam
+        Its cam.
+    limits : mapping of str to float
+        Its limits.
+    """
+    return pressure_limit(cam, limit_of(KIND, "pressure-angle", limits))
 
 
 def _at(theta: float) -> str:
@@ -109,7 +122,7 @@ def undercut(subject: Subject, limit: float) -> Iterator[Remark]:
     """
     cam, _ = subject
     for wall in cam.walls:
-        if wall.spread.value > 0.0:
+        if not wall.undercut:
             continue
         loss, guide = lost_lift(wall), cam.guide
         lost = loss.way.value * (guide.length if isinstance(guide, SwingArm) else 1.0)
@@ -123,7 +136,7 @@ def undercut(subject: Subject, limit: float) -> Iterator[Remark]:
             f"The roller cuts up to {formatted(loss.depth.value, 3)} mm off the {wall.key} wall at "
             "other angles. There the follower rests on an edge, and can move by "
             f"{formatted(lost, 3)} mm{angle} beyond its lift.{hint}",
-            f"{wall.key} wall, {_at(loss.way.theta)}, {formatted(loss.way.x, 4)} mm from the axis",
+            f"{wall.key} wall, {loss.way.place}",
             lost,
             limit=limit if lost > limit else math.inf,
             severity="error" if lost > limit else "warning",
@@ -198,7 +211,7 @@ def _thin_rib(cam: SpatialCam, limit: float) -> Iterator[Remark]:
     if least is not None and least.value < limit:
         yield Remark(
             f"The rib is about {formatted(least.value, 3)} mm thick where it is steep.",
-            f"rib, {_at(least.theta)}, {formatted(least.x, 4)} mm from the axis",
+            f"rib, {least.place}",
             least.value,
         )
 

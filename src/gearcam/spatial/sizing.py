@@ -73,21 +73,17 @@ def least_diameter(
         If there is none up to the largest length of a design, or the cam is impossible.
     """
     wall = limit_of(checks.KIND, "thin-wall", limits)
-    given = limit_of(checks.KIND, "pressure-angle", limits)
 
     def made(diameter: float) -> SpatialCam:
         return make_cylinder(program, follower, replace(cam, outer_diameter=diameter), bore)
 
     def steep(found: SpatialCam) -> bool:
         worst = found.pressure()
-        return worst is not None and worst.value > checks.pressure_limit(found, given)
-
-    def undercut(found: SpatialCam) -> bool:
-        return any(wall.spread.value <= 0.0 for wall in found.walls)
+        return worst is not None and worst.value > checks.allowed_pressure(found, limits)
 
     reasons: dict[str, Callable[[SpatialCam], bool]] = {
         "pressure-angle": steep,
-        "undercut": undercut,
+        "undercut": lambda found: found.undercut,
     }
 
     def reason(diameter: float) -> str:

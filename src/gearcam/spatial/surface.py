@@ -70,12 +70,6 @@ class Surface(ShortRepr):
     vertices: Array
     triangles: Ints
 
-    @property
-    def volume(self) -> float:
-        """Enclosed volume, mm^3."""
-        a, b, c = (self.vertices[one] for one in self.triangles.T)
-        return float(np.einsum("ij,ij->", a, np.cross(b, c))) / 6.0
-
 
 def surface(cam: SpatialCam, blank: Cylinder, steps: int, places: int) -> Surface:
     """Return the surface of a cam.

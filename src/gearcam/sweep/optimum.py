@@ -198,13 +198,13 @@ def demand_facts(signs: Mapping[str, float], row: Built) -> None:
 
 
 def _no_goal(name: str, sign: float, row: Built) -> Problem:
-    """Return what is wrong with a goal that is no number among the facts of a row."""
+    """Return why a goal is not a number among the facts of a row."""
     known = [one for one in row.facts if _fact(row, one) < _NONE]
     near = nearest(name, known)
     parts = [one for one in known if one.startswith(f"{name}.")][:_LISTED]
     message = f"{show(name)} is no fact of this design"
     if name in row.facts:
-        message, near = f"{show(name)} is no number: {show(row.facts[name])}", ""
+        message, near = f"{show(name)} is not a number: {show(row.facts[name])}", ""
     allowed = (
         f"such as {near or ', '.join(parts)}"
         if near or parts

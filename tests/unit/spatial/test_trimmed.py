@@ -18,7 +18,7 @@ from gearcam.spatial.developed import largest_in_plane
 from gearcam.spatial.envelope import Roller
 from gearcam.spatial.surface import Cylinder, blank_surface, surface
 from gearcam.spatial.trimmed import TrimmedWall, lost_lift
-from helpers_spatial import reference, swinging
+from helpers_spatial import enclosed, reference, swinging
 from witness.roller_in_space import Mechanism
 
 _DENSE = 20001
@@ -148,7 +148,7 @@ def test_the_carved_solid_has_the_volume_of_the_search() -> None:
 )
 def test_carving_a_whole_groove_gives_its_surface(more: dict[str, Any]) -> None:
     cam = cut(8.0, **more)
-    true = surface(cam, BLANK, 1440, 25).volume
+    true = enclosed(surface(cam, BLANK, 1440, 25))
     errors = [carving(cam, n, n // 12).volume - true for n in (60, 120)]
     assert errors[1] > 0.0
     assert 2.5 < errors[0] / errors[1] < 5.0

@@ -138,7 +138,7 @@ GOAL = ["--minimize", "pair.ratio.max"]
         ([], "no goal is given"),
         (["--minimize", "pair.ratio.maxx"], "no fact of this design allowed: such as pair.ratio.m"),
         (["--maximize", "mesh"], 'goal.maximize: "mesh" is no fact of this design allowed: such'),
-        (["--minimize", "gears.0.cutter"], 'is no number: "rack"'),
+        (["--minimize", "gears.0.cutter"], 'is not a number: "rack"'),
         (["--minimize", "pair.ratio.max", "--maximize", "pair.ratio.max"], "to be least too"),
         ([*GOAL, "--maximize", "pair.ratio.min", "--method", "scipy"], "searches for one goal"),
         ([*GOAL, "--trials", "0"], "goal.trials: 0 is out of range"),

@@ -22,17 +22,13 @@ from gearcam.laws.program import Program
 from gearcam.numeric.arguments import angles
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
-from gearcam.parts.bands import BandedBody
-from gearcam.parts.cam_bands import cam_bands
-from gearcam.parts.shapes import circle_segments
 from gearcam.parts.solids import Mesh, carved
 from gearcam.results.result import Result
 from gearcam.spatial.cam import SpatialCam, SpatialWall
-from gearcam.spatial.carving import roller_corners, scallop
 from gearcam.spatial.make import make_cylinder
-from gearcam.spatial.milling import RotaryPath, rotary_path
 from gearcam.spatial.surface import (
     Cylinder,
+    Surface,
     blank_surface,
     chord_error,
     roller_surface,
@@ -43,6 +39,8 @@ if TYPE_CHECKING:
     from trimesh import Trimesh
 
     from gearcam.numeric.pose import SpacePose
+    from gearcam.parts.bands import BandedBody
+    from gearcam.spatial.milling import RotaryPath
     from gearcam.spatial.sizing import SolvedDiameter
 
 STEM: Final = "cam"
@@ -224,7 +222,7 @@ class SpatialCamResult(Result):
     @property
     def carved(self) -> bool:
         """Whether the solid is made by cutting with the roller: a wall is undercut."""
-        return any(wall.spread.value <= 0.0 for wall in self.cam.walls)
+        return self.cam.undercut
 
     @property
     def solid_steps(self) -> int:
@@ -242,12 +240,12 @@ class SpatialCamResult(Result):
         cam, blank = self.cam, self.blank
         with self.stage("solid"):
             if self.carved:
-                plain = blank_surface(cam, blank, _ROUND * steps)
-                whole = Mesh(vertices=plain.vertices, triangles=plain.triangles)
+                from gearcam.spatial.carving import roller_corners
+
+                whole = _mesh(blank_surface(cam, blank, _ROUND * steps))
                 mesh = carved(whole, roller_corners(cam, blank, steps, places))
                 return mesh.mirrored if cam.clockwise else mesh
-            made = surface(cam, blank, steps, places)
-            return Mesh(vertices=made.vertices, triangles=made.triangles)
+            return _mesh(surface(cam, blank, steps, places))
 
     @cached_property
     def volume(self) -> tuple[float, float]:
@@ -260,7 +258,9 @@ class SpatialCamResult(Result):
     @cached_property
     def chord_error(self) -> float:
         """Largest distance of the walls from the mesh, mm; of a carved one its scallops."""
-        error = scallop if self.carved else chord_error
+        error = chord_error
+        if self.carved:
+            from gearcam.spatial.carving import scallop as error
         return error(self.cam, self.solid_steps, self.design.output.wall_points)
 
     @cached_property
@@ -272,6 +272,8 @@ class SpatialCamResult(Result):
         InfeasibleError
             If a wall is undercut.
         """
+        from gearcam.parts.cam_bands import cam_bands
+
         for wall in self.cam.walls:
             _demand_whole(wall)
         coarse, fine = (self.mesh_of(*size).volume for size in _WITNESSES)
@@ -293,6 +295,8 @@ class SpatialCamResult(Result):
         InfeasibleError
             If a wall is undercut, or the tool does not fit.
         """
+        from gearcam.spatial.milling import rotary_path
+
         cam, design = self.cam, self.design
         for wall in cam.walls:
             _demand_whole(wall)
@@ -319,10 +323,10 @@ class SpatialCamResult(Result):
     def standing(self, chords: float = 0.0) -> dict[str, tuple[Mesh, SpacePose]]:
         """Return cam and rollers at the angle of the design, as meshes (see `Result`)."""
         from gearcam.kinds.spatial_cam.scene import CAM, in_space
+        from gearcam.parts.shapes import circle_segments
 
         size = 2.0 * self.design.follower.roller_radius
-        made = roller_surface(self.cam, circle_segments(size, max(chords, _SAGITTA)))
-        roller = Mesh(vertices=made.vertices, triangles=made.triangles)
+        roller = _mesh(roller_surface(self.cam, circle_segments(size, max(chords, _SAGITTA))))
         poses = in_space(self, np.array([self.design.output.pose]))
         return {
             name: (self.mesh if name == CAM else roller, pose[0]) for name, pose in poses.items()
@@ -345,9 +349,13 @@ PLACES: Final = ("inner", "mean", "outer")
 """Names of the roller's inner end, its middle and the outside, in columns."""
 
 
+def _mesh(made: Surface) -> Mesh:
+    return Mesh(vertices=made.vertices, triangles=made.triangles)
+
+
 def _demand_whole(wall: SpatialWall) -> None:
     """Refuse a wall that the roller cuts away at another angle."""
-    if wall.spread.value > 0.0:
+    if not wall.undercut:
         return
     most = wall.largest_roller.value - 0.5 * wall.cam.clearance
     at = formatted(math.degrees(wall.spread.theta), 5)

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from gearcam.base.findings import limit_of
 from gearcam.pictures.charts import Chart, Charts, Limit, Line, knot_marks
 from gearcam.spatial import checks
 
@@ -39,9 +38,7 @@ def _of_lift(name: str, result: SpatialCamResult) -> Chart:
 
 def _pressure(result: SpatialCamResult) -> Chart:
     table, cam = result.motion(), result.cam
-    limit = checks.pressure_limit(
-        cam, limit_of(checks.KIND, "pressure-angle", result.design.limits)
-    )
+    limit = checks.allowed_pressure(cam, result.design.limits)
     labels = {"inner": "at the roller's inner end", "mean": "in the middle", "outer": "outside"}
     return Chart(
         title="Pressure angle",

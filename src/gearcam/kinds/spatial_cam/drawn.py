@@ -64,7 +64,7 @@ def centers(result: SpatialCamResult, theta: Array) -> Plane:
     """
     lift = result.program.derivatives(theta, 0)[0]
     point, _ = result.cam.guide.placed(lift)
-    side = -1.0 if result.cam.clockwise else 1.0
+    side = result.cam.hand
     return across(result, theta) + side * point[0, :, 1] + 1j * point[0, :, 2]
 
 
@@ -86,7 +86,7 @@ def edge(result: SpatialCamResult, wall: SpatialWall) -> Plane:
     radius, turn = result.cam.outer_radius, 2.0 * math.pi
     theta = np.linspace(0.0, turn, _STEPS, endpoint=False)
     points = wall.contact(theta, wall.edge(theta)[:, None]).points[:, 0]
-    azimuth = np.arctan2(points[:, 1], points[:, 0]) * (-1.0 if result.cam.clockwise else 1.0)
+    azimuth = np.arctan2(points[:, 1], points[:, 0]) * result.cam.hand
     order = np.argsort(azimuth % turn)
     x, z = azimuth[order] % turn, points[order, 2]
     at_ends = np.interp(0.0, [x[-1] - turn, x[0]], [z[-1], z[0]])

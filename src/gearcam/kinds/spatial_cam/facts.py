@@ -6,8 +6,6 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from gearcam.base.facts import Fact, Facts, extent
-from gearcam.base.findings import limit_of
-from gearcam.base.numerals import formatted
 from gearcam.spatial import checks
 from gearcam.spatial.developed import largest_in_plane
 from gearcam.spatial.guides import SwingArm
@@ -86,7 +84,7 @@ def _cam(result: SpatialCamResult) -> Tree:
         "rib_mm": given.rib,
         "least_rib_mm": None
         if cam.least_rib is None
-        else Fact(cam.least_rib.value, "least thickness of the rib", place=_place(cam.least_rib)),
+        else Fact(cam.least_rib.value, "least thickness of the rib", place=cam.least_rib.place),
         "pressure_angle_deg": _pressure(result),
         "lost_motion_mm": None if cam.lost_motion is None else cam.lost_motion.value,
         "largest_roller_mm": {
@@ -101,17 +99,17 @@ def _wall(wall: SpatialWall) -> Tree:
     """Return how much a wall spreads, and what undercut costs."""
     tree: Tree = {
         "least_spread_mm": Fact(
-            wall.spread.value, "least spread of the wall", place=_place(wall.spread)
+            wall.spread.value, "least spread of the wall", place=wall.spread.place
         )
     }
-    if wall.spread.value > 0.0:
+    if not wall.undercut:
         return tree
     loss, guide = lost_lift(wall), wall.cam.guide
     swings = isinstance(guide, SwingArm)
-    place = _place(loss.way)
+    place = loss.way.place
     return tree | {
         "undercut_mm": Fact(
-            loss.depth.value, f"most taken off the {wall.key} wall", place=_place(loss.depth)
+            loss.depth.value, f"most taken off the {wall.key} wall", place=loss.depth.place
         ),
         "lost_lift_deg": Fact(math.degrees(loss.way.value), "lost lift", place=place)
         if swings
@@ -125,20 +123,13 @@ def _largest(spot: Spot, off: float) -> Fact | None:
     """Return the largest roller without undercut."""
     if math.isinf(spot.value):
         return None
-    return Fact(spot.value - off, "largest roller radius without undercut", place=_place(spot))
-
-
-def _place(spot: Spot) -> str:
-    angle = formatted(math.degrees(spot.theta), 5)
-    return f"at {angle} deg, {formatted(spot.x, 4)} mm from the axis"
+    return Fact(spot.value - off, "largest roller radius without undercut", place=spot.place)
 
 
 def _pressure(result: SpatialCamResult) -> Tree:
     """Return the largest pressure angles: anywhere, on rises and returns, at the mean radius."""
     cam = result.cam
-    limit = checks.pressure_limit(
-        cam, limit_of(checks.KIND, "pressure-angle", result.design.limits)
-    )
+    limit = checks.allowed_pressure(cam, result.design.limits)
 
     def largest(meaning: str, x: float | None = None, kind: str = "") -> Fact | None:
         spot = cam.pressure(x, kind)
@@ -147,7 +138,7 @@ def _pressure(result: SpatialCamResult) -> Tree:
         angle, most = math.degrees(spot.value), math.degrees(limit)
         whole = x is None
         return Fact(
-            angle, meaning, at_most=most if whole else None, place=_place(spot), shown=not kind
+            angle, meaning, at_most=most if whole else None, place=spot.place, shown=not kind
         )
 
     return {

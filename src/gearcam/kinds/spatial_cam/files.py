@@ -29,7 +29,7 @@ def _tables(result: SpatialCamResult, _: Any) -> Files:
     from gearcam.export.table import table_bytes
 
     theta, count = result.wall_angles, result.design.output.wall_points
-    side = -1.0 if result.cam.clockwise else 1.0
+    side = result.cam.hand
     rows: dict[str, list[Any]] = {}
     for wall in result.cam.walls:
         grid = wall.grid(theta, count)
@@ -56,10 +56,12 @@ def _tables(result: SpatialCamResult, _: Any) -> Files:
 
 
 def _mesh(kind: str, result: SpatialCamResult, _: Any) -> Files:
-    from gearcam.export.mesh import glb_bytes, stl_bytes, threemf_bytes
+    from gearcam.export.mesh import mesh_bytes
 
-    to_bytes = {"stl": stl_bytes, "3mf": threemf_bytes, "glb": glb_bytes}[kind]
-    return {f"{name}.{kind}": to_bytes({name: mesh}, name) for name, mesh in result.meshes.items()}
+    return {
+        f"{name}.{kind}": mesh_bytes(kind, {name: mesh}, name)
+        for name, mesh in result.meshes.items()
+    }
 
 
 def _solid(kind: str) -> Callable[..., Files]:

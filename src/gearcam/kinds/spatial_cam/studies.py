@@ -14,6 +14,7 @@ from gearcam.kinds.shared import accuracy_study
 from gearcam.pictures.charts import Chart, Line
 from gearcam.results.kind import Study
 from gearcam.results.result import StudyResult
+from gearcam.spatial.cam import Spot
 from gearcam.spatial.developed import developed
 
 if TYPE_CHECKING:
@@ -35,7 +36,7 @@ def _compute(result: SpatialCamResult, progress: Any) -> StudyResult:  # noqa: A
             "wall": np.full(shape, key),
             "theta_deg": np.degrees(found.theta)[:, None] * np.ones(shape),
             "radius_mm": found.radius * np.ones(shape),
-            "azimuth_deg": (-1.0 if cam.clockwise else 1.0) * np.degrees(found.azimuth),
+            "azimuth_deg": cam.hand * np.degrees(found.azimuth),
             "z_mm": found.height,
             "error_mm": found.error,
         }
@@ -61,14 +62,9 @@ def _facts(walls: Mapping[str, Developed]) -> dict[str, Any]:
     ):
         key, found = max(walls.items(), key=lambda item: float((sign * item[1].error).max()))
         k, j = np.unravel_index(np.argmax(sign * found.error), found.error.shape)
-        at = formatted(math.degrees(found.theta[k]), 5)
-        radius = formatted(float(found.radius[j]), 4)
-        tree[name] = Fact(
-            max(0.0, float(sign * found.error[k, j])),
-            meaning,
-            place=f"{key} wall, at {at} deg, {radius} mm from the axis",
-            shown=True,
-        )
+        most = max(0.0, float(sign * found.error[k, j]))
+        spot = Spot(theta=float(found.theta[k]), x=float(found.radius[j]), value=most)
+        tree[name] = Fact(spot.value, meaning, place=f"{key} wall, {spot.place}", shown=True)
     largest = max(float(np.abs(one.error).max()) for one in walls.values())
     return {"largest_mm": Fact(largest, "largest error of the developed plane"), **tree}
 
