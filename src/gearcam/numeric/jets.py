@@ -20,6 +20,9 @@ from gearcam.numeric.arrays import Array
 Value = Array | float
 """A number, or one at each sample point."""
 
+Scalar = Any
+"""What jets are added to and multiplied by: a `Value`, or complex numbers in the plane."""
+
 _WHOLE: Final = 128
 """Largest whole power computed by multiplication, which is also valid at zero."""
 
@@ -68,7 +71,7 @@ class Jet:
         """Return the same function, of one order less."""
         return Jet(self.c[:-1])
 
-    def _constant(self, value: Value) -> Jet:
+    def _constant(self, value: Scalar) -> Jet:
         return Jet([np.full_like(self.c[0], value), *[0.0] * self.order])
 
     def __neg__(self) -> Jet:
@@ -77,22 +80,22 @@ class Jet:
     def __pos__(self) -> Jet:
         return self
 
-    def __add__(self, other: Jet | Value) -> Jet:
+    def __add__(self, other: Jet | Scalar) -> Jet:
         if not isinstance(other, Jet):
             return Jet([self.c[0] + other, *self.c[1:]])
         return Jet([a + b for a, b in zip(self.c, other.c, strict=True)])
 
     __radd__ = __add__
 
-    def __sub__(self, other: Jet | Value) -> Jet:
+    def __sub__(self, other: Jet | Scalar) -> Jet:
         if not isinstance(other, Jet):
             return Jet([self.c[0] - other, *self.c[1:]])
         return Jet([a - b for a, b in zip(self.c, other.c, strict=True)])
 
-    def __rsub__(self, other: Value) -> Jet:
+    def __rsub__(self, other: Scalar) -> Jet:
         return -self + other
 
-    def __mul__(self, other: Jet | Value) -> Jet:
+    def __mul__(self, other: Jet | Scalar) -> Jet:
         if not isinstance(other, Jet):
             return Jet([value if _is_zero(value) else value * other for value in self.c])
         a, b = self.c, other.c
@@ -107,7 +110,7 @@ class Jet:
 
     __rmul__ = __mul__
 
-    def __truediv__(self, other: Jet | Value) -> Jet:
+    def __truediv__(self, other: Jet | Scalar) -> Jet:
         if not isinstance(other, Jet):
             return Jet([value if _is_zero(value) else value / other for value in self.c])
         quotient: list[Value] = []
@@ -119,7 +122,7 @@ class Jet:
             quotient.append(rest / other.c[0])
         return Jet(quotient)
 
-    def __rtruediv__(self, other: Value) -> Jet:
+    def __rtruediv__(self, other: Scalar) -> Jet:
         return self._constant(other) / self
 
     def __pow__(self, exponent: Jet | Value) -> Jet:

@@ -1,0 +1,257 @@
+"""Where a linkage closes: the range of the driver, change points, and the nearest lengths.
+
+What a dyad needs to close is a smooth function of the driver's angle between knots. Its extremes
+are roots of its slope, its zeros are bracketed by them: nothing depends on a step.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+
+from gearcam.base.display import ShortRepr
+from gearcam.linkages.elements import BRANCH, Dyad, Element, Known
+from gearcam.linkages.linkage import Linkage
+from gearcam.linkages.plane import conjugate, imaginary, square
+from gearcam.numeric.arrays import Array
+from gearcam.numeric.jets import Jet
+from gearcam.numeric.piecewise import extremes
+from gearcam.numeric.roots import bracketed_root
+
+_TOUCHING: Final = 1e-12
+"""Largest share of a dyad's size at which its positions count as one."""
+
+_FOUND: Final = 1e-14
+"""Accuracy of a limit, rad."""
+
+_SAME: Final = 1e-7
+"""Change points closer than this are one, rad."""
+
+_SPARE: Final = 1e-3
+"""Share by which a length that is offered is off its limit, where the linkage is singular."""
+
+_TURN: Final = 2.0 * math.pi
+
+PASSABLE: Final = frozenset({"RRR", "RRT", "TRR"})
+"""Types of dyads that can pass a change point: the others jam or lose their place."""
+
+
+@dataclass(frozen=True)
+class Closing(ShortRepr):
+    """Where one part of a linkage closes.
+
+    Parameters
+    ----------
+    element : Element
+        The part.
+    least : float
+        The smallest share that is left before it opens; negative: it does not close everywhere.
+    place : float, rad
+        The driver's angle there.
+    ranges : tuple of (float, float), rad
+        The driver's angles over which it closes; a range over the end of a turn begins below 0.
+    changes : tuple of float, rad
+        Change points.
+    """
+
+    element: Element
+    least: float
+    place: float
+    ranges: tuple[tuple[float, float], ...]
+    changes: tuple[float, ...]
+
+
+class NotClosingError(ValueError):
+    """A linkage does not close over the driver's whole range.
+
+    Parameters
+    ----------
+    closing : Closing
+        Where its first part closes that does not close everywhere.
+    nearest : tuple of dict of int to float
+        Lengths that would make the part close, by their number, mm; the nearest first.
+    """
+
+    def __init__(self, closing: Closing, nearest: tuple[dict[int, float], ...]) -> None:
+        self.closing, self.nearest = closing, nearest
+        super().__init__(f"{closing.element.gives[0]} does not close over the whole range")
+
+
+def settled(linkage: Linkage) -> Linkage:
+    """Return a linkage with the change points of its dyads.
+
+    Parameters
+    ----------
+    linkage : Linkage
+        As described.
+
+    Returns
+    -------
+    Linkage
+
+    Raises
+    ------
+    NotClosingError
+        If a part does not close over the whole range, or is singular where it cannot be passed.
+    """
+    for number, element in enumerate(linkage.elements):
+        found = closing(linkage, element)
+        if found is None:
+            continue
+        stuck = found.changes and getattr(element, "type", None) not in PASSABLE
+        if found.least < -_TOUCHING or stuck:
+            nearest = tuple(_nearest(linkage, element)) if isinstance(element, Dyad) else ()
+            raise NotClosingError(found, nearest)
+        if found.changes and isinstance(element, Dyad):
+            linkage = _passing(linkage, number, element, found.changes)
+    return linkage
+
+
+def _passing(linkage: Linkage, number: int, dyad: Dyad, changes: tuple[float, ...]) -> Linkage:
+    """Return a linkage of which a dyad knows its change points."""
+    parts, knots = list(linkage.elements), linkage.knots
+    parts[number] = replace(dyad, changes=changes, period=_TURN if linkage.closed else None)
+    if dyad.keeps == BRANCH:  # which has a corner there
+        knots = np.union1d(knots, [one for one in changes if knots[0] < one < knots[-1]])
+    return replace(linkage, elements=tuple(parts), knots=knots)
+
+
+def closing(linkage: Linkage, element: Element) -> Closing | None:
+    """Return where a part of a linkage closes.
+
+    Parameters
+    ----------
+    linkage : Linkage
+        In which all parts before this one close.
+    element : Element
+        The part.
+
+    Returns
+    -------
+    Closing, or None if it always closes
+    """
+    probe = element.room(linkage.at(linkage.knots[:1], 1, element))
+    if not probe:
+        return None
+    found = []
+    for number in range(len(probe)):
+
+        def room(q: Array, number: int = number) -> tuple[Array, Array]:
+            value, slope = element.room(linkage.at(q, 1, element))[number].derivatives()[:2]
+            return value, slope
+
+        places, values = extremes(room, linkage.knots)
+        found.append((places, values, _crossings(room, places, values)))
+    lowest = min(found, key=lambda one: one[1].min())
+    at = int(lowest[1].argmin())
+    touching = [q for places, values, _ in found for q in places[np.abs(values) <= _TOUCHING]]
+    return Closing(
+        element,
+        float(lowest[1][at]),
+        float(lowest[0][at]),
+        _ranges(linkage, element, np.concatenate([one[2] for one in found])),
+        _apart(touching, linkage),
+    )
+
+
+def _crossings(room: Callable[[Array], tuple[Array, Array]], places: Array, values: Array) -> Array:
+    """Return the simple zeros of a function between its extremes."""
+    signs = np.where(np.abs(values) <= _TOUCHING, 0.0, np.sign(values))
+    (cells,) = np.nonzero(signs[:-1] * signs[1:] < 0.0)
+    ends = values[cells], values[cells + 1]
+    return bracketed_root(lambda q: room(q)[0], places[cells], places[cells + 1], _FOUND, ends)
+
+
+def _ranges(linkage: Linkage, element: Element, zeros: Array) -> tuple[tuple[float, float], ...]:
+    """Return the ranges between zeros over which all shares are positive."""
+    low, high = linkage.span
+    edges = np.unique(np.concatenate([[low, high], zeros]))
+    middles = 0.5 * (edges[1:] + edges[:-1])
+    shares = element.room(linkage.at(middles, 0, element))
+    open_ = np.all([np.asarray(one.c[0]) >= -_TOUCHING for one in shares], axis=0)
+    ranges: list[tuple[float, float]] = []
+    for begin, end in zip(edges[:-1][open_], edges[1:][open_], strict=True):
+        if ranges and ranges[-1][1] == begin:
+            begin = ranges.pop()[0]
+        ranges.append((float(begin), float(end)))
+    if linkage.closed and len(ranges) > 1 and (ranges[0][0], ranges[-1][1]) == (low, high):
+        ranges[0] = ranges.pop()[0] - (high - low), ranges[0][1]
+    return tuple(ranges)
+
+
+def _apart(touching: list[float], linkage: Linkage) -> tuple[float, ...]:
+    """Return change points without those found twice, at both sides of a knot or of a turn."""
+    low, high = linkage.span
+    if linkage.closed:
+        touching = [low if high - q < _SAME else q for q in touching]
+    kept: list[float] = []
+    for q in sorted(touching):
+        if not kept or q - kept[-1] > _SAME:
+            kept.append(q)
+    return tuple(kept)
+
+
+def _nearest(linkage: Linkage, dyad: Dyad) -> Iterator[dict[int, float]]:
+    """Yield lengths that make a dyad close, mm: the numbers of those changed, and their values."""
+    if dyad.driven is not None:
+        return
+    if dyad.type == "RRR":
+        yield from _nearest_rods(dyad, *_distances(linkage, dyad))
+    elif dyad.type in ("RRT", "TRR"):
+        low, high = _extent(linkage, dyad, lambda known: _off(known, dyad))
+        yield {("RRT", "TRR").index(dyad.type): max(-low, high) * (1.0 + _SPARE)}
+    elif dyad.type in ("RTR1", "RTR2"):
+        across, (least, _) = abs(math.sin(dyad.lengths.beta)), _distances(linkage, dyad)
+        if across > 0.0 and least > 0.0:
+            yield {("RTR2", "RTR1").index(dyad.type): least / across * (1.0 - _SPARE)}
+
+
+def _nearest_rods(dyad: Dyad, least: float, most: float) -> list[dict[int, float]]:
+    """Return lengths with which two rods reach all distances of their ends, nearest first."""
+    own = np.array(dyad.lengths[:2], dtype=float)
+    found: list[dict[int, float]] = []
+    for number in (0, 1):
+        other = own[1 - number]
+        low, high = max(most - other, other - least) * (1.0 + _SPARE), other + least
+        if low < high * (1.0 - _SPARE):
+            found.append({number: min(max(own[number], low), high * (1.0 - _SPARE))})
+    if not found:  # both: as long as the distance asks for, with the difference they have
+        half = 0.5 * most * (1.0 + _SPARE)
+        apart = np.clip(
+            0.5 * (own[0] - own[1]), *(0.5 * least * (1.0 - _SPARE) * np.array([-1, 1]))
+        )
+        found.append({0: float(half + apart), 1: float(half - apart)})
+    return sorted(found, key=lambda one: max(abs(v - own[k]) for k, v in one.items()))
+
+
+def _distances(linkage: Linkage, dyad: Dyad) -> tuple[float, float]:
+    """Return the smallest and the largest distance of a dyad's outer joints, mm."""
+    least, most = _extent(
+        linkage, dyad, lambda known: square(known.jet(dyad.second) - known.jet(dyad.first))
+    )
+    return math.sqrt(max(least, 0.0)), math.sqrt(most)
+
+
+def _off(known: Known, dyad: Dyad) -> Jet:
+    """Return how far the rod's far joint is from the line on which the other one runs, mm."""
+    ends, arm, turn = (dyad.first, dyad.second), dyad.lengths.second, dyad.lengths.gamma2
+    if dyad.type == "TRR":
+        ends, arm, turn = ends[::-1], float(dyad.lengths.first), dyad.lengths.gamma1  # pyright: ignore[reportArgumentType]
+    guide = known.frame(ends[1])
+    place = (guide.origin - known.jet(ends[0])) * conjugate(guide.direction)
+    return imaginary(place) + arm * math.sin(turn)
+
+
+def _extent(linkage: Linkage, dyad: Dyad, of: Callable[[Known], Jet]) -> tuple[float, float]:
+    """Return the smallest and the largest value of a quantity before a dyad is solved."""
+
+    def values(q: Array) -> tuple[Array, Array]:
+        value, slope = of(linkage.at(q, 1, dyad)).derivatives()[:2]
+        return value, slope
+
+    _, found = extremes(values, linkage.knots)
+    return float(found.min()), float(found.max())

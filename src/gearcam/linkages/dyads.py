@@ -1,0 +1,251 @@
+"""The dyads: groups of two members and three joints, solved from what their outer joints hang on.
+
+A dyad is named by its joints in their order, R for a hinge and T for a slide: member 1 begins at
+the first joint, member 2 at the last one, the middle joint B joins both. A slide's member runs
+along a guide, or along the other member. Its two positions differ by a sign that is a constant of
+the machine: no continuation, no start value.
+
+==== ======================= ==================================================================
+dyad hangs on                its other solution
+==== ======================= ==================================================================
+RRR  joint A1, joint A2      +1: B to the left of A1 -> A2
+RRT  joint A1, guide 2       +1: B ahead of A1, in the guide's direction
+TRR  guide 1, joint A2       +1: B ahead of A2
+RTR1 joint A1, joint A2      +1; the slide is on member 1
+RTR2 joint A1, joint A2      +1; the slide is on member 2
+TRT  guide 1, guide 2        none
+RTT  joint A1, guide 2       none
+TTR  guide 1, joint A2       none
+==== ======================= ==================================================================
+
+Every formula is written once, on jets, which give all its derivatives. TRR, RTR2 and TTR are RRT,
+RTR1 and RTT with their members exchanged.
+"""
+
+from __future__ import annotations
+
+import cmath
+from collections.abc import Callable, Mapping
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from gearcam.linkages.plane import Frame, conjugate, cross, imaginary, real, square
+from gearcam.numeric import jets
+from gearcam.numeric.jets import Jet
+
+Length = Jet | float
+"""Of a member, mm: a jet where a cylinder drives it."""
+
+End = Jet | Frame
+"""What a dyad hangs on: a joint or a guide."""
+
+
+class Lengths(NamedTuple):
+    """Sizes of a dyad.
+
+    Attributes
+    ----------
+    first, second : float, mm
+        From the outer joint or the guide to B; a jet where a cylinder drives the first.
+    beta : float, rad
+        From member 1 to member 2, of RTR, RTT and TTR.
+    gamma1, gamma2 : float, rad
+        From a guide to the member that slides on it.
+    """
+
+    first: Length
+    second: float
+    beta: float = 0.0
+    gamma1: float = 0.0
+    gamma2: float = 0.0
+
+    def exchanged(self) -> Lengths:
+        """Return the sizes with the members exchanged."""
+        return Lengths(self.second, self.first, -self.beta, self.gamma2, self.gamma1)  # pyright: ignore[reportArgumentType]
+
+
+class Solved(NamedTuple):
+    """A dyad's position.
+
+    Attributes
+    ----------
+    joint : Jet
+        B, of complex numbers, mm.
+    frames : two Frames
+        Of the members: the origin in the outer joint, or in the slide's place on its guide; x
+        towards B (of a member that is a guide or a slide without length along the guide).
+    slides : dict of str to Jet
+        Places along guides, mm: ``guide1`` and ``guide2`` on those given, ``member1`` and
+        ``member2`` on its own members.
+    room : tuple of Jet
+        Shares that are 0 or more where it closes, at most about 1 (none: it always does); where one
+        is 0, it is singular.
+    """
+
+    joint: Jet
+    frames: tuple[Frame, Frame]
+    slides: Mapping[str, Jet]
+    room: tuple[Jet, ...]
+
+    def exchanged(self) -> Solved:
+        """Return the same with the members exchanged."""
+        names = {"guide2": "guide1", "guide1": "guide2", "member1": "member2", "member2": "member1"}
+        slides = {names[key]: value for key, value in self.slides.items()}
+        return self._replace(frames=self.frames[::-1], slides=slides)
+
+
+Sign = float | np.ndarray
+"""+1 or -1, or one for each angle where a linkage keeps its motion through change points."""
+
+_ROUNDED: Final = 1e-13
+"""A closing quantity this small, as a share of its scale, is 0."""
+
+
+def _root(x: Jet, scale: Length, sign: Sign) -> Jet:
+    """Return ``sign*sqrt(x)``; at double zeros of x the root that is smooth to its right.
+
+    Parameters
+    ----------
+    x : Jet
+        At least 0 but for rounding.
+    scale : float or Jet
+        What x was computed from, in the same unit.
+    sign : float or (n,) array
+
+    Notes
+    -----
+    At a double zero ``x = a2*h^2 + a3*h^3 + ...``, its root is ``h*sqrt(a2 + a3*h + ...)``: one
+    derivative less than x has. The last one is nan there.
+    """
+    size = scale.c[0] if isinstance(scale, Jet) else scale
+    flat = np.abs(x.c[0]) <= _ROUNDED * size
+    if not flat.any():
+        with np.errstate(invalid="ignore", divide="ignore"):  # outside of what closes
+            return jets.sqrt(x) * sign
+    full = Jet([np.where(flat, 1.0, value) for value in x.c])
+    with np.errstate(invalid="ignore", divide="ignore"):
+        root = jets.sqrt(full)
+        inner = [np.broadcast_to(value, flat.shape)[flat] for value in x.c[2:]]
+        rest = jets.sqrt(Jet(inner)).c if inner else ()
+    values = [np.where(flat, 0.0, root.c[0])]
+    for k, value in enumerate(root.c[1:]):
+        mended = np.array(np.broadcast_to(value, flat.shape))
+        mended[flat] = rest[k] if k < len(rest) else np.nan
+        values.append(mended)
+    return Jet(values) * sign
+
+
+def _rrr(first: Jet, second: Jet, sizes: Lengths, sign: Sign) -> Solved:
+    one, two = sizes.first, sizes.second
+    way = second - first
+    distance = square(way)
+    whole = (one + two) * (one + two)
+    outer, inner = whole - distance, distance - (one - two) * (one - two)
+    along = (one * one - two * two + distance) / (distance * 2.0)
+    # 16 times the squared area of the triangle, as a product: no cancellation near its zeros
+    height = _root(outer * inner, 16.0 * one * one * two * two, sign) / (distance * 2.0)
+    joint = first + way * (along + height * 1j)
+    directions = (joint - first) / one, (joint - second) / two
+    frames = Frame(first, directions[0]), Frame(second, directions[1])
+    return Solved(joint, frames, {}, (outer / whole, inner / whole))
+
+
+def _rrt(first: Jet, guide: Frame, sizes: Lengths, sign: Sign) -> Solved:
+    rod, arm, turn = sizes.first, sizes.second, cmath.exp(1j * sizes.gamma2)
+    ahead = guide.direction
+    place = (guide.origin - first) * conjugate(ahead) + arm * turn
+    off = imaginary(place)
+    # as a product, exact near the ends
+    room = (rod - off) * (rod + off)
+    reach = _root(room, rod * rod, sign)
+    direction = ahead * ((reach + off * 1j) / rod)
+    slide = reach - real(place)
+    joint = first + direction * rod
+    frames = Frame(first, direction), Frame(guide.origin + ahead * slide, ahead * turn)
+    return Solved(joint, frames, {"guide2": slide}, (room / (rod * rod),))
+
+
+def _rtr(first: Jet, second: Jet, sizes: Lengths, sign: Sign) -> Solved:
+    arm, beta = sizes.second, sizes.beta
+    way = second - first
+    distance = square(way)
+    across = arm * np.sin(beta)
+    room = distance - across * across
+    reach = _root(room, distance + across * across, sign)
+    slide = reach + arm * np.cos(beta)
+    # the guide's direction; where the arm is 0 this is the way itself
+    guide = way / (reach - 1j * across)
+    joint = first + guide * slide
+    frames = Frame(first, guide), Frame(second, guide * cmath.exp(1j * beta))
+    return Solved(joint, frames, {"member1": slide}, (room / distance,))
+
+
+def _trt(first: Frame, second: Frame, sizes: Lengths, _: Sign) -> Solved:
+    turns = cmath.exp(1j * sizes.gamma1), cmath.exp(1j * sizes.gamma2)
+    one, two = first.direction * turns[0], second.direction * turns[1]
+    way = second.origin - first.origin + two * sizes.second - one * sizes.first
+    sine = cross(first.direction, second.direction)
+    slides = cross(way, second.direction) / sine, cross(way, first.direction) / sine
+    feet = [
+        guide.at(0j) + guide.direction * slide
+        for guide, slide in zip((first, second), slides, strict=True)
+    ]
+    joint = feet[0] + one * sizes.first
+    frames = Frame(feet[0], one), Frame(feet[1], two)
+    return Solved(joint, frames, {"guide1": slides[0], "guide2": slides[1]}, (sine * sine,))
+
+
+def _rtt(first: Jet, guide: Frame, sizes: Lengths, _: Sign) -> Solved:
+    second = guide.direction * cmath.exp(1j * sizes.gamma2)
+    one = second * cmath.exp(-1j * sizes.beta)
+    joint = first + one * sizes.first
+    place = (joint - guide.origin) * conjugate(guide.direction)
+    sine = np.sin(sizes.gamma2)
+    along = imaginary(place) / sine
+    slide = real(place) - along * np.cos(sizes.gamma2)
+    frames = Frame(first, one), Frame(guide.origin + guide.direction * slide, second)
+    return Solved(joint, frames, {"guide2": slide, "member2": along}, ())
+
+
+Solver = Callable[..., Solved]
+
+
+def _exchanged(solver: Solver) -> Solver:
+    def solve(first: End, second: End, sizes: Lengths, sign: Sign) -> Solved:
+        return solver(second, first, sizes.exchanged(), sign).exchanged()
+
+    return solve
+
+
+class DyadType(NamedTuple):
+    """What a type of dyad hangs on and how it is solved.
+
+    Attributes
+    ----------
+    guides : (bool, bool)
+        Whether member 1 and member 2 begin at a guide instead of a joint.
+    branches : (str, str) or ()
+        Names of the positions for the signs +1 and -1.
+    solve : callable
+        ``solve(first, second, lengths, sign) -> Solved``.
+    """
+
+    guides: tuple[bool, bool]
+    branches: tuple[str, ...]
+    solve: Solver
+
+
+_AHEAD = ("ahead", "behind")
+
+DYADS: Final[Mapping[str, DyadType]] = {
+    "RRR": DyadType((False, False), ("left", "right"), _rrr),
+    "RRT": DyadType((False, True), _AHEAD, _rrt),
+    "TRR": DyadType((True, False), _AHEAD, _exchanged(_rrt)),
+    "RTR1": DyadType((False, False), _AHEAD, _rtr),
+    "RTR2": DyadType((False, False), _AHEAD, _exchanged(_rtr)),
+    "TRT": DyadType((True, True), (), _trt),
+    "RTT": DyadType((False, True), (), _rtt),
+    "TTR": DyadType((True, False), (), _exchanged(_rtt)),
+}
+"""The types of dyads by name."""

@@ -1,0 +1,386 @@
+"""The parts of a linkage: each hangs on those before, and gives joints and frames by name.
+
+Names are those of joints (points), of frames (members and guides) and of quantities (the turn of a
+shaft, rad; the way of a slide, mm). ``ground`` is a frame that every linkage has. A slide's place
+on its guide has the name of its dyad's joint with a word behind: see `Dyad`.
+"""
+
+from __future__ import annotations
+
+import cmath
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Final, TypeVar
+
+import numpy as np
+
+from gearcam.base.display import ShortRepr
+from gearcam.linkages.dyads import DYADS, DyadType, Lengths, Solved
+from gearcam.linkages.plane import Frame, towards
+from gearcam.numeric.arrays import Array
+from gearcam.numeric.jets import Jet
+
+GROUND: Final = "ground"
+"""Name of the frame of what does not move."""
+
+Law = Callable[[Array, int], Jet]
+"""``law(q, order)``: turn of a shaft, rad, or way of a slide, mm, over the driver's angle."""
+
+Given = Jet | Frame
+
+_T = TypeVar("_T", Jet, Frame)
+
+
+class Known:
+    """What is solved so far, at some angles of the driver.
+
+    Parameters
+    ----------
+    q : (n,) array, rad
+        Angles of the driver.
+    order : int
+        Highest derivative.
+    """
+
+    def __init__(self, q: Array, order: int) -> None:
+        self.q, self.order = q, order
+        self.given: dict[str, Given] = {}
+        self.solved: dict[str, Solved] = {}
+        self.given[GROUND] = Frame(self.constant(0j), self.constant(1 + 0j))
+
+    def constant(self, value: complex) -> Jet:
+        """Return the jet of a number."""
+        return Jet([np.full(self.q.shape, value), *[0.0] * self.order])
+
+    def jet(self, name: str) -> Jet:
+        """Return a joint or a quantity by name."""
+        return self._of(name, Jet)
+
+    def frame(self, name: str) -> Frame:
+        """Return a member or a guide by name."""
+        return self._of(name, Frame)
+
+    def _of(self, name: str, wanted: type[_T]) -> _T:
+        found = self.given[name]
+        if not isinstance(found, wanted):
+            raise TypeError(f"{name} is a {type(found).__name__}, not a {wanted.__name__}")
+        return found
+
+
+class Element(ABC):
+    """A part of a linkage."""
+
+    @property
+    @abstractmethod
+    def needs(self) -> tuple[str, ...]:
+        """Names that it hangs on."""
+
+    @property
+    @abstractmethod
+    def gives(self) -> tuple[str, ...]:
+        """Names that it adds."""
+
+    @abstractmethod
+    def solve(self, known: Known) -> None:
+        """Add what it gives to what is `known`."""
+
+    def room(self, known: Known) -> tuple[Jet, ...]:
+        """Return shares that are 0 or more where it closes; none if it always does."""
+        del known
+        return ()
+
+
+@dataclass(frozen=True)
+class Shaft(ShortRepr, Element):
+    """A shaft that turns, or a slide's way: a quantity that is given.
+
+    Parameters
+    ----------
+    name : str
+        Of the quantity.
+    law : callable
+        ``law(q, order) -> Jet``.
+    """
+
+    name: str
+    law: Law
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """Nothing."""
+        return ()
+
+    @property
+    def gives(self) -> tuple[str, ...]:
+        """The quantity."""
+        return (self.name,)
+
+    def solve(self, known: Known) -> None:
+        """Add the quantity."""
+        known.given[self.name] = self.law(known.q, known.order)
+
+
+@dataclass(frozen=True)
+class MemberPoint(ShortRepr, Element):
+    """A point of a member, or a joint that stands still.
+
+    Parameters
+    ----------
+    name : str
+        Of the point.
+    on : str
+        Frame of the member; the ground if it stands still.
+    at : complex, mm
+        The point in that frame.
+    """
+
+    name: str
+    at: complex
+    on: str = GROUND
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """The member."""
+        return (self.on,)
+
+    @property
+    def gives(self) -> tuple[str, ...]:
+        """The point."""
+        return (self.name,)
+
+    def solve(self, known: Known) -> None:
+        """Add the point."""
+        known.given[self.name] = known.frame(self.on).at(self.at)
+
+
+@dataclass(frozen=True)
+class GuideLine(ShortRepr, Element):
+    """A straight guide on a member or on the ground.
+
+    Parameters
+    ----------
+    name : str
+        Of its frame: the origin from which places on it count, and its direction.
+    at : complex, mm
+        Its origin, in the frame of `on`.
+    direction : float, rad
+        From the x axis of `on`.
+    on : str
+        Frame of the member that carries it.
+    """
+
+    name: str
+    at: complex
+    direction: float
+    on: str = GROUND
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """The member that carries it."""
+        return (self.on,)
+
+    @property
+    def gives(self) -> tuple[str, ...]:
+        """Its frame."""
+        return (self.name,)
+
+    def solve(self, known: Known) -> None:
+        """Add its frame."""
+        carrier = known.frame(self.on)
+        direction = carrier.direction * cmath.exp(1j * self.direction)
+        known.given[self.name] = Frame(carrier.at(self.at), direction)
+
+
+@dataclass(frozen=True)
+class Crank(ShortRepr, Element):
+    """A member that a shaft turns.
+
+    Parameters
+    ----------
+    name : str
+        Of the member: its frame begins in the shaft, x runs towards its joint.
+    shaft : str
+        Quantity: the shaft's turn, rad.
+    center : str
+        Joint in which the shaft stands.
+    joint : str
+        Name of its joint.
+    length : float, mm
+        From the shaft to the joint.
+    start : float, rad
+        Its direction where the shaft's turn is 0.
+    """
+
+    name: str
+    shaft: str
+    center: str
+    joint: str
+    length: float
+    start: float = 0.0
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """Its shaft and where that stands."""
+        return self.shaft, self.center
+
+    @property
+    def gives(self) -> tuple[str, ...]:
+        """The member and its joint."""
+        return self.name, self.joint
+
+    def solve(self, known: Known) -> None:
+        """Add the member and its joint."""
+        direction = towards(known.jet(self.shaft) + self.start)
+        frame = Frame(known.jet(self.center), direction)
+        known.given[self.name] = frame
+        known.given[self.joint] = frame.at(complex(self.length))
+
+
+@dataclass(frozen=True)
+class Slide(ShortRepr, Element):
+    """A member that is pushed along a guide.
+
+    Parameters
+    ----------
+    name : str
+        Of the member: its frame begins in its place on the guide, x is along the guide.
+    way : str
+        Quantity: its place on the guide, mm.
+    guide : str
+        Frame of the guide.
+    joint : str
+        Name of its joint: the frame's origin.
+    """
+
+    name: str
+    way: str
+    guide: str
+    joint: str
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """Its way and its guide."""
+        return self.way, self.guide
+
+    @property
+    def gives(self) -> tuple[str, ...]:
+        """The member and its joint."""
+        return self.name, self.joint
+
+    def solve(self, known: Known) -> None:
+        """Add the member and its joint."""
+        guide = known.frame(self.guide)
+        place = guide.origin + guide.direction * known.jet(self.way)
+        known.given[self.name] = Frame(place, guide.direction)
+        known.given[self.joint] = place
+
+
+BRANCH, MOTION = "branch", "motion"
+"""What a dyad keeps at a change point, where both of its positions meet."""
+
+
+@dataclass(frozen=True)
+class Dyad(ShortRepr, Element):
+    """Two members and three joints that close a loop (see `gearcam.linkages.dyads`).
+
+    Parameters
+    ----------
+    type : str
+        RRR, RRT, TRR, RTR1, RTR2, TRT, RTT or TTR.
+    first, second : str
+        The joint or guide that member 1, and that member 2 hangs on.
+    joint : str
+        Name of the joint between its members. The places of its slides have this name and
+        ``.guide1``, ``.guide2``, ``.member1`` or ``.member2`` behind it.
+    members : two str
+        Names of its members.
+    lengths : Lengths
+        Its sizes.
+    sign : float
+        +1 or -1: which of its positions.
+    driven : str, optional
+        Quantity that is added to the first length, mm: a cylinder between the outer joints of RRR.
+    keeps : str
+        ``branch`` or ``motion``: what stays at a change point.
+    changes : tuple of float, rad
+        Its change points, rising, as `gearcam.linkages.closing` finds them.
+    period : float, rad, optional
+        After which these repeat.
+    """
+
+    type: str
+    first: str
+    second: str
+    joint: str
+    members: tuple[str, str]
+    lengths: Lengths
+    sign: float = 1.0
+    driven: str | None = None
+    keeps: str = BRANCH
+    changes: tuple[float, ...] = ()
+    period: float | None = None
+
+    @property
+    def kind(self) -> DyadType:
+        """What its type hangs on and how it is solved."""
+        return DYADS[self.type]
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """What its members hang on, and the quantity that drives a length."""
+        return (self.first, self.second, *([self.driven] if self.driven else []))
+
+    @property
+    def gives(self) -> tuple[str, ...]:
+        """Its joint, its members and the places of its slides."""
+        return (self.joint, *self.members, *(f"{self.joint}.{one}" for one in SLIDES[self.type]))
+
+    def solution(self, known: Known) -> Solved:
+        """Return its position from what is `known`."""
+        ends = (
+            known.frame(name) if guided else known.jet(name)
+            for name, guided in zip((self.first, self.second), self.kind.guides, strict=True)
+        )
+        return self.kind.solve(*ends, self.sizes(known), self.signs(known.q))
+
+    def sizes(self, known: Known) -> Lengths:
+        """Return its sizes; a length that is driven is a jet."""
+        if self.driven is None:
+            return self.lengths
+        return self.lengths._replace(first=known.jet(self.driven) + self.lengths.first)
+
+    def signs(self, q: Array) -> float | Array:
+        """Return its sign at angles of the driver `q`, rad."""
+        if self.keeps == BRANCH or not self.changes:
+            return self.sign
+        turns, rest = (0.0, q) if self.period is None else np.divmod(q, self.period)
+        passed = turns * len(self.changes) + np.searchsorted(self.changes, rest, "right")
+        return np.where(
+            (passed - np.searchsorted(self.changes, 0.0, "right")) % 2, -self.sign, self.sign
+        )
+
+    def room(self, known: Known) -> tuple[Jet, ...]:
+        """Return what is 0 or more where it closes (see `Solved`)."""
+        return self.solution(known).room
+
+    def solve(self, known: Known) -> None:
+        """Add its joint, its members and the places of its slides."""
+        solved = self.solution(known)
+        known.solved[self.joint] = solved
+        known.given[self.joint] = solved.joint
+        known.given |= dict(zip(self.members, solved.frames, strict=True))
+        known.given |= {f"{self.joint}.{name}": one for name, one in solved.slides.items()}
+
+
+SLIDES: Final[Mapping[str, tuple[str, ...]]] = {
+    "RRR": (),
+    "RRT": ("guide2",),
+    "TRR": ("guide1",),
+    "RTR1": ("member1",),
+    "RTR2": ("member2",),
+    "TRT": ("guide1", "guide2"),
+    "RTT": ("guide2", "member2"),
+    "TTR": ("guide1", "member1"),
+}
+"""The slides of each type of dyad."""

@@ -1,0 +1,149 @@
+"""A linkage: its parts in an order in which each hangs on those before, evaluated at any angle."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from gearcam.base.display import ShortRepr
+from gearcam.linkages.elements import GROUND, Dyad, Element, Known
+from gearcam.linkages.plane import imaginary, real, rotation
+from gearcam.numeric.arrays import Array
+from gearcam.numeric.jets import Jet
+
+
+class UnreachedError(ValueError):
+    """Parts that hang on names which nothing gives, or on each other.
+
+    Parameters
+    ----------
+    missing : dict of str to tuple of str
+        What each part that cannot be solved gives first, and the names it waits for.
+    """
+
+    def __init__(self, missing: dict[str, tuple[str, ...]]) -> None:
+        self.missing = missing
+        super().__init__(
+            ", ".join(f"{name} waits for {', '.join(w)}" for name, w in missing.items())
+        )
+
+
+def in_order(elements: Iterable[Element]) -> tuple[Element, ...]:
+    """Return the parts of a linkage in an order in which they can be solved.
+
+    Parameters
+    ----------
+    elements : iterable of Element
+        In any order.
+
+    Returns
+    -------
+    tuple of Element
+
+    Raises
+    ------
+    UnreachedError
+        If some hang on what nothing gives.
+    """
+    known, left, found = {GROUND}, list(elements), []
+    while left:
+        ready = [one for one in left if known.issuperset(one.needs)]
+        if not ready:
+            missing = {
+                one.gives[0]: tuple(name for name in one.needs if name not in known) for one in left
+            }
+            raise UnreachedError(missing)
+        found += ready
+        known.update(name for one in ready for name in one.gives)
+        left = [one for one in left if one not in ready]
+    return tuple(found)
+
+
+@dataclass(frozen=True, eq=False)
+class Linkage(ShortRepr):
+    """A linkage of mobility 1.
+
+    Parameters
+    ----------
+    elements : sequence of Element
+        Its parts, each behind those that it hangs on (see `in_order`).
+    knots : (k,) array, rad
+        The driver's angles from the first to the last one; between them everything is smooth.
+    closed : bool
+        Whether the motion repeats with every turn of the driver.
+    """
+
+    elements: Sequence[Element]
+    knots: Array
+    closed: bool = True
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """First and last angle of the driver, rad."""
+        return float(self.knots[0]), float(self.knots[-1])
+
+    @cached_property
+    def dyads(self) -> tuple[Dyad, ...]:
+        """Its dyads, in order."""
+        return tuple(one for one in self.elements if isinstance(one, Dyad))
+
+    def at(self, q: Array, order: int, upto: Element | None = None) -> Known:
+        """Solve the linkage.
+
+        Parameters
+        ----------
+        q : (n,) array, rad
+            Angles of the driver.
+        order : int
+            Highest derivative by the driver's angle.
+        upto : Element, optional
+            Solve only the parts before this one.
+
+        Returns
+        -------
+        Known
+            Joints, members and quantities by name.
+        """
+        # each pass through a change point costs one derivative (see `dyads`)
+        spare = sum(bool(one.changes) for one in self.dyads)
+        known = Known(np.asarray(q, dtype=float), order + spare)
+        for element in self.elements:
+            if element is upto:
+                break
+            element.solve(known)
+        return known
+
+    def track(self, name: str, q: Array, order: int) -> Jet:
+        """Return one quantity.
+
+        Parameters
+        ----------
+        name : str
+            A joint, with ``.x`` or ``.y`` one of its coordinates; a member with ``.angle``; a
+            slide's place; a shaft.
+        q : (n,) array, rad
+            Angles of the driver.
+        order : int
+            Highest derivative.
+
+        Returns
+        -------
+        Jet
+            Of complex numbers for a joint. Angles are within half a turn.
+        """
+        found = value(self.at(q, order), name)
+        return Jet(found.c[: order + 1])
+
+
+def value(known: Known, name: str) -> Jet:
+    """Return one quantity of a solved linkage by its name (see `Linkage.track`)."""
+    if name in known.given:
+        return known.jet(name)
+    owner, _, what = name.rpartition(".")
+    if what == "angle":
+        return rotation(known.frame(owner).direction)
+    part = {"x": real, "y": imaginary}[what]
+    return part(known.jet(owner))

@@ -1,0 +1,85 @@
+"""Points and directions of the plane as jets: ``x + 1j*y`` with their derivatives."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from gearcam.numeric import jets
+from gearcam.numeric.jets import Jet
+
+
+class Frame(NamedTuple):
+    """A member's or a guide's own frame.
+
+    Attributes
+    ----------
+    origin : Jet
+        Of complex numbers, mm.
+    direction : Jet
+        Its x axis, of complex numbers of size 1.
+    """
+
+    origin: Jet
+    direction: Jet
+
+    def at(self, point: complex) -> Jet:
+        """Return the jet of a `point` of the member, given in its frame, mm."""
+        return self.origin + self.direction * point
+
+
+def real(z: Jet) -> Jet:
+    """Return the x coordinates of complex jets."""
+    return Jet([np.real(value) if isinstance(value, np.ndarray) else value for value in z.c])
+
+
+def imaginary(z: Jet) -> Jet:
+    """Return the y coordinates of complex jets."""
+    return Jet([np.imag(value) if isinstance(value, np.ndarray) else 0.0 for value in z.c])
+
+
+def conjugate(z: Jet) -> Jet:
+    """Return mirror images at the x axis."""
+    return Jet([np.conj(value) if isinstance(value, np.ndarray) else value for value in z.c])
+
+
+def dot(a: Jet, b: Jet) -> Jet:
+    """Return the scalar products of two vectors."""
+    return real(conjugate(a) * b)
+
+
+def cross(a: Jet, b: Jet) -> Jet:
+    """Return the z components of the vector products of two vectors."""
+    return imaginary(conjugate(a) * b)
+
+
+def square(z: Jet) -> Jet:
+    """Return the squared lengths of vectors."""
+    return real(z * conjugate(z))
+
+
+def towards(angle: Jet) -> Jet:
+    """Return the unit vectors at angles, rad."""
+    sine, cosine = jets.sin_cos(angle)
+    return cosine + sine * 1j
+
+
+def rotation(direction: Jet) -> Jet:
+    """Return the angle of a turning unit vector, rad.
+
+    Parameters
+    ----------
+    direction : Jet
+        Of complex numbers of size 1.
+
+    Returns
+    -------
+    Jet
+        Values in (-pi, pi], and the derivatives of the angle: ``a' = u x u'``.
+    """
+    value = np.asarray(np.angle(direction.c[0]), dtype=np.float64)
+    if not direction.order:
+        return Jet([value])
+    speed = cross(direction.shortened(), direction.differentiated())
+    return Jet([value, *(one / k for k, one in enumerate(speed.c, start=1))])
