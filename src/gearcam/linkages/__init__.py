@@ -1,7 +1,7 @@
 """Plane linkages: drives and dyads in a row, solved in closed form at any angle of the driver.
 
 `plane` has points and directions as complex jets. `dyads` solves each group of two members and
-three joints from what it hangs on. `elements` has the parts of a linkage: shafts, cranks, slides,
+three joints from what it begins at. `elements` has the parts of a linkage: shafts, cranks, slides,
 guides, dyads, points. `chain` has the one group with a root per position. `linkage` puts the parts
 in order and evaluates all of them. `closing` finds where a linkage closes, its change points, and
 the nearest length that closes.

@@ -1,4 +1,4 @@
-"""The dyads: groups of two members and three joints, solved from what their outer joints hang on.
+"""The dyads: groups of two members and three joints, solved from what their outer joints are on.
 
 A dyad is named by its joints in their order, R for a hinge and T for a slide: member 1 begins at
 the first joint, member 2 at the last one, the middle joint B joins both. A slide's member runs
@@ -6,7 +6,7 @@ along a guide, or along the other member. Its two positions differ by a sign tha
 the machine: no continuation, no start value.
 
 ==== ======================= ==================================================================
-dyad hangs on                its other solution
+dyad begins at               its other solution
 ==== ======================= ==================================================================
 RRR  joint A1, joint A2      +1: B to the left of A1 -> A2
 RRT  joint A1, guide 2       +1: B ahead of A1, in the guide's direction
@@ -38,7 +38,7 @@ Length = Jet | float
 """Of a member, mm: a jet where a cylinder drives it."""
 
 End = Jet | Frame
-"""What a dyad hangs on: a joint or a guide."""
+"""What a dyad begins at: a joint or a guide."""
 
 
 class Lengths(NamedTuple):
@@ -219,7 +219,7 @@ def _exchanged(solver: Solver) -> Solver:
 
 
 class DyadType(NamedTuple):
-    """What a type of dyad hangs on and how it is solved.
+    """What a type of dyad begins at and how it is solved.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""The parts of a linkage: each hangs on those before, and gives joints and frames by name.
+"""The parts of a linkage: each is solved from those before, and gives joints and frames by name.
 
 Names are those of joints (points), of frames (members and guides) and of quantities (the turn of a
 shaft, rad; the way of a slide, mm). ``ground`` is a frame that every linkage has. A slide's place
@@ -74,7 +74,7 @@ class Element(ABC):
     @property
     @abstractmethod
     def needs(self) -> tuple[str, ...]:
-        """Names that it hangs on."""
+        """Names that it needs."""
 
     @property
     @abstractmethod
@@ -92,7 +92,7 @@ class Element(ABC):
 
 
 @dataclass(frozen=True)
-class Shaft(ShortRepr, Element):
+class GivenMotion(ShortRepr, Element):
     """A shaft that turns, or a slide's way: a quantity that is given.
 
     Parameters
@@ -238,7 +238,7 @@ class Crank(ShortRepr, Element):
 
 
 @dataclass(frozen=True)
-class Slide(ShortRepr, Element):
+class PushedSlide(ShortRepr, Element):
     """A member that is pushed along a guide.
 
     Parameters
@@ -289,7 +289,7 @@ class Dyad(ShortRepr, Element):
     type : str
         RRR, RRT, TRR, RTR1, RTR2, TRT, RTT or TTR.
     first, second : str
-        The joint or guide that member 1, and that member 2 hangs on.
+        The joint or guide at which member 1, and member 2 begins.
     joint : str
         Name of the joint between its members. The places of its slides have this name and
         ``.guide1``, ``.guide2``, ``.member1`` or ``.member2`` behind it.
@@ -323,12 +323,12 @@ class Dyad(ShortRepr, Element):
 
     @property
     def kind(self) -> DyadType:
-        """What its type hangs on and how it is solved."""
+        """What its type begins at and how it is solved."""
         return DYADS[self.type]
 
     @property
     def needs(self) -> tuple[str, ...]:
-        """What its members hang on, and the quantity that drives a length."""
+        """What its members begin at, and the quantity that drives a length."""
         return (self.first, self.second, *([self.driven] if self.driven else []))
 
     @property

@@ -1,4 +1,4 @@
-"""A linkage: its parts in an order in which each hangs on those before, evaluated at any angle."""
+"""A linkage: its parts in an order in which each needs only those before, evaluated at any angle."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from gearcam.numeric.jets import Jet
 
 
 class UnreachedError(ValueError):
-    """Parts that hang on names which nothing gives, or on each other.
+    """Parts that need names which nothing gives, or each other.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ def in_order(elements: Iterable[Element]) -> tuple[Element, ...]:
     Raises
     ------
     UnreachedError
-        If some hang on what nothing gives.
+        If some need what nothing gives.
     """
     known, left, found = {GROUND}, list(elements), []
     while left:
@@ -69,7 +69,7 @@ class Linkage(ShortRepr):
     Parameters
     ----------
     elements : sequence of Element
-        Its parts, each behind those that it hangs on (see `in_order`).
+        Its parts, each behind those that it needs (see `in_order`).
     knots : (k,) array, rad
         The driver's angles from the first to the last one; between them everything is smooth.
     closed : bool

@@ -44,14 +44,14 @@ def conjugate(z: Jet) -> Jet:
     return Jet([np.conj(value) if isinstance(value, np.ndarray) else value for value in z.c])
 
 
-def dot(a: Jet, b: Jet) -> Jet:
-    """Return the scalar products of two vectors."""
-    return real(conjugate(a) * b)
+def dot(first: Jet, second: Jet) -> Jet:
+    """Return the scalar products of `first` and `second` vectors."""
+    return real(conjugate(first) * second)
 
 
-def cross(a: Jet, b: Jet) -> Jet:
-    """Return the z components of the vector products of two vectors."""
-    return imaginary(conjugate(a) * b)
+def cross(first: Jet, second: Jet) -> Jet:
+    """Return the z components of the vector products of `first` and `second` vectors."""
+    return imaginary(conjugate(first) * second)
 
 
 def square(z: Jet) -> Jet:
