@@ -1,4 +1,4 @@
-"""A linkage: its parts in an order in which each needs only those before, evaluated at any angle."""
+"""A linkage: its parts, each behind those that it needs, evaluated at any angle of the driver."""
 
 from __future__ import annotations
 
