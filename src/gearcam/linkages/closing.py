@@ -34,6 +34,9 @@ _SAME: Final = 1e-7
 _SPARE: Final = 1e-3
 """Share by which a length that is offered is off its limit, where the linkage is singular."""
 
+_MET: Final = 1e-6
+"""Distance of joints that are in one place, as a share of the rods: the root of `_TOUCHING`."""
+
 _TURN: Final = 2.0 * math.pi
 
 PASSABLE: Final = frozenset({"RRR", "RRT", "TRR"})
@@ -102,13 +105,25 @@ def settled(linkage: Linkage) -> Linkage:
         found = closing(linkage, element)
         if found is None:
             continue
-        stuck = found.changes and getattr(element, "type", None) not in PASSABLE
+        stuck = bool(found.changes) and _stuck(linkage, element, found.changes)
         if found.least < -_TOUCHING or stuck:
             nearest = tuple(_nearest(linkage, element)) if isinstance(element, Dyad) else ()
             raise NotClosingError(found, nearest)
         if found.changes and isinstance(element, Dyad):
             linkage = _passing(linkage, number, element, found.changes)
     return linkage
+
+
+def _stuck(linkage: Linkage, element: Element, changes: tuple[float, ...]) -> bool:
+    """Return whether a part jams or loses its place at one of its change points."""
+    if not isinstance(element, Dyad) or element.type not in PASSABLE:
+        return True
+    if element.type != "RRR":
+        return False
+    known = linkage.at(np.array(changes), 0, element)
+    way = known.jet(element.second) - known.jet(element.first)
+    # outer joints in one place: its rods, equally long, may have any direction
+    return bool(np.any(np.abs(way.c[0]) <= _MET * element.lengths.second))
 
 
 def _passing(linkage: Linkage, number: int, dyad: Dyad, changes: tuple[float, ...]) -> Linkage:
@@ -213,6 +228,8 @@ def _nearest(linkage: Linkage, dyad: Dyad) -> Iterator[dict[int, float]]:
 def _nearest_rods(dyad: Dyad, least: float, most: float) -> list[dict[int, float]]:
     """Return lengths with which two rods reach all distances of their ends, nearest first."""
     own = np.array(dyad.lengths[:2], dtype=float)
+    if least <= _MET * most:  # only rods of one length reach it, and lose their place there
+        return []
     found: list[dict[int, float]] = []
     for number in (0, 1):
         other = own[1 - number]

@@ -101,6 +101,14 @@ Sign = float | np.ndarray
 _ROUNDED: Final = 1e-13
 """A closing quantity this small, as a share of its scale, is 0."""
 
+_NEAR: Final = 1.0
+"""Square of the distance of two joints that is no longer far, mm^2: a slide without an arm has no
+length that this could be a share of, and is singular where its joints meet."""
+
+
+_OPEN = np.errstate(invalid="ignore", divide="ignore")
+"""Outside of what closes the values are nan, which `Solved.room` tells."""
+
 
 def _root(x: Jet, scale: Length, sign: Sign) -> Jet:
     """Return ``sign*sqrt(x)``; at double zeros of x the root that is smooth to its right.
@@ -121,13 +129,11 @@ def _root(x: Jet, scale: Length, sign: Sign) -> Jet:
     size = scale.c[0] if isinstance(scale, Jet) else scale
     flat = np.abs(x.c[0]) <= _ROUNDED * size
     if not flat.any():
-        with np.errstate(invalid="ignore", divide="ignore"):  # outside of what closes
-            return jets.sqrt(x) * sign
+        return jets.sqrt(x) * sign
     full = Jet([np.where(flat, 1.0, value) for value in x.c])
-    with np.errstate(invalid="ignore", divide="ignore"):
-        root = jets.sqrt(full)
-        inner = [np.broadcast_to(value, flat.shape)[flat] for value in x.c[2:]]
-        rest = jets.sqrt(Jet(inner)).c if inner else ()
+    root = jets.sqrt(full)
+    inner = [np.broadcast_to(value, flat.shape)[flat] for value in x.c[2:]]
+    rest = jets.sqrt(Jet(inner)).c if inner else ()
     values = [np.where(flat, 0.0, root.c[0])]
     for k, value in enumerate(root.c[1:]):
         mended = np.array(np.broadcast_to(value, flat.shape))
@@ -136,6 +142,7 @@ def _root(x: Jet, scale: Length, sign: Sign) -> Jet:
     return Jet(values) * sign
 
 
+@_OPEN
 def _rrr(first: Jet, second: Jet, sizes: Lengths, sign: Sign) -> Solved:
     one, two = sizes.first, sizes.second
     way = second - first
@@ -151,6 +158,7 @@ def _rrr(first: Jet, second: Jet, sizes: Lengths, sign: Sign) -> Solved:
     return Solved(joint, frames, {}, (outer / whole, inner / whole))
 
 
+@_OPEN
 def _rrt(first: Jet, guide: Frame, sizes: Lengths, sign: Sign) -> Solved:
     rod, arm, turn = sizes.first, sizes.second, cmath.exp(1j * sizes.gamma2)
     ahead = guide.direction
@@ -166,6 +174,7 @@ def _rrt(first: Jet, guide: Frame, sizes: Lengths, sign: Sign) -> Solved:
     return Solved(joint, frames, {"guide2": slide}, (room / (rod * rod),))
 
 
+@_OPEN
 def _rtr(first: Jet, second: Jet, sizes: Lengths, sign: Sign) -> Solved:
     arm, beta = sizes.second, sizes.beta
     way = second - first
@@ -178,9 +187,10 @@ def _rtr(first: Jet, second: Jet, sizes: Lengths, sign: Sign) -> Solved:
     guide = way / (reach - 1j * across)
     joint = first + guide * slide
     frames = Frame(first, guide), Frame(second, guide * cmath.exp(1j * beta))
-    return Solved(joint, frames, {"member1": slide}, (room / distance,))
+    return Solved(joint, frames, {"member1": slide}, (room / (distance + _NEAR),))
 
 
+@_OPEN
 def _trt(first: Frame, second: Frame, sizes: Lengths, _: Sign) -> Solved:
     turns = cmath.exp(1j * sizes.gamma1), cmath.exp(1j * sizes.gamma2)
     one, two = first.direction * turns[0], second.direction * turns[1]

@@ -31,17 +31,17 @@ class Frame(NamedTuple):
 
 def real(z: Jet) -> Jet:
     """Return the x coordinates of complex jets."""
-    return Jet([np.real(value) if isinstance(value, np.ndarray) else value for value in z.c])
+    return Jet([value if isinstance(value, float) else np.real(value) for value in z.c])
 
 
 def imaginary(z: Jet) -> Jet:
     """Return the y coordinates of complex jets."""
-    return Jet([np.imag(value) if isinstance(value, np.ndarray) else 0.0 for value in z.c])
+    return Jet([0.0 if isinstance(value, float) else np.imag(value) for value in z.c])
 
 
 def conjugate(z: Jet) -> Jet:
     """Return mirror images at the x axis."""
-    return Jet([np.conj(value) if isinstance(value, np.ndarray) else value for value in z.c])
+    return Jet([value if isinstance(value, float) else np.conj(value) for value in z.c])
 
 
 def dot(first: Jet, second: Jet) -> Jet:
