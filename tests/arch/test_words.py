@@ -32,6 +32,7 @@ ELSEWHERE = {
         "cut_svg.py",
         "sheet_svg.py",
         "slider.py",
+        "measures.py",
         "markup.py",
     ),
     "feeds?": ("simple.py", "tool.py", "milling.py", "milled.py", "gcode.py"),

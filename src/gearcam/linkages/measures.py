@@ -1,0 +1,396 @@
+"""Measures of one quantity over the driver: extremes of all orders, dead centres, stroke, ratio.
+
+All are roots of derivatives, polished to rounding, and one-sided values at knots. The quantity is a
+function of the driver's angle, as `gearcam.linkages.linkage.Linkage.track` gives it; an angle of a
+member goes through `continued` first, which removes its jumps by whole turns.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from gearcam.base.display import ShortRepr
+from gearcam.linkages.elements import Law
+from gearcam.numeric.arrays import Array, Ints
+from gearcam.numeric.jets import Jet
+from gearcam.numeric.piecewise import extremes_of_each, places_between
+from gearcam.numeric.roots import bracketed_root
+
+HIGHEST: Final = 3
+"""Highest derivative of which extremes are wanted: the jerk over the driver's angle."""
+
+STILL: Final = 1e-9
+"""Difference of two values, mm or rad, that counts as none: what rounding makes of a rest."""
+
+_EQUAL: Final = 1e-14
+"""Difference of values, as a share of the largest, below which they are equally large."""
+
+_NEAR: Final = 1e-11
+"""Distance from a knot, as a share of the interval, at which a place is the knot."""
+
+_ROUGH: Final = 4e-8
+"""Distance within which extremes are found at first, as a share of the smallest interval."""
+
+_FOUND: Final = 1e-15
+"""Accuracy of a place, as a share of the whole range."""
+
+_SHORT: Final = 1e-6
+"""A rest shorter than this, rad, is a place."""
+
+Extremes = tuple[Array, Array]
+"""Places and values of candidates for the largest and the smallest value, by rising place."""
+
+
+class Peak(NamedTuple):
+    """A smallest or a largest value, and where it is.
+
+    Attributes
+    ----------
+    value : float
+        In the unit of the quantity, per rad for each derivative.
+    place : float, rad
+        The driver's angle: the first, where several have it.
+    """
+
+    value: float
+    place: float
+
+
+class DeadCenter(NamedTuple):
+    """Where a motion reverses.
+
+    Attributes
+    ----------
+    value : float
+        Of the quantity, mm or rad.
+    place : float, rad
+        The driver's angle at which the motion ends; below the range's begin if it rests over the
+        end of a turn.
+    until : float, rad
+        Where it sets in again: the same place if there is no rest.
+    outer : bool
+        Whether the value is larger than those on both sides.
+    """
+
+    value: float
+    place: float
+    until: float
+    outer: bool
+
+
+class TimeRatio(NamedTuple):
+    """How long an even driver moves its output one way and back, rests at the ends not counted.
+
+    Attributes
+    ----------
+    forward, back : float, rad
+        The driver's angle from the smallest to the largest value, and back.
+    """
+
+    forward: float
+    back: float
+
+    @property
+    def ratio(self) -> float:
+        """The forward over the return angle."""
+        return self.forward / self.back
+
+    @property
+    def least(self) -> float:
+        """The shorter over the longer angle, ``(pi - theta)/(pi + theta) <= 1`` (000, 2.148)."""
+        return min(self) / max(self)
+
+
+def extremes_of(track: Law, knots: Array) -> tuple[Extremes, ...]:
+    """Return all extremes of a quantity and of its derivatives to order 3.
+
+    Parameters
+    ----------
+    track : callable
+        ``track(q, order) -> Jet``, real, to order 4.
+    knots : (k,) array, rad
+        Between them it is smooth.
+
+    Returns
+    -------
+    tuple of four (places, values)
+        For each order roots of the next derivative, and both sides of each knot.
+    """
+    grid = np.asarray(knots, dtype=float)
+
+    def derivatives(q: Array) -> Array:
+        return np.array(track(q, HIGHEST + 1).derivatives())
+
+    def both(q: Array) -> Array:
+        found = derivatives(q)
+        return np.stack([found[:-1], found[1:]])
+
+    rough = extremes_of_each(both, grid)
+    which = np.concatenate([np.full(len(one[0]), k) for k, one in enumerate(rough)])
+    places = np.concatenate([one[0] for one in rough])
+    values = np.concatenate([one[1] for one in rough])
+    knot = grid[np.abs(places[:, None] - grid).argmin(axis=1)]
+    at_knot = np.abs(places - knot) <= _NEAR * np.diff(grid).min()
+    places[at_knot] = knot[at_knot]
+    free = np.flatnonzero(~at_knot)
+    places[free] = _polished(derivatives, grid, which[free], places[free])
+    if free.size:
+        values[free] = derivatives(places[free])[which[free], np.arange(free.size)]
+    return tuple((places[which == k], values[which == k]) for k in range(HIGHEST + 1))
+
+
+def _polished(
+    derivatives: Callable[[Array], Array], grid: Array, order: Ints, places: Array
+) -> Array:
+    """Return the roots of the derivatives after given orders that are next to places."""
+    cell = np.clip(np.searchsorted(grid, places), 1, len(grid) - 1)
+    reach = _ROUGH * np.diff(grid).min()
+    low = np.maximum(places - reach, grid[cell - 1])
+    high = np.minimum(places + reach, grid[cell])
+
+    def slope(q: Array, own: Ints) -> Array:
+        return derivatives(q)[order[own] + 1, np.arange(own.size)]
+
+    every = np.arange(places.size)
+    ends = slope(low, every), slope(high, every)
+    own = np.flatnonzero(ends[0] * ends[1] < 0.0)
+    found = places.copy()
+    if own.size:
+        known = ends[0][own], ends[1][own]
+        tolerance = _FOUND * (grid[-1] - grid[0])
+        found[own] = bracketed_root(lambda q: slope(q, own), low[own], high[own], tolerance, known)
+    return found
+
+
+def continued(track: Law, knots: Array) -> Law:
+    """Return an angle that does not jump by whole turns.
+
+    Parameters
+    ----------
+    track : callable
+        ``track(q, order) -> Jet``: an angle, rad, known but for whole turns.
+    knots : (k,) array, rad
+        The driver's angles from the first to the last one; outside the angle is the nearest to
+        that at the end. Between neighbouring points of `places_between` it may turn by less than
+        half a turn.
+
+    Returns
+    -------
+    callable
+        The same, at the first knot within half a turn.
+    """
+    x = places_between(knots).ravel()
+    table = np.unwrap(np.asarray(track(x, 0).c[0]))
+
+    def unwrapped(q: Array, order: int) -> Jet:
+        found = track(q, order)
+        right = np.clip(np.searchsorted(x, q), 1, x.size - 1)
+        nearest = np.where(q - x[right - 1] < x[right] - q, right - 1, right)
+        turns = np.round((table[nearest] - np.asarray(found.c[0])) / math.tau)
+        return Jet([found.c[0] + turns * math.tau, *found.c[1:]])
+
+    return unwrapped
+
+
+@dataclass(frozen=True, eq=False)
+class TrackMeasures(ShortRepr):
+    """What is to be said about one quantity over the driver.
+
+    Parameters
+    ----------
+    track : callable
+        ``track(q, order) -> Jet``: its value, mm or rad, and derivatives by the driver's angle.
+    knots : (k,) array, rad
+        The driver's angles from the first to the last one; between them it is smooth.
+    closed : bool
+        Whether the motion repeats after the last knot; the value may have risen by then.
+    """
+
+    track: Law
+    knots: Array
+    closed: bool = True
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """First and last angle of the driver, rad."""
+        return float(self.knots[0]), float(self.knots[-1])
+
+    @cached_property
+    def extremes(self) -> tuple[Extremes, ...]:
+        """Extremes of each order (see `extremes_of`)."""
+        return extremes_of(self.track, self.knots)
+
+    def least(self, order: int = 0) -> Peak:
+        """Return the smallest value of a derivative of given `order`."""
+        top = self._top(order, -1.0)
+        return Peak(-top.value, top.place)
+
+    def largest(self, order: int = 0) -> Peak:
+        """Return the largest value of a derivative of given `order`."""
+        return self._top(order, 1.0)
+
+    def _top(self, order: int, side: float) -> Peak:
+        places, values = self.extremes[order]
+        top = float((side * values).max())
+        first = int((side * values >= top - _EQUAL * np.abs(values).max()).argmax())
+        place = float(places[first])
+        low, high = self.span
+        return Peak(top, low if self.closed and place == high else place)
+
+    @cached_property
+    def stroke(self) -> float:
+        """The largest less the smallest value, mm or rad."""
+        return self.largest().value - self.least().value
+
+    @cached_property
+    def rise(self) -> float:
+        """What a turn of the driver adds to the value; 0 for an output that goes back and forth."""
+        values = self.extremes[0][1]
+        rise = float(values[-1] - values[0]) if self.closed else 0.0
+        return rise if abs(rise) > STILL else 0.0
+
+    def at(self, q: Array, order: int) -> Jet:
+        """Return the quantity at any angle of the driver, past the end of a turn too.
+
+        Parameters
+        ----------
+        q : (n,) array, rad
+            Within the range if the motion does not repeat.
+        order : int
+            Highest derivative.
+
+        Returns
+        -------
+        Jet
+        """
+        if not self.closed:
+            return self.track(q, order)
+        low, high = self.span
+        turns = np.floor((q - low) / (high - low))
+        found = self.track(q - turns * (high - low), order)
+        return Jet([found.c[0] + turns * self.rise, *found.c[1:]])
+
+    @cached_property
+    def nodes(self) -> Extremes:
+        """Places between which the value is monotonic, in order, and values there.
+
+        Over the turn before, the turn itself and the turn after where the motion repeats.
+        """
+        places, values = self.extremes[0]
+        if not self.closed:
+            return places, values
+        turn, rise = self.span[1] - self.span[0], self.rise
+        return (
+            np.concatenate([places + k * turn for k in (-1, 0, 1)]),
+            np.concatenate([values + k * rise for k in (-1, 0, 1)]),
+        )
+
+    def places_of(self, value: float) -> Array:
+        """Return the driver's angles at which the quantity has a value.
+
+        Parameters
+        ----------
+        value : float, mm or rad
+            Wanted.
+
+        Returns
+        -------
+        (n,) array, rad
+            Rising; none if the value is not reached.
+        """
+        places, values = self.extremes[0]
+        off = values - value
+        cells = np.flatnonzero(off[:-1] * off[1:] < 0.0)
+        roots = self.root_of(np.full(cells.size, value), (places[cells], places[cells + 1]))
+        return np.unique(np.concatenate([places[off == 0.0], roots]))
+
+    def root_of(self, value: Array, between: tuple[Array, Array]) -> Array:
+        """Return where the quantity has values, each in its own monotonic stretch.
+
+        Parameters
+        ----------
+        value : (n,) array, mm or rad
+            Wanted.
+        between : two (n,) arrays, rad
+            The ends of the stretches, with values on both sides of those wanted.
+
+        Returns
+        -------
+        (n,) array, rad
+        """
+        low, high = self.span
+        tolerance = _FOUND * (high - low)
+        return bracketed_root(lambda q: np.asarray(self.at(q, 0).c[0]) - value, *between, tolerance)
+
+    @cached_property
+    def dead_centers(self) -> tuple[DeadCenter, ...]:
+        """Where the motion reverses, and ends of an open range where it stands still, in order."""
+        rests = _rests(*self.nodes)
+        low, high = self.span
+        near = _NEAR * (high - low)
+        found = []
+        for before, own, after in zip([None, *rests], rests, [*rests[1:], None], strict=False):
+            into = own.value - before.value if before else self._resting(0, after, own)
+            out = after.value - own.value if after else self._resting(-1, own, before)
+            if into * out < 0.0 and low - near <= own.end < high + near * (
+                -1 if self.closed else 1
+            ):
+                place = low if abs(own.begin - low) <= near else own.begin
+                found.append(DeadCenter(own.value, place, max(own.end, place), into > 0.0))
+        return tuple(found)
+
+    def _resting(self, end: int, later: _Rest | None, earlier: _Rest | None) -> float:
+        """Return how an open range would go on beyond an end: back, if it stands still there."""
+        slope = float(self.extremes[1][1][end])
+        if self.closed or abs(slope) > STILL or later is None or earlier is None:
+            return 0.0
+        return earlier.value - later.value
+
+    @cached_property
+    def time_ratio(self) -> TimeRatio | None:
+        """How long it moves one way and back; none unless it reverses twice in a turn."""
+        if not self.closed or len(self.dead_centers) != 2:
+            return None
+        inner, outer = sorted(self.dead_centers, key=lambda one: one.outer)
+        turn = self.span[1] - self.span[0]
+        return TimeRatio((outer.place - inner.until) % turn, (inner.place - outer.until) % turn)
+
+
+class _Rest(NamedTuple):
+    """A place or a stretch of equal values: value, begin and end of the stretch."""
+
+    value: float
+    begin: float
+    end: float
+
+
+def _rests(places: Array, values: Array) -> list[_Rest]:
+    """Return extremes with those joined that differ by rounding only."""
+    groups = np.split(np.arange(places.size), np.flatnonzero(_apart(values)) + 1)
+    grain = _EQUAL * float(np.abs(values).max())
+    rests = []
+    for number, own in enumerate(groups):
+        beside = groups[number - 1 if number else min(1, len(groups) - 1)]
+        side = 1.0 if values[own].mean() >= values[beside].mean() else -1.0
+        top = float((side * values[own]).max())
+        equal = places[own[side * values[own] >= top - grain]]
+        begin, end = float(equal[0]), float(equal[-1])
+        if end - begin < _SHORT:  # a knot just beside an extreme
+            begin = end = float(places[own[(side * values[own]).argmax()]])
+        rests.append(_Rest(side * top, begin, end))
+    return rests
+
+
+def _apart(values: Array) -> Array:
+    """Return whether each value differs from the first of those before that are equal to it."""
+    apart, first = np.zeros(values.size - 1, dtype=bool), values[0]
+    for number, value in enumerate(values[1:]):
+        if abs(value - first) > STILL:
+            apart[number], first = True, value
+    return apart
