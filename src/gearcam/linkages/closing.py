@@ -37,8 +37,6 @@ _SPARE: Final = 1e-3
 _MET: Final = 1e-6
 """Distance of joints that are in one place, as a share of the rods: the root of `_TOUCHING`."""
 
-_TURN: Final = 2.0 * math.pi
-
 PASSABLE: Final = frozenset({"RRR", "RRT", "TRR"})
 """Types of dyads that can pass a change point: the others jam or lose their place."""
 
@@ -128,8 +126,8 @@ def _stuck(linkage: Linkage, element: Element, changes: tuple[float, ...]) -> bo
 
 def _passing(linkage: Linkage, number: int, dyad: Dyad, changes: tuple[float, ...]) -> Linkage:
     """Return a linkage of which a dyad knows its change points."""
-    parts, knots = list(linkage.elements), linkage.knots
-    parts[number] = replace(dyad, changes=changes, period=_TURN if linkage.closed else None)
+    parts, knots, (low, high) = list(linkage.elements), linkage.knots, linkage.span
+    parts[number] = replace(dyad, changes=changes, period=high - low if linkage.closed else None)
     if dyad.keeps == BRANCH:  # which has a corner there
         knots = np.union1d(knots, [one for one in changes if knots[0] < one < knots[-1]])
     return replace(linkage, elements=tuple(parts), knots=knots)

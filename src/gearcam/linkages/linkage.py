@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Final
 
 import numpy as np
 
@@ -13,6 +15,9 @@ from gearcam.linkages.elements import GROUND, Dyad, Element, Known
 from gearcam.linkages.plane import imaginary, real, rotation
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet
+
+_DENSE: Final = 1441
+"""Angles of the driver at which turns of members are counted."""
 
 
 class UnreachedError(ValueError):
@@ -86,6 +91,10 @@ class Linkage(ShortRepr):
         return float(self.knots[0]), float(self.knots[-1])
 
     @cached_property
+    def _angles(self) -> dict[str, tuple[Array, Array]]:
+        return {}
+
+    @cached_property
     def dyads(self) -> tuple[Dyad, ...]:
         """Its dyads, in order."""
         return tuple(one for one in self.elements if isinstance(one, Dyad))
@@ -136,6 +145,42 @@ class Linkage(ShortRepr):
         """
         found = value(self.at(q, order), name)
         return Jet(found.c[: order + 1])
+
+    def real_track(self, name: str, q: Array, order: int) -> Jet:
+        """Return one quantity whose angles have no jumps (see `track`).
+
+        Parameters
+        ----------
+        name : str
+            As for `track`, not a joint without a coordinate.
+        q : (n,) array, rad
+            Angles of the driver.
+        order : int
+            Highest derivative.
+
+        Returns
+        -------
+        Jet
+            An angle is within half a turn at the first angle of the driver.
+        """
+        found = self.track(name, q, order)
+        if not name.endswith(".angle"):
+            return found
+        places, angles = self._dense(name)
+        low, high = self.span
+        turns = np.floor((q - low) / (high - low)) if self.closed else np.zeros(np.shape(q))
+        near = np.interp(q - turns * (high - low), places, angles)
+        near += turns * (angles[-1] - angles[0])
+        whole = np.round((near - found.c[0]) / (2.0 * math.pi))
+        return Jet([found.c[0] + 2.0 * math.pi * whole, *found.c[1:]])
+
+    def _dense(self, name: str) -> tuple[Array, Array]:
+        """Return the driver's angles, close together, and an angle there without jumps."""
+        if name not in self._angles:
+            places = np.union1d(np.linspace(*self.span, _DENSE), self.knots)
+            values = np.asarray(self.track(name, places, 0).c[0])
+            self._angles[name] = places, np.unwrap(values)
+        return self._angles[name]
 
 
 def value(known: Known, name: str) -> Jet:

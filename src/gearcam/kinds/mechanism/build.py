@@ -1,0 +1,315 @@
+"""The result of a mechanism: its drives, its linkage, and the motion of what is asked for."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import cached_property, partial
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from gearcam.base.errors import ABOVE, DesignError, Problem, beyond_limit
+from gearcam.base.findings import Finding, in_order
+from gearcam.designs.slips import nearest
+from gearcam.kinds.mechanism.design import MechanismDesign
+from gearcam.kinds.mechanism.drives import PlacedDrive, placed
+from gearcam.kinds.mechanism.make import make_linkage
+from gearcam.kinds.mechanism.names import moves
+from gearcam.linkages.linkage import Linkage
+from gearcam.numeric.arguments import angles
+from gearcam.numeric.arrays import Array
+from gearcam.numeric.columns import Columns
+from gearcam.numeric.jets import Jet
+from gearcam.results.nested import placed as findings_of
+from gearcam.results.nested import within
+from gearcam.results.result import Result
+
+if TYPE_CHECKING:
+    from gearcam.designs.design import Design
+
+_MOST_STEPS: Final = 1e6
+"""Largest number of steps of a table."""
+
+ORDER: Final = 3
+"""Highest derivative in tables."""
+
+_DEG: Final = math.degrees(1.0)
+
+
+class Output(NamedTuple):
+    """A quantity whose motion is asked for.
+
+    Attributes
+    ----------
+    name : str
+        As in ``output.outputs``.
+    stem : str
+        Beginning of its columns.
+    quantity : str
+        Its name in the linkage (see `Linkage.track`).
+    angle : bool
+        Whether it is an angle; else a length.
+    """
+
+    name: str
+    stem: str
+    quantity: str
+    angle: bool
+
+    @property
+    def unit(self) -> tuple[float, str]:
+        """Factor to its unit in output, and that unit."""
+        return (_DEG, "deg") if self.angle else (1.0, "mm")
+
+    @property
+    def rate_unit(self) -> str:
+        """Unit of its velocity but for the time."""
+        return "rad" if self.angle else "mm"
+
+
+class MechanismResult(Result):
+    """Result of the design of a mechanism, computed on demand.
+
+    Parameters
+    ----------
+    design : MechanismDesign
+        The design.
+    tolerances : Tolerances
+        Internal accuracy.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> result = gc.build(gc.load("profiles/four_bar.toml"))
+    >>> [one.name for one in result.outputs]
+    ['P', 'P', 'rocker.angle']
+    """
+
+    design: MechanismDesign
+    stages = MappingProxyType({"drives": "drives", "linkage": "linkage", "checks": "checked"})
+    before_studies = ("drives", "linkage")
+
+    @cached_property
+    def drives(self) -> tuple[PlacedDrive, ...]:
+        """The drives with their laws, the master first."""
+        with self.stage("drives"):
+            return tuple(
+                self._placed(f"drive[{number}]", spec)
+                for number, spec in enumerate(self.design.drive)
+            )
+
+    def _placed(self, at: str, spec: Any) -> PlacedDrive:
+        def build(nested: Design) -> Any:
+            from gearcam.results.kind import kind_of
+
+            key = "pair" if spec.pair is not None else "cam"
+            with within(f"{at}.{key}"):
+                result = kind_of(nested).result(nested, self.tolerances)
+                _ = result.pair if spec.pair is not None else result.program
+                return result
+
+        return placed(spec, build)
+
+    @cached_property
+    def linkage(self) -> Linkage:
+        """The linkage over a cycle of the master."""
+        drives = self.drives
+        with self.stage("linkage"):
+            return make_linkage(self.design, drives)
+
+    @property
+    def driver(self) -> tuple[str, str]:
+        """Symbol of the master's angle in columns, and what it is called."""
+        if self.design.drive[0].pair is not None:
+            return "phi1", "driver angle phi1"
+        return "theta", "cam angle theta" if self.design.drive[0].cam else "crank angle theta"
+
+    @cached_property
+    def outputs(self) -> tuple[Output, ...]:
+        """What is asked for, in order.
+
+        Raises
+        ------
+        DesignError
+            If the design names something that does not move.
+        """
+        asked = self.design.output.outputs
+        names = self._usual if asked is None else asked
+        return tuple(one for name in names for one in self._outputs_of(name))
+
+    @property
+    def _usual(self) -> list[str]:
+        """What is given where the design does not say: slides and points, else a direction."""
+        design = self.design
+        slides = [one.joint for one in design.dyad if moves(one)]
+        found = [*slides, *(one.name for one in design.slide), *(one.name for one in design.point)]
+        last = [one.members[1] for one in design.dyad[-1:]] + [one.lever for one in design.chain]
+        members = last or [one.name for one in design.crank[-1:]]
+        return found or [f"{name}.angle" for name in members]
+
+    def _outputs_of(self, name: str) -> Iterator[Output]:
+        made = self._known_outputs.get(name)
+        if made is None:
+            close = nearest(name, list(self._known_outputs))
+            hint = f"did you mean {close}?" if close else ""
+            allowed = f"one of {', '.join(self._known_outputs)}"
+            where = (self.design.output.outputs or ()).index(name)
+            problem = Problem(
+                "nothing moves by this name", self.design.source, None,
+                f"output.outputs[{where}]", name, allowed, hint,
+            )  # fmt: skip
+            raise DesignError([problem])
+        yield from made
+
+    @cached_property
+    def _known_outputs(self) -> dict[str, tuple[Output, ...]]:
+        """All that may be asked for, by name."""
+        design, found = self.design, {}
+        for dyad in design.dyad:
+            found[dyad.joint] = (
+                (Output(dyad.joint, dyad.joint, moves(dyad), False),)
+                if moves(dyad)
+                else _coordinates(dyad.joint)
+            )
+        for slide in design.slide:
+            found[slide.name] = (Output(slide.name, slide.name, slide.on, False),)
+        joints = [*(one.joint for one in design.crank), *(one.name for one in design.point)]
+        for name in [*joints, *(one.joint for one in design.chain)]:
+            found[name] = _coordinates(name)
+        members = [name for one in design.dyad for name in one.members]
+        members += [one.name for one in design.crank] + [one.lever for one in design.chain]
+        for name in members:
+            found[f"{name}.angle"] = (Output(f"{name}.angle", name, f"{name}.angle", True),)
+        for drive in self.drives:
+            for word, one in drive.moved.items():
+                name = f"{drive.spec.name}.{word}"
+                found[name] = (Output(name, name.replace(".", "_"), name, not one.along),)
+        return found
+
+    @property
+    def angles(self) -> Array:
+        """The master's angles of the motion's table, rad, in steps of the design, both ends."""
+        (low, high), step = self.linkage.span, self.design.output.step
+        least = (high - low) / _MOST_STEPS
+        if step < least:
+            what = f"the table would have more than {_MOST_STEPS:.0f} rows"
+            value, limit = _DEG * step, _DEG * least
+            raise beyond_limit(
+                what, "output.step_deg", value, limit, near=ABOVE * limit, unit="deg"
+            )
+        return np.linspace(low, high, max(2, round((high - low) / step) + 1))
+
+    def motion(self, q: ArrayLike | None = None) -> Columns:
+        """Return the motion of all outputs.
+
+        Parameters
+        ----------
+        q : (n,) array, rad, optional
+            The master's angles; by default those of ``motion.csv``.
+
+        Returns
+        -------
+        Columns
+            The master's angle, ``phi1_deg`` behind a pair, else ``theta_deg``; for each output its
+            value, ``NAME_mm`` or ``NAME_deg``, and its first three derivatives by the master's
+            angle, ``NAME_mm_per_rad``, ``NAME_rad_per_rad``; with a speed also those by time,
+            ``NAME_mm_s``, ``NAME_rad_s``. A point has ``NAME_x`` and ``NAME_y``. At a knot the
+            values after it are returned.
+
+        Raises
+        ------
+        DesignError
+            If `q` is not an array of finite numbers.
+        InfeasibleError
+            If the mechanism does not close.
+        """
+        where = self.angles if q is None else angles("q", q)
+        columns = {f"{self.driver[0]}_deg": _DEG * where}
+        for one in self.outputs:
+            columns |= self._columns(one, where)
+        return Columns(columns)
+
+    def output(self, name: str, q: ArrayLike | None = None) -> Columns:
+        """Return the motion of one output.
+
+        Parameters
+        ----------
+        name : str
+            A joint, a point, a slide, ``member.angle``, or a shaft such as ``pair.wheel2``.
+        q : (n,) array, rad, optional
+            The master's angles; by default those of ``motion.csv``.
+
+        Returns
+        -------
+        Columns
+            As for `motion`.
+
+        Raises
+        ------
+        DesignError
+            If nothing moves by this name, or `q` is not an array of finite numbers.
+        """
+        if name not in self._known_outputs:
+            close = nearest(name, list(self._known_outputs))
+            hint = f"did you mean {close}?" if close else ""
+            allowed = f"one of {', '.join(self._known_outputs)}"
+            problem = Problem(
+                "nothing moves by this name", key="name", value=name, allowed=allowed, hint=hint
+            )
+            raise DesignError([problem])
+        where = self.angles if q is None else angles("q", q)
+        columns = {f"{self.driver[0]}_deg": _DEG * where}
+        for one in self._known_outputs[name]:
+            columns |= self._columns(one, where)
+        return Columns(columns)
+
+    def _columns(self, one: Output, where: Array) -> dict[str, Array]:
+        values = self.track(one)(where, ORDER).derivatives()
+        scale, unit = one.unit
+        columns, rate = {f"{one.stem}_{unit}": scale * values[0]}, one.rate_unit
+        for order in range(1, ORDER + 1):
+            power = order if order > 1 else ""
+            columns[f"{one.stem}_{rate}_per_rad{power}"] = values[order]
+        speed = self.design.drive[0].speed
+        for order in range(1, ORDER + 1) if speed is not None else ():
+            power = order if order > 1 else ""
+            columns[f"{one.stem}_{rate}_s{power}"] = values[order] * speed**order
+        return columns
+
+    def track(self, one: Output) -> Callable[[Array, int], Jet]:
+        """Return an output as a function: ``track(q, order)`` of the master's angles (n,), rad."""
+        return partial(self.linkage.real_track, one.quantity)
+
+    @cached_property
+    def compared(self) -> dict[str, MechanismResult]:
+        """The same mechanism behind the drives to compare, by their names."""
+        first, found = self.drives[0], {}
+        for number, other in enumerate(self.design.compare):
+            spec = replace(first.spec, pair=other.pair, cam=other.cam, even=other.even, span=None)
+            master = self._placed(f"compare[{number}]", spec).instead_of(first)
+            made = type(self)(replace(self.design, compare=(), examined=True), self.tolerances)
+            vars(made)["drives"] = (master, *self.drives[1:])
+            with within(f"compare[{number}]"):
+                _ = made.linkage
+            found[other.name] = made
+        return found
+
+    @cached_property
+    def checked(self) -> tuple[Finding, ...]:
+        """Findings of the drives and of the mechanism, errors first."""
+        below: list[Finding] = []
+        for number, drive in enumerate(self.drives):
+            if drive.result is not None:
+                key = f"drive[{number}].{'pair' if drive.spec.pair is not None else 'cam'}"
+                with within(key):
+                    below += findings_of(key, drive.result.checked)
+        _ = self.linkage, self.outputs, self.compared
+        return in_order(below)
+
+
+def _coordinates(name: str) -> tuple[Output, ...]:
+    return tuple(Output(name, f"{name}_{part}", f"{name}.{part}", False) for part in "xy")

@@ -1,0 +1,90 @@
+"""The kind ``mechanism``: its design and its tables."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Final
+
+from gearcam.designs.design import Design
+from gearcam.kinds.mechanism.tables import (
+    ChainSpec,
+    CompareSpec,
+    CrankSpec,
+    DyadSpec,
+    GuideSpec,
+    JointSpec,
+    MachineDrive,
+    MechanismOutput,
+    PointSpec,
+    SlideSpec,
+)
+from gearcam.kinds.shared import AccuracySpec, GoalSpec
+
+if TYPE_CHECKING:
+    from gearcam.kinds.mechanism.build import MechanismResult
+
+NAME: Final = "mechanism"
+"""As in a file."""
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class MechanismDesign(Design):
+    """The design of a mechanism (see `Design`).
+
+    Parameters
+    ----------
+    drive : sequence of MachineDrive
+        What moves it; the first one is the master.
+    compare : sequence of CompareSpec
+        Other drives in the place of the first one.
+    joint : sequence of JointSpec
+        Joints that stand still.
+    crank : sequence of CrankSpec
+        Members on shafts.
+    slide : sequence of SlideSpec
+        Members that are pushed.
+    guide : sequence of GuideSpec
+        Straight guides.
+    dyad : sequence of DyadSpec
+        Pairs of members that close a loop.
+    point : sequence of PointSpec
+        Points of members.
+    chain : sequence of ChainSpec
+        Chains that swing a lever.
+    output : MechanismOutput
+        Files and what is in them.
+    accuracy : AccuracySpec
+        Settings of the study of error against run time.
+    goal : GoalSpec
+        What `gearcam optimize` looks for.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.MechanismDesign(
+    ...     name="mine",
+    ...     drive=[gc.MachineDrive(name="motor", even=True)],
+    ...     crank=[gc.CrankSpec(name="crank", on="motor", joint="B", length=40.0)],
+    ... )
+    <MechanismDesign "mine">
+    """
+
+    kind = NAME
+
+    if TYPE_CHECKING:
+
+        @property
+        def _built(self) -> MechanismResult: ...
+
+    drive: tuple[MachineDrive, ...]
+    compare: tuple[CompareSpec, ...] = ()
+    joint: tuple[JointSpec, ...] = ()
+    crank: tuple[CrankSpec, ...] = ()
+    slide: tuple[SlideSpec, ...] = ()
+    guide: tuple[GuideSpec, ...] = ()
+    dyad: tuple[DyadSpec, ...] = ()
+    point: tuple[PointSpec, ...] = ()
+    chain: tuple[ChainSpec, ...] = ()
+    output: MechanismOutput = field(default_factory=MechanismOutput)
+    accuracy: AccuracySpec = field(default_factory=AccuracySpec)
+    goal: GoalSpec = field(default_factory=GoalSpec)

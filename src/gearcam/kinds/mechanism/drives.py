@@ -1,0 +1,304 @@
+"""What the drives of a mechanism move: shafts and slides as functions of the master's angle.
+
+A pair stands as assembled: wheel 1 turns by -phi1 about the origin, wheel 2 by phi2 about (A, 0); a
+ring turns by -phi2. A rack moves along -y. A cam turns counter-clockwise by theta about the origin,
+or clockwise; its follower is lifted along its guide, or turns about its pivot.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from gearcam.base.display import ShortRepr
+from gearcam.linkages.elements import GivenMotion, GuideLine, Law, MemberPoint
+from gearcam.numeric.arrays import Array
+from gearcam.numeric.jets import Jet
+
+if TYPE_CHECKING:
+    from gearcam.kinds.mechanism.tables import MachineDrive
+    from gearcam.laws.displacement import Displacement
+    from gearcam.linkages.elements import Element
+
+_TURN: Final = 2.0 * math.pi
+
+_CENTER, _WAY = "center", "way"
+"""Behind the name of a shaft the joint in which it turns, of a slide the guide it goes along."""
+
+
+def center_of(shaft: str) -> str:
+    """Return the name of the joint in which a `shaft` of a drive turns."""
+    return f"{shaft}.{_CENTER}"
+
+
+def way_of(slide: str) -> str:
+    """Return the name of the guide along which a `slide` of a drive goes."""
+    return f"{slide}.{_WAY}"
+
+
+@dataclass(frozen=True)
+class Moved(ShortRepr):
+    """One thing that a drive moves, in the drive's frame.
+
+    Parameters
+    ----------
+    law : callable
+        ``law(x, order) -> Jet`` over the drive's own angle: its turn, rad, or its place, mm.
+    at : complex, mm
+        Where its shaft stands, or the zero of its places.
+    along : complex
+        Direction of its way; 0 for a shaft.
+    arm : float, rad
+        Direction of the arm of an oscillating follower at zero lift; nan if there is none.
+    """
+
+    law: Law
+    at: complex = 0j
+    along: complex = 0j
+    arm: float = math.nan
+
+
+def linear(factor: float, constant: float = 0.0) -> Law:
+    """Return the law ``factor*x + constant``."""
+
+    def law(x: Array, order: int) -> Jet:
+        return Jet.variable(x, order) * factor + constant
+
+    return law
+
+
+def displaced(by: Displacement, factor: float, constant: float = 0.0) -> Law:
+    """Return the law ``factor*y(x) + constant`` of a displacement y.
+
+    Parameters
+    ----------
+    by : Displacement
+        A ratio law or a program of lift.
+    factor, constant : float
+        In the units of its values.
+    """
+
+    def law(x: Array, order: int) -> Jet:
+        found = by.derivatives(x, order)
+        scaled = [factor * value / math.factorial(k) for k, value in enumerate(found)]
+        return Jet([scaled[0] + constant, *scaled[1:]])
+
+    return law
+
+
+def _mean(law: Law, period: float) -> Law:
+    """Return the even law with the ends of another one over a period."""
+    first, last = np.asarray(law(np.array([0.0, period]), 0).c[0])
+    return linear(float(last - first) / period, float(first))
+
+
+def moved_by(drive: MachineDrive, result: Any) -> dict[str, Moved]:
+    """Return what a drive moves.
+
+    Parameters
+    ----------
+    drive : MachineDrive
+        Its table.
+    result : GearPairResult, CamResult or None
+        Of the pair or the cam.
+
+    Returns
+    -------
+    dict of str to Moved
+        By the words of `MachineDrive.shafts`.
+    """
+    if drive.pair is not None:
+        return _of_pair(result)
+    if drive.cam is not None:
+        return _of_cam(result)
+    if drive.slide is not None:
+        return {"slide": Moved(_formula(drive.slide), 0j, 1 + 0j)}
+    return {"shaft": Moved(linear(1.0))}
+
+
+def _of_pair(result: Any) -> dict[str, Moved]:
+    pair = result.pair
+    law, distance = pair.law, pair.center_distance
+    driver = Moved(linear(-1.0))
+    if result.design.pair.type == "rack":
+        return {"wheel1": driver, "rack": Moved(displaced(law, -1.0), complex(distance), 1j)}
+    inside = result.design.pair.type == "internal"
+    side, center = (-1.0, -distance) if inside else (1.0, distance)
+    return {"wheel1": driver, "wheel2": Moved(displaced(law, side), complex(center))}
+
+
+def _of_cam(result: Any) -> dict[str, Moved]:
+    follower = result.cam.motions[0].follower
+    program, side = result.program, -1.0 if result.design.cam.rotation == "cw" else 1.0
+    shaft = Moved(linear(side))
+    turn, shift = (
+        float(one[0].real) + 1j * float(one[0].imag) for one in follower.moved(np.ones(1))
+    )
+    seen = (lambda z: z) if side > 0.0 else (lambda z: -z.conjugate())
+    if not follower.angular:
+        end = complex(follower.centre(np.array([follower.start]))[0]) if follower.has_centre else 0j
+        return {"shaft": shaft, "follower": Moved(displaced(program, 1.0), seen(end), seen(shift))}
+    spin = turn.real
+    pivot = shift / (1.0 - cmath.exp(1j * spin))
+    arm = math.nan
+    if follower.has_centre:
+        arm = cmath.phase(seen(complex(follower.centre(np.array([follower.start]))[0]) - pivot))
+    return {
+        "shaft": shaft,
+        "follower": Moved(displaced(program, side * spin), seen(pivot), arm=arm),
+    }
+
+
+def _formula(text: str) -> Law:
+    from gearcam.laws.formula_syntax import parse
+
+    made = parse(text, "q")
+
+    def law(x: Array, order: int) -> Jet:
+        found = made.evaluate(Jet.variable(x, order))
+        return found if isinstance(found, Jet) else Jet.variable(x, order) * 0.0 + found
+
+    return law
+
+
+@dataclass(frozen=True)
+class PlacedDrive(ShortRepr):
+    """A drive in the machine.
+
+    Parameters
+    ----------
+    spec : MachineDrive
+        Its table.
+    moved : dict of str to Moved
+        What it moves.
+    knots : (k,) array, rad
+        Places at which its laws are not smooth, over its own angle.
+    period : float, rad
+        After which they repeat; of an open one the end of its range.
+    closed : bool
+        Whether it turns all the way.
+    result : Result, optional
+        Of the pair or the cam.
+    """
+
+    spec: MachineDrive
+    moved: dict[str, Moved]
+    knots: Array
+    period: float
+    closed: bool
+    result: Any = None
+
+    def machine(self, point: complex) -> complex:
+        """Return a `point` of the drive's frame in the machine, mm."""
+        return complex(*self.spec.at) + self.vector(point)
+
+    def vector(self, way: complex) -> complex:
+        """Return a direction of the drive's frame in the machine."""
+        seen = way.conjugate() if self.spec.mirror else way
+        return seen * cmath.exp(1j * self.spec.turn)
+
+    def instead_of(self, other: PlacedDrive) -> PlacedDrive:
+        """Return the drive standing where another one stands, with its shafts.
+
+        Parameters
+        ----------
+        other : PlacedDrive
+            A drive of the same sort, or any if this one is even: then all shafts turn evenly, at
+            the mean ratio of the other.
+        """
+        moved = {}
+        for word, one in other.moved.items():
+            law = self.moved[word].law if word in self.moved else _mean(one.law, other.period)
+            moved[word] = replace(one, law=law)
+        return replace(self, spec=other.spec, moved=moved)
+
+    def elements(self, master: bool) -> Iterator[Element]:
+        """Yield its shafts, where they stand, and the guides of its slides.
+
+        Parameters
+        ----------
+        master : bool
+            Whether the master's angle is its own.
+        """
+        side = -1.0 if self.spec.mirror else 1.0
+        for word, one in self.moved.items():
+            names = [f"{self.spec.name}.{word}"]
+            if self.spec.even or self.spec.slide is not None:
+                names.append(self.spec.name)
+            for name in names:
+                factor = 1.0 if one.along else side
+                yield GivenMotion(name, self._over_master(one.law, factor, master))
+                if one.along:
+                    direction = cmath.phase(self.vector(one.along))
+                    yield GuideLine(way_of(name), self.machine(one.at), direction)
+                else:
+                    yield MemberPoint(center_of(name), self.machine(one.at))
+
+    def _over_master(self, law: Law, factor: float, master: bool) -> Law:
+        ratio, phase = (1.0, 0.0) if master else (float(self.spec.ratio), self.spec.phase)
+
+        def over(q: Array, order: int) -> Jet:
+            found = law(ratio * q + phase, order)
+            return Jet([factor * value * ratio**k for k, value in enumerate(found.c)])
+
+        if self.spec.slide is not None:  # its formula is one of the master's angle
+            return law
+        return over
+
+    def knots_in(self, low: float, high: float, master: bool) -> Array:
+        """Return where its laws are not smooth.
+
+        Parameters
+        ----------
+        low, high : float, rad
+            The master's angles between which they are looked for.
+        master : bool
+            Whether the master's angle is its own.
+
+        Returns
+        -------
+        (k,) array, rad
+            The master's angles.
+        """
+        ratio, phase = (1.0, 0.0) if master else (float(self.spec.ratio), self.spec.phase)
+        ends = sorted((ratio * low + phase, ratio * high + phase))
+        turns = range(math.floor(ends[0] / self.period), math.ceil(ends[1] / self.period) + 1)
+        every = [self.knots + k * self.period for k in turns] if self.closed else [self.knots]
+        found = (np.concatenate(every) - phase) / ratio
+        return np.unique(found[(found > low) & (found < high)])
+
+
+def placed(spec: MachineDrive, build: Callable[[Any], Any]) -> PlacedDrive:
+    """Return a drive with the laws of its pair or cam.
+
+    Parameters
+    ----------
+    spec : MachineDrive
+        Its table.
+    build : callable
+        ``build(design)`` returns the result of the pair or the cam.
+
+    Returns
+    -------
+    PlacedDrive
+
+    Raises
+    ------
+    InfeasibleError
+        If the pair or the cam is impossible.
+    """
+    nested = spec.pair or spec.cam
+    if nested is None:
+        low, high = spec.span or (0.0, _TURN)
+        ends = np.array([low, high])
+        return PlacedDrive(spec, moved_by(spec, None), ends, high - low, spec.span is None)
+    result = build(nested)
+    by = result.pair.law if spec.pair is not None else result.program
+    knots = np.asarray(by.knots, dtype=float)
+    inside = knots[(knots >= 0.0) & (knots <= by.period)]
+    return PlacedDrive(spec, moved_by(spec, result), inside, float(by.period), by.closed, result)

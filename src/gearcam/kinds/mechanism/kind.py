@@ -1,0 +1,79 @@
+"""The kind ``mechanism``: what a mechanism is read from and what is made of it."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Final
+
+from gearcam.base.registry import DeferredMapping, deferred
+from gearcam.designs.table import table_of
+from gearcam.kinds.mechanism.design import NAME, MechanismDesign
+from gearcam.kinds.mechanism.names import problems
+from gearcam.kinds.mechanism.tables import (
+    FORMATS,
+    ChainSpec,
+    CompareSpec,
+    CrankSpec,
+    DyadSpec,
+    GuideSpec,
+    JointSpec,
+    MachineDrive,
+    MechanismOutput,
+    PointSpec,
+    SlideSpec,
+)
+from gearcam.kinds.shared import AccuracySpec, GoalSpec
+from gearcam.results.kind import Kind
+
+_HERE: Final = "gearcam.kinds.mechanism"
+
+_SEVERAL: Final = {
+    "drive": MachineDrive,
+    "compare": CompareSpec,
+    "joint": JointSpec,
+    "crank": CrankSpec,
+    "slide": SlideSpec,
+    "guide": GuideSpec,
+    "dyad": DyadSpec,
+    "point": PointSpec,
+    "chain": ChainSpec,
+}
+
+KIND: Final = Kind(
+    name=NAME,
+    doc="a linkage that a pair, a cam or an even shaft drives",
+    design=MechanismDesign,
+    result=deferred(f"{_HERE}.build:MechanismResult"),
+    tables={
+        **{title: partial(table_of, title, owner) for title, owner in _SEVERAL.items()},
+        "output": partial(table_of, "output", MechanismOutput),
+        "accuracy": partial(table_of, "accuracy", AccuracySpec),
+        "goal": partial(table_of, "goal", GoalSpec),
+    },
+    several=tuple(_SEVERAL),
+    required=("drive",),
+    problems=problems,
+    formats=FORMATS,
+    study_tables={"accuracy": "accuracy"},
+    example={
+        "drive": [{"name": "motor", "even": True, "speed_rpm": 60}],
+        "joint": [{"name": "A", "at_mm": [0, 0]}, {"name": "D", "at_mm": [110, 0]}],
+        "crank": [{"name": "crank", "on": "motor", "at": "A", "joint": "B", "length_mm": 40}],
+        "dyad": [
+            {
+                "type": "RRR",
+                "from": "B",
+                "to": "D",
+                "joint": "C",
+                "members": ["coupler", "rocker"],
+                "lengths_mm": [120, 90],
+            }
+        ],
+        "point": [{"name": "P", "on": "coupler", "at_mm": [49, 34]}],
+        "output": {"files": ["csv", "report"]},
+    },
+    facts=deferred(f"{_HERE}.facts:facts"),
+    files=DeferredMapping(f"{_HERE}.files:FILES"),
+    charts=DeferredMapping(f"{_HERE}.charts:CHARTS"),
+    public=DeferredMapping(f"{_HERE}.public:PUBLIC"),
+)

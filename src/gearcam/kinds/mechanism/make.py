@@ -1,0 +1,227 @@
+"""From the tables of a mechanism to its linkage."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from gearcam.base.errors import Adjustment, InfeasibleError
+from gearcam.base.numerals import formatted
+from gearcam.kinds.mechanism.drives import PlacedDrive, center_of, way_of
+from gearcam.linkages.chain import HoistChain
+from gearcam.linkages.closing import NotClosingError, settled
+from gearcam.linkages.dyads import Lengths
+from gearcam.linkages.elements import Crank, Dyad, Element, GuideLine, MemberPoint, PushedSlide
+from gearcam.linkages.linkage import Linkage, in_order
+
+if TYPE_CHECKING:
+    from gearcam.kinds.mechanism.design import MechanismDesign
+    from gearcam.kinds.mechanism.tables import CrankSpec, DyadSpec
+
+_TURN: Final = 2.0 * math.pi
+
+_CYCLES: Final = 100
+"""Largest number of turns of the master after which a mechanism repeats."""
+
+_WHOLE: Final = 1e-7
+"""How far from whole turns a shaft may be after a cycle, rad: the error of its law."""
+
+
+def make_linkage(design: MechanismDesign, drives: Sequence[PlacedDrive]) -> Linkage:
+    """Return the linkage of a mechanism over one cycle of its master.
+
+    Parameters
+    ----------
+    design : MechanismDesign
+        The design.
+    drives : sequence of PlacedDrive
+        Its drives with their laws.
+
+    Returns
+    -------
+    Linkage
+
+    Raises
+    ------
+    InfeasibleError
+        If it does not close over the master's whole range.
+    """
+    (low, high), closed = _span(drives)
+    inner = [one.knots_in(low, high, not number) for number, one in enumerate(drives)]
+    knots = np.unique(np.concatenate([[low, high], *inner]))
+    parts = list(in_order(_elements(design, drives)))
+    linkage = Linkage(parts, knots, closed)
+    for number, dyad in enumerate(parts):
+        wanted = _near(design, dyad)
+        if wanted is not None and isinstance(dyad, Dyad):
+            parts[number] = _nearer(linkage, dyad, wanted, min(max(0.0, low), high))
+            linkage = Linkage(tuple(parts), knots, closed)
+    try:
+        return settled(linkage)
+    except NotClosingError as error:
+        raise _refusal(design, error) from None
+
+
+def _span(drives: Sequence[PlacedDrive]) -> tuple[tuple[float, float], bool]:
+    """Return the master's first and last angle, and whether the motion repeats after them."""
+    master = drives[0]
+    if not master.closed:
+        low, high = float(master.knots[0]), float(master.knots[-1])
+        return (low, high), False
+    for number, drive in enumerate(drives[1:], start=1):
+        if not drive.closed:
+            raise InfeasibleError(
+                "it does not turn all the way, as the master does",
+                where=f"drive[{number}]",
+            )
+    shafts = [
+        (one.law, 1.0 if not number else drive.spec.ratio)
+        for number, drive in enumerate(drives)
+        for one in drive.moved.values()
+        if not one.along
+    ]
+    for turns in range(1, _CYCLES + 1):
+        ends = [
+            float(np.diff(np.asarray(law(np.array([0.0, ratio * turns * _TURN]), 0).c[0]))[0])
+            for law, ratio in shafts
+        ]
+        if all(abs(math.remainder(end, _TURN)) < _WHOLE * turns for end in ends):
+            return (0.0, turns * _TURN), True
+    raise InfeasibleError(
+        f"its shafts do not return together within {_CYCLES} turns of the master",
+        where="drive[0]",
+    )
+
+
+def _elements(design: MechanismDesign, drives: Sequence[PlacedDrive]) -> Iterator[Element]:
+    for number, drive in enumerate(drives):
+        yield from drive.elements(not number)
+    for joint in design.joint:
+        yield MemberPoint(joint.name, complex(*joint.at))
+    for crank in design.crank:
+        start = _start(crank, drives)
+        center = crank.at or center_of(crank.on)
+        yield Crank(crank.name, crank.on, center, crank.joint, crank.length, start)
+    for slide in design.slide:
+        if not any(slide.at):
+            yield PushedSlide(slide.name, slide.on, way_of(slide.on), slide.joint)
+        else:
+            hidden = f"{slide.name}.end"
+            yield PushedSlide(slide.name, slide.on, way_of(slide.on), hidden)
+            yield MemberPoint(slide.joint, complex(*slide.at), slide.name)
+    for guide in design.guide:
+        yield GuideLine(guide.name, complex(*guide.at), guide.direction, guide.on)
+    for dyad in design.dyad:
+        yield _dyad(dyad)
+    for point in design.point:
+        yield MemberPoint(point.name, complex(*point.at), point.on)
+    for chain in design.chain:
+        yield HoistChain(
+            chain.lever,
+            chain.joint,
+            chain.on,
+            complex(*chain.hinge),
+            complex(*chain.at),
+            chain.radius,
+            chain.length,
+            chain.start,
+            chain.range,
+            1.0 if chain.wind == "ccw" else -1.0,
+        )
+
+
+def _start(crank: CrankSpec, drives: Sequence[PlacedDrive]) -> float:
+    """Return a crank's direction at the drive's zero, rad."""
+    if crank.arm_angle is None:
+        return crank.angle or 0.0
+    name, _, word = crank.on.rpartition(".")
+    drive = next((one for one in drives if one.spec.name == name), None)
+    arm = math.nan if drive is None else drive.moved[word].arm
+    if drive is None or math.isnan(arm):
+        raise InfeasibleError(
+            f"{crank.on} has no arm from which arm_angle_deg could count; give angle_deg",
+            where=f"crank {crank.name}",
+        )
+    turn = -crank.arm_angle if drive.spec.mirror else crank.arm_angle
+    return cmath.phase(drive.vector(cmath.exp(1j * arm))) + turn
+
+
+def _dyad(spec: DyadSpec) -> Dyad:
+    lengths = Lengths(*spec.lengths, spec.beta, *spec.gammas)
+    second = spec.branch in ("right", "behind")
+    return Dyad(
+        spec.formula,
+        spec.first,
+        spec.last,
+        spec.joint,
+        spec.members,
+        lengths,
+        -1.0 if second else 1.0,
+        spec.driven,
+        spec.change,
+    )
+
+
+def _near(design: MechanismDesign, dyad: Element) -> complex | None:
+    specs = (one for one in design.dyad if one.joint == dyad.gives[0])
+    spec = next(specs, None) if isinstance(dyad, Dyad) else None
+    return None if spec is None or spec.near is None else complex(*spec.near)
+
+
+def _nearer(linkage: Linkage, dyad: Dyad, wanted: complex, q: float) -> Dyad:
+    """Return a dyad in the position that is nearer to a place at an angle of the master, rad."""
+    known = linkage.at(np.array([q]), 0, dyad)
+    both = [replace(dyad, sign=sign) for sign in (1.0, -1.0)]
+    apart = [abs(complex(np.asarray(one.solution(known).joint.c[0])[0]) - wanted) for one in both]
+    return both[int(np.argmin(apart))] if np.isfinite(apart).all() else dyad
+
+
+def _refusal(design: MechanismDesign, error: NotClosingError) -> InfeasibleError:
+    """Return why a mechanism does not move over its master's whole range."""
+    found, element = error.closing, error.closing.element
+    title, number = _table(design, element)
+    name = element.gives[0]
+    what = f"{name} does not close over the whole range: {_ranges(found.ranges)}"
+    if found.least > -1e-9:
+        at = formatted(math.degrees(found.place), 8)
+        what = f"{name} is singular at {at} deg: its guides or members are in line there"
+    ways = [
+        {
+            f"{title}[{number}].lengths_mm[{k}]": float(formatted(value, 6))
+            for k, value in one.items()
+        }
+        for one in error.nearest
+    ]
+    first = next(iter(ways), {})
+    key, value = next(iter(first.items()), ("", None))
+    own = getattr(element, "lengths", (0.0, 0.0))[int(key[-2])] if key else None
+    return InfeasibleError(
+        what,
+        where=key or f"{title}[{number}]",
+        value=own,
+        limit=value,
+        unit="mm" if key else "",
+        adjustments=[Adjustment(near=one, far=one) for one in ways],
+    )
+
+
+def _table(design: MechanismDesign, element: Element) -> tuple[str, int]:
+    """Return the title and the number of the table that an element was made from."""
+    name = element.gives[0]
+    for title, key in (("dyad", "joint"), ("chain", "lever")):
+        for number, one in enumerate(getattr(design, title)):
+            if getattr(one, key) == name:
+                return title, number
+    return "drive", 0
+
+
+def _ranges(ranges: Sequence[tuple[float, float]]) -> str:
+    if not ranges:
+        return "at no angle of the master"
+    pairs = [[formatted(math.degrees(end), 8) for end in one] for one in ranges]
+    return "it does from " + ", and from ".join(f"{a} to {b} deg" for a, b in pairs)

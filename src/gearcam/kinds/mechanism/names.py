@@ -1,0 +1,196 @@
+"""The names in a mechanism: what each of them is, and whether all that is named exists.
+
+A linkage of cranks, slides, points and dyads has mobility 1 if each part is solved from those
+before: then nothing here is wrong.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+from gearcam.designs.faults import Fault
+from gearcam.designs.slips import nearest
+from gearcam.linkages.dyads import DYADS
+from gearcam.linkages.elements import GROUND
+
+if TYPE_CHECKING:
+    from gearcam.designs.kind import Examined
+    from gearcam.kinds.mechanism.tables import DyadSpec
+
+SHAFT, WAY, JOINT, MEMBER, GUIDE = "shaft", "slide", "joint", "member", "guide"
+"""What a name can be."""
+
+_PARTS: Final = ("drive", "joint", "crank", "slide", "guide", "dyad", "point", "chain")
+
+
+class NameUse(NamedTuple):
+    """A name that a table gives or needs.
+
+    Attributes
+    ----------
+    name : str
+        The name.
+    sort : str
+        What it is, or must be.
+    path : tuple
+        Where it stands in the design.
+    """
+
+    name: str
+    sort: str
+    path: tuple[str | int, ...]
+
+
+def given(parts: Mapping[str, Sequence[Any]]) -> Iterator[NameUse]:
+    """Yield the names that the tables of a mechanism give.
+
+    Parameters
+    ----------
+    parts : mapping of str to sequence of tables
+        By title.
+    """
+    for title, number, one in _tables(parts):
+        for key, sort in _GIVES.get(title, ()):
+            yield NameUse(getattr(one, key), sort, (title, number, key))
+        if title == "drive":
+            yield from _shafts(one, number)
+        if title == "dyad":
+            for place, name in enumerate(one.members):
+                yield NameUse(name, MEMBER, (title, number, "members", place))
+
+
+def needed(parts: Mapping[str, Sequence[Any]]) -> Iterator[NameUse]:
+    """Yield the names that the tables of a mechanism need (see `given`)."""
+    for title, number, one in _tables(parts):
+        for key, written, sort in _NEEDS.get(title, ()):
+            if getattr(one, key) is not None:
+                yield NameUse(getattr(one, key), sort, (title, number, written))
+        if title == "dyad":
+            ends = zip(("first", "last"), ("from", "to"), DYADS[one.formula].guides, strict=True)
+            for key, written, guided in ends:
+                yield NameUse(
+                    getattr(one, key), GUIDE if guided else JOINT, (title, number, written)
+                )
+
+
+_GIVES: Final = {
+    "joint": (("name", JOINT),),
+    "crank": (("name", MEMBER), ("joint", JOINT)),
+    "slide": (("name", MEMBER), ("joint", JOINT)),
+    "guide": (("name", GUIDE),),
+    "dyad": (("joint", JOINT),),
+    "point": (("name", JOINT),),
+    "chain": (("lever", MEMBER), ("joint", JOINT)),
+}
+
+_NEEDS: Final = {
+    "crank": (("on", "on", SHAFT), ("at", "at", JOINT)),
+    "slide": (("on", "on", WAY),),
+    "guide": (("on", "on", MEMBER),),
+    "dyad": (("driven", "driven", WAY),),
+    "point": (("on", "on", MEMBER),),
+    "chain": (("on", "on", SHAFT),),
+}
+
+
+def _tables(parts: Mapping[str, Sequence[Any]]) -> Iterator[tuple[str, int, Any]]:
+    for title in _PARTS:
+        for number, one in enumerate(parts.get(title, ())):
+            yield title, number, one
+
+
+def _shafts(drive: Any, number: int) -> Iterator[NameUse]:
+    for word in drive.shafts:
+        yield NameUse(f"{drive.name}.{word}", _sort(drive, word), ("drive", number, "name"))
+    if drive.even or drive.slide is not None:
+        yield NameUse(drive.name, SHAFT if drive.even else WAY, ("drive", number, "name"))
+
+
+def _sort(drive: Any, word: str) -> str:
+    """Return whether what a drive moves turns or slides."""
+    if word == "follower":
+        follower = getattr(drive.cam, "follower", None)
+        return SHAFT if getattr(follower, "motion", "") == "oscillating" else WAY
+    return WAY if word in ("rack", "slide") else SHAFT
+
+
+def problems(_: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
+    """Yield names that are given twice, that nothing gives, or that are of another sort.
+
+    Parameters
+    ----------
+    found : Examined
+        The valid tables.
+    """
+    parts = {title: found.parts.get(title, ()) for title in _PARTS}
+    names: dict[str, NameUse] = {GROUND: NameUse(GROUND, MEMBER, ())}
+    for one in given(parts):
+        if one.name in names:
+            what = f"the name {one.name!r} is given twice"
+            yield Fault(one.path, what, one.name, "a name for one thing")
+        names.setdefault(one.name, one)
+    for one in needed(parts):
+        yield from _missing(one, names)
+    if not found.faults:
+        yield from _unreached(parts)
+
+
+def _missing(one: NameUse, names: Mapping[str, NameUse]) -> Iterator[Fault]:
+    other = names.get(one.name)
+    if other is None:
+        close = nearest(one.name, [name for name, is_ in names.items() if is_.sort == one.sort])
+        hint = f"did you mean {close}?" if close else ""
+        fitting = ", ".join(sorted(name for name, is_ in names.items() if is_.sort == one.sort))
+        allowed = f"a {one.sort}: {fitting}" if fitting else f"the name of a {one.sort}"
+        yield Fault(one.path, "nothing has this name", one.name, allowed, hint)
+    elif other.sort != one.sort:
+        what = f"is a {other.sort}, not a {one.sort}"
+        yield Fault(one.path, what, one.name, f"the name of a {one.sort}")
+
+
+def waits(parts: Mapping[str, Sequence[Any]]) -> dict[tuple[str | int, ...], tuple[str, ...]]:
+    """Return the paths of tables that wait for each other, and the names they wait for.
+
+    Parameters
+    ----------
+    parts : mapping of str to sequence of tables
+        By title; all names exist.
+    """
+    known, left = {GROUND}, {}
+    for one in given(parts):
+        left.setdefault(one.path[:2], ([], []))[0].append(one.name)
+    for one in needed(parts):
+        left[one.path[:2]][1].append(one.name)
+    while ready := [path for path, (_, wanted) in left.items() if known.issuperset(wanted)]:
+        for path in ready:
+            known.update(left.pop(path)[0])
+    return {
+        path: tuple(name for name in wanted if name not in known)
+        for path, (_, wanted) in left.items()
+    }
+
+
+def _unreached(parts: Mapping[str, Sequence[Any]]) -> Iterator[Fault]:
+    """Yield parts that cannot be solved in any order: the mobility is not 1."""
+    stuck = waits(parts)
+    for path, names in stuck.items():
+        what = f"waits for {', '.join(names)}, which waits for it: no order solves both"
+        yield Fault(path, what, allowed="a chain of dyads, each from what is known before it")
+
+
+def moves(dyad: DyadSpec) -> str:
+    """Return the name of the place of a dyad's joint on a guide, if it slides on one that is given.
+
+    Parameters
+    ----------
+    dyad : DyadSpec
+        The table.
+
+    Returns
+    -------
+    str
+        Of the quantity; empty if it does not.
+    """
+    slide = {"RRT": "guide2", "TRR": "guide1", "RTT": "guide2", "TTR": "guide1"}.get(dyad.type)
+    return f"{dyad.joint}.{slide}" if slide else ""

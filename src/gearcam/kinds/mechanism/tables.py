@@ -1,0 +1,496 @@
+"""The tables of a mechanism: what drives it, its joints, members and dyads, and its output.
+
+Directions and angles are counter-clockwise from the x axis of the machine, which points to the
+right; a point of a member is given in the member's frame, with the origin in its first joint and x
+towards its second one.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, Final
+
+from gearcam.base.display import ShortRepr
+from gearcam.base.quantities import (
+    ANGLE,
+    COUNT,
+    LENGTH,
+    LONGEST,
+    REQUIRED,
+    RPM,
+    TEXT,
+    fixed,
+    nested,
+    param,
+    positive_length,
+)
+from gearcam.base.rules import Breach, distinct, exactly_one
+from gearcam.designs.design import Design
+from gearcam.designs.outputs import OutputSpec, files_param, pose_param, studies_param
+from gearcam.linkages.dyads import DYADS
+from gearcam.linkages.elements import BRANCH, MOTION
+
+FORMATS: Final = ("csv", "dxf", "svg", "report")
+"""What ``output.files`` may list."""
+
+STUDIES: Final = ("accuracy",)
+
+_TURN_DEG: Final = 36000.0
+
+
+def _name(*, doc: str, **rest: Any) -> Any:
+    return param(TEXT, min_length=1, doc=doc, **rest)
+
+
+def _point(*, doc: str, **rest: Any) -> Any:
+    return param(LENGTH, ge=-LONGEST, le=LONGEST, word="at", doc=doc, **rest)
+
+
+def _direction(*, doc: str, **rest: Any) -> Any:
+    return param(ANGLE, ge=-_TURN_DEG, le=_TURN_DEG, doc=doc, **rest)
+
+
+@dataclass(frozen=True, kw_only=True)
+class CompareSpec(ShortRepr):
+    """Another drive in the place of the first one, to compare the same mechanism behind both.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.CompareSpec(name="without a pair", even=True)
+    CompareSpec(name='without a pair', even=True)
+    """
+
+    name: str = _name(doc="name of the comparison in tables and charts", example="without a pair")
+    pair: Design | None = nested(
+        "gear-pair", default=None, example="pair.toml", doc="the pair that drives it"
+    )
+    cam: Design | None = nested(
+        "cam", default=None, example="cam.toml", doc="the cam whose follower drives it"
+    )
+    even: bool | None = param(
+        default=None, example=True, doc="true: a shaft that turns with the driver itself"
+    )
+
+    rules = (exactly_one("pair", "cam", "even"),)
+
+    def problems(self) -> Iterator[Breach]:
+        """Yield ``even = false``: field, index, message, what is allowed."""
+        if self.even is False:
+            yield "even", None, "is false", "true, or the key left out"
+
+
+@dataclass(frozen=True, kw_only=True)
+class MachineDrive(ShortRepr):
+    """A drive of a mechanism; the first one is the master, whose angle all motion is given over.
+
+    The wheels of a pair, the follower of a cam or a slide move as their designs say; an even drive
+    turns with the master. A drive stands in its own frame, which may be moved in the machine.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.MachineDrive(name="motor", even=True)
+    MachineDrive(name='motor', even=True)
+    """
+
+    name: str = _name(doc="its name; cranks and slides name a shaft of it", example="pair")
+    pair: Design | None = nested(
+        "gear-pair", default=None, example="pair.toml", doc="the pair: its wheels or its rack move"
+    )
+    cam: Design | None = nested(
+        "cam", default=None, example="cam.toml", doc="the cam: its follower moves"
+    )
+    even: bool | None = param(
+        default=None, example=True, doc="true: a shaft that turns with the master"
+    )
+    slide: str | None = param(
+        TEXT,
+        default=None,
+        example="20*sin(q)",
+        doc="place of a slide, mm, as a formula in the master's angle q, rad",
+    )
+    speed: float | None = param(
+        RPM, default=None, gt=0, le=1e6, example=180, doc="mean speed of the driver, of the master"
+    )
+    ratio: int = param(
+        COUNT, default=1, ge=-100, le=100, doc="turns of this drive's driver per turn of the master"
+    )
+    phase: float = _direction(doc="angle of this drive's driver at the master's zero", default=0.0)
+    span: tuple[float, float] | None = param(
+        ANGLE,
+        default=None,
+        ge=-_TURN_DEG,
+        le=_TURN_DEG,
+        word="range",
+        order="first and last",
+        example=[-60, 60],
+        doc="first and last angle of an even master that does not turn all the way",
+    )
+    at: tuple[float, float] = _point(doc="where its frame stands", default=(0.0, 0.0), order="x, y")
+    turn: float = _direction(doc="direction of its x axis", default=0.0)
+    mirror: bool = param(
+        default=False, doc="whether it is reflected in its x axis: all turns are reversed"
+    )
+
+    rules = (exactly_one("pair", "cam", "even", "slide"),)
+
+    def problems(self) -> Iterator[Breach]:
+        """Yield contradictions: field, index, message, what is allowed."""
+        if self.even is False:
+            yield "even", None, "is false", "true, or the key left out"
+        if not self.ratio:
+            yield "ratio", None, "is 0", "a whole number, negative for the other sense of rotation"
+        if self.span is not None and self.even is None:
+            yield "span", None, "is not of an even drive", "with even = true"
+        if self.span is not None and self.span[0] >= self.span[1]:
+            yield "span", 1, "is not above the first angle", "rising angles"
+        if self.slide is not None:
+            yield from _formula_problems(self.slide)
+
+    @property
+    def shafts(self) -> tuple[str, ...]:
+        """Names of what turns or slides, behind the name of the drive."""
+        if self.pair is not None:
+            racked = getattr(getattr(self.pair, "pair", None), "type", "") == "rack"
+            return ("wheel1", "rack") if racked else ("wheel1", "wheel2")
+        if self.cam is not None:
+            return "shaft", "follower"
+        return ("shaft",) if self.even else ("slide",)
+
+
+def _formula_problems(text: str) -> Iterator[Breach]:
+    from gearcam.laws.formula_syntax import FormulaError, parse
+
+    try:
+        parse(text, "q")
+    except FormulaError as error:
+        place = "" if error.column is None else f"column {error.column}: "
+        yield "slide", None, f"{place}{error.what}", error.allowed
+
+
+@dataclass(frozen=True, kw_only=True)
+class JointSpec(ShortRepr):
+    """A joint that stands still.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.JointSpec(name="D", at=(110.0, 0.0))
+    JointSpec(name='D', at=(110, 0))
+    """
+
+    name: str = _name(doc="its name", example="D")
+    at: tuple[float, float] = _point(doc="where it stands", order="x, y", example=[110, 0])
+
+
+@dataclass(frozen=True, kw_only=True)
+class CrankSpec(ShortRepr):
+    """A member on a shaft that turns.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.CrankSpec(name="crank", on="motor", joint="B", length=40.0)
+    CrankSpec(name='crank', on='motor', joint='B', length=40)
+    """
+
+    name: str = _name(doc="its name", example="crank")
+    on: str = _name(
+        doc="the shaft: the name of an even drive, pair.wheel2, cam.follower", example="motor"
+    )
+    joint: str = _name(doc="name of its joint", example="B")
+    length: float = positive_length(default=REQUIRED, example=40, doc="from the shaft to the joint")
+    angle: float | None = _direction(
+        doc="its direction at the drive's zero; 0 if left out", default=None, example=0
+    )
+    arm_angle: float | None = _direction(
+        doc="its direction at the drive's zero, from the arm of an oscillating follower",
+        default=None,
+        example=90,
+    )
+    at: str | None = _name(
+        doc="joint in which the shaft stands, if not that of the drive", default=None, example="A"
+    )
+
+    def problems(self) -> Iterator[Breach]:
+        """Yield two directions: field, index, message, what is allowed."""
+        if self.angle is not None and self.arm_angle is not None:
+            yield "arm_angle", None, "is given beside angle_deg", "angle_deg or arm_angle_deg"
+
+
+@dataclass(frozen=True, kw_only=True)
+class SlideSpec(ShortRepr):
+    """A member that a drive pushes along a straight guide: a follower, a rack, a slide.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.SlideSpec(name="tool", on="cam.follower", joint="T")
+    SlideSpec(name='tool', on='cam.follower', joint='T')
+    """
+
+    name: str = _name(doc="its name", example="tool")
+    on: str = _name(
+        doc="what pushes it: cam.follower, pair.rack, or the name of a slide",
+        example="cam.follower",
+    )
+    joint: str = _name(doc="name of its joint", example="T")
+    at: tuple[float, float] = _point(
+        doc="the joint in the frame of the follower's end, the rack or the slide, x along its way",
+        default=(0.0, 0.0),
+        order="x, y",
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class GuideSpec(ShortRepr):
+    """A straight guide on the ground or on a member.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.GuideSpec(name="bed", at=(180.0, 0.0))
+    GuideSpec(name='bed', at=(180, 0))
+    """
+
+    name: str = _name(doc="its name", example="bed")
+    on: str = _name(doc="the member that carries it", default="ground")
+    at: tuple[float, float] = _point(
+        doc="a point of it, from which places count, in the member's frame",
+        default=(0.0, 0.0),
+        order="x, y",
+    )
+    direction: float = _direction(doc="its direction in the member's frame", default=0.0)
+
+
+TYPES: Final = ("RRR", "RRT", "TRR", "RTR", "TRT", "RTT", "TTR", "RTRR")
+"""Types of dyads: R is a hinge, T a slide; of RTRR a drive gives the first length."""
+
+BRANCHES: Final = ("left", "right", "ahead", "behind")
+
+
+@dataclass(frozen=True, kw_only=True)
+class DyadSpec(ShortRepr):
+    """Two members and three joints that close a loop.
+
+    Member 1 begins at the joint or guide `first`, member 2 at `last`; both meet in the `joint`.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.DyadSpec(type="RRT", first="B", last="bed", joint="C", members=("rod", "ram"),
+    ...             lengths=(120.0, 0.0))
+    DyadSpec(type='RRT', first='B', last='bed', joint='C', members=('rod', 'ram'), lengths=(120, 0))
+    """
+
+    type: str = param(
+        TEXT, choices=TYPES, doc="its joints in order: R a hinge, T a slide", example="RRR"
+    )
+    first: str = _name(doc="joint or guide at which member 1 begins", word="from", example="B")
+    last: str = _name(doc="joint or guide at which member 2 begins", word="to", example="D")
+    joint: str = _name(doc="name of the joint between its members", example="C")
+    members: tuple[str, str] = _name(
+        doc="names of its members", order="first and second", example=["coupler", "rocker"]
+    )
+    lengths: tuple[float, float] = param(
+        LENGTH,
+        default=(0.0, 0.0),
+        ge=0,
+        le=LONGEST,
+        order="first and second",
+        example=[120, 90],
+        doc="from the beginning of each member to the joint; of a slide on its guide 0",
+    )
+    beta: float = _direction(doc="from member 1 to member 2, of RTR, RTT and TTR", default=0.0)
+    gammas: tuple[float, float] = _direction(
+        doc="from the guide to the member that slides on it",
+        default=(0.0, 0.0),
+        order="first and second",
+    )
+    slide_on: int = param(COUNT, default=1, ge=1, le=2, doc="the member that is the guide, of RTR")
+    branch: str | None = param(
+        TEXT,
+        default=None,
+        choices=BRANCHES,
+        example="left",
+        doc="which of its positions: of RRR the joint to the left or right of the line from first "
+        "to last, else ahead or behind in the guide's direction; left or ahead if left out",
+    )
+    near: tuple[float, float] | None = param(
+        LENGTH,
+        default=None,
+        ge=-LONGEST,
+        le=LONGEST,
+        order="x, y",
+        example=[80, 60],
+        doc="where the joint is at the drive's zero, roughly, instead of branch",
+    )
+    change: str = param(
+        TEXT,
+        default=BRANCH,
+        choices=(BRANCH, MOTION),
+        doc="what it keeps at a change point, where both positions meet",
+    )
+    driven: str | None = _name(
+        doc="the slide that is added to the first length, of RTRR", default=None, example="cylinder"
+    )
+
+    def problems(self) -> Iterator[Breach]:
+        """Yield contradictions: field, index, message, what is allowed."""
+        allowed = self.branches
+        if self.branch is not None and self.near is not None:
+            yield "near", None, "is given beside branch", "branch or near_mm"
+        if self.branch is not None and self.branch not in allowed:
+            words = " or ".join(allowed) or f"no branch: {self.type} has one position"
+            yield "branch", None, f"is not of {self.type}", words
+        if (self.driven is None) == (self.type == "RTRR"):
+            what = "is missing" if self.driven is None else f"does not apply to {self.type}"
+            yield "driven", None, what, "the name of a slide, with type RTRR"
+        for number in self.rods:
+            if self.lengths[number] <= 0.0:
+                yield "lengths", number, "is 0", f"above 0 in {self.type}"
+        for number, gamma in enumerate(self.gammas):
+            if self._crossed == number and abs(math.sin(gamma)) < 1e-3:
+                yield "gammas", number, "leaves the slides parallel", "not 0 or 180 deg"
+
+    @property
+    def formula(self) -> str:
+        """Its type as in `gearcam.linkages.dyads.DYADS`."""
+        return f"RTR{self.slide_on}" if self.type == "RTR" else self.type.replace("RTRR", "RRR")
+
+    @property
+    def branches(self) -> tuple[str, ...]:
+        """Names of its positions."""
+        return DYADS[self.formula].branches
+
+    @property
+    def rods(self) -> tuple[int, ...]:
+        """Which of its lengths must be above 0."""
+        return {"RRR": (0, 1), "RRT": (0,), "TRR": (1,), "RTRR": (1,)}.get(self.type, ())
+
+    @property
+    def _crossed(self) -> int | None:
+        return {"RTT": 1, "TTR": 0}.get(self.type)
+
+
+@dataclass(frozen=True, kw_only=True)
+class PointSpec(ShortRepr):
+    """A point of a member, whose path is wanted or to which others are joined.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.PointSpec(name="P", on="coupler", at=(50.0, 35.0))
+    PointSpec(name='P', on='coupler', at=(50, 35))
+    """
+
+    name: str = _name(doc="its name", example="P")
+    on: str = _name(doc="the member", example="coupler")
+    at: tuple[float, float] = _point(doc="the point in its frame", order="x, y", example=[50, 35])
+
+
+@dataclass(frozen=True, kw_only=True)
+class ChainSpec(ShortRepr):
+    """A chain on a wheel that swings a lever, as of a door.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.ChainSpec(on="pair.wheel2", at=(600.0, 300.0), radius=100.0, joint="B", lever="door",
+    ...              length=1735.3, start=-1.5707963, range=(-1.5707963, -0.52359878)).lever
+    'door'
+    """
+
+    on: str = _name(doc="the wheel's shaft", example="pair.wheel2")
+    at: tuple[float, float] = _point(doc="the wheel's centre", order="x, y", example=[600, 300])
+    radius: float = positive_length(
+        default=REQUIRED, example=100, doc="of the wheel, to the chain's middle"
+    )
+    wind: str = param(
+        TEXT, default="ccw", choices=("ccw", "cw"), doc="turn of the wheel that winds the chain up"
+    )
+    joint: str = _name(doc="name of the joint at the chain's end", example="B")
+    lever: str = _name(doc="name of the lever", example="door")
+    hinge: tuple[float, float] = param(
+        LENGTH,
+        default=(0.0, 0.0),
+        ge=-LONGEST,
+        le=LONGEST,
+        order="x, y",
+        doc="where the lever is hinged",
+    )
+    length: float = positive_length(
+        default=REQUIRED, example=1735, doc="from the hinge to the joint"
+    )
+    start: float = _direction(doc="the lever's direction at the drive's zero", example=-90)
+    range: tuple[float, float] = _direction(
+        doc="the lever's least and largest direction", order="least and largest", example=[-90, -30]
+    )
+
+    def problems(self) -> Iterator[Breach]:
+        """Yield a start beyond the range: field, index, message, what is allowed."""
+        low, high = self.range
+        if low >= high:
+            yield "range", 1, "is not above the least direction", "rising directions"
+        elif not low <= self.start <= high:
+            yield "start", None, "is beyond range_deg", "a direction of the range"
+
+
+@dataclass(frozen=True, kw_only=True)
+class MechanismOutput(OutputSpec):
+    """Which files of a mechanism are written, and what is in them (see `OutputSpec`).
+
+    Parameters
+    ----------
+    pose : float, rad
+        The master's angle in the picture.
+    studies : tuple of str
+        Its studies.
+    kerf, dxf_curves, dxf_version
+        Nothing is cut out.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.MechanismOutput(files=("csv", "svg"), outputs=("slide", "rod.angle"))
+    MechanismOutput(files=('csv', 'svg'), outputs=('slide', 'rod.angle'))
+    """
+
+    files: tuple[str, ...] = files_param(FORMATS)
+    studies: tuple[str, ...] = studies_param(STUDIES)
+    outputs: tuple[str, ...] | None = param(
+        TEXT,
+        default=None,
+        min_length=1,
+        example=["slide", "rod.angle"],
+        doc="joints that slide, points, and directions as member.angle; every slide and point if "
+        "left out",
+    )
+    step: float = param(
+        ANGLE,
+        default=math.radians(1.0),
+        gt=0,
+        le=90,
+        doc="step of the master's angle in motion.csv",
+    )
+    pose: float = pose_param("q", "the master's angle in the picture")
+    chord_tolerance: float | None = param(
+        LENGTH,
+        default=None,
+        ge=1e-6,
+        example=0.01,
+        doc="largest distance of a drawn path from the true one; 0.01 mm if left out",
+    )
+
+    kerf: float = fixed(0.0)
+    dxf_curves: str = fixed("lines")
+    dxf_version: str | None = fixed(None)
+
+    rules = (
+        distinct("files", "format"),
+        distinct("studies", "study"),
+        distinct("outputs", "output"),
+    )
