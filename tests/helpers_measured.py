@@ -14,7 +14,7 @@ from gearcam.numeric import jets
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet
 
-TURN = np.array([0.0, 2.0 * np.pi])
+TURN: Array = np.array([0.0, 2.0 * np.pi], dtype=np.float64)
 
 
 def even(q: Array, order: int) -> Jet:
@@ -95,3 +95,18 @@ def measures(linkage: Linkage, name: str) -> TrackMeasures:
     track = partial(linkage.track, name)
     law = continued(track, linkage.knots) if name.endswith(".angle") else track
     return TrackMeasures(law, linkage.knots, linkage.closed)
+
+
+def six_bar_with_dwell() -> Linkage:
+    """Return the six-bar of 000, fig. 2.118 a, with K and G as they must be; output ``arm``."""
+    parts = [
+        GivenMotion("q", even),
+        MemberPoint("A", 0j),
+        MemberPoint("D", 300.0),
+        MemberPoint("G", 500.0 + 740.0j),
+        Crank("crank", "q", "A", "B", 100.0),
+        Dyad("RRR", "B", "D", "C", ("coupler", "rocker"), Lengths(300.0, 300.0)),
+        MemberPoint("E", 600.0, "coupler"),
+        Dyad("RRR", "E", "G", "F", ("link", "arm"), Lengths(379.0, 218.0)),
+    ]
+    return Linkage(in_order(parts), TURN)
