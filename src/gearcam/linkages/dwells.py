@@ -115,7 +115,7 @@ def last_travel(measures: TrackMeasures, travel: float, *, outer: bool = True) -
     measures : TrackMeasures
         Of the output.
     travel : float, mm or rad
-        Between 0 and the stroke.
+        Above 0, less than all of its travel.
     outer : bool
         Before the largest value; otherwise before the smallest one.
 
@@ -127,7 +127,7 @@ def last_travel(measures: TrackMeasures, travel: float, *, outer: bool = True) -
     Raises
     ------
     ValueError
-        If the travel is not between 0 and the stroke, or the range does not hold all of it.
+        If the travel is not between 0 and all of it, or the range does not hold all of it.
     """
     if not 0.0 < travel < measures.stroke:
         raise ValueError(f"travel {travel:g}: must be between 0 and {measures.stroke:g}")
