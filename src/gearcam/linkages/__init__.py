@@ -4,7 +4,8 @@
 three joints from what it begins at. `elements` has the parts of a linkage: shafts, cranks, slides,
 guides, dyads, points. `chain` has the one group with a root per position. `linkage` puts the parts
 in order and evaluates all of them. `closing` finds where a linkage closes, its change points, and
-the nearest length that closes.
+the nearest length that closes. `work` finds the driver's
+moment under loads.
 
 All lengths are in mm, angles in rad, counter-clockwise from the x axis. Everything is a function of
 the driver's angle q; the derivatives are those by q. A room that knows no wheels and no cams: what
