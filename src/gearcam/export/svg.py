@@ -56,9 +56,9 @@ def svg_bytes(drawing: Drawing, *, title: str, notes: Sequence[str] = ()) -> byt
     Raises
     ------
     ValueError
-        If the drawing has no outline.
+        If the drawing is empty.
     """
-    if not drawing.contours:
+    if not drawing.features:
         raise ValueError(f"{drawing.name}: nothing to draw")
 
     def elements(pixel: float) -> Iterator[str]:

@@ -5,7 +5,8 @@ their shapes: OUTLINE, BORE, HOLE, SLOT, INNER (inner teeth), MARK, CENTRODE, CE
 layers begin with the wheel, such as ``GEAR1_OUTLINE``. A cam's outline is its PROFILE; PITCH, PRIME
 and FOLLOWER are for reference, TOOL is the path of a cutter's centre, and LABEL a part's name. The
 walls of a groove are on INNER and OUTER, a groove with ends on GROOVE, and the edge of its blank on
-BLANK. *Placing* turns and shifts shapes.
+BLANK. The links of a machine are on MEMBER, its guides and pivots on GROUND, the paths of its
+points on PATH, and the machine at other places on GHOST. *Placing* turns and shifts shapes.
 
 The *kerf*, the width of a cut, is not part of the geometry: it moves the paths of a drawing for
 cutting, whose layers then end in ``_KERF``. Such a drawing holds only what is cut or engraved.
@@ -49,6 +50,10 @@ PRIME: Final = "PRIME"
 FOLLOWER: Final = "FOLLOWER"
 TOOL: Final = "TOOL"
 LABEL: Final = "LABEL"
+MEMBER: Final = "MEMBER"
+GROUND: Final = "GROUND"
+TRACE: Final = "PATH"
+GHOST: Final = "GHOST"
 
 OUTER: Final = (OUTLINE, PROFILE, BLANK)
 THROUGH: Final = (BORE, HOLE, SLOT, INNER, GROOVE)
@@ -57,7 +62,10 @@ THROUGH: Final = (BORE, HOLE, SLOT, INNER, GROOVE)
 ENGRAVED: Final = (MARK, LABEL)
 """Types that are marked on a part before it is cut."""
 
-DASHED: Final = (CENTRODE, PITCH, PRIME)
+FILLED: Final = (*OUTER, FOLLOWER, MEMBER)
+"""Types whose closed shapes are drawn filled, each with the openings that follow it."""
+
+DASHED: Final = (CENTRODE, PITCH, PRIME, TRACE)
 """Types that are drawn dashed."""
 
 KERF: Final = "_KERF"
@@ -149,6 +157,20 @@ def placed(shape: Shape, pose: Pose) -> Shape:
             return replace(shape, points=pose.apply(shape.points))
         case _:
             return replace(shape, center=complex(pose.apply(shape.center)))
+
+
+def mirrored(shape: Shape) -> Shape:
+    """Return the mirror image of a `shape` in the x axis; of a contour its polygon, as a path."""
+    match shape:
+        case Contour(points=points):
+            return Path(points=np.conj(points)[::-1])
+        case Path(points=points):
+            return replace(shape, points=np.conj(points))
+        case Loop(points=points, bulges=bulges):
+            # a bulge belongs to the piece behind its point
+            return replace(shape, points=np.conj(points)[::-1], bulges=np.roll(bulges[::-1], -1))
+        case _:
+            return replace(shape, center=shape.center.conjugate())
 
 
 def reach(shape: Shape) -> Plane:

@@ -51,13 +51,14 @@ def scene_data(scene: Scene) -> dict[str, Any]:
         ``title``; ``driver``, the label of its axis; ``places``; ``closed``; ``start``; ``box``,
         the bounding box of all places as left, bottom, right, top; ``pitch``, flat points or null;
         ``contacts`` by name, each with ``start``, ``x``, ``y``, ``fx``, ``fy`` and ``teeth`` or
-        null; ``bodies``, each with ``name`` and ``called``, ``metal`` and ``floor`` (closed chains,
-        filled by the even-odd rule), ``plates`` (index in ``metal`` of the first chain of each of
-        several plates), ``lines`` (``layer``, ``points``, ``closed``, ``dashed``), ``turn``, ``x``
-        and ``y`` (one number if constant), and ``teeth`` (``[first, last]`` vertices of
-        ``metal[0]``) or null; ``coloured``, each with ``body``, ``points`` and ``values`` by label;
-        ``scales`` by label, each with ``least``, ``largest``, and where that is: ``place`` of the
-        driver, ``body``, ``x`` and ``y`` on it; ``solids`` by name, those that do not move as the
+        null; ``bodies``, each with ``name`` and ``called``, ``link`` (whether it is a link of a
+        machine), ``metal`` and ``floor`` (closed chains, filled by the even-odd rule), ``plates``
+        (index in ``metal`` of the first chain of each of several plates), ``lines`` (``layer``,
+        ``points``, ``closed``, ``dashed``), ``turn``, ``x`` and ``y`` (one number if constant), and
+        ``teeth`` (``[first, last]`` vertices of ``metal[0]``) or null; ``coloured``, each with
+        ``body``, ``points`` and ``values`` by label; ``scales`` by label, each with
+        ``least``, ``largest``, and where that is: ``place`` of the driver, ``body``, ``x`` and
+        ``y`` on it; ``solids`` by name, those that do not move as the
         body of their name: each with ``axis``, ``turn``, ``x``, ``y`` and ``z``; ``eye`` and
         ``up``, directions of the first view of solids.
     """
@@ -92,11 +93,11 @@ def _body(body: MovingBody) -> dict[str, Any]:
         kind = feature.kind
         for points, closed in drawings.chains(feature.shape, SAGITTA):
             flat = _flat(points)
-            solid = kind in (*drawings.OUTER, *drawings.THROUGH, drawings.FOLLOWER)
+            solid = kind in (*drawings.FILLED, *drawings.THROUGH)
             if kind == drawings.OUTER_WALL or feature.metal:
                 floor.append(flat)
             elif solid and closed:
-                if kind in (*drawings.OUTER, drawings.FOLLOWER):
+                if kind in drawings.FILLED:
                     edges.append(len(metal))
                 metal.append(flat)
             else:
@@ -105,6 +106,7 @@ def _body(body: MovingBody) -> dict[str, Any]:
     return {
         "name": body.name,
         "called": body.called,
+        "link": any(feature.kind == drawings.MEMBER for feature in body.features),
         "metal": metal,
         "plates": [0, *edges[1:]],  # openings may be drawn before the first edge
         "floor": floor,

@@ -4,7 +4,9 @@ const CYCLE = 12; // seconds of a cycle at speed 1
 const LEAP = 20; // steps of the driver for Page Up and Page Down
 const STRIDES = 36; // steps in a cycle with reduced motion
 
-const LINES = { CENTRODE: "centrodes", PITCH: "pitch curve", PRIME: "prime circle" };
+const LINES = {
+  CENTRODE: "centrodes", PITCH: "pitch curve", PRIME: "prime circle", PATH: "paths of points",
+};
 const SIDES = { drive: "driving flanks", coast: "coast flanks" };
 
 const element = (id) => document.getElementById(id);
@@ -195,7 +197,7 @@ function offer() {
   if (teeth) check(home, "teeth in contact", seen.carry, (on) => (seen.carry = on));
   if (scene.pitch) check(home, "pitch point", seen.pitch, (on) => (seen.pitch = on));
   for (const layer of dashed) {
-    seen.lines[layer] ??= false;
+    seen.lines[layer] ??= layer === "PATH";
     const text = LINES[layer] ?? layer.toLowerCase();
     check(home, text, seen.lines[layer], (on) => (seen.lines[layer] = on));
   }

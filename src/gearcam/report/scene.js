@@ -103,11 +103,12 @@ function closer(scene) {
   return Math.max(4, most / 6);
 }
 
-// Colours by name, so that wheel 1 keeps its colour whatever the order of bodies.
+// Colours by name, so that wheel 1 keeps its colour whatever the order of bodies; links have one.
 function tones(scene) {
   const own = scene.bodies.map((body) => body.name.split("_")[0]); // steps of one wheel
-  const names = [...new Set(own)].filter((name) => name !== "frame").sort();
-  return own.map((name) => (names.indexOf(name) % 2) + 1);
+  const wheels = own.filter((name, k) => name !== "frame" && !scene.bodies[k].link);
+  const names = [...new Set(wheels)].sort();
+  return own.map((name, k) => (scene.bodies[k].link ? 3 : (names.indexOf(name) % 2) + 1));
 }
 
 // A tooth of an outline, closed by its chord.

@@ -239,6 +239,18 @@ class PlacedDrive(ShortRepr):
                 else:
                     yield MemberPoint(center_of(name), self.machine(one.at))
 
+    def own(self, q: Array, master: bool) -> Array:
+        """Return its own angles, rad.
+
+        Parameters
+        ----------
+        q : (n,) array, rad
+            The master's angles.
+        master : bool
+            Whether the master's angle is its own.
+        """
+        return q if master else self.spec.ratio * q + self.spec.phase
+
     def _over_master(self, law: Law, factor: float, master: bool) -> Law:
         ratio, phase = (1.0, 0.0) if master else (float(self.spec.ratio), self.spec.phase)
 

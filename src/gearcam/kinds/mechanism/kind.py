@@ -75,5 +75,6 @@ KIND: Final = Kind(
     facts=deferred(f"{_HERE}.facts:facts"),
     files=DeferredMapping(f"{_HERE}.files:FILES"),
     charts=DeferredMapping(f"{_HERE}.charts:CHARTS"),
+    scene=deferred(f"{_HERE}.scene:scene"),
     public=DeferredMapping(f"{_HERE}.public:PUBLIC"),
 )
