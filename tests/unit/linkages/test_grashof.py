@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import permutations
+
 import numpy as np
 import pytest
 
@@ -20,7 +22,6 @@ from helpers_measured import four_bar, measures
         ((80, 60, 70, 100), "triple rocker", (), -10),
         ((80, 120, 90, 110), "change point", ("driver",), 0),
         ((50, 120, 50, 120), "change point", ("driver", "follower"), 0),
-        ((0.1 + 0.2, 0.4, 0.4, 0.5), "change point", ("driver",), 0),
     ],
 )
 def test_classes(
@@ -29,6 +30,15 @@ def test_classes(
     found = grashof(FourBarLengths(*lengths))
     assert (found.name, found.turning) == (name, turning)
     assert found.spare == pytest.approx(spare)
+
+
+@pytest.mark.parametrize("whole", list(permutations((4, 6, 7, 9))))
+def test_rounding_does_not_change_a_class(whole: tuple[int, ...]) -> None:
+    tenths = FourBarLengths(*(one / 10 for one in whole))
+    exact = FourBarLengths(*whole)
+    assert grashof(tenths) == grashof(exact)
+    assert grashof(tenths).name == "change point"
+    assert turns_fully(tenths) == turns_fully(exact)
 
 
 def _turns(lengths: FourBarLengths) -> bool:
