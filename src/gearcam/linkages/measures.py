@@ -107,25 +107,27 @@ class TimeRatio(NamedTuple):
         return min(self) / max(self)
 
 
-def extremes_of(track: Law, knots: Array) -> tuple[Extremes, ...]:
-    """Return all extremes of a quantity and of its derivatives to order 3.
+def extremes_of(track: Law, knots: Array, highest: int = HIGHEST) -> tuple[Extremes, ...]:
+    """Return all extremes of a quantity and of its derivatives.
 
     Parameters
     ----------
     track : callable
-        ``track(q, order) -> Jet``, real, to order 4.
+        ``track(q, order) -> Jet``, real.
     knots : (k,) array, rad
         Between them it is smooth.
+    highest : int
+        Highest derivative of which extremes are wanted: the track is asked for one more.
 
     Returns
     -------
-    tuple of four (places, values)
+    tuple of (places, values)
         For each order roots of the next derivative, and both sides of each knot.
     """
     grid = np.asarray(knots, dtype=float)
 
     def derivatives(q: Array) -> Array:
-        return np.array(track(q, HIGHEST + 1).derivatives())
+        return np.array(track(q, highest + 1).derivatives())
 
     def both(q: Array) -> Array:
         found = derivatives(q)
@@ -142,7 +144,7 @@ def extremes_of(track: Law, knots: Array) -> tuple[Extremes, ...]:
     places[free] = _polished(derivatives, grid, which[free], places[free])
     if free.size:
         values[free] = derivatives(places[free])[which[free], np.arange(free.size)]
-    return tuple((places[which == k], values[which == k]) for k in range(HIGHEST + 1))
+    return tuple((places[which == k], values[which == k]) for k in range(highest + 1))
 
 
 def _polished(
@@ -210,11 +212,14 @@ class TrackMeasures(ShortRepr):
         The driver's angles from the first to the last one; between them it is smooth.
     closed : bool
         Whether the motion repeats after the last knot; the value may have risen by then.
+    highest : int
+        Highest derivative of which extremes are wanted.
     """
 
     track: Law
     knots: Array
     closed: bool = True
+    highest: int = HIGHEST
 
     @property
     def span(self) -> tuple[float, float]:
@@ -224,7 +229,7 @@ class TrackMeasures(ShortRepr):
     @cached_property
     def extremes(self) -> tuple[Extremes, ...]:
         """Extremes of each order (see `extremes_of`)."""
-        return extremes_of(self.track, self.knots)
+        return extremes_of(self.track, self.knots, self.highest)
 
     def least(self, order: int = 0) -> Peak:
         """Return the smallest value of a derivative of given `order`."""
@@ -347,8 +352,10 @@ class TrackMeasures(ShortRepr):
 
     def _resting(self, end: int, later: _Rest | None, earlier: _Rest | None) -> float:
         """Return how an open range would go on beyond an end: back, if it stands still there."""
-        slope = float(self.extremes[1][1][end])
-        if self.closed or abs(slope) > STILL or later is None or earlier is None:
+        if self.closed or later is None or earlier is None:
+            return 0.0
+        slope = self.track(np.array([self.span[end]]), 1).derivatives()[1]
+        if abs(float(slope[0])) > STILL:
             return 0.0
         return earlier.value - later.value
 

@@ -176,7 +176,7 @@ def _measures(linkage: Linkage, of: Callable[[Known], Jet]) -> TrackMeasures:
     def track(q: Array, order: int) -> Jet:
         return Jet(of(linkage.at(q, order)).c[: order + 1])
 
-    return TrackMeasures(track, linkage.knots, linkage.closed)
+    return TrackMeasures(track, linkage.knots, linkage.closed, highest=0)
 
 
 def _parts(known: Known, dyad: Dyad) -> tuple[Jet, Jet]:
