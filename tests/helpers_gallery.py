@@ -467,6 +467,16 @@ CAM_NUMBERS: dict[str, dict[str, Number]] = {
         # a pass of 5.5/4 mm above the floor: the tool 3 mm in the groove of 4.025 mm
         "tool_path.rest_mm": (_left_by_mill(14.5, 14.5 + 5.5 / 4, 4.025, 3.0), 1e-7),
     },
+    "globoidal_indexer": {
+        # modified sine: 4*pi/(4 + pi) of the mean rate of 45 deg in 120 deg, at the middle of the
+        # index, where a roller is on the line of centres and its end 42 mm from the cam's axis
+        "cam.pressure_angle_deg.max": (
+            DEG * math.atan(0.375 * 4 * math.pi / (4 + math.pi) * 58 / 42),
+            1e-8,
+        ),
+        "motion.peak_velocity_deg_s": (360 * 0.375 * 4 * math.pi / (4 + math.pi), 1e-9),
+        "cam.core_radius_mm": (99.5 - math.hypot(58, 8), 1e-12),
+    },
     "groove_cam": {
         # the walls are parallels of a pitch curve of 221.58887350723 mm, 12.05 mm apart
         "cam.groove.inner.perimeter_mm": (221.58887350723 - math.pi * 12.05, 1e-10),

@@ -17,7 +17,12 @@ NONE: Final = "-"
 KEY_HEADS: Final = ("key", "value", "default", "meaning")
 """Headings of the columns of keys."""
 
-TITLES: Final = {"gear-pair": "Gear pairs", "cam": "Cams", "spatial-cam": "Cams in space"}
+TITLES: Final = {
+    "gear-pair": "Gear pairs",
+    "cam": "Cams",
+    "spatial-cam": "Cams in space",
+    "globoidal-cam": "Globoidal indexing cams",
+}
 GROUPS: Final = {
     "teeth": "Law, centrodes and teeth",
     "meshing": "Meshing study (`gearcam mesh`)",
@@ -25,6 +30,7 @@ GROUPS: Final = {
     "parts": "Parts",
     "cams": "Motion and profile",
     "cams in space": "Walls",
+    "globoidal cams": "Walls and hold",
     "solids of cams in space": "Solids",
     "forces": "Forces (`gearcam forces`)",
     "followed profiles": "Followed profile (`gearcam follow`)",

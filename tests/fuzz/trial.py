@@ -11,7 +11,12 @@ from pathlib import Path
 from typing import Any, Final
 
 import gearcam
-from fuzz import cross_checks_cam, cross_checks_pair, cross_checks_spatial
+from fuzz import (
+    cross_checks_cam,
+    cross_checks_globoidal,
+    cross_checks_pair,
+    cross_checks_spatial,
+)
 from fuzz.oracles import look_at
 from fuzz.outcome import BUILT, FAILED, REFUSED, WRONG, Failure, Outcome, Task
 from gearcam import build, load, remedies
@@ -29,6 +34,7 @@ _HOMES: Final = {Path(gearcam.__file__).parent, Path(__file__).parent}
 _CROSS_CHECKS: Final = {
     "cam": cross_checks_cam.doubts,
     "gear-pair": cross_checks_pair.doubts,
+    "globoidal-cam": cross_checks_globoidal.doubts,
     "spatial-cam": cross_checks_spatial.doubts,
 }
 """What other methods say against the result of a design, by its kind."""

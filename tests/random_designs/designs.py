@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Final
 
 from gearcam.designs.writing import toml_text
-from random_designs import cam, gear_pair, spatial_cam
+from random_designs import cam, gear_pair, globoidal_cam, spatial_cam
 from random_designs.broken import broken
 from random_designs.documented import places, value
 from random_designs.draw import Draw
@@ -30,6 +30,7 @@ _LIMITED: Final = 0.15
 MAKERS: Final = {
     "cam": cam.design,
     "gear-pair": gear_pair.design,
+    "globoidal-cam": globoidal_cam.design,
     "spatial-cam": spatial_cam.design,
 }
 """What makes a random design of each kind, as the tables of its file."""

@@ -33,10 +33,8 @@ class Listed:
 
 
 def law_groups() -> Iterator[tuple[str, list[Listed]]]:
-    """Yield a heading and the laws of each kind of design."""
-    for kind in KINDS.values():
-        if kind.main:
-            yield kind.main.laws()
+    """Yield a heading and the laws of each kind of design; those of several kinds once."""
+    yield from dict(kind.main.laws() for kind in KINDS.values() if kind.main).items()
 
 
 def sources_of(groups: Iterable[tuple[str, list[Listed]]]) -> dict[str, str]:

@@ -11,4 +11,5 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from gearcam.kinds.cam.public import *  # noqa: F403
     from gearcam.kinds.gear_pair.public import *  # noqa: F403
+    from gearcam.kinds.globoidal_cam.public import *  # noqa: F403
     from gearcam.kinds.spatial_cam.public import *  # noqa: F403

@@ -1,18 +1,23 @@
-"""What several kinds of design have alike: the study of error against run time, and goals."""
+"""What several kinds of design have alike: tables over a turn, the study of accuracy, goals."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import TYPE_CHECKING, Final
 
+import numpy as np
+
 from gearcam.base.display import ShortRepr
+from gearcam.base.errors import ABOVE, beyond_limit
 from gearcam.base.quantities import COUNT, TEXT, param
 from gearcam.base.rules import Breach
 
 if TYPE_CHECKING:
     from gearcam.designs.design import Design
+    from gearcam.numeric.arrays import Array
     from gearcam.results.kind import Study
     from gearcam.results.result import Progress, Result, StudyResult
 
@@ -103,6 +108,35 @@ class GoalSpec(ShortRepr):
     def signs(self) -> dict[str, float]:
         """1 of facts that are to be least, -1 of those that are to be largest, by name."""
         return dict.fromkeys(self.minimize or (), 1.0) | dict.fromkeys(self.maximize or (), -1.0)
+
+
+_TURN: Final = 2.0 * math.pi
+
+_MOST_STEPS: Final = 1e6
+"""Largest number of steps of a table."""
+
+
+def turn_in_steps(step: float) -> Array:
+    """Return the cam angles of the table of a motion, rad: a turn with both ends.
+
+    Parameters
+    ----------
+    step : float, rad
+        The step of the design, ``output.motion_step_deg``.
+
+    Raises
+    ------
+    InfeasibleError
+        If there would be more than a million.
+    """
+    least = _TURN / _MOST_STEPS
+    if step < least:
+        what = f"the table would have more than {_MOST_STEPS:.0f} rows"
+        value, limit = math.degrees(step), math.degrees(least)
+        raise beyond_limit(
+            what, "output.motion_step_deg", value, limit, near=ABOVE * limit, unit="deg"
+        )
+    return np.linspace(0.0, _TURN, max(2, round(_TURN / step) + 1))
 
 
 _NAMED: Final = 90

@@ -232,14 +232,46 @@ def carved(blank: Mesh, tools: Iterable[Array]) -> Mesh:
     """
     import manifold3d
 
-    whole = manifold3d.Manifold(
-        manifold3d.Mesh64(blank.vertices, blank.triangles.astype(np.uint64))
-    )
+    whole = _manifold(manifold3d, blank)
     hulls = [manifold3d.Manifold.hull_points(corners) for corners in tools]
     mesh = _mesh(manifold3d.Manifold.batch_boolean([whole, *hulls], manifold3d.OpType.Subtract))
     if not mesh.watertight:
         raise SolidError("the carved solid is empty or open")
     return mesh
+
+
+@libraries()
+def ribbed(core: Mesh, rib: Mesh, blank: Mesh) -> Mesh:
+    """Return what is in a blank and in a core or a rib.
+
+    Parameters
+    ----------
+    core, rib, blank : Mesh
+        Closed.
+
+    Returns
+    -------
+    Mesh
+
+    Raises
+    ------
+    MissingExtraError
+        If manifold3d is not installed.
+    SolidError
+        If nothing is left, or the result is open.
+    """
+    import manifold3d
+
+    body, strip, limits = (_manifold(manifold3d, one) for one in (core, rib, blank))
+    mesh = _mesh((body + strip) ^ limits)
+    if not mesh.watertight:
+        raise SolidError("the solid with its rib is empty or open")
+    return mesh
+
+
+def _manifold(manifold3d: Any, mesh: Mesh) -> Manifold:
+    raw = manifold3d.Mesh64(mesh.vertices, mesh.triangles.astype(np.uint64))
+    return manifold3d.Manifold(raw)
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,8 +5,7 @@ over the cam angle theta and the distance x along the roller's axis, from the ro
 the *edge*, where it meets the outside of the blank. A groove has both walls, made by a roller that
 is wider than the true one by the clearance.
 
-The extremes over theta and x are found on a grid and narrowed down around its best point; they are
-exact to `NARROW` of the turn. Depends on envelope, guides and laws; numpy only.
+Depends on envelope, extremes, guides and laws; numpy only.
 """
 
 from __future__ import annotations
@@ -15,54 +14,23 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
 from typing import Final
 
 import numpy as np
 
 from gearcam.base.display import ShortRepr
-from gearcam.base.numerals import formatted
 from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.roots import bracketed_root
 from gearcam.spatial.envelope import Roller, RollerAxis, RollerContact, touched
+from gearcam.spatial.extremes import Spot, boxes_between, lowest
 from gearcam.spatial.guides import RollerGuide, carried
-
-NARROW: Final = 1e-9
-"""Width, as a share of the turn and of the roller's length, to which an extreme is narrowed."""
-
-_ALONG: Final = 7
-"""Places along the roller at which extremes are looked for."""
-
-_AROUND: Final = 24
-"""Places in each interval between knots at which they are looked for."""
-
-_FINE: Final = 7
-"""Places in each direction around the best one, each time that it is narrowed."""
 
 _ROOT: Final = 1e-15
 """Width of the bracket of a place or a radius, over the radius of the blank."""
 
-_INSET: Final = 1e-12
-"""Distance from knots at which their sides are looked at, as a share of an interval."""
-
 _WIDEST: Final = 4.0
 """Largest radius of a roller that is looked for, over the radius of the blank."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Spot:
-    """An extreme: its `value`, the cam angle `theta`, rad, and the place `x` on the roller, mm."""
-
-    theta: float
-    x: float
-    value: float
-
-    @property
-    def place(self) -> str:
-        """Where it is, in words."""
-        angle = formatted(math.degrees(self.theta), 5)
-        return f"at {angle} deg, {formatted(self.x, 4)} mm from the axis"
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -257,14 +225,11 @@ class SpatialCam(ShortRepr):
             The cam angles that count; the whole turn if left out.
         """
         boxes = [
-            (left + _INSET * (right - left), right - _INSET * (right - left), *ends)
+            box
             for start, end in stretches or self._turn
-            for left, right in pairwise(self.program.cuts_between(start, end).tolist())
+            for box in boxes_between(self.program.cuts_between(start, end), ends)
         ]
-        counts = _AROUND, _ALONG if ends[1] > ends[0] else 1
-        spots = [_lowest_in(function, box, counts) for box in boxes]
-        best = min(range(len(spots)), key=lambda k: spots[k].value)
-        return _narrowed(function, spots[best], boxes[best])
+        return lowest(function, boxes)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -371,31 +336,3 @@ class SpatialWall(ShortRepr):
 
         spot = cam.least(critical, (low, high))
         return spot if spot.value < 0.999 * widest else replace(spot, value=math.inf)
-
-
-def _lowest_in(
-    function: Callable[[Array, Array], Array], box: Sequence[float], counts: tuple[int, int]
-) -> Spot:
-    """Return the lowest point of a grid over a box of cam angles and places."""
-    theta = np.linspace(box[0], box[1], counts[0])
-    x = np.linspace(box[2], box[3], counts[1]) * np.ones((counts[0], 1))
-    values = function(theta, x)
-    k, j = np.unravel_index(np.argmin(values), values.shape)
-    return Spot(theta=float(theta[k]), x=float(x[k, j]), value=float(values[k, j]))
-
-
-def _narrowed(function: Callable[[Array, Array], Array], spot: Spot, box: Sequence[float]) -> Spot:
-    """Return the lowest point within a box that begins one step around a point of its grid."""
-    sizes = [(box[1] - box[0]) / (_AROUND - 1), (box[3] - box[2]) / (_ALONG - 1)]
-    least = [NARROW * (box[1] - box[0]), NARROW * (box[3] - box[2])]
-    while sizes[0] > least[0] or sizes[1] > least[1]:
-        near = [
-            max(box[0], spot.theta - sizes[0]),
-            min(box[1], spot.theta + sizes[0]),
-            max(box[2], spot.x - sizes[1]),
-            min(box[3], spot.x + sizes[1]),
-        ]
-        found = _lowest_in(function, near, (_FINE, _FINE if sizes[1] else 1))
-        spot = min(spot, found, key=lambda one: one.value)
-        sizes = [2.0 * size / (_FINE - 1) for size in sizes]
-    return spot

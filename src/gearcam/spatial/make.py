@@ -48,7 +48,7 @@ def make_cylinder(
     InfeasibleError
         See above.
     """
-    _demand_smooth(program)
+    demand_smooth(program)
     depth = cam.groove_depth
     length = follower.roller_length or depth
     if length > depth:
@@ -95,9 +95,23 @@ def _guide(program: Program, follower: SpatialFollower, lowest: float) -> Roller
     return SwingArm(length=arm, distance=distance, start=start, height=lowest)
 
 
-def _demand_smooth(program: Program) -> None:
+def demand_smooth(program: Program, title: str = "motion") -> None:
+    """Refuse velocities that jump.
+
+    Parameters
+    ----------
+    program : Program
+        A lift.
+    title : str
+        The part of the design that gives it.
+
+    Raises
+    ------
+    InfeasibleError
+        At a knot where its velocity jumps.
+    """
     for jump in program.hard:
-        where = f"motion, at {formatted(math.degrees(jump.theta), 5)} deg"
+        where = f"{title}, at {formatted(math.degrees(jump.theta), 5)} deg"
         what = "the velocity jumps, so that the walls would have a corner"
         raise InfeasibleError(
             what, where=where, nearest="a motion law whose velocity is continuous"

@@ -19,7 +19,7 @@ Refused: walls that are undercut, whose rings would cross. Depends on cam; numpy
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Final
 
@@ -108,10 +108,9 @@ def blank_surface(cam: SpatialCam, blank: Cylinder, steps: int) -> Surface:
     -------
     Surface
     """
-    theta = np.linspace(0.0, 2.0 * math.pi, steps, endpoint=False)
     outer, length = cam.outer_radius, blank.length
     corners = (blank.bore, 0.0), (blank.bore, length), (outer, length), (outer, 0.0)
-    return _closed([_circle(theta, *one) for one in corners], outer)
+    return revolved(corners, steps)
 
 
 def roller_surface(cam: SpatialCam, steps: int) -> Surface:
@@ -132,10 +131,29 @@ def roller_surface(cam: SpatialCam, steps: int) -> Surface:
     inside, outside = cam.inner, cam.outer_radius
     thin, thick = (cam.roller.radius_at(x) for x in (inside, outside))
     pin, end = _PIN * thick, outside + _STUB * thick
-    theta = np.linspace(0.0, 2.0 * math.pi, steps, endpoint=False)
     profile = [(0.0, end), (pin, end), (pin, outside), (thick, outside), (thin, inside)]
-    made = _closed([_circle(theta, *one) for one in (*profile, (0.0, inside))], outside)
+    made = revolved((*profile, (0.0, inside)), steps)
     return Surface(vertices=np.roll(made.vertices, 1, axis=1), triangles=made.triangles)
+
+
+def revolved(corners: Iterable[tuple[float, float]], steps: int) -> Surface:
+    """Return the surface of a body of revolution about z.
+
+    Parameters
+    ----------
+    corners : iterable of (float, float), mm
+        Radii and heights of its outline: up inside, then down outside.
+    steps : int
+        Number of chords around it.
+
+    Returns
+    -------
+    Surface
+    """
+    theta = np.linspace(0.0, 2.0 * math.pi, steps, endpoint=False)
+    outline = [*corners]
+    size = max(abs(value) for corner in outline for value in corner)
+    return _closed([_circle(theta, *one) for one in outline], size)
 
 
 def _closed(rings: Sequence[_Ring], size: float) -> Surface:
@@ -150,19 +168,26 @@ def _closed(rings: Sequence[_Ring], size: float) -> Surface:
         after = (k + 1) % len(rings)
         joined = _joined(ring, rings[after])  # points of the second ring follow those of the first
         faces.append(joined + np.where(joined < sizes[k], starts[k], starts[after] - sizes[k]))
-    vertices, triangles = _welded(
-        np.concatenate([ring.points for ring in rings]), np.concatenate(faces), size
-    )
-    return Surface(vertices=vertices, triangles=triangles)
+    return welded(np.concatenate([ring.points for ring in rings]), np.concatenate(faces), size)
 
 
-def _welded(vertices: Array, triangles: Ints, size: float) -> tuple[Array, Ints]:
-    """Return a mesh without points that coincide, such as those of a ramp in a dwell."""
+def welded(vertices: Array, triangles: Ints, size: float) -> Surface:
+    """Return a mesh in which points that coincide are one, such as those of a ramp in a dwell.
+
+    Parameters
+    ----------
+    vertices : (n, 3) array, mm
+        Points.
+    triangles : (m, 3) array of int
+        Indices of points; triangles of which two corners coincide are left out.
+    size : float, mm
+        Size of the body.
+    """
     cells = np.round(vertices / (_COINCIDENT * size)).astype(np.int64)
     _, kept, index = np.unique(cells, axis=0, return_index=True, return_inverse=True)
     a, b, c = index.ravel()[triangles].T
     whole = (a != b) & (b != c) & (c != a)
-    return vertices[kept], np.stack([a, b, c], axis=1)[whole]
+    return Surface(vertices=vertices[kept], triangles=np.stack([a, b, c], axis=1)[whole])
 
 
 def chord_error(cam: SpatialCam, steps: int, places: int) -> float:
@@ -179,19 +204,36 @@ def chord_error(cam: SpatialCam, steps: int, places: int) -> float:
     worst = 0.0
     for wall in cam.walls:
         fine = wall.grid(theta, 2 * places - 1)
-        points = np.concatenate([fine.points, fine.points[:1]])
-        here, after = points[:-2:2], points[2::2]
-        one, other = here[:, :-2:2], here[:, 2::2]
-        beyond, ahead = after[:, 2::2], after[:, :-2:2]
-        for middle, rows, columns in (
-            (0.5 * (here[:, ::2] + after[:, ::2]), 1, 0),
-            (0.5 * (one + other), 0, 1),
-            (0.5 * (one + beyond), 1, 1),
-            (0.5 * (other + ahead), 1, 1),
-        ):
-            true = fine.points[rows::2, columns::2], fine.normals[rows::2, columns::2]
-            worst = max(worst, float(np.abs(((middle - true[0]) * true[1]).sum(axis=-1)).max()))
+        points, normals = (np.concatenate([one, one[:1]]) for one in (fine.points, fine.normals))
+        worst = max(worst, float(distances(points, normals).max()))
     return worst
+
+
+def distances(points: Array, normals: Array) -> Array:
+    """Return how far a wall is from triangles through every second of its points, (n, k), mm.
+
+    At a point in the middle of an edge its distance from this edge; of two diagonals from the one
+    that is farther. 0 at corners of triangles.
+
+    Parameters
+    ----------
+    points, normals : (n, k, 3) arrays, mm and 1
+        Points of the wall as a grid with odd numbers of rows and columns, and its normals there.
+    """
+    found = np.zeros(points.shape[:2])
+    here, after = points[:-2:2], points[2::2]
+    one, other = here[:, :-2:2], here[:, 2::2]
+    beyond, ahead = after[:, 2::2], after[:, :-2:2]
+    for middle, rows, columns in (
+        (0.5 * (here[:, ::2] + after[:, ::2]), 1, 0),
+        (0.5 * (points[::2, :-2:2] + points[::2, 2::2]), 0, 1),
+        (0.5 * (one + beyond), 1, 1),
+        (0.5 * (other + ahead), 1, 1),
+    ):
+        at = np.s_[rows::2, columns::2]
+        off = np.abs(((middle - points[at]) * normals[at]).sum(axis=-1))
+        found[at] = np.maximum(found[at], off)
+    return found
 
 
 @dataclass(frozen=True, eq=False)

@@ -29,7 +29,8 @@ import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.numeric.arrays import Array
-from gearcam.spatial.cam import SpatialWall, Spot
+from gearcam.spatial.cam import SpatialWall
+from gearcam.spatial.extremes import Spot
 from gearcam.spatial.guides import Straight
 
 _AROUND: Final = 720

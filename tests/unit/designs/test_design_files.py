@@ -302,7 +302,7 @@ def test_without_a_kind_the_likeliest_one_is_judged(text: str, wrong: set[str]) 
     found = problems(text)
     assert {problem.key for problem in found} == wrong
     (kind,) = [problem for problem in found if problem.key == "kind"]
-    assert kind.allowed == '"cam", "gear-pair" or "spatial-cam"'
+    assert kind.allowed == '"cam", "gear-pair", "globoidal-cam" or "spatial-cam"'
 
 
 def test_splines_are_refused_in_r12_only() -> None:

@@ -73,7 +73,7 @@ def test_optional_keys_show_their_default_or_say_that_they_show_an_example(
             else:
                 default = entry.inward(tomllib.loads(f"x = {value}")["x"])
                 assert default == pytest.approx(entry.default), key
-    assert shown & {"module_mm", "base_radius_mm", "arm_mm"}
+    assert shown & {"module_mm", "base_radius_mm", "arm_mm", "length_mm"}
 
 
 def test_a_cam_is_described_in_words_of_cams() -> None:

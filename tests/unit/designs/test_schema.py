@@ -23,6 +23,7 @@ from gearcam.designs.schema import schema
 from gearcam.designs.template import template
 from gearcam.kinds.cam.motion import WITH_LAW, phase_table, rise_table, turn_tables
 from gearcam.kinds.gear_pair.design import law_table
+from gearcam.kinds.globoidal_cam.index import index_table
 from gearcam.laws.motion.base import MOTION_LAWS
 from gearcam.laws.phases_of_lift import PHASES
 from gearcam.laws.ratio.base import LAWS
@@ -86,6 +87,7 @@ def test_every_key_is_described_and_no_other_is_allowed(
         for title in (*kind.tables, "limits"):
             expected[f"{name}-{title}"] = set(kind.table(title).entries)
     expected |= {f"law-{name}": {"type", *law_table(name).entries} for name in LAWS}
+    expected |= {f"index-{law}": {"law", *index_table(law).entries} for law in MOTION_LAWS}
     for title, known in zip(("motion-table", "motion-formula"), turn_tables(), strict=True):
         expected[title] = set(known.entries)
     for name in PHASES:

@@ -63,7 +63,7 @@ SLIPS: dict[str, tuple[str, str, str, str, str]] = {
     "brackets": (CAM, "[follower]", "[[follower]]", "follower", "in single brackets: [follower]"),
     "one phase": (CAM, "[[motion]]", "[motion]", "", "of these tables write [[motion]]"),
     "a form": (CAM, '"disc"', '"disk"', "cam.form",
-               '"disc", "groove", "conjugate", "yoke", "translating" or "cylinder"'),
+               '"disc", "groove", "conjugate", "yoke", "translating", "cylinder" or "globoidal"'),
 }  # fmt: skip
 
 

@@ -11,11 +11,12 @@ import pytest
 
 from gearcam.base.findings import run_checks
 from gearcam.parts.solids import Mesh, carved
-from gearcam.spatial.cam import SpatialCam, SpatialWall, Spot
+from gearcam.spatial.cam import SpatialCam, SpatialWall
 from gearcam.spatial.carving import roller_corners, scallop
 from gearcam.spatial.checks import KIND
 from gearcam.spatial.developed import largest_in_plane
 from gearcam.spatial.envelope import Roller
+from gearcam.spatial.extremes import Spot
 from gearcam.spatial.surface import Cylinder, blank_surface, surface
 from gearcam.spatial.trimmed import TrimmedWall, lost_lift
 from helpers_spatial import enclosed, reference, swinging

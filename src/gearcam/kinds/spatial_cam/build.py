@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearcam.base.errors import ABOVE, beyond_limit
+from gearcam.base.errors import beyond_limit
 from gearcam.base.findings import Finding, in_order, run_checks
 from gearcam.base.numerals import formatted
 from gearcam.kinds.cam.public import lift_program
-from gearcam.kinds.shared import solved_file
+from gearcam.kinds.shared import solved_file, turn_in_steps
 from gearcam.kinds.spatial_cam.design import SpatialCamDesign
 from gearcam.laws.program import Program
 from gearcam.numeric.arguments import angles
@@ -56,10 +56,6 @@ _CARVED: Final = 240
 
 _ROUND: Final = 4
 """Chords of its blank for each position: the error of its volume is that of the walls then."""
-
-_MOST_STEPS: Final = 1e6
-"""Largest number of steps of a table."""
-
 
 _WITNESSES: Final = ((360, 13), (720, 25))
 """Cam angles and places along the roller of two meshes that give the volume of a STEP solid."""
@@ -152,15 +148,7 @@ class SpatialCamResult(Result):
     @property
     def angles(self) -> Array:
         """The cam angles of the motion's table, rad, in steps of the design, both ends."""
-        step = self.design.output.motion_step
-        least = _TURN / _MOST_STEPS
-        if step < least:
-            what = f"the table would have more than {_MOST_STEPS:.0f} rows"
-            value, limit = math.degrees(step), math.degrees(least)
-            raise beyond_limit(
-                what, "output.motion_step_deg", value, limit, near=ABOVE * limit, unit="deg"
-            )
-        return np.linspace(0.0, _TURN, max(2, round(_TURN / step) + 1))
+        return turn_in_steps(self.design.output.motion_step)
 
     def motion(self, theta: ArrayLike | None = None) -> Columns:
         """Return the motion of the follower and the pressure angles.

@@ -13,7 +13,8 @@ from gearcam.spatial.trimmed import lost_lift
 
 if TYPE_CHECKING:
     from gearcam.kinds.spatial_cam.build import SpatialCamResult
-    from gearcam.spatial.cam import SpatialWall, Spot
+    from gearcam.spatial.cam import SpatialWall
+    from gearcam.spatial.extremes import Spot
 
 Tree = dict[str, Any]
 

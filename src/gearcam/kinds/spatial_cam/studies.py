@@ -14,8 +14,8 @@ from gearcam.kinds.shared import accuracy_study
 from gearcam.pictures.charts import Chart, Line
 from gearcam.results.kind import Study
 from gearcam.results.result import StudyResult
-from gearcam.spatial.cam import Spot
 from gearcam.spatial.developed import developed
+from gearcam.spatial.extremes import Spot
 
 if TYPE_CHECKING:
     from gearcam.kinds.spatial_cam.build import SpatialCamResult

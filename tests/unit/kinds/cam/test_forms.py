@@ -22,7 +22,7 @@ def profiles() -> dict[str, dict[str, Any]]:
     found: dict[str, dict[str, Any]] = {}
     for path in sorted(PROFILES.glob("*.toml")):
         document = tomllib.loads(path.read_text("utf-8"))
-        if document["kind"] == "cam" and isinstance(document["motion"], list):
+        if document["kind"] == "cam" and isinstance(document.get("motion"), list):
             found.setdefault(document["cam"].get("form", "disc"), document)
     return {form: found[form] for form in REGISTRY}
 

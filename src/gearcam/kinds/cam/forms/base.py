@@ -238,6 +238,6 @@ VARIANTS: Final = Variants(
     default="disc",
     entries=FORMS,
     called="a {} cam",
-    elsewhere={"cylinder": "spatial-cam"},
+    elsewhere={"cylinder": "spatial-cam", "globoidal": "globoidal-cam"},
 )
 """The tables that depend on the form."""

@@ -1,0 +1,1 @@
+"""Globoidal indexing cams with their turrets."""

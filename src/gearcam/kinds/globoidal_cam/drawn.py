@@ -1,0 +1,140 @@
+"""What is drawn of a globoidal cam: the globoid through the middle of its rollers, unrolled.
+
+The sheet is seen from outside. From left to right the azimuth in the cam's frame rises from 0 to
+360 deg, as lengths on the least circle of this globoid; upwards is the direction from the turret's
+axis, as lengths on the circle about it. Of a cam that turns counter-clockwise the cam angle
+therefore runs from right to left.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from gearcam.laws.phases_of_lift import TURN
+from gearcam.numeric.contour import Contour
+from gearcam.numeric.pose import Pose
+from gearcam.parts.shapes import Circle
+from gearcam.pictures.drawings import BLANK, FOLLOWER, GROOVE, PITCH, Drawing, Feature, Path, place
+
+if TYPE_CHECKING:
+    from gearcam.kinds.globoidal_cam.build import GloboidalCamResult
+    from gearcam.numeric.arrays import Array, Plane
+    from gearcam.spatial.globoidal import GloboidalCam, GloboidalWall
+
+_STEPS: Final = 1440
+"""Cam angles of a turn at which curves are drawn."""
+
+_TOLERANCE: Final = 1e-3
+"""Chord tolerance that these stand for, mm."""
+
+
+def across(cam: GloboidalCam) -> float:
+    """Return the least radius of the globoid that is drawn, mm."""
+    return cam.distance - cam.middle
+
+
+def half_height(cam: GloboidalCam) -> float:
+    """Return half the height of the sheet, mm: the arc from the middle to a face."""
+    return cam.middle * math.asin(cam.half_length / cam.middle)
+
+
+def center(cam: GloboidalCam, theta: Array) -> Plane:
+    """Return the centre of the roller that is followed, on the sheet, mm.
+
+    Parameters
+    ----------
+    cam : GloboidalCam
+        The cam.
+    theta : (n,) array, rad
+        Cam angles within a turn.
+    """
+    along = across(cam) * (theta if cam.clockwise else TURN - theta)
+    return along + 1j * cam.middle * cam.angle(theta)
+
+
+def picture(result: GloboidalCamResult) -> Drawing:
+    """Return the sheet with the grooves, and the rollers at the angle of the design."""
+    theta = np.array([result.design.output.pose % TURN])
+    shown = place(rollers(result.cam), Pose(0.0, complex(center(result.cam, theta)[0])))
+    features = (sheet(result.cam), *grooves(result.cam), *paths(result.cam), *shown)
+    return Drawing(name="cam", features=features)
+
+
+def sheet(cam: GloboidalCam) -> Feature:
+    """Return the sheet."""
+    width, half = TURN * across(cam), 1j * half_height(cam)
+    return _filled(BLANK, np.array([-half, width - half, width + half, half]))
+
+
+def grooves(cam: GloboidalCam) -> tuple[Feature, ...]:
+    """Return the grooves between the windings of the rib, cut where the sheet begins and ends."""
+    upper, lower = (dict(_windings(cam, wall)) for wall in cam.walls)
+    half = half_height(cam)
+    found = []
+    for turn in sorted(upper.keys() & lower.keys()):
+        low, high = (_clipped(one[turn], half) for one in (lower, upper))
+        if (high.imag > low.imag).any():
+            found.append(_filled(GROOVE, np.concatenate([low, high[::-1]])))
+    return tuple(found)
+
+
+def paths(cam: GloboidalCam) -> tuple[Feature, ...]:
+    """Return the path of the rollers' axes between the faces."""
+    theta, limit = np.linspace(0.0, TURN, _STEPS + 1), half_height(cam)
+    once = center(cam, theta)
+    found = []
+    for k in range(-_around(cam), _around(cam) + 1):
+        path = once + 1j * k * cam.middle * cam.pitch
+        on = np.abs(path.imag) <= limit
+        if on.sum() > 1:
+            found.append(Feature(layer=PITCH, shape=Path(points=path[on], closed=False)))
+    return tuple(found)
+
+
+def rollers(cam: GloboidalCam) -> tuple[Feature, ...]:
+    """Return the rollers about that which is followed, as circles."""
+    step, size = 1j * cam.middle * cam.pitch, 2.0 * cam.roller.radius
+    return tuple(
+        Feature(layer=FOLLOWER, shape=Circle(center=k * step, diameter=size))
+        for k in range(-_around(cam), _around(cam) + 1)
+    )
+
+
+def _around(cam: GloboidalCam) -> int:
+    """Return how many rollers to each side of the middle may be on the cam."""
+    return math.ceil(half_height(cam) / (cam.middle * cam.pitch))
+
+
+def _windings(cam: GloboidalCam, wall: GloboidalWall) -> Iterator[tuple[int, Plane]]:
+    """Yield the edge of a wall on the sheet, from left to right, by the number of its winding."""
+    start, end = cam.span
+    first, last = math.floor(start / TURN) - 1, math.ceil(end / TURN) + 1
+    theta = np.linspace(first * TURN, last * TURN, (last - first) * _STEPS + 1)
+    points = wall.contact(theta, wall.place(theta, cam.middle)[:, None]).points[:, 0]
+    x, y, z = points.T
+    # the azimuth falls with the cam angle, and is nearest to minus this
+    ahead = np.arctan2(x * np.sin(theta) + y * np.cos(theta), x * np.cos(theta) - y * np.sin(theta))
+    azimuth = (ahead - theta) * cam.hand
+    height = cam.middle * np.arctan2(z, cam.distance - np.hypot(x, y))
+    order = np.argsort(azimuth)
+    azimuth, height = azimuth[order], height[order]
+    for turn in range(first + 1, last - 1):
+        low = TURN * (turn if cam.clockwise else -turn - 1)
+        within = (azimuth > low) & (azimuth < low + TURN)
+        ends = np.interp([low, low + TURN], azimuth, height)
+        along = np.concatenate([[low], azimuth[within], [low + TURN]]) - low
+        up = np.concatenate([ends[:1], height[within], ends[1:]])
+        yield turn, across(cam) * along + 1j * up
+
+
+def _clipped(line: Plane, half: float) -> Plane:
+    return line.real + 1j * np.clip(line.imag, -half, half)
+
+
+def _filled(layer: str, points: Plane) -> Feature:
+    shape = Contour(dense=tuple, points=points, tolerance=_TOLERANCE, chord_error=0.0)
+    return Feature(layer=layer, shape=shape)

@@ -1,0 +1,14 @@
+"""Public Python names of globoidal cams: designs, their parts, and results."""
+
+from __future__ import annotations
+
+from gearcam.kinds.globoidal_cam.build import GloboidalCamResult
+from gearcam.kinds.globoidal_cam.design import GloboidalCamDesign, GloboidalOutput
+from gearcam.spatial.globoidal_spec import GloboidalSpec, IndexSpec, TurretSpec
+
+__all__ = [
+    "GloboidalCamDesign", "GloboidalCamResult", "GloboidalOutput", "GloboidalSpec", "IndexSpec",
+    "TurretSpec",
+]  # fmt: skip
+
+PUBLIC = {name: globals()[name] for name in __all__}

@@ -1,0 +1,126 @@
+"""Extremes over the cam angle and the place along a roller.
+
+They are found on a grid over boxes between knots and narrowed down around its best point, to
+`NARROW` of the box.
+
+Depends on numpy only.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Final
+
+import numpy as np
+
+from gearcam.base.numerals import formatted
+from gearcam.numeric.arrays import Array
+
+NARROW: Final = 1e-9
+"""Width, as a share of a box, to which an extreme is narrowed."""
+
+_ALONG: Final = 7
+"""Places along the roller at which extremes are looked for."""
+
+_AROUND: Final = 24
+"""Places in each interval between knots at which they are looked for."""
+
+_FINE: Final = 7
+"""Places in each direction around the best one, each time that it is narrowed."""
+
+_INSET: Final = 1e-12
+"""Distance from knots at which their sides are looked at, as a share of an interval."""
+
+Box = tuple[float, float, float, float]
+"""First and last cam angle, rad, first and last place along the roller, mm."""
+
+OfPlaces = Callable[[Array, Array], Array]
+"""``function(theta, x)`` of n cam angles, rad, and (n, k) places along a roller, mm."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Spot:
+    """An extreme: its `value`, the cam angle `theta`, rad, and the place `x` on the roller, mm.
+
+    Parameters
+    ----------
+    theta, x, value
+        See above.
+    start : str
+        What places are measured from, in words.
+    """
+
+    theta: float
+    x: float
+    value: float
+    start: str = "axis"
+
+    @property
+    def place(self) -> str:
+        """Where it is, in words."""
+        angle = formatted(math.degrees(self.theta), 5)
+        return f"at {angle} deg, {formatted(self.x, 4)} mm from the {self.start}"
+
+
+def boxes_between(cuts: Array, ends: tuple[float, float]) -> list[Box]:
+    """Return the boxes between cuts; functions may jump at these.
+
+    Parameters
+    ----------
+    cuts : (n,) array, rad
+        Rising cam angles.
+    ends : (float, float), mm
+        First and last place along the roller.
+    """
+    return [
+        (left + _INSET * (right - left), right - _INSET * (right - left), *ends)
+        for left, right in pairwise(cuts.tolist())
+    ]
+
+
+def lowest(function: OfPlaces, boxes: Sequence[Box]) -> Spot:
+    """Return the least value of a function in any of some boxes.
+
+    Parameters
+    ----------
+    function : callable
+        See `OfPlaces`; infinite where it does not count.
+    boxes : sequence of Box
+        Boxes of one place or more.
+    """
+    spots = [
+        _lowest_in(function, box, (_AROUND, _ALONG if box[3] > box[2] else 1)) for box in boxes
+    ]
+    best = min(range(len(spots)), key=lambda k: spots[k].value)
+    return _narrowed(function, spots[best], boxes[best])
+
+
+def _lowest_in(
+    function: Callable[[Array, Array], Array], box: Sequence[float], counts: tuple[int, int]
+) -> Spot:
+    """Return the lowest point of a grid over a box of cam angles and places."""
+    theta = np.linspace(box[0], box[1], counts[0])
+    x = np.linspace(box[2], box[3], counts[1]) * np.ones((counts[0], 1))
+    values = function(theta, x)
+    k, j = np.unravel_index(np.argmin(values), values.shape)
+    return Spot(theta=float(theta[k]), x=float(x[k, j]), value=float(values[k, j]))
+
+
+def _narrowed(function: Callable[[Array, Array], Array], spot: Spot, box: Sequence[float]) -> Spot:
+    """Return the lowest point within a box that begins one step around a point of its grid."""
+    sizes = [(box[1] - box[0]) / (_AROUND - 1), (box[3] - box[2]) / (_ALONG - 1)]
+    least = [NARROW * (box[1] - box[0]), NARROW * (box[3] - box[2])]
+    while sizes[0] > least[0] or sizes[1] > least[1]:
+        near = [
+            max(box[0], spot.theta - sizes[0]),
+            min(box[1], spot.theta + sizes[0]),
+            max(box[2], spot.x - sizes[1]),
+            min(box[3], spot.x + sizes[1]),
+        ]
+        found = _lowest_in(function, near, (_FINE, _FINE if sizes[1] else 1))
+        spot = min(spot, found, key=lambda one: one.value)
+        sizes = [2.0 * size / (_FINE - 1) for size in sizes]
+    return spot

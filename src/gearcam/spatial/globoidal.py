@@ -1,0 +1,391 @@
+"""A globoidal indexing cam: ribs that lead the rollers of a turret, and their measures.
+
+The turret's axis is perpendicular to the cam's, z, at the *centre distance*; parallel to y. Its
+rollers are radial, as many as it has stops. In each turn of the cam it moves by one *pitch*, the
+angle between two rollers, and rests for the remainder of the turn. Then the cam's rib lies between
+two rollers, at half a pitch below and above the middle plane of the cam.
+
+The roller that stands half a pitch below it as the turn begins is followed over all turns, by the
+cam angle Theta from below 0 to beyond a turn: at the cam angle theta the other rollers stand where
+it stands at theta + 2*pi*k. What it makes over Theta is therefore the whole cam: one *rib* that
+winds over all its length, between the `upper` wall, which is above this roller, and the `lower`
+wall of the next roller, which is below that one.
+
+The *place* x along a roller is the distance from the turret's axis. Ribs end at two circles about
+this axis in each plane through the cam's axis: the *top*, outside the turret's body, and the
+*floor*, up to which the core of the cam is turned so that the ends of the rollers are clear.
+
+Source: 000 section 3.4.1; the walls are derived in `envelope`. Depends on envelope, extremes,
+guides and laws; numpy only.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+
+from gearcam.base.display import ShortRepr
+from gearcam.laws.indexing import IndexProgram
+from gearcam.laws.phases_of_lift import TURN
+from gearcam.numeric.arrays import Array, Mask
+from gearcam.numeric.roots import bracketed_root
+from gearcam.spatial.envelope import Roller, RollerAxis, RollerContact, touched
+from gearcam.spatial.extremes import Box, OfPlaces, Spot, boxes_between, lowest
+from gearcam.spatial.guides import Turret, carried
+
+WORDS: Final = {-1: "upper", 1: "lower"}
+"""Words for walls, by the side of the roller that makes them: where they are, seen from it."""
+
+_ROOT: Final = 1e-15
+"""Width of the bracket of a place or a radius, over the centre distance."""
+
+_SCAN: Final = 720
+"""Cam angles of a turn at which the beginning and end of the rib are looked for."""
+
+_ALONG: Final = 9
+"""Places along a roller at which it is looked whether it is on the cam."""
+
+_WIDEST: Final = 1.0
+"""Largest radius of a roller that is looked for, over the centre distance."""
+
+_TURRET: Final = "axis of the turret"
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class GloboidalCam(ShortRepr):
+    """A cam that moves a turret by one pitch in each turn.
+
+    Parameters
+    ----------
+    program : IndexProgram
+        The angle of the turret.
+    distance : float, mm
+        From the cam's axis to that of the turret.
+    stops : int
+        Number of stops, and of rollers.
+    roller : Roller
+        A cylinder.
+    top, reach, floor : float, mm
+        Distances from the turret's axis: of the tops of the ribs, where the roller begins to press;
+        of the ends of the rollers; of the core.
+    length : float, mm
+        Of the cam, half of it to each side of the turret's axis.
+    clearance : float, mm
+        Width of a groove between ribs less the diameter of the roller.
+    clockwise : bool
+        Whether the cam turns clockwise: then it is the mirror image of what is computed.
+    """
+
+    program: IndexProgram
+    distance: float
+    stops: int
+    roller: Roller
+    top: float
+    reach: float
+    floor: float
+    length: float
+    clearance: float = 0.0
+    clockwise: bool = False
+
+    @property
+    def hand(self) -> float:
+        """What azimuths and y are multiplied by: -1 of a cam that turns clockwise, else 1."""
+        return -1.0 if self.clockwise else 1.0
+
+    @property
+    def pitch(self) -> float:
+        """Angle between two rollers, rad."""
+        return TURN / self.stops
+
+    @property
+    def half_length(self) -> float:
+        """Height of the upper face, mm."""
+        return 0.5 * self.length
+
+    @property
+    def tool(self) -> Roller:
+        """What makes the walls: the roller, wider by the clearance."""
+        return replace(self.roller, radius=self.roller.radius + 0.5 * self.clearance)
+
+    @property
+    def middle(self) -> float:
+        """The middle of the part of a roller that presses, mm from the turret's axis."""
+        return 0.5 * (self.top + self.reach)
+
+    @property
+    def guide(self) -> Turret:
+        """The turret, with the roller that is followed."""
+        return Turret(distance=self.distance, start=-0.5 * self.pitch)
+
+    @cached_property
+    def walls(self) -> tuple[GloboidalWall, ...]:
+        """The walls, the upper one first."""
+        return tuple(GloboidalWall(cam=self, side=side) for side in WORDS)
+
+    @property
+    def undercut(self) -> bool:
+        """Whether the rollers cut away a part of a wall at another angle."""
+        return any(wall.undercut for wall in self.walls)
+
+    def angle(self, theta: Array) -> Array:
+        """Return the angle of the roller from the common perpendicular, rad, at cam angles."""
+        return self.program.derivatives(theta, 0)[0] - 0.5 * self.pitch
+
+    def contact(self, theta: Array, x: Array, side: int) -> RollerContact:
+        """Return where the roller touches a wall.
+
+        Parameters
+        ----------
+        theta : (n,) array, rad
+            Cam angles over all turns.
+        x : (n, k) array, mm
+            Places along the roller.
+        side : {1, -1}
+            The wall.
+        """
+        return touched(self.axis(theta), self.tool, x, side)
+
+    def axis(self, theta: Array) -> RollerAxis:
+        """Return the axis of the roller, in the frame of the cam, at cam angles, rad."""
+        return carried(self.guide, theta, *self.program.derivatives(theta, 2))
+
+    def depth(self, points: Array) -> Array:
+        """Return distances from the turret's axis in planes through the cam's axis, mm.
+
+        Parameters
+        ----------
+        points : (..., 3) array, mm
+            Points in the frame of the cam.
+        """
+        radius = np.hypot(points[..., 0], points[..., 1])
+        return np.hypot(self.distance - radius, points[..., 2])
+
+    def inside(self, points: Array) -> Mask:
+        """Return which points are in the ring between top and floor, and between the faces.
+
+        Parameters
+        ----------
+        points : (..., 3) array, mm
+            Points in the frame of the cam.
+        """
+        depth = self.depth(points)
+        between = (depth >= self.top) & (depth <= self.floor)
+        return between & (np.abs(points[..., 2]) <= self.half_length)
+
+    @cached_property
+    def span(self) -> tuple[float, float]:
+        """Cam angles, rad, before and after which all of the rib is beyond the faces."""
+        beyond = self.half_length + 0.1 * (self.top - self.half_length)
+        last = math.asin(beyond / self.top)
+        turns = 1 + math.ceil((last + self.pitch) / self.pitch)
+        theta = TURN * np.linspace(-turns, turns, 2 * turns * _SCAN + 1)
+        angle = self.angle(theta)
+        on = np.flatnonzero((angle + self.pitch > -last) & (angle < last))
+        return float(theta[max(0, on[0] - 1)]), float(theta[min(len(theta) - 1, on[-1] + 1)])
+
+    @property
+    def places(self) -> tuple[float, float]:
+        """The first and last place along a roller that may be in the ring of the ribs, mm."""
+        radius = self.tool.radius
+        low = math.sqrt(max(0.0, self.top**2 - radius**2))
+        return low, self.floor + radius**2 / (self.distance - self.floor)
+
+    def boxes(self, *, turn: bool = False) -> list[Box]:
+        """Return where extremes are looked for: over the whole rib.
+
+        Parameters
+        ----------
+        turn : bool
+            Over one turn and the part of the roller that presses instead. In this turn it goes from
+            half a pitch below the middle to half a pitch above it.
+        """
+        if turn:
+            return boxes_between(self.program.cuts, (self.top, self.reach))
+        start, end = self.span
+        turns = range(math.floor(start / TURN), math.ceil(end / TURN))
+        cuts = np.unique(np.concatenate([TURN * k + self.program.cuts for k in turns]))
+        within = cuts[(cuts > start) & (cuts < end)]
+        return boxes_between(np.array([start, *within, end]), self.places)
+
+    @cached_property
+    def pressure(self) -> Spot:
+        """The largest pressure angle, rad: of the roller that is nearest to the middle."""
+
+        def gentle(theta: Array, x: Array) -> Array:
+            return -self.contact(theta, x, 1).pressure  # of both sides alike
+
+        return _placed(lowest(gentle, self.boxes(turn=True)), -1.0)
+
+    @cached_property
+    def lost_motion(self) -> Spot:
+        """The largest distance by which a roller can move between two walls, mm.
+
+        To first order: the clearance over the cosine of the pressure angle.
+        """
+        return replace(self.pressure, value=self.clearance / math.cos(self.pressure.value))
+
+    @cached_property
+    def least_rib(self) -> Spot:
+        """Least thickness of the rib along its normal, mm.
+
+        To first order: the distance of the rollers' axes across the walls, less both radii.
+        """
+        apart = 2.0 * math.sin(0.5 * self.pitch)
+
+        def thickness(theta: Array, x: Array) -> Array:
+            pressure = self.contact(theta, x, 1).pressure
+            return apart * x * np.cos(pressure) - 2.0 * self.tool.radius
+
+        return _placed(lowest(thickness, self.boxes(turn=True)))
+
+    @cached_property
+    def least_length(self) -> float:
+        """Least length, mm, of a cam that holds the turret in both directions at all times.
+
+        Then there is always a roller that presses along its whole length on an upper wall, and one
+        on a lower wall.
+        """
+        return -2.0 * lowest(self._short_of(np.max), self._of_turn).value
+
+    @property
+    def grip(self) -> float:
+        """Half the length, mm, less the farthest place at which the turret is held at a point.
+
+        Below 0 it is free at some angle.
+        """
+        return self.half_length + lowest(self._short_of(np.min), self._of_turn).value
+
+    @property
+    def _of_turn(self) -> list[Box]:
+        return boxes_between(self.program.cuts, (0.0, 0.0))
+
+    def _short_of(self, which: Callable[..., Array]) -> OfPlaces:
+        """Return minus how far from the middle the turret is held, by one of its two walls.
+
+        `which` takes from the places along a roller the one that counts.
+        """
+        turns = TURN * np.arange(-2.0, 3.0)
+        x = np.linspace(self.top, self.reach, _ALONG)
+
+        def short(theta: Array, _: Array) -> Array:
+            worst = np.zeros(len(theta))
+            for side in WORDS:
+                every = (theta[:, None] + turns).ravel()
+                points = self.contact(every, np.tile(x, (len(every), 1)), side).points
+                far = which(np.abs(points[..., 2]), axis=1).reshape(len(theta), -1)
+                worst = np.maximum(worst, far.min(axis=1))
+            return -worst[:, None]
+
+        return short
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class GloboidalWall(ShortRepr):
+    """A wall of the rib.
+
+    Parameters
+    ----------
+    cam : GloboidalCam
+        The cam.
+    side : {1, -1}
+        The side of the roller that makes it.
+    """
+
+    cam: GloboidalCam
+    side: int
+
+    @property
+    def key(self) -> str:
+        """Name in files and facts: ``upper`` or ``lower``, seen from the roller."""
+        return WORDS[self.side]
+
+    def contact(self, theta: Array, x: Array) -> RollerContact:
+        """Return where the roller touches it (see `GloboidalCam.contact`)."""
+        return self.cam.contact(theta, x, self.side)
+
+    def place(self, theta: Array, depth: float) -> Array:
+        """Return the places along the roller at which it is at a distance from the turret's axis.
+
+        Parameters
+        ----------
+        theta : (n,) array, rad
+            Cam angles.
+        depth : float, mm
+            The distance, in planes through the cam's axis.
+
+        Returns
+        -------
+        (n,) array, mm
+        """
+        cam = self.cam
+
+        def beyond(x: Array) -> Array:
+            return cam.depth(self.contact(theta, x[:, None]).points[:, 0]) - depth
+
+        ends = np.full(len(theta), 0.0), np.full(len(theta), cam.distance)
+        return bracketed_root(beyond, *ends, _ROOT * cam.distance)
+
+    def grid(self, theta: Array, count: int, beyond: float = 0.0) -> RollerContact:
+        """Return the wall as a grid, from the top of the rib to the floor.
+
+        Parameters
+        ----------
+        theta : (n,) array, rad
+            Cam angles.
+        count : int
+            Number of even places along the roller.
+        beyond : float, mm
+            How far it goes on beyond both.
+        """
+        cam, share = self.cam, np.linspace(0.0, 1.0, count)
+        first = self.place(theta, cam.top - beyond)[:, None]
+        last = self.place(theta, cam.floor + beyond)[:, None]
+        return self.contact(theta, first + share * (last - first))
+
+    @property
+    def undercut(self) -> bool:
+        """Whether the roller cuts away a part of it at another angle."""
+        return self.spread.value <= 0.0
+
+    @cached_property
+    def spread(self) -> Spot:
+        """The least spread, mm (see `gearcam.spatial.envelope`); below 0 the wall is undercut."""
+
+        def least(theta: Array, x: Array) -> Array:
+            contact = self.contact(theta, x)
+            return np.where(self.cam.inside(contact.points), contact.spread, math.inf)
+
+        return _placed(lowest(least, self.cam.boxes()))
+
+    @cached_property
+    def largest_roller(self) -> Spot:
+        """Largest radius of a roller that makes it without undercut, mm, where it is.
+
+        Infinite if there is none up to the centre distance. Only places that are on the rib now
+        count.
+        """
+        cam = self.cam
+        widest = _WIDEST * cam.distance
+
+        def critical(theta: Array, x: Array) -> Array:
+            contact = self.contact(theta, x)
+
+            def spread(radius: Array) -> Array:
+                return replace(contact, radius=radius).spread
+
+            low, high = np.zeros(x.shape), np.full(x.shape, widest)
+            found = bracketed_root(spread, low, high, _ROOT * widest)
+            return np.where(cam.inside(contact.points), found, math.inf)
+
+        spot = _placed(lowest(critical, cam.boxes()))
+        return spot if spot.value < 0.999 * widest else replace(spot, value=math.inf)
+
+
+def _placed(spot: Spot, factor: float = 1.0) -> Spot:
+    """Return an extreme at a cam angle within a turn, measured from the turret's axis."""
+    return Spot(theta=spot.theta % TURN, x=spot.x, value=factor * spot.value, start=_TURRET)

@@ -1,0 +1,158 @@
+"""The checks of globoidal cams: pressure angle, undercut, hold, lost motion, thin ribs, shocks.
+
+Importing this module registers them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Final
+
+from gearcam.base.findings import Remark, check
+from gearcam.base.numerals import formatted, shortened
+from gearcam.base.quantities import ANGLE, LENGTH, Param
+from gearcam.spatial.globoidal import GloboidalCam
+
+KIND: Final = "globoidal cams"
+"""Their group."""
+
+_SLACK: Final = 1e-6
+"""Length that may be missing without a finding, over the length: a value typed in digits."""
+
+Subject = tuple[GloboidalCam, float]
+"""What is checked: a cam and the radius of its bore, mm."""
+
+
+@check(
+    "pressure-angle",
+    kind=KIND,
+    limit=(
+        "pressure_angle",
+        Param(ANGLE, gt=0, lt=90, doc="largest pressure angle along the rollers"),
+        math.radians(45.0),
+    ),
+)
+def pressure_angle(subject: Subject, limit: float) -> Iterator[Remark]:
+    """Warn of large pressure angles anywhere along the rollers.
+
+    Looks at: the pressure angle of the roller nearest to the middle of the cam, along the part of
+    it that is on the ribs; it is largest at its end.
+    """
+    cam, _ = subject
+    worst = cam.pressure
+    if worst.value <= limit:
+        return
+    size = shortened(cam.reach * (1.0 + cam.program.peaks[0] / math.tan(limit)), 1.0)
+    angle = math.degrees(worst.value)
+    yield Remark(
+        f"The pressure angle reaches {formatted(angle)} deg. With cam.center_distance_mm = "
+        f"{formatted(size)} it keeps the limit, as it does with a larger index angle.",
+        worst.place,
+        angle,
+    )
+
+
+@check("undercut", kind=KIND, severity="error", unit="mm")
+def undercut(subject: Subject, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Report a wall that the rollers cut away at another cam angle.
+
+    Looks at: how the walls spread in space, where they are on the cam.
+    """
+    cam, _ = subject
+    for wall in cam.walls:
+        if not wall.undercut:
+            continue
+        most = wall.largest_roller.value - 0.5 * cam.clearance
+        radius = shortened(most, -1.0) if most > 0.0 else 0.0
+        hint = f" A roller_radius_mm of up to {formatted(radius)} does not." if radius else ""
+        yield Remark(
+            f"The rollers cut away a part of the {wall.key} wall at other angles.{hint}",
+            f"{wall.key} wall, {wall.spread.place}",
+            wall.spread.value,
+        )
+
+
+@check("loose-turret", kind=KIND, severity=("warning", "error"), unit="mm")
+def loose_turret(subject: Subject, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Warn of a cam that is too short to hold the turret at all angles.
+
+    It is an error where no roller touches a wall at all in one of the two directions.
+
+    Looks at: whether in each direction a roller presses on a wall along its whole length.
+    """
+    cam, _ = subject
+    least = cam.least_length
+    if cam.length >= least * (1.0 - _SLACK):
+        return
+    free = cam.grip < 0.0
+    how = "no roller touches a wall" if free else "no roller presses along its whole length"
+    near = formatted(shortened(least, 1.0))
+    yield Remark(
+        f"At some angles {how} in one of the two directions. With cam.length_mm = {near} there "
+        "is always one in both.",
+        "cam.length_mm",
+        cam.length,
+        severity="error" if free else "warning",
+        limit=least,
+    )
+
+
+@check(
+    "lost-motion",
+    kind=KIND,
+    limit=("lost_motion", Param(LENGTH, ge=0, doc="largest lost motion of a roller"), 0.1),
+)
+def lost_motion(subject: Subject, limit: float) -> Iterator[Remark]:
+    """Warn of rollers that can move between two walls.
+
+    Looks at: the clearance over the cosine of the pressure angle.
+    """
+    lost = subject[0].lost_motion
+    if lost.value > limit:
+        yield Remark(
+            f"A roller can move by {formatted(lost.value, 4)} mm while the cam does not.",
+            lost.place,
+            lost.value,
+        )
+
+
+@check(
+    "thin-wall",
+    kind=KIND,
+    limit=("wall_thickness", Param(LENGTH, ge=0, doc="least thickness of metal"), 2.0),
+)
+def thin_wall(subject: Subject, limit: float) -> Iterator[Remark]:
+    """Warn of a thin rib, and of little metal between core and bore.
+
+    Looks at: the thickness of the rib along its normal to first order, and the core at its middle.
+    """
+    cam, bore = subject
+    rib = cam.least_rib
+    if rib.value < limit:
+        yield Remark(
+            f"The rib is about {formatted(rib.value, 3)} mm thick where it is steep.",
+            f"rib, {rib.place}",
+            rib.value,
+        )
+    core = cam.distance - cam.floor - bore
+    if bore and core < limit:
+        yield Remark(
+            f"The metal between the core and the bore is {formatted(core, 4)} mm thick.",
+            "between the core and the bore",
+            core,
+        )
+
+
+@check("acceleration-jump", kind=KIND, severity="note")
+def acceleration_jump(subject: Subject, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Note a knot at which the acceleration jumps.
+
+    Looks at: knots where the acceleration jumps, the ends of the index among them.
+    """
+    for jump in subject[0].program.jumps:
+        if jump.order == 2:
+            angle = formatted(math.degrees(jump.theta), 5)
+            yield Remark(
+                "The acceleration jumps: the turret vibrates at high speed.", f"at {angle} deg"
+            )
