@@ -34,6 +34,9 @@ _FINE: Final = 7
 _INSET: Final = 1e-12
 """Distance from knots at which their sides are looked at, as a share of an interval."""
 
+_DECIMALS: Final = 5
+"""Of degrees in words: what is beside a knot is at it."""
+
 Box = tuple[float, float, float, float]
 """First and last cam angle, rad, first and last place along the roller, mm."""
 
@@ -61,7 +64,7 @@ class Spot:
     @property
     def place(self) -> str:
         """Where it is, in words."""
-        angle = formatted(math.degrees(self.theta), 5)
+        angle = formatted(round(math.degrees(self.theta), _DECIMALS), 5)
         return f"at {angle} deg, {formatted(self.x, 4)} mm from the {self.start}"
 
 
