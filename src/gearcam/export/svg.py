@@ -13,15 +13,16 @@ import math
 from collections.abc import Iterator, Sequence
 from functools import partial
 from typing import Final
-from xml.sax.saxutils import quoteattr
+from xml.sax.saxutils import escape, quoteattr
 
 import numpy as np
 
 from gearcam.base.numerals import decimal
-from gearcam.numeric.arrays import Array, Plane, as_pairs
+from gearcam.numeric.arrays import Array, Plane, as_pairs, bounds
 from gearcam.numeric.bulges import bulge_pieces, divided
 from gearcam.pictures import drawings
 from gearcam.pictures.drawings import Circle, Cross, Drawing, Feature, Loop, Path, box, chains
+from gearcam.pictures.labels import Label
 from gearcam.pictures.markup import CENTRODE_INK, FILLS, GROUND, INKS, TEXT_INK, picture
 
 THINNING: Final = 0.005
@@ -32,11 +33,23 @@ DECIMALS: Final = 4
 
 _number: Final = partial(decimal, decimals=DECIMALS)
 
+_INKS: Final = {
+    **dict.fromkeys(drawings.DASHED, CENTRODE_INK),
+    drawings.GROUND: TEXT_INK,
+    drawings.GHOST: "#b4bcc6",
+}
+"""Strokes of types that have their own."""
+
+_CLEAR: Final = (*drawings.OUTER, drawings.MEMBER)
+"""Types that may be above others, which are visible through them."""
+
 _ROUNDING: Final = 1e-12
 """Rounding of a quarter circle, rad."""
 
 
-def svg_bytes(drawing: Drawing, *, title: str, notes: Sequence[str] = ()) -> bytes:
+def svg_bytes(
+    drawing: Drawing, *, title: str, notes: Sequence[str] = (), labels: Sequence[Label] = ()
+) -> bytes:
     """Return a drawing as SVG.
 
     Parameters
@@ -47,6 +60,8 @@ def svg_bytes(drawing: Drawing, *, title: str, notes: Sequence[str] = ()) -> byt
         First line of the caption.
     notes : sequence of str
         Second line of the caption, joined by commas.
+    labels : sequence of Label
+        Names in the picture.
 
     Returns
     -------
@@ -62,31 +77,27 @@ def svg_bytes(drawing: Drawing, *, title: str, notes: Sequence[str] = ()) -> byt
         raise ValueError(f"{drawing.name}: nothing to draw")
 
     def elements(pixel: float) -> Iterator[str]:
-        return (_element(feature, pixel) for feature in drawing.features)
+        yield from (_element(feature, pixel) for feature in drawing.features)
+        yield from map(_label, labels)
 
     lines = [line for line in (title, ", ".join(notes)) if line]
-    return picture(lines, box(drawing.features), elements).encode()
+    shown = [*box(drawing.features), *(corner for one in labels for corner in one.corners)]
+    return picture(lines, bounds(np.array(shown)), elements).encode()
+
+
+def _label(label: Label) -> str:
+    """Return the text of a label, with an edge that parts it from lines below it."""
+    x, y = label.center.real, -label.center.imag + 0.35 * label.size
+    place = f'x="{_number(x)}" y="{_number(y)}" text-anchor="middle"'
+    font = f'font-family="sans-serif" font-size="{_number(label.size)}" fill="{TEXT_INK}"'
+    edge = f'stroke="{GROUND}" stroke-width="{_number(0.25 * label.size)}" paint-order="stroke"'
+    return f'<text class="name" {place} {font} {edge}>{escape(label.text)}</text>'
 
 
 def _element(feature: Feature, pixel: float) -> str:
     """Return the SVG element of one feature; the class is its layer."""
     shape, name = feature.shape, quoteattr(feature.layer.lower().replace("_", "-"))
-    wheel = 1 if feature.layer.startswith("GEAR2") or feature.kind == drawings.FOLLOWER else 0
-    wheel = 2 if feature.layer.startswith("CAM2") else wheel
-    ink, fill = INKS[wheel], FILLS[wheel]
-    fills = {drawings.MARK: ink, **dict.fromkeys((*drawings.OUTER, drawings.FOLLOWER), fill)}
-    inside = fill if feature.metal else fills.get(feature.kind, GROUND)
-    line, dashed = f'stroke="{ink}"', feature.kind in drawings.DASHED
-    if dashed:
-        dash = f"{_number(7 * pixel)} {_number(4 * pixel)}"
-        line = f'stroke="{CENTRODE_INK}" stroke-dasharray="{dash}"'
-    elif isinstance(shape, Cross):
-        line = f'stroke="{TEXT_INK}"'
-    if dashed or isinstance(shape, Path | Cross):
-        inside = "none"
-    # the first of two cams is visible through the second
-    clear = ' fill-opacity="0.6"' if wheel == 2 and feature.kind in drawings.OUTER else ""
-    style = f'class={name} fill="{inside}"{clear} {line}'
+    style = f"class={name} {_style(feature, pixel)}"
     match shape:
         case Circle(center=center, diameter=diameter):
             place = f'cx="{_number(center.real)}" cy="{_number(-center.imag)}"'
@@ -96,6 +107,40 @@ def _element(feature: Feature, pixel: float) -> str:
         case _:
             data = "".join(_data(points, closed) for points, closed in chains(shape, THINNING))
     return f'<path {style} d="{data}"/>'
+
+
+def _style(feature: Feature, pixel: float) -> str:
+    """Return fill and stroke of a feature."""
+    tone = _tone(feature)
+    ink, fill = INKS[tone], FILLS[tone]
+    dashed, bare = feature.kind in drawings.DASHED, not _has_area(feature)
+    fills = {drawings.MARK: ink, **dict.fromkeys(drawings.FILLED, fill)}
+    inside = (
+        "none" if dashed or bare else fill if feature.metal else fills.get(feature.kind, GROUND)
+    )
+    line = f'stroke="{_INKS.get(feature.kind, ink)}"'
+    if dashed:
+        line += f' stroke-dasharray="{_number(7 * pixel)} {_number(4 * pixel)}"'
+    elif isinstance(feature.shape, Cross):
+        line = f'stroke="{TEXT_INK}"'
+    # the first of two cams is visible through the second, wheels through members
+    clear = ' fill-opacity="0.6"' if tone == 2 and feature.kind in _CLEAR else ""
+    return f'fill="{inside}"{clear} {line}'
+
+
+def _tone(feature: Feature) -> int:
+    """Return the number of the colours of a feature."""
+    if feature.layer.startswith(("CAM2", drawings.MEMBER)):
+        return 2
+    return int(feature.layer.startswith("GEAR2") or feature.kind == drawings.FOLLOWER)
+
+
+def _has_area(feature: Feature) -> bool:
+    """Return whether a feature is drawn with an area: a path only if it is closed and filled."""
+    shape, kind = feature.shape, feature.kind
+    if isinstance(shape, Path):
+        return shape.closed and kind in drawings.FILLED
+    return not isinstance(shape, Cross) and kind != drawings.GHOST
 
 
 def _data(points: Plane, closed: bool) -> str:

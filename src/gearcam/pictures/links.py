@@ -54,7 +54,7 @@ def link(pins: Sequence[complex], half: float) -> tuple[Feature, ...]:
 
 
 def _pin(at: complex, half: float) -> Feature:
-    return Feature(layer=BORE, shape=Circle(center=at, diameter=_PIN * half))
+    return Feature(layer=f"{MEMBER}_{BORE}", shape=Circle(center=at, diameter=_PIN * half))
 
 
 def block(at: complex, direction: float, half: float) -> tuple[Feature, ...]:

@@ -1,398 +1,180 @@
-"""What is drawn of a mechanism: its members, the true wheels or cams of its drives, guides, paths.
+"""The drawings of a mechanism: the machine at an angle of its master, and the paths of its points.
 
-Members are symbols (see `gearcam.pictures.links`), wheels and cams are those of the pair or the cam
-itself, moved as the linkage takes them: by the drive's laws.
+Layers begin with the name of the point whose PATH is on them, or with the wheel.
 """
 
 from __future__ import annotations
 
-import cmath
 import math
+import re
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, Final
+from dataclasses import replace
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from gearcam.kinds.mechanism.drives import way_of
-from gearcam.kinds.mechanism.names import SHAFT, given
-from gearcam.linkages.dyads import DYADS
-from gearcam.linkages.elements import GROUND as STANDING
-from gearcam.linkages.elements import SLIDES
-from gearcam.numeric.pose import Pose
-from gearcam.parts.shapes import Circle
+from gearcam.kinds.mechanism.bodies import CHAIN_WHEEL, bodies, traced
+from gearcam.kinds.mechanism.scene import shown_at
+from gearcam.kinds.mechanism.traces import path_within
 from gearcam.pictures.drawings import (
     BORE,
-    CENTER,
+    GHOST,
     MEMBER,
     TRACE,
-    Cross,
+    Circle,
+    Drawing,
     Feature,
     Path,
-    mirrored,
+    box,
+    chains,
+    place,
 )
-from gearcam.pictures.links import block, guide, link, pivot
-from gearcam.pictures.scenes import MovingBody, still
-from gearcam.results.nested import within
+from gearcam.pictures.labels import Label, labelled
+from gearcam.pictures.markup import PIXELS
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.build import MechanismResult
-    from gearcam.kinds.mechanism.drives import Moved, PlacedDrive
-    from gearcam.kinds.mechanism.tables import ChainSpec, DyadSpec
-    from gearcam.linkages.elements import Known
     from gearcam.numeric.arrays import Array, Plane
+    from gearcam.pictures.scenes import MovingBody
 
-_WIDTH: Final = 0.011
-"""Half width of a link, relative to the size of the machine."""
+_STEPS: Final = 720
+"""Angles of the master in a picture."""
 
-_LEAST, _MOST = 0.004, 0.2
-"""Smallest half width relative to the machine, and largest one relative to its shortest link."""
+_GHOSTS: Final = 6
+"""Places of the machine in a picture, the shown one among them."""
 
-_PIECES: Final = 24
-"""Most pieces of a chain, which overlap where it is short."""
+_LETTERS: Final = 15.0
+"""Height of letters, pixels."""
 
-_BARREL: Final = 0.8
-"""Length of a cylinder's barrel, relative to the cylinder at its shortest."""
+_PIN: Final = f"{MEMBER}_{BORE}"
+"""Layer of the joints of members."""
 
-
-@dataclass(frozen=True)
-class _Shown:
-    """A solved mechanism: its `result`, angles `q` of the master, what is `known` there."""
-
-    result: MechanismResult
-    q: Array
-    known: Known
-
-    def place(self, name: str) -> Plane:
-        """Return the places of a joint."""
-        return _all(self.known.jet(name).c[0], self.q) + 0j
-
-    def turn(self, name: str) -> Array:
-        """Return the turn of a shaft, or the place of a slide."""
-        return _all(self.known.jet(name).c[0], self.q)
-
-    def pose(self, name: str) -> Pose:
-        """Return the poses of a member or a guide."""
-        frame = self.known.frame(name)
-        turn = np.unwrap(np.angle(_all(frame.direction.c[0], self.q)))
-        return Pose(turn, _all(frame.origin.c[0], self.q) + 0j)
-
-    @property
-    def joints(self) -> list[str]:
-        """Names of the joints that the tables give, and of those of even shafts."""
-        design = self.result.design
-        named = [one.name for one in (*design.joint, *design.point)]
-        others = (*design.crank, *design.slide, *design.dyad, *design.chain)
-        return [*named, *(one.joint for one in others)]
-
-    @property
-    def half(self) -> float:
-        """Half of the width of a link, mm."""
-        design = self.result.design
-        places = np.concatenate([self.place(name) for name in self.joints] or [np.zeros(1)])
-        size = float(np.hypot(np.ptp(places.real), np.ptp(places.imag)))
-        lengths = [one.length for one in (*design.crank, *design.chain)]
-        lengths += [length for one in design.dyad for length in one.lengths if length > 0.0]
-        size = max(size, *lengths, 1.0) if lengths else size or 1.0
-        return max(_LEAST * size, min(_WIDTH * size, _MOST * min(lengths, default=size)))
+CHORDS: Final = 0.01
+"""Chord tolerance of paths if the design has none, mm."""
 
 
-def _all(value: Any, q: Array) -> Any:
-    return np.broadcast_to(np.asarray(value), q.shape)
+def _angles(result: MechanismResult) -> tuple[Array, int]:
+    """Return the shown angle of the master, those of ghosts, and all; how many come before all."""
+    (low, high), at = result.linkage.span, shown_at(result)
+    if result.linkage.closed:
+        others = low + (at - low + (high - low) * np.arange(1, _GHOSTS) / _GHOSTS) % (high - low)
+    else:
+        others = np.linspace(low, high, _GHOSTS)
+    first = np.concatenate([[at], others])
+    turns = max(1, round((high - low) / math.tau))
+    return np.concatenate([first, np.linspace(low, high, _STEPS * turns + 1)]), len(first)
 
 
-@dataclass
-class _Parts:
-    """What a member is drawn with, in its frame: joints, straight ways, blocks and directions."""
-
-    pins: list[complex] = field(default_factory=list)
-    ways: list[tuple[complex, complex]] = field(default_factory=list)
-    blocks: list[tuple[complex, float]] = field(default_factory=list)
-
-    def features(self, half: float) -> tuple[Feature, ...]:
-        """Return its shapes."""
-        made: list[Feature] = []
-        for way in self.ways:
-            made += link(way, half)[:1]
-        for at, direction in self.blocks:
-            made += block(at, direction, half)
-        if len(self.pins) > 1 or (self.pins and not made):
-            made += link(self.pins, half)
-        return tuple(made)
-
-
-def bodies(result: MechanismResult, q: Array) -> tuple[MovingBody, ...]:
-    """Return the bodies of a mechanism.
+def posed(every: tuple[MovingBody, ...], index: int = 0) -> Iterator[Feature]:
+    """Yield the features of bodies in their places, but for paths.
 
     Parameters
     ----------
-    result : MechanismResult
-        The mechanism.
-    q : (n,) array, rad
-        Angles of the master; they cover all that it moves through, since guides are as long as what
-        slides on them needs.
-
-    Returns
-    -------
-    tuple of MovingBody
-        Later ones are drawn on top. Members, wheels and cams have their names, a wheel or a cam
-        that of its drive before it; what stands still is named ``frame``.
+    every : tuple of MovingBody
+        The bodies.
+    index : int
+        Number of the place.
     """
-    shown = _Shown(result, q, result.linkage.at(q, 0))
-    half = shown.half
-    driven = [one for number in range(len(result.drives)) for one in _driven(shown, number)]
+    for body in every:
+        part = body.name.rpartition(".")[2]
+        prefix = f"{part.upper()}_" if part.startswith("gear") else ""
+        shown = [one for one in body.features if one.kind != TRACE]
+        yield from place(shown, body.pose[index], prefix)
+
+
+def _ghosts(every: tuple[MovingBody, ...], count: int) -> Iterator[Feature]:
+    """Yield lines between the joints of members, and their pins, at other places."""
+    for body in every:
+        pins = _pins(body)
+        if not len(pins) or body.name == CHAIN_WHEEL:
+            continue
+        shown = [one for one in body.features if one.layer == _PIN]
+        if len(pins) > 1:
+            line = Path(points=pins, closed=len(pins) > 2)
+            shown.append(Feature(layer=GHOST, shape=line))
+        for index in range(1, count):
+            yield from place([replace(one, layer=GHOST) for one in shown], body.pose[index])
+
+
+def _pins(body: MovingBody) -> Plane:
+    """Return the joints of a member in its frame; none of other bodies."""
+    pins = [
+        one.shape.center
+        for one in body.features
+        if one.layer == _PIN and isinstance(one.shape, Circle)
+    ]
+    return np.array(list(dict.fromkeys(pins)), dtype=np.complex128)
+
+
+def picture(result: MechanismResult) -> tuple[Drawing, tuple[Label, ...]]:
+    """Return the machine at the angle of the design, at others as ghosts, and its names."""
+    q, count = _angles(result)
+    every = bodies(result, q, count)
+    paths = [one for body in every for one in body.features if one.kind == TRACE]
+    shown = tuple(posed(every))
+    features = (*_ghosts(every, count), *shown, *paths)
+    low, high = box(features)
+    size = _LETTERS * max((high - low).real, 0.6 * (high - low).imag) / PIXELS
+    labels = labelled(_names(result, every, q[:1]), _lines(shown, 0.4 * size), size, size)
+    return Drawing(name="poses", features=features), labels
+
+
+def _names(
+    result: MechanismResult, every: tuple[MovingBody, ...], q: Array
+) -> list[tuple[str, complex]]:
+    """Return the names of joints and members with their places at an angle (1,), rad."""
+    design, known = result.design, result.linkage.at(q, 0)
+    named = [one.name for one in (*design.joint, *design.point)]
+    others = (*design.crank, *design.slide, *design.dyad, *design.chain)
+    named += [one.joint for one in others]
+    joints = [(name, complex(np.asarray(known.jet(name).c[0]).flat[0])) for name in named]
     members = [
-        MovingBody(name=name, called=name, features=parts.features(half), pose=shown.pose(name))
-        for name, parts in _members(shown, half).items()
-        if parts.pins or parts.blocks
+        (body.called, complex(body.pose[0].apply(_pins(body).mean())))
+        for body in every
+        if len(_pins(body))
     ]
-    chains = [one for spec in result.design.chain for one in _chain(shown, spec)]
-    cylinders = [one for spec in result.design.dyad for one in _cylinder(shown, spec, half)]
-    grounds = tuple(_grounds(shown, half))
-    standing = [still(grounds, q)] if grounds else []
-    paths = tuple(_paths(shown))
-    drawn = [still(paths, q)] if paths else []
-    return (*driven, *standing, *chains, *cylinders, *members, *drawn)
+    return [*joints, *members]
 
 
-# --- members -------------------------------------------------------------------------------------
+def _lines(features: tuple[Feature, ...], step: float) -> Plane:
+    """Return points of the lines of features, no farther apart than a step, mm."""
+    found = []
+    for feature in features:
+        for points, closed in chains(feature.shape, step):
+            ends = np.append(points[1:], points[:1]) if closed else points[1:]
+            starts = points[: len(ends)]
+            counts = np.ceil(np.abs(ends - starts) / step).astype(np.int64) + 1
+            own = np.repeat(np.arange(len(counts)), counts)
+            share = (np.arange(len(own)) - np.repeat(np.cumsum(counts) - counts, counts)) / counts[
+                own
+            ]
+            found.append(starts[own] + (ends - starts)[own] * share)
+    return np.concatenate(found)
 
 
-def _members(shown: _Shown, half: float) -> dict[str, _Parts]:
-    """Return what the members are drawn with, by name, in order."""
-    design, found = shown.result.design, dict[str, _Parts]()
-    for crank in design.crank:
-        found[crank.name] = _Parts([0j, complex(crank.length)])
-    for slide in design.slide:
-        pins = [0j, complex(*slide.at)] if any(slide.at) else [0j]
-        found[slide.name] = _Parts(pins, blocks=[] if _carried(shown, slide.on) else [(0j, 0.0)])
-    for dyad in design.dyad:
-        for k, name in enumerate(dyad.members):
-            found[name] = _of_dyad(shown, dyad, k, half)
-    for chain in design.chain:
-        found[chain.lever] = _Parts([0j, complex(chain.length)])
-    for one in design.guide:
-        ends = _ends(shown, one.name)
-        if one.on != STANDING and one.on in found and ends is not None:
-            way, at = cmath.exp(1j * one.direction), complex(*one.at)
-            found[one.on].ways.append(_longer(at + ends[0] * way, at + ends[1] * way, half))
-    for point in design.point:
-        if point.on in found:
-            found[point.on].pins.append(complex(*point.at))
-    return found
+def paths_drawing(result: MechanismResult) -> Drawing:
+    """Return the paths of points within the chord tolerance, and the machine at its angle."""
+    linkage, tolerance = result.linkage, result.design.output.chord_tolerance or CHORDS
+    names, features, taken = traced(result), [], set[str]()
+    for name in names:
+
+        def where(q: Array, name: str = name) -> Plane:
+            value = np.asarray(linkage.at(q, 0).jet(name).c[0])
+            return np.broadcast_to(value, q.shape) + 0j
+
+        _, points = path_within(where, linkage.knots, tolerance)
+        points = points[:-1] if linkage.closed else points
+        layer = _layer(name, taken)
+        features.append(Feature(layer=layer, shape=Path(points=points, closed=linkage.closed)))
+    q, _ = _angles(result)
+    return Drawing(name="paths", features=(*features, *posed(bodies(result, q))))
 
 
-def _carried(shown: _Shown, slide: str) -> bool:
-    """Return whether a slide is a follower or a rack, which its drive draws."""
-    word = slide.rpartition(".")[2]
-    return word in ("follower", "rack") and slide in {
-        one.name for one in given({"drive": shown.result.design.drive})
-    }
-
-
-def _of_dyad(shown: _Shown, dyad: DyadSpec, k: int, half: float) -> _Parts:
-    """Return what member `k` of a dyad is drawn with."""
-    guided, slides = DYADS[dyad.formula].guides[k], SLIDES[dyad.formula]
-    beside = (dyad.beta, -dyad.beta)[k]
-    own, other = f"member{k + 1}", f"member{2 - k}"
-    parts = _Parts(blocks=[(0j, -dyad.gammas[k])] if guided else [])
-    parts.pins.append(0j)
-    if own in slides:
-        along = shown.turn(f"{dyad.joint}.{own}")
-        parts.ways.append(_longer(min(0.0, along.min()), max(0.0, along.max()), half))
-        return parts
-    if dyad.driven is not None and k == 0:  # drawn as a cylinder
-        return _Parts()
-    end = complex(dyad.lengths[k])
-    if end:
-        parts.pins.append(end)
-    if other in slides:
-        parts.blocks.append((end, beside))
-    return parts
-
-
-def _longer(first: complex, last: complex, half: float) -> tuple[complex, complex]:
-    """Return the ends of a way with room for the block on it."""
-    way = last - first
-    room = 3.0 * half * (way / abs(way) if way else 1.0)
-    return first - room, last + room
-
-
-def _ends(shown: _Shown, name: str) -> tuple[float, float] | None:
-    """Return the first and the last place of what slides on a guide; None without anything."""
-    design = shown.result.design
-    used = [
-        f"{dyad.joint}.guide{k + 1}"
-        for dyad in design.dyad
-        for k, owner in enumerate((dyad.first, dyad.last))
-        if owner == name and DYADS[dyad.formula].guides[k]
-    ]
-    used += [slide.on for slide in design.slide if way_of(slide.on) == name]
-    places = [shown.turn(one) for one in used]
-    if not places:
-        return None
-    return float(min(one.min() for one in places)), float(max(one.max() for one in places))
-
-
-def _cylinder(shown: _Shown, dyad: DyadSpec, half: float) -> Iterator[MovingBody]:
-    """Yield barrel and rod of a member whose length a drive changes."""
-    if dyad.driven is None:
-        return
-    pose, end = shown.pose(dyad.members[0]), shown.place(dyad.joint)
-    long = np.abs(end - pose.shift)
-    shortest, longest = float(long.min()), float(long.max())
-    rod = max(longest - _BARREL * shortest, 0.5 * shortest)
-    barrel = _BARREL * shortest
-    low, high = -1.8j * half, 1.8j * half
-    edge = np.array([low, barrel + low, barrel + high, high])
-    pinned = link([0j], 1.2 * half)
-    shape = Feature(layer=MEMBER, shape=Path(points=edge))
-    first = dyad.members[0]
-    yield MovingBody(
-        name=f"{first}_rod", called=f"{first}, rod", features=link([-rod + 0j, 0j], half)[:1],
-        pose=Pose(pose.turn, end),
-    )  # fmt: skip
-    yield MovingBody(name=first, called=first, features=(shape, *pinned), pose=pose)
-
-
-# --- what stands still ---------------------------------------------------------------------------
-
-
-def _grounds(shown: _Shown, half: float) -> Iterator[Feature]:
-    """Yield guides and pivots on the ground."""
-    design = shown.result.design
-    ways = [one.name for one in design.guide if one.on == STANDING]
-    ways += [way_of(one.on) for one in design.slide if not _carried(shown, one.on)]
-    for name in dict.fromkeys(ways):
-        ends, pose = _ends(shown, name), shown.pose(name)[0]
-        for one in guide(ends, half) if ends is not None else ():
-            yield replace(one, shape=Path(points=pose.apply(_points(one)), closed=False))
-    for at in dict.fromkeys(_pivots(shown)):
-        yield from pivot(at, half)
-
-
-def _points(feature: Feature) -> Plane:
-    shape = feature.shape
-    return shape.points if isinstance(shape, Path) else np.zeros(0, dtype=np.complex128)
-
-
-def _pivots(shown: _Shown) -> Iterator[complex]:
-    """Yield the joints that stand still, but for the shafts of wheels and cams."""
-    design = shown.result.design
-    yield from (complex(*one.at) for one in design.joint)
-    even = {
-        use.name: drive
-        for drive in shown.result.drives
-        if drive.result is None
-        for use in given({"drive": [drive.spec]})
-        if use.sort == SHAFT
-    }
-    for crank in design.crank:
-        if crank.at is None and crank.on in even:
-            yield even[crank.on].machine(0j)
-    yield from (complex(*one.hinge) for one in design.chain)
-
-
-def traced(result: MechanismResult) -> tuple[str, ...]:
-    """Return the names of the points whose paths are drawn: all, and joints that are asked for."""
-    points = [one.name for one in result.design.point if one.on != STANDING]
-    asked = [one.name for one in result.outputs if one.quantity == f"{one.name}.x"]
-    return tuple(dict.fromkeys([*points, *asked]))
-
-
-def _paths(shown: _Shown) -> Iterator[Feature]:
-    closed = shown.result.linkage.closed
-    for name in traced(shown.result):
-        points = shown.place(name)
-        if float(np.abs(points - points[0]).max()) > 0.0:
-            yield Feature(layer=TRACE, shape=Path(points=points, closed=closed))
-
-
-# --- chains --------------------------------------------------------------------------------------
-
-
-def _chain(shown: _Shown, spec: ChainSpec) -> Iterator[MovingBody]:
-    """Yield the wheel of a chain, and its free part as pieces that overlap."""
-    center, wind = complex(*spec.at), 1.0 if spec.wind == "ccw" else -1.0
-    holes = [0.6 * spec.radius * cmath.exp(2j * math.pi * k / 3) for k in range(3)]
-    features = (
-        Feature(layer=MEMBER, shape=Circle(center=0j, diameter=2.0 * spec.radius)),
-        *(Feature(layer=BORE, shape=Circle(center=at, diameter=0.3 * spec.radius)) for at in holes),
-        Feature(layer=CENTER, shape=Cross(center=0j, size=0.4 * spec.radius)),
-    )
-    fixed = np.full(shown.q.shape, center)
-    yield MovingBody(
-        name="chain_wheel", called="chain wheel", features=features,
-        pose=Pose(shown.turn(spec.on), fixed),
-    )  # fmt: skip
-    end = shown.place(spec.joint)
-    way = end - center
-    seen = np.angle(way) + wind * np.arccos(spec.radius / np.abs(way))
-    start = center + spec.radius * np.exp(1j * seen)
-    long, turn = np.abs(end - start), np.unwrap(np.angle(end - start))
-    longest = float(long.max())
-    size = max(float(long.min()), longest / _PIECES)
-    count = max(1, math.ceil(longest / size))
-    shape = Path(points=np.array([0j, size]), closed=False)
-    for k in range(count):
-        share = k / (count - 1) if count > 1 else 0.0
-        at = start + np.exp(1j * turn) * share * (long - size)
-        piece = Feature(layer=MEMBER, shape=shape)
-        yield MovingBody(
-            name=f"chain_{k + 1}", called="chain", features=(piece,), pose=Pose(turn, at)
-        )
-
-
-# --- wheels and cams -----------------------------------------------------------------------------
-
-
-def _driven(shown: _Shown, number: int) -> Iterator[MovingBody]:
-    """Yield the bodies of the pair or the cam of a drive."""
-    drive = shown.result.drives[number]
-    if drive.result is None:
-        return
-    with within(f"drive[{number}].{'pair' if drive.spec.pair is not None else 'cam'}"):
-        scene = drive.result.plain.scene(1)
-    for body in scene.bodies:
-        moved = _moved(drive, body.name)
-        pose = _motion(moved, drive.own(shown.q, not number)) @ body.pose[0]
-        yield replace(
-            body,
-            name=f"{drive.spec.name}.{body.name}" if moved is not None else body.name,
-            called=f"{body.called} of {drive.spec.name}" if moved is not None else body.called,
-            features=tuple(_seen(drive, body.features)),
-            pose=_placed(drive, pose),
-            teeth=None,
-        )
-
-
-def _moved(drive: PlacedDrive, body: str) -> Moved | None:
-    """Return what moves a body of a pair or a cam; None if it stands still."""
-    if body == "frame":
-        return None
-    first, last = drive.moved.values()
-    if drive.spec.pair is not None:
-        return first if body == drive.result.parts[0].name else last
-    return last if body == "follower" else first
-
-
-def _motion(moved: Moved | None, x: Array) -> Pose:
-    """Return the motion of a body from its place at the drive's zero, in the drive's frame."""
-    if moved is None:
-        return Pose(np.zeros(x.shape), np.zeros(x.shape, dtype=np.complex128))
-    way = np.asarray(moved.law(x, 0).c[0]) - np.asarray(moved.law(np.zeros(1), 0).c[0])
-    if moved.along:
-        return Pose(np.zeros(x.shape), way * moved.along)
-    return Pose(way, moved.at * (1.0 - np.exp(1j * way)))
-
-
-def _seen(drive: PlacedDrive, features: tuple[Feature, ...]) -> Iterator[Feature]:
-    for one in features:
-        yield replace(one, shape=mirrored(one.shape)) if drive.spec.mirror else one
-
-
-def _placed(drive: PlacedDrive, pose: Pose) -> Pose:
-    """Return a pose in the drive's frame as one in the machine."""
-    if drive.spec.mirror:
-        pose = Pose(-pose.turn, np.conj(pose.shift))
-    return Pose(drive.spec.turn, complex(*drive.spec.at)) @ pose
+def _layer(name: str, taken: set[str]) -> str:
+    """Return the layer of a point's path; layers that differ in case only are one in DXF."""
+    plain = re.sub(r"[^\w-]", "_", name)
+    own, number = plain, 2
+    while own.casefold() in taken:
+        own, number = f"{plain}_{number}", number + 1
+    taken.add(own.casefold())
+    return f"{own}_{TRACE}"

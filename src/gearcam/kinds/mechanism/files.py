@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Final
 
+from gearcam.base.numerals import formatted
 from gearcam.report.file import report_files
 
 if TYPE_CHECKING:
@@ -26,5 +28,45 @@ def _tables(result: MechanismResult, _: Any) -> Files:
     return {"motion.csv": table_bytes(result.motion())}
 
 
-FILES: Final[Mapping[str, Callable[..., Files]]] = {"csv": _tables, "report": report_files}
+def _dxf(result: MechanismResult, _: Any) -> Files:
+    """Return the paths of points as DXF.
+
+    Files: paths.dxf.
+
+    The paths of the points, and of the joints that are asked for, 1:1 in mm and within the chord
+    tolerance, each on a layer of its own, NAME_PATH; with the machine at its pose: members on
+    MEMBER, guides and pivots on GROUND, the wheels or the cam on theirs.
+    """
+    from gearcam.export.dxf import DxfStyle, dxf_bytes
+    from gearcam.kinds.mechanism.drawn import CHORDS, paths_drawing
+
+    tolerance = result.design.output.chord_tolerance or CHORDS
+    style = DxfStyle(tolerance=tolerance, curves="lines", version="R2010")
+    return {"paths.dxf": dxf_bytes(paths_drawing(result), style)}
+
+
+def _svg(result: MechanismResult, _: Any) -> Files:
+    """Return a picture of the machine.
+
+    Files: poses.svg.
+
+    The machine at its pose with the names of joints and members, the paths of its points, and its
+    members at other angles; not for cutting.
+    """
+    from gearcam.export.svg import svg_bytes
+    from gearcam.kinds.mechanism.drawn import picture
+    from gearcam.kinds.mechanism.scene import shown_at
+
+    drawing, labels = picture(result)
+    place = f"{result.driver[0]} = {formatted(math.degrees(shown_at(result)))} deg"
+    notes = (*result.facts.headline, f"drawn at {place}")
+    return {"poses.svg": svg_bytes(drawing, title=result.design.name, notes=notes, labels=labels)}
+
+
+FILES: Final[Mapping[str, Callable[..., Files]]] = {
+    "csv": _tables,
+    "dxf": _dxf,
+    "svg": _svg,
+    "report": report_files,
+}
 """What makes the files of each format: contents by name."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from gearcam.kinds.mechanism.drawn import bodies
+from gearcam.kinds.mechanism.bodies import bodies
 from gearcam.pictures.scenes import PLACES, Scene
 
 if TYPE_CHECKING:
