@@ -110,3 +110,9 @@ def six_bar_with_dwell() -> Linkage:
         Dyad("RRR", "E", "G", "F", ("link", "arm"), Lengths(379.0, 218.0)),
     ]
     return Linkage(in_order(parts), TURN)
+
+
+def drawn_straight(coupler: float, base: float, angle: float) -> Linkage:
+    """Return a linkage of 000, fig. 2.106: crank 100, coupler = rocker = CP, which P follows."""
+    beyond = coupler * np.exp(1j * angle)
+    return four_bar(base, (100.0, coupler, coupler), complex(coupler + beyond))

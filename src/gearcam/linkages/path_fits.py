@@ -1,0 +1,295 @@
+"""How straight, or how round, a stretch of a path is.
+
+Lines and circles are those with the smallest largest deviation. A line is the middle of the
+narrowest strip round the stretch: where the strip's width is least, its change with the strip's
+direction, the way between the points that touch both sides, goes through 0. A circle is found by
+exchange: it is as far, in turn inside and outside, from four points; these are replaced by the
+farthest ones until none is farther. Deviations are extremes, not samples.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from gearcam.linkages.measures import Extremes, Peak, extremes_of
+from gearcam.linkages.paths import PointPath
+from gearcam.linkages.plane import imaginary, square
+from gearcam.numeric.arrays import Array, Plane
+from gearcam.numeric.jets import Jet
+from gearcam.numeric.roots import bracketed_root
+
+_PLACES: Final = 256
+"""Points of a stretch from which a fit starts."""
+
+_DIRECTIONS: Final = 720
+"""Directions of strips that are compared at first, over half a turn."""
+
+_FOUND: Final = 1e-15
+"""Accuracy of a direction, rad."""
+
+_ROUNDS: Final = 40
+"""Largest number of exchanges, and of Newton steps in each."""
+
+_EVEN: Final = 1e-12
+"""Difference of the largest deviation and that at the four points, as a share of the radius."""
+
+_STRAIGHT: Final = 1e-9
+"""Height over length of a stretch that is too straight for a circle."""
+
+
+class LineFit(NamedTuple):
+    """The straight line nearest to a stretch.
+
+    Attributes
+    ----------
+    point : complex, mm
+        Its middle, beside the middle of the stretch.
+    direction : float, rad
+        From -pi/2 to pi/2.
+    deviation : float, mm
+        Largest distance of the stretch from it: half the width of the strip.
+    length : float, mm
+        Of the stretch, along the line.
+    """
+
+    point: complex
+    direction: float
+    deviation: float
+    length: float
+
+
+class CircleFit(NamedTuple):
+    """The circle nearest to a stretch.
+
+    Attributes
+    ----------
+    center : complex, mm
+        Its centre.
+    radius : float, mm
+        Middle of the smallest and the largest distance from it.
+    deviation : float, mm
+        Largest distance of the stretch from the circle.
+    angle : float, rad
+        Of the arc, as the driver turns: positive counter-clockwise.
+    """
+
+    center: complex
+    radius: float
+    deviation: float
+    angle: float
+
+
+def best_line(path: PointPath, begin: float, end: float) -> LineFit:
+    """Return the straight line nearest to a stretch of a path.
+
+    Parameters
+    ----------
+    path : PointPath
+        The path.
+    begin, end : float, rad
+        The driver's angles; past the end of a turn if it is closed.
+
+    Returns
+    -------
+    LineFit
+
+    Raises
+    ------
+    ValueError
+        If the end is not behind the begin, or the stretch is not in the path's range.
+    """
+    knots = _knots(path, begin, end)
+    points = _samples(path, knots)
+    turned = np.linspace(-0.5 * np.pi, 0.5 * np.pi, _DIRECTIONS, endpoint=False)
+    widths = np.array([np.ptp((points * np.exp(-1j * one)).imag) for one in turned])
+    near, step = float(turned[widths.argmin()]), np.pi / _DIRECTIONS
+
+    def change(direction: Array) -> Array:
+        """Return the slope of the strip's width."""
+        found = []
+        for one in direction:
+            low, high = _sides(path, knots, float(one))
+            ends = np.asarray(path.at(np.array([low.place, high.place]), 0).c[0])
+            found.append(((ends[0] - ends[1]) * np.exp(-1j * one)).real)
+        return np.array(found)
+
+    edges = np.array([near - step]), np.array([near + step])
+    slopes = change(edges[0]), change(edges[1])
+    if slopes[0][0] < 0.0 < slopes[1][0]:
+        near = float(bracketed_root(change, *edges, _FOUND, slopes)[0])
+    low, high = _sides(path, knots, near)
+    along = _sides(path, knots, near - 0.5 * np.pi)  # by the height over a line across
+    middle = 0.5 * (along[0].value + along[1].value) + 0.5j * (low.value + high.value)
+    direction = math.remainder(near, math.pi)
+    return LineFit(
+        complex(middle * np.exp(1j * near)),
+        direction,
+        0.5 * (high.value - low.value),
+        along[1].value - along[0].value,
+    )
+
+
+def best_circle(path: PointPath, begin: float, end: float) -> CircleFit:
+    """Return the circle nearest to a stretch of a path.
+
+    Parameters
+    ----------
+    path : PointPath
+        The path.
+    begin, end : float, rad
+        The driver's angles; past the end of a turn if it is closed.
+
+    Returns
+    -------
+    CircleFit
+
+    Raises
+    ------
+    ValueError
+        If the end is not behind the begin, the stretch is not in the path's range, or it is
+        straight.
+    """
+    knots = _knots(path, begin, end)
+    points = _samples(path, knots)
+    center, radius = _least_squares(points)
+    best = (math.inf, center)
+    for _ in range(_ROUNDS):
+        places, values = _distances(path, knots, center)
+        off = values - 0.5 * (values.max() + values.min())
+        deviation = float(off.max())
+        best = min(best, (deviation, center), key=lambda one: one[0])
+        four = _alternating(off)
+        if len(four) < 4 or np.abs(off[four]).min() >= deviation - _EVEN * radius:
+            break
+        touched = np.asarray(path.at(places[four], 0).c[0])
+        center, radius = _even(touched, np.sign(off[four]), center, radius)
+    deviation, center = best
+    low, high = _ends(_distances(path, knots, center))
+    return CircleFit(
+        center,
+        0.5 * (low.value + high.value),
+        0.5 * (high.value - low.value),
+        _turned(points - center),
+    )
+
+
+def distances_from(path: PointPath, center: complex, begin: float, end: float) -> tuple[Peak, Peak]:
+    """Return the smallest and the largest distance of a stretch of a path from a point.
+
+    Parameters
+    ----------
+    path : PointPath
+        The path.
+    center : complex, mm
+        The point.
+    begin, end : float, rad
+        The driver's angles; past the end of a turn if it is closed.
+
+    Returns
+    -------
+    two Peak
+        Distances, mm, and the driver's angles.
+
+    Raises
+    ------
+    ValueError
+        If the end is not behind the begin, or the stretch is not in the path's range.
+    """
+    return _ends(_distances(path, _knots(path, begin, end), center))
+
+
+def _knots(path: PointPath, begin: float, end: float) -> Array:
+    """Return the ends of a stretch and the path's knots between them."""
+    low, high = path.span
+    if not begin < end:
+        raise ValueError(f"stretch {begin:g} to {end:g} rad: its end must be behind its begin")
+    if not path.closed and not low <= begin < end <= high:
+        raise ValueError(
+            f"stretch {begin:g} to {end:g} rad: must be within {low:g} and {high:g} rad"
+        )
+    turn = high - low
+    turns = range(math.floor((begin - low) / turn), math.floor((end - low) / turn) + 1)
+    knots = np.concatenate([np.asarray(path.knots) + k * turn for k in turns])
+    return np.unique(np.concatenate([[begin, end], knots[(begin < knots) & (knots < end)]]))
+
+
+def _samples(path: PointPath, knots: Array) -> Plane:
+    return np.asarray(path.at(np.linspace(knots[0], knots[-1], _PLACES), 0).c[0])
+
+
+def _extremes(path: PointPath, knots: Array, of: Callable[[Jet], Jet]) -> Extremes:
+    return extremes_of(lambda q, order: of(path.at(q, order)), knots, 0)[0]
+
+
+def _sides(path: PointPath, knots: Array, direction: float) -> tuple[Peak, Peak]:
+    """Return the lowest and the highest point over a direction."""
+    turn = np.exp(-1j * direction)
+    return _ends(_extremes(path, knots, lambda point: imaginary(point * turn)))
+
+
+def _distances(path: PointPath, knots: Array, center: complex) -> Extremes:
+    """Return extremes of the distance from a point."""
+    places, _ = _extremes(path, knots, lambda point: square(point - center))
+    return places, np.abs(np.asarray(path.at(places, 0).c[0]) - center)
+
+
+def _ends(extremes: Extremes) -> tuple[Peak, Peak]:
+    places, values = extremes
+    low, high = (
+        Peak(float(values[k]), float(places[k])) for k in (values.argmin(), values.argmax())
+    )
+    return low, high
+
+
+def _least_squares(points: Plane) -> tuple[complex, float]:
+    """Return centre and radius of the circle with the least squares of powers of the points."""
+    middle = points.mean()
+    away = points - middle
+    size = float(np.abs(away).max())
+    away = away / size
+    spread = np.linalg.svd(np.stack([away.real, away.imag]), compute_uv=False)
+    if spread[1] <= _STRAIGHT * spread[0]:
+        raise ValueError("the stretch is straight: no circle is nearest to it; take a line")
+    matrix = np.stack([2.0 * away.real, 2.0 * away.imag, np.ones(away.size)], axis=1)
+    x, y, rest = np.linalg.lstsq(matrix, np.abs(away) ** 2, rcond=None)[0]
+    center = complex(middle + size * (x + 1j * y))
+    return center, size * math.sqrt(rest + x * x + y * y)
+
+
+def _alternating(off: Array) -> list[int]:
+    """Return the four neighbouring extremes with alternating signs that are largest together."""
+    kept: list[int] = []
+    for number, value in enumerate(off):
+        if kept and np.sign(off[kept[-1]]) == np.sign(value):
+            if abs(value) > abs(off[kept[-1]]):
+                kept[-1] = number
+        elif value:
+            kept.append(number)
+    groups = [kept[k : k + 4] for k in range(len(kept) - 3)]
+    return max(groups, key=lambda four: float(np.abs(off[four]).min()), default=[])
+
+
+def _even(touched: Plane, signs: Array, center: complex, radius: float) -> tuple[complex, float]:
+    """Return the circle that is equally far, in turn inside and outside, from four points."""
+    deviation = 0.0
+    for _ in range(_ROUNDS):
+        away = touched - center
+        distance = np.abs(away)
+        miss = distance - radius - signs * deviation
+        slopes = np.stack(
+            [-away.real / distance, -away.imag / distance, -np.ones(4), -signs], axis=1
+        )
+        x, y, wider, farther = np.linalg.solve(slopes, -miss)
+        center, radius, deviation = center + complex(x, y), radius + wider, deviation + farther
+        if max(abs(x), abs(y), abs(wider)) <= _EVEN * abs(radius):
+            break
+    return complex(center), float(radius)
+
+
+def _turned(away: Plane) -> float:
+    """Return the angle by which a direction turns from the first to the last one."""
+    return float(np.angle(away[1:] / away[:-1]).sum())
