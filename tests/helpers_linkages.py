@@ -148,7 +148,7 @@ def crank_slider(
     *,
     law: Law = variable,
     start: float = 0.0,
-    sign: float = 1.0,
+    keeps: str = "branch",
     knots_deg: Sequence[float] = (0.0, 360.0),
 ) -> Linkage:
     """Crank-slider; the slide's place along +x is ``slide.guide2``."""
@@ -157,7 +157,7 @@ def crank_slider(
         MemberPoint("O", 0j),
         GuideLine("bed", 1j * height, 0.0),
         Crank("crank", "q", "O", "pin", crank, start),
-        Dyad("RRT", "pin", "bed", "slide", ("rod", "ram"), Lengths(rod, 0.0), sign),
+        Dyad("RRT", "pin", "bed", "slide", ("rod", "ram"), Lengths(rod, 0.0), keeps=keeps),
         knots_deg=knots_deg,
     )
 

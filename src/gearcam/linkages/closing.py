@@ -9,12 +9,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from itertools import product
 from typing import Final
 
 import numpy as np
 
 from gearcam.base.display import ShortRepr
-from gearcam.linkages.elements import BRANCH, Dyad, Element, Known
+from gearcam.linkages.elements import BRANCH, REACH, Dyad, Element, Known
 from gearcam.linkages.linkage import Linkage
 from gearcam.linkages.plane import conjugate, imaginary, square
 from gearcam.numeric.arrays import Array
@@ -30,6 +31,9 @@ _FOUND: Final = 1e-14
 
 _SAME: Final = 1e-7
 """Change points closer than this are one, rad."""
+
+_ON_KNOT: Final = 1e-11
+"""Distance of a change point from a knot by rounding, rad."""
 
 _SPARE: Final = 1e-3
 """Share by which a length that is offered is off its limit, where the linkage is singular."""
@@ -127,10 +131,23 @@ def _stuck(linkage: Linkage, element: Element, changes: tuple[float, ...]) -> bo
 def _passing(linkage: Linkage, number: int, dyad: Dyad, changes: tuple[float, ...]) -> Linkage:
     """Return a linkage of which a dyad knows its change points."""
     parts, knots, (low, high) = list(linkage.elements), linkage.knots, linkage.span
-    parts[number] = replace(dyad, changes=changes, period=high - low if linkage.closed else None)
+    period = high - low if linkage.closed else None
+    reach = min([REACH, *_gaps(changes, (*knots.tolist(), *changes), period)])
+    parts[number] = replace(dyad, changes=changes, period=period, reach=reach)
     if dyad.keeps == BRANCH:  # which has a corner there
         knots = np.union1d(knots, [one for one in changes if knots[0] < one < knots[-1]])
     return replace(linkage, elements=tuple(parts), knots=knots)
+
+
+def _gaps(
+    changes: tuple[float, ...], others: tuple[float, ...], period: float | None
+) -> Iterator[float]:
+    """Yield half the distances of change points from other angles that are not the same, rad."""
+    for one, other in product(changes, others):
+        gap = abs(one - other)
+        gap = min(gap, abs(period - gap)) if period else gap
+        if gap > _SAME:
+            yield 0.5 * gap
 
 
 def closing(linkage: Linkage, element: Element) -> Closing | None:
@@ -161,7 +178,11 @@ def closing(linkage: Linkage, element: Element) -> Closing | None:
         found.append((places, values, _crossings(room, places, values)))
     lowest = min(found, key=lambda one: one[1].min())
     at = int(lowest[1].argmin())
-    touching = [q for places, values, _ in found for q in places[np.abs(values) <= _TOUCHING]]
+    touching = [
+        _polished(linkage, element, number, float(q))
+        for number, (places, values, _) in enumerate(found)
+        for q in places[np.abs(values) <= _TOUCHING]
+    ]
     return Closing(
         element,
         float(lowest[1][at]),
@@ -169,6 +190,18 @@ def closing(linkage: Linkage, element: Element) -> Closing | None:
         _ranges(linkage, element, np.concatenate([one[2] for one in found])),
         _apart(touching, linkage),
     )
+
+
+def _polished(linkage: Linkage, element: Element, number: int, q: float) -> float:
+    """Return a double zero of a share to rounding: a root of its slope, or a knot that is one."""
+    at = np.array([q])
+    for _ in range(2):
+        _, slope, bend = element.room(linkage.at(at, 2, element))[number].derivatives()[:3]
+        with np.errstate(invalid="ignore", divide="ignore"):
+            at = at - slope / bend
+    found = float(at[0]) if abs(at[0] - q) < _SAME else q
+    knot = float(linkage.knots[np.abs(linkage.knots - found).argmin()])
+    return knot if abs(knot - found) < _ON_KNOT else found
 
 
 def _crossings(room: Callable[[Array], tuple[Array, Array]], places: Array, values: Array) -> Array:

@@ -25,7 +25,7 @@ RTR1 and RTT with their members exchanged.
 from __future__ import annotations
 
 import cmath
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -95,51 +95,74 @@ class Solved(NamedTuple):
         return self._replace(frames=self.frames[::-1], slides=slides)
 
 
-Sign = float | np.ndarray
-"""+1 or -1, or one for each angle where a linkage keeps its motion through change points."""
+class Passage(NamedTuple):
+    """How a dyad goes through its change points.
 
-_ROUNDED: Final = 1e-13
-"""A closing quantity this small, as a share of its scale, is 0."""
+    Attributes
+    ----------
+    sign : (n,) array
+        Of its position; next to a change point that of the root that is smooth there.
+    past : (n,) array, rad
+        Angle of the driver from the change point next to it; nan where none is near.
+    """
+
+    sign: np.ndarray
+    past: np.ndarray
+
+
+Sign = float | Passage
+"""+1 or -1, or where a dyad has change points the way through them."""
 
 _NEAR: Final = 1.0
 """Square of the distance of two joints that is no longer far, mm^2: a slide without an arm has no
 length that this could be a share of, and is singular where its joints meet."""
 
+_LOST: Final = 1e-15
+"""Rounding of what closes a dyad, as a share of its scale."""
 
-_OPEN = np.errstate(invalid="ignore", divide="ignore")
+_OPEN = np.errstate(invalid="ignore", divide="ignore", over="ignore")
 """Outside of what closes the values are nan, which `Solved.room` tells."""
 
 
-def _root(x: Jet, scale: Length, sign: Sign) -> Jet:
-    """Return ``sign*sqrt(x)``; at double zeros of x the root that is smooth to its right.
+def _root(x: Jet, sign: Sign) -> Jet:
+    """Return ``sign*sqrt(x)``.
 
     Parameters
     ----------
     x : Jet
-        At least 0 but for rounding.
-    scale : float or Jet
-        What x was computed from, in the same unit.
-    sign : float or (n,) array
+        At least 0 but for rounding; of double zeros at change points.
+    sign : float or Passage
 
     Notes
     -----
-    At a double zero ``x = a2*h^2 + a3*h^3 + ...``, its root is ``h*sqrt(a2 + a3*h + ...)``: one
-    derivative less than x has. The last one is nan there.
+    Next to a double zero x has lost the digits of its root, and more so of the derivatives. There
+    ``x = h^2*(a2 + a3*h + ...)`` with the known angle h from the zero, from the derivatives of x
+    but the first two, so that its root is ``h*sqrt(a2 + a3*h + ...)``. It has one derivative less.
+    This is used where the last terms are less than what is lost otherwise.
     """
-    size = scale.c[0] if isinstance(scale, Jet) else scale
-    flat = np.abs(x.c[0]) <= _ROUNDED * size
-    if not flat.any():
+    if not isinstance(sign, Passage):
         return jets.sqrt(x) * sign
-    full = Jet([np.where(flat, 1.0, value) for value in x.c])
-    root = jets.sqrt(full)
-    inner = [np.broadcast_to(value, flat.shape)[flat] for value in x.c[2:]]
-    rest = jets.sqrt(Jet(inner)).c if inner else ()
-    values = [np.where(flat, 0.0, root.c[0])]
-    for k, value in enumerate(root.c[1:]):
-        mended = np.array(np.broadcast_to(value, flat.shape))
-        mended[flat] = rest[k] if k < len(rest) else np.nan
-        values.append(mended)
-    return Jet(values) * sign
+    near = np.isfinite(sign.past)
+    root = jets.sqrt(x) * np.where(sign.past < 0.0, -1.0, 1.0)
+    past, own = sign.past[near], [np.broadcast_to(value, near.shape)[near] for value in x.c]
+    none = np.zeros(past.shape)
+    series = jets.sqrt(Jet(_shifted([none, none, *own[2:]], -past)[2:])).c
+    left = [np.abs(value * past**k) for k, value in enumerate(series)]
+    near[near] = chosen = np.maximum(*left[-2:]) * past**2 <= _LOST * left[0]
+    smooth = _shifted([none, *map(np.asarray, series), none], past)
+    values = [np.array(np.broadcast_to(value, near.shape)) for value in root.c]
+    for value, mended in zip(values, smooth, strict=True):
+        value[near] = mended[chosen]
+    return Jet(values) * sign.sign
+
+
+def _shifted(coefficients: Sequence[np.ndarray], by: np.ndarray) -> list[np.ndarray]:
+    """Return the coefficients of polynomials about other points, `by` away."""
+    made = list(coefficients)
+    for first in range(len(made) - 1):
+        for k in range(len(made) - 2, first - 1, -1):
+            made[k] = made[k] + by * made[k + 1]
+    return made
 
 
 @_OPEN
@@ -151,7 +174,7 @@ def _rrr(first: Jet, second: Jet, sizes: Lengths, sign: Sign) -> Solved:
     outer, inner = whole - distance, distance - (one - two) * (one - two)
     along = (one * one - two * two + distance) / (distance * 2.0)
     # 16 times the squared area of the triangle, as a product: no cancellation near its zeros
-    height = _root(outer * inner, 16.0 * one * one * two * two, sign) / (distance * 2.0)
+    height = _root(outer * inner, sign) / (distance * 2.0)
     joint = first + way * (along + height * 1j)
     directions = (joint - first) / one, (joint - second) / two
     frames = Frame(first, directions[0]), Frame(second, directions[1])
@@ -166,7 +189,7 @@ def _rrt(first: Jet, guide: Frame, sizes: Lengths, sign: Sign) -> Solved:
     off = imaginary(place)
     # as a product, exact near the ends
     room = (rod - off) * (rod + off)
-    reach = _root(room, rod * rod, sign)
+    reach = _root(room, sign)
     direction = ahead * ((reach + off * 1j) / rod)
     slide = reach - real(place)
     joint = first + direction * rod
@@ -181,7 +204,7 @@ def _rtr(first: Jet, second: Jet, sizes: Lengths, sign: Sign) -> Solved:
     distance = square(way)
     across = arm * np.sin(beta)
     room = distance - across * across
-    reach = _root(room, distance + across * across, sign)
+    reach = _root(room, sign)
     slide = reach + arm * np.cos(beta)
     # the guide's direction; where the arm is 0 this is the way itself
     guide = way / (reach - 1j * across)

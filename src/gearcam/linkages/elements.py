@@ -16,7 +16,7 @@ from typing import Final, TypeVar
 import numpy as np
 
 from gearcam.base.display import ShortRepr
-from gearcam.linkages.dyads import DYADS, DyadType, Lengths, Solved
+from gearcam.linkages.dyads import DYADS, DyadType, Lengths, Passage, Sign, Solved
 from gearcam.linkages.plane import Frame, towards
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet
@@ -276,6 +276,12 @@ class PushedSlide(ShortRepr, Element):
         known.given[self.joint] = place
 
 
+REACH: Final = 0.1
+"""Largest angle from a change point up to which a dyad may be solved from there, rad."""
+
+_AT: Final = 1e-12
+"""Distance by rounding of an angle from a change point, rad."""
+
 BRANCH, MOTION = "branch", "motion"
 """What a dyad keeps at a change point, where both of its positions meet."""
 
@@ -307,6 +313,8 @@ class Dyad(ShortRepr, Element):
         Its change points, rising, as `gearcam.linkages.closing` finds them.
     period : float, rad, optional
         After which these repeat.
+    reach : float, rad
+        How far from them the motion is smooth at either side.
     """
 
     type: str
@@ -320,6 +328,7 @@ class Dyad(ShortRepr, Element):
     keeps: str = BRANCH
     changes: tuple[float, ...] = ()
     period: float | None = None
+    reach: float = REACH
 
     @property
     def kind(self) -> DyadType:
@@ -350,15 +359,23 @@ class Dyad(ShortRepr, Element):
             return self.lengths
         return self.lengths._replace(first=known.jet(self.driven) + self.lengths.first)
 
-    def signs(self, q: Array) -> float | Array:
+    def signs(self, q: Array) -> Sign:
         """Return its sign at angles of the driver `q`, rad."""
-        if self.keeps == BRANCH or not self.changes:
+        if not self.changes:
             return self.sign
+        own = np.array(self.changes)
         turns, rest = (0.0, q) if self.period is None else np.divmod(q, self.period)
-        passed = turns * len(self.changes) + np.searchsorted(self.changes, rest, "right")
-        return np.where(
-            (passed - np.searchsorted(self.changes, 0.0, "right")) % 2, -self.sign, self.sign
-        )
+        around = self.period or np.inf
+        edges = np.concatenate([[own[-1] - around], own, [own[0] + around]])
+        passed = np.searchsorted(own, rest, "right")
+        before, behind = rest - edges[passed], rest - edges[passed + 1]
+        near = np.minimum(before, -behind) <= self.reach
+        past = np.where(near, np.where(before <= -behind, before, behind), np.nan)
+        if self.keeps == BRANCH:
+            return Passage(np.where(past < -_AT, -self.sign, self.sign), past)
+        # next to a change point the sign behind it, also before it, where the root is negative
+        count = turns * own.size + passed + (past < 0.0) - np.searchsorted(own, _AT, "right")
+        return Passage(np.where(count % 2, -self.sign, self.sign), past)
 
     def room(self, known: Known) -> tuple[Jet, ...]:
         """Return what is 0 or more where it closes (see `Solved`)."""

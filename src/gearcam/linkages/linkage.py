@@ -19,6 +19,10 @@ from gearcam.numeric.jets import Jet
 _DENSE: Final = 1441
 """Angles of the driver at which turns of members are counted."""
 
+_SPARE: Final = 9
+"""Derivatives more with which a dyad that has change points is solved: one that its passage costs,
+and those of the series from there."""
+
 
 class UnreachedError(ValueError):
     """Parts that need names which nothing gives, or each other.
@@ -116,8 +120,7 @@ class Linkage(ShortRepr):
         Known
             Joints, members and quantities by name.
         """
-        # each pass through a change point costs one derivative (see `dyads`)
-        spare = sum(bool(one.changes) for one in self.dyads)
+        spare = _SPARE * sum(bool(one.changes) for one in self.dyads)
         known = Known(np.asarray(q, dtype=float), order + spare)
         for element in self.elements:
             if element is upto:

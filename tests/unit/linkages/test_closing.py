@@ -60,3 +60,33 @@ def test_coefficients_that_all_points_have() -> None:
 def test_a_joint_that_stands_still_is_a_point_of_the_ground() -> None:
     made = linkage(MemberPoint("A", 3 + 4j))
     assert made.track("A", np.zeros(2), 1).derivatives()[0] == pytest.approx(3 + 4j)
+
+
+@pytest.mark.parametrize(
+    ("rods", "offered"),
+    [
+        ((60.0, 70.0), [{0: 80.0 * 1.001}, {1: 90.0 * 1.001}]),  # too short together
+        ((170.0, 60.0), [{1: 100.0 * 1.001}, {0: 130.0 * 0.999}]),  # too different
+        ((60.0, 170.0), [{0: 100.0 * 1.001}, {1: 130.0 * 0.999}]),
+        ((20.0, 300.0), [{0: 230.0 * 1.001}]),
+    ],
+)
+def test_offered_rods(rods: tuple[float, float], offered: list[dict[int, float]]) -> None:
+    """The ends of the rods come as near as 70 mm and go as far as 150 mm."""
+    with pytest.raises(NotClosingError) as caught:
+        settled(four_bar(40.0, *rods, 110.0))
+    found = caught.value.nearest
+    assert [one.keys() for one in found] == [one.keys() for one in offered]
+    for one, other in zip(found, offered, strict=True):
+        assert one == pytest.approx(other)
+        lengths = {0: rods[0], 1: rods[1]} | one
+        settled(four_bar(40.0, lengths[0], lengths[1], 110.0))
+
+
+def test_both_rods_are_offered_where_one_does_not_do() -> None:
+    """Ends between 10 mm and 210 mm apart."""
+    with pytest.raises(NotClosingError) as caught:
+        settled(four_bar(100.0, 60.0, 55.0, 110.0))
+    (found,) = caught.value.nearest
+    assert found == pytest.approx({0: 105.105 + 2.5, 1: 105.105 - 2.5})
+    settled(four_bar(100.0, found[0], found[1], 110.0))
