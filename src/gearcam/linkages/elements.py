@@ -238,6 +238,39 @@ class Crank(ShortRepr, Element):
 
 
 @dataclass(frozen=True)
+class WoundWay(ShortRepr, Element):
+    """The way of what a wheel pulls by a chain or a rope, or a pinion by a rack.
+
+    Parameters
+    ----------
+    name : str
+        Of the quantity, mm.
+    shaft : str
+        Quantity: the wheel's turn, rad.
+    radius : float, mm
+        Of the wheel, to the chain's middle; negative if turning clockwise winds up.
+    """
+
+    name: str
+    shaft: str
+    radius: float
+
+    @property
+    def needs(self) -> tuple[str, ...]:
+        """The wheel's shaft."""
+        return (self.shaft,)
+
+    @property
+    def gives(self) -> tuple[str, ...]:
+        """The way."""
+        return (self.name,)
+
+    def solve(self, known: Known) -> None:
+        """Add the way."""
+        known.given[self.name] = known.jet(self.shaft) * self.radius
+
+
+@dataclass(frozen=True)
 class PushedSlide(ShortRepr, Element):
     """A member that is pushed along a guide.
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.linkages.elements import GROUND, Dyad, Element, Known
-from gearcam.linkages.plane import imaginary, real, rotation
+from gearcam.linkages.plane import conjugate, imaginary, real, rotation
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet
 
@@ -176,6 +176,31 @@ class Linkage(ShortRepr):
         near += turns * (angles[-1] - angles[0])
         whole = np.round((near - found.c[0]) / (2.0 * math.pi))
         return Jet([found.c[0] + 2.0 * math.pi * whole, *found.c[1:]])
+
+    def miss(self, q: Array) -> float:
+        """Return how far members are from their lengths.
+
+        Parameters
+        ----------
+        q : (n,) array, rad
+            Angles of the driver.
+
+        Returns
+        -------
+        float, mm
+            The largest distance of a dyad's joint from where one of its members ends.
+        """
+        known, worst = self.at(q, 0), 0.0
+        for dyad in self.dyads:
+            solved, sizes = known.solved[dyad.joint], dyad.sizes(known)
+            for number, frame in enumerate(solved.frames):
+                way = (solved.joint - frame.origin) * conjugate(frame.direction)
+                if f"member{number + 1}" in solved.slides:
+                    off = imaginary(way)
+                else:
+                    off = way - sizes[number]
+                worst = max(worst, float(np.abs(np.asarray(off.c[0])).max()))
+        return worst
 
     def _dense(self, name: str) -> tuple[Array, Array]:
         """Return the driver's angles, close together, and an angle there without jumps."""

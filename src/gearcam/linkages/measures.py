@@ -240,6 +240,10 @@ class TrackMeasures(ShortRepr):
         """Return the largest value of a derivative of given `order`."""
         return self._top(order, 1.0)
 
+    def size(self, order: int = 0) -> Peak:
+        """Return the value of a derivative of given `order` that is furthest from 0."""
+        return max(self.largest(order), self.least(order), key=lambda peak: abs(peak.value))
+
     def _top(self, order: int, side: float) -> Peak:
         places, values = self.extremes[order]
         top = float((side * values).max())

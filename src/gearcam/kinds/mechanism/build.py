@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property, partial
 from types import MappingProxyType
@@ -12,14 +13,18 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearcam.base.errors import ABOVE, DesignError, Problem, beyond_limit
-from gearcam.base.findings import Finding, in_order
+from gearcam.base.errors import ABOVE, DesignError, InfeasibleError, Problem, beyond_limit
+from gearcam.base.findings import Finding, in_order, run_checks
+from gearcam.base.numerals import formatted
 from gearcam.designs.slips import nearest
 from gearcam.kinds.mechanism.design import MechanismDesign
 from gearcam.kinds.mechanism.drives import PlacedDrive, placed
 from gearcam.kinds.mechanism.make import make_linkage
 from gearcam.kinds.mechanism.names import moves
+from gearcam.linkages import checks
+from gearcam.linkages.dwells import DriverRange, last_travel, longest_dwell
 from gearcam.linkages.linkage import Linkage
+from gearcam.linkages.measures import TrackMeasures
 from gearcam.numeric.arguments import angles
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
@@ -33,6 +38,9 @@ if TYPE_CHECKING:
 
 _MOST_STEPS: Final = 1e6
 """Largest number of steps of a table."""
+
+_WITNESSES: Final = 1000
+"""Master's angles at which lengths are compared."""
 
 ORDER: Final = 3
 """Highest derivative in tables."""
@@ -146,7 +154,7 @@ class MechanismResult(Result):
         """What is given where the design does not say: slides and points, else a direction."""
         design = self.design
         slides = [one.joint for one in design.dyad if moves(one)]
-        found = [*slides, *(one.name for one in design.slide), *(one.name for one in design.point)]
+        found = [*slides, *(one.name for one in (*design.slide, *design.hoist, *design.point))]
         last = [one.members[1] for one in design.dyad[-1:]] + [one.lever for one in design.chain]
         members = last or [one.name for one in design.crank[-1:]]
         return found or [f"{name}.angle" for name in members]
@@ -177,6 +185,8 @@ class MechanismResult(Result):
             )
         for slide in design.slide:
             found[slide.name] = (Output(slide.name, slide.name, slide.on, False),)
+        for hoist in design.hoist:
+            found[hoist.name] = (Output(hoist.name, hoist.name, f"{hoist.name}.way", False),)
         joints = [*(one.joint for one in design.crank), *(one.name for one in design.point)]
         for name in [*joints, *(one.joint for one in design.chain)]:
             found[name] = _coordinates(name)
@@ -291,11 +301,8 @@ class MechanismResult(Result):
         for number, other in enumerate(self.design.compare):
             spec = replace(first.spec, pair=other.pair, cam=other.cam, even=other.even, span=None)
             master = self._placed(f"compare[{number}]", spec).instead_of(first)
-            made = type(self)(replace(self.design, compare=(), examined=True), self.tolerances)
-            vars(made)["drives"] = (master, *self.drives[1:])
             with within(f"compare[{number}]"):
-                _ = made.linkage
-            found[other.name] = made
+                found[other.name] = self._behind(master)
         return found
 
     @cached_property
@@ -307,8 +314,230 @@ class MechanismResult(Result):
                 key = f"drive[{number}].{'pair' if drive.spec.pair is not None else 'cam'}"
                 with within(key):
                     below += findings_of(key, drive.result.checked)
-        _ = self.linkage, self.outputs, self.compared
-        return in_order(below)
+        _ = self.compared
+        machine = self._to_check
+        with self.stage("checks"):
+            own = run_checks(checks.KIND, machine, self.design.limits)
+            return in_order((*below, *own, *self._dwells_missed()))
+
+    @property
+    def _to_check(self) -> checks.CheckedMachine:
+        even = self.without_pair
+        return checks.CheckedMachine(
+            self.linkage,
+            self.measures,
+            {one.stem: one.rate_unit for one in self.outputs},
+            {} if even is None else even.measures,
+        )
+
+    @cached_property
+    def without_pair(self) -> MechanismResult | None:
+        """The same mechanism behind an even shaft; None if no pair drives it, or it cannot move."""
+        first = self.drives[0]
+        if first.spec.pair is None or not self.linkage.closed:
+            return None
+        spec = replace(first.spec, pair=None, even=True)
+        with suppress(InfeasibleError):
+            return self._behind(self._placed("drive[0]", spec).instead_of(first))
+        return None
+
+    def _behind(self, master: PlacedDrive) -> MechanismResult:
+        """Return the same mechanism behind another master."""
+        made = type(self)(replace(self.design, compare=(), examined=True), self.tolerances)
+        vars(made)["drives"] = (master, *self.drives[1:])
+        _ = made.linkage
+        return made
+
+    @cached_property
+    def measures(self) -> dict[str, TrackMeasures]:
+        """Extremes, dead centres and the like of each output, by the beginning of its columns."""
+        linkage = self.linkage
+        return {
+            one.stem: TrackMeasures(self.track(one), linkage.knots, linkage.closed)
+            for one in self.outputs
+        }
+
+    @cached_property
+    def closure_error(self) -> float:
+        """Largest difference of a member's length from the one it has, mm, over the cycle."""
+        return self.linkage.miss(np.linspace(*self.linkage.span, _WITNESSES))
+
+    @cached_property
+    def intervals(self) -> tuple[DriverRange, ...]:
+        """The master's ranges over the last bits of travel that the design asks for.
+
+        Raises
+        ------
+        InfeasibleError
+            If an output does not travel as far.
+        """
+        found = []
+        for number, one in enumerate(self.design.interval):
+            output, travel = self.asked("interval", number)
+            measures = self.measures_of(output)
+            if travel >= measures.stroke:
+                scale, unit = output.unit
+                raise InfeasibleError(
+                    f"{one.on} does not travel as far",
+                    where=f"interval[{number}].travel_{unit}",
+                    value=scale * travel,
+                    limit=scale * measures.stroke,
+                    unit=unit,
+                )
+            found.append(last_travel(measures, travel, outer=one.before == "outer"))
+        return tuple(found)
+
+    def comparison(self) -> Columns:
+        """Return what the drives to compare make of each output.
+
+        Returns
+        -------
+        Columns
+            A row for each drive and output: ``drive``, ``output``, ``unit``, ``stroke``, the
+            largest sizes of the derivatives by the master's angle with the places, ``velocity``
+            and ``velocity_at_deg`` and so on, in the unit or rad; with a speed those by time,
+            ``velocity_per_s``.
+        """
+        return self._tabled(comparison_rows)
+
+    def interval_table(self) -> Columns:
+        """Return the intervals that the design asks for, behind each drive.
+
+        Returns
+        -------
+        Columns
+            A row for each drive and interval: ``drive``, ``on``, ``before``, the master's angles
+            ``from_deg``, ``to_deg``, ``angle_deg``, the velocity at the beginning by the master's
+            angle; with a speed the time, ``time_s``, and the velocity by time.
+        """
+        return self._tabled(interval_rows)
+
+    def _tabled(
+        self, rows_of: Callable[[str, MechanismResult], Iterator[dict[str, Any]]]
+    ) -> Columns:
+        machines = {"as designed": self, **self.compared}
+        rows = [row for name, one in machines.items() for row in rows_of(name, one)]
+        return Columns({key: np.array([row[key] for row in rows]) for key in rows[0]})
+
+    @cached_property
+    def dwells(self) -> tuple[DriverRange, ...]:
+        """The longest ranges in which outputs stay within what the design asks for."""
+        found = []
+        for number in range(len(self.design.dwell)):
+            output, amount = self.asked("dwell", number)
+            found.append(longest_dwell(self.measures_of(output), amount))
+        return tuple(found)
+
+    def _dwells_missed(self) -> Iterator[Finding]:
+        """Yield the dwells that are asked for and not long enough."""
+        for number, (one, found) in enumerate(zip(self.design.dwell, self.dwells, strict=True)):
+            if found.length < one.least:
+                yield Finding(
+                    code="no-dwell",
+                    severity="warning",
+                    message=f"{one.on} has no dwell as long as that: this is the longest.",
+                    value=_DEG * found.length,
+                    limit=_DEG * one.least,
+                    unit="deg",
+                    where=f"dwell[{number}], from {formatted(_DEG * found.begin, 6)} deg",
+                )
+
+    def measures_of(self, one: Output) -> TrackMeasures:
+        """Return the extremes and the like of any output."""
+        own = self.measures.get(one.stem)
+        return own or TrackMeasures(self.track(one), self.linkage.knots, self.linkage.closed)
+
+    def asked(self, title: str, number: int) -> tuple[Output, float]:
+        """Return the one output that a table is about, and the amount that it gives.
+
+        Parameters
+        ----------
+        title : str
+            ``interval`` or ``dwell``.
+        number : int
+            Of the table, from 0.
+
+        Returns
+        -------
+        Output, float
+            The amount in mm or rad.
+
+        Raises
+        ------
+        DesignError
+            If the table names a point or what does not move, or gives a length for an angle.
+        """
+        table: Any = getattr(self.design, title)[number]
+        name, word = table.on, {"interval": "travel", "dwell": "within"}[title]
+        length, angle = getattr(table, word), getattr(table, f"{word}_angle")
+        found = self._known_outputs.get(name, ())
+        key = f"{title}[{number}].on"
+        if len(found) != 1:
+            one = [other for other, outputs in self._known_outputs.items() if len(outputs) == 1]
+            what = "is a point, with two coordinates" if found else "nothing moves by this name"
+            raise DesignError(
+                [Problem(what, self.design.source, None, key, name, f"one of {', '.join(one)}")]
+            )
+        amount = angle if found[0].angle else length
+        if amount is None:
+            words = ("a length", "an angle")
+            what = f"{name} is {words[found[0].angle]}"
+            unit = f"the key with {found[0].unit[1]}"
+            raise DesignError([Problem(what, self.design.source, None, key, name, unit)])
+        return found[0], amount
+
+
+def comparison_rows(name: str, machine: MechanismResult) -> Iterator[dict[str, Any]]:
+    """Yield the rows of `MechanismResult.comparison` for one drive.
+
+    Parameters
+    ----------
+    name : str
+        Of the drive.
+    machine : MechanismResult
+        The mechanism behind it.
+    """
+    speed = machine.design.drive[0].speed
+    for one in machine.outputs:
+        measures, (scale, unit) = machine.measures[one.stem], one.unit
+        row: dict[str, Any] = {
+            "drive": name, "output": one.stem, "unit": unit, "stroke": scale * measures.stroke,
+        }  # fmt: skip
+        for order, word in enumerate(RATES, start=1):
+            peak = measures.size(order)
+            row |= {word: peak.value, f"{word}_at_deg": _DEG * peak.place}
+            if speed is not None:
+                row[f"{word}_per_s"] = peak.value * speed**order
+        yield row
+
+
+def interval_rows(name: str, machine: MechanismResult) -> Iterator[dict[str, Any]]:
+    """Yield the rows of `MechanismResult.interval_table` for one drive.
+
+    Parameters
+    ----------
+    name : str
+        Of the drive.
+    machine : MechanismResult
+        The mechanism behind it.
+    """
+    speed = machine.design.drive[0].speed
+    for number, (one, found) in enumerate(
+        zip(machine.design.interval, machine.intervals, strict=True)
+    ):
+        output, _ = machine.asked("interval", number)
+        rate = float(machine.track(output)(np.array([found.begin]), 1).derivatives()[1][0])
+        row = {
+            "drive": name, "on": one.on, "before": one.before, "from_deg": _DEG * found.begin,
+            "to_deg": _DEG * found.end, "angle_deg": _DEG * found.length, "velocity": rate,
+        }  # fmt: skip
+        yield row if speed is None else row | {
+            "time_s": found.length / speed, "velocity_per_s": rate * speed,
+        }  # fmt: skip
+
+
+RATES: Final = ("velocity", "acceleration", "jerk")
+"""Names of the derivatives."""
 
 
 def _coordinates(name: str) -> tuple[Output, ...]:

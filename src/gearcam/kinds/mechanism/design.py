@@ -10,8 +10,11 @@ from gearcam.kinds.mechanism.tables import (
     ChainSpec,
     CompareSpec,
     CrankSpec,
+    DwellSpec,
     DyadSpec,
     GuideSpec,
+    HoistSpec,
+    IntervalSpec,
     JointSpec,
     MachineDrive,
     MechanismOutput,
@@ -51,6 +54,12 @@ class MechanismDesign(Design):
         Points of members.
     chain : sequence of ChainSpec
         Chains that swing a lever.
+    hoist : sequence of HoistSpec
+        What wheels lift.
+    interval : sequence of IntervalSpec
+        The last bits of travel before dead centres.
+    dwell : sequence of DwellSpec
+        Dwells that are wanted.
     output : MechanismOutput
         Files and what is in them.
     accuracy : AccuracySpec
@@ -85,6 +94,9 @@ class MechanismDesign(Design):
     dyad: tuple[DyadSpec, ...] = ()
     point: tuple[PointSpec, ...] = ()
     chain: tuple[ChainSpec, ...] = ()
+    hoist: tuple[HoistSpec, ...] = ()
+    interval: tuple[IntervalSpec, ...] = ()
+    dwell: tuple[DwellSpec, ...] = ()
     output: MechanismOutput = field(default_factory=MechanismOutput)
     accuracy: AccuracySpec = field(default_factory=AccuracySpec)
     goal: GoalSpec = field(default_factory=GoalSpec)

@@ -3,33 +3,145 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.base.facts import Fact, Facts
+from gearcam.base.numerals import formatted
+from gearcam.kinds.mechanism.build import RATES
 
 if TYPE_CHECKING:
-    from gearcam.kinds.mechanism.build import MechanismResult
+    from gearcam.kinds.mechanism.build import MechanismResult, Output
+    from gearcam.linkages.measures import Peak, TrackMeasures
 
 Tree = dict[str, Any]
+
+_DEG: Final = math.degrees(1.0)
 
 
 def facts(result: MechanismResult) -> Facts:
     """Return the facts of a mechanism, its `result`."""
-    low, high = result.linkage.span
+    outputs = {one.stem: _output(result, one) for one in result.outputs}
     tree: Tree = {
-        "drive": {
-            one.name: {
-                "kind": "even"
-                if one.even
-                else "slide"
-                if one.slide
-                else "pair"
-                if one.pair
-                else "cam"
-            }
-            for one in result.design.drive
-        },
-        "range_deg": Fact(math.degrees(high - low), "range of the master", shown=True),
-        "dyads": {one.joint: one.type for one in result.design.dyad},
+        "machine": _machine(result),
+        "outputs": outputs,
+        "intervals": _intervals(result),
+        "dwells": _dwells(result),
+        "compare": {
+            name: {one.stem: _peaks(other, one) for one in other.outputs}
+            for name, other in result.compared.items()
+        }
+        or None,
+        "accuracy": _accuracy(result),
     }
-    return Facts(tree, ["range_deg"], "mechanism")
+    first = next(iter(result.outputs))
+    return Facts(tree, (f"outputs.{first.stem}.stroke_{first.unit[1]}",), _called(result))
+
+
+def _called(result: MechanismResult) -> str:
+    """Return what the mechanism is, by its drive and its dyads."""
+    first = result.design.drive[0]
+    by = (
+        "a pair"
+        if first.pair is not None
+        else "a cam"
+        if first.cam is not None
+        else "an even shaft"
+    )
+    groups = " + ".join(one.type for one in result.design.dyad) or "linkage"
+    return f"{groups} behind {by}"
+
+
+def _machine(result: MechanismResult) -> Tree:
+    """Return its range, its dyads in the order in which they are solved, and their positions."""
+    linkage, (low, high) = result.linkage, result.linkage.span
+    signs = {one.joint: one.sign for one in linkage.dyads}
+    solved = {one.joint: number for number, one in enumerate(linkage.dyads, start=1)}
+    return {
+        "from_deg": _DEG * low,
+        "to_deg": _DEG * high,
+        "closed": linkage.closed,
+        "mobility": 1,
+        "dyads": {
+            one.joint: {
+                "type": one.type,
+                "solved": solved[one.joint],
+                "branch": one.branches[0 if signs[one.joint] > 0.0 else 1]
+                if one.branches
+                else None,
+            }
+            for one in result.design.dyad
+        }
+        or None,
+    }
+
+
+def _place(peak: Peak) -> str:
+    return f"at {formatted(_DEG * peak.place, 6)} deg"
+
+
+def _output(result: MechanismResult, one: Output) -> Tree:
+    """Return range, stroke, dead centres and peaks of an output."""
+    measures, (scale, unit) = result.measures[one.stem], one.unit
+    least, largest = measures.least(), measures.largest()
+    centers = measures.dead_centers
+    ratio = measures.time_ratio
+    return {
+        f"least_{unit}": Fact(scale * least.value, f"{one.stem}, least", place=_place(least)),
+        f"largest_{unit}": Fact(
+            scale * largest.value, f"{one.stem}, largest", place=_place(largest)
+        ),
+        f"stroke_{unit}": Fact(scale * measures.stroke, f"stroke of {one.stem}", shown=True),
+        "dead_centers_deg": [_DEG * center.place for center in centers] or None,
+        "time_ratio": None
+        if ratio is None
+        else Fact(ratio.ratio, f"forward over return time of {one.stem}", unit=""),
+        **_peaks(result, one),
+    }
+
+
+def _peaks(result: MechanismResult, one: Output) -> Tree:
+    """Return the derivatives of an output furthest from 0."""
+    measures: TrackMeasures = result.measures[one.stem]
+    speed, unit, tree = result.design.drive[0].speed, one.rate_unit, {}
+    for order, word in enumerate(RATES, start=1):
+        peak, power = measures.size(order), order if order > 1 else ""
+        label = f"largest {word} of {one.stem}"
+        tree[f"{word}_{unit}_per_rad{power}"] = Fact(peak.value, label, place=_place(peak))
+        if speed is not None:
+            value = peak.value * speed**order
+            tree[f"{word}_{unit}_s{power}"] = Fact(value, label, place=_place(peak))
+    return tree
+
+
+def _intervals(result: MechanismResult) -> list[Tree] | None:
+    speed = result.design.drive[0].speed
+    return [
+        {
+            "on": one.on,
+            "before": one.before,
+            "from_deg": _DEG * found.begin,
+            "to_deg": _DEG * found.end,
+            "angle_deg": _DEG * found.length,
+            "time_s": None if speed is None else found.length / speed,
+        }
+        for one, found in zip(result.design.interval, result.intervals, strict=True)
+    ] or None
+
+
+def _dwells(result: MechanismResult) -> list[Tree] | None:
+    return [
+        {
+            "on": one.on,
+            "from_deg": _DEG * found.begin,
+            "to_deg": _DEG * found.end,
+            "angle_deg": _DEG * found.length,
+        }
+        for one, found in zip(result.design.dwell, result.dwells, strict=True)
+    ] or None
+
+
+def _accuracy(result: MechanismResult) -> Tree:
+    return {
+        "lengths_mm": result.closure_error,
+        "how": {"lengths_mm": "largest difference of a length of a member from the one it has"},
+    }

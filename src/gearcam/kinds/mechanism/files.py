@@ -18,14 +18,20 @@ Files = dict[str, bytes]
 def _tables(result: MechanismResult, _: Any) -> Files:
     """Return the motion as a table.
 
-    Files: motion.csv.
+    Files: motion.csv, comparison.csv, intervals.csv.
 
     The master's angle in degrees, and for each output its value and its derivatives by that angle,
-    in rad; with a speed also those by time.
+    in rad; with a speed also those by time. Where drives are compared, strokes, largest velocities,
+    accelerations and jerks behind each. The intervals that are asked for, behind each drive.
     """
     from gearcam.export.table import table_bytes
 
-    return {"motion.csv": table_bytes(result.motion())}
+    files = {"motion.csv": table_bytes(result.motion())}
+    if result.design.compare:
+        files["comparison.csv"] = table_bytes(result.comparison())
+    if result.design.interval:
+        files["intervals.csv"] = table_bytes(result.interval_table())
+    return files
 
 
 def _dxf(result: MechanismResult, _: Any) -> Files:

@@ -14,8 +14,11 @@ from gearcam.kinds.mechanism.tables import (
     ChainSpec,
     CompareSpec,
     CrankSpec,
+    DwellSpec,
     DyadSpec,
     GuideSpec,
+    HoistSpec,
+    IntervalSpec,
     JointSpec,
     MachineDrive,
     MechanismOutput,
@@ -37,6 +40,9 @@ _SEVERAL: Final = {
     "dyad": DyadSpec,
     "point": PointSpec,
     "chain": ChainSpec,
+    "hoist": HoistSpec,
+    "interval": IntervalSpec,
+    "dwell": DwellSpec,
 }
 
 KIND: Final = Kind(
@@ -54,6 +60,8 @@ KIND: Final = Kind(
     required=("drive",),
     problems=problems,
     formats=FORMATS,
+    check_modules=("gearcam.linkages.checks",),
+    check_groups=("mechanisms",),
     study_tables={"accuracy": "accuracy"},
     example={
         "drive": [{"name": "motor", "even": True, "speed_rpm": 60}],

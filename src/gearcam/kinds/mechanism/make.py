@@ -16,7 +16,15 @@ from gearcam.kinds.mechanism.drives import PlacedDrive, center_of, way_of
 from gearcam.linkages.chain import HoistChain
 from gearcam.linkages.closing import NotClosingError, settled
 from gearcam.linkages.dyads import Lengths
-from gearcam.linkages.elements import Crank, Dyad, Element, GuideLine, MemberPoint, PushedSlide
+from gearcam.linkages.elements import (
+    Crank,
+    Dyad,
+    Element,
+    GuideLine,
+    MemberPoint,
+    PushedSlide,
+    WoundWay,
+)
 from gearcam.linkages.linkage import Linkage, in_order
 
 if TYPE_CHECKING:
@@ -120,6 +128,12 @@ def _elements(design: MechanismDesign, drives: Sequence[PlacedDrive]) -> Iterato
         yield _dyad(dyad)
     for point in design.point:
         yield MemberPoint(point.name, complex(*point.at), point.on)
+    for hoist in design.hoist:
+        way, guide = f"{hoist.name}.way", f"{hoist.name}.guide"
+        radius = hoist.radius if hoist.wind == "ccw" else -hoist.radius
+        yield WoundWay(way, hoist.on, radius)
+        yield GuideLine(guide, complex(*hoist.at), hoist.direction)
+        yield PushedSlide(hoist.name, way, guide, hoist.joint)
     for chain in design.chain:
         yield HoistChain(
             chain.lever,

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 SHAFT, WAY, JOINT, MEMBER, GUIDE = "shaft", "slide", "joint", "member", "guide"
 """What a name can be."""
 
-_PARTS: Final = ("drive", "joint", "crank", "slide", "guide", "dyad", "point", "chain")
+_PARTS: Final = ("drive", "joint", "crank", "slide", "guide", "dyad", "point", "chain", "hoist")
 
 
 class NameUse(NamedTuple):
@@ -82,6 +82,7 @@ _GIVES: Final = {
     "dyad": (("joint", JOINT),),
     "point": (("name", JOINT),),
     "chain": (("lever", MEMBER), ("joint", JOINT)),
+    "hoist": (("name", MEMBER), ("joint", JOINT)),
 }
 
 _NEEDS: Final = {
@@ -91,6 +92,7 @@ _NEEDS: Final = {
     "dyad": (("driven", "driven", WAY),),
     "point": (("on", "on", MEMBER),),
     "chain": (("on", "on", SHAFT),),
+    "hoist": (("on", "on", SHAFT),),
 }
 
 

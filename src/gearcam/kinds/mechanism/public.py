@@ -8,8 +8,11 @@ from gearcam.kinds.mechanism.tables import (
     ChainSpec,
     CompareSpec,
     CrankSpec,
+    DwellSpec,
     DyadSpec,
     GuideSpec,
+    HoistSpec,
+    IntervalSpec,
     JointSpec,
     MachineDrive,
     MechanismOutput,
@@ -19,7 +22,8 @@ from gearcam.kinds.mechanism.tables import (
 from gearcam.kinds.shared import AccuracySpec, GoalSpec
 
 __all__ = [
-    "AccuracySpec", "ChainSpec", "CompareSpec", "CrankSpec", "DyadSpec", "GoalSpec", "GuideSpec",
+    "AccuracySpec", "ChainSpec", "CompareSpec", "CrankSpec", "DwellSpec", "DyadSpec",
+    "GoalSpec", "GuideSpec", "HoistSpec", "IntervalSpec",
     "JointSpec", "MachineDrive", "MechanismDesign", "MechanismOutput", "MechanismResult",
     "PointSpec", "SlideSpec",
 ]  # fmt: skip

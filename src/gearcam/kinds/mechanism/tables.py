@@ -440,6 +440,97 @@ class ChainSpec(ShortRepr):
 
 
 @dataclass(frozen=True, kw_only=True)
+class HoistSpec(ShortRepr):
+    """What a wheel lifts by a chain or a rope, straight along a guide.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.HoistSpec(name="door", on="pair.wheel2", joint="hook", radius=100.0)
+    HoistSpec(name='door', on='pair.wheel2', joint='hook', radius=100)
+    """
+
+    name: str = _name(doc="name of what is lifted", example="door")
+    on: str = _name(doc="the wheel's shaft", example="pair.wheel2")
+    joint: str = _name(doc="name of its joint, where the chain ends", example="hook")
+    radius: float = positive_length(
+        default=REQUIRED, example=100, doc="of the wheel, to the chain's middle"
+    )
+    wind: str = param(
+        TEXT, default="ccw", choices=("ccw", "cw"), doc="turn of the wheel that winds the chain up"
+    )
+    at: tuple[float, float] = _point(
+        doc="the joint where the wheel's turn is 0", default=(0.0, 0.0), order="x, y"
+    )
+    direction: float = _direction(doc="in which it is lifted", default=math.radians(90.0))
+
+
+@dataclass(frozen=True, kw_only=True)
+class IntervalSpec(ShortRepr):
+    """The last bit of an output's travel before a dead centre: when it begins, and how fast.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.IntervalSpec(on="slide", travel=4.0)
+    IntervalSpec(on='slide', travel=4)
+    """
+
+    on: str = _name(doc="the output", example="slide")
+    travel: float | None = positive_length(example=4, doc="travel before the dead centre")
+    travel_angle: float | None = param(
+        ANGLE,
+        default=None,
+        gt=0,
+        le=_TURN_DEG,
+        word="travel",
+        example=22,
+        doc="the same of an angle",
+    )
+    before: str = param(
+        TEXT,
+        default="outer",
+        choices=("inner", "outer"),
+        doc="the dead centre with the smallest or the largest value",
+    )
+
+    rules = (exactly_one("travel", "travel_angle"),)
+
+
+@dataclass(frozen=True, kw_only=True)
+class DwellSpec(ShortRepr):
+    """A dwell that an output is to have: the longest range in which it hardly moves.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.DwellSpec(on="slide", within=0.1)
+    DwellSpec(on='slide', within=0.1)
+    """
+
+    on: str = _name(doc="the output", example="slide")
+    within: float | None = positive_length(example=0.1, doc="how much it may move")
+    within_angle: float | None = param(
+        ANGLE,
+        default=None,
+        gt=0,
+        le=_TURN_DEG,
+        word="within",
+        example=0.5,
+        doc="the same of an angle",
+    )
+    least: float = param(
+        ANGLE,
+        default=math.radians(10.0),
+        gt=0,
+        le=_TURN_DEG,
+        doc="the master's angle over which it must last",
+    )
+
+    rules = (exactly_one("within", "within_angle"),)
+
+
+@dataclass(frozen=True, kw_only=True)
 class MechanismOutput(OutputSpec):
     """Which files of a mechanism are written, and what is in them (see `OutputSpec`).
 

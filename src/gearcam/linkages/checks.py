@@ -1,0 +1,140 @@
+"""The checks of mechanisms: change points, jumps at knots, and what a pair makes worse.
+
+Importing this module registers them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Final
+
+import numpy as np
+
+from gearcam.base.display import ShortRepr
+from gearcam.base.findings import Remark, check
+from gearcam.base.numerals import formatted
+from gearcam.linkages.elements import BRANCH
+from gearcam.linkages.linkage import Linkage
+from gearcam.linkages.measures import TrackMeasures
+
+KIND: Final = "mechanisms"
+"""Their group."""
+
+_JUMP: Final = 1e-7
+"""Jump of a derivative, as a share of its largest value, that rounding does not make."""
+
+_WORSE: Final = 1.01
+"""Factor from which a larger acceleration is told."""
+
+
+@dataclass(frozen=True, eq=False)
+class CheckedMachine(ShortRepr):
+    """What is checked.
+
+    Parameters
+    ----------
+    linkage : Linkage
+        The linkage.
+    outputs : mapping of str to TrackMeasures
+        Its outputs by name.
+    units : mapping of str to str
+        ``mm`` or ``rad`` of each output.
+    even : mapping of str to TrackMeasures
+        The same outputs where an even shaft stands in the place of the pair; empty if no pair
+        drives it.
+    """
+
+    linkage: Linkage
+    outputs: Mapping[str, TrackMeasures]
+    units: Mapping[str, str]
+    even: Mapping[str, TrackMeasures] = field(default_factory=dict)
+
+
+def _at(q: float) -> str:
+    return f"at {formatted(math.degrees(q), 6)} deg"
+
+
+@check("change-point", kind=KIND)
+def change_point(machine: CheckedMachine, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Warn of a change point: both positions of a dyad meet, and forces grow without bound.
+
+    Looks at: where the room that a dyad needs to close is 0.
+    """
+    for dyad in machine.linkage.dyads:
+        if dyad.changes:
+            kept = "its branch" if dyad.keeps == BRANCH else "its motion"
+            other = "motion" if dyad.keeps == BRANCH else "branch"
+            yield Remark(
+                f"Both positions of {dyad.joint} meet here: the machine may leave it either way, "
+                f'and needs a flywheel or a second link. It keeps {kept}; change = "{other}" keeps '
+                "the other.",
+                f"{dyad.joint}, " + ", ".join(_at(one) for one in dyad.changes),
+            )
+
+
+def _jumps(measures: TrackMeasures, order: int) -> Iterator[tuple[float, float]]:
+    """Yield the knots at which a derivative jumps, and by how much."""
+    places, values = measures.extremes[order]
+    size = float(np.abs(values).max())
+    for knot in measures.knots[1:-1]:
+        there = values[places == knot]
+        if there.size > 1 and np.ptp(there) > _JUMP * size:
+            yield float(knot), float(there[-1] - there[0])
+    if measures.closed and abs(values[0] - values[-1]) > _JUMP * size:
+        yield float(measures.knots[0]), float(values[0] - values[-1])
+
+
+def _told(machine: CheckedMachine, order: int, what: str) -> Iterator[Remark]:
+    power = order if order > 1 else ""
+    for name, measures in machine.outputs.items():
+        unit = f"{machine.units[name]}/rad{power}"
+        found = list(_jumps(measures, order))
+        if found:
+            where, by = max(found, key=lambda one: abs(one[1]))
+            more = f", and at {len(found) - 1} further places" if len(found) > 1 else ""
+            yield Remark(
+                f"The {what} of {name} jumps by {formatted(by, 5)} {unit}{more}.",
+                f"{name}, {_at(where)}",
+                abs(by),
+                unit=unit,
+            )
+
+
+@check("velocity-jump", kind=KIND)
+def velocity_jump(machine: CheckedMachine, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Warn of outputs whose velocity jumps: a shock.
+
+    Looks at: both sides of the knots of laws and motions.
+    """
+    yield from _told(machine, 1, "velocity")
+
+
+@check("acceleration-jump", kind=KIND, severity="note")
+def acceleration_jump(machine: CheckedMachine, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Note outputs whose acceleration jumps: vibration at high speed.
+
+    Looks at: both sides of the knots of laws and motions.
+    """
+    yield from _told(machine, 2, "acceleration")
+
+
+@check("peak-acceleration", kind=KIND, severity="note")
+def peak_acceleration(machine: CheckedMachine, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Note that a pair makes the largest acceleration larger than an even drive would.
+
+    Looks at: the largest acceleration of each output, also with an even shaft in place of the pair.
+    """
+    for name, even in machine.even.items():
+        unit = f"{machine.units[name]}/rad2"
+        own, without = machine.outputs[name].size(2), even.size(2)
+        if abs(own.value) > _WORSE * abs(without.value):
+            factor = formatted(abs(own.value / without.value), 3)
+            yield Remark(
+                f"Behind the pair the largest acceleration of {name} is {factor} times that behind "
+                f"an even shaft, which is {formatted(abs(without.value), 4)} {unit}.",
+                f"{name}, {_at(own.place)}",
+                abs(own.value),
+                unit=unit,
+            )
