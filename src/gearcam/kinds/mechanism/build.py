@@ -393,10 +393,11 @@ class MechanismResult(Result):
         Returns
         -------
         Columns
-            A row for each drive and output: ``drive``, ``output``, ``unit``, ``stroke``, the
+            A row for each drive and output: ``drive``, the master's range ``range_deg``,
+            ``output``, ``unit``, ``stroke``, the
             largest sizes of the derivatives by the master's angle with the places, ``velocity``
             and ``velocity_at_deg`` and so on, in the unit or rad; with a speed those by time,
-            ``velocity_per_s``.
+            ``velocity_per_s``, and the range's time, ``range_s``.
         """
         return self._tabled(comparison_rows)
 
@@ -497,12 +498,15 @@ def comparison_rows(name: str, machine: MechanismResult) -> Iterator[dict[str, A
     machine : MechanismResult
         The mechanism behind it.
     """
-    speed = machine.design.drive[0].speed
+    speed, (low, high) = machine.design.drive[0].speed, machine.linkage.span
     for one in machine.outputs:
         measures, (scale, unit) = machine.measures[one.stem], one.unit
         row: dict[str, Any] = {
-            "drive": name, "output": one.stem, "unit": unit, "stroke": scale * measures.stroke,
+            "drive": name, "range_deg": _DEG * (high - low), "output": one.stem, "unit": unit,
+            "stroke": scale * measures.stroke,
         }  # fmt: skip
+        if speed is not None:
+            row["range_s"] = (high - low) / speed
         for order, word in enumerate(RATES, start=1):
             peak = measures.size(order)
             row |= {word: peak.value, f"{word}_at_deg": _DEG * peak.place}

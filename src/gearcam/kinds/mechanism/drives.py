@@ -91,12 +91,6 @@ def displaced(by: Displacement, factor: float, constant: float = 0.0) -> Law:
     return law
 
 
-def _mean(law: Law, period: float) -> Law:
-    """Return the even law with the ends of another one over a period."""
-    first, last = np.asarray(law(np.array([0.0, period]), 0).c[0])
-    return linear(float(last - first) / period, float(first))
-
-
 def moved_by(drive: MachineDrive, result: Any) -> dict[str, Moved]:
     """Return what a drive moves.
 
@@ -209,13 +203,17 @@ class PlacedDrive(ShortRepr):
         ----------
         other : PlacedDrive
             A drive of the same sort, or any if this one is even: then all shafts turn evenly, at
-            the mean ratio of the other.
+            the mean ratio of a closed pair, as fast as the driver in the place of an open one.
         """
         moved = {}
         for word, one in other.moved.items():
-            law = self.moved[word].law if word in self.moved else _mean(one.law, other.period)
+            law = self.moved[word].law if word in self.moved else _evenly(one.law, other)
             moved[word] = replace(one, law=law)
-        return replace(self, spec=other.spec, moved=moved)
+        if self.result is not None:
+            return replace(self, spec=other.spec, moved=moved)
+        low, high = 0.0, other.period if other.closed else max(map(_travelled, _laws(other)))
+        ends = np.array([low, high])
+        return PlacedDrive(other.spec, moved, ends, high, other.closed)
 
     def elements(self, master: bool) -> Iterator[Element]:
         """Yield its shafts, where they stand, and the guides of its slides.
@@ -314,3 +312,21 @@ def placed(spec: MachineDrive, build: Callable[[Any], Any]) -> PlacedDrive:
     knots = np.asarray(by.knots, dtype=float)
     inside = knots[(knots >= 0.0) & (knots <= by.period)]
     return PlacedDrive(spec, moved_by(spec, result), inside, float(by.period), by.closed, result)
+
+
+def _laws(drive: PlacedDrive) -> list[tuple[Law, float]]:
+    return [(one.law, drive.period) for one in drive.moved.values()]
+
+
+def _travelled(one: tuple[Law, float]) -> float:
+    """Return how far a law gets over its range."""
+    law, period = one
+    first, last = np.asarray(law(np.array([0.0, period]), 0).c[0])
+    return abs(float(last - first))
+
+
+def _evenly(law: Law, drive: PlacedDrive) -> Law:
+    """Return the even law in the place of another one."""
+    first, last = np.asarray(law(np.array([0.0, drive.period]), 0).c[0])
+    way = float(last - first)
+    return linear(way / drive.period if drive.closed else math.copysign(1.0, way), float(first))

@@ -90,7 +90,11 @@ def _output(result: MechanismResult, one: Output) -> Tree:
         f"largest_{unit}": Fact(
             scale * largest.value, f"{one.stem}, largest", place=_place(largest)
         ),
-        f"stroke_{unit}": Fact(scale * measures.stroke, f"stroke of {one.stem}", shown=True),
+        f"stroke_{unit}": Fact(
+            scale * measures.stroke,
+            f"{'turn' if measures.rise else 'stroke'} of {one.stem}",
+            shown=True,
+        ),
         "dead_centers_deg": [_DEG * center.place for center in centers] or None,
         "time_ratio": None
         if ratio is None

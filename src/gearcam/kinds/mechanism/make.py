@@ -29,7 +29,7 @@ from gearcam.linkages.linkage import Linkage, in_order
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.design import MechanismDesign
-    from gearcam.kinds.mechanism.tables import CrankSpec, DyadSpec
+    from gearcam.kinds.mechanism.tables import CrankSpec, DyadSpec, GuideSpec
 
 _TURN: Final = 2.0 * math.pi
 
@@ -123,11 +123,38 @@ def _elements(design: MechanismDesign, drives: Sequence[PlacedDrive]) -> Iterato
             yield PushedSlide(slide.name, slide.on, way_of(slide.on), hidden)
             yield MemberPoint(slide.joint, complex(*slide.at), slide.name)
     for guide in design.guide:
-        yield GuideLine(guide.name, complex(*guide.at), guide.direction, guide.on)
+        yield _guide(guide, design, drives)
     for dyad in design.dyad:
         yield _dyad(dyad)
     for point in design.point:
         yield MemberPoint(point.name, complex(*point.at), point.on)
+    yield from _pulled(design)
+
+
+def _guide(spec: GuideSpec, design: MechanismDesign, drives: Sequence[PlacedDrive]) -> GuideLine:
+    """Return a guide through its point, or through a joint or a shaft that stands still."""
+    at = complex(*spec.at)
+    if spec.through is not None:
+        at += _standing(spec.through, design, drives)
+    return GuideLine(spec.name, at, spec.direction, spec.on)
+
+
+def _standing(name: str, design: MechanismDesign, drives: Sequence[PlacedDrive]) -> complex:
+    """Return where a joint that stands still, or a shaft of a drive, is."""
+    for joint in design.joint:
+        if joint.name == name:
+            return complex(*joint.at)
+    drive, moved = next(
+        (drive, one)
+        for drive in drives
+        for word, one in drive.moved.items()
+        if name in (drive.spec.name, f"{drive.spec.name}.{word}")
+    )
+    return drive.machine(moved.at)
+
+
+def _pulled(design: MechanismDesign) -> Iterator[Element]:
+    """Yield what wheels pull by chains: straight, and levers."""
     for hoist in design.hoist:
         way, guide = f"{hoist.name}.way", f"{hoist.name}.guide"
         radius = hoist.radius if hoist.wind == "ccw" else -hoist.radius

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from gearcam.kinds.mechanism.tables import DyadSpec
 
 SHAFT, WAY, JOINT, MEMBER, GUIDE = "shaft", "slide", "joint", "member", "guide"
+STANDING: Final = "joint that stands still, or shaft"
 """What a name can be."""
 
 _PARTS: Final = ("drive", "joint", "crank", "slide", "guide", "dyad", "point", "chain", "hoist")
@@ -88,7 +89,7 @@ _GIVES: Final = {
 _NEEDS: Final = {
     "crank": (("on", "on", SHAFT), ("at", "at", JOINT)),
     "slide": (("on", "on", WAY),),
-    "guide": (("on", "on", MEMBER),),
+    "guide": (("on", "on", MEMBER), ("through", "through", STANDING)),
     "dyad": (("driven", "driven", WAY),),
     "point": (("on", "on", MEMBER),),
     "chain": (("on", "on", SHAFT),),
@@ -132,10 +133,24 @@ def problems(_: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
             what = f"the name {one.name!r} is given twice"
             yield Fault(one.path, what, one.name, "a name for one thing")
         names.setdefault(one.name, one)
+    standing = [one.path for one in given(parts) if one.path[0] == "joint"]
     for one in needed(parts):
-        yield from _missing(one, names)
+        if one.sort == STANDING:
+            yield from _not_standing(one, names, standing)
+        else:
+            yield from _missing(one, names)
     if not found.faults:
         yield from _unreached(parts)
+
+
+def _not_standing(
+    one: NameUse, names: Mapping[str, NameUse], standing: Sequence[tuple[str | int, ...]]
+) -> Iterator[Fault]:
+    other = names.get(one.name)
+    if other is None or not (other.sort == SHAFT or other.path in standing):
+        what = "nothing has this name" if other is None else "it moves"
+        fitting = [key for key, is_ in names.items() if is_.sort == SHAFT or is_.path in standing]
+        yield Fault(one.path, what, one.name, f"a {STANDING}: {', '.join(fitting)}")
 
 
 def _missing(one: NameUse, names: Mapping[str, NameUse]) -> Iterator[Fault]:

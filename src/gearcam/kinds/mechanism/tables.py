@@ -30,7 +30,7 @@ from gearcam.base.rules import Breach, distinct, exactly_one
 from gearcam.designs.design import Design
 from gearcam.designs.outputs import OutputSpec, files_param, pose_param, studies_param
 from gearcam.linkages.dyads import DYADS
-from gearcam.linkages.elements import BRANCH, MOTION
+from gearcam.linkages.elements import BRANCH, GROUND, MOTION
 
 FORMATS: Final = ("csv", "dxf", "svg", "report")
 """What ``output.files`` may list."""
@@ -263,7 +263,17 @@ class GuideSpec(ShortRepr):
         default=(0.0, 0.0),
         order="x, y",
     )
+    through: str | None = _name(
+        doc="a joint that stands still, or a shaft, from which at_mm counts",
+        default=None,
+        example="pair.wheel2",
+    )
     direction: float = _direction(doc="its direction in the member's frame", default=0.0)
+
+    def problems(self) -> Iterator[Breach]:
+        """Yield a joint of the ground for a guide on a member."""
+        if self.through is not None and self.on != GROUND:
+            yield "through", None, f"is given beside on = {self.on!r}", "a guide on the ground"
 
 
 TYPES: Final = ("RRR", "RRT", "TRR", "RTR", "TRT", "RTT", "TTR", "RTRR")
