@@ -65,8 +65,8 @@ KIND: Final = Kind(
     study_tables={"accuracy": "accuracy"},
     example={
         "drive": [{"name": "motor", "even": True, "speed_rpm": 60}],
-        "joint": [{"name": "A", "at_mm": [0, 0]}, {"name": "D", "at_mm": [110, 0]}],
-        "crank": [{"name": "crank", "on": "motor", "at": "A", "joint": "B", "length_mm": 40}],
+        "joint": [{"name": "D", "at_mm": [110, 0]}],
+        "crank": [{"name": "crank", "on": "motor", "joint": "B", "length_mm": 40}],
         "dyad": [
             {
                 "type": "RRR",
