@@ -40,8 +40,8 @@ ELSEWHERE = {
     "idle": ("numerals.py", "paper.py"),
     "halves": ("sampling.py", "openings.py"),
 }
-"""Files and folders in which a word is the field's own, or plain English: strokes of a pen or slide,
-machine feeds, idle zeros of a number, halves of an interval."""
+"""Files and folders in which a word is the field's own, or plain English: strokes of a pen or
+slide, machine feeds, idle zeros of a number, halves of an interval."""
 
 TERMS = (
     "centrode", "addendum curve", "form point", "fillet interference", "backlash", "contact ratio",
