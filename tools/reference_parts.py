@@ -22,6 +22,7 @@ TITLES: Final = {
     "cam": "Cams",
     "spatial-cam": "Cams in space",
     "globoidal-cam": "Globoidal indexing cams",
+    "mechanism": "Mechanisms",
 }
 GROUPS: Final = {
     "teeth": "Law, centrodes and teeth",
@@ -30,6 +31,7 @@ GROUPS: Final = {
     "parts": "Parts",
     "cams": "Motion and profile",
     "cams in space": "Walls",
+    "mechanisms": "Motion",
     "globoidal cams": "Walls and hold",
     "solids of cams in space": "Solids",
     "forces": "Forces (`gearcam forces`)",
