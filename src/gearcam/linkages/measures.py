@@ -138,7 +138,8 @@ def extremes_of(track: Law, knots: Array, highest: int = HIGHEST) -> tuple[Extre
     places = np.concatenate([one[0] for one in rough])
     values = np.concatenate([one[1] for one in rough])
     knot = grid[np.abs(places[:, None] - grid).argmin(axis=1)]
-    at_knot = np.abs(places - knot) <= _NEAR * np.diff(grid).min()
+    cell = np.clip(np.searchsorted(grid, places), 1, len(grid) - 1)
+    at_knot = np.abs(places - knot) <= _NEAR * np.diff(grid)[cell - 1]
     places[at_knot] = knot[at_knot]
     free = np.flatnonzero(~at_knot)
     places[free] = _polished(derivatives, grid, which[free], places[free])
