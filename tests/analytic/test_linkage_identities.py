@@ -187,3 +187,34 @@ def test_loops_close_by_newton_iteration(linkages) -> None:
             assert np.all((np.abs(other - place(known, dyad.joint)) > 1e-3 * size)[chosen])
             mirrored.add(dyad.type)
     assert mirrored == {name for name, kind in DYADS.items() if kind.branches}
+
+
+def test_derivatives_by_fifty_digits(linkages) -> None:
+    """Three orders of every joint, against numerical derivatives of the positions by angles."""
+    for number, (one, made) in enumerate(linkages[0][:60]):
+        q = float(np.random.default_rng(number).uniform(0.0, TURN))
+        known = made.at(np.array([q]), 0)
+        if not all(firm(dyad, known).all() for dyad in made.dyads):
+            continue
+        for dyad in made.dyads:
+            exact = witness.derivatives(made, one.ways, dyad.joint, q, 3)
+            found = made.track(dyad.joint, np.array([q]), 3).derivatives()
+            for value, wanted in zip(found, exact, strict=True):
+                assert abs(value[0] - wanted) < 1e-9 * (100.0 + abs(wanted)), (number, dyad)
+
+
+def test_a_guide_moved_by_a_micrometre_is_noticed(linkages) -> None:
+    """By the lengths and angles of the dyads on it, which held before."""
+    seen = 0
+    for _, made in linkages[0]:
+        q = np.linspace(0.0, TURN, 7)
+        known = made.at(q, 0)
+        for dyad in made.dyads:
+            for name in {dyad.first, dyad.second} & {"bed", "post", "slot"}:
+                frame = known.frame(name)
+                known.given[name] = frame._replace(origin=frame.origin + frame.direction * 1e-3j)
+                assert misfit(dyad, known).min() > 1e-8
+                known.given[name] = frame
+                assert misfit(dyad, known).max() < 1e-13
+                seen += 1
+    assert seen > 10

@@ -34,6 +34,7 @@ from helpers_linkages import (
     crank_slider,
     derivatives,
     four_bar,
+    halve_products_of_speeds,
     linkage,
     phases,
     rows,
@@ -59,10 +60,10 @@ NAMES = {"guide1": "guide1", "guide2": "guide2", "slide1": "member1", "slide2": 
 SIXTY_RPM = TURN
 
 
-def solved(row: dict[str, str]) -> Solved:
+def solved(row: dict[str, str], guides: tuple[Frame, Frame] = GUIDES) -> Solved:
     """The dyad of a row of the table."""
     kind = DYADS[row["dyad"]]
-    ends = [GUIDES[k] if guided else JOINTS[k] for k, guided in enumerate(kind.guides)]
+    ends = [guides[k] if guided else JOINTS[k] for k, guided in enumerate(kind.guides)]
     sizes = Lengths(
         float(row["first"]),
         float(row["second"]),
@@ -71,28 +72,65 @@ def solved(row: dict[str, str]) -> Solved:
     return kind.solve(*ends, sizes, float(row["sign"]))
 
 
+def assert_printed(row: dict[str, str], found: Solved, orders: int = 3) -> None:
+    """Joint, members and slides as in a row of the table: places, speeds, accelerations."""
+    for part, names in ((real, ("x", "vx", "ax")), (imaginary, ("y", "vy", "ay"))):
+        for value, name in zip(part(found.joint).derivatives()[:orders], names, strict=False):
+            agree(value, float(row[name]), 100.0)
+    for frame, member in zip(found.frames, ("member1", "member2"), strict=True):
+        if row[f"{member}_deg"]:
+            angle, *rates = rotation(frame.direction).derivatives()[:orders]
+            angles_agree(angle, float(row[f"{member}_deg"]))
+            for value, name in zip(rates, ("omega", "epsilon"), strict=False):
+                agree(value, float(row[f"{member}_{name}"]), 100.0)
+    for name, slide in NAMES.items():
+        if row[name]:
+            values = found.slides[slide].derivatives()[:orders]
+            for value, ending in zip(values, ("", "_v", "_a"), strict=False):
+                agree(value, float(row[name + ending]), 1000.0)
+
+
 def named(row: dict[str, str]) -> str:
     return "{dyad} {first} {second} {beta_deg} {gamma1_deg} {gamma2_deg} {sign}".format(**row)
 
 
 @pytest.mark.parametrize("row", rows("dyads"), ids=named)
 def test_dyads(row: dict[str, str]) -> None:
-    """Joint, members and slides of every type, with every sign."""
-    found = solved(row)
-    for part, names in ((real, ("x", "vx", "ax")), (imaginary, ("y", "vy", "ay"))):
-        for value, name in zip(part(found.joint).derivatives(), names, strict=True):
-            agree(value, float(row[name]), 100.0)
-    for frame, member in zip(found.frames, ("member1", "member2"), strict=True):
-        if row[f"{member}_deg"]:
-            angle, omega, epsilon = rotation(frame.direction).derivatives()
-            angles_agree(angle, float(row[f"{member}_deg"]))
-            agree(omega, float(row[f"{member}_omega"]), 10.0)
-            agree(epsilon, float(row[f"{member}_epsilon"]), 100.0)
-    for name, slide in NAMES.items():
-        if row[name]:
-            values = found.slides[slide].derivatives()
-            for value, ending in zip(values, ("", "_v", "_a"), strict=True):
-                agree(value, float(row[name + ending]), 1000.0)
+    """Every type, with every sign."""
+    assert_printed(row, solved(row))
+
+
+class TestFaultsAreNoticed:
+    """What would be wrong in a linkage is wrong in the table."""
+
+    @pytest.mark.parametrize(
+        "row", [r for r in rows("dyads") if DYADS[r["dyad"]].branches], ids=named
+    )
+    def test_the_other_sign(self, row: dict[str, str]) -> None:
+        with pytest.raises(AssertionError):
+            assert_printed(row, solved(row | {"sign": str(-float(row["sign"]))}), 1)
+
+    @pytest.mark.parametrize(
+        "row", [r for r in rows("dyads") if any(DYADS[r["dyad"]].guides)], ids=named
+    )
+    @pytest.mark.parametrize("along", [1e-3, 1e-3j])
+    def test_a_guide_moved_by_a_micrometre(self, row: dict[str, str], along: complex) -> None:
+        """Along itself its slide's place changes, across itself more."""
+        moved = [frame._replace(origin=frame.origin + frame.direction * along) for frame in GUIDES]
+        with pytest.raises(AssertionError):
+            assert_printed(row, solved(row, (moved[0], moved[1])), 1)
+
+    def test_half_of_a_coriolis_acceleration(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """The product of two speeds counts once: places and speeds stay right."""
+        halve_products_of_speeds(monkeypatch)
+        for row in rows("dyads"):
+            assert_printed(row, solved(row), 2)
+            with pytest.raises(AssertionError):
+                assert_printed(row, solved(row))
+        points = [row for row in rows("four_bar") if row["sign"] == "1"][:12]
+        place, speed, _ = derivatives(four_bar(), "P.x", column(points, "crank_deg"), 2)
+        agree(place, column(points, "xP"))
+        agree(speed * 10.0, column(points, "vPx"))
 
 
 def test_every_type_and_sign_is_in_the_table() -> None:
