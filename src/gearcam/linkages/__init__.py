@@ -5,7 +5,11 @@ three joints from what it begins at. `elements` has the parts of a linkage: shaf
 guides, dyads, points. `chain` has the one group with a root per position. `linkage` puts the parts
 in order and evaluates all of them. `closing` finds where a linkage closes, its change points, and
 the nearest length that closes. `work` finds the driver's
-moment under loads.
+moment under loads. `geneva` is one more part.
+
+`measures` has the extremes, dead centres, travel and time ratio of an output, `dwells` where it
+rests, `transmission` the pressure angles of dyads, `grashof` the class of a four-bar. `paths` has
+length, area, cusps and crossings of a point's path, `path_fits` how straight or round it is.
 
 All lengths are in mm, angles in rad, counter-clockwise from the x axis. Everything is a function of
 the driver's angle q; the derivatives are those by q. A room that knows no wheels and no cams: what

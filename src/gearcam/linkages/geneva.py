@@ -28,6 +28,9 @@ from gearcam.numeric import jets
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet
 
+_SAME: Final = 1e-9
+"""Knots closer than this are one, rad."""
+
 SLOTS: Final = (3, 24)
 """Least and largest number of slots: with two the pin would have to enter at the wheel's centre."""
 
@@ -154,7 +157,9 @@ class GenevaWheel(ShortRepr, Element):
         """
         shaft = TrackMeasures(law, knots, closed=False, highest=0)
         turns = self.switches(shaft.least().value, shaft.largest().value)
-        return np.unique(np.concatenate([knots, *(shaft.places_of(float(one)) for one in turns)]))
+        found = np.concatenate([[], *(shaft.places_of(float(one)) for one in turns)])
+        apart = np.abs(found[:, None] - knots).min(axis=1) > _SAME
+        return np.union1d(knots, found[apart])
 
     def wheel_turn(self, turn: Jet) -> Jet:
         """Return the wheel's turn.

@@ -115,3 +115,21 @@ def test_slots_and_length_are_checked() -> None:
             replace(MALTESE, slots=slots)
     with pytest.raises(ValueError, match="length 0 mm: must be above 0"):
         replace(MALTESE, length=0.0)
+
+
+def test_the_pin_enters_and_leaves_once_a_turn() -> None:
+    quarter = 0.25 * np.pi
+    found = MALTESE.switches(0.0, 7.0)
+    assert found == pytest.approx([quarter, 7.0 * quarter], abs=1e-15)
+    found = MALTESE.switches(-quarter - 1e-12, 9.0 * quarter + 1e-12)
+    assert found == pytest.approx(quarter * np.array([-1.0, 1.0, 7.0, 9.0]), abs=1e-15)
+
+
+@pytest.mark.parametrize("slots", [3, 5, 7, 11])
+def test_an_entry_at_a_knot_is_that_knot(slots: int) -> None:
+    wheel = replace(MALTESE, slots=slots, direction=np.pi * (0.5 - 1.0 / slots))
+    found = wheel.knots(even, TURN)
+    assert found.size == 3
+    assert found[1] == pytest.approx(wheel.engaged, abs=1e-14)
+    beside = np.array([0.0, wheel.engaged + 1e-13, 2.0 * np.pi])
+    assert wheel.knots(even, beside).tolist() == beside.tolist()
