@@ -6,7 +6,7 @@ Importing this module registers them.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Final
 
@@ -15,9 +15,11 @@ import numpy as np
 from gearcam.base.display import ShortRepr
 from gearcam.base.findings import Remark, check
 from gearcam.base.numerals import formatted
-from gearcam.linkages.elements import BRANCH
+from gearcam.base.quantities import ANGLE, Param
+from gearcam.linkages.elements import BRANCH, Crank
 from gearcam.linkages.linkage import Linkage
 from gearcam.linkages.measures import TrackMeasures
+from gearcam.linkages.transmission import ADMISSIBLE, Transmission
 
 KIND: Final = "mechanisms"
 """Their group."""
@@ -41,6 +43,8 @@ class CheckedMachine(ShortRepr):
         Its outputs by name.
     units : mapping of str to str
         ``mm`` or ``rad`` of each output.
+    transmissions : sequence of Transmission
+        The worst place of each dyad.
     even : mapping of str to TrackMeasures
         The same outputs where an even shaft stands in the place of the pair; empty if no pair
         drives it.
@@ -49,11 +53,76 @@ class CheckedMachine(ShortRepr):
     linkage: Linkage
     outputs: Mapping[str, TrackMeasures]
     units: Mapping[str, str]
+    transmissions: Sequence[Transmission] = ()
     even: Mapping[str, TrackMeasures] = field(default_factory=dict)
 
 
 def _at(q: float) -> str:
     return f"at {formatted(math.degrees(q), 6)} deg"
+
+
+@check(
+    "pressure-angle",
+    kind=KIND,
+    limit=(
+        "pressure_angle",
+        Param(
+            ANGLE,
+            gt=0,
+            lt=90,
+            example=45,
+            doc="largest pressure angle of a dyad; 45 RRR, 30 RRT and TRR",
+        ),
+        math.nan,
+    ),
+)
+def pressure_angle(machine: CheckedMachine, limit: float) -> Iterator[Remark]:
+    """Warn of dyads through which a force hardly passes.
+
+    Looks at: the largest pressure angle over the whole range, 90 degrees less the transmission
+    angle. Source of the limits: 000, 2.2.
+    """
+    for one in machine.transmissions:
+        safe = ADMISSIBLE.get(one.dyad.type)
+        if one.pressure_angle is None or safe is None:
+            continue
+        most = safe.pressure_angle[0] if math.isnan(limit) else limit
+        found = math.degrees(one.pressure_angle.value)
+        if one.pressure_angle.value > most:
+            last = math.degrees(safe.pressure_angle[1])
+            yield Remark(
+                f"The pressure angle of {one.dyad.joint} reaches {formatted(found, 4)} deg: "
+                f"transmission angle {formatted(90.0 - found, 4)} deg. {formatted(last)} deg is "
+                "the most that is usual.",
+                f"{one.dyad.joint}, {_at(one.pressure_angle.place)}",
+                found,
+                limit=math.degrees(most),
+                unit="deg",
+            )
+
+
+@check("guide-distance", kind=KIND)
+def guide_distance(machine: CheckedMachine, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Warn of a block that comes near the pivot of the guide on which it slides.
+
+    Looks at: the least distance ``l0`` over the length of the crank that carries the block; the
+    guide turns fast there. Source of the limit: 000, 2.2.
+    """
+    cranks = {one.joint: one for one in machine.linkage.elements if isinstance(one, Crank)}
+    for one in machine.transmissions:
+        crank = cranks.get(one.dyad.first) or cranks.get(one.dyad.second)
+        if one.distance is None or crank is None:
+            continue
+        least = ADMISSIBLE[one.dyad.type].distance[0] * crank.length
+        if one.distance.value < least:
+            yield Remark(
+                f"The block of {one.dyad.joint} comes within {formatted(one.distance.value, 4)} mm "
+                "of the guide's pivot, where the guide turns fast.",
+                f"{one.dyad.joint}, {_at(one.distance.place)}",
+                one.distance.value,
+                limit=least,
+                unit="mm",
+            )
 
 
 @check("change-point", kind=KIND)

@@ -103,6 +103,11 @@ class Linkage(ShortRepr):
         """Its dyads, in order."""
         return tuple(one for one in self.elements if isinstance(one, Dyad))
 
+    def shaft_of(self, crank: str) -> complex:
+        """Return where the shaft of a `crank` stands, by its name, mm."""
+        frame = self.at(self.knots[:1], 0).frame(crank)
+        return complex(np.asarray(frame.origin.c[0])[0])
+
     def at(self, q: Array, order: int, upto: Element | None = None) -> Known:
         """Solve the linkage.
 

@@ -25,6 +25,8 @@ from gearcam.linkages import checks
 from gearcam.linkages.dwells import DriverRange, last_travel, longest_dwell
 from gearcam.linkages.linkage import Linkage
 from gearcam.linkages.measures import TrackMeasures
+from gearcam.linkages.paths import PointPath
+from gearcam.linkages.transmission import Transmission, transmissions
 from gearcam.numeric.arguments import angles
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
@@ -327,6 +329,7 @@ class MechanismResult(Result):
             self.linkage,
             self.measures,
             {one.stem: one.rate_unit for one in self.outputs},
+            self.transmissions,
             {} if even is None else even.measures,
         )
 
@@ -361,6 +364,21 @@ class MechanismResult(Result):
     def closure_error(self) -> float:
         """Largest difference of a member's length from the one it has, mm, over the cycle."""
         return self.linkage.miss(np.linspace(*self.linkage.span, _WITNESSES))
+
+    @cached_property
+    def transmissions(self) -> tuple[Transmission, ...]:
+        """The worst pressure angle of each dyad, or the least distance of a swinging guide."""
+        return transmissions(self.linkage)
+
+    @cached_property
+    def paths(self) -> dict[str, PointPath]:
+        """The paths of the points that are asked for, by name."""
+        linkage = self.linkage
+        names = dict.fromkeys(one.name for one in self.outputs if one.quantity == f"{one.name}.x")
+        return {
+            name: PointPath(partial(linkage.track, name), linkage.knots, linkage.closed)
+            for name in names
+        }
 
     @cached_property
     def intervals(self) -> tuple[DriverRange, ...]:

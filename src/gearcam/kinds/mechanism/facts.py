@@ -8,10 +8,13 @@ from typing import TYPE_CHECKING, Any, Final
 from gearcam.base.facts import Fact, Facts
 from gearcam.base.numerals import formatted
 from gearcam.kinds.mechanism.build import RATES
+from gearcam.linkages.grashof import FourBarLengths, grashof
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.build import MechanismResult, Output
     from gearcam.linkages.measures import Peak, TrackMeasures
+    from gearcam.linkages.paths import PointPath
+    from gearcam.linkages.transmission import Transmission
 
 Tree = dict[str, Any]
 
@@ -24,6 +27,7 @@ def facts(result: MechanismResult) -> Facts:
     tree: Tree = {
         "machine": _machine(result),
         "outputs": outputs,
+        "paths": {name: _path(path) for name, path in result.paths.items()} or None,
         "intervals": _intervals(result),
         "dwells": _dwells(result),
         "compare": {
@@ -56,6 +60,7 @@ def _machine(result: MechanismResult) -> Tree:
     linkage, (low, high) = result.linkage, result.linkage.span
     signs = {one.joint: one.sign for one in linkage.dyads}
     solved = {one.joint: number for number, one in enumerate(linkage.dyads, start=1)}
+    worst = {one.dyad.joint: one for one in result.transmissions}
     return {
         "from_deg": _DEG * low,
         "to_deg": _DEG * high,
@@ -68,11 +73,64 @@ def _machine(result: MechanismResult) -> Tree:
                 "branch": one.branches[0 if signs[one.joint] > 0.0 else 1]
                 if one.branches
                 else None,
+                **_transmission(worst[one.joint], one.joint),
             }
             for one in result.design.dyad
         }
         or None,
+        "four_bars": _four_bars(result) or None,
     }
+
+
+def _transmission(worst: Transmission, joint: str) -> Tree:
+    if worst.pressure_angle is None:
+        distance = worst.distance
+        label = f"least distance of the block of {joint} from the guide's pivot"
+        return {
+            "guide_distance_mm": None
+            if distance is None
+            else Fact(distance.value, label, place=_place(distance))
+        }
+    peak = worst.pressure_angle
+    label = f"largest pressure angle of {joint}"
+    return {"pressure_angle_deg": Fact(_DEG * peak.value, label, place=_place(peak))}
+
+
+def _four_bars(result: MechanismResult) -> Tree:
+    """Return Grashof's class of each RRR dyad between a crank and a joint that stands still."""
+    design, found = result.design, {}
+    cranks = {one.joint: one for one in design.crank}
+    fixed = {one.name: complex(*one.at) for one in design.joint}
+    for dyad in design.dyad:
+        ends = (dyad.first, dyad.last) if dyad.first in cranks else (dyad.last, dyad.first)
+        rods = dyad.lengths if dyad.first in cranks else dyad.lengths[::-1]
+        if dyad.type != "RRR" or ends[0] not in cranks or ends[1] not in fixed:
+            continue
+        crank = cranks[ends[0]]
+        shaft = result.linkage.shaft_of(crank.name)
+        base = abs(fixed[ends[1]] - shaft)
+        if base:
+            grashof_class = grashof(FourBarLengths(crank.length, *rods, base))
+            found[dyad.joint] = {
+                "class": Fact(grashof_class.name, f"Grashof's class of {dyad.joint}"),
+                "meaning": grashof_class.meaning,
+            }
+    return found
+
+
+def _path(path: PointPath) -> Tree:
+    """Return length and area of a point's path, its cusps and its crossings."""
+    area = path.area
+    return {
+        "length_mm": path.length.value,
+        "area_mm2": None if area is None else area.value,
+        "cusps_deg": [_DEG * one.place for one in path.cusps] or None,
+        "crossings": [
+            {"first_deg": _DEG * one.first, "second_deg": _DEG * one.second,
+             "x_mm": one.point.real, "y_mm": one.point.imag}
+            for one in path.crossings
+        ] or None,
+    }  # fmt: skip
 
 
 def _place(peak: Peak) -> str:
