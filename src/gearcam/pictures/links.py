@@ -50,10 +50,11 @@ def link(pins: Sequence[complex], half: float) -> tuple[Feature, ...]:
     # the joint that is outermost in each direction, and half a width beyond it
     outer = (places[:, None] * around.conj()).real.argmax(axis=0)
     edge = Feature(layer=MEMBER, shape=Path(points=places[outer] + half * around))
-    return edge, *(_pin(pin, half) for pin in dict.fromkeys(pins))
+    return edge, *(pin(at, half) for at in dict.fromkeys(pins))
 
 
-def _pin(at: complex, half: float) -> Feature:
+def pin(at: complex, half: float) -> Feature:
+    """Return the pin in a joint, `at`, mm, of a link that is twice `half` wide."""
     return Feature(layer=f"{MEMBER}_{BORE}", shape=Circle(center=at, diameter=_PIN * half))
 
 
@@ -77,7 +78,7 @@ def block(at: complex, direction: float, half: float) -> tuple[Feature, ...]:
     corner = half * complex(_LONG, _WIDE)
     corners = np.array([-corner, corner.conjugate(), corner, -corner.conjugate()])
     edge = Path(points=at + corners * np.exp(1j * direction))
-    return Feature(layer=MEMBER, shape=edge), _pin(at, half)
+    return Feature(layer=MEMBER, shape=edge), pin(at, half)
 
 
 def guide(ends: tuple[float, float], half: float) -> tuple[Feature, ...]:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from gearcam.kinds.mechanism.drives import way_of
-from gearcam.kinds.mechanism.names import SHAFT, given
+from gearcam.kinds.mechanism.names import given
 from gearcam.linkages.dyads import DYADS
 from gearcam.linkages.elements import GROUND as STANDING
 from gearcam.linkages.elements import SLIDES
@@ -31,7 +31,7 @@ from gearcam.pictures.drawings import (
     Path,
     mirrored,
 )
-from gearcam.pictures.links import block, guide, link, pivot
+from gearcam.pictures.links import block, guide, link, pin, pivot
 from gearcam.pictures.scenes import MovingBody, still
 from gearcam.results.nested import within
 
@@ -120,8 +120,10 @@ class _Parts:
             made += link(way, half)[:1]
         for at, direction in self.blocks:
             made += block(at, direction, half)
-        if len(self.pins) > 1 or (self.pins and not made):
+        if len(self.pins) > 1 or not made:
             made += link(self.pins, half)
+        elif not self.blocks:  # which have pins
+            made += [pin(at, half) for at in self.pins]
         return tuple(made)
 
 
@@ -181,7 +183,8 @@ def _members(shown: _Shown, half: float) -> dict[str, _Parts]:
         ends = _ends(shown, one.name)
         if one.on != STANDING and one.on in found and ends is not None:
             way, at = cmath.exp(1j * one.direction), complex(*one.at)
-            found[one.on].ways.append(_longer(at + ends[0] * way, at + ends[1] * way, half))
+            found[one.on].ways += [_longer(at + ends[0] * way, at + ends[1] * way, half)]
+            found[one.on].ways += [(0j, at)] if at else []
     for point in design.point:
         if point.on in found:
             found[point.on].pins.append(complex(*point.at))
@@ -286,16 +289,15 @@ def _pivots(shown: _Shown) -> Iterator[complex]:
     """Yield the joints that stand still, but for the shafts of wheels and cams."""
     design = shown.result.design
     yield from (complex(*one.at) for one in design.joint)
-    even = {
-        use.name: drive
+    shafts = {
+        f"{drive.spec.name}.{word}": drive.machine(one.at)
         for drive in shown.result.drives
-        if drive.result is None
-        for use in given({"drive": [drive.spec]})
-        if use.sort == SHAFT
+        for word, one in drive.moved.items()
+        if not one.along and (drive.result is None or word == "follower")
     }
-    for crank in design.crank:
-        if crank.at is None and crank.on in even:
-            yield even[crank.on].machine(0j)
+    shafts |= {name.rpartition(".")[0]: at for name, at in shafts.items()}
+    used = [one.on for one in design.crank if one.at is None]
+    yield from (shafts[name] for name in used if name in shafts)
     yield from (complex(*one.hinge) for one in design.chain)
 
 

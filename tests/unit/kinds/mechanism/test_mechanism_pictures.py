@@ -1,0 +1,337 @@
+"""What is drawn of a mechanism: where links, wheels, cams and paths are, by plain geometry."""
+
+from __future__ import annotations
+
+import importlib
+import io
+import math
+import re
+from typing import Any
+
+import ezdxf.filemanagement
+import numpy as np
+import pytest
+import shapely
+
+import gearcam as gc
+from gearcam.kinds.mechanism import bodies as drawn_bodies
+from gearcam.kinds.mechanism.traces import distances, path_within
+from gearcam.numeric.arrays import as_pairs
+from gearcam.pictures.drawings import MEMBER, TRACE, Circle, chains
+from gearcam.pictures.scenes import MovingBody, Scene
+from gearcam.report.data import scene_data
+from helpers_machines import MACHINES, machine
+
+etree: Any = importlib.import_module("lxml.etree")  # without types
+
+FEW = 24
+"""Steps of the master."""
+
+ROUNDED = 1e-9
+"""Of lengths, mm."""
+
+JOINTS = {
+    "four-bar": {
+        "crank": ("B", "A"), "coupler": ("B", "C", "P"), "rocker": ("C", "D"),
+    },
+    "slide behind a pair": {"crank": ("B",), "rod": ("B", "C"), "ram": ("C",)},
+    "pair, mirrored, turned, twice as fast": {
+        "one": ("B",), "two": ("C",), "left": ("B", "P"), "right": ("C", "P"),
+    },
+    "lever on a cam, mirrored": {"lever": ("B",), "rod": ("B", "C"), "tool": ("C",)},
+    "table on two cams": {"x": ("X",), "y": ("Y",), "mx": ("T",), "my": ("T",)},
+    "shaper": {
+        "crank": ("pin",), "rocker": ("O", "E"), "block": ("pin", "B"), "rod": ("E", "ram"),
+        "head": ("ram",),
+    },
+    "cylinder": {"ram": ("A",), "arm": ("D", "C")},
+    "door": {"leaf": ("B",)},
+    "cross": {"crank": ("B",), "block": ("B", "S")},
+}  # fmt: skip
+"""By machine, the joints that each member is drawn through, as its table says."""
+
+STANDING = {"A": 0j, "D": 110 + 0j, "O": -130j}
+"""Places of joints of these machines that stand still and have other names elsewhere."""
+
+
+def body(scene: Scene, name: str) -> Any:
+    (found,) = (one for one in scene.bodies if one.name == name)
+    return found
+
+
+def pins(one: MovingBody) -> Any:
+    """Return the places of the joints of a member, (n, k)."""
+    centers = [f.shape.center for f in one.features if isinstance(f.shape, Circle)]
+    return one.pose[:, None].apply(np.array(centers))
+
+
+def joint(result: Any, name: str, places: Any) -> Any:
+    if name in STANDING and name not in {one.joint for one in result.design.dyad}:
+        fixed = {one.name: complex(*one.at) for one in result.design.joint}
+        return np.full(len(places), fixed.get(name, STANDING[name]))
+    return result.linkage.track(name, np.radians(places), 0).c[0] + np.zeros(len(places))
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_members_stay_on_their_joints(name: str) -> None:
+    result = machine(name)
+    scene = result.scene(FEW)
+    for member, joints in JOINTS[name].items():
+        places = pins(body(scene, member))
+        for one in joints:
+            off = np.abs(places - joint(result, one, scene.places)[:, None]).min(axis=1)
+            assert off.max() < ROUNDED, (member, one)
+
+
+@pytest.mark.parametrize("name", ["four-bar", "pair, mirrored, turned, twice as fast", "shaper"])
+def test_members_of_a_dyad_meet(name: str) -> None:
+    """Each body is rigid: that both have a pin in one place closes the loop by itself."""
+    scene = machine(name).scene(FEW)
+    for dyad in machine(name).design.dyad:
+        first, second = (pins(body(scene, member)) for member in dyad.members)
+        apart = np.abs(first[:, :, None] - second[:, None, :]).min(axis=(1, 2))
+        assert apart.max() < ROUNDED or dyad.type == "RTR"
+
+
+def test_a_rigid_body_that_lags_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+    result = machine("four-bar")
+    true = drawn_bodies._Shown.pose
+
+    def late(self: Any, name: str) -> Any:
+        pose = true(self, name)
+        return pose if name != "coupler" else type(pose)(pose.turn + 1e-6, pose.shift)
+
+    monkeypatch.setattr(drawn_bodies._Shown, "pose", late)
+    scene = result.scene(FEW)
+    first, second = (pins(body(scene, member)) for member in ("coupler", "rocker"))
+    assert np.abs(first[:, :, None] - second[:, None, :]).min(axis=(1, 2)).max() > 1e-5
+
+
+@pytest.mark.parametrize("name", ["slide behind a pair", "pair, mirrored, turned, twice as fast"])
+def test_wheels_turn_with_their_cranks(name: str) -> None:
+    scene = machine(name).scene(FEW)
+    crank = body(scene, "crank" if name.startswith("slide") else "two")
+    wheel = body(scene, "pair.gear2")
+    behind = (wheel.pose.turn - crank.pose.turn + math.pi) % math.tau
+    assert np.ptp(behind) < 1e-9
+    assert np.ptp(wheel.pose.turn) == pytest.approx(math.tau * (2 if "twice" in name else 1))
+
+
+def outline(one: MovingBody, k: int) -> Any:
+    (points, _), *_ = chains(one.features[0].shape, 1e-3)
+    return shapely.Polygon(as_pairs(one.pose[k].apply(points)))
+
+
+def ring(points: Any) -> Any:
+    return shapely.LinearRing(as_pairs(points))
+
+
+@pytest.mark.parametrize("name", ["slide behind a pair", "pair, mirrored, turned, twice as fast"])
+def test_wheels_mesh_wherever_they_stand(name: str) -> None:
+    scene = machine(name).scene(FEW)
+    for k in range(0, FEW, 5):
+        one, two = (outline(body(scene, f"pair.gear{n}"), k) for n in (1, 2))
+        assert one.intersection(two).area < 1e-3
+        assert one.distance(two) < 2e-3
+
+
+@pytest.mark.parametrize(
+    ("name", "drive"),
+    [("lever on a cam, mirrored", "cam"), ("table on two cams", "camx"),
+     ("table on two cams", "camy")],
+)  # fmt: skip
+def test_rollers_touch_their_cams(name: str, drive: str) -> None:
+    scene = machine(name).scene(FEW)
+    cam, follower = body(scene, f"{drive}.cam"), body(scene, f"{drive}.follower")
+    (roller,) = (f.shape for f in follower.features if isinstance(f.shape, Circle))
+    for k in range(FEW):
+        center = complex(follower.pose[k].apply(roller.center))
+        gap = outline(cam, k).exterior.distance(shapely.Point(center.real, center.imag))
+        assert gap - 0.5 * roller.diameter == pytest.approx(0.0, abs=5e-3)
+
+
+@pytest.mark.parametrize(
+    ("name", "slide"), [("table on two cams", "camx"), ("table on two cams", "camy")]
+)
+def test_slides_are_where_the_follower_ends(name: str, slide: str) -> None:
+    scene = machine(name).scene(FEW)
+    follower = body(scene, f"{slide}.follower")
+    (roller,) = (f.shape for f in follower.features if isinstance(f.shape, Circle))
+    member = body(scene, slide[-1])
+    assert np.abs(member.pose.shift - follower.pose.apply(roller.center)).max() < 1e-6
+
+
+def test_a_chain_covers_its_free_part_and_leaves_its_wheel_along_a_tangent() -> None:
+    result = machine("door")
+    scene = result.scene(FEW)
+    pieces = [one for one in scene.bodies if re.fullmatch(r"chain_\d+", one.name)]
+    lines: Any = [(one.pose, one.features[0].shape) for one in pieces]
+    ends = np.array([pose[:, None].apply(line.points) for pose, line in lines])
+    end = joint(result, "B", scene.places)
+    start, center = ends[0, :, 0], 600 + 300j
+    assert np.abs(ends[-1, :, 1] - end).max() < ROUNDED
+    assert np.abs(np.abs(start - center) - 100.0).max() < ROUNDED
+    assert np.abs(((end - start) * (start - center).conj()).real).max() < 1e-6
+    along = np.abs(ends - start[:, None])
+    assert (along[1:, :, 0] <= along[:-1, :, 1] + ROUNDED).all()  # no gaps
+    # the wheel winds up what the free part loses
+    wound = 100.0 * np.radians(scene.places)
+    free = np.abs(end - start)
+    leaving = np.unwrap(np.angle(start - center))
+    assert np.ptp(free - 100.0 * leaving + wound) < 1e-6
+
+
+def test_a_cylinder_holds_its_rod() -> None:
+    scene = machine("cylinder").scene(FEW)
+    barrel, rod = body(scene, "ram"), body(scene, "ram_rod")
+    end = rod.pose.shift
+    off = np.abs(end - joint(machine("cylinder"), "C", scene.places))
+    assert off.max() < ROUNDED
+    inner = rod.features[0].shape.points.real.min()
+    depth = np.abs(end - barrel.pose.shift) + inner
+    length = barrel.features[0].shape.points.real.max()
+    assert (depth > 0.0).all()
+    assert (depth < length).all()
+
+
+def paths(scene: Scene) -> list[Any]:
+    shapes: Any = [f.shape for one in scene.bodies for f in one.features if f.kind == TRACE]
+    return [one.points for one in shapes]
+
+
+@pytest.mark.parametrize(("name", "points"), [("four-bar", ["P", "C"]), ("door", ["B"])])
+def test_paths_are_those_of_the_points(name: str, points: list[str]) -> None:
+    result = machine(name)
+    scene = result.scene(FEW)
+    for path, one in zip(paths(scene), points, strict=True):
+        assert np.abs(path - joint(result, one, scene.places)).max() < ROUNDED
+
+
+def test_places_are_counted_in_turns_of_the_master() -> None:
+    scene = machine("four-bar").scene(FEW)
+    assert len(scene.places) == FEW + 1
+    assert (scene.start, scene.closed, scene.driver) == (
+        pytest.approx(40.0), True, "crank angle theta, deg"
+    )  # fmt: skip
+    door = machine("door").scene(FEW)
+    assert (door.places[0], door.places[-1], door.closed) == (0.0, pytest.approx(400.0), False)
+
+
+def test_links_have_a_colour_of_their_own() -> None:
+    data = scene_data(machine("slide behind a pair").scene(FEW))
+    told = {one["name"]: one["link"] for one in data["bodies"]}
+    assert told["rod"]
+    assert not told["pair.gear1"]
+
+
+# --- paths within a tolerance --------------------------------------------------------------------
+
+
+def test_a_path_is_within_its_tolerance_with_few_chords() -> None:
+    """A circle of radius r needs pi/sqrt(2*t/r) chords."""
+    radius, tolerance = 100.0, 1e-3
+    knots = np.array([0.0, math.tau])
+
+    def circle(q: Any) -> Any:
+        return radius * np.exp(1j * q)
+
+    q, points = path_within(circle, knots, tolerance)
+    least = math.pi / math.acos(1.0 - tolerance / radius)
+    assert least <= len(q) - 1 < 1.5 * least
+    middle = 0.5 * (points[1:] + points[:-1])
+    assert (radius - np.abs(middle)).max() <= tolerance
+
+
+def test_a_path_with_cusps_and_rests_is_within_its_tolerance() -> None:
+    def cycloid(q: Any) -> Any:
+        turned = np.clip(q, 1.0, None) - 1.0  # at rest at first
+        return 10.0 * (turned - np.sin(turned) + 1j * (1.0 - np.cos(turned)))
+
+    knots = np.array([0.0, 1.0, 1.0 + 2.0 * math.tau])
+    q, points = path_within(cycloid, knots, 1e-4)
+    between = q[:-1] + np.outer(np.linspace(0.0, 1.0, 42)[1:-1], np.diff(q))
+    off = distances(cycloid(between), points[:-1], points[1:])
+    assert off.max() < 1e-4
+
+
+# --- files ---------------------------------------------------------------------------------------
+
+
+def layers(result: Any) -> dict[str, list[Any]]:
+    data = result.files("dxf")["paths.dxf"].decode()
+    found: dict[str, list[Any]] = {}
+    document: Any = ezdxf.filemanagement.read(io.StringIO(data))
+    for entity in document.modelspace():
+        found.setdefault(entity.dxf.layer, []).append(entity)
+    return found
+
+
+@pytest.mark.parametrize("tolerance", [0.01, 1e-4])
+def test_the_dxf_holds_the_paths_within_the_tolerance(tolerance: float) -> None:
+    result = machine("four-bar")
+    result = type(result)(result.design.with_({"output.chord_tolerance_mm": tolerance}))
+    for name in ("P", "C"):
+        (line,) = layers(result)[f"{name}_PATH"]
+        assert line.closed
+        points = np.array([x + 1j * y for x, y in line.get_points("xy")])
+        q = np.linspace(0.0, math.tau, 20001)
+        true = result.linkage.track(name, q, 0).c[0]
+        off = shapely.distance(ring(points), shapely.points(as_pairs(true)))
+        assert off.max() <= tolerance
+        # corners are on the path, but for the spacing of these angles
+        assert shapely.distance(ring(true), shapely.points(as_pairs(points))).max() < 1e-5
+
+
+def test_the_dxf_shows_the_machine_at_its_angle() -> None:
+    found = layers(machine("slide behind a pair"))
+    assert {"MEMBER", "GROUND", "GEAR1_OUTLINE", "GEAR2_OUTLINE"} <= found.keys()
+    assert len(found["MEMBER"]) == 3
+
+
+def test_layers_of_points_are_different_and_allowed() -> None:
+    document = {"kind": "mechanism", "name": "drawn", **MACHINES["four-bar"]}
+    names = ["p", "P", 'a/b "c"']
+    document["point"] = [
+        {"name": name, "on": "coupler", "at_mm": [10.0 * k, 5]} for k, name in enumerate(names)
+    ]
+    document["output"] = {"files": ["dxf"]}
+    found = layers(gc.build(gc.design(document)))
+    assert {one for one in found if one.endswith(TRACE)} == {"p_PATH", "P_2_PATH", "a_b__c__PATH"}
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_the_picture_has_all_names(name: str) -> None:
+    result = machine(name)
+    root: Any = etree.fromstring(result.files("svg")["poses.svg"])
+    space = {"s": "http://www.w3.org/2000/svg"}
+    texts = [one.text for one in root.findall(".//s:text[@class='name']", space)]
+    joints = {one.name for one in (*result.design.joint, *result.design.point)}
+    joints |= {one.joint for one in (*result.design.crank, *result.design.dyad)}
+    members = {one.name for one in result.design.crank}
+    assert joints | members <= set(texts)
+    classes = {one.get("class") for one in root.iter() if one.get("class")}
+    assert {"member", "ghost"} <= classes
+    width, height = (float(one) for one in root.get("viewBox").split()[2:])
+    left, top = (float(one) for one in root.get("viewBox").split()[:2])
+    for one in root.findall(".//s:text[@class='name']", space):
+        assert left < float(one.get("x")) < left + width
+        assert top < float(one.get("y")) < top + height
+
+
+def test_a_picture_shows_wheels_and_paths() -> None:
+    for name, words in (
+        ("slide behind a pair", {"gear1-outline", "gear2-outline", "ground"}),
+        ("table on two cams", {"profile", "follower", "path"}),
+    ):
+        data = machine(name).files("svg")["poses.svg"].decode()
+        assert words <= set(re.findall(r'class="([\w-]+)"', data))
+
+
+def test_links_are_as_wide_as_suits_the_machine() -> None:
+    for name in MACHINES:
+        scene = machine(name).scene(FEW)
+        shapes: Any = [f.shape for one in scene.bodies for f in one.features if f.kind == MEMBER]
+        sizes = [np.ptp(one.points.imag) for one in shapes if not isinstance(one, Circle)]
+        data = scene_data(scene)["box"]
+        across = math.hypot(data[2] - data[0], data[3] - data[1])
+        assert 0.002 < min(s for s in sizes if s) / across < 0.1
