@@ -570,3 +570,110 @@ CAM_NUMBERS: dict[str, dict[str, Number]] = {
         ),
     },
 }
+
+
+def _five_bar() -> tuple[float, float]:
+    """Least and largest y of the joint of two rods between cranks on both wheels, by sampling.
+
+    The ratio falls from 1.6 to 0.4 by a cosine over 160 deg and rises again over 200 deg.
+    """
+    q = np.linspace(0.0, 2 * math.pi, 400_001)
+    knot = math.radians(160.0)
+
+    def turned(x: Any, width: float) -> Any:
+        return x + 0.6 * width / math.pi * np.sin(math.pi * x / width)
+
+    back = q - knot
+    width = 2 * math.pi - knot
+    rising = back - 0.6 * width / math.pi * np.sin(math.pi * back / width)
+    phi2 = np.where(q < knot, turned(q, knot), knot + rising)
+    first = 45 * np.exp(1j * (math.pi / 2 - q))
+    last = 180 + 50 * np.exp(1j * (math.pi / 2 + phi2))
+    base = abs(last - first)
+    corner = np.arccos((150**2 + base**2 - 160**2) / (300 * base))
+    joint = first + 150 * (last - first) / base * np.exp(1j * corner)
+    return float(joint.imag.min()), float(joint.imag.max())
+
+
+def _angle_between(one: float, two: float, opposite: float) -> float:
+    """Angle of a triangle between two sides, deg."""
+    return DEG * math.acos((one**2 + two**2 - opposite**2) / (2 * one * two))
+
+
+MACHINE_NUMBERS: dict[str, dict[str, Number]] = {
+    "four_bar": {
+        # between the crank stretched and folded onto the coupler; at crank 0 the shortest diagonal
+        "outputs.rocker.stroke_deg": (
+            _angle_between(90, 110, 160) - _angle_between(90, 110, 80),
+            1e-9,
+        ),
+        "machine.dyads.C.pressure_angle_deg": (90 - _angle_between(120, 90, 70), 1e-9),
+        "paths.P.length_mm": (235.975413454, 1e-4),  # for P at 60 mm and 35 deg
+    },
+    "nail_machine_slide": {
+        "outputs.slide.stroke_mm": (300.0, 1e-10),
+        "outputs.slide.acceleration_mm_per_rad2": (150 * (1 - 150 / 750) * 1.6**2, 1e-9),
+        "outputs.slide.velocity_mm_per_rad": (-203.736787041, 1e-9),
+        "compare.three_phases.slide.velocity_mm_per_rad": (185.094888691, 1e-9),
+        "compare.without_a_pair.slide.acceleration_mm_per_rad2": (-180.0, 1e-9),
+    },
+    "press_ram": {
+        "outputs.ram.stroke_mm": (160.0, 1e-9),
+        "outputs.ram.acceleration_mm_per_rad2": (-80 * (1 + 80 / 240) * 1.3**2, 1e-6),
+    },
+    "quick_return": {
+        "outputs.ram.stroke_mm": (256.0, 1e-9),
+        "outputs.rocker.stroke_deg": (2 * DEG * math.asin(60 / 150), 1e-9),
+        "outputs.ram.least_mm": (-28.225721319, 1e-9),
+    },
+    "whitworth": {
+        "outputs.ram.stroke_mm": (2 * 70.0, 1e-9),
+        "machine.dyads.block_pin.guide_distance_mm": (100.0 - 40.0, 1e-9),
+        "outputs.guide_arm.stroke_deg": (360.0, 1e-9),
+    },
+    "oscillating_cylinder": {
+        "outputs.body.stroke_deg": (
+            _angle_between(math.hypot(250, 150), 320, 400)
+            - _angle_between(math.hypot(250, 150), 320, 300),
+            1e-9,
+        ),
+        "machine.dyads.eye.pressure_angle_deg": (
+            90 - _angle_between(400, 320, math.hypot(250, 150)),
+            1e-9,
+        ),
+    },
+    "furnace_door_lift": {
+        "outputs.door.stroke_mm": (100 * math.radians(308.3), 1e-9),
+        # a cosine from 1 to 2 over 50 deg
+        "outputs.door.acceleration_mm_per_rad2": (100 * 0.5 * math.pi / math.radians(50), 1e-9),
+        "machine.to_deg": (171.65, 1e-9),
+    },
+    "furnace_door_hinged": {
+        "outputs.door.stroke_deg": (45.0, 1e-9),
+        # the hook moves on an arc of 45 deg from straight below the hinge
+        "outputs.hook_y.stroke_mm": (1735.30026219493 * (1 - math.cos(math.pi / 4)), 1e-9),
+    },
+    "geared_five_bar": {
+        "outputs.B_y.least_mm": (_five_bar()[0], 1e-7),
+        "outputs.B_y.largest_mm": (_five_bar()[1], 1e-7),
+    },
+    "lathe_levers": {
+        "outputs.slide.stroke_mm": (3.71617428011, 1e-5),
+        "outputs.slide.least_mm": (329.392408969, 1e-4),
+    },
+    "two_cam_table": {
+        "paths.table.area_mm2": (math.pi * 12 * 8, 1e-5),
+        "outputs.table_x.stroke_mm": (24.0, 1e-6),
+        "outputs.table_y.stroke_mm": (16.0, 1e-6),
+    },
+}
+"""Machines: closed forms, and values by mpmath of positions in closed form."""
+
+CAM_NUMBERS |= {
+    f"table_cam_{way}": {
+        # pitch curve r = r0 + h*cos: tan(alpha) = h/sqrt(r0^2 - h^2)
+        "cam.pressure_angle_deg.max": (DEG * math.atan(h / math.sqrt(r0**2 - h**2)), 1e-5),
+        "motion.peak_velocity": (float(h), 1e-5),
+    }
+    for way, h, r0 in (("x", 12, 52), ("y", 8, 48))
+}

@@ -16,7 +16,7 @@ import pytest
 
 from gearcam.base.errors import GearcamError
 from helpers_built import built
-from helpers_gallery import CAM_NUMBERS, NUMBERS, Number, misses
+from helpers_gallery import CAM_NUMBERS, MACHINE_NUMBERS, NUMBERS, Number, misses
 from helpers_pairs import PROFILES, profile
 
 
@@ -97,7 +97,7 @@ UNDERCUT: dict[str, list[list[int]]] = {
 }
 """Undercut teeth of both wheels."""
 
-ALL = EXPECTED | CAM_NUMBERS
+ALL = EXPECTED | CAM_NUMBERS | MACHINE_NUMBERS
 FLAWED = {"undercut_cam"}
 """Cams that show what an error is."""
 
@@ -145,6 +145,13 @@ def test_a_cam_shows_its_numbers(name: str) -> None:
     assert list(misses(result.facts.document, CAM_NUMBERS[name])) == []
     errors = [finding for finding in result.findings if finding.severity == "error"]
     assert bool(errors) == (name in FLAWED)
+
+
+@pytest.mark.parametrize("name", sorted(MACHINE_NUMBERS))
+def test_a_machine_shows_its_numbers(name: str) -> None:
+    result = built(PROFILES / f"{name}.toml")
+    assert list(misses(result.facts.document, MACHINE_NUMBERS[name])) == []
+    assert [finding for finding in result.findings if finding.severity == "error"] == []
 
 
 def test_a_wrong_number_is_seen() -> None:

@@ -6,6 +6,7 @@ before: then nothing here is wrong.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
@@ -128,6 +129,7 @@ def problems(_: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
     """
     parts = {title: found.parts.get(title, ()) for title in _PARTS}
     names: dict[str, NameUse] = {GROUND: NameUse(GROUND, MEMBER, ())}
+    yield from _misspelt(found)
     for one in given(parts):
         if one.name in names:
             what = f"the name {one.name!r} is given twice"
@@ -141,6 +143,30 @@ def problems(_: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
             yield from _missing(one, names)
     if not found.faults:
         yield from _unreached(parts)
+
+
+_NAME: Final = re.compile(r"[A-Za-z_][\w-]*", re.ASCII)
+
+
+def _misspelt(found: Examined) -> Iterator[Fault]:
+    """Yield names that cannot be parts of the names of columns and facts."""
+    for title, keys in _NAMING.items():
+        for number, one in enumerate(found.parts.get(title, ())):
+            for key in keys:
+                given_ = getattr(one, key)
+                for name in given_ if isinstance(given_, tuple) else (given_,):
+                    if not _NAME.fullmatch(name):
+                        what = "is no name"
+                        allowed = "letters, digits, _ and -, the first a letter"
+                        yield Fault((title, number, key), what, name, allowed)
+
+
+_NAMING: Final = {
+    "drive": ("name",), "compare": ("name",), "joint": ("name",), "crank": ("name", "joint"),
+    "slide": ("name", "joint"), "guide": ("name",), "dyad": ("joint", "members"),
+    "point": ("name",), "chain": ("lever", "joint"), "hoist": ("name", "joint"),
+}  # fmt: skip
+"""The keys that give names, by title."""
 
 
 def _not_standing(

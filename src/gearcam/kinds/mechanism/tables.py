@@ -59,11 +59,11 @@ class CompareSpec(ShortRepr):
     Examples
     --------
     >>> import gearcam as gc
-    >>> gc.CompareSpec(name="without a pair", even=True)
-    CompareSpec(name='without a pair', even=True)
+    >>> gc.CompareSpec(name="without_a_pair", even=True)
+    CompareSpec(name='without_a_pair', even=True)
     """
 
-    name: str = _name(doc="name of the comparison in tables and charts", example="without a pair")
+    name: str = _name(doc="name of the comparison in tables and charts", example="without_a_pair")
     pair: Design | None = nested(
         "gear-pair", default=None, example="pair.toml", doc="the pair that drives it"
     )
