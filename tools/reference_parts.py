@@ -32,6 +32,7 @@ GROUPS: Final = {
     "cams": "Motion and profile",
     "cams in space": "Walls",
     "mechanisms": "Motion",
+    "torque of a mechanism": "Torque (`gearcam torque`)",
     "globoidal cams": "Walls and hold",
     "solids of cams in space": "Solids",
     "forces": "Forces (`gearcam forces`)",

@@ -42,6 +42,9 @@ _MILLI: Final = 1e-3
 _KILO: Final = 1e3
 """N mm over kg m2/s2."""
 
+_AT_KNOT: Final = 1e-9
+"""Distance from a knot, rad, within which a place is called by it."""
+
 _NODES: Final = 24
 """Points of Gauss' rule in each cell of an integral."""
 
@@ -169,14 +172,19 @@ class PointWay(ShortRepr, WorkCoordinate):
         Frame from whose origin the way counts, and from whose x axis the direction does.
     direction : complex
         Of size 1, in that frame.
+    slide : str
+        Quantity that is the place; empty for the point's own.
     """
 
     point: str
     guide: str = GROUND
     direction: complex = 1 + 0j
+    slide: str = ""
 
     def place(self, state: WorkState) -> Jet:
         """Return the place from the guide's origin, mm."""
+        if self.slide:
+            return Jet(state.known.jet(self.slide).c[: state.order + 1])
         guide = state.known.frame(self.guide)
         way = state.known.jet(self.point) - guide.origin
         return Jet(dot(guide.direction * self.direction, way).c[: state.order + 1])
@@ -575,7 +583,9 @@ class VirtualWork(ShortRepr):
 
     @cached_property
     def _extremes(self) -> Extremes:
-        return extremes(lambda q: self.moment(q, 1).derivatives(), self.knots)
+        places, values = extremes(lambda q: self.moment(q, 1).derivatives(), self.knots)
+        knot = self.knots[np.abs(places[:, None] - self.knots).argmin(axis=1)]
+        return np.where(np.abs(places - knot) <= _AT_KNOT, knot, places), values
 
     @property
     def largest(self) -> Peak:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, Final
 
@@ -17,7 +17,7 @@ from gearcam.base.rules import Breach, exactly_one, needs
 from gearcam.numeric.arrays import Array
 
 if TYPE_CHECKING:
-    from gearcam.laws.formula_syntax import FormulaError
+    from gearcam.laws.formula_syntax import Expression
 
 OF_LIFT: Final = "s"
 """Variable of formulas over the lift, mm or rad."""
@@ -25,8 +25,86 @@ OF_LIFT: Final = "s"
 _MOST: Final = 1e9
 
 
+class WrittenLoad:
+    """How the size of a load is written: a formula in one of some variables, or rows of a table."""
+
+    _variables: ClassVar[Mapping[str, str]]
+    """What a formula may be of, by its name: in words."""
+    _from: ClassVar[float] = 0.0
+    """Where a table must begin, rad or mm, at the latest."""
+    _whole: ClassVar[float] = 0.0
+    """Where it must end, at the earliest."""
+    _unit: ClassVar[tuple[float, str]] = (math.degrees(1.0), "deg")
+
+    formula: str | None
+    table: Row | None
+    place: Row | None
+
+    def problems(self) -> Iterator[Breach]:
+        """Yield contradictions: field, index, message, what is allowed."""
+        if self.formula is not None:
+            yield from self._formula_problems(self.formula)
+        if self.table is not None and self.place is not None:
+            yield from self._row_problems("place", self.table, self.place)
+
+    def _formula_problems(self, text: str) -> Iterator[Breach]:
+        from gearcam.laws.formula_syntax import FormulaError
+
+        try:
+            self.read(text)
+        except FormulaError as error:
+            place = "" if error.column is None else f"column {error.column}: "
+            yield "formula", None, f"{place}{error.what}", error.allowed
+
+    def _row_problems(self, name: str, table: Row, place: Row) -> Iterator[Breach]:
+        if len(table) != len(place):
+            what = f"{len(place)} values, but table has {len(table)}"
+            yield name, None, what, "one for each value of the table"
+            return
+        back = np.flatnonzero(np.diff(place) < 0.0)
+        if back.size:
+            yield name, int(back[0]) + 1, "is below the value before it", "rising values"
+        elif place[0] > self._from:
+            yield name, 0, "the table begins inside the turn", "0 as the first value"
+        elif self._whole and place[-1] < self._whole * (1.0 - 1e-12):
+            scale, unit = self._unit
+            last = f"{formatted(scale * self._whole)} {unit}"
+            yield name, len(place) - 1, "the table ends inside the turn", f"{last} as the last"
+
+    def read(self, text: str) -> tuple[str, Expression]:
+        """Return the variable of a formula, and the formula.
+
+        Parameters
+        ----------
+        text : str
+            In one of the variables.
+
+        Raises
+        ------
+        FormulaError
+            If it cannot be read.
+        """
+        from gearcam.laws.formula_syntax import FormulaError, parse
+
+        found = {*re.findall(r"[A-Za-z]\w*", text)}
+        own = [name for name in self._variables if name in found]
+        if len(own) > 1:
+            what = f"{' and '.join(own[::-1])} cannot be mixed"
+            allowed = f"a formula of {', or one of '.join(self._variables.values())}"
+            raise FormulaError(what, allowed=allowed)
+        variable = own[0] if own else next(iter(self._variables))
+        try:
+            return variable, parse(text, variable)
+        except FormulaError as error:
+            words = " or ".join(self._variables.values())
+            allowed = re.sub(rf"^{variable}\b", words, error.allowed)
+            raise type(error)(
+                error.what, column=error.column, allowed=allowed, hint=error.hint
+            ) from None
+
+
 @dataclass(frozen=True, kw_only=True)
-class LoadSpec(ShortRepr):
+class LoadSpec(ShortRepr, WrittenLoad):
     """A load on the follower: a force, of an oscillating follower a torque.
 
     It is positive where it presses the follower onto the cam, or, with `against`, always opposes
@@ -40,9 +118,8 @@ class LoadSpec(ShortRepr):
     array([  0., 120.])
     """
 
-    _angle: ClassVar[str] = "theta"
+    _variables: ClassVar[Mapping[str, str]] = {"theta": "theta", OF_LIFT: f"the lift {OF_LIFT}"}
     _whole: ClassVar[float] = 2.0 * math.pi
-    _unit: ClassVar[tuple[float, str]] = (math.degrees(1.0), "deg")
 
     on: str = param(TEXT, default="follower", choices=("follower",), doc="member that is loaded")
     force: float | None = param(
@@ -86,67 +163,13 @@ class LoadSpec(ShortRepr):
         needs("end", "start"),
     )
 
-    def problems(self) -> Iterator[Breach]:
-        """Yield contradictions: field, index, message, what is allowed."""
-        if self.formula is not None:
-            yield from self._formula_problems(self.formula)
-        if self.table is not None and self.place is not None:
-            yield from self._row_problems(self.table, self.place)
-
-    def _formula_problems(self, text: str) -> Iterator[Breach]:
-        from gearcam.laws.formula_syntax import FormulaError
-
-        try:
-            self._read(text)
-        except FormulaError as error:
-            place = "" if error.column is None else f"column {error.column}: "
-            yield "formula", None, f"{place}{error.what}", error.allowed
-
-    def _row_problems(self, table: Row, place: Row) -> Iterator[Breach]:
-        if len(table) != len(place):
-            what = f"{len(place)} values, but table has {len(table)}"
-            yield "place", None, what, "one for each value of the table"
-            return
-        back = np.flatnonzero(np.diff(place) < 0.0)
-        if back.size:
-            yield "place", int(back[0]) + 1, "is below the value before it", "rising values"
-        elif place[0] > 0.0:
-            yield "place", 0, "the table begins inside the turn", "0 as the first value"
-        elif self._whole and place[-1] < self._whole * (1.0 - 1e-12):
-            scale, unit = self._unit
-            last = f"{formatted(scale * self._whole)} {unit}"
-            yield "place", len(place) - 1, "the table ends inside the turn", f"{last} as the last"
-
-    def _read(self, text: str) -> Any:
-        """Return the formula's function of (angle or travel, lift), arrays (n,)."""
-        from gearcam.laws.formula_syntax import FormulaError, parse
+    def _formula_at(self, text: str, x: Array, s: Array) -> Array:
+        """Return a formula's values at angles or travels, and lifts there, (n,)."""
         from gearcam.numeric.jets import Jet
 
-        def values(made: Any, x: Array) -> Array:
-            found = made.evaluate(Jet([x]))
-            return np.asarray(found.c[0] if isinstance(found, Jet) else found) + np.zeros_like(x)
-
-        try:
-            made = parse(text, self._angle)
-            return lambda x, _: values(made, x)
-        except FormulaError as error:
-            try:
-                by_lift = parse(text, OF_LIFT)
-            except FormulaError as other:
-                raise self._misread(text, error, other) from None
-            return lambda _, s: values(by_lift, s)
-
-    def _misread(self, text: str, by_angle: FormulaError, by_lift: FormulaError) -> FormulaError:
-        """Return why a formula can be read neither as one of the angle nor as one of the lift."""
-        names = {*re.findall(r"[A-Za-z]\w*", text)}
-        if {OF_LIFT, self._angle} <= names:
-            what = f"{OF_LIFT} and {self._angle} cannot be mixed"
-            return type(by_angle)(
-                what, allowed=f"a formula of {self._angle}, or one of the lift {OF_LIFT}"
-            )
-        error, variable = (by_lift, OF_LIFT) if OF_LIFT in names else (by_angle, self._angle)
-        both = re.sub(rf"^{variable}\b", f"{self._angle} or the lift {OF_LIFT}", error.allowed)
-        return type(error)(error.what, column=error.column, allowed=both, hint=error.hint)
+        variable, made = self.read(text)
+        found = made.evaluate(Jet([s if variable == OF_LIFT else x]))
+        return np.asarray(found.c[0] if isinstance(found, Jet) else found) + np.zeros_like(x)
 
     def allowed_on(self, *, oscillating: bool) -> Iterator[Breach]:
         """Yield a force on a follower that swings, or a torque on one that does not."""
@@ -181,7 +204,7 @@ class LoadSpec(ShortRepr):
         x, s = np.asarray(x, dtype=float), np.asarray(s, dtype=float)
         given = self.torque if self.force is None else self.force
         if self.formula is not None:
-            value = per * (self._read(self.formula)(x, s) + np.zeros_like(x))
+            value = per * self._formula_at(self.formula, x, s)
         elif self.table is not None:
             value = per * np.interp(x, np.asarray(self.place), np.asarray(self.table))
         else:
@@ -204,7 +227,7 @@ class SlideLoadSpec(LoadSpec):
     array([10., 15.])
     """
 
-    _angle: ClassVar[str] = "u"
+    _variables: ClassVar[Mapping[str, str]] = {"u": "u", OF_LIFT: f"the lift {OF_LIFT}"}
     _whole: ClassVar[float] = 0.0
 
     place: Row | None = param(

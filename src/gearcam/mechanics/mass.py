@@ -85,7 +85,7 @@ class GravitySpec(ShortRepr):
         ge=-360,
         le=360,
         example=-90,
-        doc="direction of the pull, from the x axis of the assembled cam",
+        doc="direction of the pull, from the x axis of the assembled cam, or of the machine",
     )
     g: float = param(ACCELERATION, default=G, ge=0, le=1000, doc="acceleration")
 
@@ -96,5 +96,5 @@ class GravitySpec(ShortRepr):
 
     @property
     def pull(self) -> complex:
-        """Acceleration, m/s2, in the frame of the assembled cam; 0 where none is given."""
+        """Acceleration, m/s2, in the frame of its direction; 0 where none is given."""
         return 0j if self.direction is None else cmath.rect(self.g, self.direction)

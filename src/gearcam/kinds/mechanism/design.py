@@ -6,6 +6,12 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
 from gearcam.designs.design import Design
+from gearcam.kinds.mechanism.load_tables import (
+    MachineLoad,
+    MachineSpring,
+    MemberMass,
+    TorqueSpec,
+)
 from gearcam.kinds.mechanism.tables import (
     ChainSpec,
     CompareSpec,
@@ -22,6 +28,7 @@ from gearcam.kinds.mechanism.tables import (
     SlideSpec,
 )
 from gearcam.kinds.shared import AccuracySpec, GoalSpec
+from gearcam.mechanics.mass import GravitySpec
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.build import MechanismResult
@@ -60,6 +67,16 @@ class MechanismDesign(Design):
         The last bits of travel before dead centres.
     dwell : sequence of DwellSpec
         Dwells that are wanted.
+    load : sequence of MachineLoad
+        What it works against.
+    mass : sequence of MemberMass
+        Masses of its members.
+    spring : sequence of MachineSpring
+        Its springs and dampers.
+    gravity : GravitySpec
+        The direction of gravity.
+    torque : TorqueSpec
+        Settings of the study of the driver's moment.
     output : MechanismOutput
         Files and what is in them.
     accuracy : AccuracySpec
@@ -97,6 +114,11 @@ class MechanismDesign(Design):
     hoist: tuple[HoistSpec, ...] = ()
     interval: tuple[IntervalSpec, ...] = ()
     dwell: tuple[DwellSpec, ...] = ()
+    load: tuple[MachineLoad, ...] = ()
+    mass: tuple[MemberMass, ...] = ()
+    spring: tuple[MachineSpring, ...] = ()
+    gravity: GravitySpec = field(default_factory=GravitySpec)
+    torque: TorqueSpec = field(default_factory=TorqueSpec)
     output: MechanismOutput = field(default_factory=MechanismOutput)
     accuracy: AccuracySpec = field(default_factory=AccuracySpec)
     goal: GoalSpec = field(default_factory=GoalSpec)

@@ -8,7 +8,13 @@ from typing import Final
 from gearcam.base.registry import DeferredMapping, deferred
 from gearcam.designs.table import table_of
 from gearcam.kinds.mechanism.design import NAME, MechanismDesign
-from gearcam.kinds.mechanism.names import problems
+from gearcam.kinds.mechanism.load_names import problems
+from gearcam.kinds.mechanism.load_tables import (
+    MachineLoad,
+    MachineSpring,
+    MemberMass,
+    TorqueSpec,
+)
 from gearcam.kinds.mechanism.tables import (
     FORMATS,
     ChainSpec,
@@ -25,7 +31,9 @@ from gearcam.kinds.mechanism.tables import (
     PointSpec,
     SlideSpec,
 )
+from gearcam.kinds.mechanism.torque_checks import TORQUE
 from gearcam.kinds.shared import AccuracySpec, GoalSpec
+from gearcam.mechanics.mass import GravitySpec
 from gearcam.results.kind import Kind
 
 _HERE: Final = "gearcam.kinds.mechanism"
@@ -43,6 +51,9 @@ _SEVERAL: Final = {
     "hoist": HoistSpec,
     "interval": IntervalSpec,
     "dwell": DwellSpec,
+    "load": MachineLoad,
+    "mass": MemberMass,
+    "spring": MachineSpring,
 }
 
 KIND: Final = Kind(
@@ -52,6 +63,8 @@ KIND: Final = Kind(
     result=deferred(f"{_HERE}.build:MechanismResult"),
     tables={
         **{title: partial(table_of, title, owner) for title, owner in _SEVERAL.items()},
+        "gravity": partial(table_of, "gravity", GravitySpec),
+        "torque": partial(table_of, "torque", TorqueSpec),
         "output": partial(table_of, "output", MechanismOutput),
         "accuracy": partial(table_of, "accuracy", AccuracySpec),
         "goal": partial(table_of, "goal", GoalSpec),
@@ -60,9 +73,9 @@ KIND: Final = Kind(
     required=("drive",),
     problems=problems,
     formats=FORMATS,
-    check_modules=("gearcam.linkages.checks",),
-    check_groups=("mechanisms",),
-    study_tables={"accuracy": "accuracy"},
+    check_modules=("gearcam.linkages.checks", f"{_HERE}.torque_checks"),
+    check_groups=("mechanisms", TORQUE),
+    study_tables={name: name for name in ("torque", "accuracy")},
     example={
         "drive": [{"name": "motor", "even": True, "speed_rpm": 60}],
         "joint": [{"name": "D", "at_mm": [110, 0]}],
@@ -84,5 +97,6 @@ KIND: Final = Kind(
     files=DeferredMapping(f"{_HERE}.files:FILES"),
     charts=DeferredMapping(f"{_HERE}.charts:CHARTS"),
     scene=deferred(f"{_HERE}.scene:scene"),
+    studies=DeferredMapping(f"{_HERE}.studies:STUDIES"),
     public=DeferredMapping(f"{_HERE}.public:PUBLIC"),
 )

@@ -23,7 +23,10 @@ SHAFT, WAY, JOINT, MEMBER, GUIDE = "shaft", "slide", "joint", "member", "guide"
 STANDING: Final = "joint that stands still, or shaft"
 """What a name can be."""
 
-_PARTS: Final = ("drive", "joint", "crank", "slide", "guide", "dyad", "point", "chain", "hoist")
+_PARTS: Final = (
+    "drive", "joint", "crank", "slide", "guide", "dyad", "point", "chain", "hoist",
+    "load", "mass", "spring",
+)  # fmt: skip
 
 
 class NameUse(NamedTuple):
@@ -34,7 +37,7 @@ class NameUse(NamedTuple):
     name : str
         The name.
     sort : str
-        What it is, or must be.
+        What it is, or must be: one of several, with "or" between.
     path : tuple
         Where it stands in the design.
     """
@@ -74,6 +77,9 @@ def needed(parts: Mapping[str, Sequence[Any]]) -> Iterator[NameUse]:
                 yield NameUse(
                     getattr(one, key), GUIDE if guided else JOINT, (title, number, written)
                 )
+        if title == "spring":
+            for place, name in enumerate(one.between or ()):
+                yield NameUse(name, f"{JOINT} or {MEMBER}", (title, number, "between", place))
 
 
 _GIVES: Final = {
@@ -95,6 +101,9 @@ _NEEDS: Final = {
     "point": (("on", "on", MEMBER),),
     "chain": (("on", "on", SHAFT),),
     "hoist": (("on", "on", SHAFT),),
+    "load": (("on", "on", f"{JOINT} or {MEMBER} or {SHAFT} or {WAY}"),),
+    "mass": (("of", "of", f"{MEMBER} or {SHAFT}"), ("center", "center", JOINT)),
+    "spring": (("on", "on", f"{JOINT} or {MEMBER} or {SHAFT} or {WAY}"),),
 }
 
 
@@ -180,14 +189,14 @@ def _not_standing(
 
 
 def _missing(one: NameUse, names: Mapping[str, NameUse]) -> Iterator[Fault]:
-    other = names.get(one.name)
+    other, sorts = names.get(one.name), one.sort.split(" or ")
     if other is None:
-        close = nearest(one.name, [name for name, is_ in names.items() if is_.sort == one.sort])
+        close = nearest(one.name, [name for name, is_ in names.items() if is_.sort in sorts])
         hint = f"did you mean {close}?" if close else ""
-        fitting = ", ".join(sorted(name for name, is_ in names.items() if is_.sort == one.sort))
+        fitting = ", ".join(sorted(name for name, is_ in names.items() if is_.sort in sorts))
         allowed = f"a {one.sort}: {fitting}" if fitting else f"the name of a {one.sort}"
         yield Fault(one.path, "nothing has this name", one.name, allowed, hint)
-    elif other.sort != one.sort:
+    elif other.sort not in sorts:
         what = f"is a {other.sort}, not a {one.sort}"
         yield Fault(one.path, what, one.name, f"the name of a {one.sort}")
 
@@ -204,7 +213,8 @@ def waits(parts: Mapping[str, Sequence[Any]]) -> dict[tuple[str | int, ...], tup
     for one in given(parts):
         left.setdefault(one.path[:2], ([], []))[0].append(one.name)
     for one in needed(parts):
-        left[one.path[:2]][1].append(one.name)
+        if one.path[:2] in left:  # loads, masses and springs give no names
+            left[one.path[:2]][1].append(one.name)
     while ready := [path for path, (_, wanted) in left.items() if known.issuperset(wanted)]:
         for path in ready:
             known.update(left.pop(path)[0])

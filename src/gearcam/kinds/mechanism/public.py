@@ -4,6 +4,12 @@ from __future__ import annotations
 
 from gearcam.kinds.mechanism.build import MechanismResult
 from gearcam.kinds.mechanism.design import MechanismDesign
+from gearcam.kinds.mechanism.load_tables import (
+    MachineLoad,
+    MachineSpring,
+    MemberMass,
+    TorqueSpec,
+)
 from gearcam.kinds.mechanism.tables import (
     ChainSpec,
     CompareSpec,
@@ -20,12 +26,13 @@ from gearcam.kinds.mechanism.tables import (
     SlideSpec,
 )
 from gearcam.kinds.shared import AccuracySpec, GoalSpec
+from gearcam.mechanics.mass import GravitySpec
 
 __all__ = [
-    "AccuracySpec", "ChainSpec", "CompareSpec", "CrankSpec", "DwellSpec", "DyadSpec",
-    "GoalSpec", "GuideSpec", "HoistSpec", "IntervalSpec",
-    "JointSpec", "MachineDrive", "MechanismDesign", "MechanismOutput", "MechanismResult",
-    "PointSpec", "SlideSpec",
+    "AccuracySpec", "ChainSpec", "CompareSpec", "CrankSpec", "DwellSpec", "DyadSpec", "GoalSpec",
+    "GravitySpec", "GuideSpec", "HoistSpec", "IntervalSpec", "JointSpec", "MachineDrive",
+    "MachineLoad", "MachineSpring", "MechanismDesign", "MechanismOutput", "MechanismResult",
+    "MemberMass", "PointSpec", "SlideSpec", "TorqueSpec",
 ]  # fmt: skip
 
 PUBLIC = {name: globals()[name] for name in __all__}

@@ -35,7 +35,7 @@ from gearcam.linkages.elements import BRANCH, GROUND, MOTION
 FORMATS: Final = ("csv", "dxf", "svg", "report")
 """What ``output.files`` may list."""
 
-STUDIES: Final = ("accuracy",)
+STUDIES: Final = ("torque", "accuracy")
 
 _TURN_DEG: Final = 36000.0
 

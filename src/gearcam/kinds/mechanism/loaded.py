@@ -1,0 +1,302 @@
+"""From the tables of loads, masses, springs and gravity to the efforts on a mechanism."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import partial
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from gearcam.base.errors import beyond_limit
+from gearcam.kinds.mechanism.drives import way_of
+from gearcam.kinds.mechanism.load_names import pushed_in, sorts_of, unturned
+from gearcam.kinds.mechanism.load_tables import OUTER
+from gearcam.kinds.mechanism.names import MEMBER, SHAFT, WAY, moves
+from gearcam.linkages.dwells import last_travel
+from gearcam.linkages.elements import GROUND, MemberPoint
+from gearcam.linkages.measures import TrackMeasures
+from gearcam.linkages.work import (
+    GRAVITY,
+    SPRINGS,
+    Acting,
+    ActiveRanges,
+    Effort,
+    ForceLaw,
+    JointDistance,
+    MemberTurn,
+    MovedMass,
+    PointWay,
+    ShaftTurn,
+    VaryingForce,
+    VectorForce,
+    VirtualWork,
+    WorkCoordinate,
+    WorkState,
+)
+from gearcam.numeric.arrays import Array
+from gearcam.numeric.jets import Jet
+from gearcam.numeric.piecewise import extremes
+
+if TYPE_CHECKING:
+    from gearcam.base.quantities import Row
+    from gearcam.kinds.mechanism.design import MechanismDesign
+    from gearcam.kinds.mechanism.load_tables import MachineLoad, MachineSpring
+    from gearcam.linkages.linkage import Linkage
+
+_TURN: Final = 2.0 * math.pi
+_NAMING: Final = ("drive", "joint", "crank", "slide", "guide", "dyad", "point", "chain", "hoist")
+"""Tables that give names."""
+
+_SLACK: Final = 1e-9
+"""How much a table may be short of the range, rad."""
+
+_KILO: Final = 1e3
+"""N mm of a N m."""
+
+
+def work_of(design: MechanismDesign, linkage: Linkage) -> VirtualWork:
+    """Return what acts on a mechanism.
+
+    Parameters
+    ----------
+    design : MechanismDesign
+        The design.
+    linkage : Linkage
+        Its linkage.
+
+    Returns
+    -------
+    VirtualWork
+
+    Raises
+    ------
+    InfeasibleError
+        If a load begins before the slide's whole travel, or its table does not reach over the
+        master's range.
+    """
+    return _Efforts(design, linkage).work
+
+
+class _Efforts:
+    """The efforts on a mechanism, and where they are not smooth."""
+
+    def __init__(self, design: MechanismDesign, linkage: Linkage) -> None:
+        self.design, self.speed = design, design.drive[0].speed
+        self.parts = {title: getattr(design, title) for title in _NAMING}
+        self.sorts = sorts_of(self.parts)
+        self.centers = self._centers()
+        points = [
+            MemberPoint(self.centers[number], complex(*mass.at), mass.of)
+            for number, mass in enumerate(design.mass)
+            if mass.at is not None
+        ]
+        self.linkage = replace(linkage, elements=(*linkage.elements, *points))
+        self.knots: list[float] = []
+
+    def _centers(self) -> list[str]:
+        """Return the joint in the centre of each mass; empty for none."""
+        still = unturned(self.parts)
+        return [
+            "" if mass.mass is None
+            else mass.center or (f"{mass.of}.center{number}" if mass.at else still[mass.of])
+            for number, mass in enumerate(self.design.mass)
+        ]  # fmt: skip
+
+    @property
+    def work(self) -> VirtualWork:
+        """What acts on the mechanism."""
+        efforts = [*self._loads(), *self._masses(), *self._springs()]
+        return VirtualWork(self.linkage, efforts, self.speed, tuple(self.knots))
+
+    def coordinate(self, name: str, direction: float | None = None) -> WorkCoordinate:
+        """Return on what a load on something named does work."""
+        if direction is not None:
+            return PointWay(self._joint(name), GROUND, cmath.exp(1j * direction))
+        sort = self.sorts[name]
+        if sort == MEMBER:
+            return MemberTurn(name)
+        return self._way(name) if sort == WAY else ShaftTurn(name)
+
+    def _joint(self, name: str) -> str:
+        pushed = {one.name: one.joint for one in pushed_in(self.parts)}
+        return pushed.get(name, name)
+
+    def _way(self, name: str) -> WorkCoordinate:
+        for dyad in self.design.dyad:
+            if dyad.joint == name:
+                place = moves(dyad)
+                guide = dyad.last if place.endswith("2") else dyad.first
+                return PointWay(name, guide, slide=place)
+        for one in self.design.slide:
+            if name in (one.name, one.joint):
+                return PointWay(one.joint, way_of(one.on), slide=one.on)
+        for one in self.design.hoist:
+            if name in (one.name, one.joint):
+                return PointWay(one.joint, f"{one.name}.guide", slide=f"{one.name}.way")
+        return ShaftTurn(name)
+
+    def _loads(self) -> Iterator[Effort]:
+        for number, load in enumerate(self.design.load):
+            active = self._active(load, number)
+            if load.force is not None and len(load.force) == 2:
+                yield VectorForce(self._joint(load.on), complex(*load.force), active=active)
+                continue
+            on = self.coordinate(load.on, load.direction)
+            law = self._law(load, on, number)
+            if load.against:
+                self.knots += self._still(on)
+                law = _opposing(law)
+            yield VaryingForce(on, law, active=active)
+
+    def _active(self, load: MachineLoad, number: int) -> ActiveRanges | None:
+        low, high = self.linkage.span
+        if load.travel is not None:
+            return ActiveRanges([self._travel(load, load.travel, number)], high - low)
+        if load.start is None or load.end is None:
+            return None
+        if not self.linkage.closed:
+            return ActiveRanges([(load.start, load.end)])
+        return ActiveRanges([(load.start, load.end)], high - low if load.end > _TURN else _TURN)
+
+    def _travel(self, load: MachineLoad, travel: float, number: int) -> tuple[float, float]:
+        way = self._way(load.on)
+        name = way.slide if isinstance(way, PointWay) else load.on
+        track = partial(self.linkage.real_track, name)
+        measures = TrackMeasures(track, self.linkage.knots, self.linkage.closed)
+        try:
+            return last_travel(measures, travel, outer=load.before == OUTER)
+        except ValueError:
+            what = f"{load.on} has not so much travel before its {load.before} dead centre"
+            where = f"load[{number}].travel_mm"
+            raise beyond_limit(what, where, travel, measures.stroke, unit="mm") from None
+
+    def _still(self, on: WorkCoordinate) -> list[float]:
+        """Return the driver's angles at which something loaded reverses."""
+
+        def places(q: Array) -> tuple[Array, Array]:
+            state = WorkState(self.linkage, q, 0, self.speed)
+            return np.asarray(on.place(state).c[0]), np.asarray(on.rate(state.known, 0).c[0])
+
+        return extremes(places, self.linkage.knots)[0].tolist()
+
+    def _law(self, load: MachineLoad, on: WorkCoordinate, number: int) -> ForceLaw:
+        """Return a load's size, N or N mm."""
+        per = _KILO if self.sorts[load.on] in (MEMBER, SHAFT) else 1.0
+        if load.formula is not None:
+            return self._formula(load, load.formula, per)
+        if load.table is not None:
+            return self._rows(load, load.table, on, number, per)
+        size = load.torque if load.force is None else load.force[0]
+        return lambda _: size or 0.0
+
+    def _formula(self, load: MachineLoad, text: str, per: float) -> ForceLaw:
+        variable, made = load.read(text)
+        name = {"q": "angle", "x": "place", "v": "velocity"}[variable]
+        return lambda acting: made.evaluate(getattr(acting, name)) * per
+
+    def _rows(
+        self, load: MachineLoad, table: Row, on: WorkCoordinate, number: int, per: float
+    ) -> ForceLaw:
+        place = load.place
+        if place is None:
+            way = load.way or (0.0,)
+            self.knots += self._passes(on, way)
+            return lambda acting: _between(acting.place, way, table) * per
+        turns = self._turns(place, number)
+        period = place[-1] - place[0]
+        self.knots += [one + turn * period for turn in turns for one in place]
+
+        def law(acting: Acting) -> Jet:
+            q = acting.angle
+            turned = np.floor((q.c[0] - place[0]) / period) if len(turns) > 1 else 0.0
+            return _between(q - turned * period, place, table) * per
+
+        return law
+
+    def _turns(self, place: Row, number: int) -> range:
+        """Return the turns of the master over which a table goes; raise if it ends too early."""
+        low, high = self.linkage.span
+        first, last = place[0], place[-1]
+        if self.linkage.closed and math.isclose(last - first, _TURN, rel_tol=1e-12):
+            return range(math.floor((low - last) / _TURN), math.ceil((high - first) / _TURN) + 1)
+        for index, short, limit in ((0, first - low, low), (-1, high - last, high)):
+            if short > _SLACK:
+                where = f"load[{number}].at_deg[{index % len(place)}]"
+                what = "the table does not reach over the master's range"
+                value, most = math.degrees(place[index]), math.degrees(limit)
+                raise beyond_limit(what, where, value, most, unit="deg")
+        return range(1)
+
+    def _passes(self, on: WorkCoordinate, way: Row) -> list[float]:
+        """Return the driver's angles at which a place passes those of a table."""
+
+        def track(q: Array, order: int) -> Jet:
+            return on.place(WorkState(self.linkage, q, order, self.speed))
+
+        measures = TrackMeasures(track, self.linkage.knots, self.linkage.closed)
+        return [float(q) for one in way for q in measures.places_of(one)]
+
+    def _masses(self) -> Iterator[Effort]:
+        pull = self.design.gravity.pull
+        for mass, center in zip(self.design.mass, self.centers, strict=True):
+            yield MovedMass(mass.of, mass.mass or 0.0, center, mass.inertia)
+            if pull and mass.mass:
+                yield VectorForce(center, mass.mass * pull, GRAVITY)
+
+    def _springs(self) -> Iterator[Effort]:
+        low, high = self.linkage.span
+        start = WorkState(self.linkage, np.array([min(max(0.0, low), high)]), 0, self.speed)
+        for spring in self.design.spring:
+            on = self._joined(spring)
+            at = float(np.asarray(on.place(start).c[0])[0])
+            yield VaryingForce(on, _spring_law(spring, at), SPRINGS)
+
+    def _joined(self, spring: MachineSpring) -> WorkCoordinate:
+        if spring.between is None:
+            return self.coordinate(spring.on or "")
+        first, second = spring.between
+        if self.sorts[first] == MEMBER:
+            return MemberTurn(second, first)
+        return JointDistance(self._joint(first), self._joint(second))
+
+
+def _between(x: Jet, places: Row, values: Row) -> Jet:
+    """Return the values on straight lines between places; beyond them those at their ends."""
+    at, rows = np.asarray(places, dtype=float), np.asarray(values, dtype=float)
+    width, rise = np.diff(at), np.diff(rows)
+    slopes = np.divide(rise, width, out=np.zeros_like(rise), where=width > 0.0)
+    cell = np.searchsorted(at, np.asarray(x.c[0]), side="right")
+    slopes = np.concatenate([[0.0], slopes, [0.0]])[cell]
+    from_row = np.clip(cell - 1, 0, len(at) - 1)
+    return (x - at[from_row]) * slopes + rows[from_row]
+
+
+def _opposing(law: ForceLaw) -> ForceLaw:
+    """Return the law of a load of the same size that opposes the motion."""
+
+    def opposed(acting: Acting) -> Jet:
+        size = law(acting)
+        found = size if isinstance(size, Jet) else acting.angle * 0.0 + size
+        against = -np.sign(np.asarray(acting.rate.c[0])) * np.sign(np.asarray(found.c[0]))
+        return found * against
+
+    return opposed
+
+
+def _spring_law(spring: MachineSpring, start: float) -> ForceLaw:
+    """Return the force or torque of a spring; `start` is its length or angle at the zero."""
+    if spring.angular:
+        rate, preload, damping, free = spring.torsion, spring.moment, spring.swing_damping, start
+    else:
+        rate, preload, damping = spring.stiffness, spring.preload, spring.damping
+        free = start if spring.length is None else spring.length
+
+    def law(acting: Acting) -> Jet:
+        pull = (acting.place - free) * rate + preload
+        return -(pull + acting.velocity * damping)
+
+    return law

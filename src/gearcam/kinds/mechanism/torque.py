@@ -1,0 +1,362 @@
+"""The study of a mechanism's torque: what its driver and the shafts of its drives exert."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+import numpy as np
+
+from gearcam.base.errors import DesignError, InfeasibleError, Problem
+from gearcam.base.facts import Fact, extent
+from gearcam.base.findings import run_checks
+from gearcam.base.numerals import formatted
+from gearcam.kinds.mechanism.loaded import work_of
+from gearcam.kinds.mechanism.tables import CompareSpec
+from gearcam.kinds.mechanism.torque_checks import TORQUE, DriverEffort
+from gearcam.linkages.work import GRAVITY, INERTIA, PARTS, SPRINGS
+from gearcam.numeric.piecewise import with_both_sides
+from gearcam.pictures.charts import Chart, Line
+from gearcam.results.result import StudyResult
+
+if TYPE_CHECKING:
+    from gearcam.kinds.mechanism.build import MechanismResult
+    from gearcam.kinds.mechanism.drives import PlacedDrive
+    from gearcam.linkages.measures import Peak
+    from gearcam.linkages.work import VirtualWork
+    from gearcam.numeric.arrays import Array
+    from gearcam.results.kind import Study
+    from gearcam.results.result import Progress
+
+Tree = dict[str, Any]
+
+_NM: Final = 1e-3
+"""N m of a N mm."""
+
+_NOISE: Final = 1e-9
+"""Share of the moment's integral below which its work is rounding."""
+
+_DEG: Final = math.degrees(1.0)
+
+EVEN: Final = "even shaft"
+"""What a mechanism behind a pair is compared with if the design does not say."""
+
+
+def demand(design: Any) -> None:
+    """Refuse a design on which nothing acts, or in which a speed is missing.
+
+    Raises
+    ------
+    DesignError
+        If it is so.
+    """
+    if not (design.load or design.spring or design.mass):
+        problem = Problem(
+            "nothing acts on the mechanism", file=design.source, key="load",
+            allowed="a table [[load]], [[mass]] or [[spring]]",
+        )  # fmt: skip
+        raise DesignError([problem])
+    if design.drive[0].speed is not None:
+        return
+    what = ""
+    if design.mass and not design.gravity.given:
+        what = "is missing: a mass acts by its inertia, which depends on the speed"
+    if any(one.damped for one in design.spring):
+        what = "is missing: a damper depends on the speed"
+    if any(one.of_velocity for one in design.load):
+        what = "is missing: a load depends on the velocity"
+    if what:
+        near = "a speed above 0"
+        problem = Problem(what, file=design.source, key="drive[0].speed_rpm", allowed=near)
+        raise DesignError([problem])
+
+
+class ShaftLoad(NamedTuple):
+    """What a shaft or a slide of a drive exerts on the linkage.
+
+    Attributes
+    ----------
+    column : str
+        Its name in the table.
+    values : (n,) array
+        N m, or N.
+    meaning : str
+        In words.
+    """
+
+    column: str
+    values: Array
+    meaning: str
+
+
+def study_torque(result: MechanismResult, study: Study, progress: Progress | None) -> StudyResult:
+    """Return the study of the driver's moment (see `gearcam.linkages.work`).
+
+    Parameters
+    ----------
+    result : MechanismResult
+        The mechanism.
+    study : Study
+        The entry of the study.
+    progress : callable, optional
+        Called with what is computed, the number done and their total.
+
+    Returns
+    -------
+    StudyResult
+        Its rows are those of ``torque.csv``.
+
+    Raises
+    ------
+    InfeasibleError
+        If the mechanism does not close, or a load is not finite.
+    """
+    demand(result.design)
+    others = _compared(result)
+    if progress is not None:
+        progress("torque", 0, 1 + len(others))
+    with result.stage("torque"):
+        work = work_of(result.design, result.linkage)
+        q = _places(result, work)
+        columns = _columns(result, work, q)
+        beside = {name: work_of(other.design, other.linkage) for name, other in others.items()}
+        shafts = list(shaft_loads(result, work, q))
+        columns |= {one.column: one.values for one in shafts}
+        effort = _effort(result, work, beside)
+        found = run_checks(TORQUE, effort, {})
+    speed = result.design.drive[0].speed
+    if speed is not None:
+        columns["power_w"] = columns["torque_nm"] * speed
+    return StudyResult(
+        result=result,
+        study=study,
+        file="torque.csv",
+        table=columns,
+        group=_facts(result, work, beside, shafts),
+        study_findings=found,
+        drawn=partial(_charts, result, columns, beside, q),
+    )
+
+
+def _compared(result: MechanismResult) -> Mapping[str, MechanismResult]:
+    """Return the same mechanism behind other drives; behind a pair one that turns evenly too."""
+    if result.design.compare or result.design.drive[0].pair is None:
+        return result.compared
+    even = CompareSpec(name=EVEN, even=True)
+    made = type(result)(replace(result.design, compare=(even,), examined=True), result.tolerances)
+    vars(made)["drives"] = result.drives
+    return made.compared
+
+
+def _places(result: MechanismResult, work: VirtualWork) -> Array:
+    """Return the master's angles of the table, with both sides of knots."""
+    low, high = work.linkage.span
+    even = np.linspace(low, high, result.design.torque.steps + 1)
+    if work.linkage.closed:
+        even[-1] = np.nextafter(high, low)
+    return with_both_sides(even, work.knots)
+
+
+def _columns(result: MechanismResult, work: VirtualWork, q: Array) -> dict[str, Array]:
+    """Return the driver's angle and moment, whole and in parts."""
+    parts = {part: _NM * np.asarray(one.c[0]) for part, one in work.parts(q).items()}
+    total = sum(parts.values(), start=np.zeros(q.shape))
+    if not np.isfinite(total).all():
+        where = _place(result, float(q[~np.isfinite(total)][0]))
+        raise InfeasibleError(f"a load or spring is not finite at {where}", where="load")
+    columns = {f"{result.driver[0]}_deg": _DEG * q, "torque_nm": total}
+    return columns | {f"{part}_nm": values for part, values in parts.items() if len(parts) > 1}
+
+
+def _place(result: MechanismResult, q: float) -> str:
+    return f"{result.driver[0]} = {formatted(_DEG * q, 6)} deg"
+
+
+def shaft_loads(result: MechanismResult, work: VirtualWork, q: Array) -> Iterator[ShaftLoad]:
+    """Yield what the wheels of pairs and the followers of cams exert.
+
+    Parameters
+    ----------
+    result : MechanismResult
+        The mechanism.
+    work : VirtualWork
+        What acts on it.
+    q : (n,) array, rad
+        The master's angles.
+    """
+    drives = [one for one in result.drives if one.spec.pair is not None or one.spec.cam is not None]
+    for drive in drives:
+        stem = "" if len(drives) == 1 else f"{drive.spec.name}_"
+        yield from (
+            _of_pair(drive, stem, work, q) if drive.spec.pair else _of_cam(drive, stem, work, q)
+        )
+
+
+def _of_pair(drive: PlacedDrive, stem: str, work: VirtualWork, q: Array) -> Iterator[ShaftLoad]:
+    driven = "rack" if "rack" in drive.moved else "wheel2"
+    rates = {
+        word: np.asarray(work.linkage.track(f"{drive.spec.name}.{word}", q, 1).derivatives()[1])
+        for word in ("wheel1", driven)
+    }
+    side = float(np.sign(rates[driven].mean()))
+    own = work.on({f"{drive.spec.name}.{driven}": side}, q)
+    ratio = np.abs(rates[driven] / rates["wheel1"])
+    yield ShaftLoad(
+        f"{stem}wheel1_torque_nm", _NM * own * ratio, "moment that the pair takes from wheel 1"
+    )
+    if driven == "rack":
+        yield ShaftLoad(f"{stem}rack_force_n", own, "force of the rack")
+    else:
+        yield ShaftLoad(f"{stem}wheel2_torque_nm", _NM * own, "moment on wheel 2")
+
+
+def _of_cam(drive: PlacedDrive, stem: str, work: VirtualWork, q: Array) -> Iterator[ShaftLoad]:
+    name, follower = f"{drive.spec.name}.follower", drive.moved["follower"]
+    own = work.on({name: _lifts(drive)}, q)
+    if follower.along:
+        yield ShaftLoad(f"{stem}follower_force_n", own, "force of the follower in its lift")
+    else:
+        meaning = "torque of the follower in its lift"
+        yield ShaftLoad(f"{stem}follower_torque_nm", _NM * own, meaning)
+
+
+def _lifts(drive: PlacedDrive) -> float:
+    """Return +1 or -1: how the follower's place or turn in the machine goes when it is lifted."""
+    if drive.moved["follower"].along:
+        return 1.0
+    x = np.linspace(0.0, drive.period, 721)
+    lift = drive.result.program.derivatives(x, 0)[0]
+    turn = np.asarray(drive.moved["follower"].law(x, 0).c[0])
+    rise = turn[int(lift.argmax())] - turn[int(lift.argmin())]
+    return math.copysign(1.0, float(rise)) * (-1.0 if drive.spec.mirror else 1.0)
+
+
+def _effort(
+    result: MechanismResult, work: VirtualWork, beside: Mapping[str, VirtualWork]
+) -> DriverEffort:
+    top = _largest(work)
+    return DriverEffort(
+        peak=_NM * abs(top.value),
+        place=_place(result, top.place),
+        others={name: _NM * abs(_largest(one).value) for name, one in beside.items()},
+        gain=_gain(result, work),
+    )
+
+
+def _largest(work: VirtualWork) -> Peak:
+    """Return the moment of the largest size."""
+    return max(work.largest, work.least, key=lambda one: abs(one.value))
+
+
+def _gain(result: MechanismResult, work: VirtualWork) -> str:
+    """Return how the pair of the master multiplies the moment on wheel 2, in words."""
+    drive = result.drives[0]
+    if "wheel2" not in drive.moved:
+        return ""
+    place = np.array([_largest(work).place])
+    track = work.linkage.track(f"{drive.spec.name}.wheel2", place, 1)
+    ratio = abs(float(track.derivatives()[1][0]))
+    return f" There the pair multiplies the moment on wheel 2 by its ratio {formatted(ratio, 4)}."
+
+
+def _facts(
+    result: MechanismResult,
+    work: VirtualWork,
+    beside: Mapping[str, VirtualWork],
+    shafts: list[ShaftLoad],
+) -> Tree:
+    """Return the facts of the study."""
+    speed = result.design.drive[0].speed
+    per = "cycle" if work.linkage.closed else "range"
+    tree: Tree = {
+        "torque_nm": _range(result, work, "moment of the driver"),
+        "mean_nm": Fact(_NM * work.mean, "mean moment of the driver", shown=True),
+        "work_j": Fact(_NM * work.work, f"work of the driver in a {per}", unit="J", shown=True),
+        "works_j": {
+            part: Fact(_NM * own, unit="J", noise=_NM * _NOISE * size)
+            for part, (own, size) in work.works.items()
+        },
+    }
+    if speed is not None:
+        tree["mean_power_w"] = Fact(_NM * work.mean * speed, "mean power", unit="W", shown=True)
+    tree |= {
+        one.column: Fact(
+            extent(float(one.values.min()), float(one.values.max())), one.meaning, shown=True
+        )
+        for one in shafts
+    }
+    if beside:
+        tree["compared"] = {
+            name: {"torque_nm": _range(result, other, f"moment of the driver: {name}")}
+            for name, other in beside.items()
+        }
+    error = _error(result, work)
+    if error is not None:
+        tree["error"] = Fact(error, "work left over in a cycle, as a share", unit="")
+    return tree | {"assumptions": Fact(_assumptions(result), "assumed", shown=True)}
+
+
+def _range(result: MechanismResult, work: VirtualWork, meaning: str) -> Fact:
+    least, largest = work.least, work.largest
+    places = _place(result, least.place), _place(result, largest.place)
+    return Fact(
+        extent(_NM * least.value, _NM * largest.value),
+        meaning,
+        place=f"least {places[0]}, largest {places[1]}",
+        shown=True,
+        noise=_NM * _NOISE * max(abs(least.value), abs(largest.value)),
+    )
+
+
+def _error(result: MechanismResult, work: VirtualWork) -> float | None:
+    """Return the work of what keeps its energy over a cycle, as a share; it should be 0."""
+    damped = any(one.damped for one in result.design.spring)
+    kept = [INERTIA, GRAVITY, *([] if damped else [SPRINGS])]
+    found = [work.works[part] for part in kept if part in work.works]
+    whole = sum(size for _, size in work.works.values())
+    if not work.linkage.closed or not found or not whole:
+        return None
+    return sum(abs(own) for own, _ in found) / whole
+
+
+def _assumptions(result: MechanismResult) -> str:
+    design = result.design
+    speed = design.drive[0].speed
+    words = [
+        "no friction",
+        "the driver turns evenly" if speed else "at rest, without inertia",
+        f"masses of {', '.join(one.of for one in design.mass)}" if design.mass else "no masses",
+        "gravity" if design.gravity.given and design.mass else "no gravity",
+    ]
+    return ", ".join(words)
+
+
+def _charts(
+    result: MechanismResult,
+    columns: Mapping[str, Array],
+    beside: Mapping[str, VirtualWork],
+    q: Array,
+) -> dict[str, Chart]:
+    """Return charts of the driver's moment, its parts, and those behind other drives."""
+    angle = next(iter(columns.values()))
+    label = f"{result.driver[1]}, deg"
+    lines = [Line(label="this drive", x=angle, y=columns["torque_nm"])]
+    lines += [
+        Line(label=name, x=angle, y=_NM * np.asarray(work.moment(q).c[0]))
+        for name, work in beside.items()
+    ]
+    charts = {
+        "torque": Chart(title="Moment of the driver", x=label, y="moment, N m", lines=tuple(lines))
+    }
+    parts = [name for name in PARTS if f"{name}_nm" in columns]
+    if parts:
+        charts["torque_parts"] = Chart(
+            title="What the driver's moment is made of",
+            x=label,
+            y="moment, N m",
+            lines=tuple(Line(label=name, x=angle, y=columns[f"{name}_nm"]) for name in parts),
+        )
+    return charts

@@ -1,0 +1,58 @@
+"""The check of the study of a mechanism's torque; importing this module registers it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Final
+
+from gearcam.base.display import ShortRepr
+from gearcam.base.findings import Remark, check
+from gearcam.base.numerals import formatted
+
+TORQUE: Final = "torque of a mechanism"
+"""Name of the subject of its checks."""
+
+_LESS: Final = 0.99
+"""Share of the driver's moment that is less than it."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class DriverEffort(ShortRepr):
+    """The largest moment that the driver of a mechanism exerts, and those behind other drives.
+
+    Parameters
+    ----------
+    peak : float, N m
+        The largest size of the moment.
+    place : str
+        Where it is, in words.
+    others : mapping of str to float, N m
+        The same behind other drives, by their names.
+    gain : str
+        How a pair multiplies the moment there, as a sentence; empty without one.
+    """
+
+    peak: float
+    place: str
+    others: Mapping[str, float]
+    gain: str = ""
+
+
+@check("drive-torque", kind=TORQUE, severity="note", unit="N m")
+def drive_torque(effort: DriverEffort, limit: float) -> Iterator[Remark]:
+    """Tell if another drive of the same mechanism exerts less.
+
+    Looks at: the largest moment of the driver, and of each drive that is compared; behind a pair
+    also of one that turns evenly.
+    """
+    del limit
+    for name, other in effort.others.items():
+        if other < _LESS * effort.peak:
+            times = formatted(effort.peak / other, 3) if other > 0.0 else "many"
+            message = (
+                f"The driver exerts up to {formatted(effort.peak, 5)} N m, {times} times the "
+                f"{formatted(other, 5)} N m of the same mechanism with the drive {name!r}."
+                f"{effort.gain}"
+            )
+            yield Remark(message, effort.place, effort.peak)
