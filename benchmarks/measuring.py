@@ -17,7 +17,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 _UNCOMPILED = "PYTHONDONTWRITEBYTECODE"
-PACKAGES = ("gearcam", "numpy", "shapely", "ncgears", "scipy", "sympy")
+PACKAGES = ("gearcam", "numpy", "shapely", "ncgears", "pylinkage", "numba", "scipy", "sympy")
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,7 @@ import cam_cases
 import cases
 import design_cases
 import law_cases
+import linkage_cases
 import needs
 import ring_cases
 import solid_cases
@@ -59,6 +60,7 @@ def main() -> int:
         ring_cases.against_external,
         solid_cases.against_booleans,
         spatial_cases.of_cylinder_cams,
+        linkage_cases.of_linkages,
         sweep_cases.of_sweeps,
         design_cases.of_cams,
         before_cases.against_before,

@@ -20,7 +20,7 @@ from gearcam.linkages.linkage import Linkage
 from gearcam.linkages.plane import conjugate, imaginary, square
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet
-from gearcam.numeric.piecewise import extremes
+from gearcam.numeric.piecewise import extremes, extremes_of_each
 from gearcam.numeric.roots import bracketed_root
 
 _TOUCHING: Final = 1e-12
@@ -164,18 +164,17 @@ def closing(linkage: Linkage, element: Element) -> Closing | None:
     -------
     Closing, or None if it always closes
     """
-    probe = element.room(linkage.at(linkage.knots[:1], 1, element))
-    if not probe:
+    if not element.room(linkage.at(linkage.knots[:1], 1, element)):
         return None
-    found = []
-    for number in range(len(probe)):
 
-        def room(q: Array, number: int = number) -> tuple[Array, Array]:
-            value, slope = element.room(linkage.at(q, 1, element))[number].derivatives()[:2]
-            return value, slope
+    def rooms(q: Array) -> Array:
+        shares = element.room(linkage.at(q, 1, element))
+        return np.stack([one.derivatives()[:2] for one in shares], axis=1)
 
-        places, values = extremes(room, linkage.knots)
-        found.append((places, values, _crossings(room, places, values)))
+    found = [
+        (places, values, _crossings(lambda q, k=k: rooms(q)[0, k], places, values))
+        for k, (places, values) in enumerate(extremes_of_each(rooms, linkage.knots))
+    ]
     lowest = min(found, key=lambda one: one[1].min())
     at = int(lowest[1].argmin())
     touching = [
@@ -204,12 +203,12 @@ def _polished(linkage: Linkage, element: Element, number: int, q: float) -> floa
     return knot if abs(knot - found) < _ON_KNOT else found
 
 
-def _crossings(room: Callable[[Array], tuple[Array, Array]], places: Array, values: Array) -> Array:
+def _crossings(room: Callable[[Array], Array], places: Array, values: Array) -> Array:
     """Return the simple zeros of a function between its extremes."""
     signs = np.where(np.abs(values) <= _TOUCHING, 0.0, np.sign(values))
     (cells,) = np.nonzero(signs[:-1] * signs[1:] < 0.0)
     ends = values[cells], values[cells + 1]
-    return bracketed_root(lambda q: room(q)[0], places[cells], places[cells + 1], _FOUND, ends)
+    return bracketed_root(room, places[cells], places[cells + 1], _FOUND, ends)
 
 
 def _ranges(linkage: Linkage, element: Element, zeros: Array) -> tuple[tuple[float, float], ...]:
