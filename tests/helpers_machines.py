@@ -118,6 +118,13 @@ MACHINES: dict[str, dict[str, Any]] = {
         ],
         "output": {"files": ["svg", "dxf"], "outputs": ["B"], "q_deg": 100},
     },
+    "lift": {
+        "drive": [{**MOTOR, "range_deg": [0, 300]}],
+        "hoist": [
+            {"name": "gate", "on": "motor", "joint": "hook", "radius_mm": 50, "at_mm": [50, -500]}
+        ],
+        "output": {"files": ["svg", "dxf"]},
+    },
     "cross": {
         "drive": [MOTOR],
         "crank": [{"name": "crank", "on": "motor", "joint": "B", "length_mm": 40}],

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.kinds.mechanism.drives import way_of
+from gearcam.kinds.mechanism.drives import center_of, way_of
 from gearcam.kinds.mechanism.names import given
 from gearcam.linkages.dyads import DYADS
 from gearcam.linkages.elements import GROUND as STANDING
@@ -38,7 +38,7 @@ from gearcam.results.nested import within
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.build import MechanismResult
     from gearcam.kinds.mechanism.drives import Moved, PlacedDrive
-    from gearcam.kinds.mechanism.tables import ChainSpec, DyadSpec
+    from gearcam.kinds.mechanism.tables import ChainSpec, DyadSpec, GuideSpec, HoistSpec
     from gearcam.linkages.elements import Known
     from gearcam.numeric.arrays import Array, Plane
 
@@ -85,7 +85,7 @@ class _Shown:
         """Names of the joints that the tables give, and of those of even shafts."""
         design = self.result.design
         named = [one.name for one in (*design.joint, *design.point)]
-        others = (*design.crank, *design.slide, *design.dyad, *design.chain)
+        others = (*design.crank, *design.slide, *design.dyad, *design.chain, *design.hoist)
         return [*named, *(one.joint for one in others)]
 
     @property
@@ -154,7 +154,7 @@ def bodies(result: MechanismResult, q: Array, before: int = 0) -> tuple[MovingBo
         for name, parts in _members(shown, half).items()
         if parts.pins or parts.blocks
     ]
-    chains = [one for spec in result.design.chain for one in _chain(shown, spec)]
+    chains = tuple(_chains(shown))
     cylinders = [one for spec in result.design.dyad for one in _cylinder(shown, spec, half)]
     grounds = tuple(_grounds(shown, half))
     standing = [still(grounds, q)] if grounds else []
@@ -168,27 +168,32 @@ def bodies(result: MechanismResult, q: Array, before: int = 0) -> tuple[MovingBo
 
 def _members(shown: _Shown, half: float) -> dict[str, _Parts]:
     """Return what the members are drawn with, by name, in order."""
-    design, found = shown.result.design, dict[str, _Parts]()
-    for crank in design.crank:
-        found[crank.name] = _Parts([0j, complex(crank.length)])
+    design = shown.result.design
+    found = {one.name: _Parts([0j, complex(one.length)]) for one in design.crank}
     for slide in design.slide:
         pins = [0j, complex(*slide.at)] if any(slide.at) else [0j]
         found[slide.name] = _Parts(pins, blocks=[] if _carried(shown, slide.on) else [(0j, 0.0)])
     for dyad in design.dyad:
         for k, name in enumerate(dyad.members):
             found[name] = _of_dyad(shown, dyad, k, half)
-    for chain in design.chain:
-        found[chain.lever] = _Parts([0j, complex(chain.length)])
+    found |= {one.lever: _Parts([0j, complex(one.length)]) for one in design.chain}
+    found |= {one.name: _Parts([0j], blocks=[(0j, 0.0)]) for one in design.hoist}
     for one in design.guide:
-        ends = _ends(shown, one.name)
-        if one.on != STANDING and one.on in found and ends is not None:
-            way, at = cmath.exp(1j * one.direction), complex(*one.at)
-            found[one.on].ways += [_longer(at + ends[0] * way, at + ends[1] * way, half)]
-            found[one.on].ways += [(0j, at)] if at else []
+        if one.on in found:
+            found[one.on].ways += _guide_on(shown, one, half)
     for point in design.point:
         if point.on in found:
             found[point.on].pins.append(complex(*point.at))
     return found
+
+
+def _guide_on(shown: _Shown, spec: GuideSpec, half: float) -> Iterator[tuple[complex, complex]]:
+    """Yield the guide on a member, and what joins it to the member's origin."""
+    ends, way, at = _ends(shown, spec.name), cmath.exp(1j * spec.direction), complex(*spec.at)
+    if ends is not None:
+        yield _longer(at + ends[0] * way, at + ends[1] * way, half)
+    if at:
+        yield 0j, at
 
 
 def _carried(shown: _Shown, slide: str) -> bool:
@@ -236,6 +241,7 @@ def _ends(shown: _Shown, name: str) -> tuple[float, float] | None:
         for k, owner in enumerate((dyad.first, dyad.last))
         if owner == name and DYADS[dyad.formula].guides[k]
     ]
+    used += [f"{one.name}.way" for one in design.hoist if f"{one.name}.guide" == name]
     used += [slide.on for slide in design.slide if way_of(slide.on) == name]
     places = [shown.turn(one) for one in used]
     if not places:
@@ -272,6 +278,7 @@ def _grounds(shown: _Shown, half: float) -> Iterator[Feature]:
     design = shown.result.design
     ways = [one.name for one in design.guide if one.on == STANDING]
     ways += [way_of(one.on) for one in design.slide if not _carried(shown, one.on)]
+    ways += [f"{one.name}.guide" for one in design.hoist]
     for name in dict.fromkeys(ways):
         ends, pose = _ends(shown, name), shown.pose(name)[0]
         for one in guide(ends, half) if ends is not None else ():
@@ -319,27 +326,55 @@ def _paths(shown: _Shown, before: int) -> Iterator[Feature]:
 # --- chains --------------------------------------------------------------------------------------
 
 
-def _chain(shown: _Shown, spec: ChainSpec) -> Iterator[MovingBody]:
-    """Yield the wheel of a chain, and its free part as pieces that overlap."""
+def _chains(shown: _Shown) -> Iterator[MovingBody]:
+    """Yield the wheels of chains and the free parts of these."""
+    design = shown.result.design
+    for spec in design.chain:
+        yield from _swinging(shown, spec)
+    for spec in design.hoist:
+        yield from _lifting(shown, spec)
+
+
+def _swinging(shown: _Shown, spec: ChainSpec) -> Iterator[MovingBody]:
+    """Yield wheel and chain of a lever."""
     center, wind = complex(*spec.at), 1.0 if spec.wind == "ccw" else -1.0
-    holes = [0.6 * spec.radius * cmath.exp(2j * math.pi * k / 3) for k in range(3)]
-    features = (
-        Feature(layer=MEMBER, shape=Circle(center=0j, diameter=2.0 * spec.radius)),
-        *(
-            Feature(layer=f"{MEMBER}_{BORE}", shape=Circle(center=at, diameter=0.3 * spec.radius))
-            for at in holes
-        ),
-        Feature(layer=CENTER, shape=Cross(center=0j, size=0.4 * spec.radius)),
-    )
-    fixed = np.full(shown.q.shape, center)
-    yield MovingBody(
-        name=CHAIN_WHEEL, called="chain wheel", features=features,
-        pose=Pose(shown.turn(spec.on), fixed),
-    )  # fmt: skip
     end = shown.place(spec.joint)
     way = end - center
     seen = np.angle(way) + wind * np.arccos(spec.radius / np.abs(way))
-    start = center + spec.radius * np.exp(1j * seen)
+    yield _wheel(shown, spec.on, center, spec.radius)
+    start = np.asarray(center + spec.radius * np.exp(1j * seen), dtype=np.complex128)
+    yield from _pieces(start, end)
+
+
+def _lifting(shown: _Shown, spec: HoistSpec) -> Iterator[MovingBody]:
+    """Yield wheel and chain of what is lifted, the wheel beside the chain."""
+    end, along = shown.place(spec.joint), cmath.exp(1j * spec.direction)
+    shaft = complex(shown.place(center_of(spec.on))[0])
+    # where the chain, which leads straight to the joint, is level with the shaft
+    foot = end[0] + along * ((shaft - end[0]) * along.conjugate()).real
+    side = 1j * along * (1.0 if spec.wind == "ccw" else -1.0)
+    yield _wheel(shown, spec.on, complex(foot + side * spec.radius), spec.radius)
+    yield from _pieces(np.full(shown.q.shape, foot), end)
+
+
+def _wheel(shown: _Shown, shaft: str, center: complex, radius: float) -> MovingBody:
+    """Return the wheel of a chain."""
+    holes = [0.6 * radius * cmath.exp(2j * math.pi * k / 3) for k in range(3)]
+    bore = f"{MEMBER}_{BORE}"
+    features = (
+        Feature(layer=MEMBER, shape=Circle(center=0j, diameter=2.0 * radius)),
+        *(Feature(layer=bore, shape=Circle(center=at, diameter=0.3 * radius)) for at in holes),
+        Feature(layer=CENTER, shape=Cross(center=0j, size=0.4 * radius)),
+    )
+    pose = Pose(shown.turn(shaft), np.full(shown.q.shape, center))
+    return MovingBody(name=CHAIN_WHEEL, called="chain wheel", features=features, pose=pose)
+
+
+def _pieces(start: Plane, end: Plane) -> Iterator[MovingBody]:
+    """Yield straight pieces that cover a chain between two points; they overlap where it is short.
+
+    Bodies are rigid, and its length changes.
+    """
     long, turn = np.abs(end - start), np.unwrap(np.angle(end - start))
     longest = float(long.max())
     size = max(float(long.min()), longest / _PIECES)

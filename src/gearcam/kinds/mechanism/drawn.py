@@ -125,7 +125,7 @@ def _names(
     """Return the names of joints and members with their places at an angle (1,), rad."""
     design, known = result.design, result.linkage.at(q, 0)
     named = [one.name for one in (*design.joint, *design.point)]
-    others = (*design.crank, *design.slide, *design.dyad, *design.chain)
+    others = (*design.crank, *design.slide, *design.dyad, *design.chain, *design.hoist)
     named += [one.joint for one in others]
     joints = [(name, complex(np.asarray(known.jet(name).c[0]).flat[0])) for name in named]
     members = [

@@ -46,6 +46,7 @@ JOINTS = {
     },
     "cylinder": {"ram": ("A",), "arm": ("D", "C")},
     "door": {"leaf": ("B",)},
+    "lift": {"gate": ("hook",)},
     "cross": {"crank": ("B",), "block": ("B", "S")},
 }  # fmt: skip
 """By machine, the joints that each member is drawn through, as its table says."""
@@ -57,6 +58,10 @@ STANDING = {"A": 0j, "D": 110 + 0j, "O": -130j}
 def body(scene: Scene, name: str) -> Any:
     (found,) = (one for one in scene.bodies if one.name == name)
     return found
+
+
+def as_any(one: Any) -> Any:
+    return one
 
 
 def pins(one: MovingBody) -> Any:
@@ -179,6 +184,17 @@ def test_a_chain_covers_its_free_part_and_leaves_its_wheel_along_a_tangent() -> 
     free = np.abs(end - start)
     leaving = np.unwrap(np.angle(start - center))
     assert np.ptp(free - 100.0 * leaving + wound) < 1e-6
+
+
+def test_what_is_lifted_has_its_wheel_beside_the_chain() -> None:
+    scene = machine("lift").scene(FEW)
+    wheel, gate = body(scene, "chain_wheel"), body(scene, "gate")
+    assert wheel.pose.shift[0] == pytest.approx(0.0, abs=ROUNDED)  # where the motor is
+    pieces = [one for one in scene.bodies if re.fullmatch(r"chain_\d+", one.name)]
+    ends: Any = [one.pose.apply(one.features[0].shape.points[1]) for one in map(as_any, pieces)]
+    assert np.abs(ends[-1] - gate.pose.shift).max() < ROUNDED
+    lifted = gate.pose.shift.imag - gate.pose.shift[0].imag
+    assert np.abs(lifted - 50.0 * wheel.pose.turn).max() < ROUNDED
 
 
 def test_a_cylinder_holds_its_rod() -> None:
@@ -307,7 +323,7 @@ def test_the_picture_has_all_names(name: str) -> None:
     texts = [one.text for one in root.findall(".//s:text[@class='name']", space)]
     joints = {one.name for one in (*result.design.joint, *result.design.point)}
     joints |= {one.joint for one in (*result.design.crank, *result.design.dyad)}
-    members = {one.name for one in result.design.crank}
+    members = {one.name for one in (*result.design.crank, *result.design.hoist)}
     assert joints | members <= set(texts)
     classes = {one.get("class") for one in root.iter() if one.get("class")}
     assert {"member", "ghost"} <= classes
