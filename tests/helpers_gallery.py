@@ -661,6 +661,15 @@ MACHINE_NUMBERS: dict[str, dict[str, Number]] = {
         "outputs.slide.stroke_mm": (3.71617428011, 1e-5),
         "outputs.slide.least_mm": (329.392408969, 1e-4),
     },
+    "geneva": {
+        # lambda = sin(30 deg): fastest lambda/(1 - lambda)
+        "outputs.wheel.stroke_deg": (60.0, 1e-9),
+        "outputs.wheel.velocity_rad_per_rad": (-1.0, 1e-9),
+    },
+    "straight_line": {
+        "stretches[0].deviation_mm": (0.5 * 0.975373308636, 1e-9),
+        "stretches[0].length_mm": (362.651605874, 1e-8),
+    },
     "two_cam_table": {
         "paths.table.area_mm2": (math.pi * 12 * 8, 1e-5),
         "outputs.table_x.stroke_mm": (24.0, 1e-6),

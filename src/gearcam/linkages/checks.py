@@ -162,7 +162,7 @@ def _told(machine: CheckedMachine, order: int, what: str) -> Iterator[Remark]:
         found = list(_jumps(measures, order))
         if found:
             where, by = max(found, key=lambda one: abs(one[1]))
-            more = f", and at {len(found) - 1} further places" if len(found) > 1 else ""
+            more = f"; the largest of {len(found)} jumps" if len(found) > 1 else ""
             yield Remark(
                 f"The {what} of {name} jumps by {formatted(by, 5)} {unit}{more}.",
                 f"{name}, {_at(where)}",

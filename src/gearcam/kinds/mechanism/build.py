@@ -25,6 +25,7 @@ from gearcam.linkages import checks
 from gearcam.linkages.dwells import DriverRange, last_travel, longest_dwell
 from gearcam.linkages.linkage import Linkage
 from gearcam.linkages.measures import TrackMeasures
+from gearcam.linkages.path_fits import CircleFit, LineFit, best_circle, best_line
 from gearcam.linkages.paths import PointPath
 from gearcam.linkages.transmission import Transmission, transmissions
 from gearcam.numeric.arguments import angles
@@ -158,8 +159,9 @@ class MechanismResult(Result):
         slides = [one.joint for one in design.dyad if moves(one)]
         found = [*slides, *(one.name for one in (*design.slide, *design.hoist, *design.point))]
         last = [one.members[1] for one in design.dyad[-1:]] + [one.lever for one in design.chain]
-        members = last or [one.name for one in design.crank[-1:]]
-        return found or [f"{name}.angle" for name in members]
+        turns = [f"{one.name}.turn" for one in design.geneva]
+        members = last or [] if turns else last or [one.name for one in design.crank[-1:]]
+        return [*found, *turns] or [f"{name}.angle" for name in members]
 
     def _outputs_of(self, name: str) -> Iterator[Output]:
         made = self._known_outputs.get(name)
@@ -189,6 +191,9 @@ class MechanismResult(Result):
             found[slide.name] = (Output(slide.name, slide.name, slide.on, False),)
         for hoist in design.hoist:
             found[hoist.name] = (Output(hoist.name, hoist.name, f"{hoist.name}.way", False),)
+        for wheel in design.geneva:
+            name = f"{wheel.name}.turn"
+            found[name] = (Output(name, wheel.name, name, True),)
         joints = [*(one.joint for one in design.crank), *(one.name for one in design.point)]
         for name in [*joints, *(one.joint for one in design.chain)]:
             found[name] = _coordinates(name)
@@ -437,6 +442,27 @@ class MechanismResult(Result):
         machines = {"as designed": self, **self.compared}
         rows = [row for name, one in machines.items() for row in rows_of(name, one)]
         return Columns({key: np.array([row[key] for row in rows]) for key in rows[0]})
+
+    @cached_property
+    def stretches(self) -> tuple[LineFit | CircleFit, ...]:
+        """The lines and circles nearest to stretches of paths that the design asks for.
+
+        Raises
+        ------
+        DesignError
+            If a stretch is not of a point that is asked for.
+        """
+        found = []
+        for number, one in enumerate(self.design.stretch):
+            path = self.paths.get(one.on)
+            if path is None:
+                allowed = f"a point of the outputs: {', '.join(self.paths)}"
+                where = f"stretch[{number}].on"
+                what = "is not a point that is asked for"
+                raise DesignError([Problem(what, self.design.source, None, where, one.on, allowed)])
+            fit = best_line if one.shape == "line" else best_circle
+            found.append(fit(path, one.start, one.end))
+        return tuple(found)
 
     @cached_property
     def dwells(self) -> tuple[DriverRange, ...]:

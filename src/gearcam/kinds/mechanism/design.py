@@ -18,6 +18,7 @@ from gearcam.kinds.mechanism.tables import (
     CrankSpec,
     DwellSpec,
     DyadSpec,
+    GenevaSpec,
     GuideSpec,
     HoistSpec,
     IntervalSpec,
@@ -26,6 +27,7 @@ from gearcam.kinds.mechanism.tables import (
     MechanismOutput,
     PointSpec,
     SlideSpec,
+    StretchSpec,
 )
 from gearcam.kinds.shared import AccuracySpec, GoalSpec
 from gearcam.mechanics.mass import GravitySpec
@@ -63,6 +65,10 @@ class MechanismDesign(Design):
         Chains that swing a lever.
     hoist : sequence of HoistSpec
         What wheels lift.
+    geneva : sequence of GenevaSpec
+        Geneva wheels.
+    stretch : sequence of StretchSpec
+        Stretches of paths that are to be straight or round.
     interval : sequence of IntervalSpec
         The last bits of travel before dead centres.
     dwell : sequence of DwellSpec
@@ -112,6 +118,8 @@ class MechanismDesign(Design):
     point: tuple[PointSpec, ...] = ()
     chain: tuple[ChainSpec, ...] = ()
     hoist: tuple[HoistSpec, ...] = ()
+    geneva: tuple[GenevaSpec, ...] = ()
+    stretch: tuple[StretchSpec, ...] = ()
     interval: tuple[IntervalSpec, ...] = ()
     dwell: tuple[DwellSpec, ...] = ()
     load: tuple[MachineLoad, ...] = ()

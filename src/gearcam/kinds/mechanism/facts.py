@@ -9,6 +9,7 @@ from gearcam.base.facts import Fact, Facts
 from gearcam.base.numerals import formatted
 from gearcam.kinds.mechanism.build import RATES
 from gearcam.linkages.grashof import FourBarLengths, grashof
+from gearcam.linkages.path_fits import LineFit
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.build import MechanismResult, Output
@@ -28,6 +29,7 @@ def facts(result: MechanismResult) -> Facts:
         "machine": _machine(result),
         "outputs": outputs,
         "paths": {name: _path(path) for name, path in result.paths.items()} or None,
+        "stretches": _stretches(result),
         "intervals": _intervals(result),
         "dwells": _dwells(result),
         "compare": {
@@ -173,6 +175,20 @@ def _peaks(result: MechanismResult, one: Output) -> Tree:
             value = peak.value * speed**order
             tree[f"{word}_{unit}_s{power}"] = Fact(value, label, place=_place(peak))
     return tree
+
+
+def _stretches(result: MechanismResult) -> list[Tree] | None:
+    return [
+        {
+            "on": one.on,
+            "shape": one.shape,
+            "deviation_mm": Fact(fit.deviation, f"deviation of {one.on} from the {one.shape}"),
+            "length_mm": fit.length if isinstance(fit, LineFit) else None,
+            "radius_mm": None if isinstance(fit, LineFit) else fit.radius,
+            "center_mm": None if isinstance(fit, LineFit) else [fit.center.real, fit.center.imag],
+        }
+        for one, fit in zip(result.design.stretch, result.stretches, strict=True)
+    ] or None
 
 
 def _intervals(result: MechanismResult) -> list[Tree] | None:

@@ -22,6 +22,7 @@ from gearcam.kinds.mechanism.tables import (
     CrankSpec,
     DwellSpec,
     DyadSpec,
+    GenevaSpec,
     GuideSpec,
     HoistSpec,
     IntervalSpec,
@@ -30,6 +31,7 @@ from gearcam.kinds.mechanism.tables import (
     MechanismOutput,
     PointSpec,
     SlideSpec,
+    StretchSpec,
 )
 from gearcam.kinds.mechanism.torque_checks import TORQUE
 from gearcam.kinds.shared import AccuracySpec, GoalSpec
@@ -49,6 +51,8 @@ _SEVERAL: Final = {
     "point": PointSpec,
     "chain": ChainSpec,
     "hoist": HoistSpec,
+    "geneva": GenevaSpec,
+    "stretch": StretchSpec,
     "interval": IntervalSpec,
     "dwell": DwellSpec,
     "load": MachineLoad,

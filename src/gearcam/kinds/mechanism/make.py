@@ -6,6 +6,7 @@ import cmath
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -13,6 +14,7 @@ import numpy as np
 from gearcam.base.errors import Adjustment, InfeasibleError
 from gearcam.base.numerals import formatted
 from gearcam.kinds.mechanism.drives import PlacedDrive, center_of, way_of
+from gearcam.kinds.mechanism.names import PARTS, needed
 from gearcam.linkages.chain import HoistChain
 from gearcam.linkages.closing import NotClosingError, settled
 from gearcam.linkages.dyads import Lengths
@@ -25,6 +27,7 @@ from gearcam.linkages.elements import (
     PushedSlide,
     WoundWay,
 )
+from gearcam.linkages.geneva import GenevaWheel
 from gearcam.linkages.linkage import Linkage, in_order
 
 if TYPE_CHECKING:
@@ -59,11 +62,12 @@ def make_linkage(design: MechanismDesign, drives: Sequence[PlacedDrive]) -> Link
     InfeasibleError
         If it does not close over the master's whole range.
     """
-    (low, high), closed = _span(drives)
+    (low, high), closed = _span(drives, _indexed(design))
     inner = [one.knots_in(low, high, not number) for number, one in enumerate(drives)]
     knots = np.unique(np.concatenate([[low, high], *inner]))
     parts = list(in_order(_elements(design, drives)))
-    linkage = Linkage(parts, knots, closed)
+    linkage = _with_rests(Linkage(parts, knots, closed))
+    knots = linkage.knots
     for number, dyad in enumerate(parts):
         wanted = _near(design, dyad)
         if wanted is not None and isinstance(dyad, Dyad):
@@ -75,7 +79,23 @@ def make_linkage(design: MechanismDesign, drives: Sequence[PlacedDrive]) -> Link
         raise _refusal(design, error) from None
 
 
-def _span(drives: Sequence[PlacedDrive]) -> tuple[tuple[float, float], bool]:
+def _with_rests(linkage: Linkage) -> Linkage:
+    """Return a linkage with the knots at which Geneva wheels begin and end to turn."""
+    for one in linkage.elements:
+        if isinstance(one, GenevaWheel):
+            shaft = partial(linkage.track, one.shaft)
+            linkage = replace(linkage, knots=one.knots(shaft, linkage.knots))
+    return linkage
+
+
+def _indexed(design: MechanismDesign) -> int:
+    """Return after how many turns of their cranks all Geneva wheels that move others are back."""
+    parts = {title: getattr(design, title) for title in PARTS}
+    used = {one.name for one in needed(parts)}
+    return math.lcm(*(one.slots for one in design.geneva if one.name in used))
+
+
+def _span(drives: Sequence[PlacedDrive], least: int) -> tuple[tuple[float, float], bool]:
     """Return the master's first and last angle, and whether the motion repeats after them."""
     master = drives[0]
     if not master.closed:
@@ -93,7 +113,7 @@ def _span(drives: Sequence[PlacedDrive]) -> tuple[tuple[float, float], bool]:
         for one in drive.moved.values()
         if not one.along
     ]
-    for turns in range(1, _CYCLES + 1):
+    for turns in range(least, _CYCLES * least + 1, least):
         ends = [
             float(np.diff(np.asarray(law(np.array([0.0, ratio * turns * _TURN]), 0).c[0]))[0])
             for law, ratio in shafts
@@ -161,6 +181,12 @@ def _pulled(design: MechanismDesign) -> Iterator[Element]:
         yield WoundWay(way, hoist.on, radius)
         yield GuideLine(guide, complex(*hoist.at), hoist.direction)
         yield PushedSlide(hoist.name, way, guide, hoist.joint)
+    for wheel in design.geneva:
+        center = wheel.at or center_of(wheel.on)
+        yield GenevaWheel(
+            wheel.name, wheel.on, center, wheel.length, wheel.slots, wheel.direction, wheel.angle,
+            wheel.internal,
+        )  # fmt: skip
     for chain in design.chain:
         yield HoistChain(
             chain.lever,

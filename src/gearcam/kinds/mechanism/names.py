@@ -23,10 +23,11 @@ SHAFT, WAY, JOINT, MEMBER, GUIDE = "shaft", "slide", "joint", "member", "guide"
 STANDING: Final = "joint that stands still, or shaft"
 """What a name can be."""
 
-_PARTS: Final = (
-    "drive", "joint", "crank", "slide", "guide", "dyad", "point", "chain", "hoist",
+PARTS: Final = (
+    "drive", "joint", "crank", "slide", "guide", "dyad", "point", "chain", "hoist", "geneva",
     "load", "mass", "spring",
 )  # fmt: skip
+"""Titles of the tables that give or need names."""
 
 
 class NameUse(NamedTuple):
@@ -91,6 +92,7 @@ _GIVES: Final = {
     "point": (("name", JOINT),),
     "chain": (("lever", MEMBER), ("joint", JOINT)),
     "hoist": (("name", MEMBER), ("joint", JOINT)),
+    "geneva": (("name", MEMBER),),
 }
 
 _NEEDS: Final = {
@@ -104,11 +106,12 @@ _NEEDS: Final = {
     "load": (("on", "on", f"{JOINT} or {MEMBER} or {SHAFT} or {WAY}"),),
     "mass": (("of", "of", f"{MEMBER} or {SHAFT}"), ("center", "center", JOINT)),
     "spring": (("on", "on", f"{JOINT} or {MEMBER} or {SHAFT} or {WAY}"),),
+    "geneva": (("on", "on", SHAFT), ("at", "at", JOINT)),
 }
 
 
 def _tables(parts: Mapping[str, Sequence[Any]]) -> Iterator[tuple[str, int, Any]]:
-    for title in _PARTS:
+    for title in PARTS:
         for number, one in enumerate(parts.get(title, ())):
             yield title, number, one
 
@@ -136,7 +139,7 @@ def problems(_: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
     found : Examined
         The valid tables.
     """
-    parts = {title: found.parts.get(title, ()) for title in _PARTS}
+    parts = {title: found.parts.get(title, ()) for title in PARTS}
     names: dict[str, NameUse] = {GROUND: NameUse(GROUND, MEMBER, ())}
     yield from _misspelt(found)
     for one in given(parts):
@@ -174,6 +177,7 @@ _NAMING: Final = {
     "drive": ("name",), "compare": ("name",), "joint": ("name",), "crank": ("name", "joint"),
     "slide": ("name", "joint"), "guide": ("name",), "dyad": ("joint", "members"),
     "point": ("name",), "chain": ("lever", "joint"), "hoist": ("name", "joint"),
+    "geneva": ("name",),
 }  # fmt: skip
 """The keys that give names, by title."""
 

@@ -16,6 +16,7 @@ from gearcam.kinds.mechanism.tables import (
     CrankSpec,
     DwellSpec,
     DyadSpec,
+    GenevaSpec,
     GuideSpec,
     HoistSpec,
     IntervalSpec,
@@ -24,15 +25,17 @@ from gearcam.kinds.mechanism.tables import (
     MechanismOutput,
     PointSpec,
     SlideSpec,
+    StretchSpec,
 )
 from gearcam.kinds.shared import AccuracySpec, GoalSpec
 from gearcam.mechanics.mass import GravitySpec
 
 __all__ = [
-    "AccuracySpec", "ChainSpec", "CompareSpec", "CrankSpec", "DwellSpec", "DyadSpec", "GoalSpec",
-    "GravitySpec", "GuideSpec", "HoistSpec", "IntervalSpec", "JointSpec", "MachineDrive",
-    "MachineLoad", "MachineSpring", "MechanismDesign", "MechanismOutput", "MechanismResult",
-    "MemberMass", "PointSpec", "SlideSpec", "TorqueSpec",
+    "AccuracySpec", "ChainSpec", "CompareSpec", "CrankSpec", "DwellSpec", "DyadSpec",
+    "GenevaSpec", "GoalSpec", "GravitySpec", "GuideSpec", "HoistSpec", "IntervalSpec",
+    "JointSpec", "MachineDrive", "MachineLoad", "MachineSpring", "MechanismDesign",
+    "MechanismOutput", "MechanismResult", "MemberMass", "PointSpec", "SlideSpec", "StretchSpec",
+    "TorqueSpec",
 ]  # fmt: skip
 
 PUBLIC = {name: globals()[name] for name in __all__}

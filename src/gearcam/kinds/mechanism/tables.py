@@ -31,6 +31,7 @@ from gearcam.designs.design import Design
 from gearcam.designs.outputs import OutputSpec, files_param, pose_param, studies_param
 from gearcam.linkages.dyads import DYADS
 from gearcam.linkages.elements import BRANCH, GROUND, MOTION
+from gearcam.linkages.geneva import SLOTS
 
 FORMATS: Final = ("csv", "dxf", "svg", "report")
 """What ``output.files`` may list."""
@@ -473,6 +474,53 @@ class HoistSpec(ShortRepr):
         doc="the joint where the wheel's turn is 0", default=(0.0, 0.0), order="x, y"
     )
     direction: float = _direction(doc="in which it is lifted", default=math.radians(90.0))
+
+
+@dataclass(frozen=True, kw_only=True)
+class GenevaSpec(ShortRepr):
+    """A Geneva wheel: the pin of a crank turns it by one slot, then it rests.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.GenevaSpec(name="wheel", on="motor", slots=6, length=60.0)
+    GenevaSpec(name='wheel', on='motor', slots=6, length=60)
+    """
+
+    name: str = _name(doc="name of the wheel", example="wheel")
+    on: str = _name(doc="the crank's shaft", example="motor")
+    at: str | None = _name(
+        doc="joint in which the shaft stands, if not that of the drive", default=None, example="A"
+    )
+    slots: int = param(COUNT, ge=SLOTS[0], le=SLOTS[1], doc="number of slots", example=6)
+    length: float = positive_length(default=REQUIRED, example=60, doc="from the shaft to the pin")
+    angle: float = _direction(doc="the crank's direction at the drive's zero", default=0.0)
+    direction: float = _direction(doc="from the crank's shaft to the wheel's", default=0.0)
+    internal: bool = param(default=False, doc="whether the wheel surrounds the crank")
+
+
+@dataclass(frozen=True, kw_only=True)
+class StretchSpec(ShortRepr):
+    """A stretch of a point's path that is to be straight or round.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.StretchSpec(on="P", start=1.0, end=2.0, shape="line")
+    StretchSpec(on='P', start=1, end=2, shape='line')
+    """
+
+    on: str = _name(doc="the point", example="P")
+    start: float = _direction(doc="the master's angle where it begins", word="from", example=100)
+    end: float = _direction(doc="the master's angle where it ends", word="to", example=260)
+    shape: str = param(
+        TEXT, choices=("line", "circle"), doc="what is fitted to it, by the least deviation"
+    )
+
+    def problems(self) -> Iterator[Breach]:
+        """Yield an end that is not above the start."""
+        if self.end <= self.start:
+            yield "end", None, "is not above from_deg", "rising angles"
 
 
 @dataclass(frozen=True, kw_only=True)
