@@ -25,7 +25,6 @@ from gearcam.linkages import checks
 from gearcam.linkages.dwells import DriverRange, last_travel, longest_dwell
 from gearcam.linkages.linkage import Linkage
 from gearcam.linkages.measures import TrackMeasures
-from gearcam.linkages.path_fits import CircleFit, LineFit, best_circle, best_line
 from gearcam.linkages.paths import PointPath
 from gearcam.linkages.transmission import Transmission, transmissions
 from gearcam.numeric.arguments import angles
@@ -38,6 +37,7 @@ from gearcam.results.result import Result
 
 if TYPE_CHECKING:
     from gearcam.designs.design import Design
+    from gearcam.linkages.path_fits import CircleFit, LineFit
 
 _MOST_STEPS: Final = 1e6
 """Largest number of steps of a table."""
@@ -452,6 +452,10 @@ class MechanismResult(Result):
         DesignError
             If a stretch is not of a point that is asked for.
         """
+        if not self.design.stretch:
+            return ()
+        from gearcam.linkages.path_fits import best_circle, best_line
+
         found = []
         for number, one in enumerate(self.design.stretch):
             path = self.paths.get(one.on)

@@ -9,11 +9,11 @@ from gearcam.base.facts import Fact, Facts
 from gearcam.base.numerals import formatted
 from gearcam.kinds.mechanism.build import RATES
 from gearcam.linkages.grashof import FourBarLengths, grashof
-from gearcam.linkages.path_fits import LineFit
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.build import MechanismResult, Output
     from gearcam.linkages.measures import Peak, TrackMeasures
+    from gearcam.linkages.path_fits import CircleFit, LineFit
     from gearcam.linkages.paths import PointPath
     from gearcam.linkages.transmission import Transmission
 
@@ -189,6 +189,15 @@ def _stretches(result: MechanismResult) -> list[Tree] | None:
         }
         for one, fit in zip(result.design.stretch, result.stretches, strict=True)
     ] or None
+
+
+def _fitted(fit: LineFit | CircleFit) -> Tree:
+    """Return the length of a line, or radius and centre of a circle."""
+    length = getattr(fit, "length", None)
+    if length is not None:
+        return {"length_mm": length}
+    center = fit.center  # pyright: ignore[reportAttributeAccessIssue]
+    return {"radius_mm": fit.radius, "center_mm": [center.real, center.imag]}  # pyright: ignore[reportAttributeAccessIssue]
 
 
 def _intervals(result: MechanismResult) -> list[Tree] | None:

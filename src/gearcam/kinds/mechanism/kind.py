@@ -102,5 +102,6 @@ KIND: Final = Kind(
     charts=DeferredMapping(f"{_HERE}.charts:CHARTS"),
     scene=deferred(f"{_HERE}.scene:scene"),
     studies=DeferredMapping(f"{_HERE}.studies:STUDIES"),
+    ladders=DeferredMapping(f"{_HERE}.ladder:LADDERS"),
     public=DeferredMapping(f"{_HERE}.public:PUBLIC"),
 )
