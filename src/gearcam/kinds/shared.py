@@ -42,7 +42,8 @@ class AccuracySpec(ShortRepr):
         default=None,
         min_length=1,
         example=["outline"],
-        doc="stages to measure: law, centrode, flank, outline, solid, contact, cam, path; all by default",
+        doc="stages to measure: law, centrode, flank, outline, solid, contact, cam, path; all by "
+        "default",
     )
     repeat: int = param(
         COUNT, default=5, ge=1, le=1000, doc="number of runs; the median time is reported"

@@ -183,9 +183,7 @@ def _stretches(result: MechanismResult) -> list[Tree] | None:
             "on": one.on,
             "shape": one.shape,
             "deviation_mm": Fact(fit.deviation, f"deviation of {one.on} from the {one.shape}"),
-            "length_mm": fit.length if isinstance(fit, LineFit) else None,
-            "radius_mm": None if isinstance(fit, LineFit) else fit.radius,
-            "center_mm": None if isinstance(fit, LineFit) else [fit.center.real, fit.center.imag],
+            **_fitted(fit),
         }
         for one, fit in zip(result.design.stretch, result.stretches, strict=True)
     ] or None
