@@ -89,6 +89,14 @@ def test_extremes_are_those_of_the_facts(path):
         lift = result.chart("lift").lines[0].y
         assert np.ptp(lift) == pytest.approx(facts["motion.total_lift"], rel=steps)
         return
+    if result.design.kind == "mechanism":
+        for one in result.outputs:
+            word = "direction" if one.angle else "motion"
+            lines = result.chart(word).lines
+            stroke = facts[f"outputs.{one.stem}.stroke_{one.unit[1]}"]
+            known = [line for line in lines if line.label == one.stem] or lines[:1]
+            assert np.ptp(known[0].y) == pytest.approx(stroke, rel=steps)
+        return
     if result.design.kind == "cam":
         lift = result.chart("lift").lines[0].y
         assert np.ptp(lift) == pytest.approx(facts["motion.total_lift"], rel=steps)

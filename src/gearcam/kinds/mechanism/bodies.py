@@ -191,7 +191,7 @@ def _guide_on(shown: _Shown, spec: GuideSpec, half: float) -> Iterator[tuple[com
     """Yield the guide on a member, and what joins it to the member's origin."""
     ends, way, at = _ends(shown, spec.name), cmath.exp(1j * spec.direction), complex(*spec.at)
     if ends is not None:
-        yield _longer(at + ends[0] * way, at + ends[1] * way, half)
+        yield _longer(at + min(0.0, ends[0]) * way, at + max(0.0, ends[1]) * way, half)
     if at:
         yield 0j, at
 
@@ -404,8 +404,9 @@ def _driven(shown: _Shown, number: int) -> Iterator[MovingBody]:
         pose = _motion(moved, drive.own(shown.q, not number)) @ body.pose[0]
         yield replace(
             body,
-            name=f"{drive.spec.name}.{body.name}" if moved is not None else body.name,
-            called=f"{body.called} of {drive.spec.name}" if moved is not None else body.called,
+            # bodies whose names differ behind an underscore share their colours
+            name=f"{drive.spec.name.replace('_', ' ')}.{body.name}" if moved else body.name,
+            called=f"{body.called} of {drive.spec.name}" if moved else body.called,
             features=tuple(_seen(drive, body.features)),
             pose=_placed(drive, pose),
             teeth=None,

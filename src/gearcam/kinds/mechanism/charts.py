@@ -1,24 +1,158 @@
-"""The charts of a mechanism, over the master's angle."""
+"""The charts of a mechanism, over the master's angle.
+
+Where drives are compared, every output has a line for each of them.
+"""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Final
+import math
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
 
-from gearcam.pictures.charts import Chart, Charts, Line
+import numpy as np
+
+from gearcam.linkages.transmission import ADMISSIBLE, pressure_angle
+from gearcam.numeric.piecewise import with_both_sides
+from gearcam.pictures.charts import Chart, Charts, Limit, Line, MarkedPlace, knot_marks
 
 if TYPE_CHECKING:
-    from gearcam.kinds.mechanism.build import MechanismResult
+    from collections.abc import Iterator
+
+    from gearcam.kinds.mechanism.build import MechanismResult, Output
+    from gearcam.numeric.arrays import Array
+
+_STEPS: Final = 720
+"""Steps of a turn of the master."""
+
+_MOST: Final = 9
+"""Most lines of a chart of several drives."""
+
+_STEADY: Final = 1e-9
+"""Range of a pressure angle that does not change, rad."""
+
+_DEG: Final = math.degrees(1.0)
+
+_WORDS: Final = ("place", "velocity", "acceleration", "jerk")
 
 
-def _place(result: MechanismResult) -> Chart:
-    table = result.motion()
-    driver, *_ = table
-    lines = tuple(
-        Line(label=one.stem, x=table[driver], y=table[f"{one.stem}_{one.unit[1]}"])
-        for one in result.outputs
+def _angles(result: MechanismResult) -> Array:
+    """Return the master's angles of a chart, rad, with both sides of knots."""
+    low, high = result.linkage.span
+    turns = max(1, round((high - low) / math.tau))
+    return with_both_sides(np.linspace(low, high, _STEPS * turns + 1), result.linkage.knots)
+
+
+def _marks(result: MechanismResult) -> tuple[MarkedPlace, ...]:
+    """Return knots, and where intervals that the design asks for begin and end."""
+    low, high = result.linkage.span
+    ends = [
+        MarkedPlace(label=f"last bit of {one.on}", value=_DEG * value)
+        for one, found in zip(result.design.interval, result.intervals, strict=True)
+        for value in (found.begin, found.end)
+        if low <= value <= high
+    ]
+    return (*knot_marks(_DEG * result.linkage.knots, _DEG * low, _DEG * high), *ends)
+
+
+def _label(result: MechanismResult) -> str:
+    return f"{result.driver[1]}, deg"
+
+
+def _drives(result: MechanismResult) -> dict[str, MechanismResult]:
+    """Return the mechanism behind each of its drives, by their names; without one if only one."""
+    compared = result.compared
+    first = result.design.drive[0]
+    nested = first.pair or first.cam
+    own = first.name if nested is None else nested.name
+    return {own: result, **compared} if compared else {"": result}
+
+
+def _chart(angle: bool, order: int, result: MechanismResult) -> Chart | None:
+    """Return the chart of a derivative of all outputs that are angles, or lengths."""
+    drives = _drives(result)
+    outputs = [one for one in result.outputs if one.angle == angle]
+    outputs = outputs[: max(1, _MOST // len(drives))]
+    if not outputs:
+        return None
+    lines = [line for name, other in drives.items() for line in _lines(other, name, outputs, order)]
+    names = ", ".join(dict.fromkeys(one.name.removesuffix(".angle") for one in outputs))
+    word = "direction" if angle and not order else _WORDS[order]
+    called = f"Angular {word}" if angle and order else word.capitalize()
+    return Chart(
+        title=f"{called} of {names}",
+        x=_label(result),
+        y=f"{called.lower()}, {_unit(angle, order)}",
+        lines=tuple(lines),
+        marks=_marks(result),
     )
-    return Chart(title="Motion", x=f"{result.driver[1]}, deg", y="place, mm", lines=lines)
 
 
-CHARTS: Final[Charts] = {"motion": _place}
+def _unit(angle: bool, order: int) -> str:
+    if not order:
+        return "deg" if angle else "mm"
+    return f"{'rad' if angle else 'mm'}/rad{'' if order == 1 else f'^{order}'}"
+
+
+def _lines(result: MechanismResult, name: str, outputs: list[Output], order: int) -> Iterator[Line]:
+    q = _angles(result)
+    for one in outputs:
+        values = result.track(one)(q, order).derivatives()[order]
+        scale = one.unit[0] if not order else 1.0
+        own = one.stem if len(outputs) > 1 or not name else ""
+        yield Line(
+            label=", ".join(word for word in (own, name) if word), x=_DEG * q, y=scale * values
+        )
+
+
+def _path(result: MechanismResult) -> Chart | None:
+    """Return the paths of points in the plane."""
+    names = [*result.paths]
+    if not names:
+        return None
+    q = _angles(result)
+    lines = []
+    for name in names:
+        points = np.broadcast_to(np.asarray(result.linkage.track(name, q, 0).c[0]), q.shape)
+        lines.append(Line(label=name, x=np.real(points) + 0.0, y=np.imag(points) + 0.0))
+    return Chart(title=f"Path of {', '.join(names)}", x="x, mm", y="y, mm", lines=tuple(lines))
+
+
+def _transmission(result: MechanismResult) -> Chart | None:
+    """Return the pressure angles of the dyads in which they change."""
+    q = _angles(result)
+    known = result.linkage.at(q, 0)
+    dyads = [one.dyad for one in result.transmissions if one.pressure_angle is not None]
+    dyads = [one for one in dyads if np.ptp(pressure_angle(known, one)) > _STEADY]
+    if not dyads:
+        return None
+    lines = [
+        Line(label=one.joint, x=_DEG * q, y=_DEG * pressure_angle(known, one) + np.zeros(q.shape))
+        for one in dyads
+    ]
+    given: Any = result.design.limits.get("pressure_angle")
+    types = {one.type for one in dyads} & {*ADMISSIBLE}
+    limits = {f"limit of {one}": ADMISSIBLE[one].pressure_angle[0] for one in sorted(types)}
+    limits = limits if given is None else {"limit": given}
+    return Chart(
+        title="Pressure angle: 90 deg less the transmission angle",
+        x=_label(result),
+        y="pressure angle, deg",
+        lines=tuple(lines),
+        limits=tuple(Limit(label=name, value=_DEG * one) for name, one in limits.items()),
+        marks=_marks(result),
+    )
+
+
+CHARTS: Final[Charts] = {
+    "motion": partial(_chart, False, 0),
+    "velocity": partial(_chart, False, 1),
+    "acceleration": partial(_chart, False, 2),
+    "direction": partial(_chart, True, 0),
+    "angular_velocity": partial(_chart, True, 1),
+    "angular_acceleration": partial(_chart, True, 2),
+    "pressure_angle": _transmission,
+    "path": _path,
+    "jerk": partial(_chart, False, 3),
+    "angular_jerk": partial(_chart, True, 3),
+}
 """Charts by name; the report leads with the first three."""

@@ -6,7 +6,6 @@ Layers begin with the name of the point whose PATH is on them, or with the wheel
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
@@ -172,9 +171,8 @@ def paths_drawing(result: MechanismResult) -> Drawing:
 
 def _layer(name: str, taken: set[str]) -> str:
     """Return the layer of a point's path; layers that differ in case only are one in DXF."""
-    plain = re.sub(r"[^\w-]", "_", name)
-    own, number = plain, 2
+    own, number = name, 2
     while own.casefold() in taken:
-        own, number = f"{plain}_{number}", number + 1
+        own, number = f"{name}_{number}", number + 1
     taken.add(own.casefold())
     return f"{own}_{TRACE}"
