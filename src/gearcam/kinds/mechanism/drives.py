@@ -119,8 +119,8 @@ def _of_pair(result: Any) -> dict[str, Moved]:
     pair = result.pair
     law, distance = pair.law, pair.center_distance
     driver = Moved(linear(-1.0))
-    if result.design.pair.type == "rack":
-        return {"wheel1": driver, "rack": Moved(displaced(law, -1.0), complex(distance), 1j)}
+    if pair.on_rack:  # its law is the travel over the size that the module gives
+        return {"wheel1": driver, "rack": Moved(displaced(law, -distance), 0j, 1j)}
     inside = result.design.pair.type == "internal"
     side, center = (-1.0, -distance) if inside else (1.0, distance)
     return {"wheel1": driver, "wheel2": Moved(displaced(law, side), complex(center))}

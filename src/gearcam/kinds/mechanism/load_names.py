@@ -79,25 +79,30 @@ def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
     found : Examined
         The valid tables.
     """
-    yield from names.problems(document, found)
+    faults = list(names.problems(document, found))
+    yield from faults
+    wrong = {one.path[:2] for one in (*found.faults, *faults)}
     parts = found.parts
     sorts, still = sorts_of(parts), unturned(parts)
     ways = {one.name for one in names.given(parts) if one.sort == WAY}
-    for number, load in enumerate(parts.get("load", ())):
-        if load.on in sorts:
-            yield from _of_load(load, sorts[load.on], ("load", number))
-        if load.on in ways and load.has_direction:
-            what = f"acts on {load.on}, which moves along its own way only"
-            allowed = "force_n of one value, or a joint or point"
-            yield Fault(("load", number, "on"), what, load.on, allowed)
-    for number, mass in enumerate(parts.get("mass", ())):
-        if mass.of in sorts:
-            yield from _of_mass(mass, sorts[mass.of], mass.of in still, ("mass", number))
-    for number, spring in enumerate(parts.get("spring", ())):
-        yield from _of_spring(spring, sorts, ("spring", number))
+    for title in ("load", "mass", "spring"):
+        for number, one in enumerate(parts.get(title, ())):
+            path = (title, number)
+            if path in wrong:
+                continue
+            if title == "load":
+                yield from _of_load(one, sorts[one.on], one.on in ways, path)
+            elif title == "mass":
+                yield from _of_mass(one, sorts[one.of], one.of in still, path)
+            else:
+                yield from _of_spring(one, sorts, path)
 
 
-def _of_load(load: MachineLoad, sort: str, path: Path) -> Iterator[Fault]:
+def _of_load(load: MachineLoad, sort: str, driven: bool, path: Path) -> Iterator[Fault]:
+    if driven and load.has_direction:
+        what = f"acts on {load.on}, which moves along its own way only"
+        allowed = "force_n of one value, or a joint or point"
+        yield Fault((*path, "on"), what, load.on, allowed)
     if sort in _TURNS:
         keys = (("force", "force_n"), ("direction", "direction_deg"), ("way", "at_mm"))
         for name, key in keys:
@@ -130,18 +135,14 @@ def _of_spring(spring: MachineSpring, sorts: Mapping[str, str], path: Path) -> I
         ends, key, wanted = spring.between, "between", "two joints, or two members"
     else:
         ends, key, wanted = (spring.on or "",), "on", "a slide, a member or a shaft"
-    if any(name not in sorts for name in ends):
-        return
     turns = {sorts[name] in _TURNS for name in ends}
     if len(turns) > 1:
         yield Fault((*path, key), "joins a joint to a member", list(ends), wanted)
     elif key == "on" and sorts[ends[0]] == JOINT:
         yield Fault((*path, key), "slides along no guide", ends[0], wanted)
     elif turns == {True} and spring.straight:
-        what = "is a straight spring, but turns about an angle there"
-        yield Fault(
-            (*path, key), what, list(ends), "stiffness_nm_rad and preload_nm, or two joints"
-        )
+        what = "has the keys of a straight spring about an angle"
+        yield Fault((*path, key), what, list(ends), "stiffness_nm_rad, or two joints")
     elif turns == {False} and spring.angular:
-        what, allowed = "has the keys of a spring about an angle", "stiffness_n_mm and preload_n"
-        yield Fault((*path, key), f"{what} along a line", list(ends), f"{allowed}, or two members")
+        what = "has the keys of a spring about an angle along a line"
+        yield Fault((*path, key), what, list(ends), "stiffness_n_mm, or two members")

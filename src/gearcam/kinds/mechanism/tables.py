@@ -155,11 +155,16 @@ class MachineDrive(ShortRepr):
     def shafts(self) -> tuple[str, ...]:
         """Names of what turns or slides, behind the name of the drive."""
         if self.pair is not None:
-            racked = getattr(getattr(self.pair, "pair", None), "type", "") == "rack"
-            return ("wheel1", "rack") if racked else ("wheel1", "wheel2")
+            return ("wheel1", "rack" if _moves_a_rack(self.pair) else "wheel2")
         if self.cam is not None:
             return "shaft", "follower"
         return ("shaft",) if self.even else ("slide",)
+
+
+def _moves_a_rack(pair: Design) -> bool:
+    from gearcam.laws.ratio.formula import RackLaw
+
+    return isinstance(getattr(pair, "law", None), RackLaw)
 
 
 def _formula_problems(text: str) -> Iterator[Breach]:

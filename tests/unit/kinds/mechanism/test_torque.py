@@ -1,0 +1,484 @@
+"""The study of torque: printed machines, identities, columns, facts, and what it refuses."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+from functools import cache
+from math import pi, radians
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import gearcam as gc
+from gearcam.base.errors import DesignError, InfeasibleError
+from helpers_linkages import agree, column, rows
+from helpers_machines import LEVER, MACHINES, PAIR, TAPPET
+
+MASSES = [
+    {"of": "crank", "mass_kg": 60, "at_mm": [50, 0], "inertia_kg_m2": 0.55},
+    {"of": "rod", "mass_kg": 45, "at_mm": [260, 0], "inertia_kg_m2": 2.8},
+    {"of": "ram", "mass_kg": 180},
+]
+FORGING = {"on": "slide", "force_n": -35435, "travel_mm": 4, "before": "outer"}
+DOWN = {"direction_deg": -90}
+
+
+def study(name: str, /, **changes: Any) -> Any:
+    return gc.build(gc.load(f"profiles/{name}.toml").with_(changes)).study("torque")
+
+
+def four_bar(**changes: Any) -> Any:
+    """A four-bar with a slide that its rocker pushes."""
+    tables = MACHINES["four-bar"]
+    slide = {
+        "type": "RRT", "from": "C", "to": "bed", "joint": "S", "members": ["link", "ram"],
+        "lengths_mm": [200, 0],
+    }  # fmt: skip
+    changes = {
+        "drive": [{"name": "motor", "even": True, "speed_rpm": 90}],
+        "guide": [{"name": "bed", "at_mm": [40, -30]}],
+        "dyad": [*tables["dyad"], slide],
+        "output": {"files": ["csv"]},
+        **changes,
+    }
+    return gc.build(gc.design({"kind": "mechanism", "name": "mine", **tables, **changes}))
+
+
+def torque(**changes: Any) -> Any:
+    return four_bar(**changes).study("torque")
+
+
+def moved(name: str, found: Any) -> tuple[Any, Any]:
+    """An output of a result and its derivative, where the study is."""
+    q = np.radians(found.columns["theta_deg"])
+    place, slope = found.result.linkage.real_track(name, q, 1).derivatives()
+    return place, slope
+
+
+def codes(found: Any) -> list[str]:
+    return [one.code for one in found.study_findings]
+
+
+class TestNailMachine:
+    def test_forging_over_the_last_bit_of_travel(self) -> None:
+        found = study("nail_machine_slide", load=[FORGING], compare=[])
+        agree(found.facts["torque.work_j"], 141.74, relative=1e-9)
+        agree(found.facts["torque.mean_power_w"], 141.74 * 3.0, relative=1e-9)
+        acts = found.columns["phi1_deg"][found.columns["torque_nm"] != 0.0]
+        # both sides of its ends are in the table; at a dead centre nothing is left to do
+        agree(acts[0], 179.27916844)
+        assert acts[-1] == pytest.approx(204.644514019, abs=0.01)
+
+    @pytest.mark.parametrize("pair", ["two", "three"])
+    def test_printed_moments(self, pair: str) -> None:
+        table = [row for row in rows("nail_forging") if row["phases"] == pair]
+        changes = {"drive[0].pair": f"profiles/nail_machine_{pair}_phase.toml"}
+        design = gc.load("profiles/nail_machine_slide.toml").with_(changes)
+        constant = {"on": "slide", "force_n": -35435}
+        found = gc.build(design.with_({"load": [constant], "compare": []})).study("torque").columns
+        places = column(table, "phi1_deg")
+        at = np.searchsorted(found["phi1_deg"], places - 1e-9)
+        np.testing.assert_allclose(found["phi1_deg"][at], places, atol=1e-9)
+        agree(found["wheel1_torque_nm"][at], column(table, "wheel1_nm"), relative=1e-10)
+        agree(found["wheel2_torque_nm"][at], column(table, "wheel2_nm"), relative=1e-10)
+
+    def test_masses(self) -> None:
+        load = {"on": "slide", "force_n": -35435, "from_deg": 150, "to_deg": 170}
+        found = study("nail_machine_slide", load=[load], mass=MASSES, gravity=DOWN, compare=[])
+        table = rows("nail_masses")
+        at = np.searchsorted(found.columns["phi1_deg"], column(table, "phi1_deg") - 1e-9)
+        agree(found.columns["torque_nm"][at], column(table, "wheel1_nm"), relative=1e-10)
+        agree(found.columns["wheel2_torque_nm"][at], column(table, "wheel2_nm"), relative=1e-10)
+        assert found.facts["torque.error"] < 1e-12
+        assert "gravity" in found.facts["torque.assumptions"]
+        assert "crank, rod, ram" in found.facts["torque.assumptions"]
+
+    def test_other_drives_stand_beside_it(self) -> None:
+        found = study("nail_machine_slide", load=[FORGING], mass=MASSES, gravity=DOWN)
+        assert codes(found) == ["drive-torque", "drive-torque"]
+        peak = max(np.abs(found.columns["torque_nm"]))
+        others = [
+            found.facts[f"torque.compared.{one}.torque_nm.max"] for one in found.result.compared
+        ]
+        assert all(other < peak for other in others)
+        assert "2.2 times" in found.study_findings[1].message
+        assert len(found.charts["torque"].lines) == 3
+
+    def test_a_pair_is_compared_with_an_even_shaft_unasked(self) -> None:
+        found = study("nail_machine_slide", mass=MASSES, compare=[])
+        assert codes(found) == ["drive-torque"]
+        assert "even shaft" in found.study_findings[0].message
+
+    def test_no_note_where_the_pair_needs_less(self) -> None:
+        """The forging force alone: the pair slows the slide there."""
+        assert codes(study("nail_machine_slide", load=[FORGING])) == []
+
+
+class TestFurnaceDoor:
+    def door(self, **changes: Any) -> Any:
+        mass = {"of": "door", "mass_kg": 1000, "at_mm": [867.650131097465, 0]}
+        return study("furnace_door_hinged", mass=[mass], gravity=DOWN, **changes)
+
+    def test_printed_moments(self) -> None:
+        # at so low a speed inertia counts for nothing
+        found = self.door(**{"drive[0].speed_rpm": 1e-3}).columns
+        table = rows("door_moments")
+        places = column(table, "phi1_deg")
+        for name, wheel in (("torque_nm", "wheel1_nm"), ("wheel2_torque_nm", "wheel2_nm")):
+            for place, value in zip(places, column(table, wheel), strict=True):
+                near = np.argsort(np.abs(found["phi1_deg"] - place))[:4]
+                line = np.polyfit(found["phi1_deg"][near] - place, found[name][near], 2)
+                assert line[-1] == pytest.approx(value, rel=2e-5)
+
+    def test_the_pair_costs_moment(self) -> None:
+        found = self.door()
+        assert codes(found) == ["drive-torque"]
+        assert re.search("2 times the 78[67]", found.study_findings[0].message)
+        assert "ratio 2" in found.study_findings[0].message
+
+
+class TestLoads:
+    """Each is the sum of force times derivative, here with the table's own forces."""
+
+    def test_force_on_a_slide(self) -> None:
+        found = torque(load=[{"on": "S", "force_n": -80}])
+        agree(found.columns["torque_nm"], 0.08 * moved("S.guide2", found)[1])
+
+    def test_force_on_a_point(self) -> None:
+        found = torque(load=[{"on": "P", "force_n": [30, -200]}])
+        slope = moved("P", found)[1]
+        agree(found.columns["torque_nm"], -1e-3 * (30.0 * slope.real - 200.0 * slope.imag))
+
+    def test_force_in_a_direction(self) -> None:
+        angled = torque(load=[{"on": "P", "force_n": 50, "direction_deg": 30}])
+        both = [50.0 * np.cos(radians(30.0)), 25.0]
+        vector = torque(load=[{"on": "P", "force_n": both}])
+        agree(angled.columns["torque_nm"], vector.columns["torque_nm"])
+
+    def test_torque_on_a_member_and_a_shaft(self) -> None:
+        found = torque(load=[{"on": "rocker", "torque_nm": -5}])
+        agree(found.columns["torque_nm"], 5.0 * moved("rocker.angle", found)[1])
+        shaft = torque(load=[{"on": "motor", "torque_nm": -5}])
+        agree(shaft.columns["torque_nm"], 5.0 * np.ones(len(shaft.columns["torque_nm"])))
+
+    def test_formulas(self) -> None:
+        found = torque(load=[{"on": "S", "formula": "2*x - 5"}])
+        place, slope = moved("S.guide2", found)
+        agree(found.columns["torque_nm"], -1e-3 * (2.0 * place - 5.0) * slope)
+        found = torque(load=[{"on": "S", "formula": "-3*v"}])
+        speed = 90.0 * pi / 30.0
+        agree(found.columns["torque_nm"], 3e-3 * speed * moved("S.guide2", found)[1] ** 2)
+        found = torque(load=[{"on": "rocker", "formula": "sin(q)"}])
+        slope = moved("rocker.angle", found)[1]
+        agree(found.columns["torque_nm"], -np.sin(np.radians(found.columns["theta_deg"])) * slope)
+
+    def test_rows_over_the_turn(self) -> None:
+        table = {"table": [0, -90, 30, 0], "at_deg": [0, 100, 100, 360]}
+        found = torque(load=[{"on": "S", **table}])
+        theta = found.columns["theta_deg"]
+        force = np.where(theta < 100.0, -0.9 * theta, 30.0 * (360.0 - theta) / 260.0)
+        agree(
+            found.columns["torque_nm"], -1e-3 * force * moved("S.guide2", found)[1], relative=1e-9
+        )
+
+    def test_rows_over_the_way(self) -> None:
+        found = torque(load=[{"on": "S", "table": [100, -40, -40], "at_mm": [200, 240, 250]}])
+        place, slope = moved("S.guide2", found)
+        assert place.min() < 200.0 < 240.0 < place.max()
+        force = np.interp(place, [200.0, 240.0], [100.0, -40.0])
+        agree(found.columns["torque_nm"], -1e-3 * force * slope)
+
+    def test_rows_have_both_sides_of_jumps_and_bends(self) -> None:
+        table = {"table": [0, -90, 30, 0], "at_deg": [0, 100.3, 100.3, 360]}
+        found = torque(load=[{"on": "S", **table}])
+        jump = np.flatnonzero(np.abs(found.columns["theta_deg"] - 100.3) < 1e-9)
+        sides = found.columns["torque_nm"][jump] / moved("S.guide2", found)[1][jump]
+        agree(sides, np.array([0.09, -0.03]), relative=1e-9)
+        bent = torque(load=[{"on": "S", "table": [0, 40, 0], "at_mm": [200, 220, 240]}])
+        place, _ = moved("S.guide2", bent)
+        for wanted in (200.0, 220.0, 240.0):
+            assert np.count_nonzero(np.abs(place - wanted) < 1e-9) >= 2
+
+    def test_rows_that_begin_before_the_zero(self) -> None:
+        found = torque(load=[{"on": "S", "table": [40, 0, 40], "at_deg": [-90, 0, 270]}])
+        theta = found.columns["theta_deg"]
+        force = np.where(theta < 270.0, 40.0 * theta / 270.0, 40.0 * (360.0 - theta) / 90.0)
+        slope = moved("S.guide2", found)[1]
+        agree(found.columns["torque_nm"], -1e-3 * force * slope, relative=1e-9)
+
+    def test_up_to_the_end_of_the_turn(self) -> None:
+        found = torque(load=[{"on": "S", "force_n": 80, "from_deg": 300, "to_deg": 360}])
+        first, last = found.columns["torque_nm"][[0, -1]]
+        assert first == 0.0
+        assert last == pytest.approx(-0.08 * moved("S.guide2", found)[1][0])
+
+    def test_a_slide_that_begins_its_dyad(self) -> None:
+        """The guide comes first: TRR."""
+        slide = {
+            "type": "TRR", "from": "bed", "to": "C", "joint": "S", "members": ["ram", "link"],
+            "lengths_mm": [0, 200],
+        }  # fmt: skip
+        dyads = [*MACHINES["four-bar"]["dyad"], slide]
+        found = torque(load=[{"on": "S", "force_n": -80}], dyad=dyads)
+        agree(found.columns["torque_nm"], 0.08 * moved("S.guide1", found)[1])
+
+    def test_against_the_motion(self) -> None:
+        found = torque(load=[{"on": "S", "force_n": 80, "against": True}])
+        place, slope = moved("S.guide2", found)
+        agree(found.columns["torque_nm"], 0.08 * np.abs(slope))
+        work = found.facts["torque.work_j"]
+        assert work == pytest.approx(2.0 * 0.08 * np.ptp(place), rel=1e-6)
+
+    def test_a_range_over_the_end_of_the_turn(self) -> None:
+        found = torque(load=[{"on": "S", "force_n": 80, "from_deg": 300, "to_deg": 400}])
+        theta = found.columns["theta_deg"]
+        acts = (theta >= 300.0) | (theta < 40.0)
+        inside = np.abs(theta - 40.0) > 1e-9
+        wanted = np.where(acts, -0.08 * moved("S.guide2", found)[1], 0.0)
+        agree(found.columns["torque_nm"][inside], wanted[inside])
+
+    def test_before_the_inner_dead_center(self) -> None:
+        load = {"on": "S", "force_n": 80, "travel_mm": 10, "before": "inner"}
+        found = torque(load=[load])
+        acts = found.columns["torque_nm"] != 0.0
+        place, slope = moved("S.guide2", found)
+        low, high = place.min(), place[acts].max()
+        assert (slope[acts] < 0.0).all()
+        assert high - low == pytest.approx(10.0, abs=1e-6)
+        assert found.facts["torque.work_j"] == pytest.approx(0.8, rel=1e-9)
+
+
+class TestSprings:
+    def test_between_joints(self) -> None:
+        spring = {"between": ["P", "D"], "stiffness_n_mm": 3, "preload_n": 20, "free_length_mm": 50}
+        found = torque(spring=[spring])
+        place, slope = moved("P", found)
+        way = place - 110.0
+        pull = 20.0 + 3.0 * (np.abs(way) - 50.0)
+        agree(found.columns["torque_nm"], 1e-3 * pull * np.real(way.conj() * slope) / np.abs(way))
+        assert found.facts["torque.error"] < 1e-12
+
+    def test_on_a_slide_from_the_zero(self) -> None:
+        found = torque(spring=[{"on": "S", "stiffness_n_mm": 2, "preload_n": 7}])
+        place, slope = moved("S.guide2", found)
+        agree(found.columns["torque_nm"], 1e-3 * (7.0 + 2.0 * (place - place[0])) * slope)
+
+    def test_between_members(self) -> None:
+        spring = {"between": ["coupler", "rocker"], "stiffness_nm_rad": 0.5, "preload_nm": 2}
+        found = torque(spring=[spring])
+        (first, rate), (second, slope) = moved("coupler.angle", found), moved("rocker.angle", found)
+        angle = second - first
+        agree(found.columns["torque_nm"], (2.0 + 0.5 * (angle - angle[0])) * (slope - rate), 1.0)
+
+    def test_dampers(self) -> None:
+        found = torque(spring=[{"on": "S", "damping_n_s_mm": 0.02}])
+        speed = 90.0 * pi / 30.0
+        agree(found.columns["torque_nm"], 2e-5 * speed * moved("S.guide2", found)[1] ** 2)
+        assert "torque.error" not in found.facts
+        swing = torque(spring=[{"between": ["ground", "rocker"], "damping_nm_s_rad": 0.3}])
+        agree(swing.columns["torque_nm"], 0.3 * speed * moved("rocker.angle", swing)[1] ** 2)
+
+
+class TestMasses:
+    def test_gravity_on_a_point_of_a_member(self) -> None:
+        mass = {"of": "coupler", "mass_kg": 3, "center": "P"}
+        found = torque(mass=[mass], gravity=DOWN, drive=[{"name": "motor", "even": True}])
+        agree(found.columns["torque_nm"], 3e-3 * 9.80665 * moved("P", found)[1].imag)
+        assert "at rest" in found.facts["torque.assumptions"]
+        mass = {"of": "coupler", "mass_kg": 3, "at_mm": [50, 35]}
+        same = torque(mass=[mass], gravity=DOWN, drive=[{"name": "motor", "even": True}])
+        agree(same.columns["torque_nm"], found.columns["torque_nm"])
+
+    def test_a_member_on_a_guide_has_its_mass_in_the_joint(self) -> None:
+        found = torque(mass=[{"of": "ram", "mass_kg": 3}])
+        speed = 90.0 * pi / 30.0
+        q = np.radians(found.columns["theta_deg"])
+        _, slope, second = found.result.linkage.track("S.guide2", q, 2).derivatives()
+        agree(found.columns["torque_nm"], 3e-6 * speed**2 * slope * second)
+
+    def test_inertia_of_a_wheel(self) -> None:
+        drive = {"name": "pair", "pair": PAIR, "speed_rpm": 100}
+        found = behind_a_pair(drive=[drive], mass=[{"of": "pair.wheel2", "inertia_kg_m2": 0.5}])
+        q = np.radians(found.columns["phi1_deg"])
+        _, ratio, slope = found.result.linkage.track("pair.wheel2", q, 2).derivatives()
+        agree(found.columns["wheel2_torque_nm"], 0.5 * (100.0 * pi / 30.0) ** 2 * slope)
+        agree(found.columns["torque_nm"], found.columns["wheel2_torque_nm"] * ratio)
+
+
+def behind_a_pair(**changes: Any) -> Any:
+    tables = {"kind": "mechanism", "name": "mine", **MACHINES["slide behind a pair"], **changes}
+    tables["output"] = {"files": ["csv"]}
+    return gc.build(gc.design(tables)).study("torque")
+
+
+CAMS = {
+    "lever": (LEVER, {}),
+    "lever, mirrored": (LEVER, {"mirror": True, "turn_deg": 25}),
+    "tappet": (TAPPET, {"turn_deg": -40}),
+    "tappet, mirrored": (TAPPET, {"mirror": True}),
+}
+
+
+@cache
+def behind_a_cam(name: str, rotation: str = "ccw") -> Any:
+    file, placed = CAMS[name]
+    cam = gc.load(file).with_({"cam.rotation": rotation})
+    tables: dict[str, Any] = {
+        "drive": [{"name": "cam", "cam": cam, "speed_rpm": 60, **placed}],
+    }
+    arm = {"name": "arm", "on": "cam.follower", "joint": "B"}
+    if "lever" in name:
+        tables["crank"] = [{**arm, "length_mm": 80, "arm_angle_deg": 60}]
+    else:
+        tables["slide"] = [arm]
+    return gc.build(
+        gc.design(
+            {
+                "kind": "mechanism",
+                "name": "mine",
+                **tables,
+                "load": [{"on": "B", "force_n": [-30, -70]}],
+                "mass": [{"of": "arm", "mass_kg": 2, "center": "B"}],
+                "output": {"files": ["csv"]},
+            }
+        )
+    ).study("torque")
+
+
+@pytest.mark.parametrize("rotation", ["ccw", "cw"])
+@pytest.mark.parametrize("name", CAMS)
+def test_the_follower_exerts_in_its_lift(name: str, rotation: str) -> None:
+    found = behind_a_cam(name, rotation)
+    effort = "follower_torque_nm" if "lever" in name else "follower_force_n"
+    per = 1.0 if "lever" in name else 1e-3
+    theta = np.radians(found.columns["theta_deg"])
+    program = found.result.drives[0].result.program
+    # a knot's own row has the values after it, the last row those before the end
+    slope = program.derivatives(theta, 1)[1]
+    agree(found.columns["torque_nm"], per * found.columns[effort] * slope, relative=1e-8)
+    assert np.abs(found.columns[effort][slope == 0.0]).max() > 1.0
+
+
+@pytest.mark.parametrize("name", ["lever", "tappet"])
+def test_a_cam_takes_the_load_of_its_mechanism(name: str) -> None:
+    """Rows of torque.csv as the load of the cam's own design: the same torque without friction."""
+    found = behind_a_cam(name)
+    effort = "follower_torque_nm" if name == "lever" else "follower_force_n"
+    theta = np.minimum(found.columns["theta_deg"], 360.0)
+    theta[-1] = 360.0
+    load = {"table": found.columns[effort].tolist(), "at_deg": theta.tolist()}
+    cam = gc.load(CAMS[name][0]).with_({"load": [load], "friction": {}, "mass": [], "spring": []})
+    own = gc.build(cam).study("forces").columns
+    wanted = np.interp(own["theta_deg"], theta, found.columns["torque_nm"])
+    held = np.isfinite(own["torque_nm"]) & (own["normal_n"] > 0.0)
+    assert held.sum() > 300
+    scale = np.abs(wanted).max()
+    np.testing.assert_allclose(own["torque_nm"][held], wanted[held], atol=2e-3 * scale)
+
+
+def test_each_of_two_cams_has_its_share() -> None:
+    load = [{"on": "table", "force_n": [12, -7]}]
+    found = study("two_cam_table", load=load)
+    theta = np.radians(found.columns["theta_deg"])
+    total = 0.0
+    for drive in found.result.drives:
+        slope = drive.result.program.derivatives(theta, 1)[1]
+        total = total + 1e-3 * found.columns[f"{drive.spec.name}_follower_force_n"] * slope
+    agree(found.columns["torque_nm"], total, relative=1e-8)
+
+
+def test_a_rack() -> None:
+    pair = gc.load("profiles/feeder.toml")
+    tables = {
+        "drive": [{"name": "pair", "pair": pair, "speed_rpm": 10, "turn_deg": 30}],
+        "slide": [{"name": "table", "on": "pair.rack", "joint": "T"}],
+        "load": [{"on": "table", "force_n": 250}],
+        "output": {"files": ["csv"]},
+    }
+    made = gc.build(gc.design({"kind": "mechanism", "name": "mine", **tables}))
+    found = made.study("torque").columns
+    # the rack goes back along its y axis, the load pulls forward
+    agree(found["rack_force_n"], 250.0 * np.ones(len(found["phi1_deg"])))
+    agree(found["torque_nm"], found["wheel1_torque_nm"])
+    travel = made.drives[0].result.facts["pair.travel_per_turn_mm"]
+    agree(made.study("torque").facts["torque.work_j"], 0.25 * travel)
+
+
+def test_it_is_a_part_of_a_build(tmp_path: Path) -> None:
+    result = four_bar(
+        load=[{"on": "S", "force_n": -80}], output={"files": ["csv"], "studies": ["torque"]}
+    )
+    result.write(tmp_path)
+    (table,) = tmp_path.rglob("torque.csv")
+    with table.open() as file:
+        read = list(csv.DictReader(file))
+    columns = result.study("torque").columns
+    assert list(read[0]) == list(columns) == ["theta_deg", "torque_nm", "power_w"]
+    assert float(read[40]["torque_nm"]) == pytest.approx(columns["torque_nm"][40], rel=1e-14)
+    (summary,) = tmp_path.rglob("summary.json")
+    assert json.loads(summary.read_text())["torque"]["work_j"] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_parts_add_up() -> None:
+    found = torque(
+        load=[{"on": "S", "force_n": -80}],
+        mass=[{"of": "ram", "mass_kg": 3}],
+        gravity={"direction_deg": 0},
+        spring=[{"on": "S", "stiffness_n_mm": 2}],
+    )
+    parts = [found.columns[f"{one}_nm"] for one in ("loads", "inertia", "gravity", "springs")]
+    agree(sum(parts), found.columns["torque_nm"])
+    assert [line.label for line in found.charts["torque_parts"].lines] == [
+        "loads", "inertia", "gravity", "springs",
+    ]  # fmt: skip
+
+
+def test_extremes_are_those_of_a_dense_table() -> None:
+    settings = {"steps": 100000}
+    found = torque(load=[{"on": "P", "force_n": [30, -200]}], torque=settings)
+    values = found.columns["torque_nm"]
+    assert found.facts["torque.torque_nm.max"] == pytest.approx(values.max(), rel=1e-8)
+    assert found.facts["torque.torque_nm.min"] == pytest.approx(values.min(), rel=1e-8)
+    assert found.facts["torque.mean_nm"] == pytest.approx(0.0, abs=1e-9)
+
+
+REFUSED = {
+    "nothing acts": ({}, "nothing acts"),
+    "a mass at rest": ({"mass": [{"of": "ram", "mass_kg": 3}]}, "speed_rpm.*inertia"),
+    "a damper at rest": ({"spring": [{"on": "S", "damping_n_s_mm": 1}]}, "speed_rpm.*damper"),
+    "a velocity at rest": ({"load": [{"on": "S", "formula": "v"}]}, "speed_rpm.*velocity"),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_without_what_it_needs(case: str) -> None:
+    changes, words = REFUSED[case]
+    with pytest.raises(DesignError) as caught:
+        torque(drive=[{"name": "motor", "even": True}], **changes)
+    assert re.search(words, str(caught.value).replace("\n", " "))
+
+
+def test_more_travel_than_there_is() -> None:
+    load = {"on": "S", "force_n": 80, "travel_mm": 500, "before": "inner"}
+    with pytest.raises(InfeasibleError, match=r"not so much travel") as caught:
+        torque(load=[load])
+    assert caught.value.where == "load[0].travel_mm"
+    assert caught.value.limit is not None
+    assert 20.0 < caught.value.limit < 200.0
+
+
+def test_a_table_that_ends_too_early() -> None:
+    load = {"on": "S", "table": [0, 1], "at_deg": [0, 300]}
+    with pytest.raises(InfeasibleError, match=r"does not reach") as caught:
+        torque(load=[load])
+    assert caught.value.where == "load[0].at_deg[1]"
+    assert caught.value.limit == pytest.approx(360.0)
+
+
+def test_a_load_that_is_not_finite() -> None:
+    with pytest.raises(InfeasibleError, match=r"not finite at theta = "):
+        torque(load=[{"on": "S", "formula": "log(x - 200)"}])
