@@ -83,7 +83,7 @@ KIND: Final = Kind(
     example={
         "drive": [{"name": "motor", "even": True, "speed_rpm": 60}],
         "joint": [{"name": "D", "at_mm": [110, 0]}],
-        "crank": [{"name": "crank", "on": "motor", "joint": "B", "length_mm": 40}],
+        "crank": [{"name": "crank", "on": "motor", "joint": "B", "length_mm": 30}],
         "dyad": [
             {
                 "type": "RRR",
@@ -91,7 +91,7 @@ KIND: Final = Kind(
                 "to": "D",
                 "joint": "C",
                 "members": ["coupler", "rocker"],
-                "lengths_mm": [120, 90],
+                "lengths_mm": [100, 90],
             }
         ],
         "point": [{"name": "P", "on": "coupler", "at_mm": [49, 34]}],

@@ -519,7 +519,10 @@ class StretchSpec(ShortRepr):
     start: float = _direction(doc="the master's angle where it begins", word="from", example=100)
     end: float = _direction(doc="the master's angle where it ends", word="to", example=260)
     shape: str = param(
-        TEXT, choices=("line", "circle"), doc="what is fitted to it, by the least deviation"
+        TEXT,
+        choices=("line", "circle"),
+        example="line",
+        doc="what is fitted to it, by the least deviation",
     )
 
     def problems(self) -> Iterator[Breach]:
