@@ -652,6 +652,8 @@ MACHINE_NUMBERS: dict[str, dict[str, Number]] = {
         "outputs.door.stroke_deg": (45.0, 1e-9),
         # the hook moves on an arc of 45 deg from straight below the hinge
         "outputs.hook_y.stroke_mm": (1735.30026219493 * (1 - math.cos(math.pi / 4)), 1e-9),
+        # the centre of the door is half way to the hook
+        "torque.works_j.gravity": (9.80665 * 867.65013109746 * (1 - math.cos(math.pi / 4)), 1e-8),
     },
     "geared_five_bar": {
         "outputs.B_y.least_mm": (_five_bar()[0], 1e-7),

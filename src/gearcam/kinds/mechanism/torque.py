@@ -41,7 +41,7 @@ _NOISE: Final = 1e-9
 
 _DEG: Final = math.degrees(1.0)
 
-EVEN: Final = "even shaft"
+EVEN: Final = "even_shaft"
 """What a mechanism behind a pair is compared with if the design does not say."""
 
 

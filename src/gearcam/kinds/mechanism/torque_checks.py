@@ -52,7 +52,7 @@ def drive_torque(effort: DriverEffort, limit: float) -> Iterator[Remark]:
             times = formatted(effort.peak / other, 3) if other > 0.0 else "many"
             message = (
                 f"The driver exerts up to {formatted(effort.peak, 5)} N m, {times} times the "
-                f"{formatted(other, 5)} N m of the same mechanism with the drive {name!r}."
+                f"{formatted(other, 5)} N m of the same mechanism behind {name!r}."
                 f"{effort.gain}"
             )
             yield Remark(message, effort.place, effort.peak)

@@ -111,7 +111,7 @@ class TestNailMachine:
     def test_a_pair_is_compared_with_an_even_shaft_unasked(self) -> None:
         found = study("nail_machine_slide", mass=MASSES, compare=[])
         assert codes(found) == ["drive-torque"]
-        assert "even shaft" in found.study_findings[0].message
+        assert "even_shaft" in found.study_findings[0].message
 
     def test_no_note_where_the_pair_needs_less(self) -> None:
         """The forging force alone: the pair slows the slide there."""
