@@ -9,7 +9,7 @@ import numpy as np
 from gearcam.linkages.dyads import Lengths
 from gearcam.linkages.elements import Crank, Dyad, GivenMotion, GuideLine, Law, MemberPoint
 from gearcam.linkages.linkage import Linkage, in_order
-from gearcam.linkages.measures import TrackMeasures, continued
+from gearcam.linkages.measures import TrackMeasures
 from gearcam.numeric import jets
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet
@@ -92,9 +92,8 @@ def quick_return() -> Linkage:
 
 def measures(linkage: Linkage, name: str) -> TrackMeasures:
     """Return the measures of an output of a linkage."""
-    track = partial(linkage.track, name)
-    law = continued(track, linkage.knots) if name.endswith(".angle") else track
-    return TrackMeasures(law, linkage.knots, linkage.closed)
+    track = partial(linkage.real_track, name)
+    return TrackMeasures(track, linkage.knots, linkage.closed)
 
 
 def six_bar_with_dwell() -> Linkage:

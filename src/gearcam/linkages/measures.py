@@ -1,13 +1,12 @@
 """Measures of one quantity over the driver: extremes of all orders, dead centres, stroke, ratio.
 
 All are roots of derivatives, polished to rounding, and one-sided values at knots. The quantity is a
-function of the driver's angle, as `gearcam.linkages.linkage.Linkage.track` gives it; an angle of a
-member goes through `continued` first, which removes its jumps by whole turns.
+function of the driver's angle, as `gearcam.linkages.linkage.Linkage.real_track` gives it: an angle of a
+member without jumps by whole turns.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
@@ -19,7 +18,7 @@ from gearcam.base.display import ShortRepr
 from gearcam.linkages.elements import Law
 from gearcam.numeric.arrays import Array, Ints
 from gearcam.numeric.jets import Jet
-from gearcam.numeric.piecewise import extremes_of_each, places_between
+from gearcam.numeric.piecewise import extremes_of_each
 from gearcam.numeric.roots import bracketed_root
 
 HIGHEST: Final = 3
@@ -169,36 +168,6 @@ def _polished(
         tolerance = _FOUND * (grid[-1] - grid[0])
         found[own] = bracketed_root(lambda q: slope(q, own), low[own], high[own], tolerance, known)
     return found
-
-
-def continued(track: Law, knots: Array) -> Law:
-    """Return an angle that does not jump by whole turns.
-
-    Parameters
-    ----------
-    track : callable
-        ``track(q, order) -> Jet``: an angle, rad, known but for whole turns.
-    knots : (k,) array, rad
-        The driver's angles from the first to the last one; outside the angle is the nearest to
-        that at the end. Between neighbouring points of `places_between` it may turn by less than
-        half a turn.
-
-    Returns
-    -------
-    callable
-        The same, at the first knot within half a turn.
-    """
-    x = places_between(knots).ravel()
-    table = np.unwrap(np.asarray(track(x, 0).c[0]))
-
-    def unwrapped(q: Array, order: int) -> Jet:
-        found = track(q, order)
-        right = np.clip(np.searchsorted(x, q), 1, x.size - 1)
-        nearest = np.where(q - x[right - 1] < x[right] - q, right - 1, right)
-        turns = np.round((table[nearest] - np.asarray(found.c[0])) / math.tau)
-        return Jet([found.c[0] + turns * math.tau, *found.c[1:]])
-
-    return unwrapped
 
 
 @dataclass(frozen=True, eq=False)

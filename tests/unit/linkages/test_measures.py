@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 import pytest
 
-from gearcam.linkages.elements import Law
-from gearcam.linkages.measures import DeadCenter, TrackMeasures, continued, extremes_of
+from gearcam.linkages.elements import Crank, GivenMotion, MemberPoint
+from gearcam.linkages.linkage import Linkage, in_order
+from gearcam.linkages.measures import DeadCenter, TrackMeasures, extremes_of
 from gearcam.numeric import jets
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet
@@ -180,21 +183,18 @@ def test_what_stands_still_has_no_dead_center() -> None:
     assert TrackMeasures(rest, TURN).dead_centers == ()
 
 
-def test_an_angle_goes_on_past_half_a_turn() -> None:
-    def turned(speed: float) -> Law:
-        def angle(q: Array, order: int) -> Jet:
-            x = Jet.variable(q, order) * speed + 3.0
-            return Jet([np.angle(np.exp(1j * np.asarray(x.c[0]))), *x.c[1:]])
+@pytest.mark.parametrize("speed", [1.0, -5.0])
+def test_an_angle_goes_on_past_half_a_turn(speed: float) -> None:
+    def turned(q: Array, order: int) -> Jet:
+        return Jet.variable(q, order) * speed + 3.0
 
-        return angle
-
-    q = np.linspace(0.0, 2.0 * np.pi, 1001)
-    for speed in (1.0, -5.0):
-        found = continued(turned(speed), TURN)(q, 1)
-        assert found.c[0] == pytest.approx(3.0 + speed * q, abs=1e-14)
-        assert TrackMeasures(continued(turned(speed), TURN), TURN).rise == pytest.approx(
-            2.0 * np.pi * speed
-        )
+    parts = [GivenMotion("q", turned), MemberPoint("O", 0j), Crank("crank", "q", "O", "A", 1.0)]
+    linkage = Linkage(in_order(parts), TURN)
+    track = partial(linkage.real_track, "crank.angle")
+    q = np.linspace(-4.0 * np.pi, 6.0 * np.pi, 1001)
+    assert track(q, 1).c[0] == pytest.approx(3.0 + speed * q, abs=1e-12)
+    assert track(np.array([7.0]), 0).c[0] == pytest.approx(3.0 + speed * 7.0, abs=1e-12)
+    assert TrackMeasures(track, TURN).rise == pytest.approx(2.0 * np.pi * speed)
 
 
 @pytest.mark.parametrize("shift", [0.0, 1.0, np.pi / 3.0])

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 from gearcam.base.facts import Fact, Facts
 from gearcam.base.numerals import formatted
 from gearcam.kinds.mechanism.build import RATES
+from gearcam.linkages.chain import HoistChain, roots_in
 from gearcam.linkages.grashof import FourBarLengths, grashof
 
 if TYPE_CHECKING:
@@ -81,6 +82,16 @@ def _machine(result: MechanismResult) -> Tree:
         }
         or None,
         "four_bars": _four_bars(result) or None,
+        "chains": {
+            one.name: {
+                "positions": Fact(
+                    roots_in(one, 0.0), f"positions of {one.name} within its range", unit=""
+                )
+            }
+            for one in linkage.elements
+            if isinstance(one, HoistChain)
+        }
+        or None,
     }
 
 
