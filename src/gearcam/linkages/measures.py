@@ -1,7 +1,7 @@
 """Measures of one quantity over the driver: extremes of all orders, dead centres, stroke, ratio.
 
 All are roots of derivatives, polished to rounding, and one-sided values at knots. The quantity is a
-function of the driver's angle, as `gearcam.linkages.linkage.Linkage.real_track` gives it: an angle of a
+function of the driver's angle, as `Linkage.real_track` gives it: an angle of a
 member without jumps by whole turns.
 """
 
