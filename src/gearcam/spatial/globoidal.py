@@ -174,8 +174,18 @@ class GloboidalCam(ShortRepr):
             Points in the frame of the cam.
         """
         depth = self.depth(points)
-        between = (depth >= self.top) & (depth <= self.floor)
-        return between & (np.abs(points[..., 2]) <= self.half_length)
+        return (depth >= self.top) & (depth <= self.floor) & self.between_faces(points)
+
+    def between_faces(self, points: Array) -> Mask:
+        """Return which points are between the faces, on the cam's side of the turret's axis.
+
+        Parameters
+        ----------
+        points : (..., 3) array, mm
+            Points in the frame of the cam.
+        """
+        near = np.hypot(points[..., 0], points[..., 1]) < self.distance
+        return near & (np.abs(points[..., 2]) <= self.half_length)
 
     @cached_property
     def span(self) -> tuple[float, float]:
@@ -277,7 +287,9 @@ class GloboidalCam(ShortRepr):
             for side in WORDS:
                 every = (theta[:, None] + turns).ravel()
                 points = self.contact(every, np.tile(x, (len(every), 1)), side).points
-                far = which(np.abs(points[..., 2]), axis=1).reshape(len(theta), -1)
+                far = which(np.abs(points[..., 2]), axis=1)
+                far[np.abs(self.angle(every)) > 0.5 * math.pi] = math.inf  # behind the turret
+                far = far.reshape(len(theta), -1)
                 worst = np.maximum(worst, far.min(axis=1))
             return -worst[:, None]
 

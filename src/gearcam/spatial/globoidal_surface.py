@@ -29,6 +29,9 @@ _BEYOND: Final = 0.05
 _SAG: Final = 0.25
 """Largest chord error of sheets from wall to wall, over how far the rib goes on there."""
 
+_SECTORS: Final = 45
+"""Sectors of a turn of which arcs about the turret's axis have a whole number."""
+
 _LONGER: Final = 0.1
 """How far the core goes on beyond the faces, over what the floor exceeds half the length by."""
 
@@ -196,8 +199,9 @@ def turret_surface(cam: GloboidalCam, hub: float, steps: int) -> Surface:
 def _arc(cam: GloboidalCam, radius: float, half: float, steps: int) -> list[tuple[float, float]]:
     """Return an arc about the turret's axis from the upper to the lower height, as corners."""
     last = math.asin(half / radius)
-    count = 1 + math.ceil(2.0 * last * steps / TURN)
-    angle = np.linspace(last, -last, count)
+    # in proportion to the steps, so that the error of the volume falls with their square
+    parts = math.ceil(2.0 * last * _SECTORS / TURN) * math.ceil(steps / _SECTORS)
+    angle = np.linspace(last, -last, 1 + parts)
     return [(cam.distance - radius * math.cos(a), radius * math.sin(a)) for a in angle.tolist()]
 
 

@@ -37,7 +37,7 @@ def _tables(result: GloboidalCamResult, _: Any) -> Files:
     for k, wall in enumerate(cam.walls):
         over = theta + turn * k
         grid = wall.grid(over, count)
-        on = np.abs(grid.points[..., 2]) <= cam.half_length
+        on = cam.between_faces(grid.points)
         turns = np.floor(over / turn)
         points, normals = grid.points[on].T, grid.normals[on].T
         columns = {

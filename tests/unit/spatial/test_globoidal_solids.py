@@ -1,0 +1,204 @@
+"""The solid of a globoidal cam: closed, its volume, and rollers that run through it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import manifold3d
+import numpy as np
+import pytest
+
+import gearcam as gc
+from gearcam.base.errors import InfeasibleError
+from gearcam.numeric.arrays import Array
+from gearcam.parts.solids import Mesh
+from gearcam.spatial.globoidal import GloboidalCam
+from gearcam.spatial.globoidal_surface import (
+    blank_surface,
+    chord_error,
+    core_surface,
+    outer_radius,
+    rib_surface,
+    turret_surface,
+)
+from gearcam.spatial.surface import Surface, revolved
+from helpers_globoidal import DESIGN, indexer
+from witness.roller_of_turret import Wheel
+
+STEPS, PLACES = 1440, 25
+
+
+@cache
+def built(steps: int, places: int, **more: Any) -> Any:
+    found = gc.build(DESIGN.with_({"cam.roller_clearance_mm": 0, "cam.length_mm": 46} | more))
+    return found.mesh_of(steps, places)
+
+
+def solid(made: Mesh | Surface) -> Any:
+    found = manifold3d.Manifold(manifold3d.Mesh64(made.vertices, made.triangles.astype(np.uint64)))
+    assert found.status() == manifold3d.Error.NoError
+    return found
+
+
+def roller(cam: GloboidalCam, angle: float, wider: float) -> Any:
+    """The part of a roller outside the turret's body, at a cam angle, in the frame of the cam."""
+    theta, radius = math.radians(angle), cam.roller.radius + wider
+    ends = 44.0, cam.reach
+    corners = [(0.0, ends[0]), (0.0, ends[1]), (radius, ends[1]), (radius, ends[0])]
+    made = revolved(corners, 1440)
+    psi, c, s = float(cam.angle(np.array([theta]))[0]), math.cos(theta), math.sin(theta)
+    x, y, z = made.vertices.T
+    fixed = (
+        cam.distance - z * math.cos(psi) + x * math.sin(psi),
+        y,
+        z * math.sin(psi) + x * math.cos(psi),
+    )
+    turned = [c * fixed[0] + s * fixed[1], c * fixed[1] - s * fixed[0], fixed[2]]
+    moved = Mesh(vertices=np.stack(turned, axis=1), triangles=made.triangles)
+    return solid(moved if moved.volume > 0.0 else replace(moved, triangles=made.triangles[:, ::-1]))
+
+
+ANGLES = (-30.1, 13.37, 60.13, 71.2, 95.5, 110.01, 200.3)
+"""Of dwells and of the index, in degrees; none is one of the solid's."""
+
+
+@pytest.mark.parametrize("angle", ANGLES)
+def test_rollers_fit_between_the_ribs(angle: float) -> None:
+    """A roller that is smaller by the chord error is clear; with 5 um more it is not."""
+    cam = indexer()
+    error = chord_error(cam, STEPS, PLACES)
+    assert error < 1.5e-3
+    made = solid(built(STEPS, PLACES))
+    assert (made ^ roller(cam, angle, -error - 2e-5)).volume() == 0.0
+    assert (made ^ roller(cam, angle, error + 1e-4)).volume() > 1e-3
+    assert (made ^ roller(cam, angle, 5e-3)).volume() > 0.02
+
+
+@pytest.mark.parametrize("angle", ANGLES)
+def test_a_clearance_is_half_to_each_side(angle: float) -> None:
+    cam = indexer(clearance=0.04)
+    error = chord_error(cam, 720, 13)
+    made = solid(built(720, 13, **{"cam.roller_clearance_mm": 0.04}))
+    assert (made ^ roller(cam, angle, 0.02 - error - 2e-5)).volume() == 0.0
+    assert (made ^ roller(cam, angle, 0.02 + error + 1e-4)).volume() > 1e-4
+
+
+@pytest.mark.parametrize("rotation", ["ccw", "cw"])
+@pytest.mark.parametrize("bore", [0.0, 30.0])
+def test_solids_are_closed(rotation: str, bore: float) -> None:
+    more = {"cam.rotation": rotation, "blank.bore_diameter_mm": bore}
+    made = built(180, 5, **more)
+    assert made.watertight
+    assert solid(made).volume() == pytest.approx(made.volume, rel=1e-12)
+    assert solid(made).genus() == (1 if bore else 0)
+    assert len(solid(made).decompose()) == 1
+    other = built(180, 5, **more | {"cam.rotation": "ccw"})
+    assert made.volume == pytest.approx(other.volume, rel=1e-12)
+
+
+def test_the_volume_is_of_second_order() -> None:
+    volumes = [built(*size).volume for size in ((360, 7), (720, 13), (1440, 25))]
+    second, third = -np.diff(volumes)
+    assert second / third == pytest.approx(4.0, abs=0.5)
+    result = gc.build(
+        DESIGN.with_(
+            {"cam.roller_clearance_mm": 0, "cam.length_mm": 46, "output.wall_step_deg": 1,
+             "output.wall_points": 7}
+        )
+    )  # fmt: skip
+    volume, error = result.volume
+    truth = volumes[-1] - third / 3.0
+    assert abs(volume - truth) < 1.5 * error < 20.0
+
+
+def test_core_and_blank_have_the_volumes_of_pappus() -> None:
+    """Of a rectangle less a segment of a circle, by its centroid; the error is of second order."""
+    cam = indexer()
+    for radius, half, made in (
+        (cam.top, 23.0, blank_surface(cam, 10.0, 2880)),
+        (cam.floor, 23.0 + 0.1 * (cam.floor - 23.0), core_surface(cam, 2880)),
+    ):
+        # pi times the integral of (C - sqrt(radius^2 - z^2))^2 over z
+        root = math.sqrt(radius**2 - half**2)
+        area = half * root + radius**2 * math.asin(half / radius)
+        square = 2.0 * (radius**2 * half - half**3 / 3.0)
+        expected = math.pi * (2.0 * half * 100.0**2 - 200.0 * area + square)
+        expected -= math.pi * 200.0 * half if radius == cam.top else 0.0
+        assert solid(made).volume() == pytest.approx(expected, rel=1e-5)
+
+
+def winding(made: Mesh, points: Array) -> Array:
+    """How often the surface winds around points: 1 in the metal, 0 outside (solid angles)."""
+    corners = made.vertices[made.triangles]
+    found = []
+    for point in points:
+        a, b, c = np.moveaxis(corners - point, 1, 0)
+        la, lb, lc = (np.linalg.norm(one, axis=1) for one in (a, b, c))
+        top = (a * np.cross(b, c)).sum(axis=1)
+        low = la * lb * lc + (a * b).sum(1) * lc + (b * c).sum(1) * la + (c * a).sum(1) * lb
+        found.append(2.0 * np.arctan2(top, low).sum() / (4.0 * math.pi))
+    return np.array(found)
+
+
+def test_metal_is_where_no_roller_comes() -> None:
+    """At random points of the ring of the ribs, by search."""
+    cam, made = indexer(), built(360, 7)
+    wheel = Wheel(cam.distance, cam.places[1], lambda at: float(cam.angle(np.array([at]))[0]))
+    random = np.random.default_rng(7)
+    chi = math.asin(23.0 / 44.5)
+    depth, angle = random.uniform(44.6, 58.0, 120), random.uniform(-chi, chi, 120)
+    azimuth, radius = random.uniform(0.0, 2.0 * math.pi, 120), 100.0 - depth * np.cos(angle)
+    points = np.stack(
+        [radius * np.cos(azimuth), radius * np.sin(azimuth), depth * np.sin(angle)], axis=1
+    )
+    points = points[np.abs(points[:, 2]) < 22.9]
+    gaps = np.array([wheel.nearest(tuple(one), *cam.span) for one in points.tolist()]) - 8.0
+    clear = np.abs(gaps) > 0.05
+    metal = winding(made, points[clear])
+    assert metal == pytest.approx((gaps[clear] > 0.0).astype(float), abs=1e-6)
+    assert 0.3 < metal.mean() < 0.9
+    assert clear.sum() > 80
+
+
+def test_the_rib_goes_beyond_all_that_bounds_it() -> None:
+    cam = indexer()
+    made = rib_surface(cam, 360, 7)
+    assert Mesh(vertices=made.vertices, triangles=made.triangles).watertight
+    depth = cam.depth(made.vertices)
+    assert depth.min() == pytest.approx(cam.top - 0.4)
+    assert depth.max() == pytest.approx(cam.floor + 0.4)
+    # what is cut off at both ends is beyond the faces
+    assert outer_radius(cam) == pytest.approx(100.0 - math.sqrt(44.5**2 - 23.0**2))
+
+
+def test_the_turret_has_a_roller_for_each_stop() -> None:
+    made = turret_surface(indexer(), 44.0, 96)
+    bodies = solid(made).decompose()
+    assert len(bodies) == 9
+    assert Mesh(vertices=made.vertices, triangles=made.triangles).watertight
+    x, y, z = made.vertices.T
+    assert np.hypot(x, z).max() == pytest.approx(math.hypot(58.0, 8.0), rel=1e-3)
+    assert np.abs(y).max() == pytest.approx(1.2 * 8.0)
+
+
+def test_cam_and_turret_turn_together_without_touching() -> None:
+    """As they are shown: at a cam angle the rollers touch the ribs and cut nothing."""
+    design = DESIGN.with_({"cam.roller_clearance_mm": 0.04, "output.theta_deg": 47.3})
+    for rotation in ("ccw", "cw"):
+        shown = gc.build(design.with_({"cam.rotation": rotation})).assembled()
+        cam, turret = (solid(shown[name]) for name in ("cam", "turret"))
+        assert (cam ^ turret).volume() == 0.0
+        moved = turret.translate((0.0, 0.0, 0.1))
+        assert (cam ^ moved).volume() > 0.1
+
+
+def test_an_undercut_wall_has_no_solid() -> None:
+    found = gc.build(DESIGN.with_({"cam.center_distance_mm": 75}))
+    assert [one.code for one in found.checked if one.severity == "error"] == ["undercut"] * 2
+    with pytest.raises(InfeasibleError, match="is undercut") as caught:
+        _ = found.mesh
+    near = caught.value.adjustments[0].near["turret.roller_radius_mm"]
+    assert 5.0 < float(str(near)) < 8.0
