@@ -40,6 +40,7 @@ DRAWN = {
     "yoke_cam": ("yoke_cam", 420),
     "translating_cam": ("translating_cam", 640),
     "cylinder_cam": ("cylinder_cam", 640),
+    "globoidal_cam": ("globoidal_indexer", 640),
 }
 """Pictures of assembled parts: profile, and width in pixels."""
 
@@ -88,7 +89,7 @@ def taken(url: str, place: float, size: tuple[int, int] = SIZE, *, solid: bool =
 
 def report(profile: Path, folder: str) -> str:
     """Return the address of the report of a profile, written into a folder."""
-    written = gearcam.build(gearcam.load(profile)).write(folder, files=["dxf", "report"])
+    written = gearcam.build(gearcam.load(profile)).write(folder, files=["report"])
     return (written.directory / "report.html").as_uri()
 
 
@@ -124,6 +125,8 @@ if __name__ == "__main__":
         (PICTURES / "report.png").write_bytes(taken(cam, 60.0, (1100, 1000)))
         drum = report(PROFILES / "cylinder_cam.toml", folder)
         (PICTURES / "cylinder_cam.png").write_bytes(taken(drum, 60.0, (1100, 4000), solid=True))
+        table = report(PROFILES / "globoidal_indexer.toml", folder)
+        (PICTURES / "globoidal_cam.png").write_bytes(taken(table, 30.0, (1100, 4000), solid=True))
         (PICTURES / "live_view.png").write_bytes(live_view(folder))
         for name, (profile, width) in DRAWN.items():
             picture = drawn(PROFILES / f"{profile}.toml", width, folder)

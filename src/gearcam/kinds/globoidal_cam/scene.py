@@ -21,8 +21,8 @@ if TYPE_CHECKING:
     from gearcam.kinds.globoidal_cam.build import GloboidalCamResult
     from gearcam.numeric.arrays import Array
 
-_EYE: Final = (0.2, -1.0, 0.35)
-"""Cam and turret are beside each other then, seen nearly along the turret's axis."""
+_EYE: Final = (0.45, -1.0, 0.55)
+"""Cam and turret are beside each other then, and rollers between the ribs are seen."""
 
 
 def scene(result: GloboidalCamResult, places: int = PLACES) -> Scene:
