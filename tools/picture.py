@@ -41,6 +41,8 @@ DRAWN = {
     "translating_cam": ("translating_cam", 640),
     "cylinder_cam": ("cylinder_cam", 640),
     "globoidal_cam": ("globoidal_indexer", 640),
+    "four_bar": ("four_bar", 480),
+    "nail_machine_slide": ("nail_machine_slide", 720),
 }
 """Pictures of assembled parts: profile, and width in pixels."""
 

@@ -189,7 +189,8 @@ def _members(shown: _Shown, half: float) -> dict[str, _Parts]:
 
 def _guide_on(shown: _Shown, spec: GuideSpec, half: float) -> Iterator[tuple[complex, complex]]:
     """Yield the guide on a member, and what joins it to the member's origin."""
-    ends, way, at = _ends(shown, spec.name), cmath.exp(1j * spec.direction), complex(*spec.at)
+    place = shown.pose(spec.on)[0].inverse @ shown.pose(spec.name)[0]
+    ends, way, at = _ends(shown, spec.name), complex(place.rotation), complex(place.shift)
     if ends is not None:
         yield _longer(at + min(0.0, ends[0]) * way, at + max(0.0, ends[1]) * way, half)
     if at:
