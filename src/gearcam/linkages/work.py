@@ -48,8 +48,11 @@ _AT_KNOT: Final = 1e-9
 _NODES: Final = 24
 """Points of Gauss' rule in each cell of an integral."""
 
-_CELLS: Final = 16
-"""Cells of an integral between two knots."""
+_CELLS: Final = 64
+"""Cells of an integral over the whole range, and one more for each knot."""
+
+_MANY: Final = 40
+"""Number of knots, as of a long table, from which the intervals between them are short."""
 
 
 class WorkState:
@@ -583,7 +586,10 @@ class VirtualWork(ShortRepr):
 
     @cached_property
     def _extremes(self) -> Extremes:
-        places, values = extremes(lambda q: self.moment(q, 1).derivatives(), self.knots)
+        cells = len(self.knots) > _MANY
+        places, values = extremes(
+            lambda q: self.moment(q, 1).derivatives(), self.knots, cells=cells
+        )
         knot = self.knots[np.abs(places[:, None] - self.knots).argmin(axis=1)]
         return np.where(np.abs(places - knot) <= _AT_KNOT, knot, places), values
 
@@ -605,8 +611,9 @@ class VirtualWork(ShortRepr):
     def _gauss(self) -> tuple[Array, Array]:
         """Places and weights of an integral over the driver's whole range."""
         points, weights = np.polynomial.legendre.leggauss(_NODES)
-        cells = np.linspace(self.knots[:-1], self.knots[1:], _CELLS + 1).T
-        begin, width = cells[:, :-1].ravel(), np.diff(cells, axis=1).ravel()
+        even = np.linspace(*self.linkage.span, _CELLS + 1)
+        ends = np.union1d(even, self.knots)
+        begin, width = ends[:-1], np.diff(ends)
         q = begin[:, None] + width[:, None] * (0.5 + 0.5 * points)
         return q.ravel(), (0.5 * width[:, None] * weights).ravel()
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import fields, replace
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
@@ -48,9 +48,6 @@ if TYPE_CHECKING:
     from gearcam.linkages.linkage import Linkage
 
 _TURN: Final = 2.0 * math.pi
-_NAMING: Final = ("drive", "joint", "crank", "slide", "guide", "dyad", "point", "chain", "hoist")
-"""Tables that give names."""
-
 _SLACK: Final = 1e-9
 """How much a table may be short of the range, rad."""
 
@@ -86,7 +83,7 @@ class _Efforts:
 
     def __init__(self, design: MechanismDesign, linkage: Linkage) -> None:
         self.design, self.speed = design, design.drive[0].speed
-        self.parts = {title: getattr(design, title) for title in _NAMING}
+        self.parts = {one.name: getattr(design, one.name) for one in fields(design)}
         self.sorts = sorts_of(self.parts)
         self.centers = self._centers()
         points = [

@@ -12,14 +12,15 @@ import numpy as np
 
 from gearcam.base.errors import DesignError, InfeasibleError, Problem
 from gearcam.base.facts import Fact, extent
-from gearcam.base.findings import run_checks
+from gearcam.base.findings import limit_of, run_checks
 from gearcam.base.numerals import formatted
+from gearcam.base.quantities import TORQUE as NEWTON_METRES
 from gearcam.kinds.mechanism.loaded import work_of
 from gearcam.kinds.mechanism.tables import CompareSpec
 from gearcam.kinds.mechanism.torque_checks import TORQUE, DriverEffort
 from gearcam.linkages.work import GRAVITY, INERTIA, PARTS, SPRINGS
 from gearcam.numeric.piecewise import with_both_sides
-from gearcam.pictures.charts import Chart, Line
+from gearcam.pictures.charts import Chart, Limit, Line
 from gearcam.results.result import StudyResult
 
 if TYPE_CHECKING:
@@ -126,7 +127,7 @@ def study_torque(result: MechanismResult, study: Study, progress: Progress | Non
         shafts = list(shaft_loads(result, work, q))
         columns |= {one.column: one.values for one in shafts}
         effort = _effort(result, work, beside)
-        found = run_checks(TORQUE, effort, {})
+        found = run_checks(TORQUE, effort, result.design.limits)
     speed = result.design.drive[0].speed
     if speed is not None:
         columns["power_w"] = columns["torque_nm"] * speed
@@ -343,13 +344,20 @@ def _charts(
     """Return charts of the driver's moment, its parts, and those behind other drives."""
     angle = next(iter(columns.values()))
     label = f"{result.driver[1]}, deg"
+    most = limit_of(TORQUE, "drive-torque", result.design.limits) / NEWTON_METRES.factor
     lines = [Line(label="this drive", x=angle, y=columns["torque_nm"])]
     lines += [
         Line(label=name, x=angle, y=_NM * np.asarray(work.moment(q).c[0]))
         for name, work in beside.items()
     ]
     charts = {
-        "torque": Chart(title="Moment of the driver", x=label, y="moment, N m", lines=tuple(lines))
+        "torque": Chart(
+            title="Moment of the driver",
+            x=label,
+            y="moment, N m",
+            lines=tuple(lines),
+            limits=(Limit(label="limit", value=most),) if most else (),
+        )
     }
     parts = [name for name in PARTS if f"{name}_nm" in columns]
     if parts:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Final
@@ -9,6 +10,8 @@ from typing import Final
 from gearcam.base.display import ShortRepr
 from gearcam.base.findings import Remark, check
 from gearcam.base.numerals import formatted
+from gearcam.base.quantities import TORQUE as NEWTON_METRES
+from gearcam.base.quantities import Param
 
 TORQUE: Final = "torque of a mechanism"
 """Name of the subject of its checks."""
@@ -39,14 +42,23 @@ class DriverEffort(ShortRepr):
     gain: str = ""
 
 
-@check("drive-torque", kind=TORQUE, severity="note", unit="N m")
+_LIMIT: Final = (
+    "drive_torque",
+    Param(NEWTON_METRES, ge=0, le=1e9, doc="largest torque of the mechanism's drive; 0: no limit"),
+    0.0,
+)
+
+
+@check("drive-torque", kind=TORQUE, limit=_LIMIT, severity=("note", "warning"), unit="N m")
 def drive_torque(effort: DriverEffort, limit: float) -> Iterator[Remark]:
-    """Tell if another drive of the same mechanism exerts less.
+    """Warn if the mechanism needs more torque than its drive has; tell if another drive needs less.
 
     Looks at: the largest moment of the driver, and of each drive that is compared; behind a pair
-    also of one that turns evenly.
+    that of an even shaft, if none is.
     """
-    del limit
+    if limit and effort.peak > limit / NEWTON_METRES.factor:
+        what = "The mechanism needs more torque than its drive has."
+        yield Remark(what, effort.place, effort.peak, "warning")
     for name, other in effort.others.items():
         if other < _LESS * effort.peak:
             times = formatted(effort.peak / other, 3) if other > 0.0 else "many"
@@ -55,4 +67,4 @@ def drive_torque(effort: DriverEffort, limit: float) -> Iterator[Remark]:
                 f"{formatted(other, 5)} N m of the same mechanism behind {name!r}."
                 f"{effort.gain}"
             )
-            yield Remark(message, effort.place, effort.peak)
+            yield Remark(message, effort.place, effort.peak, limit=math.inf)

@@ -391,6 +391,42 @@ def test_each_of_two_cams_has_its_share() -> None:
     agree(found.columns["torque_nm"], total, relative=1e-8)
 
 
+def test_a_hoist_lifts_its_weight() -> None:
+    mass = [{"of": "door", "mass_kg": 1000}]
+    slow = {"drive[0].speed_rpm": 1e-6}
+    found = study("furnace_door_lift", mass=mass, gravity=DOWN, **slow)
+    q = np.radians(found.columns["phi1_deg"])
+    ratio = found.result.linkage.track("pair.wheel2", q, 1).derivatives()[1]
+    agree(found.columns["torque_nm"], 9806.65 * 0.1 * ratio)
+    agree(found.columns["wheel2_torque_nm"], np.full(q.shape, 980.665))
+
+
+def test_a_geneva_wheel() -> None:
+    tables = {
+        "drive": [{"name": "motor", "even": True, "speed_rpm": 60}],
+        "geneva": [{"name": "wheel", "on": "motor", "slots": 4, "length_mm": 60}],
+        "load": [{"on": "wheel", "torque_nm": -3}],
+        "mass": [{"of": "wheel", "inertia_kg_m2": 0.02}],
+        "output": {"files": ["csv"]},
+    }
+    made = gc.build(gc.design({"kind": "mechanism", "name": "mine", **tables}))
+    found = made.study("torque").columns
+    # 000, 2.4.6.1, from the line of centres
+    crank = np.radians(found["theta_deg"])
+    crank = np.where(crank > pi, crank - 2.0 * pi, crank)
+    engaged = np.abs(crank) < pi / 4 - 1e-9
+    share = np.sqrt(0.5)
+    below = 1.0 - 2.0 * share * np.cos(crank) + share**2
+    ratio = np.abs(share * (np.cos(crank) - share) / below)
+    bend = -share * (1.0 - share**2) * np.sin(crank) / below**2
+    # the wheel turns clockwise, with its load
+    whole = -3.0 * ratio + 0.02 * (2.0 * pi) ** 2 * ratio * bend
+    first = (found["theta_deg"] <= 360.0) & engaged
+    agree(found["torque_nm"][first], whole[first], relative=1e-8)
+    resting = (np.abs(crank) > pi / 4 + 1e-9) & (found["theta_deg"] <= 360.0)
+    assert not found["torque_nm"][resting].any()
+
+
 def test_a_rack() -> None:
     pair = gc.load("profiles/feeder.toml")
     tables = {
@@ -435,6 +471,16 @@ def test_parts_add_up() -> None:
     assert [line.label for line in found.charts["torque_parts"].lines] == [
         "loads", "inertia", "gravity", "springs",
     ]  # fmt: skip
+
+
+def test_a_drive_that_is_too_weak() -> None:
+    load = [{"on": "S", "force_n": -80}]
+    found = torque(load=load, limits={"drive_torque_nm": 2})
+    (one,) = found.study_findings
+    assert (one.code, one.severity, one.limit) == ("drive-torque", "warning", 2.0)
+    assert one.value == pytest.approx(np.abs(found.columns["torque_nm"]).max(), rel=1e-4)
+    assert found.charts["torque"].limits[0].value == 2.0
+    assert codes(torque(load=load, limits={"drive_torque_nm": 50})) == []
 
 
 def test_extremes_are_those_of_a_dense_table() -> None:
