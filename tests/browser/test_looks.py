@@ -57,9 +57,9 @@ def test_colours_stand_out(scheme: str, browser: Chrome, page_of: BuildOutput) -
     for name in ("text", "muted", "accent", "error", "warning", "note", "limit"):
         assert min(contrast(colour[name], colour[on]) for on in ("ground", "page")) >= TEXT, name
     assert contrast(colour["on-accent"], colour["accent"]) >= TEXT
-    for name in (*lines, "edge", "ink-1", "ink-2", "contact", "pitch", "centrode"):
+    for name in (*lines, "edge", "ink-1", "ink-2", "ink-3", "contact", "pitch", "centrode"):
         assert contrast(colour[name], colour["ground"]) >= SHAPE, name
-    for k in (1, 2):
+    for k in (1, 2, 3):
         for name in (f"ink-{k}", "contact", "pitch", "centrode"):
             assert contrast(colour[name], colour[f"fill-{k}"]) >= SHAPE, name
 

@@ -1,0 +1,132 @@
+"""Mechanisms in a page: links on their joints, paths, and lengths that are dragged."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from selenium.webdriver import Chrome
+from selenium.webdriver.common.by import By
+
+from helpers_browser import complaints, go, open_page, until
+from helpers_pairs import PROFILES
+from helpers_view import served
+
+BAR = "four_bar"
+PLACE = 77.0
+"""Of the crank, deg."""
+
+BuildOutput = Callable[[str], Path]
+Built = Callable[[str], Any]
+
+SPY = """
+    window.scenes = [];
+    const show = window.gearcam.show;
+    window.gearcam.show = (next) => { window.scenes.push(next.scene); show(next); };
+"""
+
+
+def poses(browser: Chrome) -> dict[str, Any]:
+    return {one["name"]: one for one in browser.execute_script("return gearcam.poses()")}
+
+
+def test_links_stand_on_their_joints(browser: Chrome, page_of: BuildOutput) -> None:
+    open_page(browser, page_of(BAR))
+    go(browser, PLACE)
+    found = poses(browser)
+    crank, coupler, rocker = (found[name] for name in ("crank", "coupler", "rocker"))
+    pin = 40.0 * cmath.exp(1j * crank["turn"])
+    assert crank["turn"] == pytest.approx(math.radians(PLACE), abs=1e-6)
+    assert abs(complex(coupler["x"], coupler["y"]) - pin) < 1e-3
+    # both ends of the loop meet: 120 mm from the crank's pin and 90 mm from the pivot
+    ends = (
+        pin + 120.0 * cmath.exp(1j * coupler["turn"]),
+        110.0 + 90.0 * cmath.exp(1j * rocker["turn"]),
+    )
+    assert abs(ends[0] - ends[1]) < 2e-3
+    assert complaints(browser) == []
+
+
+def test_paths_are_drawn_until_they_are_unchecked(browser: Chrome, page_of: BuildOutput) -> None:
+    open_page(browser, page_of(BAR))
+    (box,) = (
+        one.find_element(By.TAG_NAME, "input")
+        for one in browser.find_elements(By.CSS_SELECTOR, "#seen label")
+        if one.text.strip() == "paths of points"
+    )
+    assert box.is_selected()
+    dashed = "return (gearcam.svg().match(/stroke-dasharray/g) || []).length"
+    assert browser.execute_script(dashed) == 1
+    box.click()
+    assert browser.execute_script(dashed) == 0
+
+
+def test_wheels_and_links_move_together(browser: Chrome, page_of: BuildOutput) -> None:
+    open_page(browser, page_of("nail_machine_slide"))
+    turns = []
+    for place in (0.0, 100.0, 250.0):
+        go(browser, place)
+        found = poses(browser)
+        turns.append(found["pair.gear2"]["turn"] - found["crank"]["turn"])
+        assert found["pair.gear1"]["turn"] == pytest.approx(-math.radians(place), abs=1e-6)
+    assert all(abs(math.remainder(turn - turns[0], math.tau)) < 1e-5 for turn in turns)
+
+
+@pytest.fixture
+def live(browser: Chrome, tmp_path: Path) -> Iterator[Chrome]:
+    file = tmp_path / "bar.toml"
+    file.write_text((PROFILES / f"{BAR}.toml").read_text("utf-8"))
+    with served(file) as (server, _):
+        browser.get_log("browser")  # type: ignore[no-untyped-call]
+        browser.get(server.address)
+        until(lambda: browser.execute_script("return !!window.gearcam"))
+        browser.execute_script(SPY)
+        yield browser
+        wrong = complaints(browser)
+        browser.get("about:blank")  # the page would ask for a server that has ended
+    assert wrong == []
+
+
+def longest(scene: dict[str, Any], name: str) -> float:
+    """Return the distance of the pins of a link, from the middles of its round holes."""
+    (body,) = (one for one in scene["bodies"] if one["name"] == name)
+    middles = [complex(sum(hole[::2]), sum(hole[1::2])) / (len(hole) / 2) for hole in body["metal"]]
+    return max(abs(one - other) for one in middles[1:] for other in middles[1:])
+
+
+@pytest.mark.parametrize(
+    ("key", "link", "value"),
+    [("crank[0].length_mm", "crank", 30.0), ("dyad[0].lengths_mm[1]", "rocker", 95.0)],
+)
+def test_a_length_is_dragged(live: Chrome, key: str, link: str, value: float) -> None:
+    live.execute_script(
+        "const one = document.getElementById(`key-${arguments[0]}`); one.value = arguments[1];"
+        "one.dispatchEvent(new Event('input'))",
+        key,
+        value,
+    )
+    drafted = until(lambda: live.execute_script("return window.scenes.at(-1)"))
+    assert longest(drafted, link) == pytest.approx(value, abs=1e-3)
+    assert len(drafted["places"]) < 200  # coarse while it is dragged
+    live.execute_script(
+        "document.getElementById(`key-${arguments[0]}`).dispatchEvent(new Event('change'))", key
+    )
+    until(lambda: live.execute_script("return window.scenes.at(-1).places.length") == 721)
+
+
+def field(page: Chrome, key: str) -> Any:
+    return page.find_element(By.CSS_SELECTOR, f'input[aria-label="{key}, number"]')
+
+
+def test_the_nearest_length_that_closes_is_taken_and_seen(live: Chrome) -> None:
+    box = field(live, "dyad[0].lengths_mm[0]")
+    box.clear()
+    box.send_keys("1000\n")
+    other = field(live, "dyad[0].lengths_mm[1]")
+    until(lambda: float(other.get_attribute("value")) > 900.0)
+    assert float(box.get_attribute("value")) == 1000.0
+    assert len(live.find_elements(By.CLASS_NAME, "changed")) == 2
