@@ -31,6 +31,10 @@ _WORSE: Final = 1.01
 """Factor from which a larger acceleration is told."""
 
 
+_NONE: Final = 1e-9
+"""An acceleration this small, as a share of another one, is rounding."""
+
+
 @dataclass(frozen=True, eq=False)
 class CheckedMachine(ShortRepr):
     """What is checked.
@@ -199,10 +203,14 @@ def peak_acceleration(machine: CheckedMachine, limit: float) -> Iterator[Remark]
         unit = f"{machine.units[name]}/rad2"
         own, without = machine.outputs[name].size(2), even.size(2)
         if abs(own.value) > _WORSE * abs(without.value):
-            factor = formatted(abs(own.value / without.value), 3)
+            even_one = f"{formatted(abs(without.value), 4)} {unit}"
+            told = f"accelerates {name}; an even shaft would not"
+            if abs(without.value) > _NONE * abs(own.value):
+                factor = formatted(abs(own.value / without.value), 3)
+                told = f"makes the largest acceleration of {name} {factor} times that behind an "
+                told += f"even shaft, which is {even_one}"
             yield Remark(
-                f"Behind the pair the largest acceleration of {name} is {factor} times that behind "
-                f"an even shaft, which is {formatted(abs(without.value), 4)} {unit}.",
+                f"The pair {told}.",
                 f"{name}, {_at(own.place)}",
                 abs(own.value),
                 unit=unit,

@@ -19,6 +19,7 @@ from gearcam.pictures.drawings import (
     BORE,
     GHOST,
     MEMBER,
+    OUTER,
     TRACE,
     Circle,
     Drawing,
@@ -78,6 +79,9 @@ def posed(every: tuple[MovingBody, ...], index: int = 0) -> Iterator[Feature]:
         part = body.name.rpartition(".")[2]
         prefix = f"{part.upper()}_" if part.startswith("gear") else ""
         shown = [one for one in body.features if one.kind != TRACE]
+        if prefix:
+            # a ring begins with its inner teeth: its blank would cover them
+            shown.sort(key=lambda one: one.kind not in OUTER)
         yield from place(shown, body.pose[index], prefix)
 
 
