@@ -138,7 +138,7 @@ def study_torque(result: MechanismResult, study: Study, progress: Progress | Non
         table=columns,
         group=_facts(result, work, beside, shafts),
         study_findings=found,
-        drawn=partial(_charts, result, columns, beside, q),
+        drawn=partial(_charts, result, columns, beside),
     )
 
 
@@ -339,7 +339,6 @@ def _charts(
     result: MechanismResult,
     columns: Mapping[str, Array],
     beside: Mapping[str, VirtualWork],
-    q: Array,
 ) -> dict[str, Chart]:
     """Return charts of the driver's moment, its parts, and those behind other drives."""
     angle = next(iter(columns.values()))
@@ -347,8 +346,9 @@ def _charts(
     most = limit_of(TORQUE, "drive-torque", result.design.limits) / NEWTON_METRES.factor
     lines = [Line(label="this drive", x=angle, y=columns["torque_nm"])]
     lines += [
-        Line(label=name, x=angle, y=_NM * np.asarray(work.moment(q).c[0]))
+        Line(label=name, x=_DEG * q, y=_NM * np.asarray(work.moment(q).c[0]))
         for name, work in beside.items()
+        for q in [_places(result, work)]
     ]
     charts = {
         "torque": Chart(

@@ -139,6 +139,8 @@ class TestFurnaceDoor:
         assert codes(found) == ["drive-torque"]
         assert re.search("2 times the 78[67]", found.study_findings[0].message)
         assert "ratio 2" in found.study_findings[0].message
+        ends = [line.x[-1] for line in found.charts["torque"].lines]
+        assert ends == pytest.approx([171.65, 308.3])
 
 
 class TestLoads:
