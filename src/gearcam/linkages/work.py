@@ -45,6 +45,9 @@ _KILO: Final = 1e3
 _AT_KNOT: Final = 1e-9
 """Distance from a knot, rad, within which a place is called by it."""
 
+_WOUND: Final = 1e-7
+"""Change of a spring's length or angle over a cycle, as a share, that is more than rounding."""
+
 _NODES: Final = 24
 """Points of Gauss' rule in each cell of an integral."""
 
@@ -301,7 +304,8 @@ class Acting:
     @property
     def rate(self) -> Jet:
         """Its derivative by the driver's angle."""
-        return self._coordinate.rate(self._state.known, self._state.order)
+        found = self._coordinate.rate(self._state.known, self._state.order)
+        return found + np.zeros(self._state.q.shape)  # where it is a constant, too
 
     @property
     def velocity(self) -> Jet:
@@ -630,6 +634,15 @@ class VirtualWork(ShortRepr):
             part: (float(weights @ values), float(weights @ np.abs(values)))
             for part, values in found.items()
         }
+
+    @cached_property
+    def wound(self) -> bool:
+        """Whether a spring is not at the end of the range as at its beginning: it keeps work."""
+        state = WorkState(self.linkage, np.array(self.linkage.span), 0, self.speed)
+        springs = (one for one in self.efforts if one.part == SPRINGS)
+        places = (one.coordinate.place(state) for one in springs if isinstance(one, VaryingForce))
+        ends = [np.asarray(one.c[0]) for one in places]
+        return any(np.ptp(one) > _WOUND * (1.0 + np.abs(one).max()) for one in ends)
 
     @property
     def work(self) -> float:

@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from gearcam.base.errors import beyond_limit
+from gearcam.base.errors import InfeasibleError, beyond_limit
+from gearcam.base.numerals import formatted
 from gearcam.kinds.mechanism.drives import way_of
 from gearcam.kinds.mechanism.load_names import pushed_in, sorts_of, unturned
 from gearcam.kinds.mechanism.load_tables import OUTER
@@ -39,7 +40,7 @@ from gearcam.linkages.work import (
 )
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet
-from gearcam.numeric.piecewise import extremes
+from gearcam.numeric.piecewise import extremes, places_between
 
 if TYPE_CHECKING:
     from gearcam.base.quantities import Row
@@ -49,7 +50,7 @@ if TYPE_CHECKING:
 
 _TURN: Final = 2.0 * math.pi
 _SLACK: Final = 1e-9
-"""How much a table may be short of the range, rad."""
+"""How much a table may be short of the range, rad; distance of joints that meet, as a share."""
 
 _KILO: Final = 1e3
 """N mm of a N m."""
@@ -164,19 +165,23 @@ class _Efforts:
         name = way.slide if isinstance(way, PointWay) else load.on
         track = partial(self.linkage.real_track, name)
         measures = TrackMeasures(track, self.linkage.knots, self.linkage.closed)
+        where = f"load[{number}].travel_mm"
+        if travel >= measures.stroke:
+            what = f"{load.on} has not so much travel"
+            raise beyond_limit(what, where, travel, measures.stroke, unit="mm")
         try:
             return last_travel(measures, travel, outer=load.before == OUTER)
         except ValueError:
             what = f"{load.on} has not so much travel before its {load.before} dead centre"
-            where = f"load[{number}].travel_mm"
-            raise beyond_limit(what, where, travel, measures.stroke, unit="mm") from None
+            note = "from_deg and to_deg, or the other dead centre"
+            raise beyond_limit(what, where, travel, None, note, unit="mm") from None
 
     def _still(self, on: WorkCoordinate) -> list[float]:
         """Return the driver's angles at which something loaded reverses."""
 
         def places(q: Array) -> tuple[Array, Array]:
-            state = WorkState(self.linkage, q, 0, self.speed)
-            return np.asarray(on.place(state).c[0]), np.asarray(on.rate(state.known, 0).c[0])
+            acting = Acting(WorkState(self.linkage, q, 0, self.speed), on)
+            return np.asarray(acting.place.c[0]), np.asarray(acting.rate.c[0])
 
         return extremes(places, self.linkage.knots)[0].tolist()
 
@@ -247,10 +252,24 @@ class _Efforts:
     def _springs(self) -> Iterator[Effort]:
         low, high = self.linkage.span
         start = WorkState(self.linkage, np.array([min(max(0.0, low), high)]), 0, self.speed)
-        for spring in self.design.spring:
+        for number, spring in enumerate(self.design.spring):
             on = self._joined(spring)
+            self._demand_apart(on, number)
             at = float(np.asarray(on.place(start).c[0])[0])
             yield VaryingForce(on, _spring_law(spring, at), SPRINGS)
+
+    def _demand_apart(self, on: WorkCoordinate, number: int) -> None:
+        """Refuse a spring whose ends meet: it has no direction there."""
+        if not isinstance(on, JointDistance):
+            return
+        q = places_between(self.linkage.knots).ravel()
+        known = self.linkage.at(q, 0)
+        first, second = (np.asarray(known.jet(one).c[0]) for one in (on.first, on.second))
+        apart = np.abs(second - first)
+        if apart.min() <= _SLACK * max(1.0, float(np.abs(first).max())):
+            place = formatted(math.degrees(float(q[int(apart.argmin())])), 6)
+            what = f"{on.first} and {on.second} are in one place at {place} deg of the master"
+            raise InfeasibleError(what, where=f"spring[{number}].between")
 
     def _joined(self, spring: MachineSpring) -> WorkCoordinate:
         if spring.between is None:

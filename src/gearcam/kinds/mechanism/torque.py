@@ -40,6 +40,9 @@ _NM: Final = 1e-3
 _NOISE: Final = 1e-9
 """Share of the moment's integral below which its work is rounding."""
 
+_NOTHING: Final = 1e-6
+"""Work, N mm, that is none: what rounding makes of forces that do no work."""
+
 _DEG: Final = math.degrees(1.0)
 
 EVEN: Final = "even_shaft"
@@ -315,10 +318,10 @@ def _range(result: MechanismResult, work: VirtualWork, meaning: str) -> Fact:
 def _error(result: MechanismResult, work: VirtualWork) -> float | None:
     """Return the work of what keeps its energy over a cycle, as a share; it should be 0."""
     damped = any(one.damped for one in result.design.spring)
-    kept = [INERTIA, GRAVITY, *([] if damped else [SPRINGS])]
+    kept = [INERTIA, GRAVITY, *([] if damped or work.wound else [SPRINGS])]
     found = [work.works[part] for part in kept if part in work.works]
     whole = sum(size for _, size in work.works.values())
-    if not work.linkage.closed or not found or not whole:
+    if not work.linkage.closed or not found or whole < _NOTHING:
         return None
     return sum(abs(own) for own, _ in found) / whole
 

@@ -519,6 +519,37 @@ def test_more_travel_than_there_is() -> None:
     assert 20.0 < caught.value.limit < 200.0
 
 
+def test_no_travel_before_the_dead_center() -> None:
+    """The door begins at the bottom: it does not arrive there."""
+    load = {"on": "door", "force_n": 80, "travel_mm": 5, "before": "inner"}
+    with pytest.raises(InfeasibleError, match=r"before its inner dead centre") as caught:
+        study("furnace_door_lift", load=[load])
+    assert "other dead centre" in str(caught.value)
+
+
+def test_a_spring_between_joints_that_meet() -> None:
+    with pytest.raises(InfeasibleError, match=r"in one place") as caught:
+        study("quick_return", spring=[{"between": ["block_pin", "pin"], "stiffness_n_mm": 1}])
+    assert caught.value.where == "spring[0].between"
+
+
+def test_a_spring_that_is_wound_up_keeps_its_work() -> None:
+    found = torque(spring=[{"between": ["ground", "crank"], "stiffness_nm_rad": 2}])
+    agree(found.facts["torque.work_j"], 4.0 * pi**2)
+    assert "torque.error" not in found.facts
+
+
+def test_against_an_even_shaft() -> None:
+    found = torque(load=[{"on": "motor", "torque_nm": 3, "against": True}])
+    agree(found.columns["torque_nm"], np.full(len(found.columns["torque_nm"]), 3.0))
+
+
+def test_forces_that_do_no_work() -> None:
+    found = torque(spring=[{"between": ["C", "D"], "stiffness_n_mm": 3}])
+    assert np.abs(found.columns["torque_nm"]).max() < 1e-12
+    assert "torque.error" not in found.facts
+
+
 def test_a_table_that_ends_too_early() -> None:
     load = {"on": "S", "table": [0, 1], "at_deg": [0, 300]}
     with pytest.raises(InfeasibleError, match=r"does not reach") as caught:
