@@ -112,6 +112,7 @@ class TestNailMachine:
         found = study("nail_machine_slide", mass=MASSES, compare=[])
         assert codes(found) == ["drive-torque"]
         assert "even_shaft" in found.study_findings[0].message
+        assert (found.study_findings[0].severity, found.study_findings[0].limit) == ("note", None)
 
     def test_no_note_where_the_pair_needs_less(self) -> None:
         """The forging force alone: the pair slows the slide there."""
