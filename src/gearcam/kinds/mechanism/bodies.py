@@ -31,6 +31,7 @@ from gearcam.pictures.drawings import (
     Path,
     mirrored,
 )
+from gearcam.pictures.geneva import geneva_crank, geneva_wheel
 from gearcam.pictures.links import block, guide, link, pin, pivot
 from gearcam.pictures.scenes import MovingBody, still
 from gearcam.results.nested import within
@@ -154,7 +155,7 @@ def bodies(result: MechanismResult, q: Array, before: int = 0) -> tuple[MovingBo
         for name, parts in _members(shown, half).items()
         if parts.pins or parts.blocks
     ]
-    chains = tuple(_chains(shown))
+    chains = (*_chains(shown), *_genevas(shown))
     cylinders = [one for spec in result.design.dyad for one in _cylinder(shown, spec, half)]
     grounds = tuple(_grounds(shown, half))
     standing = [still(grounds, q)] if grounds else []
@@ -356,6 +357,20 @@ def _lifting(shown: _Shown, spec: HoistSpec) -> Iterator[MovingBody]:
     side = 1j * along * (1.0 if spec.wind == "ccw" else -1.0)
     yield _wheel(shown, spec.on, complex(foot + side * spec.radius), spec.radius)
     yield from _pieces(np.full(shown.q.shape, foot), end)
+
+
+def _genevas(shown: _Shown) -> Iterator[MovingBody]:
+    """Yield Geneva wheels and their cranks."""
+    for spec in shown.result.design.geneva:
+        wheel = geneva_wheel(spec.length, spec.slots, internal=spec.internal)
+        crank = geneva_crank(spec.length, spec.slots, internal=spec.internal)
+        turn = shown.turn(spec.on) + spec.angle
+        pose = Pose(turn, shown.place(spec.at or center_of(spec.on)))
+        yield MovingBody(
+            name=spec.name, called=spec.name, features=wheel, pose=shown.pose(spec.name)
+        )
+        name = f"{spec.name}_crank"
+        yield MovingBody(name=name, called="crank", features=crank, pose=pose)
 
 
 def _wheel(shown: _Shown, shaft: str, center: complex, radius: float) -> MovingBody:
