@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import Final
 
 from gearcam.designs.writing import toml_text
-from random_designs import cam, gear_pair, globoidal_cam, spatial_cam
+from random_designs import cam, gear_pair, globoidal_cam, mechanism, spatial_cam
 from random_designs.broken import broken
-from random_designs.documented import places, value
+from random_designs.documented import is_text, places, value
 from random_designs.draw import Draw
 from random_designs.output import limits, tables_as_files
 
@@ -31,6 +31,7 @@ MAKERS: Final = {
     "cam": cam.design,
     "gear-pair": gear_pair.design,
     "globoidal-cam": globoidal_cam.design,
+    "mechanism": mechanism.design,
     "spatial-cam": spatial_cam.design,
 }
 """What makes a random design of each kind, as the tables of its file."""
@@ -78,6 +79,8 @@ def design(kind: str, seed: int, index: int) -> Drawn:
     if d.chance(BROKEN):
         return Drawn(**broken(d, document, tables))
     if d.chance(_ANYWHERE):
-        table, key, node = d.pick([*places(document)])
+        named = kind == "mechanism"  # most texts are names: another one is an error
+        found = [one for one in places(document) if not (named and is_text(one[2]))]
+        table, key, node = d.pick(found)
         table[key] = value(d, key, node)
     return Drawn(files={f"{name}.toml": toml_text(document), **tables})

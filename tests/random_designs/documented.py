@@ -95,6 +95,13 @@ def places(document: Mapping[str, Any]) -> Iterator[tuple[dict[str, Any], str, M
                 yield from ((table, key, one) for key, one in known_keys(inner, table).items())
 
 
+def is_text(node: Mapping[str, Any]) -> bool:
+    """Return whether a key takes any text, or texts, a name or a file for example."""
+    node = node["anyOf"][0] if "anyOf" in node else node
+    node = node["items"] if node.get("type") == "array" else node
+    return node.get("type") == "string" and "enum" not in node
+
+
 def value(d: Draw, key: str, node: Mapping[str, Any]) -> Any:
     """Return a random value from a documented range; numbers are log-uniform.
 

@@ -68,6 +68,20 @@ class _Passage(NamedTuple):
     way: float
 
 
+class ShortRangeError(ValueError):
+    """The driver's range begins within the last bit of travel that is asked for.
+
+    Parameters
+    ----------
+    travel : float, mm or rad
+        The travel before the dead centre that the range holds.
+    """
+
+    def __init__(self, travel: float) -> None:
+        self.travel = travel
+        super().__init__(f"the range has {travel:g} before the dead centre")
+
+
 def longest_dwell(measures: TrackMeasures, amount: float) -> DriverRange:
     """Return the longest range of the driver in which an output stays within an amount.
 
@@ -127,7 +141,9 @@ def last_travel(measures: TrackMeasures, travel: float, *, outer: bool = True) -
     Raises
     ------
     ValueError
-        If the travel is not between 0 and all of it, or the range does not hold all of it.
+        If the travel is not between 0 and all of it.
+    ShortRangeError
+        If the range begins within it.
     """
     if not 0.0 < travel < measures.stroke:
         raise ValueError(f"travel {travel:g}: must be between 0 and {measures.stroke:g}")
@@ -138,10 +154,7 @@ def last_travel(measures: TrackMeasures, travel: float, *, outer: bool = True) -
     band = (level, np.inf) if outer else (-np.inf, level)
     begin = _leaves(measures, node, -1, band)
     if begin == places[0] and values[0] != level:
-        raise ValueError(
-            f"travel {travel:g}: the range has {abs(values[0] - top.value):g} of it before "
-            f"the dead centre"
-        )
+        raise ShortRangeError(float(np.abs(values[: node + 1] - top.value).max()))
     return DriverRange(float(begin), float(places[node]))
 
 

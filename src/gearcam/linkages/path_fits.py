@@ -41,6 +41,10 @@ _STRAIGHT: Final = 1e-9
 """Height over length of a stretch that is too straight for a circle."""
 
 
+class StraightError(ValueError):
+    """A stretch to which no circle is nearest."""
+
+
 class LineFit(NamedTuple):
     """The straight line nearest to a stretch.
 
@@ -250,10 +254,12 @@ def _least_squares(points: Plane) -> tuple[complex, float]:
     middle = points.mean()
     away = points - middle
     size = float(np.abs(away).max())
+    if size <= _EVEN * abs(middle):
+        raise StraightError("the stretch is a point: no circle is nearest to it; take a line")
     away = away / size
     spread = np.linalg.svd(np.stack([away.real, away.imag]), compute_uv=False)
     if spread[1] <= _STRAIGHT * spread[0]:
-        raise ValueError("the stretch is straight: no circle is nearest to it; take a line")
+        raise StraightError("the stretch is straight: no circle is nearest to it; take a line")
     matrix = np.stack([2.0 * away.real, 2.0 * away.imag, np.ones(away.size)], axis=1)
     x, y, rest = np.linalg.lstsq(matrix, np.abs(away) ** 2, rcond=None)[0]
     center = complex(middle + size * (x + 1j * y))

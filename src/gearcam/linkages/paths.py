@@ -25,6 +25,9 @@ from gearcam.numeric.jets import Jet
 _ACCURATE: Final = 1e-13
 """Difference of a panel's integral and that of its parts at which it is taken, of the whole."""
 
+_ROUNDING: Final = 1e-15
+"""The same of an integral that is 0 but for rounding, of the distance from the origin."""
+
 _LEVELS: Final = 40
 """Largest number of times a panel is halved."""
 
@@ -157,7 +160,7 @@ class PointPath(ShortRepr):
         def speed(q: Array) -> Array:
             return np.sqrt(np.asarray(self._speed(q, 0).c[0]))
 
-        return self._integrated(speed)
+        return self._integrated(speed, self._reach)
 
     @cached_property
     def area(self) -> Integral | None:
@@ -172,11 +175,22 @@ class PointPath(ShortRepr):
             point, speed = self.track(q, 1).derivatives()
             return 0.5 * np.imag(np.conj(point) * speed)
 
-        return self._integrated(swept)
+        return self._integrated(swept, self._reach**2)
 
-    def _integrated(self, function: Callable[[Array], Array]) -> Integral:
+    @property
+    def _reach(self) -> float:
+        """How far the point is from the origin, mm."""
+        return float(np.abs(np.asarray(self.track(self._slow[0], 0).c[0])).max())
+
+    def _integrated(self, function: Callable[[Array], Array], size: float) -> Integral:
+        """Return an integral; `size` times the driver's range is what its rounding is a share of.
+
+        That of a point that stands still, or of one that goes to and fro in line with the origin,
+        is nothing but rounding.
+        """
         edges = np.unique(np.concatenate([self.knots, self._slow[0]]))
         nodes, weights = _GAUSS
+        rounding = _ROUNDING * size * float(edges[-1] - edges[0])
 
         def panels(low: Array, high: Array) -> Array:
             half, middle = 0.5 * (high - low), 0.5 * (high + low)
@@ -191,7 +205,7 @@ class PointPath(ShortRepr):
             middle = 0.5 * (low + high)
             parts = panels(low, middle), panels(middle, high)
             change = np.abs(parts[0] + parts[1] - whole)
-            done = change <= _ACCURATE * scale
+            done = change <= max(_ACCURATE * scale, rounding)
             value += float((parts[0] + parts[1])[done].sum())
             error += float(change[done].sum())
             if done.all():

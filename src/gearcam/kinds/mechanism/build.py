@@ -22,7 +22,7 @@ from gearcam.kinds.mechanism.drives import PlacedDrive, placed
 from gearcam.kinds.mechanism.make import make_linkage
 from gearcam.kinds.mechanism.names import moves
 from gearcam.linkages import checks
-from gearcam.linkages.dwells import DriverRange, last_travel, longest_dwell
+from gearcam.linkages.dwells import DriverRange, ShortRangeError, last_travel, longest_dwell
 from gearcam.linkages.linkage import Linkage
 from gearcam.linkages.measures import TrackMeasures
 from gearcam.linkages.paths import PointPath
@@ -398,16 +398,17 @@ class MechanismResult(Result):
         for number, one in enumerate(self.design.interval):
             output, travel = self.asked("interval", number)
             measures = self.measures_of(output)
-            if travel >= measures.stroke:
-                scale, unit = output.unit
-                raise InfeasibleError(
-                    f"{one.on} does not travel as far",
-                    where=f"interval[{number}].travel_{unit}",
-                    value=scale * travel,
-                    limit=scale * measures.stroke,
-                    unit=unit,
-                )
-            found.append(last_travel(measures, travel, outer=one.before == "outer"))
+            what, most = f"{one.on} does not travel as far", measures.stroke
+            if travel < most:
+                try:
+                    found.append(last_travel(measures, travel, outer=one.before == "outer"))
+                    continue
+                except ShortRangeError as error:
+                    what = f"{one.on} does not travel as far before its {one.before} dead centre"
+                    most = error.travel
+            scale, unit = output.unit
+            where, near = f"interval[{number}].travel_{unit}", scale * most / ABOVE or None
+            raise beyond_limit(what, where, scale * travel, scale * most, near=near, unit=unit)
         return tuple(found)
 
     def comparison(self) -> Columns:
@@ -450,11 +451,13 @@ class MechanismResult(Result):
         Raises
         ------
         DesignError
-            If a stretch is not of a point that is asked for.
+            If a stretch is not of a point that is asked for, or beyond the master's range.
+        InfeasibleError
+            If it is straight and a circle is asked for.
         """
         if not self.design.stretch:
             return ()
-        from gearcam.linkages.path_fits import best_circle, best_line
+        from gearcam.linkages.path_fits import StraightError, best_circle, best_line
 
         found = []
         for number, one in enumerate(self.design.stretch):
@@ -464,9 +467,26 @@ class MechanismResult(Result):
                 where = f"stretch[{number}].on"
                 what = "is not a point that is asked for"
                 raise DesignError([Problem(what, self.design.source, None, where, one.on, allowed)])
+            self._check_range(f"stretch[{number}]", one.start, one.end)
             fit = best_line if one.shape == "line" else best_circle
-            found.append(fit(path, one.start, one.end))
+            try:
+                found.append(fit(path, one.start, one.end))
+            except StraightError as error:
+                where = f"stretch[{number}].shape"
+                raise InfeasibleError(str(error), where=where, nearest='shape = "line"') from None
         return tuple(found)
+
+    def _check_range(self, table: str, start: float, end: float) -> None:
+        """Raise `DesignError` for a stretch that an open range of the master does not hold."""
+        low, high = self.linkage.span
+        for key, value in (("from_deg", start), ("to_deg", end)):
+            if not self.linkage.closed and not low <= value <= high:
+                what = "is beyond the master's range"
+                allowed = f"{formatted(_DEG * low, 8)} to {formatted(_DEG * high, 8)}"
+                where = f"{table}.{key}"
+                raise DesignError(
+                    [Problem(what, self.design.source, None, where, _DEG * value, allowed)]
+                )
 
     @cached_property
     def dwells(self) -> tuple[DriverRange, ...]:

@@ -203,7 +203,8 @@ class PlacedDrive(ShortRepr):
         ----------
         other : PlacedDrive
             A drive of the same sort, or any if this one is even: then all shafts turn evenly, at
-            the mean ratio of a closed pair, as fast as the driver in the place of an open one.
+            the mean ratio of a closed pair or a rack, as fast as the driver in the place of an open
+            one.
         """
         moved = {}
         for word, one in other.moved.items():
@@ -211,7 +212,7 @@ class PlacedDrive(ShortRepr):
             moved[word] = replace(one, law=law)
         if self.result is not None:
             return replace(self, spec=other.spec, moved=moved)
-        low, high = 0.0, other.period if other.closed else max(map(_travelled, _laws(other)))
+        low, high = 0.0, other.period if _steady(other) else max(map(_travelled, _laws(other)))
         ends = np.array([low, high])
         return PlacedDrive(other.spec, moved, ends, high, other.closed)
 
@@ -311,7 +312,22 @@ def placed(spec: MachineDrive, build: Callable[[Any], Any]) -> PlacedDrive:
     by = result.pair.law if spec.pair is not None else result.program
     knots = np.asarray(by.knots, dtype=float)
     inside = knots[(knots >= 0.0) & (knots <= by.period)]
+    if spec.pair is not None and result.pair.on_rack:
+        return _along_rack(spec, result, inside)
     return PlacedDrive(spec, moved_by(spec, result), inside, float(by.period), by.closed, result)
+
+
+def _along_rack(spec: MachineDrive, result: Any, knots: Array) -> PlacedDrive:
+    """Return the drive of a rack: the wheel turns as far as the rack has teeth."""
+    end, turn = float(result.centrode_angles(2)[-1]), float(result.pair.law.period)
+    every = np.concatenate([knots + k * turn for k in range(math.ceil(end / turn))])
+    inside = np.union1d(every[every < end], [0.0, end])
+    return PlacedDrive(spec, moved_by(spec, result), inside, end, False, result)
+
+
+def _steady(drive: PlacedDrive) -> bool:
+    """Return whether its mean ratio is that of what stands in its place: not of an open pair."""
+    return drive.closed or any(one.along for one in drive.moved.values())
 
 
 def _laws(drive: PlacedDrive) -> list[tuple[Law, float]]:
@@ -329,4 +345,4 @@ def _evenly(law: Law, drive: PlacedDrive) -> Law:
     """Return the even law in the place of another one."""
     first, last = np.asarray(law(np.array([0.0, drive.period]), 0).c[0])
     way = float(last - first)
-    return linear(way / drive.period if drive.closed else math.copysign(1.0, way), float(first))
+    return linear(way / drive.period if _steady(drive) else math.copysign(1.0, way), float(first))

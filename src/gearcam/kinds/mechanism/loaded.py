@@ -17,7 +17,7 @@ from gearcam.kinds.mechanism.drives import way_of
 from gearcam.kinds.mechanism.load_names import pushed_in, sorts_of, unturned
 from gearcam.kinds.mechanism.load_tables import OUTER
 from gearcam.kinds.mechanism.names import MEMBER, SHAFT, WAY, moves
-from gearcam.linkages.dwells import last_travel
+from gearcam.linkages.dwells import ShortRangeError, last_travel
 from gearcam.linkages.elements import GROUND, MemberPoint
 from gearcam.linkages.measures import TrackMeasures
 from gearcam.linkages.work import (
@@ -171,17 +171,18 @@ class _Efforts:
             raise beyond_limit(what, where, travel, measures.stroke, unit="mm")
         try:
             return last_travel(measures, travel, outer=load.before == OUTER)
-        except ValueError:
+        except ShortRangeError as error:
             what = f"{load.on} has not so much travel before its {load.before} dead centre"
             note = "from_deg and to_deg, or the other dead centre"
-            raise beyond_limit(what, where, travel, None, note, unit="mm") from None
+            raise beyond_limit(what, where, travel, error.travel, note, unit="mm") from None
 
     def _still(self, on: WorkCoordinate) -> list[float]:
         """Return the driver's angles at which something loaded reverses."""
 
         def places(q: Array) -> tuple[Array, Array]:
             acting = Acting(WorkState(self.linkage, q, 0, self.speed), on)
-            return np.asarray(acting.place.c[0]), np.asarray(acting.rate.c[0])
+            found = acting.place.c[0], acting.rate.c[0]
+            return np.broadcast_to(found[0], q.shape), np.broadcast_to(found[1], q.shape)
 
         return extremes(places, self.linkage.knots)[0].tolist()
 
