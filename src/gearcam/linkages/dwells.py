@@ -73,13 +73,13 @@ class ShortRangeError(ValueError):
 
     Parameters
     ----------
-    travel : float, mm or rad
-        The travel before the dead centre that the range holds.
+    asked, travel : float, mm or rad
+        The travel that is asked for, and what the range holds before the dead centre.
     """
 
-    def __init__(self, travel: float) -> None:
+    def __init__(self, asked: float, travel: float) -> None:
         self.travel = travel
-        super().__init__(f"the range has {travel:g} before the dead centre")
+        super().__init__(f"travel {asked:g}: the range has {travel:g} of it before the dead centre")
 
 
 def longest_dwell(measures: TrackMeasures, amount: float) -> DriverRange:
@@ -154,7 +154,7 @@ def last_travel(measures: TrackMeasures, travel: float, *, outer: bool = True) -
     band = (level, np.inf) if outer else (-np.inf, level)
     begin = _leaves(measures, node, -1, band)
     if begin == places[0] and values[0] != level:
-        raise ShortRangeError(float(np.abs(values[: node + 1] - top.value).max()))
+        raise ShortRangeError(travel, float(np.abs(values[: node + 1] - top.value).max()))
     return DriverRange(float(begin), float(places[node]))
 
 

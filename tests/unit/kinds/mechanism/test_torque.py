@@ -443,7 +443,8 @@ def test_a_rack() -> None:
     # the rack goes back along its y axis, the load pulls forward
     agree(found["rack_force_n"], 250.0 * np.ones(len(found["phi1_deg"])))
     agree(found["torque_nm"], found["wheel1_torque_nm"])
-    travel = made.drives[0].result.facts["pair.travel_per_turn_mm"]
+    wheel, rack = pair.pair.teeth  # the wheel turns as far as the rack has teeth
+    travel = rack / wheel * made.drives[0].result.facts["pair.travel_per_turn_mm"]
     agree(made.study("torque").facts["torque.work_j"], 0.25 * travel)
 
 
