@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import fields, replace
 from functools import partial
 from typing import TYPE_CHECKING, Final
@@ -17,8 +17,9 @@ from gearcam.kinds.mechanism.drives import way_of
 from gearcam.kinds.mechanism.load_names import pushed_in, sorts_of, unturned
 from gearcam.kinds.mechanism.load_tables import OUTER
 from gearcam.kinds.mechanism.names import MEMBER, SHAFT, WAY, moves
+from gearcam.kinds.mechanism.wheel_masses import wheel_masses
 from gearcam.linkages.dwells import ShortRangeError, last_travel
-from gearcam.linkages.elements import GROUND, MemberPoint
+from gearcam.linkages.elements import GROUND, Element, MemberPoint
 from gearcam.linkages.measures import TrackMeasures
 from gearcam.linkages.work import (
     GRAVITY,
@@ -45,6 +46,7 @@ from gearcam.numeric.piecewise import extremes, places_between
 if TYPE_CHECKING:
     from gearcam.base.quantities import Row
     from gearcam.kinds.mechanism.design import MechanismDesign
+    from gearcam.kinds.mechanism.drives import PlacedDrive
     from gearcam.kinds.mechanism.load_tables import MachineLoad, MachineSpring
     from gearcam.linkages.linkage import Linkage
 
@@ -56,7 +58,9 @@ _KILO: Final = 1e3
 """N mm of a N m."""
 
 
-def work_of(design: MechanismDesign, linkage: Linkage) -> VirtualWork:
+def work_of(
+    design: MechanismDesign, linkage: Linkage, drives: Sequence[PlacedDrive]
+) -> VirtualWork:
     """Return what acts on a mechanism.
 
     Parameters
@@ -65,6 +69,8 @@ def work_of(design: MechanismDesign, linkage: Linkage) -> VirtualWork:
         The design.
     linkage : Linkage
         Its linkage.
+    drives : sequence of PlacedDrive
+        Its drives; pairs whose designs give a density have masses.
 
     Returns
     -------
@@ -76,22 +82,26 @@ def work_of(design: MechanismDesign, linkage: Linkage) -> VirtualWork:
         If a load begins before the slide's whole travel, or its table does not reach over the
         master's range.
     """
-    return _Efforts(design, linkage).work
+    return _Efforts(design, linkage, drives).work
 
 
 class _Efforts:
     """The efforts on a mechanism, and where they are not smooth."""
 
-    def __init__(self, design: MechanismDesign, linkage: Linkage) -> None:
+    def __init__(
+        self, design: MechanismDesign, linkage: Linkage, drives: Sequence[PlacedDrive]
+    ) -> None:
         self.design, self.speed = design, design.drive[0].speed
         self.parts = {one.name: getattr(design, one.name) for one in fields(design)}
         self.sorts = sorts_of(self.parts)
         self.centers = self._centers()
-        points = [
+        points: list[Element] = [
             MemberPoint(self.centers[number], complex(*mass.at), mass.of)
             for number, mass in enumerate(design.mass)
             if mass.at is not None
         ]
+        self.wheels = list(wheel_masses(drives))
+        points += [one.element for one in self.wheels]
         self.linkage = replace(linkage, elements=(*linkage.elements, *points))
         self.knots: list[float] = []
 
@@ -249,6 +259,10 @@ class _Efforts:
             yield MovedMass(mass.of, mass.mass or 0.0, center, mass.inertia)
             if pull and mass.mass:
                 yield VectorForce(center, mass.mass * pull, GRAVITY)
+        for wheel in self.wheels:
+            yield wheel.effort
+            if pull:
+                yield VectorForce(wheel.center, wheel.mass * pull, GRAVITY)
 
     def _springs(self) -> Iterator[Effort]:
         low, high = self.linkage.span

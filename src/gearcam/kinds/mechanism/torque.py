@@ -18,7 +18,8 @@ from gearcam.base.quantities import TORQUE as NEWTON_METRES
 from gearcam.kinds.mechanism.loaded import work_of
 from gearcam.kinds.mechanism.tables import CompareSpec
 from gearcam.kinds.mechanism.torque_checks import TORQUE, DriverEffort
-from gearcam.linkages.work import GRAVITY, INERTIA, PARTS, SPRINGS
+from gearcam.kinds.mechanism.wheel_masses import BODY
+from gearcam.linkages.work import GRAVITY, INERTIA, PARTS, SPRINGS, MovedMass
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.pictures.charts import Chart, Limit, Line
 from gearcam.results.result import StudyResult
@@ -123,10 +124,13 @@ def study_torque(result: MechanismResult, study: Study, progress: Progress | Non
     if progress is not None:
         progress("torque", 0, 1 + len(others))
     with result.stage("torque"):
-        work = work_of(result.design, result.linkage)
+        work = work_of(result.design, result.linkage, result.drives)
         q = _places(result, work)
         columns = _columns(result, work, q)
-        beside = {name: work_of(other.design, other.linkage) for name, other in others.items()}
+        beside = {
+            name: work_of(other.design, other.linkage, other.drives)
+            for name, other in others.items()
+        }
         shafts = list(shaft_loads(result, work, q))
         columns |= {one.column: one.values for one in shafts}
         effort = _effort(result, work, beside)
@@ -300,7 +304,7 @@ def _facts(
     error = _error(result, work)
     if error is not None:
         tree["error"] = Fact(error, "work left over in a cycle, as a share", unit="")
-    return tree | {"assumptions": Fact(_assumptions(result), "assumed", shown=True)}
+    return tree | {"assumptions": Fact(_assumptions(result, work), "assumed", shown=True)}
 
 
 def _range(result: MechanismResult, work: VirtualWork, meaning: str) -> Fact:
@@ -326,14 +330,14 @@ def _error(result: MechanismResult, work: VirtualWork) -> float | None:
     return sum(abs(own) for own, _ in found) / whole
 
 
-def _assumptions(result: MechanismResult) -> str:
-    design = result.design
-    speed = design.drive[0].speed
+def _assumptions(result: MechanismResult, work: VirtualWork) -> str:
+    heavy = [one.member for one in work.efforts if isinstance(one, MovedMass)]
+    names = ", ".join(name.removesuffix(BODY) for name in heavy)
     words = [
         "no friction",
-        "the driver turns evenly" if speed else "at rest, without inertia",
-        f"masses of {', '.join(one.of for one in design.mass)}" if design.mass else "no masses",
-        "gravity" if design.gravity.given and design.mass else "no gravity",
+        "the driver turns evenly" if result.design.drive[0].speed else "at rest, without inertia",
+        f"masses of {names}" if names else "no masses",
+        "gravity" if any(one.part == GRAVITY for one in work.efforts) else "no gravity",
     ]
     return ", ".join(words)
 

@@ -311,6 +311,45 @@ class TestMasses:
         agree(found.columns["wheel2_torque_nm"], 0.5 * (100.0 * pi / 30.0) ** 2 * slope)
         agree(found.columns["torque_nm"], found.columns["wheel2_torque_nm"] * ratio)
 
+    @pytest.mark.parametrize("placed", [{}, {"mirror": True, "turn_deg": 20}])
+    def test_wheels_of_a_density(self, placed: dict[str, Any]) -> None:
+        """Each turns about its shaft, its centre of mass is beside it."""
+        pair = gc.load("profiles/nail_machine_two_phase.toml").with_({"blank.density_kg_m3": 7850})
+        facts = gc.build(pair).facts
+        drive = {"name": "pair", "pair": pair, "speed_rpm": 30, **placed}
+        load = [{"on": "C", "force_n": 0}]
+        found = behind_a_pair(drive=[drive], load=load, gravity={"direction_deg": -70})
+        q = np.radians(found.columns["phi1_deg"])
+        place, ratio, slope = found.result.linkage.track("pair.wheel2", q, 2).derivatives()
+        side = -1.0 if placed else 1.0
+
+        def weight(wheel: int, turn: Any, rate: Any) -> Any:
+            mass = facts[f"gears.{wheel}.mass.mass_kg"]
+            x, y, _ = facts[f"gears.{wheel}.mass.centroid_mm"]
+            own = (x + 1j * side * y) * np.exp(1j * (turn + radians(placed.get("turn_deg", 0.0))))
+            pull = 9.80665 * np.exp(1j * radians(-70.0))
+            return -1e-3 * mass * np.real(np.conj(pull) * 1j * own) * rate
+
+        inertia = 1e-6 * facts["gears.1.mass.inertia_kg_mm2"] * pi**2 * ratio * slope
+        second = weight(1, place, ratio) + inertia
+        agree(found.columns["wheel1_torque_nm"], second)
+        first = weight(0, -side * q, -side)
+        agree(found.columns["torque_nm"], first + second)
+        assert "pair.wheel1, pair.wheel2" in found.facts["torque.assumptions"]
+
+    def test_a_rack_of_a_density(self) -> None:
+        pair = gc.load("profiles/feeder.toml").with_({"blank.density_kg_m3": 7850})
+        drive = {"name": "pair", "pair": pair, "speed_rpm": 10}
+        load = [{"on": "pair.rack", "force_n": 0}]
+        tables = {"drive": [drive], "load": load, "gravity": DOWN, "output": {"files": ["csv"]}}
+        made = gc.build(gc.design({"kind": "mechanism", "name": "mine", **tables}))
+        found = made.study("torque").columns
+        q = np.radians(found["phi1_deg"])
+        _, _, second = made.linkage.track("pair.rack", q, 2).derivatives()
+        mass = made.drives[0].result.facts["gears.1.mass.mass_kg"]
+        # it goes down by its own weight
+        agree(found["rack_force_n"], -mass * (9.80665 + 1e-3 * (pi / 3.0) ** 2 * second))
+
 
 def behind_a_pair(**changes: Any) -> Any:
     tables = {"kind": "mechanism", "name": "mine", **MACHINES["slide behind a pair"], **changes}
