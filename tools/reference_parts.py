@@ -34,6 +34,7 @@ GROUPS: Final = {
     "mechanisms": "Motion",
     "torque of a mechanism": "Torque (`gearcam torque`)",
     "globoidal cams": "Walls and hold",
+    "solids of globoidal cams": "Solids",
     "solids of cams in space": "Solids",
     "forces": "Forces (`gearcam forces`)",
     "followed profiles": "Followed profile (`gearcam follow`)",

@@ -16,6 +16,7 @@ import numpy as np
 
 from gearcam.numeric.arrays import Array
 from gearcam.spatial.cam import SpatialCam, SpatialWall
+from gearcam.spatial.envelope import Roller, RollerAxis
 from gearcam.spatial.surface import Cylinder
 
 _COARSE: Final = 24
@@ -64,21 +65,35 @@ def scallop(cam: SpatialCam, steps: int, places: int) -> float:
     """
     step = 2.0 * math.pi / steps
     theta, worst = step * np.arange(float(steps)), 0.0
-    slope = math.cos(cam.tool.half_angle)
     for wall in cam.walls:
         x = np.tile(_along(cam, places), (steps, 1))
         points = wall.contact(theta + 0.5 * step, x).points
-        heights = []
-        for near in (theta, theta + step):
-            axis = cam.axis(near, wall.side)
-            beside = points - axis.point[0][:, None, :]
-            at = np.einsum("nki,ni->nk", beside, axis.direction[0])
-            far = np.linalg.norm(beside - at[..., None] * axis.direction[0][:, None, :], axis=-1)
-            heights.append(slope * (far - cam.tool.radii(at)))
+        heights = [
+            beyond_roller(cam.axis(near, wall.side), cam.tool, points)
+            for near in (theta, theta + step)
+        ]
         angle = np.abs(np.diff(_touching(wall, theta, places)[:, :places], axis=1)).max()
         chord = cam.tool.radius_at(cam.outer_radius) * (1.0 - math.cos(0.5 * float(angle)))
         worst = max(worst, float(np.minimum(*heights).max()) + chord)
     return worst
+
+
+def beyond_roller(axis: RollerAxis, roller: Roller, points: Array) -> Array:
+    """Return how far points are outside a roller, (n, k), mm; below 0 they are inside.
+
+    Parameters
+    ----------
+    axis : RollerAxis
+        Its axis at n cam angles.
+    roller : Roller
+        Its shape.
+    points : (n, k, 3) array, mm
+        Points for each of these, in the frame of the cam.
+    """
+    beside = points - axis.point[0][:, None, :]
+    at = np.einsum("nki,ni->nk", beside, axis.direction[0])
+    far = np.linalg.norm(beside - at[..., None] * axis.direction[0][:, None, :], axis=-1)
+    return math.cos(roller.half_angle) * (far - roller.radii(at))
 
 
 def _along(cam: SpatialCam, places: int) -> Array:

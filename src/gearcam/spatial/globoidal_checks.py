@@ -17,6 +17,9 @@ from gearcam.spatial.globoidal import GloboidalCam
 KIND: Final = "globoidal cams"
 """Their group."""
 
+SOLID: Final = "solids of globoidal cams"
+"""The group of what is looked at where a solid is made."""
+
 _SLACK: Final = 1e-6
 """Length that may be missing without a finding, over the length: a value typed in digits."""
 
@@ -71,6 +74,20 @@ def undercut(subject: Subject, limit: float) -> Iterator[Remark]:  # noqa: ARG00
             f"{wall.key} wall, {wall.spread.place}",
             wall.spread.value,
         )
+
+
+@check("carved-solid", kind=SOLID, severity="note", unit="mm")
+def carved_solid(subject: tuple[int, float], limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Note a solid that is not made from its walls, since one is undercut.
+
+    Looks at: the scallops that rollers leave which are subtracted at many angles.
+    """
+    count, height = subject
+    yield Remark(
+        f"A wall is undercut: the rib is what the rollers leave at {count} cam angles in a turn, "
+        f"by manifold3d. Scallops between them are up to {formatted(height, 3)} mm high.",
+        value=height,
+    )
 
 
 @check("loose-turret", kind=KIND, severity=("warning", "error"), unit="mm")

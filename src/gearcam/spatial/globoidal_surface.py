@@ -26,6 +26,9 @@ from gearcam.spatial.surface import Surface, distances, revolved, welded
 _BEYOND: Final = 0.05
 """How far the rib goes on beyond top and floor, over the radius of a roller."""
 
+MARGIN: Final = 0.02
+"""What a body has more that is cut by rollers, over the difference of top and half the length."""
+
 _SAG: Final = 0.25
 """Largest chord error of sheets from wall to wall, over how far the rib goes on there."""
 
@@ -122,7 +125,7 @@ def core_surface(cam: GloboidalCam, steps: int) -> Surface:
     return revolved([(0.0, -longer), (0.0, longer), *outside], steps)
 
 
-def blank_surface(cam: GloboidalCam, bore: float, steps: int) -> Surface:
+def blank_surface(cam: GloboidalCam, bore: float, steps: int, margin: float = 0.0) -> Surface:
     """Return the surface of what the cam is made from: a globoid with a bore.
 
     Parameters
@@ -131,13 +134,16 @@ def blank_surface(cam: GloboidalCam, bore: float, steps: int) -> Surface:
         As of `rib_surface`.
     bore : float, mm
         Radius of the bore.
+    margin : float, mm
+        What it has more at both faces and outside.
 
     Returns
     -------
     Surface
     """
-    half = cam.half_length
-    return revolved([(bore, -half), (bore, half), *_arc(cam, cam.top, half, steps)], steps)
+    half = cam.half_length + margin
+    outside = _arc(cam, cam.top - margin, half, steps)
+    return revolved([(bore, -half), (bore, half), *outside], steps)
 
 
 def outer_radius(cam: GloboidalCam) -> float:

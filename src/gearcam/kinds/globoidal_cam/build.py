@@ -11,18 +11,16 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from gearcam.base.errors import beyond_limit
 from gearcam.base.findings import Finding, in_order, run_checks
-from gearcam.base.numerals import formatted
 from gearcam.kinds.globoidal_cam.design import GloboidalCamDesign
 from gearcam.kinds.shared import turn_in_steps
 from gearcam.laws.indexing import IndexProgram, index_program
 from gearcam.numeric.arguments import angles
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
-from gearcam.parts.solids import Mesh, ribbed
+from gearcam.parts.solids import Mesh, carved, ribbed
 from gearcam.results.result import Result
-from gearcam.spatial.globoidal import GloboidalCam, GloboidalWall
+from gearcam.spatial.globoidal import GloboidalCam
 from gearcam.spatial.globoidal_make import make_globoidal
 
 if TYPE_CHECKING:
@@ -37,6 +35,12 @@ TURRET: Final = "turret"
 
 _SHOWN: Final = 360
 """Largest number of cam angles of a solid that is only looked at."""
+
+_CARVED: Final = 120
+"""Largest number of cam angles of a turn at which rollers cut a solid: some seconds."""
+
+_ROUND: Final = 4
+"""Chords of its blank for each of them: the error of its volume is that of the walls then."""
 
 _SAGITTA: Final = 0.01
 """Least chord error of the rollers shown, mm."""
@@ -81,11 +85,14 @@ class GloboidalCamResult(Result):
     @cached_property
     def checked(self) -> tuple[Finding, ...]:
         """Findings of the checks, errors first."""
-        from gearcam.spatial.globoidal_checks import KIND
+        from gearcam.spatial.globoidal_checks import KIND, SOLID
 
-        cam, bore = self.cam, self.design.blank.bore
+        cam, bore, limits = self.cam, self.design.blank.bore, self.design.limits
         with self.stage("checks"):
-            return in_order(run_checks(KIND, (cam, bore), self.design.limits))
+            found = [*run_checks(KIND, (cam, bore), limits)]
+            if self.solid_asked and self.carved:
+                found += run_checks(SOLID, (self.solid_steps, self.chord_error), limits)
+            return in_order(found)
 
     @property
     def angles(self) -> Array:
@@ -152,44 +159,54 @@ class GloboidalCamResult(Result):
         ----------
         steps, places : int
             Numbers of cam angles in a turn, and of places along the roller.
-
-        Raises
-        ------
-        InfeasibleError
-            If a wall is undercut.
         """
         from gearcam.spatial.globoidal_surface import blank_surface, core_surface, rib_surface
 
-        cam, bore = self.cam, self.design.blank.bore
-        for wall in cam.walls:
-            _demand_whole(wall)
+        cam, bore, around = self.cam, self.design.blank.bore, steps
         with self.stage("solid"):
-            mesh = ribbed(
-                _mesh(core_surface(cam, steps)),
-                _mesh(rib_surface(cam, steps, places)),
-                _mesh(blank_surface(cam, bore, steps)),
-            )
+            if self.carved:
+                from gearcam.spatial.globoidal_carving import roller_corners, uncut_surface
+
+                around = _ROUND * steps
+                uncut = _mesh(uncut_surface(cam, around))
+                rib = carved(uncut, roller_corners(cam, steps, places))
+            else:
+                rib = _mesh(rib_surface(cam, steps, places))
+            core, blank = core_surface(cam, around), blank_surface(cam, bore, around)
+            mesh = ribbed(_mesh(core), rib, _mesh(blank))
             return mesh.mirrored if cam.clockwise else mesh
+
+    @property
+    def carved(self) -> bool:
+        """Whether the rib is made by cutting with the rollers: a wall is undercut."""
+        return self.cam.undercut
+
+    @property
+    def solid_steps(self) -> int:
+        """Number of cam angles of a turn in the solid; less where it is carved."""
+        return min(self.steps, _CARVED) if self.carved else self.steps
 
     @cached_property
     def mesh(self) -> Mesh:
         """The cam as a closed mesh, mm."""
-        return self.mesh_of(self.steps, self.design.output.wall_points)
+        return self.mesh_of(self.solid_steps, self.design.output.wall_points)
 
     @cached_property
     def volume(self) -> tuple[float, float]:
         """Volume of the mesh, mm^3, and its error, from the volume of a mesh of half the steps."""
         places = self.design.output.wall_points
-        coarse = self.mesh_of(self.steps // 2, max(2, (places + 1) // 2)).volume
+        coarse = self.mesh_of(self.solid_steps // 2, max(2, (places + 1) // 2)).volume
         fine = self.mesh.volume
         return fine, abs(fine - coarse) / 3.0
 
     @cached_property
     def chord_error(self) -> float:
-        """Largest distance of the walls from the mesh, mm."""
-        from gearcam.spatial.globoidal_surface import chord_error
-
-        return chord_error(self.cam, self.steps, self.design.output.wall_points)
+        """Largest distance of the walls from the mesh, mm; of a carved one its scallops."""
+        if self.carved:
+            from gearcam.spatial.globoidal_carving import scallop as error
+        else:
+            from gearcam.spatial.globoidal_surface import chord_error as error
+        return error(self.cam, self.solid_steps, self.design.output.wall_points)
 
     @property
     def solid_asked(self) -> bool:
@@ -215,10 +232,10 @@ class GloboidalCamResult(Result):
         from gearcam.spatial.globoidal_surface import turret_surface
 
         turret, places = self.design.turret, self.design.output.wall_points
-        chord = max(chords, _SAGITTA)
-        around = circle_segments(2.0 * turret.roller_radius, chord)
+        around = circle_segments(2.0 * turret.roller_radius, max(chords, _SAGITTA))
+        fine = self.solid_steps > _SHOWN
         meshes = {
-            CAM: self.mesh_of(min(self.steps, _SHOWN), places) if chords else self.mesh,
+            CAM: self.mesh_of(_SHOWN, places) if chords and fine else self.mesh,
             TURRET: _mesh(turret_surface(self.cam, turret.hub, around)),
         }
         poses = in_space(self, np.array([self.design.output.pose]))
@@ -237,19 +254,3 @@ class GloboidalCamResult(Result):
 
 def _mesh(made: Surface) -> Mesh:
     return Mesh(vertices=made.vertices, triangles=made.triangles)
-
-
-def _demand_whole(wall: GloboidalWall) -> None:
-    """Refuse a wall that the rollers cut away at another angle."""
-    if not wall.undercut:
-        return
-    most = wall.largest_roller.value - 0.5 * wall.cam.clearance
-    at = formatted(math.degrees(wall.spread.theta), 5)
-    raise beyond_limit(
-        f"the {wall.key} wall is undercut at {at} deg, and has no whole surface",
-        "turret.roller_radius_mm",
-        wall.cam.roller.radius,
-        most,
-        "the limit is the largest roller without undercut",
-        near=most,
-    )

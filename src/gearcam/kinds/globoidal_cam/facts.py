@@ -129,7 +129,9 @@ def _accuracy(result: GloboidalCamResult) -> Tree | None:
         "chord_mm": result.chord_error,
         "volume_mm3": result.volume[1],
         "how": {
-            "chord_mm": "distance of the walls from the middles of all edges of the mesh",
+            "chord_mm": "height of the scallops between the positions of the rollers that cut it"
+            if result.carved
+            else "distance of the walls from the middles of all edges of the mesh",
             "volume_mm3": "a third of the change from a mesh of half the steps",
         },
     }

@@ -58,7 +58,7 @@ KIND: Final = Kind(
     later=not_made,
     formats=GLOBOIDAL_FORMATS,
     check_modules=("gearcam.spatial.globoidal_checks",),
-    check_groups=("globoidal cams",),
+    check_groups=("globoidal cams", "solids of globoidal cams"),
     study_tables={"accuracy": "accuracy"},
     example={
         "index": {"law": "modified-sine", "angle_deg": 120},

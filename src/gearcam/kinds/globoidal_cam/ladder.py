@@ -23,7 +23,7 @@ def _solid(result: GloboidalCamResult) -> Ladder:
     Places along the roller are refined with them, so that the error falls with the number of
     points. The truth is extrapolated from a level twice as fine as the finest and from that one.
     """
-    own, places = result.steps, result.design.output.wall_points
+    own, places = result.solid_steps, result.design.output.wall_points
     levels = sorted({max(_LEAST, own // part) for part in _PARTS})
 
     def make(level: float) -> Mesh:
