@@ -146,7 +146,7 @@ def held(cam: GloboidalCam) -> list[float]:
     for which in (0, 1):
         worst = 0.0
         for sign in (1.0, -1.0):
-            theta = np.linspace(0.0, 2.0 * math.pi, 2001)
+            theta, far = np.linspace(0.0, 2.0 * math.pi, 2001), np.zeros(1)
             for _ in range(3):  # the worst place is a corner, where another roller takes over
                 far = farthest(cam, theta, sign)[which]
                 k = int(far.argmax())

@@ -181,10 +181,10 @@ def test_the_scene_moves_rollers_along_the_grooves() -> None:
     grooves = [one.shape for one in cam.features if one.layer == "GROOVE"]
     assert len(grooves) >= 2
     middle = 51.25
-    at = turret.pose.shift[200]
+    at = complex(turret.pose.shift[200])
     centre = 1j * middle * math.pi / 8 + (100.0 - middle) * math.radians(160.0)
     assert at == pytest.approx(centre)
-    edges = np.concatenate([one.points for one in grooves])
+    edges: Any = np.concatenate([one.points for one in grooves])
     edges = edges[edges.imag < at.imag]  # the upper ones are beyond the face
     half = middle * math.atan2(8.005, middle)
     assert np.abs(edges - at).min() == pytest.approx(half, rel=0.02)
