@@ -125,6 +125,14 @@ MACHINES: dict[str, dict[str, Any]] = {
         ],
         "output": {"files": ["svg", "dxf"]},
     },
+    "Geneva wheel": {
+        "drive": [MOTOR],
+        "geneva": [
+            {"name": "wheel", "on": "motor", "slots": 5, "length_mm": 50, "angle_deg": 180,
+             "direction_deg": 20}
+        ],
+        "output": {"files": ["svg", "dxf"]},
+    },
     "cross": {
         "drive": [MOTOR],
         "crank": [{"name": "crank", "on": "motor", "joint": "B", "length_mm": 40}],

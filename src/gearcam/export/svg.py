@@ -136,10 +136,10 @@ def _tone(feature: Feature) -> int:
 
 
 def _has_area(feature: Feature) -> bool:
-    """Return whether a feature is drawn with an area: a path only if it is closed and filled."""
+    """Return whether a feature is drawn with an area: a path only if it is an edge."""
     shape, kind = feature.shape, feature.kind
     if isinstance(shape, Path):
-        return shape.closed and kind in drawings.FILLED
+        return shape.closed and kind in (*drawings.FILLED, *drawings.THROUGH)
     return not isinstance(shape, Cross) and kind != drawings.GHOST
 
 

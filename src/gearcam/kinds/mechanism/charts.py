@@ -75,7 +75,9 @@ def _chart(angle: bool, order: int, result: MechanismResult) -> Chart | None:
     if not outputs:
         return None
     lines = [line for name, other in drives.items() for line in _lines(other, name, outputs, order)]
-    names = ", ".join(dict.fromkeys(one.name.removesuffix(".angle") for one in outputs))
+    names = ", ".join(
+        dict.fromkeys(one.name.removesuffix(".angle").removesuffix(".turn") for one in outputs)
+    )
     word = "direction" if angle and not order else _WORDS[order]
     called = f"Angular {word}" if angle and order else word.capitalize()
     return Chart(

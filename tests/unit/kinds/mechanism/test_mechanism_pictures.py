@@ -48,6 +48,7 @@ JOINTS = {
     "cylinder": {"ram": ("A",), "arm": ("D", "C")},
     "door": {"leaf": ("B",)},
     "lift": {"gate": ("hook",)},
+    "Geneva wheel": {},
     "cross": {"crank": ("B",), "block": ("B", "S")},
 }  # fmt: skip
 """By machine, the joints that each member is drawn through, as its table says."""
@@ -219,6 +220,15 @@ def test_what_is_lifted_has_its_wheel_beside_the_chain() -> None:
     assert np.abs(ends[-1] - gate.pose.shift).max() < ROUNDED
     lifted = gate.pose.shift.imag - gate.pose.shift[0].imag
     assert np.abs(lifted - 50.0 * wheel.pose.turn).max() < ROUNDED
+
+
+def test_the_middle_of_a_wheel_that_surrounds_its_crank_is_open() -> None:
+    wheel = {"name": "wheel", "on": "motor", "slots": 4, "length_mm": 50, "internal": True}
+    document = {"drive": MACHINES["four-bar"]["drive"], "geneva": [wheel]}
+    made = gc.design({"kind": "mechanism", "name": "drawn", **document})
+    drawn = gc.build(made).files("svg")["poses.svg"].decode()
+    (opening,) = re.findall(r'<path class="member-bore" fill="(#\w+)"', drawn)
+    assert opening == "#ffffff"
 
 
 def test_a_cylinder_holds_its_rod() -> None:
