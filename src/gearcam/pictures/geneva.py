@@ -16,9 +16,13 @@ import numpy as np
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.parts.shapes import Circle
 from gearcam.pictures.drawings import BORE, CENTER, MEMBER, Cross, Feature, Path
+from gearcam.pictures.links import link
 
 _PIN: Final = 0.09
 """Radius of the pin, as a share of the crank."""
+
+_ARM: Final = 1.4
+"""Half width of the crank, in radii of the pin."""
 
 _LOCK: Final = 0.82
 """Radius of the locking disc, as a share of the crank: inside the pin's path."""
@@ -26,7 +30,7 @@ _LOCK: Final = 0.82
 _RIM: Final = 1.3
 """What an internal wheel has outside its slots, as a share of the crank."""
 
-_STEPS: Final = 25
+_STEPS: Final = 65
 """Corners of an arc."""
 
 
@@ -54,14 +58,18 @@ def geneva_wheel(crank: float, slots: int, *, internal: bool) -> tuple[Feature, 
     if internal:
         rim = Circle(center=0j, diameter=2.0 * (distance + _RIM * crank))
         tooth = _inside(distance, mouth, crank, pin)
-        edge = Path(points=np.outer(turns, tooth).ravel())
+        edge = Path(points=_repeated(tooth, turns))
         return (
             Feature(layer=MEMBER, shape=rim),
             Feature(layer=f"{MEMBER}_{BORE}", shape=edge),
             center,
         )
     tooth = _outside(distance, mouth, crank, pin, pitch)
-    return Feature(layer=MEMBER, shape=Path(points=np.outer(turns, tooth).ravel())), center
+    return Feature(layer=MEMBER, shape=Path(points=_repeated(tooth, turns))), center
+
+
+def _repeated(tooth: Plane, turns: Plane) -> Plane:
+    return np.asarray(np.outer(turns, tooth), dtype=np.complex128).ravel()
 
 
 def _outside(distance: float, mouth: float, crank: float, pin: float, pitch: float) -> Plane:
@@ -74,12 +82,15 @@ def _outside(distance: float, mouth: float, crank: float, pin: float, pitch: flo
     half = math.acos(min(1.0, cosine))
     way = -middle / abs(middle)
     arc = middle + lock * way * np.exp(1j * _spread(half, -half))
-    return np.concatenate([slot, arc])
+    return np.asarray(np.concatenate([slot, arc]), dtype=np.complex128)
 
 
 def _inside(distance: float, mouth: float, crank: float, pin: float) -> Plane:
     """Return the edge of an internal wheel's opening from one slot to the next."""
-    return _slot(distance + crank + 0.5 * pin, math.sqrt(mouth**2 - pin**2), pin)
+    slot = _slot(distance + crank + 0.5 * pin, math.sqrt(mouth**2 - pin**2), pin)
+    beside, pitch = math.asin(pin / mouth), 2.0 * math.acos(mouth / distance)
+    rim = mouth * np.exp(1j * _spread(beside, pitch - beside))
+    return np.asarray(np.concatenate([slot, rim[1:-1]]), dtype=np.complex128)
 
 
 def _slot(bottom: float, mouth: float, pin: float) -> Plane:
@@ -87,7 +98,8 @@ def _slot(bottom: float, mouth: float, pin: float) -> Plane:
     inward = 1.0 if bottom < mouth else -1.0
     end = bottom + inward * pin
     round_ = end - inward * pin * np.exp(1j * inward * _spread(0.5 * math.pi, -0.5 * math.pi))
-    return np.concatenate([[mouth - 1j * pin], round_, [mouth + 1j * pin]])
+    edge = np.concatenate([[mouth - 1j * pin], round_, [mouth + 1j * pin]])
+    return np.asarray(edge, dtype=np.complex128)
 
 
 def _spread(first: float, last: float) -> Array:
@@ -99,15 +111,14 @@ def geneva_crank(crank: float, slots: int, *, internal: bool) -> tuple[Feature, 
     pitch, pin = math.tau / slots, _PIN * crank
     distance, lock = crank / math.sin(0.5 * pitch), _LOCK * crank
     mouth = distance * math.cos(0.5 * pitch)
-    bar = np.array([-1j, 1 - 1j, 1 + 1j, 1j]) * pin * 1.4
-    bar[1:3] += crank
-    made = [Feature(layer=MEMBER, shape=Path(points=bar))]
+    made = [*link((0j, complex(crank)), _ARM * pin)[:1]]
     if not internal:
         half = math.acos(min(1.0, (distance**2 + lock**2 - mouth**2) / (2.0 * distance * lock)))
         other = math.asin(min(1.0, lock * math.sin(half) / mouth))
         around = lock * np.exp(1j * _spread(half, math.tau - half))
         bite = distance + mouth * np.exp(1j * _spread(math.pi + other, math.pi - other))
-        disc = Path(points=np.concatenate([around, bite[1:-1]]))
+        edge = np.concatenate([around, bite[1:-1]])
+        disc = Path(points=np.asarray(edge, dtype=np.complex128))
         made.insert(0, Feature(layer=MEMBER, shape=disc))
     made.append(Feature(layer=f"{MEMBER}_{BORE}", shape=Circle(center=crank, diameter=2.0 * pin)))
     made.append(Feature(layer=CENTER, shape=Cross(center=0j, size=3.0 * pin)))

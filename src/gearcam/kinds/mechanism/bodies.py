@@ -55,6 +55,9 @@ _PIECES: Final = 24
 CHAIN_WHEEL: Final = "chain_wheel"
 """Name of the wheel of a chain."""
 
+CHAIN: Final = "chain"
+"""What its pieces are called."""
+
 _BARREL: Final = 0.8
 """Length of a cylinder's barrel, relative to the cylinder at its shortest."""
 
@@ -401,7 +404,7 @@ def _pieces(start: Plane, end: Plane) -> Iterator[MovingBody]:
         at = start + np.exp(1j * turn) * share * (long - size)
         piece = Feature(layer=MEMBER, shape=shape)
         yield MovingBody(
-            name=f"chain_{k + 1}", called="chain", features=(piece,), pose=Pose(turn, at)
+            name=f"chain_{k + 1}", called=CHAIN, features=(piece,), pose=Pose(turn, at)
         )
 
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from gearcam.kinds.mechanism.bodies import CHAIN_WHEEL, bodies, traced
+from gearcam.kinds.mechanism.bodies import CHAIN, CHAIN_WHEEL, bodies, traced
 from gearcam.kinds.mechanism.scene import shown_at
 from gearcam.kinds.mechanism.traces import path_within
 from gearcam.pictures.drawings import (
@@ -132,9 +132,9 @@ def _names(
     named += [one.joint for one in others]
     joints = [(name, complex(np.asarray(known.jet(name).c[0]).flat[0])) for name in named]
     members = [
-        (body.called, complex(body.pose[0].apply(_pins(body).mean())))
+        (body.called, complex(body.pose[0].apply(_pins(body).mean() if len(_pins(body)) else 0j)))
         for body in every
-        if len(_pins(body))
+        if any(one.kind == MEMBER for one in body.features) and body.called != CHAIN
     ]
     return [*joints, *members]
 

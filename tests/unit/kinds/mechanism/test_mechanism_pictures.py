@@ -229,6 +229,10 @@ def test_the_middle_of_a_wheel_that_surrounds_its_crank_is_open() -> None:
     drawn = gc.build(made).files("svg")["poses.svg"].decode()
     (opening,) = re.findall(r'<path class="member-bore" fill="(#\w+)"', drawn)
     assert opening == "#ffffff"
+    scene = gc.build(made).scene(4)
+    assert scene is not None
+    wheel, near = body(scene, "wheel"), 50.0 / math.sin(math.pi / 4) * math.cos(math.pi / 4)
+    assert np.abs(wheel.features[1].shape.points).min() == pytest.approx(near)
 
 
 def test_a_cylinder_holds_its_rod() -> None:
@@ -357,7 +361,8 @@ def test_the_picture_has_all_names(name: str) -> None:
     texts = [one.text for one in root.findall(".//s:text[@class='name']", space)]
     joints = {one.name for one in (*result.design.joint, *result.design.point)}
     joints |= {one.joint for one in (*result.design.crank, *result.design.dyad)}
-    members = {one.name for one in (*result.design.crank, *result.design.hoist)}
+    design = result.design
+    members = {one.name for one in (*design.crank, *design.hoist, *design.geneva)}
     assert joints | members <= set(texts)
     classes = {one.get("class") for one in root.iter() if one.get("class")}
     assert {"member", "ghost"} <= classes
