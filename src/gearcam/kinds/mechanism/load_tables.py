@@ -235,7 +235,7 @@ class MemberMass(ShortRepr):
 
 @dataclass(frozen=True, kw_only=True)
 class MachineSpring(ShortRepr):
-    """A spring or a damper between two joints, two members, or the frame and one slide or member.
+    """A spring or a damper: between joints or members, on a slide, on a member or a shaft.
 
     A straight spring pulls its ends together with the preload and the stiffness times what it is
     longer than its free length; negative, it pushes. One about an angle pulls the second member
@@ -253,7 +253,7 @@ class MachineSpring(ShortRepr):
         default=None,
         min_length=1,
         example="slide",
-        doc="a slide, a member or a shaft that is joined to the frame",
+        doc="a slide that is joined to its guide, or a member or shaft that is joined to the frame",
     )
     between: tuple[str, str] | None = param(
         TEXT,

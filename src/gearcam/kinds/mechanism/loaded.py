@@ -194,7 +194,8 @@ class _Efforts:
             found = acting.place.c[0], acting.rate.c[0]
             return np.broadcast_to(found[0], q.shape), np.broadcast_to(found[1], q.shape)
 
-        return extremes(places, self.linkage.knots)[0].tolist()
+        found, knots = extremes(places, self.linkage.knots)[0], self.linkage.knots
+        return found[np.abs(found[:, None] - knots).min(axis=1) > _SLACK].tolist()
 
     def _law(self, load: MachineLoad, on: WorkCoordinate, number: int) -> ForceLaw:
         """Return a load's size, N or N mm."""
@@ -288,7 +289,9 @@ class _Efforts:
 
     def _joined(self, spring: MachineSpring) -> WorkCoordinate:
         if spring.between is None:
-            return self.coordinate(spring.on or "")
+            on = self.coordinate(spring.on or "")
+            # between the slide and its guide, which may move
+            return ShaftTurn(on.slide) if isinstance(on, PointWay) else on
         first, second = spring.between
         if self.sorts[first] == MEMBER:
             return MemberTurn(second, first)
