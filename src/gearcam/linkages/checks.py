@@ -24,8 +24,8 @@ from gearcam.linkages.transmission import ADMISSIBLE, Transmission
 KIND: Final = "mechanisms"
 """Their group."""
 
-_JUMP: Final = 1e-7
-"""Jump of a derivative, as a share of its largest value, that rounding does not make."""
+_JUMP, _NOISE = 1e-7, 1e-9
+"""Jump of a derivative, as a share of its largest value and in mm or rad, above rounding."""
 
 _WORSE: Final = 1.01
 """Factor from which a larger acceleration is told."""
@@ -150,12 +150,12 @@ def change_point(machine: CheckedMachine, limit: float) -> Iterator[Remark]:  # 
 def _jumps(measures: TrackMeasures, order: int) -> Iterator[tuple[float, float]]:
     """Yield the knots at which a derivative jumps, and by how much."""
     places, values = measures.extremes[order]
-    size = float(np.abs(values).max())
+    least = max(_JUMP * float(np.abs(values).max()), _NOISE)
     for knot in measures.knots[1:-1]:
         there = values[places == knot]
-        if there.size > 1 and np.ptp(there) > _JUMP * size:
+        if there.size > 1 and np.ptp(there) > least:
             yield float(knot), float(there[-1] - there[0])
-    if measures.closed and abs(values[0] - values[-1]) > _JUMP * size:
+    if measures.closed and abs(values[0] - values[-1]) > least:
         yield float(measures.knots[0]), float(values[0] - values[-1])
 
 

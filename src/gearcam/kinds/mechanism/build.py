@@ -325,7 +325,7 @@ class MechanismResult(Result):
         machine = self._to_check
         with self.stage("checks"):
             own = run_checks(checks.KIND, machine, self.design.limits)
-            return in_order((*below, *own, *self._dwells_missed()))
+            return in_order((*below, *own, *self._dwells_missed(), *self._second_centers()))
 
     @property
     def _to_check(self) -> checks.CheckedMachine:
@@ -509,6 +509,30 @@ class MechanismResult(Result):
                     limit=_DEG * one.least,
                     unit="deg",
                     where=f"dwell[{number}], from {formatted(_DEG * found.begin, 6)} deg",
+                )
+
+    def _second_centers(self) -> Iterator[Finding]:
+        """Yield intervals before a dead centre that is reached a second time."""
+        for number, (one, found) in enumerate(
+            zip(self.design.interval, self.intervals, strict=True)
+        ):
+            output, _ = self.asked("interval", number)
+            measures = self.measures_of(output)
+            outer = one.before == "outer"
+            top = (measures.largest() if outer else measures.least()).value
+            same = [
+                center.place
+                for center in measures.dead_centers
+                if center.outer == outer and math.isclose(center.value, top, rel_tol=1e-9)
+            ]
+            if len(same) > 1:
+                places = ", ".join(f"{formatted(_DEG * place, 6)} deg" for place in same)
+                yield Finding(
+                    code="second-dead-center",
+                    severity="note",
+                    message=f"{one.on} reaches this dead centre more than once in a cycle, at "
+                    f"{places}: the interval is before the first of them.",
+                    where=f"interval[{number}], to {formatted(_DEG * found.end, 6)} deg",
                 )
 
     def measures_of(self, one: Output) -> TrackMeasures:

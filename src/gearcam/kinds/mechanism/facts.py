@@ -120,6 +120,8 @@ def _four_bars(result: MechanismResult) -> Tree:
         if dyad.type != "RRR" or ends[0] not in cranks or ends[1] not in fixed:
             continue
         crank = cranks[ends[0]]
+        if crank.on.endswith(".follower"):  # which swings: its class says nothing
+            continue
         shaft = result.linkage.shaft_of(crank.name)
         base = abs(fixed[ends[1]] - shaft)
         if base:
@@ -165,6 +167,7 @@ def _output(result: MechanismResult, one: Output) -> Tree:
             scale * measures.stroke,
             f"{'turn' if measures.rise else 'stroke'} of {one.stem}",
             shown=True,
+            noise=1e-9,
         ),
         "dead_centers_deg": [_DEG * center.place for center in centers] or None,
         "time_ratio": None

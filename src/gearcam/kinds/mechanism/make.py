@@ -63,6 +63,7 @@ def make_linkage(design: MechanismDesign, drives: Sequence[PlacedDrive]) -> Link
         If it does not close over the master's whole range.
     """
     (low, high), closed = _span(drives, _indexed(design))
+    _demand_part(design, closed)
     inner = [one.knots_in(low, high, not number) for number, one in enumerate(drives)]
     knots = np.unique(np.concatenate([[low, high], *inner]))
     parts = list(in_order(_elements(design, drives)))
@@ -98,9 +99,8 @@ def _indexed(design: MechanismDesign) -> int:
 def _span(drives: Sequence[PlacedDrive], least: int) -> tuple[tuple[float, float], bool]:
     """Return the master's first and last angle, and whether the motion repeats after them."""
     master = drives[0]
-    if not master.closed:
-        low, high = float(master.knots[0]), float(master.knots[-1])
-        return (low, high), False
+    if not master.closed or master.spec.span is not None:
+        return _part_of(master), False
     for number, drive in enumerate(drives[1:], start=1):
         if not drive.closed:
             raise InfeasibleError(
@@ -124,6 +124,36 @@ def _span(drives: Sequence[PlacedDrive], least: int) -> tuple[tuple[float, float
         f"its shafts do not return together within {_CYCLES} turns of the master",
         where="drive[0]",
     )
+
+
+def _part_of(master: PlacedDrive) -> tuple[float, float]:
+    """Return the master's first and last angle where it does not turn all the way."""
+    low, high = float(master.knots[0]), float(master.knots[-1])
+    asked = master.spec.span
+    if asked is None:
+        return low, high
+    beyond = [k for k in (0, 1) if not low <= asked[k] <= high and not master.closed]
+    if beyond:
+        raise InfeasibleError(
+            "the pair does not turn as far",
+            where=f"drive[0].range_deg[{beyond[0]}]",
+            value=math.degrees(asked[beyond[0]]),
+            limit=math.degrees((low, high)[beyond[0]]),
+            unit="deg",
+        )
+    return asked
+
+
+def _demand_part(design: MechanismDesign, closed: bool) -> None:
+    """Refuse chains on shafts that turn without end."""
+    pulled = [f"hoist[{number}]" for number, _ in enumerate(design.hoist)]
+    pulled += [f"chain[{number}]" for number, _ in enumerate(design.chain)]
+    if closed and pulled:
+        raise InfeasibleError(
+            "its chain is not back after a turn of the master",
+            where=pulled[0],
+            nearest="give drive[0].range_deg, over which it winds up and off",
+        )
 
 
 def _elements(design: MechanismDesign, drives: Sequence[PlacedDrive]) -> Iterator[Element]:
@@ -257,24 +287,41 @@ def _refusal(design: MechanismDesign, error: NotClosingError) -> InfeasibleError
     if found.least > -1e-9:
         at = formatted(math.degrees(found.place), 8)
         what = f"{name} is singular at {at} deg: its guides or members are in line there"
-    ways = [
-        {
-            f"{title}[{number}].lengths_mm[{k}]": float(formatted(value, 6))
-            for k, value in one.items()
-        }
-        for one in error.nearest
-    ]
-    first = next(iter(ways), {})
-    key, value = next(iter(first.items()), ("", None))
-    own = getattr(element, "lengths", (0.0, 0.0))[int(key[-2])] if key else None
+    ways = [_lengthened(design, title, number, one) for one in error.nearest]
+    if not ways:
+        return InfeasibleError(what, where=f"{title}[{number}]")
+    key, value = next(iter(ways[0].near.items()))
+    if len(ways[0].near) > 1:
+        both = " and ".join(f"{k} = {formatted(v)}" for k, v in ways[0].near.items())
+        note = f"one length alone cannot do it; with {both} it closes"
+        return InfeasibleError(what, where=f"{title}[{number}]", nearest=note, adjustments=ways)
     return InfeasibleError(
         what,
-        where=key or f"{title}[{number}]",
-        value=own,
-        limit=value,
-        unit="mm" if key else "",
-        adjustments=[Adjustment(near=one, far=one) for one in ways],
+        where=key,
+        value=float(element.lengths[int(key[-2])]),  # pyright: ignore[reportAttributeAccessIssue]
+        limit=value,  # pyright: ignore[reportArgumentType]
+        unit="mm",
+        nearest="just inside the limit, where both of its positions meet",
+        adjustments=ways,
     )
+
+
+_FURTHER: Final = 2.0
+"""How many times further than the least change a length is changed in the search for remedies."""
+
+
+def _lengthened(
+    design: MechanismDesign, title: str, number: int, lengths: dict[int, float]
+) -> Adjustment:
+    """Return a change of lengths, from the nearest ones on in the same direction."""
+    own: tuple[float, ...] = getattr(design, title)[number].lengths
+    near, far = {}, {}
+    for k, value in lengths.items():
+        key = f"{title}[{number}].lengths_mm[{k}]"
+        near[key] = float(formatted(value, 6))
+        further = value + _FURTHER * abs(value - own[k]) * (1.0 if value >= own[k] else -0.1)
+        far[key] = float(formatted(max(further, 0.5 * value), 6))
+    return Adjustment(near=near, far=far)
 
 
 def _table(design: MechanismDesign, element: Element) -> tuple[str, int]:

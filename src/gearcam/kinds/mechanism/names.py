@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from gearcam.designs.faults import Fault
 from gearcam.designs.slips import nearest
+from gearcam.kinds.mechanism.tables import MachineDrive
 from gearcam.linkages.dyads import DYADS
 from gearcam.linkages.elements import GROUND
 
@@ -142,6 +143,7 @@ def problems(_: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
     parts = {title: found.parts.get(title, ()) for title in PARTS}
     names: dict[str, NameUse] = {GROUND: NameUse(GROUND, MEMBER, ())}
     yield from _misspelt(found)
+    yield from _not_comparable(found)
     for one in given(parts):
         if one.name in names:
             what = f"the name {one.name!r} is given twice"
@@ -155,6 +157,26 @@ def problems(_: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
             yield from _missing(one, names)
     if not found.faults:
         yield from _unreached(parts)
+
+
+def _not_comparable(found: Examined) -> Iterator[Fault]:
+    """Yield drives to compare that do not have the shafts of the first drive."""
+    master = next(iter(found.parts.get("drive", ())), None)
+    for number, one in enumerate(found.parts.get("compare", ()) if master is not None else ()):
+        if one.even:
+            if master.pair is None:
+                what = "has nothing to stand in the place of: the first drive is no pair"
+                yield Fault(("compare", number, "even"), what, True, "where a pair is the master")
+            continue
+        key = "pair" if one.pair is not None else "cam"
+        own = MachineDrive(name=master.name, pair=one.pair, cam=one.cam)
+        sorts = [{word: _sort(drive, word) for word in drive.shafts} for drive in (own, master)]
+        if sorts[0] != sorts[1]:
+            what = f"does not have the shafts of {master.name}: {', '.join(master.shafts)}"
+            allowed = (
+                "a drive of the same sort; an even shaft stands beside a pair with even = true"
+            )
+            yield Fault(("compare", number, key), what, allowed=allowed)
 
 
 _NAME: Final = re.compile(r"[A-Za-z_][\w-]*", re.ASCII)

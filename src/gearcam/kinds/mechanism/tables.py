@@ -128,7 +128,7 @@ class MachineDrive(ShortRepr):
         word="range",
         order="first and last",
         example=[-60, 60],
-        doc="first and last angle of an even master that does not turn all the way",
+        doc="first and last angle of a master that does not turn all the way",
     )
     at: tuple[float, float] = _point(doc="where its frame stands", default=(0.0, 0.0), order="x, y")
     turn: float = _direction(doc="direction of its x axis", default=0.0)
@@ -144,8 +144,8 @@ class MachineDrive(ShortRepr):
             yield "even", None, "is false", "true, or the key left out"
         if not self.ratio:
             yield "ratio", None, "is 0", "a whole number, negative for the other sense of rotation"
-        if self.span is not None and self.even is None:
-            yield "span", None, "is not of an even drive", "with even = true"
+        if self.span is not None and self.slide is not None:
+            yield "span", None, "is not of a drive that turns", "a pair, a cam or even = true"
         if self.span is not None and self.span[0] >= self.span[1]:
             yield "span", 1, "is not above the first angle", "rising angles"
         if self.slide is not None:

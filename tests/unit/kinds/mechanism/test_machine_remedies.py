@@ -1,0 +1,93 @@
+"""What a machine that does not close is told, what may be compared, and what a chain needs."""
+
+from __future__ import annotations
+
+import pytest
+
+import gearcam as gc
+from gearcam.base.errors import DesignError, InfeasibleError
+from helpers_pairs import PROFILES
+
+FOUR_BAR = gc.load(PROFILES / "four_bar.toml")
+SLIDE = gc.load(PROFILES / "nail_machine_slide.toml")
+PAIR = {"kind": "gear-pair", "law": {"type": "ellipse", "eccentricity": 0.3},
+        "pair": {"teeth": [32, 32], "module_mm": 2}}  # fmt: skip
+
+
+def refusal(changes: dict[str, object], design: gc.Design = FOUR_BAR) -> InfeasibleError:
+    with pytest.raises(InfeasibleError) as caught:
+        _ = gc.build(design.with_(changes)).checked
+    return caught.value
+
+
+def test_a_rod_too_short_is_offered_lengths_that_build() -> None:
+    short = FOUR_BAR.with_({"dyad[0].lengths_mm": [120, 45]})
+    # the longest distance of the pins is 110 + 40, the shortest 110 - 40
+    assert refusal({"dyad[0].lengths_mm": [120, 45]}).limit == pytest.approx(120 - 70, rel=2e-3)
+    found = gc.remedies(gc.build(short)).found
+    keys = {key for one in found for key in one.changes}
+    assert keys == {"dyad[0].lengths_mm[0]", "dyad[0].lengths_mm[1]"}
+    for one in found:
+        length = one.changes.get("dyad[0].lengths_mm[1]", one.changes.get("dyad[0].lengths_mm[0]"))
+        assert length == pytest.approx(
+            50 if "dyad[0].lengths_mm[1]" in one.changes else 115, rel=3e-3
+        )
+
+
+def test_where_one_length_cannot_do_it_two_are_named() -> None:
+    told = refusal({"dyad[0].lengths_mm": [10, 20]})
+    assert told.limit is None
+    assert "one length alone cannot do it" in str(told)
+    (way,) = told.adjustments
+    both = gc.build(FOUR_BAR.with_(way.near))
+    assert both.linkage.closed
+
+
+def test_a_drive_without_the_shafts_of_the_first_is_not_compared() -> None:
+    with pytest.raises(DesignError, match="does not have the shafts of motor: shaft"):
+        FOUR_BAR.with_({"compare": [{"name": "other", "pair": PAIR}]})
+    with pytest.raises(DesignError, match="nothing to stand in the place of"):
+        FOUR_BAR.with_({"compare": [{"name": "other", "even": True}]})
+    both = SLIDE.with_({"compare": [{"name": "other", "pair": PAIR}]})
+    assert set(gc.build(both).compared) == {"other"}
+
+
+def test_a_chain_on_a_shaft_that_turns_on_needs_a_range() -> None:
+    hoist = {"name": "door", "on": "motor", "joint": "hook", "radius_mm": 100}
+    told = refusal({"hoist": [hoist], "output.outputs": ["door"]})
+    assert "not back after a turn" in str(told)
+    ranged = FOUR_BAR.with_(
+        {"hoist": [hoist], "output.outputs": ["door"], "drive[0].range_deg": [0, 90]}
+    )
+    assert gc.build(ranged).facts["outputs.door.stroke_mm"] == pytest.approx(157.07963267948966)
+
+
+def test_a_pair_may_turn_over_a_part_of_its_turn() -> None:
+    part = gc.build(SLIDE.with_({"drive[0].range_deg": [0, 90], "interval": []}))
+    assert part.facts["machine.to_deg"] == pytest.approx(90.0)
+    assert not part.linkage.closed
+
+
+def test_rounding_is_no_jump_and_no_stroke() -> None:
+    rods = FOUR_BAR.with_(
+        {"crank[0].length_mm": 50, "dyad[0].lengths_mm": [120, 50], "joint[0].at_mm": [120, 0],
+         "dyad[0].change": "motion", "output.outputs": ["rocker.angle", "coupler.angle"]}
+    )  # fmt: skip
+    codes = {finding.code for finding in gc.build(rods).checked}
+    assert "change-point" in codes
+    assert not codes & {"velocity-jump", "acceleration-jump"}
+
+
+def test_a_dead_center_that_is_reached_twice_is_told() -> None:
+    turning = FOUR_BAR.with_(
+        {"guide": [{"name": "bed"}], "output.outputs": ["S"],
+         "interval": [{"on": "S", "travel_mm": 5, "before": "outer"}],
+         "dyad": [{"type": "RRT", "from": "B", "to": "bed", "joint": "S", "lengths_mm": [120, 0],
+                   "members": ["rod", "ram"]}],
+         "point": [], "joint": [], "drive[0].ratio": 1}
+    )  # fmt: skip
+    assert "second-dead-center" not in {one.code for one in gc.build(turning).checked}
+    twice = turning.with_(
+        {"drive": [{"name": "master", "even": True}, {"name": "motor", "even": True, "ratio": 2}]}
+    )
+    assert "second-dead-center" in {one.code for one in gc.build(twice).checked}
