@@ -17,6 +17,9 @@ from witness.power_balance import PowerBalance
 _OFF = 2e-5
 """Difference, as a share of the largest moment or of its change nearby, that is an error."""
 
+_ROUNDED = 1e-8
+"""The same of moments that are found in two ways from the same motion."""
+
 _NONE = 1e-3
 """Moment, N mm, below which differences are those of rounding."""
 
@@ -49,6 +52,21 @@ def off(result: Any, work: Any) -> float:
     return float(np.abs(found - wanted).max() / max(np.abs(found).max(), terms, _NONE))
 
 
+def apart(result: Any, work: Any) -> float:
+    """The difference of the moment from the shares of all shafts and slides, over its size."""
+    low, high = work.linkage.span
+    q = low + (high - low) * (np.arange(9.0) + 0.31) / 9.0
+    total = np.zeros(q.shape)
+    for drive in result.drives:
+        own = drive.spec
+        for word in drive.moved:
+            names = [f"{own.name}.{word}", *([own.name] if own.even or own.slide else [])]
+            rate = work.linkage.track(names[0], q, 1).derivatives()[1]
+            total += work.on(dict.fromkeys(names, 1.0), q) * rate
+    moment = work.moment(q).derivatives()[0]
+    return float(np.abs(total - moment).max() / max(np.abs(moment).max(), _NONE))
+
+
 @pytest.mark.parametrize("block", range(4))
 def test_power_balance(block: int) -> None:
     compared = 0
@@ -57,4 +75,5 @@ def test_power_balance(block: int) -> None:
         if made is not None:
             compared += 1
             assert off(*made) < _OFF, seed
+            assert apart(*made) < _ROUNDED, seed
     assert compared > 3
