@@ -104,6 +104,20 @@ def test_a_clearance_is_half_to_each_side(angle: float) -> None:
     assert (made ^ roller(cam, angle, 0.02 + error + 1e-4)).volume() > 1e-4
 
 
+def test_the_backlash_at_rest() -> None:
+    """The rollers are clear while the turret turns by less than half its backlash."""
+    changes = {"cam.roller_clearance_mm": 0.04, "cam.length_mm": 46}
+    found = gc.build(DESIGN.with_(changes))
+    half = 0.5 * math.radians(found.facts["indexer.backlash_deg"]) * found.cam.middle
+    made, error = solid(built(720, 13, **changes)), chord_error(found.cam, 720, 13)
+    for angle, side in ((-60.0, 1.0), (250.0, -1.0)):
+        for factor, touches in ((0.7, False), (1.3, True)):
+            # the roller's true size; its triangles and those of the cam are off by microns
+            moved = roller(found.cam, angle, 0.0, factor * side * half)
+            assert ((made ^ moved).volume() > 1e-4) == touches
+    assert error < 0.005
+
+
 @pytest.mark.parametrize("rotation", ["ccw", "cw"])
 @pytest.mark.parametrize("bore", [0.0, 30.0])
 def test_solids_are_closed(rotation: str, bore: float) -> None:

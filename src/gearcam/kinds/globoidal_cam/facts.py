@@ -32,13 +32,16 @@ def facts(result: GloboidalCamResult) -> Facts:
 
 def _indexer(result: GloboidalCamResult) -> Tree:
     """Return stops, and the cam angles of motion and rest."""
-    index, turret = result.design.index, result.design.turret
+    cam, index, turret = result.cam, result.design.index, result.design.turret
     moving = math.degrees(index.angle)
     return {
         "stops": Fact(turret.stops, "stops", shown=True),
         "index_deg": Fact(moving, "index angle", shown=True),
         "dwell_deg": Fact(360.0 - moving, "dwell angle"),
         "step_deg": Fact(math.degrees(turret.pitch), "angle from stop to stop"),
+        "backlash_deg": Fact(
+            math.degrees(cam.clearance / cam.reach), "backlash of the turret at rest"
+        ),
     }
 
 
