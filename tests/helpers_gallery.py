@@ -672,6 +672,10 @@ MACHINE_NUMBERS: dict[str, dict[str, Number]] = {
         "stretches[0].deviation_mm": (0.5 * 0.975373308636, 1e-9),
         "stretches[0].length_mm": (362.651605874, 1e-8),
     },
+    "dwell_linkage": {
+        "stretches[0].distance_mm.min": (378.728715219, 1e-8),
+        "stretches[0].distance_mm.max": (379.63797181, 1e-7),
+    },
     "two_cam_table": {
         "paths.table.area_mm2": (math.pi * 12 * 8, 1e-5),
         "outputs.table_x.stroke_mm": (24.0, 1e-6),

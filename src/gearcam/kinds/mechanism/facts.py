@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any, Final
 
-from gearcam.base.facts import Fact, Facts
+from gearcam.base.facts import Fact, Facts, extent
 from gearcam.base.numerals import formatted
 from gearcam.kinds.mechanism.build import RATES
 from gearcam.linkages.chain import HoistChain, roots_in
@@ -13,6 +13,7 @@ from gearcam.linkages.grashof import FourBarLengths, grashof
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.build import MechanismResult, Output
+    from gearcam.kinds.mechanism.tables import StretchSpec
     from gearcam.linkages.measures import Peak, TrackMeasures
     from gearcam.linkages.path_fits import CircleFit, LineFit
     from gearcam.linkages.paths import PointPath
@@ -198,9 +199,20 @@ def _stretches(result: MechanismResult) -> list[Tree] | None:
             "shape": one.shape,
             "deviation_mm": Fact(fit.deviation, f"deviation of {one.on} from the {one.shape}"),
             **_fitted(fit),
+            **_distance(result.paths[one.on], one),
         }
         for one, fit in zip(result.design.stretch, result.stretches, strict=True)
     ] or None
+
+
+def _distance(path: PointPath, one: StretchSpec) -> Tree:
+    """Return the smallest and the largest distance of a stretch from a point that is given."""
+    if one.center is None:
+        return {}
+    from gearcam.linkages.path_fits import distances_from
+
+    ends = distances_from(path, complex(*one.center), one.start, one.end)
+    return {"distance_mm": extent(*(end.value for end in ends))}
 
 
 def _fitted(fit: LineFit | CircleFit) -> Tree:

@@ -525,6 +525,16 @@ class StretchSpec(ShortRepr):
         doc="what is fitted to it, by the least deviation",
     )
 
+    center: tuple[float, float] | None = param(
+        LENGTH,
+        default=None,
+        ge=-LONGEST,
+        le=LONGEST,
+        order="x, y",
+        example=[300, 827],
+        doc="a point whose distances from the stretch are wanted too",
+    )
+
     def problems(self) -> Iterator[Breach]:
         """Yield an end that is not above the start."""
         if self.end <= self.start:
