@@ -616,6 +616,8 @@ MACHINE_NUMBERS: dict[str, dict[str, Number]] = {
         "outputs.slide.velocity_mm_per_rad": (-203.736787041, 1e-9),
         "compare.three_phases.slide.velocity_mm_per_rad": (185.094888691, 1e-9),
         "compare.without_a_pair.slide.acceleration_mm_per_rad2": (-180.0, 1e-9),
+        "torque.torque_nm.max": (556.765815074, 1e-9),
+        "torque.work_j": (35.435 * 3.7734375, 1e-9),
     },
     "press_ram": {
         "outputs.ram.stroke_mm": (160.0, 1e-9),
