@@ -8,7 +8,7 @@ from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property, partial
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,11 +16,20 @@ from numpy.typing import ArrayLike
 from gearcam.base.errors import ABOVE, DesignError, InfeasibleError, Problem, beyond_limit
 from gearcam.base.findings import Finding, in_order, run_checks
 from gearcam.base.numerals import formatted
-from gearcam.designs.slips import nearest
+from gearcam.designs.faults import show
 from gearcam.kinds.mechanism.design import MechanismDesign
 from gearcam.kinds.mechanism.drives import PlacedDrive, placed
 from gearcam.kinds.mechanism.make import make_linkage
-from gearcam.kinds.mechanism.names import moves
+from gearcam.kinds.mechanism.outputs import (
+    AMOUNTS,
+    UNKNOWN,
+    Output,
+    allowed_outputs,
+    asked_outputs,
+    known_outputs,
+    parts_of,
+    unknown_hint,
+)
 from gearcam.linkages import checks
 from gearcam.linkages.dwells import DriverRange, ShortRangeError, last_travel, longest_dwell
 from gearcam.linkages.linkage import Linkage
@@ -49,37 +58,6 @@ ORDER: Final = 3
 """Highest derivative in tables."""
 
 _DEG: Final = math.degrees(1.0)
-
-
-class Output(NamedTuple):
-    """A quantity whose motion is asked for.
-
-    Attributes
-    ----------
-    name : str
-        As in ``output.outputs``.
-    stem : str
-        Beginning of its columns.
-    quantity : str
-        Its name in the linkage (see `Linkage.track`).
-    angle : bool
-        Whether it is an angle; else a length.
-    """
-
-    name: str
-    stem: str
-    quantity: str
-    angle: bool
-
-    @property
-    def unit(self) -> tuple[float, str]:
-        """Factor to its unit in output, and that unit."""
-        return (_DEG, "deg") if self.angle else (1.0, "mm")
-
-    @property
-    def rate_unit(self) -> str:
-        """Unit of its velocity but for the time."""
-        return "rad" if self.angle else "mm"
 
 
 class MechanismResult(Result):
@@ -141,71 +119,13 @@ class MechanismResult(Result):
 
     @cached_property
     def outputs(self) -> tuple[Output, ...]:
-        """What is asked for, in order.
-
-        Raises
-        ------
-        DesignError
-            If the design names something that does not move.
-        """
-        asked = self.design.output.outputs
-        names = self._usual if asked is None else asked
-        return tuple(one for name in names for one in self._outputs_of(name))
-
-    @property
-    def _usual(self) -> list[str]:
-        """What is given where the design does not say: slides and points, else a direction."""
-        design = self.design
-        slides = [one.joint for one in design.dyad if moves(one)]
-        found = [*slides, *(one.name for one in (*design.slide, *design.hoist, *design.point))]
-        last = [one.members[1] for one in design.dyad[-1:]] + [one.lever for one in design.chain]
-        turns = [f"{one.name}.turn" for one in design.geneva]
-        members = last or [] if turns else last or [one.name for one in design.crank[-1:]]
-        return [*found, *turns] or [f"{name}.angle" for name in members]
-
-    def _outputs_of(self, name: str) -> Iterator[Output]:
-        made = self._known_outputs.get(name)
-        if made is None:
-            close = nearest(name, list(self._known_outputs))
-            hint = f"did you mean {close}?" if close else ""
-            allowed = f"one of {', '.join(self._known_outputs)}"
-            where = (self.design.output.outputs or ()).index(name)
-            problem = Problem(
-                "nothing moves by this name", self.design.source, None,
-                f"output.outputs[{where}]", name, allowed, hint,
-            )  # fmt: skip
-            raise DesignError([problem])
-        yield from made
+        """What is asked for, in order."""
+        return asked_outputs(parts_of(self.design), self.design.output.outputs)
 
     @cached_property
     def _known_outputs(self) -> dict[str, tuple[Output, ...]]:
         """All that may be asked for, by name."""
-        design, found = self.design, {}
-        for dyad in design.dyad:
-            found[dyad.joint] = (
-                (Output(dyad.joint, dyad.joint, moves(dyad), False),)
-                if moves(dyad)
-                else _coordinates(dyad.joint)
-            )
-        for slide in design.slide:
-            found[slide.name] = (Output(slide.name, slide.name, slide.on, False),)
-        for hoist in design.hoist:
-            found[hoist.name] = (Output(hoist.name, hoist.name, f"{hoist.name}.way", False),)
-        for wheel in design.geneva:
-            name = f"{wheel.name}.turn"
-            found[name] = (Output(name, wheel.name, name, True),)
-        joints = [*(one.joint for one in design.crank), *(one.name for one in design.point)]
-        for name in [*joints, *(one.joint for one in design.chain)]:
-            found[name] = _coordinates(name)
-        members = [name for one in design.dyad for name in one.members]
-        members += [one.name for one in design.crank] + [one.lever for one in design.chain]
-        for name in members:
-            found[f"{name}.angle"] = (Output(f"{name}.angle", name, f"{name}.angle", True),)
-        for drive in self.drives:
-            for word, one in drive.moved.items():
-                name = f"{drive.spec.name}.{word}"
-                found[name] = (Output(name, name.replace(".", "_"), name, not one.along),)
-        return found
+        return known_outputs(parts_of(self.design))
 
     @property
     def angles(self) -> Array:
@@ -271,13 +191,10 @@ class MechanismResult(Result):
             If nothing moves by this name, or `q` is not an array of finite numbers.
         """
         if name not in self._known_outputs:
-            close = nearest(name, list(self._known_outputs))
-            hint = f"did you mean {close}?" if close else ""
-            allowed = f"one of {', '.join(self._known_outputs)}"
-            problem = Problem(
-                "nothing moves by this name", key="name", value=name, allowed=allowed, hint=hint
-            )
-            raise DesignError([problem])
+            parts = parts_of(self.design)
+            allowed, hint = allowed_outputs(parts), unknown_hint(name, parts)
+            what = f"{show(name)}: {UNKNOWN}"
+            raise DesignError([Problem(what, key="name", value=name, allowed=allowed, hint=hint)])
         where = self.angles if q is None else angles("q", q)
         columns = {f"{self.driver[0]}_deg": _DEG * where}
         for one in self._known_outputs[name]:
@@ -451,7 +368,7 @@ class MechanismResult(Result):
         Raises
         ------
         DesignError
-            If a stretch is not of a point that is asked for, or beyond the master's range.
+            If a stretch is beyond the master's range.
         InfeasibleError
             If it is straight and a circle is asked for.
         """
@@ -461,12 +378,7 @@ class MechanismResult(Result):
 
         found = []
         for number, one in enumerate(self.design.stretch):
-            path = self.paths.get(one.on)
-            if path is None:
-                allowed = f"a point of the outputs: {', '.join(self.paths)}"
-                where = f"stretch[{number}].on"
-                what = "is not a point that is asked for"
-                raise DesignError([Problem(what, self.design.source, None, where, one.on, allowed)])
+            path = self.paths[one.on]
             self._check_range(f"stretch[{number}]", one.start, one.end)
             fit = best_line if one.shape == "line" else best_circle
             try:
@@ -554,30 +466,11 @@ class MechanismResult(Result):
         -------
         Output, float
             The amount in mm or rad.
-
-        Raises
-        ------
-        DesignError
-            If the table names a point or what does not move, or gives a length for an angle.
         """
         table: Any = getattr(self.design, title)[number]
-        name, word = table.on, {"interval": "travel", "dwell": "within"}[title]
-        length, angle = getattr(table, word), getattr(table, f"{word}_angle")
-        found = self._known_outputs.get(name, ())
-        key = f"{title}[{number}].on"
-        if len(found) != 1:
-            one = [other for other, outputs in self._known_outputs.items() if len(outputs) == 1]
-            what = "is a point, with two coordinates" if found else "nothing moves by this name"
-            raise DesignError(
-                [Problem(what, self.design.source, None, key, name, f"one of {', '.join(one)}")]
-            )
-        amount = angle if found[0].angle else length
-        if amount is None:
-            words = ("a length", "an angle")
-            what = f"{name} is {words[found[0].angle]}"
-            unit = f"the key with {found[0].unit[1]}"
-            raise DesignError([Problem(what, self.design.source, None, key, name, unit)])
-        return found[0], amount
+        (found,) = self._known_outputs[table.on]
+        word = AMOUNTS[title]
+        return found, getattr(table, f"{word}_angle" if found.angle else word)
 
 
 def comparison_rows(name: str, machine: MechanismResult) -> Iterator[dict[str, Any]]:
@@ -634,7 +527,3 @@ def interval_rows(name: str, machine: MechanismResult) -> Iterator[dict[str, Any
 
 RATES: Final = ("velocity", "acceleration", "jerk")
 """Names of the derivatives."""
-
-
-def _coordinates(name: str) -> tuple[Output, ...]:
-    return tuple(Output(name, f"{name}_{part}", f"{name}.{part}", False) for part in "xy")

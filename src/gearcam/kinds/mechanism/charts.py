@@ -18,7 +18,8 @@ from gearcam.pictures.charts import Chart, Charts, Limit, Line, MarkedPlace, kno
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from gearcam.kinds.mechanism.build import MechanismResult, Output
+    from gearcam.kinds.mechanism.build import MechanismResult
+    from gearcam.kinds.mechanism.outputs import Output
     from gearcam.numeric.arrays import Array
 
 _STEPS: Final = 720

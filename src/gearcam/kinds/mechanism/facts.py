@@ -12,7 +12,8 @@ from gearcam.linkages.chain import HoistChain, roots_in
 from gearcam.linkages.grashof import FourBarLengths, grashof
 
 if TYPE_CHECKING:
-    from gearcam.kinds.mechanism.build import MechanismResult, Output
+    from gearcam.kinds.mechanism.build import MechanismResult
+    from gearcam.kinds.mechanism.outputs import Output
     from gearcam.kinds.mechanism.tables import StretchSpec
     from gearcam.linkages.measures import Peak, TrackMeasures
     from gearcam.linkages.path_fits import CircleFit, LineFit

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.designs.faults import Fault
-from gearcam.kinds.mechanism import names
+from gearcam.kinds.mechanism import names, outputs
 from gearcam.kinds.mechanism.names import JOINT, MEMBER, SHAFT, WAY
 from gearcam.linkages.elements import GROUND
 
@@ -79,11 +79,12 @@ def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
     found : Examined
         The valid tables.
     """
-    faults = list(names.problems(document, found))
+    faults = [*names.problems(document, found), *outputs.problems(document, found)]
     yield from faults
-    wrong = {one.path[:2] for one in (*found.faults, *faults)}
     parts = found.parts
     sorts, still = sorts_of(parts), unturned(parts)
+    wrong = {one.path[:2] for one in (*found.faults, *faults)}
+    wrong |= {one.path[:2] for one in names.needed(parts) if one.name not in sorts}
     ways = {one.name for one in names.given(parts) if one.sort == WAY}
     for title in ("load", "mass", "spring"):
         for number, one in enumerate(parts.get(title, ())):

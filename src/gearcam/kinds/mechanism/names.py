@@ -10,8 +10,8 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
-from gearcam.designs.faults import Fault
-from gearcam.designs.slips import nearest
+from gearcam.designs.faults import Fault, dotted, show
+from gearcam.designs.slips import did_you_mean
 from gearcam.kinds.mechanism.tables import MachineDrive
 from gearcam.linkages.dyads import DYADS
 from gearcam.linkages.elements import GROUND
@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 SHAFT, WAY, JOINT, MEMBER, GUIDE = "shaft", "slide", "joint", "member", "guide"
 STANDING: Final = "joint that stands still, or shaft"
 """What a name can be."""
+
+ANY: Final = ""
+"""What the name of a drive with faults is: it may turn or slide."""
 
 PARTS: Final = (
     "drive", "joint", "crank", "slide", "guide", "dyad", "point", "chain", "hoist", "geneva",
@@ -119,50 +122,128 @@ def _tables(parts: Mapping[str, Sequence[Any]]) -> Iterator[tuple[str, int, Any]
 
 def _shafts(drive: Any, number: int) -> Iterator[NameUse]:
     for word in drive.shafts:
-        yield NameUse(f"{drive.name}.{word}", _sort(drive, word), ("drive", number, "name"))
+        yield NameUse(f"{drive.name}.{word}", sort_of(drive, word), ("drive", number, "name"))
     if drive.even or drive.slide is not None:
         yield NameUse(drive.name, SHAFT if drive.even else WAY, ("drive", number, "name"))
 
 
-def _sort(drive: Any, word: str) -> str:
-    """Return whether what a drive moves turns or slides."""
+def sort_of(drive: Any, word: str) -> str:
+    """Return whether what a drive moves turns or slides.
+
+    Parameters
+    ----------
+    drive : MachineDrive
+        Its table.
+    word : str
+        One of `MachineDrive.shafts`.
+
+    Returns
+    -------
+    str
+        `SHAFT` or `WAY`.
+    """
     if word == "follower":
         follower = getattr(drive.cam, "follower", None)
         return SHAFT if getattr(follower, "motion", "") == "oscillating" else WAY
     return WAY if word in ("rack", "slide") else SHAFT
 
 
-def problems(_: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
+def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
     """Yield names that are given twice, that nothing gives, or that are of another sort.
+
+    Parameters
+    ----------
+    document : mapping
+        As read: what is named by faulty tables counts as given.
+    found : Examined
+        The valid tables.
+    """
+    parts = {title: found.parts[title] if _is_read(title, found) else () for title in PARTS}
+    faulty = list(_of_faulty(document, found))
+    names: dict[str, NameUse] = {GROUND: NameUse(GROUND, MEMBER, ())}
+    faults = [*_misspelt(found), *_not_comparable(found), *_twice([*given(parts), *faulty], names)]
+    standing = [one.path for one in names.values() if one.path[:1] == ("joint",)]
+    whole = not _unread(found) and all(one.name for one in faulty)
+    for one in needed(parts):
+        if one.name not in names and not (whole and _told_of(one.name, names)):
+            continue
+        if one.sort == STANDING:
+            faults += _not_standing(one, names, standing)
+        else:
+            faults += _missing(one, names)
+    yield from faults
+    if not (faults or found.faults):
+        yield from _unreached(parts)
+
+
+def complete(found: Examined) -> bool:
+    """Return whether all names of a mechanism are known, as far as its tables could be read.
 
     Parameters
     ----------
     found : Examined
         The valid tables.
     """
-    parts = {title: found.parts.get(title, ()) for title in PARTS}
-    names: dict[str, NameUse] = {GROUND: NameUse(GROUND, MEMBER, ())}
-    yield from _misspelt(found)
-    yield from _not_comparable(found)
-    for one in given(parts):
-        if one.name in names:
-            what = f"the name {one.name!r} is given twice"
-            yield Fault(one.path, what, one.name, "a name for one thing")
-        names.setdefault(one.name, one)
-    standing = [one.path for one in given(parts) if one.path[0] == "joint"]
-    for one in needed(parts):
-        if one.sort == STANDING:
-            yield from _not_standing(one, names, standing)
-        else:
-            yield from _missing(one, names)
-    if not found.faults:
-        yield from _unreached(parts)
+    return not _unread(found) and all(_is_read(title, found) for title in ("drive", *_GIVES))
+
+
+def _is_read(title: str, found: Examined) -> bool:
+    """Return whether the names in the tables of a title are known from the valid tables."""
+    told = (one.path[0] for one in found.faults if one.path)
+    # what a drive moves depends on several keys, which may contradict each other
+    return title in found.parts and not (title == "drive" and title in told)
+
+
+def _unread(found: Examined) -> bool:
+    """Return whether whole tables are missing, or have unknown titles."""
+    alone = {one.path[0] for one in found.faults if len(one.path) == 1}
+    return not alone <= {"kind", "name"}
+
+
+def _of_faulty(document: Mapping[str, Any], found: Examined) -> Iterator[NameUse]:
+    """Yield the names that tables with faults give, "" for one that cannot be read."""
+    for title in ("drive", *_GIVES):
+        rows = () if _is_read(title, found) else document.get(title)
+        for number, row in enumerate(rows if isinstance(rows, list) else ()):
+            row = row if isinstance(row, Mapping) else {}
+            for key, sort in _GIVES.get(title, (("name", ANY),)):
+                yield NameUse(_text(row.get(key)), sort, (title, number, key))
+            if title == "dyad":
+                members = row.get("members")
+                for place, name in enumerate(members if isinstance(members, list) else [""]):
+                    yield NameUse(_text(name), MEMBER, (title, number, "members", place))
+
+
+def _text(value: Any) -> str:
+    return value if isinstance(value, str) else ""
+
+
+def _told_of(name: str, names: Mapping[str, NameUse]) -> bool:
+    """Return whether a missing name is to be told: not if a drive with faults may give it."""
+    owner = names.get(name.rpartition(".")[0])
+    return owner is None or owner.sort != ANY
+
+
+def _twice(uses: Sequence[NameUse], names: dict[str, NameUse]) -> Iterator[Fault]:
+    """Yield names that are given twice, and collect all of them."""
+    told = set[tuple[str | int, ...]]()
+    for one in (one for one in uses if one.name):
+        first = names.setdefault(one.name, one)
+        if first is one or one.path in told:
+            continue
+        told.add(one.path)
+        name = one.name.partition(".")[0]
+        where = f"first by {dotted(first.path)}" if first.path else "first to the frame"
+        what = f"the name {show(name)} is given twice, {where}"
+        yield Fault(one.path, what, name, "a name for one thing")
 
 
 def _not_comparable(found: Examined) -> Iterator[Fault]:
     """Yield drives to compare that do not have the shafts of the first drive."""
-    master = next(iter(found.parts.get("drive", ())), None)
+    master = next(iter(found.parts["drive"]), None) if _is_read("drive", found) else None
     for number, one in enumerate(found.parts.get("compare", ()) if master is not None else ()):
+        if one.even is False:
+            continue
         if one.even:
             if master.pair is None:
                 what = "has nothing to stand in the place of: the first drive is no pair"
@@ -170,7 +251,7 @@ def _not_comparable(found: Examined) -> Iterator[Fault]:
             continue
         key = "pair" if one.pair is not None else "cam"
         own = MachineDrive(name=master.name, pair=one.pair, cam=one.cam)
-        sorts = [{word: _sort(drive, word) for word in drive.shafts} for drive in (own, master)]
+        sorts = [{word: sort_of(drive, word) for word in drive.shafts} for drive in (own, master)]
         if sorts[0] != sorts[1]:
             what = f"does not have the shafts of {master.name}: {', '.join(master.shafts)}"
             allowed = (
@@ -208,23 +289,30 @@ def _not_standing(
     one: NameUse, names: Mapping[str, NameUse], standing: Sequence[tuple[str | int, ...]]
 ) -> Iterator[Fault]:
     other = names.get(one.name)
-    if other is None or not (other.sort == SHAFT or other.path in standing):
-        what = "nothing has this name" if other is None else "it moves"
-        fitting = [key for key, is_ in names.items() if is_.sort == SHAFT or is_.path in standing]
-        yield Fault(one.path, what, one.name, f"a {STANDING}: {', '.join(fitting)}")
+    if other is None or not (other.sort in (SHAFT, ANY) or other.path in standing):
+        fits = [key for key, is_ in names.items() if is_.sort == SHAFT or is_.path in standing]
+        allowed = f"a {STANDING}: {', '.join(fits)}"
+        if other is None:
+            yield _nothing(one, fits, allowed)
+        else:
+            yield Fault(one.path, f"{show(one.name)} moves", one.name, allowed)
 
 
 def _missing(one: NameUse, names: Mapping[str, NameUse]) -> Iterator[Fault]:
     other, sorts = names.get(one.name), one.sort.split(" or ")
     if other is None:
-        close = nearest(one.name, [name for name, is_ in names.items() if is_.sort in sorts])
-        hint = f"did you mean {close}?" if close else ""
-        fitting = ", ".join(sorted(name for name, is_ in names.items() if is_.sort in sorts))
-        allowed = f"a {one.sort}: {fitting}" if fitting else f"the name of a {one.sort}"
-        yield Fault(one.path, "nothing has this name", one.name, allowed, hint)
-    elif other.sort not in sorts:
-        what = f"is a {other.sort}, not a {one.sort}"
+        fits = sorted(name for name, is_ in names.items() if is_.sort in sorts)
+        allowed = f"a {one.sort}: {', '.join(fits)}" if fits else f"the name of a {one.sort}"
+        yield _nothing(one, fits, allowed)
+    elif other.sort not in (*sorts, ANY):
+        what = f"{show(one.name)} is a {other.sort}, not a {one.sort}"
         yield Fault(one.path, what, one.name, f"the name of a {one.sort}")
+
+
+def _nothing(one: NameUse, fits: Sequence[str], allowed: str) -> Fault:
+    """Return that nothing has a name, with the nearest one that would do."""
+    what = f"{show(one.name)}: nothing has this name"
+    return Fault(one.path, what, one.name, allowed, did_you_mean(one.name, fits))
 
 
 def waits(parts: Mapping[str, Sequence[Any]]) -> dict[tuple[str | int, ...], tuple[str, ...]]:

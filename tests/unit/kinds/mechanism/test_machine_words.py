@@ -1,0 +1,223 @@
+"""What is wrong with the names of a mechanism is told once, with its place and what is meant."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import gearcam as gc
+from gearcam.base.errors import DesignError, Problem
+from helpers_machines import MACHINES, MOTOR, PAIR
+
+Document = dict[str, Any]
+
+
+def problems(machine: Mapping[str, Any]) -> list[Problem]:
+    with pytest.raises(DesignError) as caught:
+        gc.design({"kind": "mechanism", "name": "mine", **machine})
+    return list(caught.value.problems)
+
+
+def changed(name: str, title: str, /, **keys: Any) -> Document:
+    """Return a machine with other keys in the first of some tables; None leaves one out."""
+    machine = dict(MACHINES[name])
+    rows = [dict(row) for row in machine[title]]
+    rows[0] = {key: value for key, value in (rows[0] | keys).items() if value is not None}
+    return machine | {title: rows}
+
+
+def told(machine: Mapping[str, Any]) -> dict[str, str]:
+    return {one.key: one.message for one in problems(machine)}
+
+
+@pytest.mark.parametrize(
+    ("title", "keys", "key", "name"),
+    [
+        ("dyad", {"from": "b"}, "dyad[0].from", "b"),
+        ("crank", {"on": "motor.wheel2"}, "crank[0].on", "motor.wheel2"),
+        ("point", {"on": "rokcer"}, "point[0].on", "rokcer"),
+    ],
+)
+def test_a_missing_name_is_told_once(title: str, keys: Document, key: str, name: str) -> None:
+    found = told(changed("four-bar", title, **keys))
+    assert found == {key: f'"{name}": nothing has this name'}
+
+
+@pytest.mark.parametrize(
+    ("machine", "title", "keys", "key"),
+    [
+        ("four-bar", "crank", {"length_mm": None, "lenght_mm": 40}, "crank[0].lenght_mm"),
+        ("four-bar", "crank", {"length_mm": -40}, "crank[0].length_mm"),
+        ("four-bar", "crank", {"joint": None, "jiont": "B"}, "crank[0].jiont"),
+        ("four-bar", "drive", {"even": False}, "drive[0].even"),
+        ("four-bar", "dyad", {"lengths_mm": [120, -90]}, "dyad[0].lengths_mm[1]"),
+        ("four-bar", "dyad", {"members": ["coupler"]}, "dyad[0].members"),
+        ("slide behind a pair", "drive", {"pair": "no.toml"}, "drive[0].pair"),
+        ("slide behind a pair", "guide", {"name": 7}, "guide[0].name"),
+        ("table on two cams", "drive", {"cam": "no.toml"}, "drive[0].cam"),
+    ],
+)
+def test_names_of_faulty_tables_count_as_given(
+    machine: str, title: str, keys: Document, key: str
+) -> None:
+    assert list(told(changed(machine, title, **keys))) == [key]
+
+
+def test_names_of_a_chain_without_a_range_count_as_given() -> None:
+    door = changed("door", "chain", range_deg=None)
+    door["point"] = [{"name": "P", "on": "leaf", "at_mm": [1, 2]}]
+    door["mass"] = [{"of": "leaf", "mass_kg": 9, "center": "P"}]
+    door["load"] = [{"on": "P", "force_n": [1, 2]}]
+    door["spring"] = [{"between": ["P", "B"], "stiffness_n_mm": 1}]
+    assert list(told(door)) == ["chain[0].range_deg"]
+
+
+def test_names_of_unknown_tables_count_as_given() -> None:
+    machine = dict(MACHINES["four-bar"])
+    machine["cranks"] = machine.pop("crank")
+    assert list(told(machine)) == ["cranks"]
+
+
+def test_other_names_are_told_beside_a_faulty_table() -> None:
+    machine = changed("four-bar", "crank", length_mm=-40)
+    machine["point"] = [{"name": "P", "on": "couppler", "at_mm": [1, 2]}]
+    assert list(told(machine)) == ["crank[0].length_mm", "point[0].on"]
+
+
+def test_parts_that_wait_for_each_other_are_told() -> None:
+    machine = changed("four-bar", "dyad", **{"from": "P"})
+    found = told(machine)
+    assert set(found) == {"dyad[0]", "point[0]"}
+    assert found["dyad[0]"].startswith("waits for P")
+
+
+def test_of_a_name_given_twice_both_places_are_told() -> None:
+    machine = dict(MACHINES["four-bar"])
+    machine["point"] = [*machine["point"], {"name": "B", "on": "coupler", "at_mm": [1, 2]}]
+    (found,) = problems(machine)
+    assert found.key == "point[1].name"
+    assert found.message == 'the name "B" is given twice, first by crank[0].joint'
+    (found,) = problems(MACHINES["four-bar"] | {"drive": [MOTOR, MOTOR]})
+    assert found.message == 'the name "motor" is given twice, first by drive[0].name'
+
+
+def output(*names: str, machine: str = "four-bar", **tables: Any) -> Document:
+    return MACHINES[machine] | {"output": {"files": ["csv"], "outputs": list(names)}} | tables
+
+
+def test_all_outputs_that_do_not_move_are_told() -> None:
+    found = problems(output("rocker", "P", "coupler.angel", "D", "C.angle"))
+    assert [one.key for one in found] == [f"output.outputs[{k}]" for k in (0, 2, 3, 4)]
+    assert found[0].message == '"rocker": nothing moves by this name'
+    assert [one.hint for one in found] == [
+        "did you mean rocker.angle?",
+        "did you mean coupler.angle?",
+        "D stands still",
+        "C is a joint, which has no direction: write C, for its two coordinates",
+    ]
+    assert "of a joint also NAME.x and NAME.y" in found[0].allowed
+    (found,) = problems(output("C.angle", machine="slide behind a pair"))
+    assert found.hint.endswith("write C, for its place on its guide")
+    (found,) = problems(output("pair", machine="slide behind a pair"))
+    assert found.hint == "did you mean pair.wheel1 or pair.wheel2?"
+
+
+def test_outputs_have_lines(tmp_path: Path) -> None:
+    file = tmp_path / "mine.toml"
+    file.write_text(
+        """\
+kind = "mechanism"
+[[drive]]
+name = "motor"
+even = true
+[[crank]]
+name = "crank"
+on = "motor"
+joint = "B"
+length_mm = 40
+[[interval]]
+on = "A"
+travel_mm = 4
+[[dwell]]
+on = "B"
+within_mm = 1
+[output]
+outputs = ["B", "A"]
+"""
+    )
+    with pytest.raises(DesignError) as caught:
+        gc.load(file)
+    assert [(one.key, one.line) for one in caught.value.problems] == [
+        ("interval[0].on", 11), ("dwell[0].on", 14), ("output.outputs[1]", 17),
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("title", "keys", "key", "allowed"),
+    [
+        ("interval", {"on": "rocker.angle", "travel_mm": 4}, "travel_mm", "travel_deg"),
+        ("interval", {"on": "P.x", "travel_deg": 4}, "travel_deg", "travel_mm"),
+        ("dwell", {"on": "rocker.angle", "within_mm": 4}, "within_mm", "within_deg"),
+        ("dwell", {"on": "P", "within_mm": 4}, "on", "P.x or P.y"),
+    ],
+)
+def test_the_right_amount_of_an_output_is_named(
+    title: str, keys: Document, key: str, allowed: str
+) -> None:
+    (found,) = problems({**MACHINES["four-bar"], title: [keys]})
+    assert (found.key, found.allowed) == (f"{title}[0].{key}", allowed)
+
+
+def test_stretches_are_of_points_that_are_asked_for() -> None:
+    stretch = [{"on": "B", "from_deg": 0, "to_deg": 10, "shape": "line"}]
+    (found,) = problems(output("P", "C", stretch=stretch))
+    assert found.key == "stretch[0].on"
+    assert found.allowed == "a point of the outputs: P, C"
+    assert found.hint == "add it to output.outputs"
+
+
+def built(machine: Document) -> Any:
+    return gc.build(gc.design({"kind": "mechanism", "name": "mine", **machine}))
+
+
+def test_single_coordinates_are_outputs() -> None:
+    whole, parts = built(output("C")), built(output("C.y", "C_x", "C", "P_y"))
+    columns = parts.motion()
+    assert [one.stem for one in parts.outputs] == ["C_y", "C_x", "P_y"]
+    for key, values in whole.motion().items():
+        assert (columns[key] == values).all()
+    assert list(parts.paths) == ["C"]
+    assert (parts.output("P.y")["P_y_mm"] == columns["P_y_mm"]).all()
+    assert list(parts.output("P_y"))[1] == "P_y_mm"
+    assert list(built(output("C.x")).paths) == []
+
+
+def test_intervals_and_dwells_of_coordinates() -> None:
+    asked: Document = {
+        "interval": [{"on": "C_x", "travel_mm": 1}],
+        "dwell": [{"on": "C.x", "within_mm": 1, "least_deg": 1}],
+    }
+    result = built(output("C", **asked))
+    found = result.intervals[0]
+    low, high = result.output("C.x", [found.begin, found.end])["C_x_mm"]
+    assert high - low == pytest.approx(1.0, abs=1e-9)
+    assert high == pytest.approx(result.facts["outputs.C_x.largest_mm"], abs=1e-9)
+    assert result.dwells[0].length > found.length
+
+
+def test_all_outputs_of_each_machine_are_those_of_its_linkage() -> None:
+    for name, machine in MACHINES.items():
+        result = built(machine)
+        for one in (one for many in result._known_outputs.values() for one in many):
+            values = result.track(one)(result.linkage.knots[:1], 1).derivatives()
+            assert len(values) == 2, (name, one)
+
+
+def test_a_drive_with_a_pair_gives_its_wheels() -> None:
+    machine = output("pair.wheel3", machine="slide behind a pair")
+    machine["drive"] = [{"name": "pair", "pair": PAIR}]
+    (found,) = problems(machine)
+    assert found.hint in ("did you mean pair.wheel1?", "did you mean pair.wheel2?")
