@@ -9,7 +9,7 @@ import pytest
 
 from gearcam.linkages.chain import HoistChain
 from gearcam.linkages.dyads import Lengths
-from gearcam.linkages.elements import Crank, Dyad, GivenMotion, GuideLine, MemberPoint
+from gearcam.linkages.elements import Crank, Dyad, GivenMotion, GuideLine, MemberPoint, PushedSlide
 from gearcam.linkages.linkage import Linkage
 from gearcam.linkages.work import (
     GRAVITY,
@@ -230,6 +230,17 @@ class TestIdentities:
         speed = np.real(way.conj() * slope[1]) / np.abs(way) * 11.0
         lost = float(np.mean((0.02 * speed**2)[:-1]) / 11.0 * TURN)
         agree(work.work, lost, relative=1e-11)
+
+    def test_what_a_turn_lifts_or_winds_up_is_not_back(self) -> None:
+        spiral = VaryingForce(MemberTurn("crank"), lambda a: -a.place * 7.0, SPRINGS)
+        weight = VectorForce("P", 3.0 * G, GRAVITY)
+        assert VirtualWork(four_bar(), [weight]).kept == (INERTIA, GRAVITY, SPRINGS)
+        assert VirtualWork(four_bar(), [weight, spiral]).kept == (INERTIA, GRAVITY)
+        lift = PushedSlide("door", "q", "way", "hook")
+        made = linkage(GuideLine("way", 0j, 0.5 * pi), lift)
+        lifted = VirtualWork(made, [VectorForce("hook", 3.0 * G, GRAVITY)])
+        assert lifted.kept == (INERTIA, SPRINGS)
+        agree(lifted.work, 3.0 * 9.80665 * TURN)
 
     def test_torsion_over_whole_turns(self) -> None:
         """A spring from the ground to the crank is wound up by each turn."""

@@ -45,8 +45,8 @@ _KILO: Final = 1e3
 _AT_KNOT: Final = 1e-9
 """Distance from a knot, rad, within which a place is called by it."""
 
-_WOUND: Final = 1e-7
-"""Change of a spring's length or angle over a cycle, as a share, that is more than rounding."""
+_BACK: Final = 1e-7
+"""Change of a place or an angle over a cycle, as a share, up to which it is as before."""
 
 _NODES: Final = 24
 """Points of Gauss' rule in each cell of an integral."""
@@ -636,13 +636,25 @@ class VirtualWork(ShortRepr):
         }
 
     @cached_property
-    def wound(self) -> bool:
-        """Whether a spring is not at the end of the range as at its beginning: it keeps work."""
+    def kept(self) -> tuple[str, ...]:
+        """What does no work over the whole range: inertia, and what is there as at the beginning.
+
+        A weight that a turn lifts, or a spring that a turn winds up, does work; dampers are not
+        looked at.
+        """
         state = WorkState(self.linkage, np.array(self.linkage.span), 0, self.speed)
-        springs = (one for one in self.efforts if one.part == SPRINGS)
-        places = (one.coordinate.place(state) for one in springs if isinstance(one, VaryingForce))
-        ends = [np.asarray(one.c[0]) for one in places]
-        return any(np.ptp(one) > _WOUND * (1.0 + np.abs(one).max()) for one in ends)
+        found = {INERTIA: True, GRAVITY: True, SPRINGS: True}
+        for effort in self.efforts:
+            if isinstance(effort, VectorForce):
+                place = state.known.jet(effort.point)
+            elif isinstance(effort, VaryingForce):
+                place = effort.coordinate.place(state)
+            else:
+                continue
+            ends = np.asarray(place.c[0]) * np.ones(2)
+            near = abs(ends[1] - ends[0]) <= _BACK * (1.0 + np.abs(ends).max())
+            found[effort.part] = found.get(effort.part, True) and bool(near)
+        return tuple(part for part, back in found.items() if back and part != LOADS)
 
     @property
     def work(self) -> float:

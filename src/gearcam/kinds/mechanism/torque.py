@@ -19,7 +19,7 @@ from gearcam.kinds.mechanism.loaded import work_of
 from gearcam.kinds.mechanism.tables import CompareSpec
 from gearcam.kinds.mechanism.torque_checks import TORQUE, DriverEffort
 from gearcam.kinds.mechanism.wheel_masses import BODY
-from gearcam.linkages.work import GRAVITY, INERTIA, PARTS, SPRINGS, MovedMass
+from gearcam.linkages.work import GRAVITY, PARTS, SPRINGS, MovedMass
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.pictures.charts import Chart, Limit, Line
 from gearcam.results.result import StudyResult
@@ -322,7 +322,7 @@ def _range(result: MechanismResult, work: VirtualWork, meaning: str) -> Fact:
 def _error(result: MechanismResult, work: VirtualWork) -> float | None:
     """Return the work of what keeps its energy over a cycle, as a share; it should be 0."""
     damped = any(one.damped for one in result.design.spring)
-    kept = [INERTIA, GRAVITY, *([] if damped or work.wound else [SPRINGS])]
+    kept = [part for part in work.kept if not (damped and part == SPRINGS)]
     found = [work.works[part] for part in kept if part in work.works]
     whole = sum(size for _, size in work.works.values())
     if not work.linkage.closed or not found or whole < _NOTHING:

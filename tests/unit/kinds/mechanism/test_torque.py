@@ -470,7 +470,7 @@ def test_a_geneva_wheel() -> None:
 
 
 def test_a_rack() -> None:
-    pair = gc.load("profiles/feeder.toml")
+    pair: Any = gc.load("profiles/feeder.toml")
     tables = {
         "drive": [{"name": "pair", "pair": pair, "speed_rpm": 10, "turn_deg": 30}],
         "slide": [{"name": "table", "on": "pair.rack", "joint": "T"}],
