@@ -23,6 +23,9 @@ from gearcam.numeric.roots import bracketed_root
 _TOUCHING: Final = 1e-9
 """Share of the amount by which an extreme may exceed it: rounding of equal extremes."""
 
+_ROUNDING: Final = 1e-12
+"""Share of a turn by which a range that begins with it may begin before it."""
+
 _PLACES: Final = 33
 """Values at which the slopes at both ends of a passage are compared."""
 
@@ -36,7 +39,7 @@ class DriverRange(NamedTuple):
     Attributes
     ----------
     begin, end : float, rad
-        The driver's angles. A range over the end of a turn begins below the first one.
+        The driver's angles. A range begins within the turn; one over its end ends above it.
     """
 
     begin: float
@@ -114,11 +117,7 @@ def longest_dwell(measures: TrackMeasures, amount: float) -> DriverRange:
             band = bottom, bottom + amount
             ends.append((_leaves(measures, node, -1, band), _leaves(measures, node, 1, band)))
     ends += _passages(measures, amount)
-    begin, end = max(ends, key=lambda one: one[1] - one[0])
-    if measures.closed:
-        turns = np.ceil((end - high) / (high - low))
-        begin, end = (one - turns * (high - low) for one in (begin, end))
-    return DriverRange(float(begin), float(end))
+    return _in_turn(measures, *max(ends, key=lambda one: one[1] - one[0]))
 
 
 def last_travel(measures: TrackMeasures, travel: float, *, outer: bool = True) -> DriverRange:
@@ -155,7 +154,15 @@ def last_travel(measures: TrackMeasures, travel: float, *, outer: bool = True) -
     begin = _leaves(measures, node, -1, band)
     if begin == places[0] and values[0] != level:
         raise ShortRangeError(travel, float(np.abs(values[: node + 1] - top.value).max()))
-    return DriverRange(float(begin), float(places[node]))
+    return _in_turn(measures, float(begin), float(places[node]))
+
+
+def _in_turn(measures: TrackMeasures, begin: float, end: float) -> DriverRange:
+    """Return a range that begins within the turn, but for rounding, if the motion repeats."""
+    low, high = measures.span
+    turns = np.floor((begin - low) / (high - low) + _ROUNDING) if measures.closed else 0.0
+    begin, end = (float(one - turns * (high - low)) for one in (begin, end))
+    return DriverRange(begin, end)
 
 
 def _own(measures: TrackMeasures) -> range:

@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from jinja2 import Environment
 
     from gearcam.base.facts import Facts
-    from gearcam.base.findings import Finding
     from gearcam.pictures.charts import Chart
     from gearcam.results.result import Result
 
@@ -55,6 +54,13 @@ _VERDICTS: Final = {
     "note": "Ready to cut",
 }
 """Verdict by the severity of the worst finding."""
+
+_OF_MOTIONS: Final = {
+    "error": "Do not build this yet",
+    "warning": "Look before you build",
+    "note": "Nothing is wrong with the motion",
+}
+"""Those of kinds without parts to cut."""
 
 
 def page(
@@ -226,7 +232,7 @@ def blocks(
         "title": result.design.name,
         "facts": facts,
         "findings": result.findings,
-        "verdict": verdict(result.findings),
+        "verdict": verdict(result),
         "remedies": remedies(result) if seek else Remedies(),
         "files": {name: size_of(size) for name, size in result.sizes.items()},
         "errors": [*_errors(result, facts)],
@@ -239,11 +245,11 @@ def rendered(name: str, values: Mapping[str, Any]) -> str:
     return _templates().get_template(name).render(values)
 
 
-def verdict(findings: tuple[Finding, ...]) -> tuple[str, str]:
-    """Return the worst severity of `findings`, note if there are none, and the verdict."""
-    severities = {one.severity for one in findings}
+def verdict(result: Result) -> tuple[str, str]:
+    """Return the worst severity of a result's findings, note if there are none, and the verdict."""
+    severities = {one.severity for one in result.findings}
     worst = next((one for one in _VERDICTS if one in severities), "note")
-    return worst, _VERDICTS[worst]
+    return worst, (_VERDICTS if result.kind.cut else _OF_MOTIONS)[worst]
 
 
 def _errors(result: Result, facts: Facts) -> Iterator[tuple[str, str]]:

@@ -113,6 +113,8 @@ class Kind(DesignKind):
         Stages at increasing resolution (see `gearcam.results.ladders`).
     public : mapping of str to type
         Classes for designs written in Python, by name.
+    cut : bool
+        Whether its files hold parts to cut; those of others are not said to be ready for that.
     """
 
     facts: Callable[[Any], Facts] = lambda _: Facts({})
@@ -123,6 +125,7 @@ class Kind(DesignKind):
     studies: Mapping[str, Study] = field(default_factory=dict)
     ladders: Mapping[str, Callable[[Any], Any]] = field(default_factory=dict)
     public: Mapping[str, type] = field(default_factory=dict)
+    cut: bool = True
 
 
 KINDS: Final = cast("Mapping[str, Kind]", reading.KINDS)

@@ -41,26 +41,28 @@ def test_a_dwell_round_an_extreme(amount: float) -> None:
     assert found.length == pytest.approx(2.0 * np.arccos(1.0 - amount), rel=1e-13)
 
 
-def test_a_dwell_over_the_end_of_a_turn_begins_before_it() -> None:
+def test_a_dwell_over_the_end_of_a_turn_ends_above_it() -> None:
     track = _waves(np.array([1.0, 0.25]), np.array([0.0, 0.0]))  # flat at 180 deg only
     assert longest_dwell(TrackMeasures(track, TURN), 0.1).begin > 2.0
     shifted = TrackMeasures(track, np.array([np.pi, 3.0 * np.pi]))
     found = longest_dwell(shifted, 0.1)
-    assert found.begin < np.pi < found.end
-    assert found.begin + found.end == pytest.approx(2.0 * np.pi, abs=1e-13)
+    assert np.pi < found.begin < 3.0 * np.pi < found.end
+    assert found.begin + found.end == pytest.approx(6.0 * np.pi, abs=1e-13)
 
 
 def test_a_dwell_while_the_output_passes_through() -> None:
     slow = TrackMeasures(_waves(NONE, -0.9 * ONE, 1.0), TURN)
     found = longest_dwell(slow, 0.1)
-    assert found.begin == pytest.approx(-found.end, abs=1e-12)
-    assert 2.0 * (found.end - 0.9 * np.sin(found.end)) == pytest.approx(0.1, abs=1e-14)
+    half = found.end - 2.0 * np.pi
+    assert found.begin == pytest.approx(2.0 * np.pi - half, abs=1e-12)
+    assert 2.0 * (half - 0.9 * np.sin(half)) == pytest.approx(0.1, abs=1e-14)
 
 
 def test_a_passage_with_a_ripple_inside() -> None:
     found = longest_dwell(TrackMeasures(_waves(NONE, -1.05 * ONE, 1.0), TURN), 0.1)
-    assert found.begin == pytest.approx(-found.end, abs=1e-12)
-    assert found.end - 1.05 * np.sin(found.end) == pytest.approx(0.05, abs=1e-14)
+    half = found.end - 2.0 * np.pi
+    assert found.begin == pytest.approx(2.0 * np.pi - half, abs=1e-12)
+    assert half - 1.05 * np.sin(half) == pytest.approx(0.05, abs=1e-14)
 
 
 def _by_steps(track: Law, amount: float, steps: int) -> float:
@@ -153,9 +155,9 @@ def test_the_load_range_before_the_outer_dead_center() -> None:
 def test_a_travel_before_the_inner_dead_center_reaches_over_the_turn() -> None:
     slide = measures(nail_machine(even, TURN), "slide.guide2")
     found = last_travel(slide, 4.0, outer=False)
-    assert found.end == pytest.approx(0.0, abs=1e-14)
+    assert found.end == pytest.approx(2.0 * np.pi, abs=1e-14)
     assert slide.at(np.array([found.begin]), 0).c[0] == pytest.approx([604.0], abs=1e-11)
-    assert found.begin < 0.0
+    assert 0.0 < found.begin < found.end
 
 
 def test_travels_that_cannot_be_are_refused() -> None:

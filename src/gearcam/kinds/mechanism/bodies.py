@@ -25,6 +25,7 @@ from gearcam.pictures.drawings import (
     BORE,
     CENTER,
     MEMBER,
+    PRIME,
     TRACE,
     Cross,
     Feature,
@@ -464,6 +465,8 @@ def _motion(moved: Moved | None, x: Array) -> Pose:
 
 def _seen(drive: PlacedDrive, features: tuple[Feature, ...]) -> Iterator[Feature]:
     for one in features:
+        if one.kind == PRIME:  # which says nothing of the machine
+            continue
         yield replace(one, shape=mirrored(one.shape)) if drive.spec.mirror else one
 
 

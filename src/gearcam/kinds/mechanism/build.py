@@ -229,6 +229,24 @@ class MechanismResult(Result):
                 found[other.name] = self._behind(master)
         return found
 
+    @property
+    def machines(self) -> dict[str, MechanismResult]:
+        """The mechanism behind its first drive, and behind those to compare, by their names."""
+        return {self.design.drive[0].name: self, **self.compared}
+
+    @property
+    def speed(self) -> float | None:
+        """Speed of the master, rad/s; None if the design does not say."""
+        return self.design.drive[0].speed
+
+    @property
+    def charts(self) -> tuple[str, ...]:
+        """Names that `chart` accepts, first those of what is asked for first."""
+        from gearcam.kinds.mechanism.charts import TURNING
+
+        first = TURNING if self.outputs[0].angle else ()
+        return tuple(sorted(super().charts, key=lambda name: name not in first))
+
     @cached_property
     def checked(self) -> tuple[Finding, ...]:
         """Findings of the drives and of the mechanism, errors first."""
@@ -357,8 +375,7 @@ class MechanismResult(Result):
     def _tabled(
         self, rows_of: Callable[[str, MechanismResult], Iterator[dict[str, Any]]]
     ) -> Columns:
-        machines = {"as designed": self, **self.compared}
-        rows = [row for name, one in machines.items() for row in rows_of(name, one)]
+        rows = [row for name, one in self.machines.items() for row in rows_of(name, one)]
         return Columns({key: np.array([row[key] for row in rows]) for key in rows[0]})
 
     @cached_property

@@ -1,5 +1,6 @@
 """The charts of a mechanism, over the master's angle.
 
+Velocities and what follows are by time if the master has a speed, else by its angle.
 Where drives are compared, every output has a line for each of them.
 """
 
@@ -47,10 +48,13 @@ def _marks(result: MechanismResult) -> tuple[MarkedPlace, ...]:
     """Return knots, and where intervals that the design asks for begin and end."""
     low, high = result.linkage.span
     ends = [
-        MarkedPlace(label=f"last bit of {one.on}", value=_DEG * value)
+        MarkedPlace(
+            label=f"last bit of {one.on}",
+            # one over the end of a cycle ends in the next
+            value=_DEG * (value if value <= high else value - (high - low)),
+        )
         for one, found in zip(result.design.interval, result.intervals, strict=True)
         for value in (found.begin, found.end)
-        if low <= value <= high
     ]
     return (*knot_marks(_DEG * result.linkage.knots, _DEG * low, _DEG * high), *ends)
 
@@ -62,10 +66,7 @@ def _label(result: MechanismResult) -> str:
 def _drives(result: MechanismResult) -> dict[str, MechanismResult]:
     """Return the mechanism behind each of its drives, by their names; without one if only one."""
     compared = result.compared
-    first = result.design.drive[0]
-    nested = first.pair or first.cam
-    own = first.name if nested is None else nested.name
-    return {own: result, **compared} if compared else {"": result}
+    return result.machines if compared else {"": result}
 
 
 def _chart(angle: bool, order: int, result: MechanismResult) -> Chart | None:
@@ -84,23 +85,25 @@ def _chart(angle: bool, order: int, result: MechanismResult) -> Chart | None:
     return Chart(
         title=f"{called} of {names}",
         x=_label(result),
-        y=f"{called.lower()}, {_unit(angle, order)}",
+        y=f"{called.lower()}, {_unit(angle, order, timed=result.speed is not None)}",
         lines=tuple(lines),
         marks=_marks(result),
     )
 
 
-def _unit(angle: bool, order: int) -> str:
+def _unit(angle: bool, order: int, *, timed: bool) -> str:
+    """Return the unit of a derivative by time, or by the master's angle."""
     if not order:
         return "deg" if angle else "mm"
-    return f"{'rad' if angle else 'mm'}/rad{'' if order == 1 else f'^{order}'}"
+    power = "" if order == 1 else f"^{order}"
+    return f"{'rad' if angle else 'mm'}/{'s' if timed else 'rad'}{power}"
 
 
 def _lines(result: MechanismResult, name: str, outputs: list[Output], order: int) -> Iterator[Line]:
     q = _angles(result)
     for one in outputs:
         values = result.track(one)(q, order).derivatives()[order]
-        scale = one.unit[0] if not order else 1.0
+        scale = (result.speed or 1.0) ** order if order else one.unit[0]
         own = one.stem if len(outputs) > 1 or not name else ""
         yield Line(
             label=", ".join(word for word in (own, name) if word), x=_DEG * q, y=scale * values
@@ -159,3 +162,6 @@ CHARTS: Final[Charts] = {
     "angular_jerk": partial(_chart, True, 3),
 }
 """Charts by name; the report leads with the first three."""
+
+TURNING: Final = ("direction", "angular_velocity", "angular_acceleration")
+"""Those that lead where an angle is asked for first."""

@@ -40,8 +40,9 @@ def _dxf(result: MechanismResult, _: Any) -> Files:
     Files: paths.dxf.
 
     The paths of the points, and of the joints that are asked for, 1:1 in mm and within the chord
-    tolerance, each on a layer of its own, NAME_PATH; with the machine at its pose: members on
-    MEMBER, guides and pivots on GROUND, the wheels or the cam on theirs.
+    tolerance, each on a layer of its own, NAME_PATH; with the machine at its pose: members, drawn
+    symbolically, on MEMBER and MEMBER_BORE, guides and pivots on GROUND, the wheels or the cam on
+    theirs. Widths and bores of members are not for cutting.
     """
     from gearcam.export.dxf import DxfStyle, dxf_bytes
     from gearcam.kinds.mechanism.drawn import CHORDS, paths_drawing

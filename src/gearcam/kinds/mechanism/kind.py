@@ -104,4 +104,5 @@ KIND: Final = Kind(
     studies=DeferredMapping(f"{_HERE}.studies:STUDIES"),
     ladders=DeferredMapping(f"{_HERE}.ladder:LADDERS"),
     public=DeferredMapping(f"{_HERE}.public:PUBLIC"),
+    cut=False,
 )

@@ -351,7 +351,8 @@ def _charts(
     angle = next(iter(columns.values()))
     label = f"{result.driver[1]}, deg"
     most = limit_of(TORQUE, "drive-torque", result.design.limits) / NEWTON_METRES.factor
-    lines = [Line(label="this drive", x=angle, y=columns["torque_nm"])]
+    own = result.design.drive[0].name
+    lines = [Line(label=own, x=angle, y=columns["torque_nm"])]
     lines += [
         Line(label=name, x=_DEG * q, y=_NM * np.asarray(work.moment(q).c[0]))
         for name, work in beside.items()

@@ -118,3 +118,59 @@ def test_both_sides_of_a_jump_are_drawn() -> None:
     assert len(at) == 2
     assert abs(np.diff(jerk[at])[0]) > 1.0
     assert math.isclose(x[0], 0.0)
+
+
+def asked(**more: Any) -> Any:
+    """Return the result of the slide behind a pair with other tables."""
+    document = {"kind": "mechanism", "name": "drawn", **MACHINES["slide behind a pair"], **more}
+    return gc.build(gc.design(document))
+
+
+def test_rates_are_by_time_where_the_master_has_a_speed() -> None:
+    drive = MACHINES["slide behind a pair"]["drive"][0]
+    result = asked(drive=[{**drive, "speed_rpm": 90}])
+    table = result.motion(np.radians(next(iter(drawn(result, "velocity").values()))[0]))
+    for chart, column, unit in (
+        ("velocity", "C_mm_s", "mm/s"), ("acceleration", "C_mm_s2", "mm/s^2"),
+        ("jerk", "C_mm_s3", "mm/s^3"),
+    ):  # fmt: skip
+        ((_, y),) = drawn(result, chart).values()
+        np.testing.assert_allclose(y, table[column], rtol=1e-12, atol=1e-7)
+        assert result.chart(chart).y.endswith(f", {unit}")
+
+
+def test_charts_of_what_is_asked_for_first_lead() -> None:
+    turning = ("direction", "angular_velocity", "angular_acceleration")
+    lengths = ("motion", "velocity", "acceleration")
+    for outputs, first in ((["rod.angle", "C"], turning), (["C", "rod.angle"], lengths)):
+        names = asked(output={"outputs": outputs}).charts
+        assert names[:3] == first
+        assert len(names) == len({*names})
+        assert {*turning, *lengths} < {*names}
+
+
+def test_intervals_over_the_end_of_a_turn_are_marked_at_both_ends() -> None:
+    """One convention: a range begins within the turn, as the table of loads has it."""
+    drive = {**MACHINES["slide behind a pair"]["drive"][0], "phase_deg": 10}
+    interval = [
+        {"on": "C", "travel_mm": 10, "before": before} for before in ("outer", "inner")
+    ]  # fmt: skip
+    result = asked(drive=[drive], interval=interval)
+    marks = [one.value for one in result.chart("motion").marks if one.label.startswith("last bit")]
+    assert len(marks) == 4
+    assert all(0.0 <= one <= 360.0 for one in marks)
+    for one, ends in zip(result.intervals, (marks[:2], marks[2:]), strict=True):
+        assert 0.0 <= one.begin < math.tau
+        places = result.output("C", np.radians(ends))["C_mm"]
+        assert abs(np.diff(places)[0]) == pytest.approx(10.0)
+    assert any(one.end > math.tau for one in result.intervals)
+
+
+def test_a_drive_has_one_name() -> None:
+    load = [{"on": "C", "force_n": -100}]
+    result = asked(compare=[{"name": "even", "even": True}], load=load, output={
+        "files": ["csv"], "outputs": ["C"], "studies": ["torque"]})  # fmt: skip
+    names = ["pair", "even"]
+    assert [*drawn(result, "velocity")] == names
+    assert [*drawn(result, "torque.torque")] == names
+    assert list(dict.fromkeys(result.comparison()["drive"])) == names

@@ -20,6 +20,7 @@ from gearcam.numeric.arrays import as_pairs
 from gearcam.pictures.drawings import MEMBER, TRACE, Circle, chains
 from gearcam.pictures.scenes import MovingBody, Scene
 from gearcam.report.data import scene_data
+from gearcam.report.page import blocks
 from helpers_machines import MACHINES, machine
 from helpers_pairs import PROFILES
 
@@ -390,3 +391,17 @@ def test_links_are_as_wide_as_suits_the_machine() -> None:
         data = scene_data(scene)["box"]
         across = math.hypot(data[2] - data[0], data[3] - data[1])
         assert 0.002 < min(s for s in sizes if s) / across < 0.1
+
+
+def test_symbols_are_not_said_to_be_ready_to_cut() -> None:
+    names = ("four-bar", "lift")
+    told = {name: blocks(machine(name), names=["verdict"], seek=False)["verdict"] for name in names}
+    assert "Look before you build" in told["four-bar"]
+    assert "Nothing is wrong with the motion" in told["lift"]
+    assert not any("cut" in one for one in told.values())
+
+
+def test_the_prime_circle_of_a_cam_is_left_out() -> None:
+    data = machine("lever on a cam, mirrored").files("svg")["poses.svg"].decode()
+    assert 'class="pitch"' in data
+    assert 'class="prime"' not in data
