@@ -71,6 +71,12 @@ _SYNONYMS: Final = {
 }
 """Other words for the phases of a motion."""
 
+_SLIDES: Final = {
+    "rrp": "rrt", "prr": "trr", "rpr": "rtr", "prp": "trt", "rpp": "rtt", "ppr": "ttr",
+    "rprr": "rtrr",
+}  # fmt: skip
+"""Types of dyads with P for a joint that slides, as others write them."""
+
 _FILLERS: Final = frozenset({"number", "num", "no", "n", "of", "the", "size", "value"})
 _SIZES: Final = frozenset({"diameter", "radius", "width", "distance"})
 """Words that are often left out or added."""
@@ -87,7 +93,7 @@ def nearest(word: str, known: Iterable[str]) -> str:
     by_lower = {name.lower(): name for name in known}
     if word in by_lower.values():
         return word
-    meant = _SYNONYMS.get(word.lower(), word.lower())
+    meant = (_SYNONYMS | _SLIDES).get(word.lower(), word.lower())
     close = difflib.get_close_matches(meant, by_lower, n=1, cutoff=STRONG)
     close += [near for near in difflib.get_close_matches(meant, by_lower) if near[0] == meant[0]]
     return by_lower[close[0]] if close else ""
@@ -96,7 +102,8 @@ def nearest(word: str, known: Iterable[str]) -> str:
 def did_you_mean(word: Any, known: Iterable[str]) -> str:
     """Return the hint ``did you mean ...?`` with the nearest known word, or an empty text."""
     near = nearest(word, known) if isinstance(word, str) else ""
-    return f"did you mean {near}?" if near else ""
+    note = " (T is a slide)" if near and near.lower() == _SLIDES.get(word.lower()) else ""
+    return f"did you mean {near}?{note}" if near else ""
 
 
 def meant_by(key: str, known: Mapping[str, Key], least: float = _WEAK) -> list[Key]:

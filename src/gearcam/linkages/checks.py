@@ -93,11 +93,11 @@ def pressure_angle(machine: CheckedMachine, limit: float) -> Iterator[Remark]:
         most = safe.pressure_angle[0] if math.isnan(limit) else limit
         found = math.degrees(one.pressure_angle.value)
         if one.pressure_angle.value > most:
-            last = math.degrees(safe.pressure_angle[1])
+            usual, least = (90.0 - math.degrees(one) for one in safe.pressure_angle)
             yield Remark(
-                f"The pressure angle of {one.dyad.joint} reaches {formatted(found, 4)} deg: "
-                f"transmission angle {formatted(90.0 - found, 4)} deg. {formatted(last)} deg is "
-                "the most that is usual.",
+                f"The pressure angle of {one.dyad.joint} reaches {formatted(found, 4)} deg: the "
+                f"transmission angle falls to {formatted(90.0 - found, 4)} deg. Usual are "
+                f"{formatted(usual)} deg and more, and never less than {formatted(least)} deg.",
                 f"{one.dyad.joint}, {_at(one.pressure_angle.place)}",
                 found,
                 limit=math.degrees(most),
@@ -137,12 +137,12 @@ def change_point(machine: CheckedMachine, limit: float) -> Iterator[Remark]:  # 
     """
     for dyad in machine.linkage.dyads:
         if dyad.changes:
-            kept = "its branch" if dyad.keeps == BRANCH else "its motion"
-            other = "motion" if dyad.keeps == BRANCH else "branch"
+            told = 'It goes on into the other branch; with change = "branch" it keeps its own.'
+            if dyad.keeps == BRANCH:
+                told = 'It keeps its branch; with change = "motion" it goes on into the other one.'
             yield Remark(
                 f"Both positions of {dyad.joint} meet here: the machine may leave it either way, "
-                f'and needs a flywheel or a second link. It keeps {kept}; change = "{other}" keeps '
-                "the other.",
+                f"and needs a flywheel or a second link. {told}",
                 f"{dyad.joint}, " + ", ".join(_at(one) for one in dyad.changes),
             )
 

@@ -77,6 +77,8 @@ def make_linkage(design: MechanismDesign, drives: Sequence[PlacedDrive]) -> Link
     try:
         return settled(linkage)
     except NotClosingError as error:
+        if isinstance(error.closing.element, HoistChain):
+            raise _chain_refusal(design, error.closing.element, error, linkage) from None
         raise _refusal(design, error) from None
 
 
@@ -306,6 +308,60 @@ def _refusal(design: MechanismDesign, error: NotClosingError) -> InfeasibleError
     )
 
 
+_WIDER: Final = (5.0, 15.0, 45.0, 90.0)
+"""By how much the range of a lever is widened in the search for one that is wide enough, deg."""
+
+
+def _chain_refusal(
+    design: MechanismDesign, chain: HoistChain, error: NotClosingError, linkage: Linkage
+) -> InfeasibleError:
+    """Return which limit of its range a lever reaches, and which range would be wide enough."""
+    found, number = error.closing, _table(design, chain)[1]
+    known = linkage.at(np.array([found.place]), 0, chain)
+    side = int(np.argmin([float(np.asarray(one.c[0])[0]) for one in chain.room(known)]))
+    what = f"{chain.name} does not close over the whole range: {_ranges(found.ranges)}"
+    limit, reached = math.degrees(chain.limits[side]), math.degrees(chain.stretch[side])
+    if abs(limit - reached) > _SAME_DEG:
+        place = formatted(reached, 8)
+        note = f"at {place} deg of the lever its chain turns back: a wider range_deg does not help"
+        return InfeasibleError(what, where=f"chain[{number}]", nearest=note)
+    key = f"chain[{number}].range_deg[{side}]"
+    wanted = _angle_within_wider(chain, side, linkage, found.place)
+    note = f"the lever reaches {key} = {formatted(limit, 8)}"
+    if wanted is None:
+        return InfeasibleError(what, where=key, nearest=note)
+    steps = 100.0 * math.degrees(wanted)
+    value = (math.ceil(steps + 0.1) if side else math.floor(steps - 0.1)) / 100.0
+    return InfeasibleError(
+        what,
+        where=key,
+        value=limit,
+        limit=value,
+        unit="deg",
+        nearest=note,
+        adjustments=[Adjustment(near={key: value})],
+    )
+
+
+_SAME_DEG: Final = 1e-7
+"""Distance of two directions of a lever that are the same, deg."""
+
+
+def _angle_within_wider(chain: HoistChain, side: int, linkage: Linkage, q: float) -> float | None:
+    """Return the lever's angle at an angle of the master if its range were wide enough, rad."""
+    for wider in map(math.radians, _WIDER):
+        limits = list(chain.limits)
+        limits[side] += wider if side else -wider
+        longer = replace(chain, limits=(limits[0], limits[1]))
+        known = linkage.at(np.array([q]), 0, chain)
+        rooms = [float(np.asarray(one.c[0])[0]) for one in longer.room(known)]
+        if min(rooms) >= 0.0:  # and not NaN, where the joint would be inside the wheel
+            longer.solve(known)
+            way = complex(np.asarray(known.frame(chain.name).direction.c[0])[0])
+            return chain.start + cmath.phase(way * cmath.exp(-1j * chain.start))
+    return None
+
+
 _FURTHER: Final = 2.0
 """How many times further than the least change a length is changed in the search for remedies."""
 
@@ -337,5 +393,11 @@ def _table(design: MechanismDesign, element: Element) -> tuple[str, int]:
 def _ranges(ranges: Sequence[tuple[float, float]]) -> str:
     if not ranges:
         return "at no angle of the master"
-    pairs = [[formatted(math.degrees(end), 8) for end in one] for one in ranges]
+    pairs = [[_in_degrees(end) for end in one] for one in ranges]
     return "it does from " + ", and from ".join(f"{a} to {b} deg" for a, b in pairs)
+
+
+def _in_degrees(angle: float) -> str:
+    """Return an angle as text in degrees; what is left of 0 by rounding is 0."""
+    found = math.degrees(angle)
+    return formatted(0.0 if abs(found) < 1e-6 else found, 8)

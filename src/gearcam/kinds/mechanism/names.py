@@ -240,8 +240,11 @@ def _twice(uses: Sequence[NameUse], names: dict[str, NameUse]) -> Iterator[Fault
 
 def _not_comparable(found: Examined) -> Iterator[Fault]:
     """Yield drives to compare that do not have the shafts of the first drive."""
-    master = next(iter(found.parts["drive"]), None) if _is_read("drive", found) else None
-    for number, one in enumerate(found.parts.get("compare", ()) if master is not None else ()):
+    drives = found.parts["drive"] if _is_read("drive", found) else ()
+    if not drives:
+        return
+    master = drives[0]
+    for number, one in enumerate(found.parts.get("compare", ())):
         if one.even is False:
             continue
         if one.even:

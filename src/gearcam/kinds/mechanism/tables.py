@@ -7,12 +7,14 @@ towards its second one.
 
 from __future__ import annotations
 
+import cmath
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Final
 
 from gearcam.base.display import ShortRepr
+from gearcam.base.numerals import formatted
 from gearcam.base.quantities import (
     ANGLE,
     COUNT,
@@ -365,12 +367,22 @@ class DyadSpec(ShortRepr):
         if (self.driven is None) == (self.type == "RTRR"):
             what = "is missing" if self.driven is None else f"does not apply to {self.type}"
             yield "driven", None, what, "the name of a slide, with type RTRR"
-        for number in self.rods:
-            if self.lengths[number] <= 0.0:
-                yield "lengths", number, "is 0", f"above 0 in {self.type}"
+        yield from self._missing_lengths()
         for number, gamma in enumerate(self.gammas):
             if self._crossed == number and abs(math.sin(gamma)) < 1e-3:
                 yield "gammas", number, "leaves the slides parallel", "not 0 or 180 deg"
+
+    def _missing_lengths(self) -> Iterator[Breach]:
+        """Yield lengths that the type asks for, by the names of their members."""
+        missing = [number for number in self.rods if self.lengths[number] <= 0.0]
+        rods = " and ".join(self.members[number] for number in self.rods)
+        if missing and not any(self.lengths):
+            what = f"dyad {self.joint} has no lengths"
+            yield "lengths", None, what, f"lengths of {rods} above 0, in {self.type}"
+            return
+        for number in missing:
+            what = f"the length of {self.members[number]} in dyad {self.joint} is 0"
+            yield "lengths", number, what, f"above 0 in {self.type}"
 
     @property
     def formula(self) -> str:
@@ -453,6 +465,29 @@ class ChainSpec(ShortRepr):
             yield "range", 1, "is not above the least direction", "rising directions"
         elif not low <= self.start <= high:
             yield "start", None, "is beyond range_deg", "a direction of the range"
+        else:
+            yield from self._inside_its_wheel()
+
+    def _inside_its_wheel(self) -> Iterator[Breach]:
+        """Yield the end of the range at which the joint would be inside the wheel."""
+        way = complex(*self.at) - complex(*self.hinge)
+        apart, lever = abs(way), self.length
+        # by the cosine law of the triangle of hinge, wheel and joint
+        share = (lever**2 + apart**2 - self.radius**2) / max(2.0 * lever * apart, 1e-300)
+        if share >= 1.0:
+            return
+        half, toward = math.acos(max(-1.0, share)), cmath.phase(way)
+        off = math.remainder(toward - self.start, 2.0 * math.pi)
+        if abs(off) <= half:
+            what = f"puts the joint {self.joint} inside the wheel"
+            yield "start", None, what, "a direction in which it is outside"
+            return
+        above = self.start + off % (2.0 * math.pi) - half
+        below = self.start - (-off) % (2.0 * math.pi) + half
+        for side, limit, word in ((0, below, "above"), (1, above, "below")):
+            if (self.range[side] >= limit) if side else (self.range[side] <= limit):
+                what = f"the joint {self.joint} would be inside the wheel"
+                yield "range", side, what, f"{word} {formatted(math.degrees(limit), 8)}"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -633,8 +668,8 @@ class MechanismOutput(OutputSpec):
         default=None,
         min_length=1,
         example=["slide", "rod.angle"],
-        doc="joints that slide, points, and directions as member.angle; every slide and point if "
-        "left out",
+        doc="joints that slide, points or one coordinate as P.x, and directions as member.angle; "
+        "if left out every slide and point, or without any the direction of the last member",
     )
     step: float = param(
         ANGLE,

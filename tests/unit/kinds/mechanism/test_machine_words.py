@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import cmath
+import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -9,7 +11,7 @@ from typing import Any
 import pytest
 
 import gearcam as gc
-from gearcam.base.errors import DesignError, Problem
+from gearcam.base.errors import DesignError, InfeasibleError, Problem
 from helpers_machines import MACHINES, MOTOR, PAIR
 
 Document = dict[str, Any]
@@ -221,3 +223,98 @@ def test_a_drive_with_a_pair_gives_its_wheels() -> None:
     machine["drive"] = [{"name": "pair", "pair": PAIR}]
     (found,) = problems(machine)
     assert found.hint in ("did you mean pair.wheel1?", "did you mean pair.wheel2?")
+
+
+@pytest.mark.parametrize(
+    ("keys", "key", "message"),
+    [
+        ({"lengths_mm": None}, "lengths_mm", "dyad C has no lengths"),
+        ({"lengths_mm": [120, 0]}, "lengths_mm[1]", "the length of rocker in dyad C is 0"),
+    ],
+)
+def test_missing_lengths_are_told_by_their_members(keys: Document, key: str, message: str) -> None:
+    (found,) = problems(changed("four-bar", "dyad", **keys))
+    assert found.key == f"dyad[0].{key}"
+    assert found.message.endswith(message)
+
+
+@pytest.mark.parametrize(("written", "meant"), [("RRP", "RRT"), ("rpr", "RTR"), ("PRP", "TRT")])
+def test_slides_written_as_p_are_t(written: str, meant: str) -> None:
+    found = problems(changed("four-bar", "dyad", type=written))
+    assert [one.hint for one in found] == [f"did you mean {meant}? (T is a slide)"]
+    (found,) = problems(changed("four-bar", "dyad", type="RRTT"))
+    assert found.hint == "did you mean RTT?"
+
+
+def refused(machine: Document) -> InfeasibleError:
+    with pytest.raises(InfeasibleError) as caught:
+        _ = built(machine).linkage
+    return caught.value
+
+
+def test_a_lever_at_the_limit_of_its_range_is_offered_one_that_builds() -> None:
+    for side, machine in enumerate(
+        (
+            changed("door", "drive", range_deg=[-50, 100]),
+            changed("door", "chain", range_deg=[-90, -30]),
+        )
+    ):
+        told = refused(machine)
+        limit = (-90, -30)[side]
+        assert told.where == f"chain[0].range_deg[{side}]"
+        assert told.value == pytest.approx(limit)
+        assert f"the lever reaches chain[0].range_deg[{side}] = {limit}" in str(told)
+        (way,) = told.adjustments
+        design = gc.design({"kind": "mechanism", "name": "mine", **machine})
+        wide = gc.build(design.with_(way.near))
+        ends = wide.output("leaf.angle", wide.linkage.span)["leaf_deg"]
+        assert abs(ends[side] - told.limit) < 0.02
+    assert "from 0 to 100 deg" in str(refused(changed("door", "drive", range_deg=[-50, 100])))
+
+
+def test_a_chain_that_turns_back_is_not_helped_by_a_wider_range() -> None:
+    told = refused(
+        changed("door", "drive", range_deg=[-300, 100])
+        | {"chain": changed("door", "chain", range_deg=[-300, 5])["chain"]}
+    )
+    assert "its chain turns back" in str(told)
+    # the free length is largest where lever and chain are in line
+    place = float(str(told).split("; at ")[1].split(" deg")[0])
+    joint = 700 * cmath.exp(1j * math.radians(place))
+    way = joint - (600 + 300j)
+    across = abs((way.conjugate() * joint).imag) / 700  # of the wheel's centre from the lever
+    assert across == pytest.approx(100, abs=1e-3)
+
+
+def test_a_joint_inside_its_wheel_is_refused() -> None:
+    (found,) = problems(changed("door", "chain", range_deg=[-90, 20]))
+    assert found.key == "chain[0].range_deg[1]"
+    limit = float(found.allowed.removeprefix("below "))
+    assert abs(700 * cmath.exp(1j * math.radians(limit)) - (600 + 300j)) == pytest.approx(100)
+    (found,) = problems(changed("door", "chain", range_deg=[20, 90], start_deg=80))
+    assert found.key == "chain[0].range_deg[0]"
+    limit = float(found.allowed.removeprefix("above "))
+    assert abs(700 * cmath.exp(1j * math.radians(limit)) - (600 + 300j)) == pytest.approx(100)
+    (found,) = problems(changed("door", "chain", range_deg=[0, 90], start_deg=30))
+    assert found.key == "chain[0].start_deg"
+
+
+def finding(machine: Document, code: str) -> str:
+    (message,) = (one.message for one in built(machine).checked if one.code == code)
+    return message
+
+
+def test_limits_of_transmission_angles_are_told_as_such() -> None:
+    told = finding(MACHINES["four-bar"], "pressure-angle")
+    assert "Usual are 45 deg and more, and never less than 30 deg." in told
+
+
+def test_change_points_say_what_the_machine_does() -> None:
+    flat = output("rocker.angle", joint=[{"name": "D", "at_mm": [120, 0]}])
+    flat["crank"] = [MACHINES["four-bar"]["crank"][0] | {"length_mm": 50}]
+    flat["dyad"] = [MACHINES["four-bar"]["dyad"][0] | {"lengths_mm": [120, 50]}]
+    told = finding(flat, "change-point")
+    assert 'It keeps its branch; with change = "motion" it goes on into the other one.' in told
+    flat["dyad"] = [flat["dyad"][0] | {"change": "motion"}]
+    told = finding(flat, "change-point")
+    assert 'It goes on into the other branch; with change = "branch" it keeps its own.' in told
