@@ -14,6 +14,7 @@ import gearcam
 from fuzz import (
     cross_checks_cam,
     cross_checks_globoidal,
+    cross_checks_mechanism,
     cross_checks_pair,
     cross_checks_spatial,
 )
@@ -35,6 +36,7 @@ _CROSS_CHECKS: Final = {
     "cam": cross_checks_cam.doubts,
     "gear-pair": cross_checks_pair.doubts,
     "globoidal-cam": cross_checks_globoidal.doubts,
+    "mechanism": cross_checks_mechanism.doubts,
     "spatial-cam": cross_checks_spatial.doubts,
 }
 """What other methods say against the result of a design, by its kind."""

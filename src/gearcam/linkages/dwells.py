@@ -190,7 +190,8 @@ def _crossing(measures: TrackMeasures, inside: int, outside: int, level: float) 
     if (values[inside] - level) * (values[outside] - level) >= 0.0:  # it leaves at once
         return float(places[inside])
     ends = places[[inside]], places[[outside]]
-    return float(measures.root_of(np.array([level]), ends)[0])
+    known = values[[inside]], values[[outside]]
+    return float(measures.root_of(np.array([level]), ends, known)[0])
 
 
 def _passages(measures: TrackMeasures, amount: float) -> list[tuple[float, float]]:

@@ -286,10 +286,19 @@ class TrackMeasures(ShortRepr):
         places, values = self.extremes[0]
         off = values - value
         cells = np.flatnonzero(off[:-1] * off[1:] < 0.0)
-        roots = self.root_of(np.full(cells.size, value), (places[cells], places[cells + 1]))
+        roots = self.root_of(
+            np.full(cells.size, value),
+            (places[cells], places[cells + 1]),
+            (values[cells], values[cells + 1]),
+        )
         return np.unique(np.concatenate([places[off == 0.0], roots]))
 
-    def root_of(self, value: Array, between: tuple[Array, Array]) -> Array:
+    def root_of(
+        self,
+        value: Array,
+        between: tuple[Array, Array],
+        ends: tuple[Array, Array] | None = None,
+    ) -> Array:
         """Return where the quantity has values, each in its own monotonic stretch.
 
         Parameters
@@ -298,6 +307,8 @@ class TrackMeasures(ShortRepr):
             Wanted.
         between : two (n,) arrays, rad
             The ends of the stretches, with values on both sides of those wanted.
+        ends : two (n,) arrays, mm or rad, optional
+            The values there: computed again they may be on the other side by rounding.
 
         Returns
         -------
@@ -305,7 +316,10 @@ class TrackMeasures(ShortRepr):
         """
         low, high = self.span
         tolerance = _FOUND * (high - low)
-        return bracketed_root(lambda q: np.asarray(self.at(q, 0).c[0]) - value, *between, tolerance)
+        off = None if ends is None else (ends[0] - value, ends[1] - value)
+        return bracketed_root(
+            lambda q: np.asarray(self.at(q, 0).c[0]) - value, *between, tolerance, off
+        )
 
     @cached_property
     def dead_centers(self) -> tuple[DeadCenter, ...]:

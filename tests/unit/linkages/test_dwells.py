@@ -167,3 +167,11 @@ def test_travels_that_cannot_be_are_refused() -> None:
     part = TrackMeasures(wave, np.array([1.0, 3.0]), closed=False)
     with pytest.raises(ValueError, match=r"travel 0\.5: the range has 0\.158\d* of it before"):
         last_travel(part, 0.5)
+
+
+def test_a_knot_on_a_slope_begins_no_dwell() -> None:
+    wave = _waves(NONE, ONE)
+    for knot in np.linspace(0.3, 2.8, 300):
+        found = longest_dwell(TrackMeasures(wave, np.array([0.0, knot, 2.0 * np.pi])), 0.1)
+        values = wave(np.linspace(*found, 101), 0).c[0]
+        assert np.ptp(values) == pytest.approx(0.1, abs=1e-9), knot
