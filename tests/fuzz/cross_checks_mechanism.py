@@ -262,7 +262,10 @@ def _extremes(result: MechanismResult, one: Any) -> Doubts:
     step = (high - low) / _DENSE * (np.abs(values[1]).max() + 1e-12)
     least, largest = found.least().value, found.largest().value
     small = 1e-9 * (1.0 + np.abs(values[0]).max())
-    for word, beyond in (("least", least - values[0].min()), ("largest", values[0].max() - largest)):
+    for word, beyond in (
+        ("least", least - values[0].min()),
+        ("largest", values[0].max() - largest),
+    ):
         if not -step - small <= beyond <= small:
             yield "extreme", f"the {word} {one.stem} is off by {beyond}"
 
@@ -283,7 +286,7 @@ def _asked(result: MechanismResult) -> Doubts:
 
 
 def _over(result: MechanismResult, output: Any, begin: float, end: float) -> Array:
-    q = np.linspace(begin, end, 501)
+    q: Array = np.linspace(begin, end, 501, dtype=np.float64)
     return np.asarray(result.track(output)(q, 0).c[0]) + 0.0 * q
 
 

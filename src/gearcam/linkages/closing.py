@@ -108,7 +108,7 @@ def settled(linkage: Linkage) -> Linkage:
         if found is None:
             continue
         stuck = bool(found.changes) and _stuck(linkage, element, found.changes)
-        if found.least < -_TOUCHING or stuck:
+        if not found.least >= -_TOUCHING or stuck:
             nearest = tuple(_nearest(linkage, element)) if isinstance(element, Dyad) else ()
             raise NotClosingError(found, nearest)
         if found.changes and isinstance(element, Dyad):

@@ -152,7 +152,8 @@ class Linkage(ShortRepr):
             Of complex numbers for a joint. Angles are within half a turn.
         """
         found = value(self.at(q, order), name)
-        return Jet(found.c[: order + 1])
+        # of what stands still the derivatives are single zeros
+        return Jet([one + np.zeros(np.shape(q)) for one in found.c[: order + 1]])
 
     def real_track(self, name: str, q: Array, order: int) -> Jet:
         """Return one quantity whose angles have no jumps (see `track`).

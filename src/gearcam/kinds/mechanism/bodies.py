@@ -422,25 +422,15 @@ def _driven(shown: _Shown, number: int) -> Iterator[MovingBody]:
     x = drive.own(shown.q, not number)
     for body in scene.bodies:
         moved = _moved(drive, body.name)
-        # of a cam that slides only its own scene tells where it is
-        slides = drive.spec.cam is not None and moved is not None and body.name != "follower"
-        slides = slides and not np.ptp(body.pose.turn)
-        motion = _travel(drive, body, x) if slides else _motion(moved, x)
         yield replace(
             body,
             # bodies whose names differ behind an underscore share their colours
             name=f"{drive.spec.name.replace('_', ' ')}.{body.name}" if moved else body.name,
             called=f"{body.called} of {drive.spec.name}" if moved else body.called,
             features=tuple(_seen(drive, body.features)),
-            pose=_placed(drive, motion @ body.pose[0]),
+            pose=_placed(drive, _motion(moved, x) @ body.pose[0]),
             teeth=None,
         )
-
-
-def _travel(drive: PlacedDrive, body: MovingBody, x: Array) -> Pose:
-    """Return the motion of a body that slides evenly, from its place at the drive's zero."""
-    whole = complex(np.diff(np.asarray(body.pose.shift))[0])
-    return Pose(np.zeros(x.shape), whole * x / drive.period)
 
 
 def _moved(drive: PlacedDrive, body: str) -> Moved | None:

@@ -334,6 +334,10 @@ class MechanismResult(Result):
             output, travel = self.asked("interval", number)
             measures = self.measures_of(output)
             what, most = f"{one.on} does not travel as far", measures.stroke
+            if measures.rise:
+                raise InfeasibleError(
+                    f"{one.on} turns on and has no dead centre", where=f"interval[{number}].on"
+                )
             if travel < most:
                 try:
                     found.append(last_travel(measures, travel, outer=one.before == "outer"))

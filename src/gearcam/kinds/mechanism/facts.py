@@ -167,7 +167,7 @@ def _output(result: MechanismResult, one: Output) -> Tree:
         ),
         f"stroke_{unit}": Fact(
             scale * measures.stroke,
-            f"{'turn' if measures.rise else 'stroke'} of {one.stem}",
+            f"{'turn' if measures.rise and one.angle else 'stroke'} of {one.stem}",
             shown=True,
             noise=1e-9,
         ),

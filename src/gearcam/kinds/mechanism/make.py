@@ -13,6 +13,7 @@ import numpy as np
 
 from gearcam.base.errors import Adjustment, InfeasibleError
 from gearcam.base.numerals import formatted
+from gearcam.base.quantities import LONGEST
 from gearcam.kinds.mechanism.drives import PlacedDrive, center_of, way_of
 from gearcam.kinds.mechanism.names import PARTS, needed
 from gearcam.linkages.chain import HoistChain
@@ -29,6 +30,7 @@ from gearcam.linkages.elements import (
 )
 from gearcam.linkages.geneva import GenevaWheel
 from gearcam.linkages.linkage import Linkage, in_order
+from gearcam.numeric.arrays import Array
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.design import MechanismDesign
@@ -41,6 +43,15 @@ _CYCLES: Final = 100
 
 _WHOLE: Final = 1e-7
 """How far from whole turns a shaft may be after a cycle, rad: the error of its law."""
+
+_PLACES: Final = 9
+"""Places at which a slide is compared with itself after a cycle."""
+
+_FORMULA: Final = 721
+"""Places at which the formula of a slide must be finite."""
+
+_SAME: Final = 1e-9
+"""Knots closer than this are one, rad."""
 
 
 def make_linkage(design: MechanismDesign, drives: Sequence[PlacedDrive]) -> Linkage:
@@ -63,11 +74,11 @@ def make_linkage(design: MechanismDesign, drives: Sequence[PlacedDrive]) -> Link
         If it does not close over the master's whole range.
     """
     (low, high), closed = _span(drives, _indexed(design))
-    _demand_part(design, closed)
     inner = [one.knots_in(low, high, not number) for number, one in enumerate(drives)]
-    knots = np.unique(np.concatenate([[low, high], *inner]))
+    knots = _apart(np.unique(np.concatenate([[low, high], *inner])))
     parts = list(in_order(_elements(design, drives)))
     linkage = _with_rests(Linkage(parts, knots, closed))
+    _demand_part(design, linkage)
     knots = linkage.knots
     for number, dyad in enumerate(parts):
         wanted = _near(design, dyad)
@@ -100,31 +111,26 @@ def _indexed(design: MechanismDesign) -> int:
 
 def _span(drives: Sequence[PlacedDrive], least: int) -> tuple[tuple[float, float], bool]:
     """Return the master's first and last angle, and whether the motion repeats after them."""
+    _demand_finite(drives)
     master = drives[0]
     if not master.closed or master.spec.span is not None:
         return _part_of(master), False
     for number, drive in enumerate(drives[1:], start=1):
         if not drive.closed:
             raise InfeasibleError(
-                "it does not turn all the way, as the master does",
+                f"{drive.spec.name} does not turn all the way, as the master does",
                 where=f"drive[{number}]",
+                nearest="only the first drive may be open",
             )
-    shafts = [
-        (one.law, 1.0 if not number else drive.spec.ratio)
-        for number, drive in enumerate(drives)
-        for one in drive.moved.values()
-        if not one.along
-    ]
+    late = 0
     for turns in range(least, _CYCLES * least + 1, least):
-        ends = [
-            float(np.diff(np.asarray(law(np.array([0.0, ratio * turns * _TURN]), 0).c[0]))[0])
-            for law, ratio in shafts
-        ]
-        if all(abs(math.remainder(end, _TURN)) < _WHOLE * turns for end in ends):
+        found = (number for number, one in enumerate(drives) if not _back(one, number, turns))
+        late = next(found, -1)
+        if late < 0:
             return (0.0, turns * _TURN), True
     raise InfeasibleError(
-        f"its shafts do not return together within {_CYCLES} turns of the master",
-        where="drive[0]",
+        f"{drives[late].spec.name} does not return within {_CYCLES} turns of the master",
+        where=f"drive[{late}]",
     )
 
 
@@ -146,16 +152,60 @@ def _part_of(master: PlacedDrive) -> tuple[float, float]:
     return asked
 
 
-def _demand_part(design: MechanismDesign, closed: bool) -> None:
+def _demand_part(design: MechanismDesign, linkage: Linkage) -> None:
     """Refuse chains on shafts that turn without end."""
-    pulled = [f"hoist[{number}]" for number, _ in enumerate(design.hoist)]
-    pulled += [f"chain[{number}]" for number, _ in enumerate(design.chain)]
-    if closed and pulled:
-        raise InfeasibleError(
-            "its chain is not back after a turn of the master",
-            where=pulled[0],
-            nearest="give drive[0].range_deg, over which it winds up and off",
-        )
+    if not linkage.closed:
+        return
+    pulled = [(f"hoist[{number}]", one.on) for number, one in enumerate(design.hoist)]
+    pulled += [(f"chain[{number}]", one.on) for number, one in enumerate(design.chain)]
+    for where, shaft in pulled:
+        first, last = np.asarray(linkage.track(shaft, linkage.knots[[0, -1]], 0).c[0])
+        if abs(last - first) > _WHOLE * _CYCLES:
+            raise InfeasibleError(
+                "its chain is not back after a turn of the master",
+                where=where,
+                nearest="give drive[0].range_deg, over which it winds up and off",
+            )
+
+
+def _back(drive: PlacedDrive, number: int, turns: int) -> bool:
+    """Return whether a drive is where it was after some turns of the master."""
+    if drive.spec.slide is not None:  # a formula in the master's angle may repeat later
+        q = np.linspace(0.0, _TURN, _PLACES)
+        moved = [one.law(np.stack([q, q + turns * _TURN]), 0).c[0] for one in drive.moved.values()]
+        places = np.asarray(moved)
+        return bool(np.ptp(places, axis=1).max() <= _WHOLE * turns * (1.0 + np.abs(places).max()))
+    ratio = drive.spec.ratio if number else 1
+    ends = np.array([0.0, ratio * turns * _TURN])
+    shafts = [one.law for one in drive.moved.values() if not one.along]
+    found = [float(np.diff(np.asarray(law(ends, 0).c[0]))[0]) for law in shafts]
+    return all(abs(math.remainder(end, _TURN)) < _WHOLE * turns for end in found)
+
+
+def _demand_finite(drives: Sequence[PlacedDrive]) -> None:
+    """Refuse slides whose formulas have no place somewhere in the master's range."""
+    whole = drives[0].closed and drives[0].spec.span is None
+    q = np.linspace(*((0.0, _TURN) if whole else _part_of(drives[0])), _FORMULA)
+    for number, drive in enumerate(drives):
+        if drive.spec.slide is None:
+            continue
+        with np.errstate(all="ignore"):
+            found = drive.moved["slide"].law(q, 3).derivatives()
+        bad = ~np.all([np.isfinite(one + 0.0 * q) for one in found], axis=0)
+        bad |= np.abs(found[0] + 0.0 * q) > LONGEST
+        if bad.any():
+            at = formatted(math.degrees(q[bad][0]), 6)
+            raise InfeasibleError(
+                f"the place or its derivatives are not finite at {at} deg",
+                where=f"drive[{number}].slide",
+            )
+
+
+def _apart(knots: Array) -> Array:
+    """Return rising angles without those that are the same but for rounding, rad."""
+    kept = knots[np.concatenate([[True], np.diff(knots) > _SAME])]
+    kept[-1] = knots[-1]
+    return kept
 
 
 def _elements(design: MechanismDesign, drives: Sequence[PlacedDrive]) -> Iterator[Element]:
@@ -163,8 +213,8 @@ def _elements(design: MechanismDesign, drives: Sequence[PlacedDrive]) -> Iterato
         yield from drive.elements(not number)
     for joint in design.joint:
         yield MemberPoint(joint.name, complex(*joint.at))
-    for crank in design.crank:
-        start = _start(crank, drives)
+    for number, crank in enumerate(design.crank):
+        start = _start(crank, number, drives)
         center = crank.at or center_of(crank.on)
         yield Crank(crank.name, crank.on, center, crank.joint, crank.length, start)
     for slide in design.slide:
@@ -234,7 +284,7 @@ def _pulled(design: MechanismDesign) -> Iterator[Element]:
         )
 
 
-def _start(crank: CrankSpec, drives: Sequence[PlacedDrive]) -> float:
+def _start(crank: CrankSpec, number: int, drives: Sequence[PlacedDrive]) -> float:
     """Return a crank's direction at the drive's zero, rad."""
     if crank.arm_angle is None:
         return crank.angle or 0.0
@@ -243,8 +293,9 @@ def _start(crank: CrankSpec, drives: Sequence[PlacedDrive]) -> float:
     arm = math.nan if drive is None else drive.moved[word].arm
     if drive is None or math.isnan(arm):
         raise InfeasibleError(
-            f"{crank.on} has no arm from which arm_angle_deg could count; give angle_deg",
-            where=f"crank {crank.name}",
+            f"{crank.on} has no arm from which it could count",
+            where=f"crank[{number}].arm_angle_deg",
+            nearest="angle_deg instead",
         )
     turn = -crank.arm_angle if drive.spec.mirror else crank.arm_angle
     return cmath.phase(drive.vector(cmath.exp(1j * arm))) + turn

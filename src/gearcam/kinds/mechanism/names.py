@@ -161,7 +161,8 @@ def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
     parts = {title: found.parts[title] if _is_read(title, found) else () for title in PARTS}
     faulty = list(_of_faulty(document, found))
     names: dict[str, NameUse] = {GROUND: NameUse(GROUND, MEMBER, ())}
-    faults = [*_misspelt(found), *_not_comparable(found), *_twice([*given(parts), *faulty], names)]
+    faults = [*_misspelt(found), *_unfit_drives(found), *_compared_twice(found)]
+    faults += [*_not_comparable(found), *_twice([*given(parts), *faulty], names)]
     standing = [one.path for one in names.values() if one.path[:1] == ("joint",)]
     whole = not _unread(found) and all(one.name for one in faulty)
     for one in needed(parts):
@@ -263,6 +264,30 @@ def _not_comparable(found: Examined) -> Iterator[Fault]:
             yield Fault(("compare", number, key), what, allowed=allowed)
 
 
+def _compared_twice(found: Examined) -> Iterator[Fault]:
+    """Yield names of comparisons that are given twice."""
+    names = [one.name for one in found.parts.get("compare", ())]
+    for number, name in enumerate(names):
+        if name in names[:number]:
+            first = f"compare[{names.index(name)}].name"
+            what = f"the name {show(name)} is given twice, first by {first}"
+            yield Fault(("compare", number, "name"), what, name, "a name for one thing")
+
+
+def _unfit_drives(found: Examined) -> Iterator[Fault]:
+    """Yield drives without an angle over which motion could be given."""
+    for title in ("drive", "compare"):
+        for number, one in enumerate(found.parts.get(title, ())):
+            if getattr(getattr(one.cam, "cam", None), "form", "") == "translating":
+                what = f"the cam {show(one.cam.name)} slides: it has no shaft"
+                yield Fault((title, number, "cam"), what, None, "a cam that turns")
+    for one in found.parts.get("drive", ())[:1]:
+        if one.slide is not None:
+            what = f"{show(one.slide)} has no angle over which the motion could be given"
+            allowed = "a first drive with pair, cam or even = true, and the slide behind it"
+            yield Fault(("drive", 0, "slide"), what, one.slide, allowed)
+
+
 _NAME: Final = re.compile(r"[A-Za-z_][\w-]*", re.ASCII)
 
 
@@ -274,7 +299,7 @@ def _misspelt(found: Examined) -> Iterator[Fault]:
                 given_ = getattr(one, key)
                 for name in given_ if isinstance(given_, tuple) else (given_,):
                     if not _NAME.fullmatch(name):
-                        what = "is no name"
+                        what = f"{show(name)} is no name"
                         allowed = "letters, digits, _ and -, the first a letter"
                         yield Fault((title, number, key), what, name, allowed)
 
@@ -303,13 +328,12 @@ def _not_standing(
 
 def _missing(one: NameUse, names: Mapping[str, NameUse]) -> Iterator[Fault]:
     other, sorts = names.get(one.name), one.sort.split(" or ")
+    fits = sorted(name for name, is_ in names.items() if is_.sort in sorts)
+    allowed = f"a {one.sort}: {', '.join(fits)}" if fits else f"the name of a {one.sort}"
     if other is None:
-        fits = sorted(name for name, is_ in names.items() if is_.sort in sorts)
-        allowed = f"a {one.sort}: {', '.join(fits)}" if fits else f"the name of a {one.sort}"
         yield _nothing(one, fits, allowed)
     elif other.sort not in (*sorts, ANY):
-        what = f"{show(one.name)} is a {other.sort}, not a {one.sort}"
-        yield Fault(one.path, what, one.name, f"the name of a {one.sort}")
+        yield Fault(one.path, f"{show(one.name)} is a {other.sort}", one.name, allowed)
 
 
 def _nothing(one: NameUse, fits: Sequence[str], allowed: str) -> Fault:

@@ -368,6 +368,8 @@ class DyadSpec(ShortRepr):
             what = "is missing" if self.driven is None else f"does not apply to {self.type}"
             yield "driven", None, what, "the name of a slide, with type RTRR"
         yield from self._missing_lengths()
+        if self.first == self.last:
+            yield "last", None, "is also where it comes from", "another joint or guide"
         for number, gamma in enumerate(self.gammas):
             if self._crossed == number and abs(math.sin(gamma)) < 1e-3:
                 yield "gammas", number, "leaves the slides parallel", "not 0 or 180 deg"

@@ -169,20 +169,6 @@ def test_slides_are_where_the_follower_ends(name: str, slide: str) -> None:
     assert np.abs(member.pose.shift - follower.pose.apply(roller.center)).max() < 1e-6
 
 
-def test_a_cam_that_slides_is_under_its_roller() -> None:
-    drive = {"name": "cam", "cam": str(PROFILES / "translating_cam.toml")}
-    slide = {"name": "tool", "on": "cam.follower", "joint": "T"}
-    document = {"kind": "mechanism", "name": "drawn", "drive": [drive], "slide": [slide]}
-    scene = gc.build(gc.design({**document, "output": {"files": ["svg"]}})).scene(FEW)
-    plate, follower = body(scene, "cam.cam"), body(scene, "cam.follower")
-    (roller,) = (f.shape for f in follower.features if isinstance(f.shape, Circle))
-    (pitch,) = (f.shape for f in plate.features if f.kind == "PITCH")
-    for k in range(FEW + 1):
-        line = shapely.LineString(as_pairs(plate.pose[k].apply(pitch.points)))
-        center = complex(follower.pose[k].apply(roller.center))
-        assert line.distance(shapely.Point(center.real, center.imag)) < 5e-3
-
-
 def test_the_teeth_of_a_ring_are_seen() -> None:
     drive = {"name": "ring", "pair": str(PROFILES / "ring_ellipse.toml")}
     crank = {"name": "arm", "on": "ring.wheel2", "joint": "B", "length_mm": 30}

@@ -1,0 +1,469 @@
+"""What is said to machines that are wrong or cannot move: what, where, what is allowed instead."""
+
+from __future__ import annotations
+
+import copy
+import math
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import gearcam as gc
+from gearcam.cli import main
+from gearcam.designs.writing import toml_text
+from random_designs.designs import design as random_design
+
+PROFILES = Path(__file__).parents[4] / "profiles"
+
+BASE: dict[str, Any] = {
+    "kind": "mechanism",
+    "name": "mine",
+    "drive": [{"name": "motor", "even": True, "speed_rpm": 60}],
+    "joint": [{"name": "D", "at_mm": [110, 0]}],
+    "guide": [{"name": "bed", "at_mm": [0, -20]}],
+    "crank": [{"name": "crank", "on": "motor", "joint": "B", "length_mm": 40}],
+    "dyad": [
+        {
+            "type": "RRR", "from": "B", "to": "D", "joint": "C", "members": ["coupler", "rocker"],
+            "lengths_mm": [120, 90],
+        },
+        {
+            "type": "RRT", "from": "C", "to": "bed", "joint": "S", "members": ["rod", "ram"],
+            "lengths_mm": [200, 0],
+        },
+    ],
+    "point": [{"name": "P", "on": "coupler", "at_mm": [49, 34]}],
+    "output": {"files": ["csv"], "outputs": ["S", "P"]},
+}  # fmt: skip
+
+SLIDER = {
+    "type": "RTT", "from": "C", "to": "bed", "joint": "S", "members": ["rod", "ram"],
+}  # fmt: skip
+
+TRIAD = [
+    {
+        "type": "RRR", "from": "X", "to": "D", "joint": "Y", "members": ["m1", "m2"],
+        "lengths_mm": [100, 100],
+    },
+    {
+        "type": "RRR", "from": "Y", "to": "D", "joint": "X", "members": ["m3", "m4"],
+        "lengths_mm": [100, 100],
+    },
+]  # fmt: skip
+
+CHAIN = {
+    "on": "motor", "at_mm": [600, 300], "radius_mm": 100, "joint": "h", "lever": "door",
+    "length_mm": 1735, "start_deg": -90, "range_deg": [-90, -30],
+}  # fmt: skip
+
+PLATE = gc.load(PROFILES / "translating_cam.toml").to_dict()
+FLAT = gc.load(PROFILES / "valve_lever.toml").to_dict()
+LIFTED = gc.load(PROFILES / "lathe_slide.toml").to_dict()
+OPEN = gc.load(PROFILES / "log_spiral.toml").to_dict()
+
+Document = dict[str, Any]
+Path_ = tuple[str | int, ...]
+
+
+def edited(path: Path_, value: Any) -> Document:
+    """The four-bar with a slide, with one value changed."""
+    document = copy.deepcopy(BASE)
+    node: Any = document
+    for key in path[:-1]:
+        node = node[key]
+    node[path[-1]] = value
+    return document
+
+
+def longer(**tables: list[Document]) -> Document:
+    """The same with more rows of tables."""
+    document = copy.deepcopy(BASE)
+    for title, rows in tables.items():
+        document[title] = document.get(title, []) + rows
+    return document
+
+
+def on_cam(cam: Document, **crank: Any) -> Document:
+    """The same with a crank on the follower of another cam."""
+    row = {"name": "k", "on": "cam.follower", "joint": "K", "length_mm": 40, **crank}
+    return longer(drive=[{"name": "cam", "cam": cam}], crank=[row])
+
+
+def slid(formula: str) -> Document:
+    """The same with a slide that moves by a formula."""
+    rows = {"drive": [{"name": "cyl", "slide": formula}]}
+    return longer(**rows, slide=[{"name": "z", "on": "cyl", "joint": "Z"}])
+
+
+DYAD = ("dyad", 0)
+
+KEYS = (
+    "type, from, to, joint, members, lengths_mm, beta_deg, gammas_deg, slide_on, branch, near_mm, "
+    "change, driven"
+)
+
+WRONG: dict[str, tuple[Document, str, str, str, str]] = {
+    # name: document, key, message, what is allowed, hint
+    "unknown joint": (
+        edited((*DYAD, "from"), "b"), "dyad[0].from", '"b": nothing has this name',
+        "a joint: B, C, D, P, S", "did you mean B?",
+    ),
+    "unknown shaft": (
+        edited(("crank", 0, "on"), "moter"), "crank[0].on", '"moter": nothing has this name',
+        "a shaft: motor, motor.shaft", "did you mean motor?",
+    ),
+    "unknown member": (
+        edited(("point", 0, "on"), "couple"), "point[0].on", '"couple": nothing has this name',
+        "a member: coupler, crank, ground, ram, rocker, rod", "did you mean coupler?",
+    ),
+    "name twice": (
+        edited(("dyad", 1, "joint"), "C"), "dyad[1].joint", '"C" is given twice',
+        "a name for one thing", "it is that of dyad[0].joint",
+    ),
+    "member twice": (
+        edited(("dyad", 1, "members"), ["rod", "rod"]), "dyad[1].members[1]",
+        '"rod" is given twice', "a name for one thing", "it is that of dyad[1].members[0]",
+    ),
+    "name of the ground": (
+        edited(("crank", 0, "name"), "ground"), "crank[0].name", '"ground" is given twice',
+        "a name for one thing", "it is that of what stands still",
+    ),
+    "comparison twice": (
+        longer(compare=[{"name": "x", "even": True}, {"name": "x", "even": True}]),
+        "compare[1].name", '"x" is given twice', "a name for one thing",
+        "it is that of compare[0].name",
+    ),
+    "no name": (
+        edited(("crank", 0, "name"), "my crank"), "crank[0].name", '"my crank" is no name',
+        "letters, digits, _ and -, the first a letter", "",
+    ),
+    "guide for a joint": (
+        edited((*DYAD, "to"), "bed"), "dyad[0].to", '"bed" is a guide',
+        "a joint: B, C, D, P, S", "",
+    ),
+    "joint for a guide": (
+        edited(("dyad", 1, "to"), "D"), "dyad[1].to", '"D" is a joint', "a guide: bed", "",
+    ),
+    "member for a joint": (
+        edited((*DYAD, "to"), "crank"), "dyad[0].to", '"crank" is a member',
+        "a joint: B, C, D, P, S", "",
+    ),
+    "one joint at both ends": (
+        edited((*DYAD, "to"), "B"), "dyad[0].to", '"B": is also where it comes from',
+        "another joint or guide", "",
+    ),
+    "guide through what moves": (
+        edited(("guide", 0, "through"), "B"), "guide[0].through", '"B": it moves',
+        "a joint that stands still, or shaft: motor.shaft, motor, D", "",
+    ),
+    "crank on a follower that slides": (
+        on_cam(LIFTED), "crank[1].on", '"cam.follower" is a slide',
+        "a shaft: cam.shaft, motor, motor.shaft", "",
+    ),
+    "slide on a shaft": (
+        longer(slide=[{"name": "z", "on": "motor", "joint": "Z"}]), "slide[0].on",
+        '"motor" is a shaft', "a slide, of which there is none", "",
+    ),
+    "branch of another type": (
+        edited((*DYAD, "branch"), "ahead"), "dyad[0].branch", '"ahead": is not of RRR',
+        "left or right", "",
+    ),
+    "branch of one position": (
+        edited(("dyad", 1), {**SLIDER, "gammas_deg": [0, 90], "branch": "left"}),
+        "dyad[1].branch", '"left": is not of RTT', "no branch: RTT has one position", "",
+    ),
+    "parallel slides": (
+        edited(("dyad", 1), {**SLIDER, "gammas_deg": [0, 180]}), "dyad[1].gammas_deg[1]",
+        "180: leaves the slides parallel", "not 0 or 180 deg", "",
+    ),
+    "no length": (
+        edited((*DYAD, "lengths_mm"), [120, 0]), "dyad[0].lengths_mm[1]", "0: is 0",
+        "above 0 in RRR", "",
+    ),
+    "mistyped key": (
+        edited((*DYAD, "lenghts_mm"), [1, 2]), "dyad[0].lenghts_mm",
+        "unknown key (its value is [1, 2])",
+        KEYS, "did you mean lengths_mm?",
+    ),
+    "slide as master": (
+        {**BASE, "drive": [{"name": "cyl", "slide": "20*sin(q)"}], "crank": [], "dyad": [],
+         "point": [], "slide": [{"name": "z", "on": "cyl", "joint": "Z"}]},
+        "drive[0].slide", '"20*sin(q)" has no angle over which the motion could be given',
+        "a first drive with pair, cam or even = true, and the slide behind it", "",
+    ),
+    "cam that slides": (
+        longer(drive=[{"name": "plate", "cam": PLATE}]), "drive[1].cam",
+        'the cam "translating_cam" slides: it has no shaft', "a cam that turns", "",
+    ),
+    "no driven length": (
+        edited(("dyad", 1), {**SLIDER, "type": "RTRR", "to": "D", "lengths_mm": [9, 9]}),
+        "dyad[1].driven", "is missing", "the name of a slide, with type RTRR", "",
+    ),
+    "wheel over the joint of its chain": (
+        longer(chain=[{**CHAIN, "at_mm": [0, 0], "radius_mm": 500, "length_mm": 100}]),
+        "chain[0].radius_mm", "500: is that of a wheel that the joint gets into",
+        "below 100 mm, which the joint is off the wheel's centre", "",
+    ),
+    "no number": (
+        edited(("crank", 0, "length_mm"), -40), "crank[0].length_mm", "-40 is out of range",
+        "a number from 0.001 to 100000 mm", "",
+    ),
+}  # fmt: skip
+"""Documents with one mistake: each is said once, without what follows from it."""
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_a_mistake_is_said_once_with_its_place_and_what_is_allowed(name: str) -> None:
+    document, key, message, allowed, hint = WRONG[name]
+    with pytest.raises(gc.DesignError) as caught:
+        gc.design(document)
+    (found,) = caught.value.problems
+    assert (found.key, found.message, found.allowed, found.hint) == (key, message, allowed, hint)
+
+
+def test_parts_that_wait_for_each_other_are_named() -> None:
+    with pytest.raises(gc.DesignError) as caught:
+        gc.design(longer(dyad=TRIAD))
+    told = {one.key: one.message for one in caught.value.problems}
+    assert told == {
+        "dyad[2]": "waits for X, which waits for it: no order solves both",
+        "dyad[3]": "waits for Y, which waits for it: no order solves both",
+    }
+
+
+ASKED: dict[str, tuple[Document, str, str, str]] = {
+    "output": (
+        edited(("output", "outputs"), ["rocker"]), "output.outputs[0]",
+        '"rocker": nothing moves by this name', "did you mean rocker.angle?",
+    ),
+    "what stands still": (
+        edited(("output", "outputs"), ["S", "D"]), "output.outputs[1]",
+        '"D": nothing moves by this name', "",
+    ),
+    "dwell of nothing": (
+        longer(dwell=[{"on": "s", "within_mm": 1}]), "dwell[0].on",
+        '"s": nothing moves by this name', "did you mean S?",
+    ),
+    "dwell of a point": (
+        longer(dwell=[{"on": "P", "within_mm": 1}]), "dwell[0].on",
+        '"P": it is a point, with two coordinates', "",
+    ),
+    "dwell of a length in deg": (
+        longer(dwell=[{"on": "S", "within_deg": 1}]), "dwell[0].on", "S is a length", "",
+    ),
+    "interval of an angle in mm": (
+        longer(interval=[{"on": "rocker.angle", "travel_mm": 1}]), "interval[0].on",
+        "rocker.angle is an angle", "",
+    ),
+    "stretch of nothing": (
+        longer(stretch=[{"on": "C", "from_deg": 0, "to_deg": 9, "shape": "line"}]), "stretch[0].on",
+        '"C" is not a point that is asked for', "",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ASKED)
+def test_what_is_asked_for_must_move(name: str, tmp_path: Path) -> None:
+    document, key, message, hint = ASKED[name]
+    with pytest.raises(gc.DesignError) as caught:
+        gc.build(gc.design(document)).write(tmp_path)
+    (found,) = caught.value.problems
+    assert (found.key, found.message, found.hint) == (key, message, hint)
+    assert found.allowed
+
+
+RANGED = {**BASE, "drive": [{"name": "motor", "even": True, "range_deg": [50, 90]}]}
+
+IMPOSSIBLE: dict[str, tuple[Document, str, str]] = {
+    "no arm on an even shaft": (
+        edited(("crank", 0, "arm_angle_deg"), 30), "crank[0].arm_angle_deg",
+        "motor has no arm from which it could count",
+    ),
+    "no arm of a flat follower": (
+        on_cam(FLAT, arm_angle_deg=20), "crank[1].arm_angle_deg",
+        "cam.follower has no arm from which it could count",
+    ),
+    "interval beyond the stroke": (
+        longer(interval=[{"on": "S", "travel_mm": 5000}]), "interval[0].travel_mm",
+        "S does not travel as far",
+    ),
+    "interval before the range": (
+        {**RANGED, "interval": [{"on": "S", "travel_mm": 1, "before": "outer"}]},
+        "interval[0].travel_mm", "S does not travel as far before its outer dead centre",
+    ),
+    "interval of what turns on": (
+        longer(interval=[{"on": "crank.angle", "travel_deg": 5}]), "interval[0].on",
+        "crank.angle turns on and has no dead centre",
+    ),
+    "open drive behind a closed one": (
+        longer(drive=[{"name": "spiral", "pair": OPEN}]), "drive[1]",
+        "spiral does not turn all the way, as the master does",
+    ),
+    "slide that goes on": (
+        slid("20*q"), "drive[1]", "cyl does not return within 100 turns of the master",
+    ),
+    "slide without a place": (
+        slid("sqrt(q - 3)"), "drive[1].slide",
+        "the place or its derivatives are not finite at 0 deg",
+    ),
+    "slide without an end": (
+        slid("1/q"), "drive[1].slide", "the place or its derivatives are not finite at 0 deg",
+    ),
+    "chain without an end": (
+        longer(chain=[CHAIN]), "chain[0].on",
+        "motor turns on: its chain would be wound up without end",
+    ),
+    "circle through a line": (
+        {**longer(stretch=[{"on": "C", "from_deg": 0, "to_deg": 9, "shape": "circle"}]),
+         "dyad": [{**SLIDER, "from": "B", "joint": "C", "gammas_deg": [0, 90]}],
+         "point": [{"name": "P", "on": "ground", "at_mm": [3, 4]}],
+         "stretch": [{"on": "P", "from_deg": 0, "to_deg": 9, "shape": "circle"}],
+         "output": {"files": ["csv"], "outputs": ["P"]}},
+        "stretch[0].shape", "the stretch is a point: no circle is nearest to it; take a line",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", IMPOSSIBLE)
+def test_what_cannot_be_is_refused_with_its_place(name: str, tmp_path: Path) -> None:
+    document, where, what = IMPOSSIBLE[name]
+    with pytest.raises(gc.InfeasibleError) as caught:
+        gc.build(gc.design(document)).write(tmp_path)
+    assert (caught.value.where, caught.value.what) == (where, what)
+
+
+def test_a_slide_may_repeat_after_several_turns() -> None:
+    made = gc.build(gc.design(slid("20*sin(q/3)")))
+    assert made.linkage.span == pytest.approx((0.0, 6.0 * math.pi))
+
+
+def test_a_dwell_that_is_not_there_is_told() -> None:
+    made = gc.build(gc.design(longer(dwell=[{"on": "S", "within_mm": 0.001, "least_deg": 100}])))
+    (found,) = (one for one in made.findings if one.code == "no-dwell")
+    assert (found.limit, found.unit) == (pytest.approx(100.0), "deg")
+    assert found.value is not None
+    assert 0.0 < found.value < 100.0
+
+
+# --- what does not close ------------------------------------------------------------------------
+
+SHORT = edited((*DYAD, "lengths_mm"), [100, 40])
+LINED = edited((*DYAD, "lengths_mm"), [100, 50])
+"""The rods reach the largest distance of their ends, 150 mm, not quite and just so."""
+
+
+def test_the_range_and_the_nearest_length_are_told_and_help(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "mine.toml").write_text(toml_text(SHORT))
+    assert main(["build", str(tmp_path / "mine.toml"), "-o", str(tmp_path)]) == 3
+    told = " ".join(capsys.readouterr().err.split())
+    # the law of cosines for a distance of 140 mm
+    end = math.degrees(math.acos((110**2 + 40**2 - 140**2) / (2 * 110 * 40)))
+    assert f"it does from -{end:.5f}" in told
+    assert "at dyad[0].lengths_mm[1] value 40 mm, limit 50.05 mm" in told
+    assert "this change was built without errors: dyad[0].lengths_mm[1] = 50.05" in told
+    assert "Traceback" not in told
+    assert not re.search(r"\b(None|nan)\b", told)
+
+
+def test_a_machine_is_not_changed_unasked(tmp_path: Path) -> None:
+    made: Any = gc.design(SHORT)
+    with pytest.raises(gc.InfeasibleError):
+        gc.build(made).write(tmp_path)
+    assert made.dyad[0].lengths == (100.0, 40.0)
+    assert made.to_dict()["dyad"][0]["lengths_mm"] == [100, 40]
+    assert not [*tmp_path.rglob("*.csv")]
+
+
+def test_three_joints_in_a_line_keep_what_the_file_says() -> None:
+    found = gc.build(gc.design(LINED))
+    assert found.linkage.dyads[0].changes == pytest.approx([math.pi])
+    q = np.radians([170.0, 190.0])
+    for change, sides in (("branch", (1.0, 1.0)), ("motion", (1.0, -1.0))):
+        document = copy.deepcopy(LINED)
+        document["dyad"][0]["change"] = change
+        known = gc.build(gc.design(document)).linkage.at(q, 0)
+        b, c = (np.asarray(known.jet(name).c[0]) for name in "BC")
+        assert tuple(np.sign(np.imag((c - b) / (110.0 - b)))) == sides
+
+
+def _refused_ones() -> list[Any]:
+    """Random four-bars and sliders that do not close everywhere, but somewhere."""
+    rng = np.random.default_rng(3)
+    made = []
+    for number in range(24):
+        document = copy.deepcopy(BASE)
+        dyad = document["dyad"]
+        if number % 2:
+            dyad[0]["lengths_mm"] = rng.uniform(60, 75, 2).round(3).tolist()
+            document["dyad"] = dyad[:1]
+        else:
+            dyad[1] |= {"from": "B", "lengths_mm": [round(float(rng.uniform(25, 55)), 3), 0]}
+            document["dyad"] = dyad[1:]
+        document["point"], document["output"] = [], {"files": ["csv"]}
+        made.append(gc.design(document))
+    return made
+
+
+@pytest.mark.parametrize("number", range(24))
+def test_the_range_that_is_told_is_the_one_in_which_it_closes(number: int) -> None:
+    made = _refused_ones()[number]
+    with pytest.raises(gc.InfeasibleError) as caught:
+        _ = gc.build(made).linkage
+    told = [
+        tuple(map(float, one)) for one in re.findall(r"from (\S+) to (\S+) deg", str(caught.value))
+    ]
+    assert told
+    for low, high in told:
+        gap = 1e-4 * (high - low)
+
+        def closes(first: float, last: float) -> bool:
+            try:
+                _ = gc.build(made.with_({"drive[0].range_deg": [first, last]})).linkage
+            except gc.InfeasibleError:
+                return False
+            return True
+
+        assert closes(low + gap, high - gap)
+        assert not closes(low - gap, high - gap)
+        assert not closes(low + gap, high + gap)
+    for adjustment in caught.value.adjustments:
+        way: dict[str, Any] = dict(adjustment.near)
+        assert gc.build(made.with_(way)).linkage.closed
+        # the nearest one: nearer by more than what is left spare it does not close
+        nearer = {
+            key: value * (1.0 - 3e-3 if value > old else 1.0 + 3e-3)
+            for key, value in way.items()
+            if (old := made.dyad[0].lengths[int(key[-2])]) != value
+        }
+        if len(way) == 1:
+            with pytest.raises(gc.InfeasibleError):
+                _ = gc.build(made.with_(nearer)).linkage
+
+
+def _told(path: Path) -> gc.DesignError | gc.InfeasibleError | None:
+    """Why a design is not built."""
+    try:
+        gc.build(gc.load(path)).write(path.parent / "out")
+    except (gc.DesignError, gc.InfeasibleError) as error:
+        return error
+    return None
+
+
+def test_random_machines_are_built_or_refused_with_reasons(tmp_path: Path) -> None:
+    ends = {"built": 0, "refused": 0, "wrong": 0}
+    for index in range(60):
+        told = _told(random_design("mechanism", 9, index).write(tmp_path / str(index)))
+        if isinstance(told, gc.InfeasibleError):
+            assert told.where, index
+            assert not re.search(r"\b(None|nan)\b", str(told)), index
+        elif told is not None:
+            assert all(one.message for one in told.problems), index
+        end = {None: "built", gc.InfeasibleError: "refused"}.get(told and type(told), "wrong")
+        ends[end] += 1
+    assert min(ends.values()) > 0
+    assert ends["built"] > 0.6 * 60
