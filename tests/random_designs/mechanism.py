@@ -324,14 +324,19 @@ def _drives(m: Machine, how: str) -> None:
             _driven(m, d.pick(more), number, 0j)
     if d.chance(0.3) or how == "pair":
         m.tables["drive"][0]["speed_rpm"] = short(d.log(1, 1000))
-    if how in ("even", "pair", "swinging cam", "lifting cam", "open pair") and d.chance(0.2):
-        row = m.add("compare", name="other", even=True)
-        if how == "pair" and d.chance(0.5):
-            del row["even"]
-            row["pair"] = _pair_like(d, m.tables["drive"][0]["pair"])
-        elif how in ("swinging cam", "lifting cam") and d.chance(0.7):
-            del row["even"]
-            row["cam"] = _cam_like(d, m.tables["drive"][0]["cam"])
+    if how in ("pair", "open pair", "swinging cam", "lifting cam") and d.chance(0.3):
+        _compared(m, how)
+
+
+def _compared(m: Machine, how: str) -> None:
+    """Compare the master with another one of its sort, or a pair with an even shaft."""
+    d, master = m.d, m.tables["drive"][0]
+    if "cam" in master:
+        m.add("compare", name="other", cam=_cam_like(d, master["cam"]))
+    elif how == "pair" and d.chance(0.5):
+        m.add("compare", name="other", pair=_pair_like(d, master["pair"]))
+    else:
+        m.add("compare", name="other", even=True)
 
 
 def _pair_like(d: Draw, pair: dict[str, Any]) -> dict[str, Any]:

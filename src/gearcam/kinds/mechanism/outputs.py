@@ -137,7 +137,8 @@ def usual_outputs(parts: Parts) -> list[str]:
     last = [one.members[1] for one in dyads[-1:]] + [one.lever for one in chains]
     turns = [f"{one.name}.turn" for one in parts.get("geneva", ())]
     members = last or [] if turns else last or [one.name for one in cranks[-1:]]
-    return [*found, *turns] or [f"{name}.angle" for name in members]
+    angles = [*found, *turns] or [f"{name}.angle" for name in members]
+    return angles or [f"{one.name}.{one.shafts[-1]}" for one in parts.get("drive", ())[:1]]
 
 
 def asked_outputs(parts: Parts, asked: Sequence[str] | None) -> tuple[Output, ...]:
