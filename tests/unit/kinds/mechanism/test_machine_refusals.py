@@ -182,7 +182,7 @@ WRONG: dict[str, tuple[Document, str, str, str, str]] = {
         "180: leaves the slides parallel", "not 0 or 180 deg", "",
     ),
     "no length": (
-        edited((*DYAD, "lengths_mm"), [120, 0]), "dyad[0].lengths_mm[1]", "0: is 0",
+        edited((*DYAD, "lengths_mm"), [120, 0]), "dyad[0].lengths_mm[1]", "0: the length of rocker in dyad C is 0",
         "above 0 in RRR", "",
     ),
     "mistyped key": (
@@ -207,8 +207,8 @@ WRONG: dict[str, tuple[Document, str, str, str, str]] = {
     ),
     "wheel over the joint of its chain": (
         longer(chain=[{**CHAIN, "at_mm": [0, 0], "radius_mm": 500, "length_mm": 100}]),
-        "chain[0].radius_mm", "500: is that of a wheel that the joint gets into",
-        "below 100 mm, which the joint is off the wheel's centre", "",
+        "chain[0].start_deg", "-90: puts the joint h inside the wheel",
+        "a direction in which it is outside", "",
     ),
     "no number": (
         edited(("crank", 0, "length_mm"), -40), "crank[0].length_mm", "-40 is out of range",
