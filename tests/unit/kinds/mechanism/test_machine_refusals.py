@@ -182,8 +182,8 @@ WRONG: dict[str, tuple[Document, str, str, str, str]] = {
         "180: leaves the slides parallel", "not 0 or 180 deg", "",
     ),
     "no length": (
-        edited((*DYAD, "lengths_mm"), [120, 0]), "dyad[0].lengths_mm[1]", "0: the length of rocker in dyad C is 0",
-        "above 0 in RRR", "",
+        edited((*DYAD, "lengths_mm"), [120, 0]), "dyad[0].lengths_mm[1]",
+        "0: the length of rocker in dyad C is 0", "above 0 in RRR", "",
     ),
     "mistyped key": (
         edited((*DYAD, "lenghts_mm"), [1, 2]), "dyad[0].lenghts_mm",
