@@ -260,7 +260,15 @@ class MechanismResult(Result):
         machine = self._to_check
         with self.stage("checks"):
             own = run_checks(checks.KIND, machine, self.design.limits)
-            return in_order((*below, *own, *self._dwells_missed(), *self._second_centers()))
+            return in_order(
+                (
+                    *below,
+                    *own,
+                    *self._dwells_missed(),
+                    *self._second_centers(),
+                    *self._loads_unused(),
+                )
+            )
 
     @property
     def _to_check(self) -> checks.CheckedMachine:
@@ -349,6 +357,15 @@ class MechanismResult(Result):
             where, near = f"interval[{number}].travel_{unit}", scale * most / ABOVE or None
             raise beyond_limit(what, where, scale * travel, scale * most, near=near, unit=unit)
         return tuple(found)
+
+    @cached_property
+    def interval_velocities(self) -> tuple[float, ...]:
+        """Velocities at the beginning of the `intervals`, mm/rad or rad/rad."""
+        return tuple(
+            float(self.track(output)(np.array([found.begin]), 1).derivatives()[1][0])
+            for number, found in enumerate(self.intervals)
+            for output in [self.asked("interval", number)[0]]
+        )
 
     def comparison(self) -> Columns:
         """Return what the drives to compare make of each output.
@@ -444,6 +461,19 @@ class MechanismResult(Result):
                     where=f"dwell[{number}], from {formatted(_DEG * found.begin, 6)} deg",
                 )
 
+    def _loads_unused(self) -> Iterator[Finding]:
+        """Yield that the study which uses loads, masses and springs is not asked for."""
+        design = self.design
+        given = [word for word in ("load", "mass", "spring") if getattr(design, word)]
+        if given and "torque" not in design.output.studies:
+            yield Finding(
+                code="loads-unused",
+                severity="note",
+                message="Only the study of the driver's moment uses loads, masses and springs: "
+                'gearcam torque FILE, or studies = ["torque"].',
+                where=", ".join(given),
+            )
+
     def _second_centers(self) -> Iterator[Finding]:
         """Yield intervals before a dead centre that is reached a second time."""
         for number, (one, found) in enumerate(
@@ -532,11 +562,9 @@ def interval_rows(name: str, machine: MechanismResult) -> Iterator[dict[str, Any
         The mechanism behind it.
     """
     speed = machine.design.drive[0].speed
-    for number, (one, found) in enumerate(
-        zip(machine.design.interval, machine.intervals, strict=True)
+    for one, found, rate in zip(
+        machine.design.interval, machine.intervals, machine.interval_velocities, strict=True
     ):
-        output, _ = machine.asked("interval", number)
-        rate = float(machine.track(output)(np.array([found.begin]), 1).derivatives()[1][0])
         row = {
             "drive": name, "on": one.on, "before": one.before, "from_deg": _DEG * found.begin,
             "to_deg": _DEG * found.end, "angle_deg": _DEG * found.length, "velocity": rate,

@@ -24,10 +24,13 @@ Tree = dict[str, Any]
 
 _DEG: Final = math.degrees(1.0)
 
+_SHOWN: Final = 4
+"""Outputs, and dyads, of which something is always shown."""
+
 
 def facts(result: MechanismResult) -> Facts:
     """Return the facts of a mechanism, its `result`."""
-    outputs = {one.stem: _output(result, one) for one in result.outputs}
+    outputs = {one.stem: _output(result, one, k) for k, one in enumerate(result.outputs)}
     tree: Tree = {
         "machine": _machine(result),
         "outputs": outputs,
@@ -78,9 +81,9 @@ def _machine(result: MechanismResult) -> Tree:
                 "branch": one.branches[0 if signs[one.joint] > 0.0 else 1]
                 if one.branches
                 else None,
-                **_transmission(worst[one.joint], one.joint),
+                **_transmission(worst[one.joint], one.joint, number < _SHOWN),
             }
-            for one in result.design.dyad
+            for number, one in enumerate(result.design.dyad)
         }
         or None,
         "four_bars": _four_bars(result) or None,
@@ -97,18 +100,17 @@ def _machine(result: MechanismResult) -> Tree:
     }
 
 
-def _transmission(worst: Transmission, joint: str) -> Tree:
-    if worst.pressure_angle is None:
-        distance = worst.distance
+def _transmission(worst: Transmission, joint: str, shown: bool) -> Tree:
+    if worst.pressure_angle is not None:
+        peak = worst.pressure_angle
+        label, value = f"largest pressure angle of {joint}", _DEG * peak.value
+        fact = Fact(value, label, place=_place(peak), shown=shown, noise=1e-9)
+        return {"pressure_angle_deg": fact, "pressure_angle_at_deg": _DEG * peak.place}
+    if worst.distance is not None:
         label = f"least distance of the block of {joint} from the guide's pivot"
-        return {
-            "guide_distance_mm": None
-            if distance is None
-            else Fact(distance.value, label, place=_place(distance))
-        }
-    peak = worst.pressure_angle
-    label = f"largest pressure angle of {joint}"
-    return {"pressure_angle_deg": Fact(_DEG * peak.value, label, place=_place(peak))}
+        fact = Fact(worst.distance.value, label, place=_place(worst.distance))
+        return {"guide_distance_mm": fact, "guide_distance_at_deg": _DEG * worst.distance.place}
+    return {}
 
 
 def _four_bars(result: MechanismResult) -> Tree:
@@ -154,8 +156,8 @@ def _place(peak: Peak) -> str:
     return f"at {formatted(_DEG * peak.place, 6)} deg"
 
 
-def _output(result: MechanismResult, one: Output) -> Tree:
-    """Return range, stroke, dead centres and peaks of an output."""
+def _output(result: MechanismResult, one: Output, number: int) -> Tree:
+    """Return range, stroke, dead centres and peaks of an output, of which one stands first."""
     measures, (scale, unit) = result.measures[one.stem], one.unit
     least, largest = measures.least(), measures.largest()
     centers = measures.dead_centers
@@ -165,31 +167,39 @@ def _output(result: MechanismResult, one: Output) -> Tree:
         f"largest_{unit}": Fact(
             scale * largest.value, f"{one.stem}, largest", place=_place(largest)
         ),
+        "least_at_deg": _DEG * least.place,
+        "largest_at_deg": _DEG * largest.place,
         f"stroke_{unit}": Fact(
             scale * measures.stroke,
             f"{'turn' if measures.rise and one.angle else 'stroke'} of {one.stem}",
-            shown=True,
+            shown=number < _SHOWN,
             noise=1e-9,
         ),
         "dead_centers_deg": [_DEG * center.place for center in centers] or None,
         "time_ratio": None
         if ratio is None
-        else Fact(ratio.ratio, f"forward over return time of {one.stem}", unit=""),
-        **_peaks(result, one),
+        else Fact(
+            ratio.ratio, f"forward over return time of {one.stem}", unit="", shown=not number
+        ),
+        **_peaks(result, one, shown=not number),
     }
 
 
-def _peaks(result: MechanismResult, one: Output) -> Tree:
-    """Return the derivatives of an output furthest from 0."""
+def _peaks(result: MechanismResult, one: Output, *, shown: bool = False) -> Tree:
+    """Return the derivatives of an output furthest from 0; the velocity may be shown."""
     measures: TrackMeasures = result.measures[one.stem]
     speed, unit, tree = result.design.drive[0].speed, one.rate_unit, {}
     for order, word in enumerate(RATES, start=1):
         peak, power = measures.size(order), order if order > 1 else ""
-        label = f"largest {word} of {one.stem}"
-        tree[f"{word}_{unit}_per_rad{power}"] = Fact(peak.value, label, place=_place(peak))
+        seen = shown and order == 1
+        label, place, still = f"largest {word} of {one.stem}", _place(peak), speed is None
+        name = f"{word}_{unit}_per_rad{power}"
+        tree[name] = Fact(peak.value, label, place=place, shown=seen and still, noise=1e-9)
         if speed is not None:
             value = peak.value * speed**order
-            tree[f"{word}_{unit}_s{power}"] = Fact(value, label, place=_place(peak))
+            name = f"{word}_{unit}_s{power}"
+            tree[name] = Fact(value, label, place=place, shown=seen, noise=1e-9)
+        tree[f"{word}_at_deg"] = _DEG * peak.place
     return tree
 
 
@@ -235,8 +245,13 @@ def _intervals(result: MechanismResult) -> list[Tree] | None:
             "to_deg": _DEG * found.end,
             "angle_deg": _DEG * found.length,
             "time_s": None if speed is None else found.length / speed,
+            f"velocity_{unit}_per_rad": rate,
+            f"velocity_{unit}_s": None if speed is None else rate * speed,
         }
-        for one, found in zip(result.design.interval, result.intervals, strict=True)
+        for number, (one, found, rate) in enumerate(
+            zip(result.design.interval, result.intervals, result.interval_velocities, strict=True)
+        )
+        for unit in [result.asked("interval", number)[0].rate_unit]
     ] or None
 
 

@@ -33,6 +33,7 @@ TORQUE: Final = Study(
     table="torque",
     compute=_torque,
     demand=_demand,
+    repeats=("loads-unused",),  # it uses them
 )
 
 STUDIES: Final[dict[str, Study]] = {one.name: one for one in (TORQUE, accuracy_study())}

@@ -318,3 +318,82 @@ def test_change_points_say_what_the_machine_does() -> None:
     flat["dyad"] = [flat["dyad"][0] | {"change": "motion"}]
     told = finding(flat, "change-point")
     assert 'It goes on into the other branch; with change = "branch" it keeps its own.' in told
+
+
+def test_loads_without_their_study_are_told() -> None:
+    load = {"on": "P", "force_n": [1, 2]}
+    told = finding(output("P", load=[load]), "loads-unused")
+    assert "gearcam torque" in told
+    asked = {"files": ["csv"], "outputs": ["P"], "studies": ["torque"]}
+    for machine in (MACHINES["four-bar"], MACHINES["four-bar"] | {"load": [load], "output": asked}):
+        assert "loads-unused" not in {one.code for one in built(machine).checked}
+
+
+def test_places_of_peaks_are_numbers() -> None:
+    speed: Document = {"drive": [MOTOR | {"speed_rpm": 60}]}
+    interval: list[Document] = [
+        {"on": "C.x", "travel_mm": 5, "before": "inner"},
+        {"on": "rocker.angle", "travel_deg": 5},
+    ]
+    result = built(output("C", "rocker.angle", interval=interval, **speed))
+    facts = result.facts
+    for stem, name, angle in (("C_x", "C.x", False), ("rocker", "rocker.angle", True)):
+        group, rate = facts[f"outputs.{stem}"], "rad" if angle else "mm"
+        columns = {
+            f"least_{'deg' if angle else 'mm'}": f"{stem}_{'deg' if angle else 'mm'}",
+            f"largest_{'deg' if angle else 'mm'}": f"{stem}_{'deg' if angle else 'mm'}",
+            f"velocity_{rate}_per_rad": f"{stem}_{rate}_per_rad",
+            f"acceleration_{rate}_per_rad2": f"{stem}_{rate}_per_rad2",
+            f"jerk_{rate}_per_rad3": f"{stem}_{rate}_per_rad3",
+        }
+        for key, column in columns.items():
+            place = math.radians(group[f"{key.split('_')[0]}_at_deg"])
+            assert result.output(name, [place])[column][0] == pytest.approx(group[key], rel=1e-9)
+    dyad = facts["machine.dyads.C"]
+    place = math.radians(dyad["pressure_angle_at_deg"])
+    rods = [result.output(f"{name}.angle", [place]) for name in ("coupler", "rocker")]
+    between = rods[0]["coupler_deg"][0] - rods[1]["rocker_deg"][0]
+    across = abs(90.0 - abs(math.remainder(between, 180.0)))
+    assert across == pytest.approx(dyad["pressure_angle_deg"])
+
+
+def test_intervals_have_their_velocities() -> None:
+    interval: list[Document] = [
+        {"on": "C.x", "travel_mm": 5, "before": "inner"},
+        {"on": "rocker.angle", "travel_deg": 5},
+    ]
+    speed: Document = {"drive": [MOTOR | {"speed_rpm": 60}]}
+    result = built(output("C", "rocker.angle", interval=interval, **speed))
+    first, second = result.facts["intervals"]
+    for row, name, stem, unit in (
+        (first, "C.x", "C_x", "mm"), (second, "rocker.angle", "rocker", "rad")
+    ):  # fmt: skip
+        columns = result.output(name, [math.radians(row["from_deg"])])
+        for kind in (f"{unit}_per_rad", f"{unit}_s"):
+            assert row[f"velocity_{kind}"] == pytest.approx(columns[f"{stem}_{kind}"][0])
+    still = built(output("C", "rocker.angle", interval=interval)).facts["intervals"]
+    assert "velocity_mm_per_rad" in still[0]
+    assert not {"time_s", "velocity_mm_s"} & set(still[0])
+
+
+def test_a_few_facts_are_always_shown() -> None:
+    shown = [one.meaning for one in built(output("P", "C", "rocker.angle")).facts.shown()]
+    assert shown == [
+        "largest pressure angle of C",
+        "stroke of P_x",
+        "forward over return time of P_x",
+        "largest velocity of P_x",
+        "stroke of P_y",
+        "stroke of C_x",
+        "stroke of C_y",
+    ]
+    fast = built(output("P", drive=[MOTOR | {"speed_rpm": 60}])).facts
+    assert "outputs.P_x.velocity_mm_s" in [one.name for one in fast.shown()]
+    (velocity,) = (one for one in fast.shown() if one.meaning == "largest velocity of P_x")
+    assert velocity.place.startswith("at ")
+
+
+def test_the_study_of_loads_does_not_repeat_that_it_is_to_be_asked_for() -> None:
+    result = built(output("P", load=[{"on": "P", "force_n": [1, 2]}]))
+    codes = {one.code for one in result.findings_with([result.study("torque")])}
+    assert "loads-unused" in {one.code for one in result.findings} - codes
