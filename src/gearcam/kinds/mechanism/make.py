@@ -345,7 +345,9 @@ def _refusal(design: MechanismDesign, error: NotClosingError) -> InfeasibleError
         return InfeasibleError(what, where=f"{title}[{number}]")
     key, value = next(iter(ways[0].near.items()))
     if len(ways[0].near) > 1:
-        both = " and ".join(f"{k} = {formatted(v)}" for k, v in ways[0].near.items())
+        both = " and ".join(
+            f"{k} = {formatted(v)} ({_member(element, k)})" for k, v in ways[0].near.items()
+        )
         note = f"one length alone cannot do it; with {both} it closes"
         return InfeasibleError(what, where=f"{title}[{number}]", nearest=note, adjustments=ways)
     return InfeasibleError(
@@ -354,9 +356,15 @@ def _refusal(design: MechanismDesign, error: NotClosingError) -> InfeasibleError
         value=float(element.lengths[int(key[-2])]),  # pyright: ignore[reportAttributeAccessIssue]
         limit=value,  # pyright: ignore[reportArgumentType]
         unit="mm",
-        nearest="just inside the limit, where both of its positions meet",
+        nearest=f"length of {_member(element, key)}; just inside the limit, where both positions "
+        "meet",
         adjustments=ways,
     )
+
+
+def _member(dyad: Element, key: str) -> str:
+    """Return the member whose length a key gives."""
+    return dyad.members[int(key[-2])]  # pyright: ignore[reportAttributeAccessIssue]
 
 
 _WIDER: Final = (5.0, 15.0, 45.0, 90.0)

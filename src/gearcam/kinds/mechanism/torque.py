@@ -280,7 +280,7 @@ def _facts(
     speed = result.design.drive[0].speed
     per = "cycle" if work.linkage.closed else "range"
     tree: Tree = {
-        "torque_nm": _range(result, work, "moment of the driver"),
+        **_range(result, work, "moment of the driver"),
         "mean_nm": Fact(_NM * work.mean, "mean moment of the driver", shown=True),
         "work_j": Fact(_NM * work.work, f"work of the driver in a {per}", unit="J", shown=True),
         "works_j": {
@@ -298,7 +298,7 @@ def _facts(
     }
     if beside:
         tree["compared"] = {
-            name: {"torque_nm": _range(result, other, f"moment of the driver: {name}")}
+            name: _range(result, other, f"moment of the driver: {name}")
             for name, other in beside.items()
         }
     error = _error(result, work)
@@ -307,16 +307,19 @@ def _facts(
     return tree | {"assumptions": Fact(_assumptions(result, work), "assumed", shown=True)}
 
 
-def _range(result: MechanismResult, work: VirtualWork, meaning: str) -> Fact:
+def _range(result: MechanismResult, work: VirtualWork, meaning: str) -> Tree:
+    """Return the least and the largest moment of the driver, and where they are."""
     least, largest = work.least, work.largest
     places = _place(result, least.place), _place(result, largest.place)
-    return Fact(
+    fact = Fact(
         extent(_NM * least.value, _NM * largest.value),
         meaning,
         place=f"least {places[0]}, largest {places[1]}",
         shown=True,
         noise=_NM * _NOISE * max(abs(least.value), abs(largest.value)),
     )
+    at = {"min": math.degrees(least.place), "max": math.degrees(largest.place)}
+    return {"torque_nm": fact, "torque_at_deg": at}
 
 
 def _error(result: MechanismResult, work: VirtualWork) -> float | None:

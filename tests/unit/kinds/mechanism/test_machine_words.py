@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
+import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -397,3 +398,22 @@ def test_the_study_of_loads_does_not_repeat_that_it_is_to_be_asked_for() -> None
     result = built(output("P", load=[{"on": "P", "force_n": [1, 2]}]))
     codes = {one.code for one in result.findings_with([result.study("torque")])}
     assert "loads-unused" in {one.code for one in result.findings} - codes
+
+
+def test_places_of_the_largest_moment_are_numbers() -> None:
+    load = [{"on": "P", "force_n": [10, 20]}]
+    result = built(output("P", load=load))
+    found = result.study("torque")
+    place, size = found.facts["torque.torque_at_deg"], found.facts["torque.torque_nm"]
+    for end in ("min", "max"):
+        at = [math.radians(place[end])]
+        rates = [result.output("P", at)[f"P_{x}_mm_per_rad"][0] for x in "xy"]
+        # the driver's power is that which the load takes
+        assert -1e-3 * (10 * rates[0] + 20 * rates[1]) == pytest.approx(size[end], rel=1e-9)
+
+
+def test_a_length_that_is_off_is_told_by_its_member() -> None:
+    told = refused(changed("four-bar", "dyad", lengths_mm=[120, 45]))
+    assert "length of rocker" in str(told)
+    both = str(refused(changed("four-bar", "dyad", lengths_mm=[10, 20])))
+    assert re.search(r"lengths_mm\[0\] = [\d.]+ \(coupler\) and .* \(rocker\)", both)
