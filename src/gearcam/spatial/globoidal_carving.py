@@ -105,4 +105,5 @@ def _across(cam: GloboidalCam, theta: Array) -> tuple[Array, Array]:
     """Return two unit directions across the roller: along the turret's axis is the second."""
     zero = np.zeros_like(theta)
     second = np.stack([np.sin(theta), np.cos(theta), zero], axis=1)
-    return np.cross(second, cam.axis(theta).direction[0]), second
+    first = np.asarray(np.cross(second, cam.axis(theta).direction[0]), dtype=np.float64)
+    return first, second

@@ -209,9 +209,10 @@ class MechanismResult(Result):
             power = order if order > 1 else ""
             columns[f"{one.stem}_{rate}_per_rad{power}"] = values[order]
         speed = self.design.drive[0].speed
-        for order in range(1, ORDER + 1) if speed is not None else ():
+        for order in range(1, ORDER + 1):
             power = order if order > 1 else ""
-            columns[f"{one.stem}_{rate}_s{power}"] = values[order] * speed**order
+            if speed is not None:
+                columns[f"{one.stem}_{rate}_s{power}"] = values[order] * speed**order
         return columns
 
     def track(self, one: Output) -> Callable[[Array, int], Jet]:

@@ -120,7 +120,7 @@ def _four_bars(result: MechanismResult) -> Tree:
     fixed = {one.name: complex(*one.at) for one in design.joint}
     for dyad in design.dyad:
         ends = (dyad.first, dyad.last) if dyad.first in cranks else (dyad.last, dyad.first)
-        rods = dyad.lengths if dyad.first in cranks else dyad.lengths[::-1]
+        one, two = dyad.lengths if dyad.first in cranks else dyad.lengths[::-1]
         if dyad.type != "RRR" or ends[0] not in cranks or ends[1] not in fixed:
             continue
         crank = cranks[ends[0]]
@@ -129,7 +129,7 @@ def _four_bars(result: MechanismResult) -> Tree:
         shaft = result.linkage.shaft_of(crank.name)
         base = abs(fixed[ends[1]] - shaft)
         if base:
-            grashof_class = grashof(FourBarLengths(crank.length, *rods, base))
+            grashof_class = grashof(FourBarLengths(crank.length, one, two, base))
             found[dyad.joint] = {
                 "class": Fact(grashof_class.name, f"Grashof's class of {dyad.joint}"),
                 "meaning": grashof_class.meaning,

@@ -14,6 +14,7 @@ import numpy as np
 from gearcam.base.errors import Adjustment, InfeasibleError
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import LONGEST
+from gearcam.designs.design import document_of, value_at
 from gearcam.kinds.mechanism.drives import PlacedDrive, center_of, way_of
 from gearcam.kinds.mechanism.names import PARTS, needed
 from gearcam.linkages.chain import HoistChain
@@ -34,7 +35,7 @@ from gearcam.numeric.arrays import Array
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.design import MechanismDesign
-    from gearcam.kinds.mechanism.tables import CrankSpec, DyadSpec, GuideSpec
+    from gearcam.kinds.mechanism.tables import ChainSpec, CrankSpec, DyadSpec, GuideSpec
 
 _TURN: Final = 2.0 * math.pi
 
@@ -233,6 +234,22 @@ def _elements(design: MechanismDesign, drives: Sequence[PlacedDrive]) -> Iterato
     yield from _pulled(design)
 
 
+def _demand_clear(chain: ChainSpec, number: int) -> None:
+    """Refuse a lever whose joint runs into the wheel within its range."""
+    way, (low, high) = complex(*chain.at) - complex(*chain.hinge), chain.range
+    nearest = low + (cmath.phase(way) - low) % _TURN
+    angles = [low, high, *([nearest] if nearest < high else [])]
+    apart = {psi: abs(cmath.rect(chain.length, psi) - way) for psi in angles}
+    worst = min(apart, key=lambda psi: apart[psi])
+    if apart[worst] <= chain.radius:
+        raise InfeasibleError(
+            f"{chain.joint} runs into the chain's wheel at {formatted(math.degrees(worst), 6)} deg "
+            f"of {chain.lever}",
+            where=f"chain[{number}].range_deg",
+            nearest="a range that ends before, or a wheel farther away",
+        )
+
+
 def _guide(spec: GuideSpec, design: MechanismDesign, drives: Sequence[PlacedDrive]) -> GuideLine:
     """Return a guide through its point, or through a joint or a shaft that stands still."""
     at = complex(*spec.at)
@@ -269,7 +286,8 @@ def _pulled(design: MechanismDesign) -> Iterator[Element]:
             wheel.name, wheel.on, center, wheel.length, wheel.slots, wheel.direction, wheel.angle,
             wheel.internal,
         )  # fmt: skip
-    for chain in design.chain:
+    for number, chain in enumerate(design.chain):
+        _demand_clear(chain, number)
         yield HoistChain(
             chain.lever,
             chain.joint,
@@ -340,13 +358,14 @@ def _refusal(design: MechanismDesign, error: NotClosingError) -> InfeasibleError
     if found.least > -1e-9:
         at = formatted(math.degrees(found.place), 8)
         what = f"{name} is singular at {at} deg: its guides or members are in line there"
-    ways = [_lengthened(design, title, number, one) for one in error.nearest]
-    if not ways:
+    lengths = [_keyed(title, number, one) for one in error.nearest]
+    if not lengths:
         return InfeasibleError(what, where=f"{title}[{number}]")
-    key, value = next(iter(ways[0].near.items()))
-    if len(ways[0].near) > 1:
+    ways = [_lengthened(design, one) for one in lengths]
+    key, value = next(iter(lengths[0].items()))
+    if len(lengths[0]) > 1:
         both = " and ".join(
-            f"{k} = {formatted(v)} ({_member(element, k)})" for k, v in ways[0].near.items()
+            f"{k} = {formatted(v)} ({_member(element, k)})" for k, v in lengths[0].items()
         )
         note = f"one length alone cannot do it; with {both} it closes"
         return InfeasibleError(what, where=f"{title}[{number}]", nearest=note, adjustments=ways)
@@ -354,7 +373,7 @@ def _refusal(design: MechanismDesign, error: NotClosingError) -> InfeasibleError
         what,
         where=key,
         value=float(element.lengths[int(key[-2])]),  # pyright: ignore[reportAttributeAccessIssue]
-        limit=value,  # pyright: ignore[reportArgumentType]
+        limit=value,
         unit="mm",
         nearest=f"length of {_member(element, key)}; just inside the limit, where both positions "
         "meet",
@@ -425,16 +444,20 @@ _FURTHER: Final = 2.0
 """How many times further than the least change a length is changed in the search for remedies."""
 
 
-def _lengthened(
-    design: MechanismDesign, title: str, number: int, lengths: dict[int, float]
-) -> Adjustment:
+def _keyed(title: str, number: int, lengths: dict[int, float]) -> dict[str, float]:
+    """Return lengths by their keys."""
+    return {
+        f"{title}[{number}].lengths_mm[{k}]": float(formatted(value, 6))
+        for k, value in lengths.items()
+    }
+
+
+def _lengthened(design: MechanismDesign, near: dict[str, float]) -> Adjustment:
     """Return a change of lengths, from the nearest ones on in the same direction."""
-    own: tuple[float, ...] = getattr(design, title)[number].lengths
-    near, far = {}, {}
-    for k, value in lengths.items():
-        key = f"{title}[{number}].lengths_mm[{k}]"
-        near[key] = float(formatted(value, 6))
-        further = value + _FURTHER * abs(value - own[k]) * (1.0 if value >= own[k] else -0.1)
+    far = {}
+    for key, value in near.items():
+        own = value_at(document_of(design), key)
+        further = value + _FURTHER * abs(value - own) * (1.0 if value >= own else -0.1)
         far[key] = float(formatted(max(further, 0.5 * value), 6))
     return Adjustment(near=near, far=far)
 

@@ -50,7 +50,7 @@ def test_the_pin_is_in_a_slot_while_it_moves_the_wheel(slots: int, internal: boo
     step = np.abs(np.diff(np.asarray(wheel.turn))) > 1e-9
     moved = np.convolve(step, np.ones(4), "same") == 4.0  # not beside entry and exit
     inside = 0
-    for place in np.flatnonzero(moved):
+    for place in np.flatnonzero(moved).tolist():
         _, _, pin = outlines(scene, place)
         seen = complex(wheel[place].inverse.apply(np.array([pin]))[0])
         pitch = 2.0 * np.pi / slots

@@ -23,7 +23,9 @@ def machine(**more: object) -> Any:
         "slide": [{"name": "table", "on": "pair.rack", "joint": "T"}],
         **more,
     }
-    return gc.design({"kind": "mechanism", "name": "mine", **tables})
+    made = gc.design({"kind": "mechanism", "name": "mine", **tables})
+    assert isinstance(made, gc.MechanismDesign)
+    return made
 
 
 def test_the_wheel_turns_as_far_as_the_rack_has_teeth() -> None:
