@@ -328,7 +328,8 @@ def _not_standing(
 
 def _missing(one: NameUse, names: Mapping[str, NameUse]) -> Iterator[Fault]:
     other, sorts = names.get(one.name), one.sort.split(" or ")
-    fits = sorted(name for name, is_ in names.items() if is_.sort in sorts)
+    others = (item for item in names.items() if item[1].path[:2] != one.path[:2])
+    fits = sorted(name for name, is_ in others if is_.sort in sorts)
     allowed = f"a {one.sort}: {', '.join(fits)}" if fits else f"the name of a {one.sort}"
     if other is None:
         yield _nothing(one, fits, allowed)

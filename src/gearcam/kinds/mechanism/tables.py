@@ -82,7 +82,7 @@ class CompareSpec(ShortRepr):
     def problems(self) -> Iterator[Breach]:
         """Yield ``even = false``: field, index, message, what is allowed."""
         if self.even is False:
-            yield "even", None, "is false", "true, or the key left out"
+            yield "even", None, "is no drive", "true, or the key left out"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -143,7 +143,7 @@ class MachineDrive(ShortRepr):
     def problems(self) -> Iterator[Breach]:
         """Yield contradictions: field, index, message, what is allowed."""
         if self.even is False:
-            yield "even", None, "is false", "true, or the key left out"
+            yield "even", None, "is no drive", "true, or the key left out"
         if not self.ratio:
             yield "ratio", None, "is 0", "a whole number, negative for the other sense of rotation"
         if self.span is not None and self.slide is not None:

@@ -109,7 +109,7 @@ WRONG: dict[str, tuple[Document, str, str, str, str]] = {
     # name: document, key, message, what is allowed, hint
     "unknown joint": (
         edited((*DYAD, "from"), "b"), "dyad[0].from", '"b": nothing has this name',
-        "a joint: B, C, D, P, S", "did you mean B?",
+        "a joint: B, D, P, S", "did you mean B?",
     ),
     "unknown shaft": (
         edited(("crank", 0, "on"), "moter"), "crank[0].on", '"moter": nothing has this name',
@@ -144,14 +144,14 @@ WRONG: dict[str, tuple[Document, str, str, str, str]] = {
     ),
     "guide for a joint": (
         edited((*DYAD, "to"), "bed"), "dyad[0].to", '"bed" is a guide',
-        "a joint: B, C, D, P, S", "",
+        "a joint: B, D, P, S", "",
     ),
     "joint for a guide": (
         edited(("dyad", 1, "to"), "D"), "dyad[1].to", '"D" is a joint', "a guide: bed", "",
     ),
     "member for a joint": (
         edited((*DYAD, "to"), "crank"), "dyad[0].to", '"crank" is a member',
-        "a joint: B, C, D, P, S", "",
+        "a joint: B, D, P, S", "",
     ),
     "one joint at both ends": (
         edited((*DYAD, "to"), "B"), "dyad[0].to", '"B": is also where it comes from',

@@ -417,3 +417,8 @@ def test_a_length_that_is_off_is_told_by_its_member() -> None:
     assert "length of rocker" in str(told)
     both = str(refused(changed("four-bar", "dyad", lengths_mm=[10, 20])))
     assert re.search(r"lengths_mm\[0\] = [\d.]+ \(coupler\) and .* \(rocker\)", both)
+
+
+def test_no_table_is_offered_its_own_names() -> None:
+    (found,) = problems(changed("four-bar", "dyad", **{"from": "b"}))
+    assert (found.hint, found.allowed) == ("did you mean B?", "a joint: B, D, P")
