@@ -48,7 +48,12 @@ _ROUNDING: Final = 1e-12
 
 
 def svg_bytes(
-    drawing: Drawing, *, title: str, notes: Sequence[str] = (), labels: Sequence[Label] = ()
+    drawing: Drawing,
+    *,
+    title: str,
+    notes: Sequence[str] = (),
+    labels: Sequence[Label] = (),
+    legend: str = "",
 ) -> bytes:
     """Return a drawing as SVG.
 
@@ -62,6 +67,8 @@ def svg_bytes(
         Second line of the caption, joined by commas.
     labels : sequence of Label
         Names in the picture.
+    legend : str
+        Last line of the caption: what lines mean.
 
     Returns
     -------
@@ -80,7 +87,7 @@ def svg_bytes(
         yield from (_element(feature, pixel) for feature in drawing.features)
         yield from map(_label, labels)
 
-    lines = [line for line in (title, ", ".join(notes)) if line]
+    lines = [line for line in (title, ", ".join(notes), legend) if line]
     shown = [*box(drawing.features), *(corner for one in labels for corner in one.corners)]
     return picture(lines, bounds(np.array(shown)), elements).encode()
 

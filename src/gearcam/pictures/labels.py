@@ -52,7 +52,11 @@ class Label(NamedTuple):
 
 
 def labelled(
-    wanted: Sequence[tuple[str, complex]], lines: Plane, size: float, gap: float
+    wanted: Sequence[tuple[str, complex]],
+    lines: Plane,
+    size: float,
+    gap: float,
+    others: Sequence[Label] = (),
 ) -> tuple[Label, ...]:
     """Return names beside places.
 
@@ -66,6 +70,8 @@ def labelled(
         Height of letters.
     gap : float, mm
         Least distance of a name from its place.
+    others : sequence of Label
+        Names that are there already.
 
     Returns
     -------
@@ -74,7 +80,7 @@ def labelled(
     made: list[Label] = []
     for text, at in wanted:
         beside = _beside(text, at, size, gap)
-        costs = [_cost(label, lines, made) + _FAR * ring for ring, label in beside]
+        costs = [_cost(label, lines, [*others, *made]) + _FAR * ring for ring, label in beside]
         made.append(beside[int(np.argmin(costs))][1])
     return tuple(made)
 

@@ -25,6 +25,9 @@ PIXELS: Final = 960
 SHOWN: Final = 560
 """Largest height of a picture above a table, pixels."""
 
+TALLEST: Final = 1.25
+"""Largest height of a drawing relative to its width; a narrower one has room on both sides."""
+
 MARGIN: Final = 0.04
 """Margin relative to the width of the drawing."""
 
@@ -57,6 +60,22 @@ def svg_document(attributes: str, title: str, elements: Iterable[str]) -> bytes:
     return ("\n".join(lines) + "\n").encode()
 
 
+def with_room(low: complex, high: complex) -> Corners:
+    """Return the corners of a drawing with room on both sides if it is tall.
+
+    Parameters
+    ----------
+    low, high : complex, mm
+        Its lower left and upper right corner.
+
+    Returns
+    -------
+    (low, high)
+    """
+    room = max(0.0, (high - low).imag / TALLEST - (high - low).real) / 2.0
+    return low - room, high + room
+
+
 def picture(
     lines: Sequence[str], corners: Corners, elements: Callable[[float], Iterable[str]]
 ) -> str:
@@ -76,7 +95,7 @@ def picture(
     str
         SVG.
     """
-    low, high = corners
+    low, high = with_room(*corners)
     width = (high - low).real
     margin, pixel = MARGIN * width, width / PIXELS
     size = min(20 * pixel, width / (GLYPH * max([1, *map(len, lines)])))

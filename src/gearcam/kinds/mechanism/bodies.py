@@ -16,6 +16,7 @@ import numpy as np
 
 from gearcam.kinds.mechanism.drives import center_of, way_of
 from gearcam.kinds.mechanism.names import given
+from gearcam.kinds.mechanism.traces import distances
 from gearcam.linkages.dyads import DYADS
 from gearcam.linkages.elements import GROUND as STANDING
 from gearcam.linkages.elements import SLIDES
@@ -24,6 +25,7 @@ from gearcam.parts.shapes import Circle
 from gearcam.pictures.drawings import (
     BORE,
     CENTER,
+    CENTRODE,
     MEMBER,
     PRIME,
     TRACE,
@@ -49,6 +51,9 @@ _WIDTH: Final = 0.011
 
 _LEAST, _MOST = 0.004, 0.2
 """Smallest half width relative to the machine, and largest one relative to its shortest link."""
+
+_SAME: Final = 1e-3
+"""Distance of two ways of a path, relative to its length, below which they are drawn as one."""
 
 _PIECES: Final = 24
 """Most pieces of a chain, which overlap where it is short."""
@@ -326,7 +331,22 @@ def _paths(shown: _Shown, before: int) -> Iterator[Feature]:
     for name in traced(shown.result):
         points = shown.place(name)[before:]
         if float(np.abs(points - points[0]).max()) > 0.0:
-            yield Feature(layer=TRACE, shape=Path(points=points, closed=closed))
+            once = _once(points[:-1]) if closed else None
+            shape = Path(points=points, closed=closed)
+            shape = shape if once is None else Path(points=once, closed=False)
+            yield Feature(layer=TRACE, shape=shape)
+
+
+def _once(points: Plane) -> Plane | None:
+    """Return one way of a closed path that goes there and back on it; None if it does not.
+
+    Dashes drawn twice would make a full line.
+    """
+    points = np.roll(points, -int(np.abs(points - points[0]).argmax()))
+    half = int(np.abs(points - points[0]).argmax())
+    out, back = points[: half + 1], np.append(points[half:], points[0])
+    off = distances(out[:, None], back[:-1], back[1:]).min(axis=1)
+    return out if off.max() < _SAME * abs(points[half] - points[0]) else None
 
 
 # --- chains --------------------------------------------------------------------------------------
@@ -353,13 +373,17 @@ def _swinging(shown: _Shown, spec: ChainSpec) -> Iterator[MovingBody]:
 
 
 def _lifting(shown: _Shown, spec: HoistSpec) -> Iterator[MovingBody]:
-    """Yield wheel and chain of what is lifted, the wheel beside the chain."""
+    """Yield wheel and chain of what is lifted, the wheel on its shaft."""
     end, along = shown.place(spec.joint), cmath.exp(1j * spec.direction)
     shaft = complex(shown.place(center_of(spec.on))[0])
     # where the chain, which leads straight to the joint, is level with the shaft
-    foot = end[0] + along * ((shaft - end[0]) * along.conjugate()).real
-    side = 1j * along * (1.0 if spec.wind == "ccw" else -1.0)
-    yield _wheel(shown, spec.on, complex(foot + side * spec.radius), spec.radius)
+    foot = complex(end[0] + along * ((shaft - end[0]) * along.conjugate()).real)
+    yield _wheel(shown, spec.on, shaft, spec.radius)
+    beside = abs(foot - shaft)
+    if beside > (1.0 + _SAME) * spec.radius:  # something must guide it to the wheel
+        rim = shaft + spec.radius * (foot - shaft) / beside
+        guided = Feature(layer=CENTRODE, shape=Path(points=np.array([rim, foot]), closed=False))
+        yield still((guided,), shown.q)
     yield from _pieces(np.full(shown.q.shape, foot), end)
 
 

@@ -17,6 +17,7 @@ from gearcam.base.errors import ABOVE, DesignError, InfeasibleError, Problem, be
 from gearcam.base.findings import Finding, in_order, run_checks
 from gearcam.base.numerals import formatted
 from gearcam.designs.faults import show
+from gearcam.kinds.mechanism.chain_checks import guided_chains
 from gearcam.kinds.mechanism.design import MechanismDesign
 from gearcam.kinds.mechanism.drives import PlacedDrive, placed
 from gearcam.kinds.mechanism.make import make_linkage
@@ -261,15 +262,8 @@ class MechanismResult(Result):
         machine = self._to_check
         with self.stage("checks"):
             own = run_checks(checks.KIND, machine, self.design.limits)
-            return in_order(
-                (
-                    *below,
-                    *own,
-                    *self._dwells_missed(),
-                    *self._second_centers(),
-                    *self._loads_unused(),
-                )
-            )
+            own += (*self._dwells_missed(), *self._second_centers(), *self._loads_unused())
+            return in_order((*below, *own, *guided_chains(self)))
 
     @property
     def _to_check(self) -> checks.CheckedMachine:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from gearcam.base.numerals import formatted
 from gearcam.kinds.mechanism.bodies import CHAIN, CHAIN_WHEEL, bodies, traced
 from gearcam.kinds.mechanism.scene import shown_at
 from gearcam.kinds.mechanism.traces import path_within
@@ -30,7 +31,7 @@ from gearcam.pictures.drawings import (
     place,
 )
 from gearcam.pictures.labels import Label, labelled
-from gearcam.pictures.markup import PIXELS
+from gearcam.pictures.markup import PIXELS, with_room
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.build import MechanismResult
@@ -45,6 +46,9 @@ _GHOSTS: Final = 6
 
 _LETTERS: Final = 15.0
 """Height of letters, pixels."""
+
+_SMALLER: Final = 0.8
+"""Height of the letters of other angles, relative to that of names."""
 
 _PIN: Final = f"{MEMBER}_{BORE}"
 """Layer of the joints of members."""
@@ -116,10 +120,47 @@ def picture(result: MechanismResult) -> tuple[Drawing, tuple[Label, ...]]:
     paths = [one for body in every for one in body.features if one.kind == TRACE]
     shown = tuple(posed(every))
     features = (*_ghosts(every, count), *shown, *paths)
-    low, high = box(features)
-    size = _LETTERS * max((high - low).real, 0.6 * (high - low).imag) / PIXELS
-    labels = labelled(_names(result, every, q[:1]), _lines(shown, 0.4 * size), size, size)
-    return Drawing(name="poses", features=features), labels
+    low, high = with_room(*box(features))
+    size = _LETTERS * (high - low).real / PIXELS
+    lines = _lines(shown, 0.4 * size)
+    names = labelled(_names(result, every, q[:1]), lines, size, size)
+    less, angles = _SMALLER * size, _other_angles(every, q[:count], size)
+    return Drawing(name="poses", features=features), (
+        *names, *labelled(angles, lines, less, 0.5 * less, names)
+    )  # fmt: skip
+
+
+def legend(result: MechanismResult) -> str:
+    """Return what the lines of the picture mean."""
+    names = traced(result)
+    thin = f"thin lines: the machine at the {result.driver[0]} beside them"
+    word = "paths" if len(names) > 1 else "path"
+    return f"{thin}; dashed: {word} of {', '.join(names)}" if names else thin
+
+
+def _other_angles(
+    every: tuple[MovingBody, ...], q: Array, near: float
+) -> list[tuple[str, complex]]:
+    """Return the angles of ghosts, each with the end of the first member there; near ones together.
+
+    The first of the angles (n,), rad, is that of the machine itself.
+    """
+    moving = [one for one in every if len(_pins(one)) and one.name != CHAIN_WHEEL and _moves(one)]
+    if not moving:
+        return []
+    pins, found = _pins(moving[0]), dict[complex, list[str]]()
+    end = complex(pins[int(np.abs(pins).argmax())])
+    for index in range(1, len(q)):
+        if math.isclose(q[index], q[0], abs_tol=1e-9):
+            continue
+        at = complex(moving[0].pose[index].apply(end))
+        at = next((one for one in found if abs(one - at) < near), at)
+        found.setdefault(at, []).append(f"{formatted(math.degrees(q[index]), 4)}°")
+    return [(", ".join(texts), at) for at, texts in found.items()]
+
+
+def _moves(body: MovingBody) -> bool:
+    return bool(np.ptp(body.pose.turn) or np.ptp(np.abs(body.pose.shift - body.pose.shift[0])))
 
 
 def _names(

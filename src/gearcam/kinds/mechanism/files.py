@@ -57,17 +57,20 @@ def _svg(result: MechanismResult, _: Any) -> Files:
 
     Files: poses.svg.
 
-    The machine at its pose with the names of joints and members, the paths of its points, and its
-    members at other angles; not for cutting.
+    The machine at its pose with the names of joints and members, the paths of its points, dashed,
+    and its members at other angles of the master, which are written beside them; not for cutting.
     """
     from gearcam.export.svg import svg_bytes
-    from gearcam.kinds.mechanism.drawn import picture
+    from gearcam.kinds.mechanism.drawn import legend, picture
     from gearcam.kinds.mechanism.scene import shown_at
 
     drawing, labels = picture(result)
     place = f"{result.driver[0]} = {formatted(math.degrees(shown_at(result)))} deg"
     notes = (*result.facts.headline, f"drawn at {place}")
-    return {"poses.svg": svg_bytes(drawing, title=result.design.name, notes=notes, labels=labels)}
+    data = svg_bytes(
+        drawing, title=result.design.name, notes=notes, labels=labels, legend=legend(result)
+    )
+    return {"poses.svg": data}
 
 
 FILES: Final[Mapping[str, Callable[..., Files]]] = {

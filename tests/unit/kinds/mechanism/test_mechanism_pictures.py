@@ -391,3 +391,75 @@ def test_the_prime_circle_of_a_cam_is_left_out() -> None:
     data = machine("lever on a cam, mirrored").files("svg")["poses.svg"].decode()
     assert 'class="pitch"' in data
     assert 'class="prime"' not in data
+
+
+def lift(**hoist: Any) -> Any:
+    drive, (own,) = (MACHINES["lift"][key] for key in ("drive", "hoist"))
+    document = {"kind": "mechanism", "name": "drawn", "drive": drive, "hoist": [{**own, **hoist}]}
+    return gc.build(gc.design(document))
+
+
+def notes(result: Any) -> dict[str, Any]:
+    return {one.code: one for one in result.checked}
+
+
+@pytest.mark.parametrize("wind", ["ccw", "cw"])
+def test_a_hoist_has_its_wheel_on_its_shaft_wherever_the_chain_is(wind: str) -> None:
+    way = {"wind": wind, "direction_deg": 90 if wind == "ccw" else -90}
+    far = lift(at_mm=[300, -500], **way)
+    scene = far.scene(FEW)
+    assert np.abs(body(scene, "chain_wheel").pose.shift).max() < ROUNDED
+    (dashed,) = (f for one in scene.bodies for f in one.features if f.kind == "CENTRODE")
+    assert dashed.shape.points == pytest.approx([50, 300])
+    told = notes(far)["guided-chain"]
+    near = re.search(r"at_mm = \[(.*)\]", told.message)
+    assert near is not None
+    straight = [float(one) for one in near[1].split(", ")]
+    assert straight == pytest.approx([50, -500])  # both wind and way turned: the same side
+    assert told.value == pytest.approx(300.0)
+    mended = lift(at_mm=straight, **way)
+    assert "guided-chain" not in notes(mended)
+    assert not [f for one in mended.scene(FEW).bodies for f in one.features if f.kind == "CENTRODE"]
+
+
+def test_a_wheel_that_is_not_on_its_shaft_is_told() -> None:
+    assert notes(machine("door"))["wheel-apart"].value == pytest.approx(math.hypot(600, 300))
+    drive = [{**MACHINES["door"]["drive"][0], "at_mm": [600, 300]}]
+    document = {"kind": "mechanism", "name": "drawn", "chain": MACHINES["door"]["chain"]}
+    assert "wheel-apart" not in notes(gc.build(gc.design({**document, "drive": drive})))
+
+
+def test_a_tall_picture_is_not_endless() -> None:
+    root: Any = etree.fromstring(lift(at_mm=[50, -5000]).files("svg")["poses.svg"])
+    width, height = (int(root.get(one)) for one in ("width", "height"))
+    assert width == 960
+    assert 1000 < height < 1500
+
+
+def test_other_angles_are_written_beside_the_machine() -> None:
+    """At 60 deg and so on of the crank, those of a machine that rests together."""
+    result = machine("four-bar")
+    root: Any = etree.fromstring(result.files("svg")["poses.svg"])
+    texts = [one for one in root.iter("{*}text") if one.get("class") == "name"]
+    at = {one.text: float(one.get("x")) - 1j * float(one.get("y")) for one in texts}
+    shown = result.design.output.pose
+    angles = [(round(math.degrees(shown)) + 60 * k) % 360 for k in range(1, 6)]
+    for angle in angles:
+        pin = 40.0 * np.exp(1j * math.radians(angle))
+        assert abs(at[f"{angle}°"] - pin) < 12.0
+    assert "thin lines: the machine at the theta beside them" in etree.tostring(root).decode()
+
+
+def test_a_path_there_and_back_is_drawn_once() -> None:
+    """The arc of a rocker's end as one way, the loop of a coupler's point whole."""
+    (frame,) = (one for one in machine("four-bar").scene(360).bodies if has_path(one))
+    loop, arc = (one.shape for one in frame.features if one.kind == TRACE)
+    assert (loop.closed, arc.closed) == (True, False)
+    turned = np.unwrap(np.angle(arc.points - 110.0))
+    assert (np.diff(turned) * np.sign(turned[-1] - turned[0]) > -1e-12).all()
+    stroke = machine("four-bar").output("rocker.angle", np.linspace(0, math.tau, 3601))
+    assert np.ptp(turned) == pytest.approx(np.ptp(np.radians(stroke["rocker_deg"])), abs=1e-4)
+
+
+def has_path(one: MovingBody) -> bool:
+    return any(feature.kind == TRACE for feature in one.features)
