@@ -34,6 +34,9 @@ _SMOOTH: Final = 1e-6
 _DENSE: Final = 4001
 """Number of the master's angles among which extremes are looked for."""
 
+_TURNS: Final = 13.0
+"""Longest range of the master in which dwells are looked for by steps, rad."""
+
 _GAUSS: Final = np.polynomial.legendre.leggauss(6)
 
 _CHANGED: Final = 1e-5
@@ -294,6 +297,8 @@ def _longer(result: MechanismResult, output: Any, amount: float, length: float) 
     """Yield a dwell that is longer than the one found, by steps."""
     low, high = result.linkage.span
     count, turns = 720, 2 if result.linkage.closed else 1
+    if high - low > _TURNS:  # whose steps would be too long
+        return
     step = (high - low) / count
     q = low + step * np.arange(count * turns + 1)
     values = np.asarray(result.track(output)(q, 0).c[0]) + 0.0 * q

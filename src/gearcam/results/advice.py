@@ -420,7 +420,11 @@ class Search:
             if self.found or self.over():
                 return
             left = (self.most - self.builds) / _PACE
-            other = _sought(self.changed(changes), None, left, last=True)
+            try:
+                changed = self.changed(changes)
+            except DesignError:
+                continue  # beyond what the keys allow
+            other = _sought(changed, None, left, last=True)
             self.builds += other.builds
             self.tried |= dict.fromkeys(other.tried)
             for remedy in other.found:

@@ -49,6 +49,12 @@ if TYPE_CHECKING:
     from gearcam.designs.design import Design
     from gearcam.linkages.path_fits import CircleFit, LineFit
 
+_ROUNDED: Final = 1e-9
+"""Stroke of what stands still but for rounding, mm or rad."""
+
+_LEAST_TRAVEL: Final = 2e-3
+"""Travel up to which none is offered that is smaller, mm or deg."""
+
 _MOST_STEPS: Final = 1e6
 """Largest number of steps of a table."""
 
@@ -348,8 +354,11 @@ class MechanismResult(Result):
                 except ShortRangeError as error:
                     what = f"{one.on} does not travel as far before its {one.before} dead centre"
                     most = error.travel
+            if measures.stroke <= _ROUNDED:
+                what, most = f"{one.on} does not move", 0.0
             scale, unit = output.unit
-            where, near = f"interval[{number}].travel_{unit}", scale * most / ABOVE or None
+            where = f"interval[{number}].travel_{unit}"
+            near = scale * most / ABOVE if scale * most > _LEAST_TRAVEL else None
             raise beyond_limit(what, where, scale * travel, scale * most, near=near, unit=unit)
         return tuple(found)
 

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import gearcam as gc
+from gearcam.base.errors import Adjustment
 from gearcam.cli import main
 from gearcam.designs.writing import toml_text
 from random_designs.designs import design as random_design
@@ -293,6 +294,11 @@ IMPOSSIBLE: dict[str, tuple[Document, str, str]] = {
         longer(interval=[{"on": "S", "travel_mm": 5000}]), "interval[0].travel_mm",
         "S does not travel as far",
     ),
+    "interval of what does not move": (
+        {**edited(("dyad", 1), {**SLIDER, "gammas_deg": [0, 90]}),
+         "interval": [{"on": "rod.angle", "travel_deg": 1}]},
+        "interval[0].travel_deg", "rod.angle does not move",
+    ),
     "interval before the range": (
         {**RANGED, "interval": [{"on": "S", "travel_mm": 1, "before": "outer"}]},
         "interval[0].travel_mm", "S does not travel as far before its outer dead centre",
@@ -335,6 +341,13 @@ def test_what_cannot_be_is_refused_with_its_place(name: str, tmp_path: Path) -> 
     with pytest.raises(gc.InfeasibleError) as caught:
         gc.build(gc.design(document)).write(tmp_path)
     assert (caught.value.where, caught.value.what) == (where, what)
+
+
+def test_a_remedy_that_its_key_does_not_allow_is_none() -> None:
+    made = gc.build(gc.design(longer(interval=[{"on": "S", "travel_mm": 5000}])))
+    change = {"interval[0].travel_mm": 1e-9}
+    told = gc.InfeasibleError("too far", adjustments=[Adjustment(near=change)])
+    assert not gc.remedies(made, told).found
 
 
 def test_a_drive_alone_shows_how_it_moves() -> None:
