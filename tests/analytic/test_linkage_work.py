@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import pi, radians
 
 import numpy as np
 import pytest
 
 from gearcam.linkages.chain import HoistChain
+from gearcam.linkages.closing import settled
 from gearcam.linkages.dyads import Lengths
 from gearcam.linkages.elements import Crank, Dyad, GivenMotion, GuideLine, MemberPoint, PushedSlide
 from gearcam.linkages.linkage import Linkage
@@ -27,6 +29,7 @@ from gearcam.linkages.work import (
     VectorForce,
     VirtualWork,
 )
+from gearcam.numeric import jets
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet
 from helpers_linkages import (
@@ -241,6 +244,26 @@ class TestIdentities:
         lifted = VirtualWork(made, [VectorForce("hook", 3.0 * G, GRAVITY)])
         assert lifted.kept == (INERTIA, SPRINGS)
         agree(lifted.work, 3.0 * 9.80665 * TURN)
+
+    def test_masses_whose_velocity_jumps_are_not_kept(self) -> None:
+        """A parallelogram that keeps its branch goes on as another linkage at its change points."""
+        mass = MovedMass("rocker", 2.0, "C", 0.1)
+        folded = settled(four_bar(50.0, 120.0, 50.0, 120.0))
+        assert VirtualWork(folded, [mass], 5.0).kept == (GRAVITY, SPRINGS)
+        straight = settled(four_bar(50.0, 120.0, 50.0, 120.0, keeps="motion"))
+        assert VirtualWork(straight, [mass], 5.0).kept == (INERTIA, GRAVITY, SPRINGS)
+
+    def test_narrow_peaks(self) -> None:
+        """A rocker is jerked next to a change point, while the crank's load goes up or down."""
+        made = settled(four_bar(50.0, 120.0, 50.002, 120.0))
+        made = replace(made, knots=np.array([0.5, 5.5]), closed=False)
+        wave = VaryingForce(ShaftTurn("q"), lambda a: jets.sin(a.angle) * 30.0)
+        work = VirtualWork(made, [MovedMass("rocker", 0.0, "", 5e-4), wave], 5.0)
+        q = np.linspace(pi - 0.01, pi + 0.01, 160001)
+        _, rate, change = made.track("rocker.angle", q, 2).derivatives()
+        dense = 1e3 * 25.0 * 5e-4 * rate * change - 30.0 * np.sin(q)
+        assert dense.min() < -50.0
+        agree(work.least.value, dense.min(), relative=1e-5)
 
     def test_torsion_over_whole_turns(self) -> None:
         """A spring from the ground to the crank is wound up by each turn."""

@@ -29,6 +29,7 @@ from gearcam.linkages.measures import Extremes, Peak
 from gearcam.linkages.plane import cross, dot, square
 from gearcam.numeric import jets
 from gearcam.numeric.arrays import Array
+from gearcam.numeric.chebyshev import FIRST_CUTS, NotSmoothError, expand
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import extremes
 
@@ -42,20 +43,23 @@ _MILLI: Final = 1e-3
 _KILO: Final = 1e3
 """N mm over kg m2/s2."""
 
+_BESIDE: Final = 1e-7
+"""Distance from a knot at which its sides are compared, as a share of the range."""
+
+_JUMP: Final = 1e-4
+"""Difference there, as a share of the largest reduced inertia, that is a jump."""
+
 _AT_KNOT: Final = 1e-9
 """Distance from a knot, rad, within which a place is called by it."""
 
 _BACK: Final = 1e-7
 """Change of a place or an angle over a cycle, as a share, up to which it is as before."""
 
-_NODES: Final = 24
+_NODES: Final = 16
 """Points of Gauss' rule in each cell of an integral."""
 
-_CELLS: Final = 64
-"""Cells of an integral over the whole range, and one more for each knot."""
-
-_MANY: Final = 40
-"""Number of knots, as of a long table, from which the intervals between them are short."""
+_RESOLVED: Final = 1e-7
+"""Error of polynomials of degree 8 on cells, over the largest moment."""
 
 
 class WorkState:
@@ -589,11 +593,19 @@ class VirtualWork(ShortRepr):
         return whole
 
     @cached_property
+    def cells(self) -> Array:
+        """The driver's angles, knots among them, between which few points tell all, rad.
+
+        Next to places where members are nearly in line the moment has narrow peaks.
+        """
+        try:
+            return expand(lambda q: np.asarray(self.moment(q).c[0]), self.knots, _RESOLVED).knots
+        except NotSmoothError:
+            return np.union1d(np.linspace(*self.linkage.span, FIRST_CUTS + 1), self.knots)
+
+    @cached_property
     def _extremes(self) -> Extremes:
-        cells = len(self.knots) > _MANY
-        places, values = extremes(
-            lambda q: self.moment(q, 1).derivatives(), self.knots, cells=cells
-        )
+        places, values = extremes(lambda q: self.moment(q, 1).derivatives(), self.cells, cells=True)
         knot = self.knots[np.abs(places[:, None] - self.knots).argmin(axis=1)]
         return np.where(np.abs(places - knot) <= _AT_KNOT, knot, places), values
 
@@ -615,9 +627,7 @@ class VirtualWork(ShortRepr):
     def _gauss(self) -> tuple[Array, Array]:
         """Places and weights of an integral over the driver's whole range."""
         points, weights = np.polynomial.legendre.leggauss(_NODES)
-        even = np.linspace(*self.linkage.span, _CELLS + 1)
-        ends = np.union1d(even, self.knots)
-        begin, width = ends[:-1], np.diff(ends)
+        begin, width = self.cells[:-1], np.diff(self.cells)
         q = begin[:, None] + width[:, None] * (0.5 + 0.5 * points)
         return q.ravel(), (0.5 * width[:, None] * weights).ravel()
 
@@ -637,13 +647,13 @@ class VirtualWork(ShortRepr):
 
     @cached_property
     def kept(self) -> tuple[str, ...]:
-        """What does no work over the whole range: inertia, and what is there as at the beginning.
+        """What does no work over the whole range: what is there as at the beginning.
 
-        A weight that a turn lifts, or a spring that a turn winds up, does work; dampers are not
-        looked at.
+        A weight that a turn lifts, or a spring that a turn winds up, does work, and so do masses
+        whose velocity jumps; dampers are not looked at.
         """
         state = WorkState(self.linkage, np.array(self.linkage.span), 0, self.speed)
-        found = {INERTIA: True, GRAVITY: True, SPRINGS: True}
+        found = {INERTIA: not self._jolted, GRAVITY: True, SPRINGS: True}
         for effort in self.efforts:
             if isinstance(effort, VectorForce):
                 place = state.known.jet(effort.point)
@@ -655,6 +665,16 @@ class VirtualWork(ShortRepr):
             near = abs(ends[1] - ends[0]) <= _BACK * (1.0 + np.abs(ends).max())
             found[effort.part] = found.get(effort.part, True) and bool(near)
         return tuple(part for part, back in found.items() if back and part != LOADS)
+
+    @cached_property
+    def _jolted(self) -> bool:
+        """Whether the velocity of a mass jumps at a knot, as at a change point."""
+        near = _BESIDE * (self.knots[-1] - self.knots[0])
+        before, after = self.knots[1:] - near, self.knots[:-1] + near
+        places = np.concatenate([before, np.roll(after, -1)])
+        sides = np.asarray(self.reduced_inertia(places).c[0]) * np.ones(places.size)
+        apart = np.abs(np.diff(sides.reshape(2, -1), axis=0))
+        return bool(apart.max() > _JUMP * np.abs(sides).max())
 
     @property
     def work(self) -> float:

@@ -163,8 +163,7 @@ def _places(result: MechanismResult, work: VirtualWork) -> Array:
     """Return the master's angles of the table, with both sides of knots."""
     low, high = work.linkage.span
     even = np.linspace(low, high, result.design.torque.steps + 1)
-    if work.linkage.closed:
-        even[-1] = np.nextafter(high, low)
+    even[-1] = np.nextafter(high, low)  # the values before the end
     return with_both_sides(even, work.knots)
 
 
