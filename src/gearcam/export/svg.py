@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from functools import partial
-from typing import Final
+from typing import TYPE_CHECKING, Final
 from xml.sax.saxutils import escape, quoteattr
 
 import numpy as np
@@ -22,8 +22,10 @@ from gearcam.numeric.arrays import Array, Plane, as_pairs, bounds
 from gearcam.numeric.bulges import bulge_pieces, divided
 from gearcam.pictures import drawings
 from gearcam.pictures.drawings import Circle, Cross, Drawing, Feature, Loop, Path, box, chains
-from gearcam.pictures.labels import Label
 from gearcam.pictures.markup import CENTRODE_INK, FILLS, GROUND, INKS, TEXT_INK, picture
+
+if TYPE_CHECKING:
+    from gearcam.pictures.labels import Label
 
 THINNING: Final = 0.005
 """Largest distance, mm, by which thinning may move a line of the picture."""
