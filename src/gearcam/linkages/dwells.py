@@ -216,6 +216,8 @@ def _passages(measures: TrackMeasures, amount: float) -> list[tuple[float, float
     tried = low[:, None] + (high - low)[:, None] * share
     every = np.repeat(np.arange(len(pairs)), _PLACES)
     apart = unequal(tried.ravel(), every).reshape(tried.shape)
+    # a symmetric motion has its root at one of the values
+    apart[apart == 0.0] = np.finfo(float).tiny
     own, cell = np.nonzero(apart[:, :-1] * apart[:, 1:] < 0.0)
     if not own.size:
         return []

@@ -175,3 +175,12 @@ def test_a_knot_on_a_slope_begins_no_dwell() -> None:
         found = longest_dwell(TrackMeasures(wave, np.array([0.0, knot, 2.0 * np.pi])), 0.1)
         values = wave(np.linspace(*found, 101), 0).c[0]
         assert np.ptp(values) == pytest.approx(0.1, abs=1e-9), knot
+
+
+@pytest.mark.parametrize("amount", [0.05, 0.4, 2.0])
+def test_what_turns_on_stays_longest_where_it_is_slowest(amount: float) -> None:
+    turning = _waves(NONE, 0.3 * ONE, 1.0)  # x + 0.3*sin(x), slowest at 180 deg
+    found = longest_dwell(TrackMeasures(turning, TURN), amount)
+    assert found.begin + found.end == pytest.approx(2.0 * np.pi, abs=1e-9)
+    half = 0.5 * found.length
+    assert 2.0 * (half - 0.3 * np.sin(half)) == pytest.approx(amount, abs=1e-12)
