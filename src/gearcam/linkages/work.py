@@ -23,7 +23,7 @@ from typing import Final
 import numpy as np
 
 from gearcam.base.display import ShortRepr
-from gearcam.linkages.elements import GROUND, GivenMotion, Known, Law
+from gearcam.linkages.elements import GROUND, Dyad, Element, GivenMotion, Known, Law
 from gearcam.linkages.linkage import Linkage
 from gearcam.linkages.measures import Extremes, Peak
 from gearcam.linkages.plane import cross, dot, square
@@ -48,6 +48,9 @@ _BESIDE: Final = 1e-7
 
 _JUMP: Final = 1e-4
 """Difference there, as a share of the largest reduced inertia, that is a jump."""
+
+_CLOSE: Final = 1e-4
+"""Distance from a change point within which a displacement is read from a series, rad."""
 
 _AT_KNOT: Final = 1e-9
 """Distance from a knot, rad, within which a place is called by it."""
@@ -710,10 +713,10 @@ def displaced_by(linkage: Linkage, shafts: Mapping[str, float]) -> Linkage:
 
         return one
 
-    elements = tuple(
-        replace(one, law=held(one.law, shafts.get(one.name, 0.0)))
-        if isinstance(one, GivenMotion)
-        else one
-        for one in linkage.elements
-    )
-    return replace(linkage, elements=elements)
+    def displaced(one: Element) -> Element:
+        if isinstance(one, GivenMotion):
+            return replace(one, law=held(one.law, shafts.get(one.name, 0.0)))
+        # series about change points would need the derivatives that are held at 0
+        return replace(one, reach=min(one.reach, _CLOSE)) if isinstance(one, Dyad) else one
+
+    return replace(linkage, elements=tuple(map(displaced, linkage.elements)))

@@ -61,6 +61,9 @@ _MOST_STEPS: Final = 1e6
 _WITNESSES: Final = 1000
 """Master's angles at which lengths are compared."""
 
+_ENDS: Final = 1e-9
+"""How far an angle may be beyond an open range by rounding, rad."""
+
 ORDER: Final = 3
 """Highest derivative in tables."""
 
@@ -171,7 +174,7 @@ class MechanismResult(Result):
         InfeasibleError
             If the mechanism does not close.
         """
-        where = self.angles if q is None else angles("q", q)
+        where = self.angles if q is None else self._within_range(q)
         columns = {f"{self.driver[0]}_deg": _DEG * where}
         for one in self.outputs:
             columns |= self._columns(one, where)
@@ -202,7 +205,7 @@ class MechanismResult(Result):
             allowed, hint = allowed_outputs(parts), unknown_hint(name, parts)
             what = f"{show(name)}: {UNKNOWN}"
             raise DesignError([Problem(what, key="name", value=name, allowed=allowed, hint=hint)])
-        where = self.angles if q is None else angles("q", q)
+        where = self.angles if q is None else self._within_range(q)
         columns = {f"{self.driver[0]}_deg": _DEG * where}
         for one in self._known_outputs[name]:
             columns |= self._columns(one, where)
@@ -429,6 +432,16 @@ class MechanismResult(Result):
                 where = f"stretch[{number}].shape"
                 raise InfeasibleError(str(error), where=where, nearest='shape = "line"') from None
         return tuple(found)
+
+    def _within_range(self, q: ArrayLike) -> Array:
+        """Return angles of the master; DesignError for one beyond an open range."""
+        where, (low, high) = angles("q", q), self.linkage.span
+        beyond = where[(where < low - _ENDS) | (where > high + _ENDS)]
+        if beyond.size and not self.linkage.closed:
+            allowed = f"{formatted(low, 8)} to {formatted(high, 8)} rad"
+            what = "is beyond the master's range"
+            raise DesignError([Problem(what, key="q", value=float(beyond[0]), allowed=allowed)])
+        return where
 
     def _check_range(self, table: str, start: float, end: float) -> None:
         """Raise `DesignError` for a stretch that an open range of the master does not hold."""

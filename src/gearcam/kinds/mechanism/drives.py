@@ -27,6 +27,12 @@ if TYPE_CHECKING:
 
 _TURN: Final = 2.0 * math.pi
 
+_SIDE: Final = 4.0 * float(np.finfo(float).eps)
+"""Distance beside a knot, as a share of the angle, that rounding does not take away."""
+
+_ROUNDED: Final = 1e-12
+"""How far from a knot rounding may leave an angle, rad."""
+
 _CENTER, _WAY = "center", "way"
 """Behind the name of a shaft the joint in which it turns, of a slide the guide it goes along."""
 
@@ -212,7 +218,10 @@ class PlacedDrive(ShortRepr):
             moved[word] = replace(one, law=law)
         if self.result is not None:
             return replace(self, spec=other.spec, moved=moved)
-        low, high = 0.0, other.period if _steady(other) else max(map(_travelled, _laws(other)))
+        low, high = (
+            0.0,
+            other.period if _steady(other) else max(map(_travelled, _driven_laws(other))),
+        )
         ends = np.array([low, high])
         return PlacedDrive(other.spec, moved, ends, high, other.closed)
 
@@ -254,12 +263,23 @@ class PlacedDrive(ShortRepr):
         ratio, phase = (1.0, 0.0) if master else (float(self.spec.ratio), self.spec.phase)
 
         def over(q: Array, order: int) -> Jet:
-            found = law(ratio * q + phase, order)
+            x = q if master else self._beside_knots(ratio * q + phase, ratio)
+            found = law(x, order)
             return Jet([factor * value * ratio**k for k, value in enumerate(found.c)])
 
         if self.spec.slide is not None:  # its formula is one of the master's angle
             return law
         return over
+
+    def _beside_knots(self, x: Array, ratio: float) -> Array:
+        """Return own angles with those at knots, but for rounding, on the side that comes later."""
+        if self.result is None or not self.closed:
+            return x
+        within = x % self.period
+        nearest = np.abs(within[..., None] - self.knots).argmin(axis=-1)
+        at = x - within + self.knots[nearest]
+        late = at + math.copysign(_SIDE, ratio) * (np.abs(at) + self.period)
+        return np.where(np.abs(within - self.knots[nearest]) <= _ROUNDED, late, x)
 
     def knots_in(self, low: float, high: float, master: bool) -> Array:
         """Return where its laws are not smooth.
@@ -330,8 +350,10 @@ def _steady(drive: PlacedDrive) -> bool:
     return drive.closed or any(one.along for one in drive.moved.values())
 
 
-def _laws(drive: PlacedDrive) -> list[tuple[Law, float]]:
-    return [(one.law, drive.period) for one in drive.moved.values()]
+def _driven_laws(drive: PlacedDrive) -> list[tuple[Law, float]]:
+    """Return the laws of what the driver moves, with the period."""
+    driven = [one for word, one in drive.moved.items() if word not in ("wheel1", "shaft")]
+    return [(one.law, drive.period) for one in driven or drive.moved.values()]
 
 
 def _travelled(one: tuple[Law, float]) -> float:

@@ -21,6 +21,7 @@ from gearcam.linkages.chain import HoistChain
 from gearcam.linkages.closing import NotClosingError, settled
 from gearcam.linkages.dyads import Lengths
 from gearcam.linkages.elements import (
+    MOTION,
     Crank,
     Dyad,
     Element,
@@ -35,7 +36,7 @@ from gearcam.numeric.arrays import Array
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.design import MechanismDesign
-    from gearcam.kinds.mechanism.tables import ChainSpec, CrankSpec, DyadSpec, GuideSpec
+    from gearcam.kinds.mechanism.tables import CrankSpec, DyadSpec, GuideSpec
 
 _TURN: Final = 2.0 * math.pi
 
@@ -87,11 +88,26 @@ def make_linkage(design: MechanismDesign, drives: Sequence[PlacedDrive]) -> Link
             parts[number] = _nearer(linkage, dyad, wanted, min(max(0.0, low), high))
             linkage = Linkage(tuple(parts), knots, closed)
     try:
-        return settled(linkage)
+        return _whole_cycle(linkage)
     except NotClosingError as error:
         if isinstance(error.closing.element, HoistChain):
             raise _chain_refusal(design, error.closing.element, error, linkage) from None
         raise _refusal(design, error) from None
+
+
+def _whole_cycle(linkage: Linkage) -> Linkage:
+    """Return a settled linkage over a cycle after which its dyads are in their first positions.
+
+    A dyad that goes through an odd number of change points in a cycle is in its other position at
+    the end: it repeats after two.
+    """
+    found = settled(linkage)
+    turned = (one for one in found.dyads if one.keeps == MOTION and len(one.changes) % 2)
+    if not linkage.closed or next(turned, None) is None:
+        return found
+    knots = linkage.knots
+    twice = np.concatenate([knots, knots[1:] + (knots[-1] - knots[0])])
+    return settled(replace(linkage, knots=twice))
 
 
 def _with_rests(linkage: Linkage) -> Linkage:
@@ -115,7 +131,9 @@ def _span(drives: Sequence[PlacedDrive], least: int) -> tuple[tuple[float, float
     _demand_finite(drives)
     master = drives[0]
     if not master.closed or master.spec.span is not None:
-        return _part_of(master), False
+        part = _part_of(master)
+        _demand_inside(drives, part)
+        return part, False
     for number, drive in enumerate(drives[1:], start=1):
         if not drive.closed:
             raise InfeasibleError(
@@ -151,6 +169,21 @@ def _part_of(master: PlacedDrive) -> tuple[float, float]:
             unit="deg",
         )
     return asked
+
+
+def _demand_inside(drives: Sequence[PlacedDrive], part: tuple[float, float]) -> None:
+    """Refuse open drives that a range of the master takes beyond their ends."""
+    for number, drive in enumerate(drives[1:], start=1):
+        own = sorted(drive.spec.ratio * q + drive.spec.phase for q in part)
+        ends = float(drive.knots[0]), float(drive.knots[-1])
+        if not drive.closed and (own[0] < ends[0] - _WHOLE or own[1] > ends[1] + _WHOLE):
+            goes, allowed = ([formatted(math.degrees(q), 6) for q in two] for two in (own, ends))
+            raise InfeasibleError(
+                f"{drive.spec.name} would turn from {goes[0]} to {goes[1]} deg, beyond its ends",
+                where=f"drive[{number}]",
+                nearest=f"it turns from {allowed[0]} to {allowed[1]} deg: another phase_deg or "
+                "range_deg of the first drive",
+            )
 
 
 def _demand_part(design: MechanismDesign, linkage: Linkage) -> None:
@@ -234,22 +267,6 @@ def _elements(design: MechanismDesign, drives: Sequence[PlacedDrive]) -> Iterato
     yield from _pulled(design)
 
 
-def _demand_clear(chain: ChainSpec, number: int) -> None:
-    """Refuse a lever whose joint runs into the wheel within its range."""
-    way, (low, high) = complex(*chain.at) - complex(*chain.hinge), chain.range
-    nearest = low + (cmath.phase(way) - low) % _TURN
-    angles = [low, high, *([nearest] if nearest < high else [])]
-    apart = {psi: abs(cmath.rect(chain.length, psi) - way) for psi in angles}
-    worst = min(apart, key=lambda psi: apart[psi])
-    if apart[worst] <= chain.radius:
-        raise InfeasibleError(
-            f"{chain.joint} runs into the chain's wheel at {formatted(math.degrees(worst), 6)} deg "
-            f"of {chain.lever}",
-            where=f"chain[{number}].range_deg",
-            nearest="a range that ends before, or a wheel farther away",
-        )
-
-
 def _guide(spec: GuideSpec, design: MechanismDesign, drives: Sequence[PlacedDrive]) -> GuideLine:
     """Return a guide through its point, or through a joint or a shaft that stands still."""
     at = complex(*spec.at)
@@ -286,8 +303,7 @@ def _pulled(design: MechanismDesign) -> Iterator[Element]:
             wheel.name, wheel.on, center, wheel.length, wheel.slots, wheel.direction, wheel.angle,
             wheel.internal,
         )  # fmt: skip
-    for number, chain in enumerate(design.chain):
-        _demand_clear(chain, number)
+    for chain in design.chain:
         yield HoistChain(
             chain.lever,
             chain.joint,

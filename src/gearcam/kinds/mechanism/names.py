@@ -281,11 +281,25 @@ def _unfit_drives(found: Examined) -> Iterator[Fault]:
             if getattr(getattr(one.cam, "cam", None), "form", "") == "translating":
                 what = f"the cam {show(one.cam.name)} slides: it has no shaft"
                 yield Fault((title, number, "cam"), what, None, "a cam that turns")
+    for number, one in enumerate(found.parts.get("drive", ())):
+        yield from _without_effect(number, one)
     for one in found.parts.get("drive", ())[:1]:
         if one.slide is not None:
             what = f"{show(one.slide)} has no angle over which the motion could be given"
             allowed = "a first drive with pair, cam or even = true, and the slide behind it"
             yield Fault(("drive", 0, "slide"), what, one.slide, allowed)
+
+
+def _without_effect(number: int, one: MachineDrive) -> Iterator[Fault]:
+    """Yield keys that a drive is given in vain."""
+    if not number or one.slide is not None:
+        why = "the first drive is the master" if not number else "its formula is in the master's q"
+        for key, value, usual in (("ratio", one.ratio, 1), ("phase_deg", one.phase, 0.0)):
+            if value != usual:
+                yield Fault(("drive", number, key), f"has no effect: {why}", value, f"{usual:g}")
+    if number and one.speed is not None:
+        what = "has no effect: the speed is that of the first drive"
+        yield Fault(("drive", number, "speed_rpm"), what, None, "the key in the first drive")
 
 
 _NAME: Final = re.compile(r"[A-Za-z_][\w-]*", re.ASCII)

@@ -344,7 +344,7 @@ class DyadSpec(ShortRepr):
         le=LONGEST,
         order="x, y",
         example=[80, 60],
-        doc="where the joint is at the drive's zero, roughly, instead of branch",
+        doc="where the joint is at the master's zero, roughly, instead of branch",
     )
     change: str = param(
         TEXT,

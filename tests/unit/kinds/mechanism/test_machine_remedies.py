@@ -91,10 +91,3 @@ def test_a_dead_center_that_is_reached_twice_is_told() -> None:
         {"drive": [{"name": "master", "even": True}, {"name": "motor", "even": True, "ratio": 2}]}
     )
     assert "second-dead-center" in {one.code for one in gc.build(twice).checked}
-
-
-def test_a_lever_does_not_run_into_the_wheel_of_its_chain() -> None:
-    door = gc.load(PROFILES / "furnace_door_hinged.toml")
-    # the hook is 1735.3 mm from the hinge: a wheel on its arc at -45 deg is in its way
-    told = refusal({"chain[0].at_mm": [1227.0, -1227.0]}, door)
-    assert "hook runs into the chain's wheel at -45 deg of door" in str(told)

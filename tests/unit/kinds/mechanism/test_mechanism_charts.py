@@ -151,11 +151,12 @@ def test_charts_of_what_is_asked_for_first_lead() -> None:
 
 def test_intervals_over_the_end_of_a_turn_are_marked_at_both_ends() -> None:
     """One convention: a range begins within the turn, as the table of loads has it."""
-    drive = {**MACHINES["slide behind a pair"]["drive"][0], "phase_deg": 10}
+    given = MACHINES["slide behind a pair"]["crank"][0]
+    crank = {**given, "angle_deg": given.get("angle_deg", 0) - 10}
     interval = [
         {"on": "C", "travel_mm": 10, "before": before} for before in ("outer", "inner")
     ]  # fmt: skip
-    result = asked(drive=[drive], interval=interval)
+    result = asked(crank=[crank], interval=interval)
     marks = [one.value for one in result.chart("motion").marks if one.label.startswith("last bit")]
     assert len(marks) == 4
     assert all(0.0 <= one <= 360.0 for one in marks)

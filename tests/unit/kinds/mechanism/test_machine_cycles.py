@@ -1,0 +1,110 @@
+"""After which turns a machine repeats, how far open drives turn, the side of knots."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+import gearcam as gc
+from gearcam.base.errors import DesignError, InfeasibleError
+from helpers_pairs import PROFILES
+
+FOUR_BAR: Any = gc.load(PROFILES / "four_bar.toml")
+LIFT: Any = gc.load(PROFILES / "furnace_door_lift.toml")
+DOOR: Any = gc.load(PROFILES / "furnace_door.toml")
+
+
+def test_a_machine_with_one_change_point_repeats_after_two_turns() -> None:
+    folding = {
+        "crank[0].length_mm": 30, "joint[0].at_mm": [100, 0], "dyad[0].lengths_mm": [60, 70],
+        "dyad[0].change": "motion", "output.outputs": ["C"],
+    }  # fmt: skip
+    result = gc.build(FOUR_BAR.with_(folding))
+    assert result.linkage.span == pytest.approx((0.0, 4.0 * math.pi))
+    table = result.motion(np.array([0.0, 2.0 * math.pi, 4.0 * math.pi]))
+    # after one turn in the mirror image, after two back
+    assert table["C_y_mm"] == pytest.approx([1, -1, 1] * table["C_y_mm"][:1])
+    assert not {"velocity-jump", "acceleration-jump"} & {one.code for one in result.checked}
+    kept = gc.build(FOUR_BAR.with_(folding | {"dyad[0].change": "branch"}))
+    assert kept.linkage.span == pytest.approx((0.0, 2.0 * math.pi))
+
+
+def test_a_slide_that_goes_through_its_change_point_has_both_strokes() -> None:
+    # crank 30, rod 50, guide 20 above the shaft: 30 + 20 = 50 at one angle
+    rod = {"type": "RRT", "from": "B", "to": "bed", "joint": "S", "members": ["rod", "ram"],
+           "lengths_mm": [50, 0], "change": "motion"}  # fmt: skip
+    design = FOUR_BAR.with_(
+        {"crank[0].length_mm": 30, "guide": [{"name": "bed", "at_mm": [0, 20]}], "joint": [],
+         "point": [], "dyad": [rod], "output.outputs": ["S"]}
+    )  # fmt: skip
+    farthest = math.sqrt(80.0**2 - 20.0**2)  # crank and rod in line, on either side
+    assert gc.build(design).facts["outputs.S.stroke_mm"] == pytest.approx(2.0 * farthest)
+
+
+def test_a_second_open_pair_does_not_turn_beyond_its_ends() -> None:
+    two = [{"name": "pair", "pair": DOOR.to_dict()}, {"name": "two", "pair": DOOR.to_dict()}]
+    assert gc.build(LIFT.with_({"drive": two, "compare": []})).linkage
+    for changes, told in (
+        ({"phase_deg": 40}, "from 40 to 211.65 deg"),
+        ({"ratio": -1}, "from -171.65 to 0 deg"),
+    ):
+        late = LIFT.with_({"drive": [two[0], two[1] | changes], "compare": []})
+        with pytest.raises(InfeasibleError, match=told):
+            _ = gc.build(late).linkage
+
+
+def test_an_even_shaft_goes_as_far_as_the_open_pair_in_whose_place_it_is() -> None:
+    slow = DOOR.with_({"law.ratios": [0.5, 0.5, 1, 1], "law.driven_travel_deg": 150})
+    result = gc.build(LIFT.with_({"drive[0].pair": slow.to_dict()}))
+    (even,) = result.compared.values()
+    assert even.linkage.span == pytest.approx((0.0, math.radians(150)))
+    strokes = [one.facts["outputs.door.stroke_mm"] for one in (result, even)]
+    assert strokes == pytest.approx([100.0 * math.radians(150)] * 2)
+
+
+@pytest.mark.parametrize(("key", "value"), [("drive[0].ratio", 2), ("drive[0].phase_deg", 90)])
+def test_what_has_no_effect_is_refused(key: str, value: float) -> None:
+    with pytest.raises(DesignError, match="has no effect: the first drive is the master"):
+        FOUR_BAR.with_({key: value})
+
+
+def test_a_slide_and_a_later_drive_take_no_keys_in_vain() -> None:
+    drives = [{"name": "motor", "even": True}, {"name": "push", "slide": "sin(q)", "ratio": 2}]
+    with pytest.raises(DesignError, match="its formula is in the master's q"):
+        FOUR_BAR.with_({"drive": drives})
+    drives[1] = {"name": "other", "even": True, "speed_rpm": 5}
+    with pytest.raises(DesignError, match="the speed is that of the first drive"):
+        FOUR_BAR.with_({"drive": drives})
+
+
+def test_motion_is_not_given_beyond_an_open_range() -> None:
+    door = gc.build(gc.load(PROFILES / "furnace_door_hinged.toml"))
+    assert len(door.output("door.angle", [0.0, math.radians(171.65)])) > 1
+    with pytest.raises(DesignError, match="beyond the master's range"):
+        door.output("door.angle", [3.0])
+
+
+@pytest.mark.parametrize(("ratio", "expected"), [(1, [20, 0, -20, 0]), (-1, [0, 20, 0, -20])])
+def test_at_a_knot_the_values_after_it_are_given(ratio: int, expected: list[float]) -> None:
+    """A harmonic rise of h in a quarter turn begins with h*pi^2/(2*beta^2) and ends with -that."""
+    h = 20.0 * 2.0 / math.pi**2 * (0.5 * math.pi) ** 2
+    motion = [
+        {"type": "rise", "law": "harmonic", "angle_deg": 90, "lift_mm": h},
+        {"type": "dwell", "angle_deg": 90},
+        {"type": "return", "law": "harmonic", "angle_deg": 90},
+        {"type": "dwell", "angle_deg": 90},
+    ]
+    cam = {
+        "kind": "cam", "motion": motion, "follower": {"type": "roller", "roller_radius_mm": 8},
+        "cam": {"prime_radius_mm": 60, "thickness_mm": 10},
+    }  # fmt: skip
+    design = FOUR_BAR.with_(
+        {"drive": [{"name": "motor", "even": True}, {"name": "cam", "cam": cam, "ratio": ratio}],
+         "slide": [{"name": "tool", "on": "cam.follower", "joint": "T"}],
+         "output.outputs": ["tool"]}
+    )  # fmt: skip
+    found = gc.build(design).motion(np.radians([0.0, 90.0, 180.0, 270.0]))
+    assert found["tool_mm_per_rad2"] == pytest.approx(expected, abs=1e-9)
