@@ -65,6 +65,36 @@ def test_paths_are_drawn_until_they_are_unchecked(browser: Chrome, page_of: Buil
     assert browser.execute_script(dashed) == 0
 
 
+def test_names_move_with_the_machine_until_they_are_unchecked(
+    browser: Chrome, page_of: BuildOutput
+) -> None:
+    open_page(browser, page_of(BAR))
+    texts = (
+        'return [...gearcam.svg().matchAll(/<text x="(\\S+)" y="(\\S+)".*?>(.*?)<.text>/g)]'
+        ".map((one) => [one[3], Number(one[1]), -Number(one[2])])"
+    )
+    found = []
+    for place in (0.0, PLACE):
+        go(browser, place)
+        found.append({text: complex(x, y) for text, x, y in browser.execute_script(texts)})
+        assert {*", ".join(found[-1]).split(", ")} == {
+            "B", "C", "D", "P", "crank", "coupler", "rocker"
+        }  # fmt: skip
+    # beside the crank's pin, at the same distance
+    pins = [40.0 * cmath.exp(1j * math.radians(place)) for place in (0.0, PLACE)]
+    assert abs(found[0]["B"] - pins[0] - (found[1]["B"] - pins[1])) < 1e-3
+    assert abs(found[0]["B"] - pins[0]) < 5.0
+    (box,) = (
+        one.find_element(By.TAG_NAME, "input")
+        for one in browser.find_elements(By.CSS_SELECTOR, "#seen label")
+        if one.text.strip() == "names"
+    )
+    assert box.is_selected()
+    box.click()
+    assert browser.execute_script(texts) == []
+    assert complaints(browser) == []
+
+
 def test_wheels_and_links_move_together(browser: Chrome, page_of: BuildOutput) -> None:
     open_page(browser, page_of("nail_machine_slide"))
     turns = []

@@ -53,6 +53,8 @@ class MovingBody(ShortRepr):
     teeth : (k, 2) array of int
         Indices of the first and last vertex of each tooth on the shape of the first feature, in the
         order of tooth numbers; first > last for a tooth across vertex 0. None without teeth.
+    names : tuple of (str, complex), mm
+        Names in the picture and their places in its frame.
     """
 
     name: str
@@ -60,6 +62,7 @@ class MovingBody(ShortRepr):
     features: tuple[Feature, ...]
     pose: Pose
     teeth: Ints | None = None
+    names: tuple[tuple[str, complex], ...] = ()
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

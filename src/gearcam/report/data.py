@@ -54,8 +54,9 @@ def scene_data(scene: Scene) -> dict[str, Any]:
         null; ``bodies``, each with ``name`` and ``called``, ``link`` (whether it is a link of a
         machine), ``metal`` and ``floor`` (closed chains, filled by the even-odd rule), ``plates``
         (index in ``metal`` of the first chain of each of several plates), ``lines`` (``layer``,
-        ``points``, ``closed``, ``dashed``), ``turn``, ``x`` and ``y`` (one number if constant), and
-        ``teeth`` (``[first, last]`` vertices of ``metal[0]``) or null; ``coloured``, each with
+        ``points``, ``closed``, ``dashed``), ``turn``, ``x`` and ``y`` (one number if constant),
+        ``teeth`` (``[first, last]`` vertices of ``metal[0]``) or null, and ``names`` (``text``,
+        ``x`` and ``y`` in the body's frame); ``coloured``, each with
         ``body``, ``points`` and ``values`` by label; ``scales`` by label, each with
         ``least``, ``largest``, and where that is: ``place`` of the driver, ``body``, ``x`` and
         ``y`` on it; ``solids`` by name, those that do not move as the
@@ -115,6 +116,10 @@ def _body(body: MovingBody) -> dict[str, Any]:
         "x": _steady(np.real(body.pose.shift), _MM),
         "y": _steady(np.imag(body.pose.shift), _MM),
         "teeth": None if body.teeth is None else body.teeth.tolist(),
+        "names": [
+            {"text": text, "x": round(at.real, _MM), "y": round(at.imag, _MM)}
+            for text, at in body.names
+        ],
     }
 
 

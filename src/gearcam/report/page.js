@@ -21,7 +21,7 @@ const page = {
   cycles: 0, // played so far: wheels need not have returned to their start
   // what is shown of the scene
   seen: {
-    points: true, action: true, carry: true, pitch: false, contacts: [], lines: { PITCH: true },
+    points: true, action: true, carry: true, pitch: false, names: true, contacts: [], lines: { PITCH: true },
     colouring: "", // a label of values, or nothing
   },
   colours: palette(),
@@ -185,7 +185,9 @@ function offer() {
   const lines = scene.bodies.flatMap((body) => body.lines).filter((line) => line.dashed);
   const dashed = new Set(lines.map((line) => line.layer));
   const teeth = scene.bodies.some((body) => body.teeth);
-  const wanted = JSON.stringify([sets.toSorted(), [...dashed].sort(), teeth, Boolean(scene.pitch)]);
+  const named = scene.bodies.some((body) => body.names.length);
+  const own = [teeth, Boolean(scene.pitch), named];
+  const wanted = JSON.stringify([sets.toSorted(), [...dashed].sort(), ...own]);
   if (wanted === offered) return;
   offered = wanted;
   const home = element("seen");
@@ -196,6 +198,7 @@ function offer() {
   }
   if (teeth) check(home, "teeth in contact", seen.carry, (on) => (seen.carry = on));
   if (scene.pitch) check(home, "pitch point", seen.pitch, (on) => (seen.pitch = on));
+  if (named) check(home, "names", seen.names, (on) => (seen.names = on));
   for (const layer of dashed) {
     seen.lines[layer] ??= layer === "PATH";
     const text = LINES[layer] ?? layer.toLowerCase();

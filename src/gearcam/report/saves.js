@@ -33,6 +33,7 @@ function svgOf(scene, place, cycles, seen) {
     `<g transform="scale(1 -1)" stroke-linejoin="round" fill-rule="evenodd">`,
     ...marks.filter((mark) => mark.chains.length).map((mark) => elementOf(mark, pixel, colours)),
     "</g>",
+    ...marks.filter((mark) => mark.text).map((mark) => nameOf(mark, pixel, colours)),
     "</svg>",
     "",
   ].join("\n");
@@ -52,6 +53,20 @@ function elementOf({ chains, closed, pose, fill, ink, width = 1.2, dash }, pixel
     "stroke-dasharray": dash ? dash.map((one) => digits(one * pixel)).join(" ") : null,
     d: ways.join(""),
   })}/>`;
+}
+
+// y is downwards here
+function nameOf({ text, x, y, drop, ink }, pixel, colours) {
+  return `<text${attributes({
+    x: x + BESIDE * pixel,
+    y: -y + drop * pixel,
+    "font-family": "sans-serif",
+    "font-size": NAMES * pixel,
+    fill: colours[ink],
+    stroke: colours.ground,
+    "stroke-width": 3 * pixel,
+    "paint-order": "stroke",
+  })}>${escaped(text)}</text>`;
 }
 
 const escaped = (text) => text.replace(/[&<>"]/g, (sign) => `&#${sign.charCodeAt(0)};`);

@@ -1,5 +1,9 @@
 // A scene at a place of its driver: positions of bodies, contacts, and the marks to draw.
 
+const NAMES = 13; // height of names, pixels
+const BESIDE = 7; // their distance from what they name
+const [ABOVE, BELOW] = [-BESIDE, BESIDE + 0.75 * NAMES];
+
 // The index of the place before a place, and the share of the step beyond it.
 function spotOf(places, place) {
   let low = 0;
@@ -166,7 +170,8 @@ function* colouredMarks({ coloured, scales }, label, poses, pixel) {
 
 /* The marks to draw, later ones on top. A mark has `chains` of points (flat, mm), `closed` or not,
    the names of the colours of its area (`fill`) and edges (`ink`), an optional `pose`, and its
-   `width` and `dash` in units of `pixel`, mm. `seen` selects what is shown. */
+   `width` and `dash` in units of `pixel`, mm; or a `text` on the right of `x` and `y`, its
+   base so many pixels below (`drop`). `seen` selects what is shown. */
 function* marksOf(scene, place, cycles, seen, pixel) {
   const found = touchingIn(scene, seen.contacts, place);
   const poses = posesOf(scene, place, cycles);
@@ -190,6 +195,30 @@ function* marksOf(scene, place, cycles, seen, pixel) {
   if (seen.points) yield* found.map((one) => dot(one, 4 * pixel, "contact"));
   const pitch = seen.pitch && pitchAt(scene, place);
   if (pitch) yield dot(pitch, 4 * pixel, "pitch");
+  if (seen.names) yield* nameMarks(scene, poses, pixel);
+}
+
+// The names of joints and members: those of one place in one line, others that would cover each
+// other above and below.
+function nameMarks(scene, poses, pixel) {
+  const found = [];
+  for (const [k, body] of scene.bodies.entries()) {
+    const [cos, sin] = [Math.cos(poses[k].turn), Math.sin(poses[k].turn)];
+    for (const { text, x, y } of body.names) {
+      const at = { x: poses[k].x + cos * x - sin * y, y: poses[k].y + sin * x + cos * y };
+      const near = found.find((one) => Math.hypot(one.x - at.x, one.y - at.y) < NAMES * pixel);
+      if (near) near.text += `, ${text}`;
+      else found.push({ text, chains: [], ink: "text", drop: ABOVE, ...at });
+    }
+  }
+  const covered = (one, other) =>
+    Math.abs(one.y - other.y - (one.drop - other.drop) * pixel) < NAMES * pixel &&
+    one.x < other.x + 0.6 * NAMES * other.text.length * pixel &&
+    other.x < one.x + 0.6 * NAMES * one.text.length * pixel;
+  for (const [k, one] of found.entries()) {
+    if (found.slice(0, k).some((other) => covered(one, other))) one.drop = BELOW;
+  }
+  return found;
 }
 
 // Overlapping plates, each with its openings.

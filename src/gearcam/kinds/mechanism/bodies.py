@@ -55,6 +55,12 @@ _LEAST, _MOST = 0.004, 0.2
 _SAME: Final = 1e-3
 """Distance of two ways of a path, relative to its length, below which they are drawn as one."""
 
+_ROUNDING: Final = 1e-6
+"""Distance of a joint from where a member carries it that is rounding, mm."""
+
+PIN: Final = f"{MEMBER}_{BORE}"
+"""Layer of the joints of members."""
+
 _PIECES: Final = 24
 """Most pieces of a chain, which overlap where it is short."""
 
@@ -170,7 +176,39 @@ def bodies(result: MechanismResult, q: Array, before: int = 0) -> tuple[MovingBo
     standing = [still(grounds, q)] if grounds else []
     paths = tuple(_paths(shown, before))
     drawn = [still(paths, q)] if paths else []
-    return (*driven, *standing, *chains, *cylinders, *members, *drawn)
+    every = (*driven, *standing, *chains, *cylinders, *members, *drawn)
+    return tuple(_named(shown, every))
+
+
+def _named(shown: _Shown, every: tuple[MovingBody, ...]) -> Iterator[MovingBody]:
+    """Yield bodies with names: of joints, each on the first body that carries it, and their own."""
+    places = {name: shown.place(name) for name in shown.joints}
+    for body in every:
+        own: list[tuple[str, complex]] = []
+        for name, place in list(places.items()):
+            at = complex(body.pose[0].inverse.apply(place[0]))
+            if _carries(body, at) and np.abs(body.pose.apply(at) - place).max() < _ROUNDING:
+                own.append((name, at))
+                del places[name]
+        pins = pins_of(body)
+        if any(one.kind == MEMBER for one in body.features) and body.called != CHAIN:
+            own.append((body.called, complex(pins.mean()) if len(pins) else 0j))
+        yield replace(body, names=tuple(own)) if own else body
+
+
+def _carries(body: MovingBody, at: complex) -> bool:
+    """Return whether a joint at a place in a body's frame may be named on it."""
+    return body.name == "frame" or bool((np.abs(pins_of(body) - at) < _ROUNDING).any())
+
+
+def pins_of(body: MovingBody) -> Plane:
+    """Return the joints of a member in its frame, (n,) mm; none of other bodies."""
+    pins = [
+        one.shape.center
+        for one in body.features
+        if one.layer == PIN and isinstance(one.shape, Circle)
+    ]
+    return np.array(list(dict.fromkeys(pins)), dtype=np.complex128)
 
 
 # --- members -------------------------------------------------------------------------------------
@@ -404,10 +442,9 @@ def _genevas(shown: _Shown) -> Iterator[MovingBody]:
 def _wheel(shown: _Shown, shaft: str, center: complex, radius: float) -> MovingBody:
     """Return the wheel of a chain."""
     holes = [0.6 * radius * cmath.exp(2j * math.pi * k / 3) for k in range(3)]
-    bore = f"{MEMBER}_{BORE}"
     features = (
         Feature(layer=MEMBER, shape=Circle(center=0j, diameter=2.0 * radius)),
-        *(Feature(layer=bore, shape=Circle(center=at, diameter=0.3 * radius)) for at in holes),
+        *(Feature(layer=PIN, shape=Circle(center=at, diameter=0.3 * radius)) for at in holes),
         Feature(layer=CENTER, shape=Cross(center=0j, size=0.4 * radius)),
     )
     pose = Pose(shown.turn(shaft), np.full(shown.q.shape, center))

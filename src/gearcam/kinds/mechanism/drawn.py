@@ -13,16 +13,13 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from gearcam.base.numerals import formatted
-from gearcam.kinds.mechanism.bodies import CHAIN, CHAIN_WHEEL, bodies, traced
+from gearcam.kinds.mechanism.bodies import CHAIN_WHEEL, PIN, bodies, pins_of, traced
 from gearcam.kinds.mechanism.scene import shown_at
 from gearcam.kinds.mechanism.traces import path_within
 from gearcam.pictures.drawings import (
-    BORE,
     GHOST,
-    MEMBER,
     OUTER,
     TRACE,
-    Circle,
     Drawing,
     Feature,
     Path,
@@ -49,9 +46,6 @@ _LETTERS: Final = 15.0
 
 _SMALLER: Final = 0.8
 """Height of the letters of other angles, relative to that of names."""
-
-_PIN: Final = f"{MEMBER}_{BORE}"
-"""Layer of the joints of members."""
 
 CHORDS: Final = 0.01
 """Chord tolerance of paths if the design has none, mm."""
@@ -92,25 +86,15 @@ def posed(every: tuple[MovingBody, ...], index: int = 0) -> Iterator[Feature]:
 def _ghosts(every: tuple[MovingBody, ...], count: int) -> Iterator[Feature]:
     """Yield lines between the joints of members, and their pins, at other places."""
     for body in every:
-        pins = _pins(body)
+        pins = pins_of(body)
         if not len(pins) or body.name == CHAIN_WHEEL:
             continue
-        shown = [one for one in body.features if one.layer == _PIN]
+        shown = [one for one in body.features if one.layer == PIN]
         if len(pins) > 1:
             line = Path(points=pins, closed=len(pins) > 2)
             shown.append(Feature(layer=GHOST, shape=line))
         for index in range(1, count):
             yield from place([replace(one, layer=GHOST) for one in shown], body.pose[index])
-
-
-def _pins(body: MovingBody) -> Plane:
-    """Return the joints of a member in its frame; none of other bodies."""
-    pins = [
-        one.shape.center
-        for one in body.features
-        if one.layer == _PIN and isinstance(one.shape, Circle)
-    ]
-    return np.array(list(dict.fromkeys(pins)), dtype=np.complex128)
 
 
 def picture(result: MechanismResult) -> tuple[Drawing, tuple[Label, ...]]:
@@ -123,7 +107,7 @@ def picture(result: MechanismResult) -> tuple[Drawing, tuple[Label, ...]]:
     low, high = with_room(*box(features))
     size = _LETTERS * (high - low).real / PIXELS
     lines = _lines(shown, 0.4 * size)
-    names = labelled(_names(result, every, q[:1]), lines, size, size)
+    names = labelled(_names(every), lines, size, size)
     less, angles = _SMALLER * size, _other_angles(every, q[:count], size)
     return Drawing(name="poses", features=features), (
         *names, *labelled(angles, lines, less, 0.5 * less, names)
@@ -145,10 +129,10 @@ def _other_angles(
 
     The first of the angles (n,), rad, is that of the machine itself.
     """
-    moving = [one for one in every if len(_pins(one)) and one.name != CHAIN_WHEEL and _moves(one)]
+    moving = [one for one in every if len(pins_of(one)) and one.name != CHAIN_WHEEL and _moves(one)]
     if not moving:
         return []
-    pins, found = _pins(moving[0]), dict[complex, list[str]]()
+    pins, found = pins_of(moving[0]), dict[complex, list[str]]()
     end = complex(pins[int(np.abs(pins).argmax())])
     for index in range(1, len(q)):
         if math.isclose(q[index], q[0], abs_tol=1e-9):
@@ -163,21 +147,11 @@ def _moves(body: MovingBody) -> bool:
     return bool(np.ptp(body.pose.turn) or np.ptp(np.abs(body.pose.shift - body.pose.shift[0])))
 
 
-def _names(
-    result: MechanismResult, every: tuple[MovingBody, ...], q: Array
-) -> list[tuple[str, complex]]:
-    """Return the names of joints and members with their places at an angle (1,), rad."""
-    design, known = result.design, result.linkage.at(q, 0)
-    named = [one.name for one in (*design.joint, *design.point)]
-    others = (*design.crank, *design.slide, *design.dyad, *design.chain, *design.hoist)
-    named += [one.joint for one in others]
-    joints = [(name, complex(np.asarray(known.jet(name).c[0]).flat[0])) for name in named]
-    members = [
-        (body.called, complex(body.pose[0].apply(_pins(body).mean() if len(_pins(body)) else 0j)))
-        for body in every
-        if any(one.kind == MEMBER for one in body.features) and body.called != CHAIN
-    ]
-    return [*joints, *members]
+def _names(every: tuple[MovingBody, ...]) -> list[tuple[str, complex]]:
+    """Return the names in the picture with their places, those of joints first."""
+    members = {body.called for body in every}
+    named = [(text, complex(body.pose[0].apply(at))) for body in every for text, at in body.names]
+    return sorted(named, key=lambda one: one[0] in members)
 
 
 def _lines(features: tuple[Feature, ...], step: float) -> Plane:

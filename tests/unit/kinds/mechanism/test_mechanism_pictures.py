@@ -463,3 +463,16 @@ def test_a_path_there_and_back_is_drawn_once() -> None:
 
 def has_path(one: MovingBody) -> bool:
     return any(feature.kind == TRACE for feature in one.features)
+
+
+@pytest.mark.parametrize("name", [*JOINTS])
+def test_names_stay_on_their_joints(name: str) -> None:
+    result = machine(name)
+    scene = result.scene(FEW)
+    where = {text: one.pose.apply(at) for one in scene.bodies for text, at in one.names}
+    design = result.design
+    others = (*design.crank, *design.slide, *design.dyad, *design.chain, *design.hoist)
+    joints = [*(one.name for one in (*design.joint, *design.point)), *(o.joint for o in others)]
+    for joint_name in joints:
+        place = joint(result, joint_name, scene.places)
+        assert np.abs(where[joint_name] - place).max() < 1e-6
