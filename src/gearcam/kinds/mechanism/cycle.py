@@ -1,0 +1,220 @@
+"""Over which turns of its master a mechanism repeats, and how far its drives may turn."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+from functools import partial
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from gearcam.base.errors import InfeasibleError
+from gearcam.base.numerals import formatted
+from gearcam.base.quantities import LONGEST
+from gearcam.kinds.mechanism.drives import PlacedDrive
+from gearcam.kinds.mechanism.names import PARTS, needed
+from gearcam.linkages.closing import settled
+from gearcam.linkages.elements import MOTION
+from gearcam.linkages.geneva import GenevaWheel
+from gearcam.linkages.linkage import Linkage
+from gearcam.numeric.arrays import Array
+
+if TYPE_CHECKING:
+    from gearcam.kinds.mechanism.design import MechanismDesign
+
+_TURN: Final = 2.0 * math.pi
+
+_CYCLES: Final = 100
+"""Largest number of turns of the master after which a mechanism repeats."""
+
+_WHOLE: Final = 1e-7
+"""How far from whole turns a shaft may be after a cycle, rad: the error of its law."""
+
+_PLACES: Final = 9
+"""Places at which a slide is compared with itself after a cycle."""
+
+_FORMULA: Final = 721
+"""Places at which the formula of a slide must be finite."""
+
+_SAME: Final = 1e-9
+"""Knots closer than this are one, rad."""
+
+
+def whole_cycle(linkage: Linkage) -> Linkage:
+    """Return a settled linkage over a cycle after which its dyads are in their first positions.
+
+    A dyad that goes through an odd number of change points in a cycle is in its other position at
+    the end: it repeats after two.
+    """
+    found = settled(linkage)
+    turned = (one for one in found.dyads if one.keeps == MOTION and len(one.changes) % 2)
+    if not linkage.closed or next(turned, None) is None:
+        return found
+    knots = linkage.knots
+    twice = np.concatenate([knots, knots[1:] + (knots[-1] - knots[0])])
+    return settled(replace(linkage, knots=twice))
+
+
+def with_rests(linkage: Linkage) -> Linkage:
+    """Return a linkage with the knots at which Geneva wheels begin and end to turn."""
+    for one in linkage.elements:
+        if isinstance(one, GenevaWheel):
+            shaft = partial(linkage.track, one.shaft)
+            linkage = replace(linkage, knots=one.knots(shaft, linkage.knots))
+    return linkage
+
+
+def indexed(design: MechanismDesign) -> int:
+    """Return after how many turns of their cranks all Geneva wheels that move others are back."""
+    parts = {title: getattr(design, title) for title in PARTS}
+    used = {one.name for one in needed(parts)}
+    return math.lcm(*(one.slots for one in design.geneva if one.name in used))
+
+
+def cycle_of(drives: Sequence[PlacedDrive], least: int) -> tuple[tuple[float, float], bool]:
+    """Return the master's first and last angle, and whether the motion repeats after them.
+
+    Parameters
+    ----------
+    drives : sequence of PlacedDrive
+        The master first.
+    least : int
+        Turns of the master of which the cycle is a multiple.
+
+    Returns
+    -------
+    (float, float), bool
+        Angles in rad.
+
+    Raises
+    ------
+    InfeasibleError
+        If a drive turns beyond its ends, does not return, or has no place somewhere.
+    """
+    _demand_finite(drives)
+    master = drives[0]
+    if not master.closed or master.spec.span is not None:
+        part = _part_of(master)
+        _demand_inside(drives, part)
+        return part, False
+    for number, drive in enumerate(drives[1:], start=1):
+        if not drive.closed:
+            raise InfeasibleError(
+                f"{drive.spec.name} does not turn all the way, as the master does",
+                where=f"drive[{number}]",
+                nearest="only the first drive may be open",
+            )
+    late = 0
+    for turns in range(least, _CYCLES * least + 1, least):
+        found = (number for number, one in enumerate(drives) if not _back(one, number, turns))
+        late = next(found, -1)
+        if late < 0:
+            return (0.0, turns * _TURN), True
+    raise InfeasibleError(
+        f"{drives[late].spec.name} does not return within {_CYCLES} turns of the master",
+        where=f"drive[{late}]",
+    )
+
+
+def _part_of(master: PlacedDrive) -> tuple[float, float]:
+    """Return the master's first and last angle where it does not turn all the way."""
+    low, high = float(master.knots[0]), float(master.knots[-1])
+    asked = master.spec.span
+    if asked is None:
+        return low, high
+    beyond = [k for k in (0, 1) if not low <= asked[k] <= high and not master.closed]
+    if beyond:
+        raise InfeasibleError(
+            "the pair does not turn as far",
+            where=f"drive[0].range_deg[{beyond[0]}]",
+            value=math.degrees(asked[beyond[0]]),
+            limit=math.degrees((low, high)[beyond[0]]),
+            unit="deg",
+        )
+    return asked
+
+
+def _demand_inside(drives: Sequence[PlacedDrive], part: tuple[float, float]) -> None:
+    """Refuse open drives that a range of the master takes beyond their ends."""
+    for number, drive in enumerate(drives[1:], start=1):
+        own = sorted(drive.spec.ratio * q + drive.spec.phase for q in part)
+        ends = float(drive.knots[0]), float(drive.knots[-1])
+        if not drive.closed and (own[0] < ends[0] - _WHOLE or own[1] > ends[1] + _WHOLE):
+            goes, allowed = ([formatted(math.degrees(q), 6) for q in two] for two in (own, ends))
+            raise InfeasibleError(
+                f"{drive.spec.name} would turn from {goes[0]} to {goes[1]} deg, beyond its ends",
+                where=f"drive[{number}]",
+                nearest=f"it turns from {allowed[0]} to {allowed[1]} deg: another phase_deg or "
+                "range_deg of the first drive",
+            )
+
+
+def demand_part(design: MechanismDesign, linkage: Linkage) -> None:
+    """Refuse chains on shafts that turn without end.
+
+    Parameters
+    ----------
+    design : MechanismDesign
+        With the chains.
+    linkage : Linkage
+        With the shafts, over a cycle.
+
+    Raises
+    ------
+    InfeasibleError
+        If a chain is not back after the cycle.
+    """
+    if not linkage.closed:
+        return
+    pulled = [(f"hoist[{number}]", one.on) for number, one in enumerate(design.hoist)]
+    pulled += [(f"chain[{number}]", one.on) for number, one in enumerate(design.chain)]
+    for where, shaft in pulled:
+        first, last = np.asarray(linkage.track(shaft, linkage.knots[[0, -1]], 0).c[0])
+        if abs(last - first) > _WHOLE * _CYCLES:
+            raise InfeasibleError(
+                "its chain is not back after a turn of the master",
+                where=where,
+                nearest="give drive[0].range_deg, over which it winds up and off",
+            )
+
+
+def _back(drive: PlacedDrive, number: int, turns: int) -> bool:
+    """Return whether a drive is where it was after some turns of the master."""
+    if drive.spec.slide is not None:  # a formula in the master's angle may repeat later
+        q = np.linspace(0.0, _TURN, _PLACES)
+        moved = [one.law(np.stack([q, q + turns * _TURN]), 0).c[0] for one in drive.moved.values()]
+        places = np.asarray(moved)
+        return bool(np.ptp(places, axis=1).max() <= _WHOLE * turns * (1.0 + np.abs(places).max()))
+    ratio = drive.spec.ratio if number else 1
+    ends = np.array([0.0, ratio * turns * _TURN])
+    shafts = [one.law for one in drive.moved.values() if not one.along]
+    found = [float(np.diff(np.asarray(law(ends, 0).c[0]))[0]) for law in shafts]
+    return all(abs(math.remainder(end, _TURN)) < _WHOLE * turns for end in found)
+
+
+def _demand_finite(drives: Sequence[PlacedDrive]) -> None:
+    """Refuse slides whose formulas have no place somewhere in the master's range."""
+    whole = drives[0].closed and drives[0].spec.span is None
+    q = np.linspace(*((0.0, _TURN) if whole else _part_of(drives[0])), _FORMULA)
+    for number, drive in enumerate(drives):
+        if drive.spec.slide is None:
+            continue
+        with np.errstate(all="ignore"):
+            found = drive.moved["slide"].law(q, 3).derivatives()
+        bad = ~np.all([np.isfinite(one + 0.0 * q) for one in found], axis=0)
+        bad |= np.abs(found[0] + 0.0 * q) > LONGEST
+        if bad.any():
+            at = formatted(math.degrees(q[bad][0]), 6)
+            raise InfeasibleError(
+                f"the place or its derivatives are not finite at {at} deg",
+                where=f"drive[{number}].slide",
+            )
+
+
+def apart(knots: Array) -> Array:
+    """Return rising angles without those that are the same but for rounding, rad."""
+    kept = knots[np.concatenate([[True], np.diff(knots) > _SAME])]
+    kept[-1] = knots[-1]
+    return kept
