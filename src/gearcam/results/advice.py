@@ -306,6 +306,10 @@ class Search:
         self.tried |= dict.fromkeys(changes)
         return type(self.result)(design, self.result.tolerances)
 
+    def alone(self, changes: Changes) -> Any:
+        """Return the result of the changed design without one around it; counted."""
+        return self.changed(changes)
+
     def hopeless(self, other: Any) -> bool:
         """Return whether a changed result is known not to help before it is built completely."""
         return self.advice.hopeless(other)
@@ -467,6 +471,11 @@ class _NestedSearch(Search):
     def changed(self, changes: Changes) -> Any:
         """Return the result of the outer design with `changes` of the nested one; counted there."""
         return self.outer.changed(keyed(self.key, changes))
+
+    def alone(self, changes: Changes) -> Any:
+        """Return the result of the nested design with `changes`; counted by the outer search."""
+        self.outer.builds += 1
+        return type(self.result)(self.result.design.with_(changes), self.result.tolerances)
 
     def hopeless(self, other: Any) -> bool:  # noqa: ARG002
         """Return False: what is known of the nested design says nothing of the `other` result."""

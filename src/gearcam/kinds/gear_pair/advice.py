@@ -147,7 +147,7 @@ def _lower(search: Search) -> Iterator[Adjustment]:
 
     def passes(addendum: float) -> bool:
         try:
-            found = search.changed({"rack.addendum": addendum}).subject.tip_pass
+            found = search.alone({"rack.addendum": addendum}).subject.tip_pass
         except InfeasibleError:
             return False
         return found is None or found.margin >= limit

@@ -343,6 +343,19 @@ def test_what_cannot_be_is_refused_with_its_place(name: str, tmp_path: Path) -> 
     assert (caught.value.where, caught.value.what) == (where, what)
 
 
+def test_remedies_of_a_ring_are_found_in_its_machine() -> None:
+    ring = {
+        "kind": "gear-pair", "name": "wheels",
+        "law": {"type": "limacon", "eccentricity": 0.332499},
+        "pair": {"teeth": [10, 20], "center_distance_mm": 124.361, "type": "internal"},
+    }  # fmt: skip
+    drive = {"name": "pair", "pair": ring}
+    made = gc.build(gc.design({"kind": "mechanism", "name": "mine", "drive": [drive]}))
+    found = gc.remedies(made).found
+    assert found
+    assert all(key.startswith("drive[0].pair.") for one in found for key in one.changes)
+
+
 def test_a_remedy_that_its_key_does_not_allow_is_none() -> None:
     made = gc.build(gc.design(longer(interval=[{"on": "S", "travel_mm": 5000}])))
     change = {"interval[0].travel_mm": 1e-9}
