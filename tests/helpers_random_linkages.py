@@ -11,7 +11,6 @@ import numpy as np
 from gearcam.linkages.closing import NotClosingError, settled
 from gearcam.linkages.dyads import DYADS, Lengths
 from gearcam.linkages.elements import (
-    SLIDES,
     Crank,
     Dyad,
     Element,
@@ -204,7 +203,7 @@ def misfit(dyad: Dyad, known: Known) -> Array:
     """Largest amount by which lengths, angles and places on guides are missed, of the size."""
     joint, sizes = place(known, dyad.joint), dyad.lengths
     slides: dict[str, Any] = {
-        name: np.real(place(known, f"{dyad.joint}.{name}")) for name in SLIDES[dyad.type]
+        name: np.real(place(known, f"{dyad.joint}.{name}")) for name in dyad.kind.slides
     }
     misses, size, directions = [], np.abs(joint), []
     for number, (end, own) in enumerate(

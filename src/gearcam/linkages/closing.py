@@ -41,9 +41,6 @@ _SPARE: Final = 1e-3
 _MET: Final = 1e-6
 """Distance of joints that are in one place, as a share of the rods: the root of `_TOUCHING`."""
 
-PASSABLE: Final = frozenset({"RRR", "RRT", "TRR"})
-"""Types of dyads that can pass a change point: the others jam or lose their place."""
-
 
 @dataclass(frozen=True)
 class Closing(ShortRepr):
@@ -118,7 +115,7 @@ def settled(linkage: Linkage) -> Linkage:
 
 def _stuck(linkage: Linkage, element: Element, changes: tuple[float, ...]) -> bool:
     """Return whether a part jams or loses its place at one of its change points."""
-    if not isinstance(element, Dyad) or element.type not in PASSABLE:
+    if not isinstance(element, Dyad) or not element.kind.passable:
         return True
     if element.type != "RRR":
         return False

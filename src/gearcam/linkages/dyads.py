@@ -260,25 +260,35 @@ class DyadType(NamedTuple):
         Whether member 1 and member 2 begin at a guide instead of a joint.
     branches : (str, str) or ()
         Names of the positions for the signs +1 and -1.
+    slides : tuple of str
+        The slides whose places it gives (see `Solved`).
+    rods : tuple of int
+        Numbers of the lengths that must be above 0.
+    passable : bool
+        Whether it can pass a change point; the others jam or lose their place.
     solve : callable
         ``solve(first, second, lengths, sign) -> Solved``.
     """
 
     guides: tuple[bool, bool]
     branches: tuple[str, ...]
+    slides: tuple[str, ...]
+    rods: tuple[int, ...]
+    passable: bool
     solve: Solver
 
 
-_AHEAD = ("ahead", "behind")
+_HINGES, _TO_GUIDE, _FROM_GUIDE = (False, False), (False, True), (True, False)
+_SIDES, _AHEAD = ("left", "right"), ("ahead", "behind")
 
 DYADS: Final[Mapping[str, DyadType]] = {
-    "RRR": DyadType((False, False), ("left", "right"), _rrr),
-    "RRT": DyadType((False, True), _AHEAD, _rrt),
-    "TRR": DyadType((True, False), _AHEAD, _exchanged(_rrt)),
-    "RTR1": DyadType((False, False), _AHEAD, _rtr),
-    "RTR2": DyadType((False, False), _AHEAD, _exchanged(_rtr)),
-    "TRT": DyadType((True, True), (), _trt),
-    "RTT": DyadType((False, True), (), _rtt),
-    "TTR": DyadType((True, False), (), _exchanged(_rtt)),
+    "RRR": DyadType(_HINGES, _SIDES, (), (0, 1), True, _rrr),
+    "RRT": DyadType(_TO_GUIDE, _AHEAD, ("guide2",), (0,), True, _rrt),
+    "TRR": DyadType(_FROM_GUIDE, _AHEAD, ("guide1",), (1,), True, _exchanged(_rrt)),
+    "RTR1": DyadType(_HINGES, _AHEAD, ("member1",), (), False, _rtr),
+    "RTR2": DyadType(_HINGES, _AHEAD, ("member2",), (), False, _exchanged(_rtr)),
+    "TRT": DyadType((True, True), (), ("guide1", "guide2"), (), False, _trt),
+    "RTT": DyadType(_TO_GUIDE, (), ("guide2", "member2"), (), False, _rtt),
+    "TTR": DyadType(_FROM_GUIDE, (), ("guide1", "member1"), (), False, _exchanged(_rtt)),
 }
 """The types of dyads by name."""

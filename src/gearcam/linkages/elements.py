@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import cmath
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Final, TypeVar
 
@@ -376,7 +376,7 @@ class Dyad(ShortRepr, Element):
     @property
     def gives(self) -> tuple[str, ...]:
         """Its joint, its members and the places of its slides."""
-        return (self.joint, *self.members, *(f"{self.joint}.{one}" for one in SLIDES[self.type]))
+        return (self.joint, *self.members, *(f"{self.joint}.{one}" for one in self.kind.slides))
 
     def solution(self, known: Known) -> Solved:
         """Return its position from what is `known`."""
@@ -421,16 +421,3 @@ class Dyad(ShortRepr, Element):
         known.given[self.joint] = solved.joint
         known.given |= dict(zip(self.members, solved.frames, strict=True))
         known.given |= {f"{self.joint}.{name}": one for name, one in solved.slides.items()}
-
-
-SLIDES: Final[Mapping[str, tuple[str, ...]]] = {
-    "RRR": (),
-    "RRT": ("guide2",),
-    "TRR": ("guide1",),
-    "RTR1": ("member1",),
-    "RTR2": ("member2",),
-    "TRT": ("guide1", "guide2"),
-    "RTT": ("guide2", "member2"),
-    "TTR": ("guide1", "member1"),
-}
-"""The slides of each type of dyad."""

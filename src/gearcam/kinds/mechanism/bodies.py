@@ -19,7 +19,6 @@ from gearcam.kinds.mechanism.names import given
 from gearcam.kinds.mechanism.traces import distances
 from gearcam.linkages.dyads import DYADS
 from gearcam.linkages.elements import GROUND as STANDING
-from gearcam.linkages.elements import SLIDES
 from gearcam.numeric.pose import Pose
 from gearcam.parts.shapes import Circle
 from gearcam.pictures.drawings import (
@@ -255,7 +254,7 @@ def _carried(shown: _Shown, slide: str) -> bool:
 
 def _of_dyad(shown: _Shown, dyad: DyadSpec, k: int, half: float) -> _Parts:
     """Return what member `k` of a dyad is drawn with."""
-    guided, slides = DYADS[dyad.formula].guides[k], SLIDES[dyad.formula]
+    guided, slides = DYADS[dyad.formula].guides[k], DYADS[dyad.formula].slides
     beside = (dyad.beta, -dyad.beta)[k]
     own, other = f"member{k + 1}", f"member{2 - k}"
     parts = _Parts(blocks=[(0j, -dyad.gammas[k])] if guided else [])

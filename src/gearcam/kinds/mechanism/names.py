@@ -401,5 +401,5 @@ def moves(dyad: DyadSpec) -> str:
     str
         Of the quantity; empty if it does not.
     """
-    slide = {"RRT": "guide2", "TRR": "guide1", "RTT": "guide2", "TTR": "guide1"}.get(dyad.type)
-    return f"{dyad.joint}.{slide}" if slide else ""
+    slides = [one for one in DYADS[dyad.formula].slides if one.startswith("guide")]
+    return f"{dyad.joint}.{slides[0]}" if len(slides) == 1 else ""

@@ -399,7 +399,8 @@ class DyadSpec(ShortRepr):
     @property
     def rods(self) -> tuple[int, ...]:
         """Which of its lengths must be above 0."""
-        return {"RRR": (0, 1), "RRT": (0,), "TRR": (1,), "RTRR": (1,)}.get(self.type, ())
+        found = DYADS[self.formula].rods
+        return found[1:] if self.type == "RTRR" else found  # a drive gives the first
 
     @property
     def _crossed(self) -> int | None:
