@@ -108,3 +108,18 @@ def test_at_a_knot_the_values_after_it_are_given(ratio: int, expected: list[floa
     )  # fmt: skip
     found = gc.build(design).motion(np.radians([0.0, 90.0, 180.0, 270.0]))
     assert found["tool_mm_per_rad2"] == pytest.approx(expected, abs=1e-9)
+
+
+@pytest.mark.parametrize("beside", [1e-4, 1e-2, 1.0])
+def test_a_guide_that_turns_fast_beside_its_pivot_is_seen(beside: float) -> None:
+    """A pin at 60 mm, the pivot a little outside its circle: asin(60/(60 + e)) to both sides."""
+    block = {"type": "RTR", "from": "D", "to": "B", "joint": "C", "members": ["rocker", "block"]}
+    design = FOUR_BAR.with_(
+        {"crank[0].length_mm": 60, "joint[0].at_mm": [0, -60 - beside], "dyad": [block],
+         "point": [], "output.outputs": ["rocker.angle"]}
+    )  # fmt: skip
+    facts = gc.build(design).facts
+    swing = 2.0 * math.degrees(math.asin(60.0 / (60.0 + beside)))
+    assert facts["outputs.rocker.stroke_deg"] == pytest.approx(swing, rel=1e-9)
+    # r/(d - r) at the nearest place
+    assert facts["outputs.rocker.velocity_rad_per_rad"] == pytest.approx(-60.0 / beside, rel=1e-6)

@@ -1,0 +1,66 @@
+"""Places where a guide turns fast: knots there, so that searches between knots see all of it.
+
+Near the pivot of its guide a pin at the distance ``D^2 = d^2 + (c*h)^2``, h the driver's angle from
+the nearest place, turns the guide by nearly half a turn within a few d/c. Where this is narrow, it
+is less than the step of a search.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Final
+
+import numpy as np
+
+from gearcam.linkages.elements import Dyad
+from gearcam.linkages.linkage import Linkage
+from gearcam.linkages.transmission import guide_distance, transmissions
+
+_NARROW: Final = 0.1
+"""Width, rad, from which a search sees it without knots of its own."""
+
+_AROUND: Final = np.array([-30.0, -6.0, -1.0, 0.0, 1.0, 6.0, 30.0])
+"""Knots about the nearest place, in widths."""
+
+_APART: Final = 1e-9
+"""Distance from other knots below which none is added, rad."""
+
+
+def with_narrow_places(linkage: Linkage) -> Linkage:
+    """Return a linkage with knots where its guides turn fast.
+
+    Parameters
+    ----------
+    linkage : Linkage
+        One that closes over its whole range.
+
+    Returns
+    -------
+    Linkage
+    """
+    found = list(_places(linkage))
+    if not found:
+        return linkage
+    (low, high), places = linkage.span, np.concatenate(found)
+    if linkage.closed:
+        places = low + (places - low) % (high - low)
+    places = np.unique(places[(places > low) & (places < high)])
+    apart = np.abs(places[:, None] - linkage.knots).min(axis=1) > _APART
+    return replace(linkage, knots=np.union1d(linkage.knots, places[apart]))
+
+
+def _places(linkage: Linkage) -> Iterator[np.ndarray]:
+    for one in transmissions(linkage) if _swings(linkage) else ():
+        if one.distance is None:
+            continue
+        known = linkage.at(np.array([one.distance.place]), 2)
+        bend = float(guide_distance(known, one.dyad).derivatives()[2][0])
+        width = one.distance.value / np.sqrt(0.5 * bend) if bend > 0.0 else np.inf
+        if width < _NARROW:
+            yield one.distance.place + width * _AROUND
+
+
+def _swings(linkage: Linkage) -> bool:
+    """Return whether a linkage has a block on a guide that swings."""
+    return any(isinstance(one, Dyad) and one.type.startswith("RTR") for one in linkage.dyads)
