@@ -301,7 +301,7 @@ def _longer(result: MechanismResult, output: Any, amount: float, length: float) 
         return
     step = (high - low) / count
     q = low + step * np.arange(count * turns + 1)
-    values = np.asarray(result.track(output)(q, 0).c[0]) + 0.0 * q
+    values = np.asarray(result.track(output)(q, 0).c[0] + 0.0 * q, dtype=np.float64)
     last, best = 0, 0
     for first in range(count + 1):
         last = max(last, first)

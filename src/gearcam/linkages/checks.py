@@ -91,14 +91,14 @@ def pressure_angle(machine: CheckedMachine, limit: float) -> Iterator[Remark]:
         if one.pressure_angle is None or safe is None:
             continue
         most = safe.pressure_angle[0] if math.isnan(limit) else limit
-        found = math.degrees(one.pressure_angle.value)
-        if one.pressure_angle.value > most:
-            usual, least = (90.0 - math.degrees(one) for one in safe.pressure_angle)
+        worst, found = one.pressure_angle, math.degrees(one.pressure_angle.value)
+        if worst.value > most:
+            usual, least = (90.0 - math.degrees(limit) for limit in safe.pressure_angle)
             yield Remark(
                 f"The pressure angle of {one.dyad.joint} reaches {formatted(found, 4)} deg: the "
                 f"transmission angle falls to {formatted(90.0 - found, 4)} deg. Usual are "
                 f"{formatted(usual)} deg and more, and never less than {formatted(least)} deg.",
-                f"{one.dyad.joint}, {_at(one.pressure_angle.place)}",
+                f"{one.dyad.joint}, {_at(worst.place)}",
                 found,
                 limit=math.degrees(most),
                 unit="deg",
