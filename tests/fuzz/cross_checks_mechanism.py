@@ -300,7 +300,7 @@ def _longer(result: MechanismResult, output: Any, amount: float, length: float) 
     if high - low > _TURNS:  # whose steps would be too long
         return
     step = (high - low) / count
-    q = low + step * np.arange(count * turns + 1)
+    q = np.asarray(low + step * np.arange(count * turns + 1), dtype=np.float64)
     values = np.asarray(result.track(output)(q, 0).c[0] + 0.0 * q, dtype=np.float64)
     last, best = 0, 0
     for first in range(count + 1):
