@@ -52,6 +52,12 @@ _JUMP: Final = 1e-4
 _CLOSE: Final = 1e-4
 """Distance from a change point within which a displacement is read from a series, rad."""
 
+_NOTHING: Final = 1e-6
+"""Moment that is rounding only, N mm."""
+
+_PROBES: Final = 193
+"""The driver's angles at which it is looked for."""
+
 _AT_KNOT: Final = 1e-9
 """Distance from a knot, rad, within which a place is called by it."""
 
@@ -601,6 +607,9 @@ class VirtualWork(ShortRepr):
 
         Next to places where members are nearly in line the moment has narrow peaks.
         """
+        probes = np.linspace(*self.linkage.span, _PROBES)
+        if np.abs(np.asarray(self.moment(probes).c[0])).max() < _NOTHING:  # rounding is not smooth
+            return self.knots
         try:
             return expand(lambda q: np.asarray(self.moment(q).c[0]), self.knots, _RESOLVED).knots
         except NotSmoothError:

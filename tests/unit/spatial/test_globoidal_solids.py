@@ -191,7 +191,9 @@ def ring_points(cam: GloboidalCam, count: int) -> Array:
     return points[inside & (np.abs(points[:, 2]) < cam.half_length - 0.1)]
 
 
-@pytest.mark.parametrize(("distance", "unclear"), [(100, 0.05), (75, 0.25)])
+@pytest.mark.parametrize(
+    ("distance", "unclear"), [(100, 0.05), pytest.param(75, 0.25, marks=pytest.mark.slow)]
+)
 def test_metal_is_where_no_roller_comes(distance: float, unclear: float) -> None:
     """At random points of the ring of the ribs, by search; of an undercut cam too."""
     found = gc.build(
