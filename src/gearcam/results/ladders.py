@@ -270,6 +270,57 @@ def limit_ladder(
     return _over_chords(used, levels, make, measure, measured, unit, size)
 
 
+_STEPS: Final = (8, 4, 2, 1)
+"""Steps of the coarser levels of a solid from a grid over those of the design."""
+
+
+def grid_ladder(result: Any, least: int, *, finer: bool) -> Ladder:
+    """Return the ladder of the volume of a solid that is made from a grid of wall points.
+
+    Places along the roller are refined with the cam angles, so that the error falls with the number
+    of points. The truth is extrapolated from a level twice as fine as the finest and from that one.
+
+    Parameters
+    ----------
+    result : Result
+        With ``solid_steps``, ``mesh_of(steps, places)`` and the key ``output.wall_points``.
+    least : int
+        Least number of cam angles of a level.
+    finer : bool
+        Whether one level is finer than the design.
+
+    Returns
+    -------
+    Ladder
+    """
+    own, places = result.solid_steps, result.design.output.wall_points
+    levels = sorted({max(least, own // part) for part in _STEPS})
+    if finer:
+        levels.append(2 * own)
+
+    def make(level: float) -> Any:
+        return result.mesh_of(int(level), max(2, 1 + round((places - 1) * level / own)))
+
+    finest = levels[-1]
+    close, closer = make(finest).volume, make(2 * finest).volume
+    truth = closer + (closer - close) / 3.0
+
+    def measure(made: Any) -> tuple[float, int]:
+        return abs(made.volume - truth), len(made.vertices)
+
+    return Ladder(
+        refined="cam angles",
+        measured="volume of the solid",
+        unit="mm3",
+        levels=levels,
+        own=float(own),
+        order=1.0,
+        rounding=ROUNDING * truth,
+        make=make,
+        measure=measure,
+    )
+
+
 def solid_ladder(result: PartsResult, used: float, levels: Sequence[float]) -> Ladder:
     """Return the ladder of the volumes of a design's solids.
 

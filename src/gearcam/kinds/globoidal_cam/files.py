@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from gearcam.kinds.shared import mesh_files
 from gearcam.report.file import report_files
 
 if TYPE_CHECKING:
@@ -59,27 +59,6 @@ def _tables(result: GloboidalCamResult, _: Any) -> Files:
     return {"walls.csv": table_bytes(walls), "motion.csv": table_bytes({**result.motion()})}
 
 
-def _mesh(kind: str, result: GloboidalCamResult, _: Any) -> Files:
-    from gearcam.export.mesh import mesh_bytes
-
-    return {
-        f"{name}.{kind}": mesh_bytes(kind, {name: mesh}, name)
-        for name, mesh in result.meshes.items()
-    }
-
-
-def _solid(kind: str) -> Callable[..., Files]:
-    """Return what makes meshes of a format."""
-    maker = partial(_mesh, kind)
-    maker.__doc__ = f"""Return the solid.
-
-    Files: cam.{kind}.
-
-    The cam as a closed solid in mm; the report states the errors of walls and volume.
-    """
-    return maker
-
-
 def _svg(result: GloboidalCamResult, _: Any) -> Files:
     """Return a picture of the unrolled cam.
 
@@ -97,7 +76,7 @@ def _svg(result: GloboidalCamResult, _: Any) -> Files:
 FILES: Final[Mapping[str, Callable[..., Files]]] = {
     "csv": _tables,
     "svg": _svg,
-    **{kind: _solid(kind) for kind in ("stl", "3mf", "glb")},
+    **{kind: mesh_files(kind) for kind in ("stl", "3mf", "glb")},
     "report": report_files,
 }
 """What makes the files of each format: contents by name."""

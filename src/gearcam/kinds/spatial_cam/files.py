@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from gearcam.kinds.shared import mesh_files
 from gearcam.kinds.spatial_cam.milled import MILLED
 from gearcam.report.file import report_files
 
@@ -53,27 +53,6 @@ def _tables(result: SpatialCamResult, _: Any) -> Files:
     short = dict(zip([*table][1:5], ("s", "ds", "d2s", "d3s"), strict=True))
     motion = {short.get(name, name): values for name, values in table.items()}
     return {"walls.csv": table_bytes(walls), "motion.csv": table_bytes(motion)}
-
-
-def _mesh(kind: str, result: SpatialCamResult, _: Any) -> Files:
-    from gearcam.export.mesh import mesh_bytes
-
-    return {
-        f"{name}.{kind}": mesh_bytes(kind, {name: mesh}, name)
-        for name, mesh in result.meshes.items()
-    }
-
-
-def _solid(kind: str) -> Callable[..., Files]:
-    """Return what makes meshes of a format."""
-    maker = partial(_mesh, kind)
-    maker.__doc__ = f"""Return the solid.
-
-    Files: cam.{kind}.
-
-    The cam as a closed solid in mm; the report states the errors of walls and volume.
-    """
-    return maker
 
 
 def _step(result: SpatialCamResult, _: Any) -> Files:
@@ -125,7 +104,7 @@ FILES: Final[Mapping[str, Callable[..., Files]]] = {
     "csv": _tables,
     "dxf": _dxf,
     "svg": _svg,
-    **{kind: _solid(kind) for kind in ("stl", "3mf", "glb")},
+    **{kind: mesh_files(kind) for kind in ("stl", "3mf", "glb")},
     "step": _step,
     "report": report_files,
     **MILLED,

@@ -4,52 +4,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from gearcam.results.ladders import ROUNDING, Ladder, Ladders
+from gearcam.results.ladders import Ladder, Ladders, grid_ladder
 
 if TYPE_CHECKING:
     from gearcam.kinds.spatial_cam.build import SpatialCamResult
-    from gearcam.parts.solids import Mesh
-
-_PARTS: Final = (8, 4, 2, 1)
-"""Steps of the coarser levels over those of the design."""
 
 _LEAST: Final = 24
 """Least number of cam angles of a level."""
 
 
 def _solid(result: SpatialCamResult) -> Ladder:
-    """Return the error of the volume over the number of cam angles.
-
-    Places along the roller are refined with them, so that the error falls with the number of
-    points; those of a carved solid not beyond the design. The truth is extrapolated from a level
-    twice as fine as the finest and from that one.
-    """
-    own, places = result.solid_steps, result.design.output.wall_points
-    levels = sorted({max(_LEAST, own // part) for part in _PARTS})
-    if not result.carved:  # carving takes the square of the time
-        levels.append(2 * own)
-
-    def make(level: float) -> Mesh:
-        return result.mesh_of(int(level), max(2, 1 + round((places - 1) * level / own)))
-
-    finest = levels[-1]
-    close, closer = make(finest).volume, make(2 * finest).volume
-    truth = closer + (closer - close) / 3.0
-
-    def measure(made: Mesh) -> tuple[float, int]:
-        return abs(made.volume - truth), len(made.vertices)
-
-    return Ladder(
-        refined="cam angles",
-        measured="volume of the solid",
-        unit="mm3",
-        levels=levels,
-        own=float(own),
-        order=1.0,
-        rounding=ROUNDING * truth,
-        make=make,
-        measure=measure,
-    )
+    """Return the error of the volume; a carved solid, which takes long, is not made finer."""
+    return grid_ladder(result, _LEAST, finer=not result.carved)
 
 
 LADDERS: Final[Ladders] = {"solid": _solid}
