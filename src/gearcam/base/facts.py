@@ -27,6 +27,7 @@ _UNITS: Final = {
     "_deg_s": "deg/s",
     "_rad_s3": "rad/s3",
     "_rad_s2": "rad/s2",
+    "_rad_s": "rad/s",
     "_rpm": "rpm",
     "_nmm": "N mm",
     "_nm_rad": "N m/rad",
@@ -45,7 +46,7 @@ _UNITS: Final = {
 }
 """Units by the ends of names, longer ends first."""
 
-_PER: Final = re.compile(r"(?:_(mm|deg))?_per_((?:rad|mm)\d?)$")
+_PER: Final = re.compile(r"(?:_(mm|deg|rad))?_per_((?:rad|mm)\d?)$")
 """Ends of names of derivatives by an angle or a length: ``velocity_mm_per_rad``."""
 
 _METHODS: Final = "accuracy.how."

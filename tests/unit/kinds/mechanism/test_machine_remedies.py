@@ -91,3 +91,11 @@ def test_a_dead_center_that_is_reached_twice_is_told() -> None:
         {"drive": [{"name": "master", "even": True}, {"name": "motor", "even": True, "ratio": 2}]}
     )
     assert "second-dead-center" in {one.code for one in gc.build(twice).checked}
+
+
+def test_rates_of_angles_have_their_units() -> None:
+    result = gc.build(FOUR_BAR)
+    units = {one.name: one.unit for one in result.facts.quantities()}
+    assert units["outputs.rocker.velocity_rad_s"] == "rad/s"
+    assert units["outputs.rocker.velocity_rad_per_rad"] == "rad/rad"
+    assert units["outputs.P_x.velocity_mm_per_rad"] == "mm/rad"
