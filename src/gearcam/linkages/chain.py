@@ -56,6 +56,9 @@ class HoistChain(ShortRepr, Element):
         +1 if turning counter-clockwise winds the chain up, -1 if clockwise.
     """
 
+    needing = ("shaft",)
+    giving = ("name", "joint")
+
     name: str
     joint: str
     shaft: str
@@ -66,16 +69,6 @@ class HoistChain(ShortRepr, Element):
     start: float
     limits: tuple[float, float]
     wind: float = 1.0
-
-    @property
-    def needs(self) -> tuple[str, ...]:
-        """The wheel's shaft."""
-        return (self.shaft,)
-
-    @property
-    def gives(self) -> tuple[str, ...]:
-        """The lever and the chain's joint."""
-        return self.name, self.joint
 
     def free(self, angle: Jet) -> Jet:
         """Return the free length less the length on the wheel, mm.

@@ -7,7 +7,7 @@ are roots of its slope, its zeros are bracketed by them: nothing depends on a st
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 from typing import Final
@@ -15,12 +15,11 @@ from typing import Final
 import numpy as np
 
 from gearcam.base.display import ShortRepr
-from gearcam.linkages.elements import BRANCH, REACH, Dyad, Element, Known
+from gearcam.linkages.dyads import rtr_distance
+from gearcam.linkages.elements import BRANCH, REACH, Dyad, Element
 from gearcam.linkages.linkage import Linkage
-from gearcam.linkages.plane import conjugate, imaginary, square
-from gearcam.numeric.arrays import Array
-from gearcam.numeric.jets import Jet
-from gearcam.numeric.piecewise import extremes, extremes_of_each
+from gearcam.numeric.arrays import Array, apart
+from gearcam.numeric.piecewise import extremes_of_each
 from gearcam.numeric.roots import bracketed_root
 
 _TOUCHING: Final = 1e-12
@@ -50,10 +49,10 @@ class Closing(ShortRepr):
     ----------
     element : Element
         The part.
-    least : float
-        The smallest share that is left before it opens; negative: it does not close everywhere.
+    leasts : tuple of float
+        The smallest value of each of its shares; negative: it does not close everywhere.
     place : float, rad
-        The driver's angle there.
+        The driver's angle of the smallest of them.
     ranges : tuple of (float, float), rad
         The driver's angles over which it closes; a range over the end of a turn begins below 0.
     changes : tuple of float, rad
@@ -61,10 +60,15 @@ class Closing(ShortRepr):
     """
 
     element: Element
-    least: float
+    leasts: tuple[float, ...]
     place: float
     ranges: tuple[tuple[float, float], ...]
     changes: tuple[float, ...]
+
+    @property
+    def least(self) -> float:
+        """The smallest share that is left before it opens."""
+        return min(self.leasts)
 
 
 class NotClosingError(ValueError):
@@ -106,8 +110,8 @@ def settled(linkage: Linkage) -> Linkage:
             continue
         stuck = bool(found.changes) and _stuck(linkage, element, found.changes)
         if not found.least >= -_TOUCHING or stuck:
-            nearest = tuple(_nearest(linkage, element)) if isinstance(element, Dyad) else ()
-            raise NotClosingError(found, nearest)
+            nearest = _nearest(element, found.leasts) if isinstance(element, Dyad) else []
+            raise NotClosingError(found, tuple(nearest))
         if found.changes and isinstance(element, Dyad):
             linkage = _passing(linkage, number, element, found.changes)
     return linkage
@@ -172,8 +176,7 @@ def closing(linkage: Linkage, element: Element) -> Closing | None:
         (places, values, _crossings(lambda q, k=k: rooms(q)[0, k], places, values))
         for k, (places, values) in enumerate(extremes_of_each(rooms, linkage.knots))
     ]
-    lowest = min(found, key=lambda one: one[1].min())
-    at = int(lowest[1].argmin())
+    lowest, shares, _ = min(found, key=lambda one: one[1].min())
     touching = [
         _polished(linkage, element, number, float(q))
         for number, (places, values, _) in enumerate(found)
@@ -181,8 +184,8 @@ def closing(linkage: Linkage, element: Element) -> Closing | None:
     ]
     return Closing(
         element,
-        float(lowest[1][at]),
-        float(lowest[0][at]),
+        tuple(float(values.min()) for _, values, _ in found),
+        float(lowest[shares.argmin()]),
         _ranges(linkage, element, np.concatenate([one[2] for one in found])),
         _apart(touching, linkage),
     )
@@ -230,31 +233,30 @@ def _apart(touching: list[float], linkage: Linkage) -> tuple[float, ...]:
     low, high = linkage.span
     if linkage.closed:
         touching = [low if high - q < _SAME else q for q in touching]
-    kept: list[float] = []
-    for q in sorted(touching):
-        if not kept or q - kept[-1] > _SAME:
-            kept.append(q)
-    return tuple(kept)
+    return tuple(apart(np.sort(touching), _SAME).tolist())
 
 
-def _nearest(linkage: Linkage, dyad: Dyad) -> Iterator[dict[int, float]]:
-    """Yield lengths that make a dyad close, mm: the numbers of those changed, and their values."""
-    if dyad.driven is not None:
-        return
+def _nearest(dyad: Dyad, leasts: Sequence[float]) -> list[dict[int, float]]:
+    """Return lengths that make a dyad close, mm, by their numbers, from its least shares."""
+    if dyad.driven is not None or dyad.type == "TRT":
+        return []
+    sizes = np.array(dyad.lengths[:2], dtype=float)
     if dyad.type == "RRR":
-        yield from _nearest_rods(dyad, *_distances(linkage, dyad))
-    elif dyad.type in ("RRT", "TRR"):
-        low, high = _extent(linkage, dyad, lambda known: _off(known, dyad))
-        yield {("RRT", "TRR").index(dyad.type): max(-low, high) * (1.0 + _SPARE)}
-    elif dyad.type in ("RTR1", "RTR2"):
-        across, (least, _) = abs(math.sin(dyad.lengths.beta)), _distances(linkage, dyad)
-        if across > 0.0 and least > 0.0:
-            yield {("RTR2", "RTR1").index(dyad.type): least / across * (1.0 - _SPARE)}
+        outer, inner = leasts
+        whole, folded = sizes.sum() ** 2, (sizes[0] - sizes[1]) ** 2
+        least, most = max(inner * whole + folded, 0.0), (1.0 - outer) * whole
+        return _nearest_rods(sizes, math.sqrt(least), math.sqrt(most))
+    (share,) = leasts
+    if dyad.type in ("RRT", "TRR"):  # as long as the farthest that it has to reach across
+        number = ("RRT", "TRR").index(dyad.type)
+        return [{number: float(sizes[number]) * math.sqrt(1.0 - share) * (1.0 + _SPARE)}]
+    number, turned = ("RTR2", "RTR1").index(dyad.type), abs(math.sin(dyad.lengths.beta))
+    least = rtr_distance(float(sizes[number]) * turned, share)
+    return [{number: least / turned * (1.0 - _SPARE)}] if turned > 0.0 and least > 0.0 else []
 
 
-def _nearest_rods(dyad: Dyad, least: float, most: float) -> list[dict[int, float]]:
+def _nearest_rods(own: Array, least: float, most: float) -> list[dict[int, float]]:
     """Return lengths with which two rods reach all distances of their ends, nearest first."""
-    own = np.array(dyad.lengths[:2], dtype=float)
     if least <= _MET * most:  # only rods of one length reach it, and lose their place there
         return []
     found: list[dict[int, float]] = []
@@ -265,37 +267,6 @@ def _nearest_rods(dyad: Dyad, least: float, most: float) -> list[dict[int, float
             found.append({number: min(max(own[number], low), high * (1.0 - _SPARE))})
     if not found:  # both: as long as the distance asks for, with the difference they have
         half = 0.5 * most * (1.0 + _SPARE)
-        apart = np.clip(
-            0.5 * (own[0] - own[1]), *(0.5 * least * (1.0 - _SPARE) * np.array([-1, 1]))
-        )
-        found.append({0: float(half + apart), 1: float(half - apart)})
+        skew = np.clip(0.5 * (own[0] - own[1]), *(0.5 * least * (1.0 - _SPARE) * np.array([-1, 1])))
+        found.append({0: float(half + skew), 1: float(half - skew)})
     return sorted(found, key=lambda one: max(abs(v - own[k]) for k, v in one.items()))
-
-
-def _distances(linkage: Linkage, dyad: Dyad) -> tuple[float, float]:
-    """Return the smallest and the largest distance of a dyad's outer joints, mm."""
-    least, most = _extent(
-        linkage, dyad, lambda known: square(known.jet(dyad.second) - known.jet(dyad.first))
-    )
-    return math.sqrt(max(least, 0.0)), math.sqrt(most)
-
-
-def _off(known: Known, dyad: Dyad) -> Jet:
-    """Return how far the rod's far joint is from the line on which the other one runs, mm."""
-    ends, arm, turn = (dyad.first, dyad.second), dyad.lengths.second, dyad.lengths.gamma2
-    if dyad.type == "TRR":
-        ends, arm, turn = ends[::-1], float(dyad.lengths.first), dyad.lengths.gamma1  # pyright: ignore[reportArgumentType]
-    guide = known.frame(ends[1])
-    place = (guide.origin - known.jet(ends[0])) * conjugate(guide.direction)
-    return imaginary(place) + arm * math.sin(turn)
-
-
-def _extent(linkage: Linkage, dyad: Dyad, of: Callable[[Known], Jet]) -> tuple[float, float]:
-    """Return the smallest and the largest value of a quantity before a dyad is solved."""
-
-    def values(q: Array) -> tuple[Array, Array]:
-        value, slope = of(linkage.at(q, 1, dyad)).derivatives()[:2]
-        return value, slope
-
-    _, found = extremes(values, linkage.knots)
-    return float(found.min()), float(found.max())

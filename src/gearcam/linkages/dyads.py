@@ -25,6 +25,7 @@ RTR1 and RTT with their members exchanged.
 from __future__ import annotations
 
 import cmath
+import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Final, NamedTuple
 
@@ -195,6 +196,19 @@ def _rrt(first: Jet, guide: Frame, sizes: Lengths, sign: Sign) -> Solved:
     joint = first + direction * rod
     frames = Frame(first, direction), Frame(guide.origin + ahead * slide, ahead * turn)
     return Solved(joint, frames, {"guide2": slide}, (room / (rod * rod),))
+
+
+def rtr_distance(across: float, share: float) -> float:
+    """Return the distance of the outer joints of RTR at which a share is left (see `Solved.room`).
+
+    Parameters
+    ----------
+    across : float, mm
+        How far the block's arm is across the guide.
+    share : float
+        What is left.
+    """
+    return math.sqrt(max(across * across + share * _NEAR, 0.0) / (1.0 - share))
 
 
 @_OPEN

@@ -11,7 +11,7 @@ import cmath
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Final, TypeVar
+from typing import ClassVar, Final, TypeVar
 
 import numpy as np
 
@@ -71,15 +71,19 @@ class Known:
 class Element(ABC):
     """A part of a linkage."""
 
-    @property
-    @abstractmethod
-    def needs(self) -> tuple[str, ...]:
-        """Names that it needs."""
+    needing: ClassVar[tuple[str, ...]] = ()
+    giving: ClassVar[tuple[str, ...]] = ("name",)
+    """Its fields with the names that it needs, and with those that it adds."""
 
     @property
-    @abstractmethod
+    def needs(self) -> tuple[str, ...]:
+        """Names that it needs."""
+        return tuple(getattr(self, field) for field in self.needing)
+
+    @property
     def gives(self) -> tuple[str, ...]:
         """Names that it adds."""
+        return tuple(getattr(self, field) for field in self.giving)
 
     @abstractmethod
     def solve(self, known: Known) -> None:
@@ -106,16 +110,6 @@ class GivenMotion(ShortRepr, Element):
     name: str
     law: Law
 
-    @property
-    def needs(self) -> tuple[str, ...]:
-        """Nothing."""
-        return ()
-
-    @property
-    def gives(self) -> tuple[str, ...]:
-        """The quantity."""
-        return (self.name,)
-
     def solve(self, known: Known) -> None:
         """Add the quantity."""
         known.given[self.name] = self.law(known.q, known.order)
@@ -135,19 +129,11 @@ class MemberPoint(ShortRepr, Element):
         The point in that frame.
     """
 
+    needing = ("on",)
+
     name: str
     at: complex
     on: str = GROUND
-
-    @property
-    def needs(self) -> tuple[str, ...]:
-        """The member."""
-        return (self.on,)
-
-    @property
-    def gives(self) -> tuple[str, ...]:
-        """The point."""
-        return (self.name,)
 
     def solve(self, known: Known) -> None:
         """Add the point."""
@@ -170,20 +156,12 @@ class GuideLine(ShortRepr, Element):
         Frame of the member that carries it.
     """
 
+    needing = ("on",)
+
     name: str
     at: complex
     direction: float
     on: str = GROUND
-
-    @property
-    def needs(self) -> tuple[str, ...]:
-        """The member that carries it."""
-        return (self.on,)
-
-    @property
-    def gives(self) -> tuple[str, ...]:
-        """Its frame."""
-        return (self.name,)
 
     def solve(self, known: Known) -> None:
         """Add its frame."""
@@ -212,22 +190,15 @@ class Crank(ShortRepr, Element):
         Its direction where the shaft's turn is 0.
     """
 
+    needing = ("shaft", "center")
+    giving = ("name", "joint")
+
     name: str
     shaft: str
     center: str
     joint: str
     length: float
     start: float = 0.0
-
-    @property
-    def needs(self) -> tuple[str, ...]:
-        """Its shaft and where that stands."""
-        return self.shaft, self.center
-
-    @property
-    def gives(self) -> tuple[str, ...]:
-        """The member and its joint."""
-        return self.name, self.joint
 
     def solve(self, known: Known) -> None:
         """Add the member and its joint."""
@@ -251,19 +222,11 @@ class WoundWay(ShortRepr, Element):
         Of the wheel, to the chain's middle; negative if turning clockwise winds up.
     """
 
+    needing = ("shaft",)
+
     name: str
     shaft: str
     radius: float
-
-    @property
-    def needs(self) -> tuple[str, ...]:
-        """The wheel's shaft."""
-        return (self.shaft,)
-
-    @property
-    def gives(self) -> tuple[str, ...]:
-        """The way."""
-        return (self.name,)
 
     def solve(self, known: Known) -> None:
         """Add the way."""
@@ -286,20 +249,13 @@ class PushedSlide(ShortRepr, Element):
         Name of its joint: the frame's origin.
     """
 
+    needing = ("way", "guide")
+    giving = ("name", "joint")
+
     name: str
     way: str
     guide: str
     joint: str
-
-    @property
-    def needs(self) -> tuple[str, ...]:
-        """Its way and its guide."""
-        return self.way, self.guide
-
-    @property
-    def gives(self) -> tuple[str, ...]:
-        """The member and its joint."""
-        return self.name, self.joint
 
     def solve(self, known: Known) -> None:
         """Add the member and its joint."""

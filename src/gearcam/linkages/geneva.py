@@ -66,6 +66,8 @@ class GenevaWheel(ShortRepr, Element):
         If the number of slots is not allowed, or the crank's length is not above 0.
     """
 
+    needing = ("shaft", "center")
+
     name: str
     shaft: str
     center: str
@@ -82,11 +84,6 @@ class GenevaWheel(ShortRepr, Element):
             raise ValueError(f"slots {self.slots}: must be {least} to {most}")
         if not self.length > 0.0:
             raise ValueError(f"length {self.length:g} mm: must be above 0")
-
-    @property
-    def needs(self) -> tuple[str, ...]:
-        """The crank's shaft and where that stands."""
-        return self.shaft, self.center
 
     @property
     def gives(self) -> tuple[str, ...]:

@@ -176,10 +176,8 @@ class Linkage(ShortRepr):
         if not name.endswith(".angle"):
             return found
         places, angles = self._dense(name)
-        low, high = self.span
-        turns = np.floor((q - low) / (high - low)) if self.closed else np.zeros(np.shape(q))
-        near = np.interp(q - turns * (high - low), places, angles)
-        near += turns * (angles[-1] - angles[0])
+        turns, within = in_cycle(q, self.span) if self.closed else (0.0, q)
+        near = np.interp(within, places, angles) + turns * (angles[-1] - angles[0])
         whole = np.round((near - found.c[0]) / (2.0 * math.pi))
         return Jet([found.c[0] + 2.0 * math.pi * whole, *found.c[1:]])
 
@@ -215,6 +213,25 @@ class Linkage(ShortRepr):
             values = np.asarray(self.track(name, places, 0).c[0])
             self._angles[name] = places, np.unwrap(values)
         return self._angles[name]
+
+
+def in_cycle(q: Array, span: tuple[float, float]) -> tuple[Array, Array]:
+    """Return whole cycles before angles of the driver, and the angles within the first one.
+
+    Parameters
+    ----------
+    q : (n,) array, rad
+        Angles of the driver.
+    span : (float, float), rad
+        Its first and last angle.
+
+    Returns
+    -------
+    cycles, within : (n,) arrays
+    """
+    low, high = span
+    cycles = np.floor((q - low) / (high - low))
+    return cycles, q - cycles * (high - low)
 
 
 def value(known: Known, name: str) -> Jet:

@@ -16,6 +16,7 @@ import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.linkages.elements import Law
+from gearcam.linkages.linkage import in_cycle
 from gearcam.numeric.arrays import Array, Ints
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import extremes_of_each
@@ -250,9 +251,8 @@ class TrackMeasures(ShortRepr):
         """
         if not self.closed:
             return self.track(q, order)
-        low, high = self.span
-        turns = np.floor((q - low) / (high - low))
-        found = self.track(q - turns * (high - low), order)
+        turns, within = in_cycle(q, self.span)
+        found = self.track(within, order)
         return Jet([found.c[0] + turns * self.rise, *found.c[1:]])
 
     @cached_property

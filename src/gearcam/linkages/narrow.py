@@ -13,9 +13,8 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.linkages.elements import Dyad
 from gearcam.linkages.linkage import Linkage
-from gearcam.linkages.transmission import guide_distance, transmissions
+from gearcam.linkages.transmission import guide_distance, transmission_of
 
 _NARROW: Final = 0.1
 """Width, rad, from which a search sees it without knots of its own."""
@@ -51,16 +50,12 @@ def with_narrow_places(linkage: Linkage) -> Linkage:
 
 
 def _places(linkage: Linkage) -> Iterator[np.ndarray]:
-    for one in transmissions(linkage) if _swings(linkage) else ():
-        if one.distance is None:
+    for dyad in linkage.dyads:
+        nearest = transmission_of(linkage, dyad).distance if dyad.type.startswith("RTR") else None
+        if nearest is None:
             continue
-        known = linkage.at(np.array([one.distance.place]), 2)
-        bend = float(guide_distance(known, one.dyad).derivatives()[2][0])
-        width = one.distance.value / np.sqrt(0.5 * bend) if bend > 0.0 else np.inf
+        known = linkage.at(np.array([nearest.place]), 2)
+        bend = float(guide_distance(known, dyad).derivatives()[2][0])
+        width = nearest.value / np.sqrt(0.5 * bend) if bend > 0.0 else np.inf
         if width < _NARROW:
-            yield one.distance.place + width * _AROUND
-
-
-def _swings(linkage: Linkage) -> bool:
-    """Return whether a linkage has a block on a guide that swings."""
-    return any(isinstance(one, Dyad) and one.type.startswith("RTR") for one in linkage.dyads)
+            yield nearest.place + width * _AROUND

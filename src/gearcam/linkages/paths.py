@@ -16,6 +16,7 @@ import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.linkages.elements import Law
+from gearcam.linkages.linkage import in_cycle
 from gearcam.linkages.measures import extremes_of
 from gearcam.linkages.plane import square
 from gearcam.numeric.arrays import Array, Mask, Plane
@@ -138,10 +139,7 @@ class PointPath(ShortRepr):
         -------
         Jet, mm
         """
-        if not self.closed:
-            return self.track(q, order)
-        low, high = self.span
-        return self.track(low + (q - low) % (high - low), order)
+        return self.track(in_cycle(q, self.span)[1] if self.closed else q, order)
 
     def _speed(self, q: Array, order: int) -> Jet:
         """Return the squared speed, mm2."""

@@ -133,10 +133,10 @@ def guide_distance(known: Known, dyad: Dyad) -> Jet:
     -------
     Jet, mm2
     """
-    sizes = dyad.sizes(known)
+    sizes, (slide,) = dyad.sizes(known), known.solved[dyad.joint].slides.values()
     arm = sizes.second if dyad.type == "RTR1" else sizes.first
-    off = arm * np.sin(sizes.beta)
-    return square(known.jet(dyad.second) - known.jet(dyad.first)) - off * off
+    distance = slide - arm * np.cos(sizes.beta)
+    return distance * distance
 
 
 def transmissions(linkage: Linkage) -> tuple[Transmission, ...]:
@@ -152,10 +152,11 @@ def transmissions(linkage: Linkage) -> tuple[Transmission, ...]:
     tuple of Transmission
         In the order of its dyads.
     """
-    return tuple(_worst(linkage, dyad) for dyad in linkage.dyads)
+    return tuple(transmission_of(linkage, dyad) for dyad in linkage.dyads)
 
 
-def _worst(linkage: Linkage, dyad: Dyad) -> Transmission:
+def transmission_of(linkage: Linkage, dyad: Dyad) -> Transmission:
+    """Return the worst place of one `dyad` of a `linkage` (see `transmissions`)."""
     if dyad.type in ("RTR1", "RTR2"):
         least = _measures(linkage, lambda known: guide_distance(known, dyad)).least()
         known = linkage.at(np.array([least.place]), 0)

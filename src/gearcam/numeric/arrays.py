@@ -37,6 +37,11 @@ def as_pairs(points: Plane) -> Array:
     return np.ascontiguousarray(points, dtype=np.complex128).view(np.float64).reshape(-1, 2)
 
 
+def apart(rising: Array, least: float) -> Array:
+    """Return rising values (n,) without those that follow another by no more than `least`."""
+    return rising[np.diff(rising, prepend=-np.inf) > least]
+
+
 def bounds(points: Plane) -> tuple[complex, complex]:
     """Return the lower left and the upper right corner of the box around complex points."""
     x, y = points.real, points.imag

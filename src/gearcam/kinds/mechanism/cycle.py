@@ -19,7 +19,6 @@ from gearcam.linkages.closing import settled
 from gearcam.linkages.elements import MOTION
 from gearcam.linkages.geneva import GenevaWheel
 from gearcam.linkages.linkage import Linkage
-from gearcam.numeric.arrays import Array
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.design import MechanismDesign
@@ -37,9 +36,6 @@ _PLACES: Final = 9
 
 _FORMULA: Final = 721
 """Places at which the formula of a slide must be finite."""
-
-_SAME: Final = 1e-9
-"""Knots closer than this are one, rad."""
 
 
 def whole_cycle(linkage: Linkage) -> Linkage:
@@ -211,10 +207,3 @@ def _demand_finite(drives: Sequence[PlacedDrive]) -> None:
                 f"the place or its derivatives are not finite at {at} deg",
                 where=f"drive[{number}].slide",
             )
-
-
-def apart(knots: Array) -> Array:
-    """Return rising angles without those that are the same but for rounding, rad."""
-    kept = knots[np.concatenate([[True], np.diff(knots) > _SAME])]
-    kept[-1] = knots[-1]
-    return kept

@@ -6,13 +6,12 @@ import cmath
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from gearcam.base.errors import InfeasibleError
 from gearcam.kinds.mechanism.cycle import (
-    apart,
     cycle_of,
     demand_part,
     indexed,
@@ -36,10 +35,14 @@ from gearcam.linkages.elements import (
 from gearcam.linkages.geneva import GenevaWheel
 from gearcam.linkages.linkage import Linkage, in_order
 from gearcam.linkages.narrow import with_narrow_places
+from gearcam.numeric.arrays import apart
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.design import MechanismDesign
     from gearcam.kinds.mechanism.tables import CrankSpec, DyadSpec, GuideSpec
+
+_SAME: Final = 1e-9
+"""Knots closer than this are one, rad."""
 
 
 def make_linkage(design: MechanismDesign, drives: Sequence[PlacedDrive]) -> Linkage:
@@ -63,7 +66,8 @@ def make_linkage(design: MechanismDesign, drives: Sequence[PlacedDrive]) -> Link
     """
     (low, high), closed = cycle_of(drives, indexed(design))
     inner = [one.knots_in(low, high, not number) for number, one in enumerate(drives)]
-    knots = apart(np.unique(np.concatenate([[low, high], *inner])))
+    knots = apart(np.unique(np.concatenate([[low, high], *inner])), _SAME)
+    knots[-1] = high  # rather than one that differs by rounding
     parts = list(in_order(_elements(design, drives)))
     linkage = with_rests(Linkage(parts, knots, closed))
     demand_part(design, linkage)
