@@ -47,7 +47,7 @@ ROUNDING: Final = 64.0 * np.finfo(float).eps
 _PLACES: Final = 997
 """Number of places at which functions are compared: a prime, to avoid the ends of intervals."""
 
-_SHARES: Final = np.array([1, 3, 5, 7, 8, 9, 11, 13, 15]) / 16.0
+SHARES: Final = np.array([1, 3, 5, 7, 8, 9, 11, 13, 15]) / 16.0
 """Relative places on a chord at which its distance from the curve is measured."""
 
 
@@ -225,7 +225,7 @@ def chord_distance(sampler: Sampler) -> tuple[float, int]:
     places, points, _ = sampler.chords
     ends = np.append(points, points[:1]) if sampler.closed else points
     chord = np.diff(ends)
-    j = places[:-1] + np.diff(places) * _SHARES[:, None]
+    j = places[:-1] + np.diff(places) * SHARES[:, None]
     offset = sampler.at(j.ravel())[0].reshape(j.shape) - ends[:-1]
     distance = np.abs(np.imag(offset * np.conj(chord))) / np.abs(chord)
     return float(distance.max()), len(chord)

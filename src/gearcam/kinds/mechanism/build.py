@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property, partial
@@ -92,11 +92,14 @@ class MechanismResult(Result):
     stages = MappingProxyType({"drives": "drives", "linkage": "linkage", "checks": "checked"})
     before_studies = ("drives", "linkage")
 
+    _given: tuple[PlacedDrive, ...] = ()
+    """Drives in the place of those of the design."""
+
     @cached_property
     def drives(self) -> tuple[PlacedDrive, ...]:
         """The drives with their laws, the master first."""
         with self.stage("drives"):
-            return tuple(
+            return self._given or tuple(
                 self._placed(f"drive[{number}]", spec)
                 for number, spec in enumerate(self.design.drive)
             )
@@ -174,11 +177,7 @@ class MechanismResult(Result):
         InfeasibleError
             If the mechanism does not close.
         """
-        where = self.angles if q is None else self._within_range(q)
-        columns = {f"{self.driver[0]}_deg": _DEG * where}
-        for one in self.outputs:
-            columns |= self._columns(one, where)
-        return Columns(columns)
+        return self._motion_of(self.outputs, q)
 
     def output(self, name: str, q: ArrayLike | None = None) -> Columns:
         """Return the motion of one output.
@@ -205,9 +204,12 @@ class MechanismResult(Result):
             allowed, hint = allowed_outputs(parts), unknown_hint(name, parts)
             what = f"{show(name)}: {UNKNOWN}"
             raise DesignError([Problem(what, key="name", value=name, allowed=allowed, hint=hint)])
+        return self._motion_of(self._known_outputs[name], q)
+
+    def _motion_of(self, outputs: Iterable[Output], q: ArrayLike | None) -> Columns:
         where = self.angles if q is None else self._within_range(q)
         columns = {f"{self.driver[0]}_deg": _DEG * where}
-        for one in self._known_outputs[name]:
+        for one in outputs:
             columns |= self._columns(one, where)
         return Columns(columns)
 
@@ -215,14 +217,12 @@ class MechanismResult(Result):
         values = self.track(one)(where, ORDER).derivatives()
         scale, unit = one.unit
         columns, rate = {f"{one.stem}_{unit}": scale * values[0]}, one.rate_unit
-        for order in range(1, ORDER + 1):
-            power = order if order > 1 else ""
-            columns[f"{one.stem}_{rate}_per_rad{power}"] = values[order]
-        speed = self.design.drive[0].speed
-        for order in range(1, ORDER + 1):
-            power = order if order > 1 else ""
-            if speed is not None:
-                columns[f"{one.stem}_{rate}_s{power}"] = values[order] * speed**order
+        powers = [(order, order if order > 1 else "") for order in range(1, ORDER + 1)]
+        columns |= {f"{one.stem}_{rate}_per_rad{power}": values[k] for k, power in powers}
+        speed = self.speed
+        if speed is not None:
+            by_time = {f"{one.stem}_{rate}_s{power}": values[k] * speed**k for k, power in powers}
+            columns |= by_time
         return columns
 
     def track(self, one: Output) -> Callable[[Array, int], Jet]:
@@ -276,7 +276,7 @@ class MechanismResult(Result):
 
     @property
     def _to_check(self) -> checks.CheckedMachine:
-        even = self.without_pair
+        even = self.without_pair if self.linkage.closed else None
         return checks.CheckedMachine(
             self.linkage,
             self.measures,
@@ -288,10 +288,13 @@ class MechanismResult(Result):
     @cached_property
     def without_pair(self) -> MechanismResult | None:
         """The same mechanism behind an even shaft; None if no pair drives it, or it cannot move."""
+        for other in self.design.compare:
+            if other.even:
+                return self.compared[other.name]
         first = self.drives[0]
-        if first.spec.pair is None or not self.linkage.closed:
+        if first.spec.pair is None:
             return None
-        spec = replace(first.spec, pair=None, even=True)
+        spec = replace(first.spec, pair=None, even=True, span=None)
         with suppress(InfeasibleError):
             return self._behind(self._placed("drive[0]", spec).instead_of(first))
         return None
@@ -299,7 +302,7 @@ class MechanismResult(Result):
     def _behind(self, master: PlacedDrive) -> MechanismResult:
         """Return the same mechanism behind another master."""
         made = type(self)(replace(self.design, compare=(), examined=True), self.tolerances)
-        vars(made)["drives"] = (master, *self.drives[1:])
+        made._given = (master, *self.drives[1:])
         _ = made.linkage
         return made
 
@@ -375,36 +378,16 @@ class MechanismResult(Result):
         )
 
     def comparison(self) -> Columns:
-        """Return what the drives to compare make of each output.
+        """Return what the drives to compare make of each output (see `comparison`)."""
+        from gearcam.kinds.mechanism.comparison import comparison
 
-        Returns
-        -------
-        Columns
-            A row for each drive and output: ``drive``, the master's range ``range_deg``,
-            ``output``, ``unit``, ``stroke``, the
-            largest sizes of the derivatives by the master's angle with the places, ``velocity``
-            and ``velocity_at_deg`` and so on, in the unit or rad; with a speed those by time,
-            ``velocity_per_s``, and the range's time, ``range_s``.
-        """
-        return self._tabled(comparison_rows)
+        return comparison(self)
 
     def interval_table(self) -> Columns:
-        """Return the intervals that the design asks for, behind each drive.
+        """Return the intervals that the design asks for, behind each drive (see `comparison`)."""
+        from gearcam.kinds.mechanism.comparison import interval_table
 
-        Returns
-        -------
-        Columns
-            A row for each drive and interval: ``drive``, ``on``, ``before``, the master's angles
-            ``from_deg``, ``to_deg``, ``angle_deg``, the velocity at the beginning by the master's
-            angle; with a speed the time, ``time_s``, and the velocity by time.
-        """
-        return self._tabled(interval_rows)
-
-    def _tabled(
-        self, rows_of: Callable[[str, MechanismResult], Iterator[dict[str, Any]]]
-    ) -> Columns:
-        rows = [row for name, one in self.machines.items() for row in rows_of(name, one)]
-        return Columns({key: np.array([row[key] for row in rows]) for key in rows[0]})
+        return interval_table(self)
 
     @cached_property
     def stretches(self) -> tuple[LineFit | CircleFit, ...]:
@@ -539,57 +522,3 @@ class MechanismResult(Result):
         (found,) = self._known_outputs[table.on]
         word = AMOUNTS[title]
         return found, getattr(table, f"{word}_angle" if found.angle else word)
-
-
-def comparison_rows(name: str, machine: MechanismResult) -> Iterator[dict[str, Any]]:
-    """Yield the rows of `MechanismResult.comparison` for one drive.
-
-    Parameters
-    ----------
-    name : str
-        Of the drive.
-    machine : MechanismResult
-        The mechanism behind it.
-    """
-    speed, (low, high) = machine.design.drive[0].speed, machine.linkage.span
-    for one in machine.outputs:
-        measures, (scale, unit) = machine.measures[one.stem], one.unit
-        row: dict[str, Any] = {
-            "drive": name, "range_deg": _DEG * (high - low), "output": one.stem, "unit": unit,
-            "stroke": scale * measures.stroke,
-        }  # fmt: skip
-        if speed is not None:
-            row["range_s"] = (high - low) / speed
-        for order, word in enumerate(RATES, start=1):
-            peak = measures.size(order)
-            row |= {word: peak.value, f"{word}_at_deg": _DEG * peak.place}
-            if speed is not None:
-                row[f"{word}_per_s"] = peak.value * speed**order
-        yield row
-
-
-def interval_rows(name: str, machine: MechanismResult) -> Iterator[dict[str, Any]]:
-    """Yield the rows of `MechanismResult.interval_table` for one drive.
-
-    Parameters
-    ----------
-    name : str
-        Of the drive.
-    machine : MechanismResult
-        The mechanism behind it.
-    """
-    speed = machine.design.drive[0].speed
-    for one, found, rate in zip(
-        machine.design.interval, machine.intervals, machine.interval_velocities, strict=True
-    ):
-        row = {
-            "drive": name, "on": one.on, "before": one.before, "from_deg": _DEG * found.begin,
-            "to_deg": _DEG * found.end, "angle_deg": _DEG * found.length, "velocity": rate,
-        }  # fmt: skip
-        yield row if speed is None else row | {
-            "time_s": found.length / speed, "velocity_per_s": rate * speed,
-        }  # fmt: skip
-
-
-RATES: Final = ("velocity", "acceleration", "jerk")
-"""Names of the derivatives."""

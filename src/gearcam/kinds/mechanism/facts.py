@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.base.facts import Fact, Facts, extent
 from gearcam.base.numerals import formatted
-from gearcam.kinds.mechanism.build import RATES
+from gearcam.kinds.mechanism.outputs import RATES
 from gearcam.linkages.chain import HoistChain, roots_in
 from gearcam.linkages.grashof import FourBarLengths, grashof
 
@@ -188,7 +188,7 @@ def _output(result: MechanismResult, one: Output, number: int) -> Tree:
 def _peaks(result: MechanismResult, one: Output, *, shown: bool = False) -> Tree:
     """Return the derivatives of an output furthest from 0; the velocity may be shown."""
     measures: TrackMeasures = result.measures[one.stem]
-    speed, unit, tree = result.design.drive[0].speed, one.rate_unit, {}
+    speed, unit, tree = result.speed, one.rate_unit, {}
     for order, word in enumerate(RATES, start=1):
         peak, power = measures.size(order), order if order > 1 else ""
         seen = shown and order == 1
@@ -236,7 +236,7 @@ def _fitted(fit: LineFit | CircleFit) -> Tree:
 
 
 def _intervals(result: MechanismResult) -> list[Tree] | None:
-    speed = result.design.drive[0].speed
+    speed = result.speed
     return [
         {
             "on": one.on,

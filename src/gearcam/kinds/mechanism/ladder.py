@@ -12,6 +12,7 @@ from gearcam.kinds.mechanism.traces import distances, path_within
 from gearcam.results.ladders import (
     CHORD_ORDER,
     ROUNDING,
+    SHARES,
     Ladder,
     Ladders,
     tolerances_around,
@@ -20,9 +21,6 @@ from gearcam.results.ladders import (
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.build import MechanismResult
     from gearcam.numeric.arrays import Array, Plane
-
-_SHARES: Final = np.array([1, 3, 5, 7, 8, 9, 11, 13, 15]) / 16.0
-"""Relative places on a chord at which its distance from the path is measured."""
 
 
 def _path(result: MechanismResult) -> Ladder:
@@ -43,7 +41,7 @@ def _path(result: MechanismResult) -> Ladder:
 
     def measure(made: tuple[Array, Plane]) -> tuple[float, int]:
         q, points = made
-        inner = place((q[:-1] + np.outer(_SHARES, np.diff(q))).ravel()).reshape(len(_SHARES), -1)
+        inner = place((q[:-1] + np.outer(SHARES, np.diff(q))).ravel()).reshape(len(SHARES), -1)
         return float(distances(inner, points[:-1], points[1:]).max()), len(q)
 
     own = result.design.output.chord_tolerance or CHORDS

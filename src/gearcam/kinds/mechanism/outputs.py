@@ -24,6 +24,9 @@ UNKNOWN: Final = "nothing moves by this name"
 AMOUNTS: Final = {"interval": "travel", "dwell": "within"}
 """The amount that a table about one output gives."""
 
+RATES: Final = ("velocity", "acceleration", "jerk")
+"""Names of the derivatives."""
+
 
 class Output(NamedTuple):
     """A quantity whose motion is asked for.

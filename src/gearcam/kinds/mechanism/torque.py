@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
@@ -16,7 +15,6 @@ from gearcam.base.findings import limit_of, run_checks
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import TORQUE as NEWTON_METRES
 from gearcam.kinds.mechanism.loaded import work_of
-from gearcam.kinds.mechanism.tables import CompareSpec
 from gearcam.kinds.mechanism.torque_checks import TORQUE, DriverEffort
 from gearcam.kinds.mechanism.wheel_masses import BODY
 from gearcam.linkages.work import GRAVITY, PARTS, SPRINGS, MovedMass
@@ -135,7 +133,7 @@ def study_torque(result: MechanismResult, study: Study, progress: Progress | Non
         columns |= {one.column: one.values for one in shafts}
         effort = _effort(result, work, beside)
         found = run_checks(TORQUE, effort, result.design.limits)
-    speed = result.design.drive[0].speed
+    speed = result.speed
     if speed is not None:
         columns["power_w"] = columns["torque_nm"] * speed
     return StudyResult(
@@ -151,12 +149,8 @@ def study_torque(result: MechanismResult, study: Study, progress: Progress | Non
 
 def _compared(result: MechanismResult) -> Mapping[str, MechanismResult]:
     """Return the same mechanism behind other drives; behind a pair one that turns evenly too."""
-    if result.design.compare or result.design.drive[0].pair is None:
-        return result.compared
-    even = CompareSpec(name=EVEN, even=True)
-    made = type(result)(replace(result.design, compare=(even,), examined=True), result.tolerances)
-    vars(made)["drives"] = result.drives
-    return made.compared
+    even = None if result.design.compare else result.without_pair
+    return result.compared if even is None else {EVEN: even}
 
 
 def _places(result: MechanismResult, work: VirtualWork) -> Array:
@@ -276,7 +270,7 @@ def _facts(
     shafts: list[ShaftLoad],
 ) -> Tree:
     """Return the facts of the study."""
-    speed = result.design.drive[0].speed
+    speed = result.speed
     per = "cycle" if work.linkage.closed else "range"
     tree: Tree = {
         **_range(result, work, "moment of the driver"),
@@ -337,7 +331,7 @@ def _assumptions(result: MechanismResult, work: VirtualWork) -> str:
     names = ", ".join(name.removesuffix(BODY) for name in heavy)
     words = [
         "no friction",
-        "the driver turns evenly" if result.design.drive[0].speed else "at rest, without inertia",
+        "the driver turns evenly" if result.speed else "at rest, without inertia",
         f"masses of {names}" if names else "no masses",
         "gravity" if any(one.part == GRAVITY for one in work.efforts) else "no gravity",
     ]
