@@ -28,7 +28,7 @@ _JUMP, _NOISE = 1e-7, 1e-9
 """Jump of a derivative, as a share of its largest value and in mm or rad, above rounding."""
 
 _WORSE: Final = 1.01
-"""Factor from which a larger acceleration is told."""
+"""Factor above which a larger acceleration is reported."""
 
 
 _NONE: Final = 1e-9

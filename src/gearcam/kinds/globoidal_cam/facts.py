@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from gearcam.base.facts import Fact, Facts
 from gearcam.base.findings import limit_of
+from gearcam.kinds.gridded import solid_facts
 from gearcam.spatial.globoidal_checks import KIND
 from gearcam.spatial.globoidal_surface import outer_radius
 
@@ -23,7 +24,7 @@ def facts(result: GloboidalCamResult) -> Facts:
         "indexer": _indexer(result),
         "motion": _motion(result),
         "cam": _cam(result),
-        "solid": _solid(result),
+        "solid": solid_facts(result),
         "accuracy": _accuracy(result),
     }
     headline = ("indexer.stops", "indexer.index_deg", "cam.center_distance_mm")
@@ -109,20 +110,6 @@ def _largest(cam: GloboidalCam) -> Fact | None:
         return None
     value = spot.value - 0.5 * cam.clearance
     return Fact(value, "largest roller radius without undercut", place=spot.place)
-
-
-def _solid(result: GloboidalCamResult) -> Tree | None:
-    """Return the volume, and with a density the mass, where files or a density ask for them."""
-    density = result.design.blank.density
-    if not (result.solid_asked or density):
-        return None
-    volume, error = result.volume
-    return {
-        "volume_mm3": volume,
-        "volume_error_mm3": error,
-        "triangles": len(result.mesh.triangles),
-        "mass_kg": None if density is None else Fact(1e-9 * density * volume, "mass", shown=True),
-    }
 
 
 def _accuracy(result: GloboidalCamResult) -> Tree | None:

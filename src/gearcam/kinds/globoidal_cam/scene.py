@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from gearcam.kinds.globoidal_cam.build import CAM, TURRET
-from gearcam.kinds.globoidal_cam.charts import DRIVER
 from gearcam.kinds.globoidal_cam.drawn import center, grooves, paths, rollers, sheet
+from gearcam.kinds.gridded_charts import DRIVER
 from gearcam.laws.phases_of_lift import TURN
 from gearcam.numeric.pose import Pose, SpacePose
 from gearcam.pictures.scenes import PLACES, MovingBody, Scene

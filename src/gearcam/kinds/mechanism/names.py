@@ -250,7 +250,7 @@ def _not_comparable(found: Examined) -> Iterator[Fault]:
             continue
         if one.even:
             if master.pair is None:
-                what = "has nothing to stand in the place of: the first drive is no pair"
+                what = "cannot replace the first drive, which is not a pair"
                 yield Fault(("compare", number, "even"), what, True, "where a pair is the master")
             continue
         key = "pair" if one.pair is not None else "cam"

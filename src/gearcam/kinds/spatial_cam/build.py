@@ -6,29 +6,27 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.base.errors import beyond_limit
-from gearcam.base.findings import Finding, in_order, run_checks
+from gearcam.base.findings import Finding
 from gearcam.base.numerals import formatted
 from gearcam.kinds.cam.public import lift_program
-from gearcam.kinds.shared import solved_file, turn_in_steps
+from gearcam.kinds.gridded import ROUND, SAGITTA, STEM, GriddedCam, mesh_from
+from gearcam.kinds.shared import solved_file
 from gearcam.kinds.spatial_cam.design import SpatialCamDesign
 from gearcam.laws.program import Program
 from gearcam.numeric.arguments import angles
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
 from gearcam.parts.solids import Mesh, carved
-from gearcam.results.result import Result
 from gearcam.spatial.cam import SpatialCam, SpatialWall
 from gearcam.spatial.make import make_cylinder
 from gearcam.spatial.surface import (
     Cylinder,
-    Surface,
     blank_surface,
     chord_error,
     roller_surface,
@@ -36,32 +34,18 @@ from gearcam.spatial.surface import (
 )
 
 if TYPE_CHECKING:
-    from trimesh import Trimesh
-
     from gearcam.numeric.pose import SpacePose
     from gearcam.parts.bands import BandedBody
     from gearcam.spatial.milling import RotaryPath
     from gearcam.spatial.sizing import SolvedDiameter
 
-STEM: Final = "cam"
-"""Stem of its files."""
-
-_SAGITTA: Final = 0.01
-"""Least chord error of the roller shown, mm."""
-
 _TURN: Final = 2.0 * math.pi
-
-_CARVED: Final = 240
-"""Largest number of positions of the roller that cut a solid: a few seconds."""
-
-_ROUND: Final = 4
-"""Chords of its blank for each position: the error of its volume is that of the walls then."""
 
 _WITNESSES: Final = ((360, 13), (720, 25))
 """Cam angles and places along the roller of two meshes that give the volume of a STEP solid."""
 
 
-class SpatialCamResult(Result):
+class SpatialCamResult(GriddedCam):
     """Result of the design of a cam in space, computed on demand.
 
     Parameters
@@ -80,8 +64,8 @@ class SpatialCamResult(Result):
     """
 
     design: SpatialCamDesign
-    stages = MappingProxyType({"program": "program", "cam": "cam", "checks": "checked"})
-    before_studies = ("program", "cam")
+    solid_files = frozenset({"stl", "3mf", "glb", "step", "report"})
+    most_carved = 240
 
     @cached_property
     def program(self) -> Program:
@@ -138,17 +122,7 @@ class SpatialCamResult(Result):
         """Findings of the checks, errors first."""
         from gearcam.spatial.checks import KIND, SOLID
 
-        cam, blank, limits = self.cam, self.blank, self.design.limits
-        with self.stage("checks"):
-            found = [*run_checks(KIND, (cam, blank), limits)]
-            if self.solid_asked and self.carved:
-                found += run_checks(SOLID, (self.solid_steps, self.chord_error), limits)
-            return in_order(found)
-
-    @property
-    def angles(self) -> Array:
-        """The cam angles of the motion's table, rad, in steps of the design, both ends."""
-        return turn_in_steps(self.design.output.motion_step)
+        return self.findings_of(KIND, SOLID, (self.cam, self.blank))
 
     def motion(self, theta: ArrayLike | None = None) -> Columns:
         """Return the motion of the follower and the pressure angles.
@@ -177,15 +151,7 @@ class SpatialCamResult(Result):
         cam, (scale, unit) = self.cam, self.lift_unit
         derivatives = self.program.derivatives(where, 3)
         columns = {"theta_deg": np.degrees(where), f"lift_{unit}": scale * derivatives[0]}
-        names = ("velocity", "acceleration", "jerk")
-        for order, name in enumerate(names, start=1):
-            per = "rad" if order == 1 else f"rad{order}"
-            columns[f"{name}_{unit}_per_{per}"] = scale * derivatives[order]
-        for order, name in enumerate(names, start=1):
-            if self.design.drive.speed is not None:
-                per = "s" if order == 1 else f"s{order}"
-                factor = scale * self.design.drive.speed**order
-                columns[f"{name}_{unit}_{per}"] = factor * derivatives[order]
+        columns |= self.rates(derivatives[1:], scale, unit)
         for word, x in zip(PLACES, (cam.inner, cam.mean_radius, cam.outer_radius), strict=True):
             at = np.full((len(where), 1), x)
             both = [cam.contact(where, at, side).pressure[:, 0] for side in cam.sides]
@@ -196,26 +162,6 @@ class SpatialCamResult(Result):
     def wall_angles(self) -> Array:
         """The cam angles of solids and of ``walls.csv``, rad."""
         return np.linspace(0.0, _TURN, self.steps, endpoint=False)
-
-    @property
-    def steps(self) -> int:
-        """Number of these angles: even, so that every second one makes a coarser solid."""
-        return 2 * math.ceil(math.pi / self.design.output.wall_step - 1e-9)
-
-    @cached_property
-    def mesh(self) -> Mesh:
-        """The cam as a closed mesh, mm."""
-        return self.mesh_of(self.solid_steps, self.design.output.wall_points)
-
-    @property
-    def carved(self) -> bool:
-        """Whether the solid is made by cutting with the roller: a wall is undercut."""
-        return self.cam.undercut
-
-    @property
-    def solid_steps(self) -> int:
-        """Number of cam angles of the solid; less where it is carved, which takes long."""
-        return min(self.steps, _CARVED) if self.carved else self.steps
 
     def mesh_of(self, steps: int, places: int) -> Mesh:
         """Return the cam as a mesh.
@@ -230,18 +176,10 @@ class SpatialCamResult(Result):
             if self.carved:
                 from gearcam.spatial.carving import roller_corners
 
-                whole = _mesh(blank_surface(cam, blank, _ROUND * steps))
+                whole = mesh_from(blank_surface(cam, blank, ROUND * steps))
                 mesh = carved(whole, roller_corners(cam, blank, steps, places))
                 return mesh.mirrored if cam.clockwise else mesh
-            return _mesh(surface(cam, blank, steps, places))
-
-    @cached_property
-    def volume(self) -> tuple[float, float]:
-        """Volume of the mesh, mm^3, and its error, from the volume of a mesh of half the steps."""
-        places = self.design.output.wall_points
-        coarse = self.mesh_of(self.solid_steps // 2, max(2, (places + 1) // 2)).volume
-        fine = self.mesh.volume
-        return fine, abs(fine - coarse) / 3.0
+            return mesh_from(surface(cam, blank, steps, places))
 
     @cached_property
     def chord_error(self) -> float:
@@ -269,11 +207,6 @@ class SpatialCamResult(Result):
         with self.stage("bands"):
             return cam_bands(self.cam, self.blank, STEM, (fine + error, abs(error)))
 
-    @property
-    def solid_asked(self) -> bool:
-        """Whether a file needs the solid."""
-        return not {"stl", "3mf", "glb", "step", "report"}.isdisjoint(self.design.output.files)
-
     @cached_property
     def rotary(self) -> RotaryPath:
         """The path of the tool on a machine with a rotary axis.
@@ -296,25 +229,13 @@ class SpatialCamResult(Result):
         """Whether a file needs the path of the tool."""
         return not {"tool-path", "gcode"}.isdisjoint(self.design.output.files)
 
-    @cached_property
-    def meshes(self) -> dict[str, Mesh]:
-        """The cam as a closed mesh of plain arrays by name, mm, as used for files."""
-        return {STEM: self.mesh}
-
-    @cached_property
-    def solids(self) -> dict[str, Trimesh]:
-        """The cam as a closed `trimesh.Trimesh` object by name, mm."""
-        from gearcam.export.mesh import trimeshes
-
-        return trimeshes(self.meshes)
-
     def standing(self, chords: float = 0.0) -> dict[str, tuple[Mesh, SpacePose]]:
         """Return cam and rollers at the angle of the design, as meshes (see `Result`)."""
         from gearcam.kinds.spatial_cam.scene import CAM, in_space
         from gearcam.parts.shapes import circle_segments
 
         size = 2.0 * self.design.follower.roller_radius
-        roller = _mesh(roller_surface(self.cam, circle_segments(size, max(chords, _SAGITTA))))
+        roller = mesh_from(roller_surface(self.cam, circle_segments(size, max(chords, SAGITTA))))
         poses = in_space(self, np.array([self.design.output.pose]))
         return {
             name: (self.mesh if name == CAM else roller, pose[0]) for name, pose in poses.items()
@@ -323,22 +244,14 @@ class SpatialCamResult(Result):
     @property
     def main_errors(self) -> Sequence[tuple[str, Sequence[str]]]:
         """Errors that users act on (see `Result`)."""
-        if not self.solid_asked:
-            return ()
-        exact = ("walls of the STEP solid, between its points", ["step_mm"])
-        return (
-            ("walls of the solid, between its points", ["chord_mm"]),
-            *([exact] if "step" in self.design.output.files else []),
-            ("volume", ["volume_mm3"]),
-        )
+        if "step" not in self.design.output.files:
+            return super().main_errors
+        walls, volume = super().main_errors
+        return walls, ("walls of the STEP solid, between its points", ["step_mm"]), volume
 
 
 PLACES: Final = ("inner", "mean", "outer")
 """Names of the roller's inner end, its middle and the outside, in columns."""
-
-
-def _mesh(made: Surface) -> Mesh:
-    return Mesh(vertices=made.vertices, triangles=made.triangles)
 
 
 def _demand_whole(wall: SpatialWall) -> None:

@@ -2,72 +2,30 @@
 
 from __future__ import annotations
 
-import math
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
-import numpy as np
-
-from gearcam.pictures.charts import Chart, Charts, Limit, Line, knot_marks
+from gearcam.kinds.gridded_charts import motion_chart, pressure_chart, spread_chart
+from gearcam.pictures.charts import Chart, Charts
 from gearcam.spatial import checks
 
 if TYPE_CHECKING:
     from gearcam.kinds.spatial_cam.build import SpatialCamResult
-    from gearcam.pictures.charts import MarkedPlace
-
-DRIVER: Final = "cam angle theta, deg"
-"""Label of the axis of cam angles."""
-
-
-def _knots(result: SpatialCamResult) -> tuple[MarkedPlace, ...]:
-    return knot_marks(np.degrees(np.asarray(result.program.knots)), 0.0, 360.0)
 
 
 def _of_lift(name: str, result: SpatialCamResult) -> Chart:
-    table = result.motion()
-    column = next(one for one in table if one.startswith(name))
-    unit = column.removeprefix(f"{name}_").replace("_per_", "/")
-    return Chart(
-        title=f"{name.capitalize()} of the follower",
-        x=DRIVER,
-        y=f"{name}, {unit}",
-        lines=(Line(label=name, x=table["theta_deg"], y=table[column]),),
-        marks=_knots(result),
-    )
+    return motion_chart(result, name, f"{name.capitalize()} of the follower")
 
 
 def _pressure(result: SpatialCamResult) -> Chart:
-    table, cam = result.motion(), result.cam
-    limit = checks.allowed_pressure(cam, result.design.limits)
     labels = {"inner": "at the roller's inner end", "mean": "in the middle", "outer": "outside"}
-    return Chart(
-        title="Pressure angle",
-        x=DRIVER,
-        y="pressure angle, deg",
-        lines=tuple(
-            Line(label=label, x=table["theta_deg"], y=table[f"pressure_angle_{word}_deg"])
-            for word, label in labels.items()
-        ),
-        limits=(Limit(label="limit", value=math.degrees(limit)),),
-        marks=_knots(result),
-    )
+    limit = checks.allowed_pressure(result.cam, result.design.limits)
+    return pressure_chart(result, "Pressure angle", labels, limit)
 
 
 def _spread(result: SpatialCamResult) -> Chart:
-    theta, cam = result.angles, result.cam
-    lines = []
-    for wall in cam.walls:
-        for label, x in (("floor", cam.floor), ("outside", cam.outer_radius)):
-            spread = wall.contact(theta, np.full((len(theta), 1), x)).spread[:, 0]
-            lines.append(Line(label=f"{wall.key} wall, {label}", x=np.degrees(theta), y=spread))
-    return Chart(
-        title="Spread of the walls: undercut below 0",
-        x=DRIVER,
-        y="spread, mm",
-        lines=tuple(lines),
-        limits=(Limit(label="undercut", value=0.0),),
-        marks=_knots(result),
-    )
+    places = {"floor": result.cam.floor, "outside": result.cam.outer_radius}
+    return spread_chart(result, "Spread of the walls: undercut below 0", places)
 
 
 CHARTS: Final[Charts] = {

@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from gearcam.base.facts import Fact, Facts, extent
+from gearcam.kinds.gridded import solid_facts
 from gearcam.spatial import checks
 from gearcam.spatial.developed import largest_in_plane
 from gearcam.spatial.guides import SwingArm
@@ -33,7 +34,7 @@ def facts(result: SpatialCamResult) -> Facts:
             ),
             "decided_by": Fact(result.solution.decided_by, "decided by", shown=True),
         },
-        "solid": _solid(result),
+        "solid": solid_facts(result),
         "tool_path": _tool_path(result),
         "accuracy": _accuracy(result),
     }
@@ -147,20 +148,6 @@ def _pressure(result: SpatialCamResult) -> Tree:
         "rise_max": largest("largest pressure angle, rise", kind="rise"),
         "return_max": largest("largest pressure angle, return", kind="return"),
         "at_mean_radius": largest("largest pressure angle at the mean radius", cam.mean_radius),
-    }
-
-
-def _solid(result: SpatialCamResult) -> Tree | None:
-    """Return the volume, and with a density the mass, where files or a density ask for them."""
-    density = result.design.blank.density
-    if not (result.solid_asked or density):
-        return None
-    volume, error = result.volume
-    return {
-        "volume_mm3": volume,
-        "volume_error_mm3": error,
-        "triangles": len(result.mesh.triangles),
-        "mass_kg": None if density is None else Fact(1e-9 * density * volume, "mass", shown=True),
     }
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from gearcam.kinds.spatial_cam.charts import DRIVER
+from gearcam.kinds.gridded_charts import DRIVER
 from gearcam.kinds.spatial_cam.drawn import centers, picture, rollers
 from gearcam.numeric.pose import Pose, SpacePose
 from gearcam.pictures.drawings import FOLLOWER

@@ -1,4 +1,4 @@
-"""What is wrong in loads, masses and springs of a mechanism is told at once, with its place."""
+"""Mistakes in loads, masses and springs of a mechanism are all reported, each with its place."""
 
 from __future__ import annotations
 

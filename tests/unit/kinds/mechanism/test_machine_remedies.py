@@ -1,4 +1,4 @@
-"""What a machine that does not close is told, what may be compared, and what a chain needs."""
+"""Messages for machines that do not close, for drives that cannot be compared, and for chains."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def test_where_one_length_cannot_do_it_two_are_named() -> None:
 def test_a_drive_without_the_shafts_of_the_first_is_not_compared() -> None:
     with pytest.raises(DesignError, match="does not have the shafts of motor: shaft"):
         FOUR_BAR.with_({"compare": [{"name": "other", "pair": PAIR}]})
-    with pytest.raises(DesignError, match="nothing to stand in the place of"):
+    with pytest.raises(DesignError, match="cannot replace the first drive, which is not a pair"):
         FOUR_BAR.with_({"compare": [{"name": "other", "even": True}]})
     both = SLIDE.with_({"compare": [{"name": "other", "pair": PAIR}]})
     assert set(gc.build(both).compared) == {"other"}

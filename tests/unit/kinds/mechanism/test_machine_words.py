@@ -1,4 +1,4 @@
-"""What is wrong with the names of a mechanism is told once, with its place and what is meant."""
+"""Each mistake in a name of a mechanism is reported once, with its place and the likely name."""
 
 from __future__ import annotations
 

@@ -1,0 +1,201 @@
+"""Results of cams whose solids are made from grids of wall points, in space."""
+
+from __future__ import annotations
+
+import math
+from abc import abstractmethod
+from functools import cached_property
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, ClassVar, Final
+
+from gearcam.base.facts import Fact
+from gearcam.base.findings import Finding, in_order, run_checks
+from gearcam.kinds.shared import turn_in_steps
+from gearcam.numeric.arrays import Array
+from gearcam.parts.solids import Mesh
+from gearcam.results.result import Result
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from numpy.typing import ArrayLike
+    from trimesh import Trimesh
+
+    from gearcam.numeric.columns import Columns
+    from gearcam.spatial.surface import Surface
+
+STEM: Final = "cam"
+"""Stem of the files of the solid."""
+
+SAGITTA: Final = 0.01
+"""Least chord error of the rollers shown, mm."""
+
+ROUND: Final = 4
+"""Chords of the blank for each position of a roller that cuts a solid: the error of its volume is
+that of the walls then."""
+
+RATES: Final = ("velocity", "acceleration", "jerk")
+"""Names of the derivatives of a motion."""
+
+
+class GriddedCam(Result):
+    """Result of a cam in space, computed on demand: what all have alike.
+
+    Parameters
+    ----------
+    design : Design
+        With ``output.motion_step``, ``output.wall_step`` and ``output.wall_points``.
+    tolerances : Tolerances
+        Internal accuracy.
+    """
+
+    design: Any
+    stages = MappingProxyType({"program": "program", "cam": "cam", "checks": "checked"})
+    before_studies = ("program", "cam")
+
+    solid_files: ClassVar[frozenset[str]]
+    """Files that need the solid."""
+    most_carved: ClassVar[int]
+    """Largest number of cam angles at which rollers cut a solid: a few seconds."""
+
+    program: Any
+    cam: Any
+
+    @abstractmethod
+    def motion(self, theta: ArrayLike | None = None) -> Columns:
+        """Return the motion at cam angles `theta`, rad; by default those of ``motion.csv``."""
+
+    @cached_property
+    @abstractmethod
+    def chord_error(self) -> float:
+        """Largest distance of the walls from the mesh, mm; of a carved one its scallops."""
+
+    @abstractmethod
+    def mesh_of(self, steps: int, places: int) -> Mesh:
+        """Return the cam as a mesh.
+
+        Parameters
+        ----------
+        steps, places : int
+            Numbers of cam angles in a turn, and of places along the roller.
+        """
+
+    def findings_of(self, kind: str, solid: str, subject: Any) -> tuple[Finding, ...]:
+        """Return the findings of the checks, errors first.
+
+        Parameters
+        ----------
+        kind, solid : str
+            The groups of checks of the cam, and of its solid where it is carved.
+        subject : object
+            What the first group looks at.
+        """
+        limits = self.design.limits
+        with self.stage("checks"):
+            found = [*run_checks(kind, subject, limits)]
+            if self.solid_asked and self.carved:
+                found += run_checks(solid, (self.solid_steps, self.chord_error), limits)
+            return in_order(found)
+
+    @property
+    def angles(self) -> Array:
+        """The cam angles of the motion's table, rad, in steps of the design, both ends."""
+        return turn_in_steps(self.design.output.motion_step)
+
+    def rates(self, derivatives: Sequence[Array], scale: float, unit: str) -> dict[str, Array]:
+        """Return the columns of the derivatives of a motion, by cam angle and by time.
+
+        Parameters
+        ----------
+        derivatives : sequence of (n,) arrays
+            The first three, in mm or rad.
+        scale : float
+            Factor to the unit of the table.
+        unit : str
+            That unit.
+        """
+        speed = self.design.drive.speed
+        powers = [(name, k, k if k > 1 else "") for k, name in enumerate(RATES, start=1)]
+        columns = {
+            f"{name}_{unit}_per_rad{power}": scale * derivatives[k - 1] for name, k, power in powers
+        }
+        if speed is not None:
+            columns |= {
+                f"{name}_{unit}_s{power}": scale * speed**k * derivatives[k - 1]
+                for name, k, power in powers
+            }
+        return columns
+
+    @property
+    def steps(self) -> int:
+        """Number of cam angles of a turn in solids: even, so that half of them is one too."""
+        return 2 * math.ceil(math.pi / self.design.output.wall_step - 1e-9)
+
+    @property
+    def carved(self) -> bool:
+        """Whether the solid is made by cutting with rollers: a wall is undercut."""
+        return self.cam.undercut
+
+    @property
+    def solid_steps(self) -> int:
+        """Number of cam angles of the solid; less where it is carved, which takes long."""
+        return min(self.steps, self.most_carved) if self.carved else self.steps
+
+    @cached_property
+    def mesh(self) -> Mesh:
+        """The cam as a closed mesh, mm."""
+        return self.mesh_of(self.solid_steps, self.design.output.wall_points)
+
+    @cached_property
+    def volume(self) -> tuple[float, float]:
+        """Volume of the mesh, mm^3, and its error, from the volume of a mesh of half the steps."""
+        places = self.design.output.wall_points
+        coarse = self.mesh_of(self.solid_steps // 2, max(2, (places + 1) // 2)).volume
+        fine = self.mesh.volume
+        return fine, abs(fine - coarse) / 3.0
+
+    @property
+    def solid_asked(self) -> bool:
+        """Whether a file needs the solid."""
+        return not self.solid_files.isdisjoint(self.design.output.files)
+
+    @cached_property
+    def meshes(self) -> Mapping[str, Mesh]:
+        """The cam as a closed mesh of plain arrays by name, mm, as used for files."""
+        return {STEM: self.mesh}
+
+    @cached_property
+    def solids(self) -> dict[str, Trimesh]:
+        """The cam as a closed `trimesh.Trimesh` object by name, mm."""
+        from gearcam.export.mesh import trimeshes
+
+        return trimeshes(self.meshes)
+
+    @property
+    def main_errors(self) -> Sequence[tuple[str, Sequence[str]]]:
+        """Errors that users act on (see `Result`)."""
+        if not self.solid_asked:
+            return ()
+        return (
+            ("walls of the solid, between its points", ["chord_mm"]),
+            ("volume", ["volume_mm3"]),
+        )
+
+
+def mesh_from(made: Surface) -> Mesh:
+    """Return the mesh of a surface that was `made`."""
+    return Mesh(vertices=made.vertices, triangles=made.triangles)
+
+
+def solid_facts(result: GriddedCam) -> dict[str, Any] | None:
+    """Return volume and mass of a `result`, where files or a density ask for them."""
+    density = result.design.blank.density
+    if not (result.solid_asked or density):
+        return None
+    volume, error = result.volume
+    return {
+        "volume_mm3": volume,
+        "volume_error_mm3": error,
+        "triangles": len(result.mesh.triangles),
+        "mass_kg": None if density is None else Fact(1e-9 * density * volume, "mass", shown=True),
+    }

@@ -1,0 +1,106 @@
+"""The charts that cams in space have alike, over the cam angle."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from gearcam.pictures.charts import Chart, Limit, Line, knot_marks
+
+if TYPE_CHECKING:
+    from gearcam.kinds.gridded import GriddedCam
+    from gearcam.pictures.charts import MarkedPlace
+
+DRIVER: Final = "cam angle theta, deg"
+"""Label of the axis of cam angles."""
+
+
+def _knots(result: GriddedCam) -> tuple[MarkedPlace, ...]:
+    return knot_marks(np.degrees(np.asarray(result.program.knots)), 0.0, 360.0)
+
+
+def motion_chart(result: GriddedCam, name: str, title: str, called: str = "") -> Chart:
+    """Return the chart of a column of the motion.
+
+    Parameters
+    ----------
+    result : GriddedCam
+        The cam.
+    name : str
+        Beginning of the column's name.
+    title : str
+        Title.
+    called : str
+        What stands on the axis, if not the name.
+    """
+    table = result.motion()
+    column = next(one for one in table if one.startswith(name))
+    unit = column.removeprefix(f"{name}_").replace("_per_", "/")
+    return Chart(
+        title=title,
+        x=DRIVER,
+        y=f"{called or name}, {unit}",
+        lines=(Line(label=name, x=table["theta_deg"], y=table[column]),),
+        marks=_knots(result),
+    )
+
+
+def pressure_chart(
+    result: GriddedCam, title: str, labels: Mapping[str, str], limit: float
+) -> Chart:
+    """Return the chart of the pressure angle at places along the roller.
+
+    Parameters
+    ----------
+    result : GriddedCam
+        The cam.
+    title : str
+        Title.
+    labels : mapping of str to str
+        What the places are called, by their names in columns.
+    limit : float, rad
+        The largest that is allowed.
+    """
+    table = result.motion()
+    return Chart(
+        title=title,
+        x=DRIVER,
+        y="pressure angle, deg",
+        lines=tuple(
+            Line(label=label, x=table["theta_deg"], y=table[f"pressure_angle_{word}_deg"])
+            for word, label in labels.items()
+        ),
+        limits=(Limit(label="limit", value=math.degrees(limit)),),
+        marks=_knots(result),
+    )
+
+
+def spread_chart(result: GriddedCam, title: str, places: Mapping[str, float]) -> Chart:
+    """Return the chart of how much the walls spread.
+
+    Parameters
+    ----------
+    result : GriddedCam
+        The cam.
+    title : str
+        Title.
+    places : mapping of str to float, mm
+        Places along the roller by what they are called.
+    """
+    theta = result.angles
+    lines = []
+    for wall in result.cam.walls:
+        for label, x in places.items():
+            spread = wall.contact(theta, np.full((len(theta), 1), x)).spread[:, 0]
+            lines.append(Line(label=f"{wall.key} wall, {label}", x=np.degrees(theta), y=spread))
+    return Chart(
+        title=title,
+        x=DRIVER,
+        y="spread, mm",
+        lines=tuple(lines),
+        limits=(Limit(label="undercut", value=0.0),),
+        marks=_knots(result),
+    )
