@@ -142,33 +142,32 @@ def extremes_of(track: Law, knots: Array, highest: int = HIGHEST) -> tuple[Extre
     at_knot = np.abs(places - knot) <= _NEAR * np.diff(grid)[cell - 1]
     places[at_knot] = knot[at_knot]
     free = np.flatnonzero(~at_knot)
-    places[free] = _polished(derivatives, grid, which[free], places[free])
     if free.size:
-        values[free] = derivatives(places[free])[which[free], np.arange(free.size)]
+        places[free], values[free] = _polished(derivatives, grid, which[free], places[free])
     return tuple((places[which == k], values[which == k]) for k in range(highest + 1))
 
 
 def _polished(
     derivatives: Callable[[Array], Array], grid: Array, order: Ints, places: Array
-) -> Array:
-    """Return the roots of the derivatives after given orders that are next to places."""
+) -> Extremes:
+    """Return the extremes of given orders next to places."""
     cell = np.clip(np.searchsorted(grid, places), 1, len(grid) - 1)
     reach = _ROUGH * np.diff(grid).min()
     low = np.maximum(places - reach, grid[cell - 1])
     high = np.minimum(places + reach, grid[cell])
+    own = np.arange(places.size)
 
-    def slope(q: Array, own: Ints) -> Array:
-        return derivatives(q)[order[own] + 1, np.arange(own.size)]
+    def at(q: Array) -> tuple[Array, Array]:
+        found = derivatives(q)
+        return found[order, own], found[order + 1, own]
 
-    every = np.arange(places.size)
-    ends = slope(low, every), slope(high, every)
-    own = np.flatnonzero(ends[0] * ends[1] < 0.0)
-    found = places.copy()
-    if own.size:
-        known = ends[0][own], ends[1][own]
-        tolerance = _FOUND * (grid[-1] - grid[0])
-        found[own] = bracketed_root(lambda q: slope(q, own), low[own], high[own], tolerance, known)
-    return found
+    (_, before), (_, after) = at(low), at(high)
+    crossed = before * after < 0.0
+    # so near to each other they are joined by a straight line: one more step leaves rounding
+    slope = np.where(crossed, (after - before) / (high - low), np.inf)
+    found = np.where(crossed, low - before / slope, places)
+    values, rest = at(found)
+    return np.clip(found - rest / slope, low, high), values
 
 
 @dataclass(frozen=True, eq=False)

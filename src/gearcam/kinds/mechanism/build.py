@@ -34,7 +34,7 @@ from gearcam.kinds.mechanism.outputs import (
 from gearcam.linkages import checks
 from gearcam.linkages.dwells import DriverRange, ShortRangeError, last_travel, longest_dwell
 from gearcam.linkages.linkage import Linkage
-from gearcam.linkages.measures import TrackMeasures
+from gearcam.linkages.measures import HIGHEST, TrackMeasures
 from gearcam.linkages.paths import PointPath
 from gearcam.linkages.transmission import Transmission, transmissions
 from gearcam.numeric.arguments import angles
@@ -277,12 +277,14 @@ class MechanismResult(Result):
     @property
     def _to_check(self) -> checks.CheckedMachine:
         even = self.without_pair if self.linkage.closed else None
+        # of one that is not compared only the accelerations are looked at
+        beside = {} if even is None else even.measures if self.design.compare else even.measured(2)
         return checks.CheckedMachine(
             self.linkage,
             self.measures,
             {one.stem: one.rate_unit for one in self.outputs},
             self.transmissions,
-            {} if even is None else even.measures,
+            beside,
         )
 
     @cached_property
@@ -309,9 +311,13 @@ class MechanismResult(Result):
     @cached_property
     def measures(self) -> dict[str, TrackMeasures]:
         """Extremes, dead centres and the like of each output, by the beginning of its columns."""
+        return self.measured(HIGHEST)
+
+    def measured(self, highest: int) -> dict[str, TrackMeasures]:
+        """Return the `measures` with extremes of derivatives up to the `highest` only."""
         linkage = self.linkage
         return {
-            one.stem: TrackMeasures(self.track(one), linkage.knots, linkage.closed)
+            one.stem: TrackMeasures(self.track(one), linkage.knots, linkage.closed, highest)
             for one in self.outputs
         }
 
