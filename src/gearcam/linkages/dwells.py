@@ -26,6 +26,9 @@ _TOUCHING: Final = 1e-9
 _ROUNDING: Final = 1e-12
 """Share of a turn by which a range that begins with it may begin before it."""
 
+_DIGITS: Final = 9
+"""Digits, of rad, in which the beginnings of two ranges that are one agree."""
+
 _PLACES: Final = 33
 """Values at which the slopes at both ends of a passage are compared."""
 
@@ -120,8 +123,10 @@ def longest_dwell(measures: TrackMeasures, amount: float) -> DriverRange:
     return _in_turn(measures, *max(ends, key=lambda one: one[1] - one[0]))
 
 
-def last_travel(measures: TrackMeasures, travel: float, *, outer: bool = True) -> DriverRange:
-    """Return the range of the driver over the last bit of travel before a dead centre.
+def last_travels(
+    measures: TrackMeasures, travel: float, *, outer: bool = True
+) -> tuple[DriverRange, ...]:
+    """Return the ranges of the driver over the last bit of travel before a dead centre.
 
     Parameters
     ----------
@@ -134,27 +139,35 @@ def last_travel(measures: TrackMeasures, travel: float, *, outer: bool = True) -
 
     Returns
     -------
-    DriverRange
-        Its end is where the output arrives at the dead centre.
+    tuple of DriverRange
+        One for each time that the output arrives at the dead centre, where the range ends.
 
     Raises
     ------
     ValueError
         If the travel is not between 0 and all of it.
     ShortRangeError
-        If the range begins within it.
+        If the driver's range begins within each of them.
     """
     if not 0.0 < travel < measures.stroke:
         raise ValueError(f"travel {travel:g}: must be between 0 and {measures.stroke:g}")
     top = measures.largest() if outer else measures.least()
     places, values = measures.nodes
-    node = min(_own(measures), key=lambda one: abs(places[one] - top.place))
     level = top.value - travel if outer else top.value + travel
     band = (level, np.inf) if outer else (-np.inf, level)
-    begin = _leaves(measures, node, -1, band)
-    if begin == places[0] and values[0] != level:
-        raise ShortRangeError(travel, float(np.abs(values[: node + 1] - top.value).max()))
-    return _in_turn(measures, float(begin), float(places[node]))
+    there = np.abs(values - top.value) <= _TOUCHING * measures.stroke
+    nodes, found = [node for node in _own(measures) if there[node]], dict[float, DriverRange]()
+    for node in nodes:
+        begin = _leaves(measures, node, -1, band)
+        if begin == places[0] and values[0] != level:
+            continue
+        one = _in_turn(measures, begin, float(places[node]))
+        # where it rests, and at both ends of a turn, it has arrived before
+        known = found.setdefault(round(one.begin, _DIGITS), one)
+        found[round(one.begin, _DIGITS)] = min(known, one, key=lambda two: two.end)
+    if not found:
+        raise ShortRangeError(travel, float(np.abs(values[: nodes[-1] + 1] - top.value).max()))
+    return tuple(found.values())
 
 
 def _in_turn(measures: TrackMeasures, begin: float, end: float) -> DriverRange:

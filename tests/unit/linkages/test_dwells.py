@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from gearcam.linkages.dwells import last_travel, longest_dwell
+from gearcam.linkages.dwells import last_travels, longest_dwell
 from gearcam.linkages.elements import Law
 from gearcam.linkages.measures import TrackMeasures
 from gearcam.numeric import jets
@@ -142,31 +142,45 @@ def _last_22_deg() -> float:
 )
 def test_the_forming_interval_of_the_nail_machine(pair: tuple[Law, Array], interval: float) -> None:
     slide = measures(nail_machine(*pair), "slide.guide2")
-    found = last_travel(slide, _last_22_deg())
+    (found,) = last_travels(slide, _last_22_deg())
     assert np.degrees(found.length) == pytest.approx(interval, abs=2e-8)
 
 
 def test_the_load_range_before_the_outer_dead_center() -> None:
     slide = measures(nail_machine(*CUBIC), "slide.guide2")
-    found = np.degrees(last_travel(slide, 4.0))
+    found = np.degrees(last_travels(slide, 4.0)[0])
     assert found == pytest.approx([179.279168440, 204.644514019], abs=1e-9)
 
 
 def test_a_travel_before_the_inner_dead_center_reaches_over_the_turn() -> None:
     slide = measures(nail_machine(even, TURN), "slide.guide2")
-    found = last_travel(slide, 4.0, outer=False)
+    (found,) = last_travels(slide, 4.0, outer=False)
     assert found.end == pytest.approx(2.0 * np.pi, abs=1e-14)
     assert slide.at(np.array([found.begin]), 0).c[0] == pytest.approx([604.0], abs=1e-11)
     assert 0.0 < found.begin < found.end
 
 
+def test_each_arrival_at_a_dead_center_has_its_last_travel() -> None:
+    twice = np.array([0.0, 1.0])
+    sine, cosine = _waves(twice * 0.0, twice), _waves(twice, twice * 0.0)
+    found = np.degrees(np.array(last_travels(TrackMeasures(sine, TURN), 0.5)))
+    np.testing.assert_allclose(found, [[15.0, 45.0], [195.0, 225.0]], atol=1e-10)
+    # one is over the end of the turn, which two extremes stand for
+    found = np.degrees(np.array(last_travels(TrackMeasures(cosine, TURN), 0.5)))
+    np.testing.assert_allclose(found, [[330.0, 360.0], [150.0, 180.0]], atol=1e-10)
+    part = TrackMeasures(sine, np.radians([30.0, 250.0]), closed=False)
+    np.testing.assert_allclose(
+        np.degrees(np.array(last_travels(part, 0.5))), [[195.0, 225.0]], atol=1e-10
+    )
+
+
 def test_travels_that_cannot_be_are_refused() -> None:
     wave = _waves(NONE, ONE)
     with pytest.raises(ValueError, match=r"travel 2\.5: must be between 0 and 2$"):
-        last_travel(TrackMeasures(wave, TURN), 2.5)
+        last_travels(TrackMeasures(wave, TURN), 2.5)
     part = TrackMeasures(wave, np.array([1.0, 3.0]), closed=False)
     with pytest.raises(ValueError, match=r"travel 0\.5: the range has 0\.158\d* of it before"):
-        last_travel(part, 0.5)
+        last_travels(part, 0.5)
 
 
 def test_a_knot_on_a_slope_begins_no_dwell() -> None:

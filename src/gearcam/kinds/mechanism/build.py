@@ -32,7 +32,7 @@ from gearcam.kinds.mechanism.outputs import (
     unknown_hint,
 )
 from gearcam.linkages import checks
-from gearcam.linkages.dwells import DriverRange, ShortRangeError, last_travel, longest_dwell
+from gearcam.linkages.dwells import DriverRange, ShortRangeError, last_travels, longest_dwell
 from gearcam.linkages.linkage import Linkage
 from gearcam.linkages.measures import HIGHEST, TrackMeasures
 from gearcam.linkages.paths import PointPath
@@ -361,7 +361,7 @@ class MechanismResult(Result):
                 )
             if travel < most:
                 try:
-                    found.append(last_travel(measures, travel, outer=one.before == "outer"))
+                    found.append(last_travels(measures, travel, outer=one.before == "outer")[0])
                     continue
                 except ShortRangeError as error:
                     what = f"{one.on} does not travel as far before its {one.before} dead centre"

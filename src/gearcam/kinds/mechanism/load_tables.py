@@ -121,7 +121,7 @@ class MachineLoad(ShortRepr, WrittenLoad):
         doc="direction of the force on a point, in the machine", example=-90
     )
     start: float | None = _angle(
-        doc="the master's angle at which the load begins", word="from", example=150
+        doc="the master's angle at which the load begins, in each turn", word="from", example=150
     )
     end: float | None = _angle(doc="where it ends", word="to", example=200)
     travel: float | None = param(
@@ -130,7 +130,7 @@ class MachineLoad(ShortRepr, WrittenLoad):
         gt=0,
         le=LONGEST,
         example=4,
-        doc="the load acts over this last bit of a slide's travel",
+        doc="the load acts over this last bit of a slide's travel, each time that it arrives",
     )
     before: str | None = param(
         TEXT,

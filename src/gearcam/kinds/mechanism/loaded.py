@@ -18,7 +18,7 @@ from gearcam.kinds.mechanism.load_names import pushed_in, sorts_of, unturned
 from gearcam.kinds.mechanism.load_tables import OUTER
 from gearcam.kinds.mechanism.names import MEMBER, SHAFT, WAY, moves
 from gearcam.kinds.mechanism.wheel_masses import wheel_masses
-from gearcam.linkages.dwells import ShortRangeError, last_travel
+from gearcam.linkages.dwells import ShortRangeError, last_travels
 from gearcam.linkages.elements import GROUND, Element, MemberPoint
 from gearcam.linkages.measures import TrackMeasures
 from gearcam.linkages.work import (
@@ -163,14 +163,14 @@ class _Efforts:
     def _active(self, load: MachineLoad, number: int) -> ActiveRanges | None:
         low, high = self.linkage.span
         if load.travel is not None:
-            return ActiveRanges([self._travel(load, load.travel, number)], high - low)
+            return ActiveRanges(self._travels(load, load.travel, number), high - low)
         if load.start is None or load.end is None:
             return None
-        if not self.linkage.closed:
-            return ActiveRanges([(load.start, load.end)])
-        return ActiveRanges([(load.start, load.end)], high - low if load.end > _TURN else _TURN)
+        return ActiveRanges([(load.start, load.end)], _TURN if self.linkage.closed else None)
 
-    def _travel(self, load: MachineLoad, travel: float, number: int) -> tuple[float, float]:
+    def _travels(
+        self, load: MachineLoad, travel: float, number: int
+    ) -> tuple[tuple[float, float], ...]:
         way = self._way(load.on)
         name = way.slide if isinstance(way, PointWay) else load.on
         track = partial(self.linkage.real_track, name)
@@ -180,7 +180,7 @@ class _Efforts:
             what = f"{load.on} has not so much travel"
             raise beyond_limit(what, where, travel, measures.stroke, unit="mm")
         try:
-            return last_travel(measures, travel, outer=load.before == OUTER)
+            return last_travels(measures, travel, outer=load.before == OUTER)
         except ShortRangeError as error:
             what = f"{load.on} has not so much travel before its {load.before} dead centre"
             note = "from_deg and to_deg, or the other dead centre"
@@ -221,15 +221,11 @@ class _Efforts:
             self.knots += self._passes(on, way)
             return lambda acting: _between(acting.place, way, table) * per
         turns = self._turns(place, number)
-        period = place[-1] - place[0]
-        self.knots += [one + turn * period for turn in turns for one in place]
-
-        def law(acting: Acting) -> Jet:
-            q = acting.angle
-            turned = np.floor((q.c[0] - place[0]) / period) if len(turns) > 1 else 0.0
-            return _between(q - turned * period, place, table) * per
-
-        return law
+        places = np.add.outer(_TURN * np.array(turns), place)
+        places[:-1, -1] = places[1:, 0]  # but for rounding
+        at, rows = places.ravel(), np.tile(table, len(turns))
+        self.knots += at.tolist()
+        return lambda acting: _between(acting.angle, at, rows) * per
 
     def _turns(self, place: Row, number: int) -> range:
         """Return the turns of the master over which a table goes; raise if it ends too early."""
@@ -298,7 +294,7 @@ class _Efforts:
         return JointDistance(self._joint(first), self._joint(second))
 
 
-def _between(x: Jet, places: Row, values: Row) -> Jet:
+def _between(x: Jet, places: Row | Array, values: Row | Array) -> Jet:
     """Return the values on straight lines between places; beyond them those at their ends."""
     at, rows = np.asarray(places, dtype=float), np.asarray(values, dtype=float)
     width, rise = np.diff(at), np.diff(rows)

@@ -244,6 +244,35 @@ class TestLoads:
         wanted = np.where(acts, -0.08 * moved("S.guide2", found)[1], 0.0)
         agree(found.columns["torque_nm"][inside], wanted[inside])
 
+    @pytest.mark.parametrize(
+        "load",
+        [
+            {"force_n": 80, "from_deg": 300, "to_deg": 400},
+            {"force_n": 80, "from_deg": 30, "to_deg": 70},
+            {"force_n": 80, "from_deg": -20, "to_deg": 70},
+            {"force_n": 80, "from_deg": 400, "to_deg": 500},
+            {"table": [40, 0, 40], "at_deg": [-90, 0, 270]},
+            {"table": [0, -90, 30, 0], "at_deg": [0, 100, 100, 360]},
+            {"force_n": 80, "travel_mm": 10, "before": "inner"},
+        ],
+        ids=lambda load: str(list(load.values())),
+    )
+    def test_each_turn_of_a_cycle_has_its_load(self, load: dict[str, Any]) -> None:
+        """A slide of no weight, which is back after two turns, changes nothing."""
+        motor = {"name": "motor", "even": True, "speed_rpm": 90}
+        slow = {"name": "slow", "slide": "20*sin(q/2)"}
+        once = torque(load=[{"on": "S", **load}])
+        twice = torque(load=[{"on": "S", **load}], drive=[motor, slow])
+        assert twice.result.linkage.span[1] == pytest.approx(4.0 * pi)
+        work = once.facts["torque.work_j"]
+        assert twice.facts["torque.work_j"] == pytest.approx(2.0 * work, rel=1e-9, abs=1e-12)
+        theta = np.arange(0.25, 360.0, 0.5)
+        single, both = (
+            np.interp(at, one.columns["theta_deg"], one.columns["torque_nm"])
+            for one, at in ((once, theta), (twice, np.concatenate([theta, theta + 360.0])))
+        )
+        np.testing.assert_allclose(both.reshape(2, -1), [single, single], atol=2e-2)
+
     def test_before_the_inner_dead_center(self) -> None:
         load = {"on": "S", "force_n": 80, "travel_mm": 10, "before": "inner"}
         found = torque(load=[load])
