@@ -10,10 +10,13 @@ from __future__ import annotations
 import importlib
 import math
 import pkgutil
+import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cache
-from typing import Any, Final, Protocol
+from functools import cache, cached_property
+from inspect import get_annotations
+from types import SimpleNamespace
+from typing import Any, Final, Protocol, get_args, get_type_hints
 
 from gearcam.base.findings import CHECKS
 from gearcam.base.rules import Rule
@@ -183,19 +186,16 @@ class DesignKind:
         Short description.
     design : type
         Class of its designs: a frozen dataclass with ``name``, ``source``, ``limits``, the result
-        of the main part's ``examine`` and a field for each table.
+        of the main part's ``examine`` and a field for each table, whose type is the class of the
+        table, or a tuple of any number of them if a file may give it several times.
     result : callable
         ``result(design, tolerances)`` returns its `gearcam.results.result.Result`.
     main : Main, optional
         The main part.
-    tables : mapping of str to callable
-        Functions that return the tables with fixed keys, by title, which is also the field name.
     variants : Variants, optional
         What decides on the keys of some tables.
     required : tuple of str
         Titles of tables that a file must have.
-    several : tuple of str
-        Titles of tables that a file gives once or more, in double brackets; a tuple in the design.
     rules : tuple of Rule
         Rules between tables; those between the keys of a table belong to its class.
     problems : callable
@@ -224,10 +224,8 @@ class DesignKind:
     design: type
     result: Callable[..., Any]
     main: Main | None = None
-    tables: Mapping[str, Callable[[], Table]]
     variants: Variants | None = None
     required: tuple[str, ...]
-    several: tuple[str, ...] = ()
     rules: tuple[Rule, ...] = ()
     problems: Callable[[Mapping[str, Any], Examined], Iterable[Fault]] = lambda *_: ()
     later: Callable[[Mapping[str, Any]], Fault | None] = lambda _: None
@@ -241,6 +239,30 @@ class DesignKind:
 
     def __repr__(self) -> str:
         return f'<{type(self).__name__} "{self.name}">'
+
+    @cached_property
+    def _fields(self) -> dict[str, Any]:
+        """The types of the fields of tables, as they are written in the class of designs."""
+        main = self.main.title if self.main else ""
+        return {key: hint for key, hint in get_annotations(self.design).items() if key != main}
+
+    @cached_property
+    def several(self) -> tuple[str, ...]:
+        """Titles of tables that a file gives once or more, in double brackets."""
+        return tuple(key for key, hint in self._fields.items() if str(hint).startswith("tuple["))
+
+    @cached_property
+    def tables(self) -> Mapping[str, type]:
+        """The classes of the tables, by title; of those that depend on a key the default ones."""
+        usual = self.variants.entries[self.variants.default].tables if self.variants else {}
+        # without those of variants: what they may be is not imported where the design is defined
+        rest = {title: hint for title, hint in self._fields.items() if title not in usual}
+        scope = vars(sys.modules[self.design.__module__])
+        found = get_type_hints(SimpleNamespace(__annotations__=rest), scope)
+        own = {
+            key: get_args(hint)[0] if key in self.several else hint for key, hint in found.items()
+        }
+        return {title: usual.get(title) or own[title] for title in self._fields}
 
     @property
     def titles(self) -> tuple[str, ...]:
@@ -260,7 +282,11 @@ class DesignKind:
 
     def table(self, title: str) -> Table:
         """Return a table by its title: one of `tables`, or ``limits``."""
-        return self._limits() if title == "limits" else self.tables[title]()
+        if title == "limits":
+            return self._limits()
+        if self.variants and title in self.variants.titles:
+            return self.variants.union(title)
+        return table_of(title, self.tables[title])
 
     def table_in(self, document: Mapping[str, Any], title: str) -> Table:
         """Return a table by its title, with the keys that it may have in a `document`."""

@@ -8,7 +8,7 @@ to x; the origin is the shaft of the crank.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import cached_property, partial
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -21,7 +21,6 @@ from gearcam.base.quantities import ANGLE, LENGTH, nested, param
 from gearcam.base.rules import exactly_one
 from gearcam.designs.design import Design
 from gearcam.designs.outputs import OutputSpec, files_param, studies_param
-from gearcam.designs.table import table_of
 from gearcam.export.table import table_bytes
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.pose import Pose
@@ -283,13 +282,6 @@ KIND = Kind(
     doc="a slider-crank behind a gear pair or a cam",
     design=SliderCrankDesign,
     result=SliderCrank,
-    tables={
-        "drive": partial(table_of, "drive", DriveSpec),
-        "crank": partial(table_of, "crank", CrankSpec),
-        "rod": partial(table_of, "rod", RodSpec),
-        "output": partial(table_of, "output", SliderOutput),
-        "stroke": partial(table_of, "stroke", StrokeSpec),
-    },
     required=("drive", "crank", "rod"),
     formats=FORMATS,
     example={

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import cached_property, partial
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -14,7 +14,6 @@ from gearcam.base.findings import Finding
 from gearcam.base.quantities import LENGTH, NUMBER, param
 from gearcam.designs.design import Design
 from gearcam.designs.outputs import OutputSpec, files_param, studies_param
-from gearcam.designs.table import table_of
 from gearcam.export.table import outline_bytes
 from gearcam.pictures.charts import Chart, Line
 from gearcam.results.kind import Kind, Study
@@ -123,11 +122,6 @@ KIND = Kind(
     doc="a spacer, a flat ring",
     design=SpacerDesign,
     result=Spacer,
-    tables={
-        "ring": partial(table_of, "ring", RingSpec),
-        "output": partial(table_of, "output", SpacerOutput),
-        "weight": partial(table_of, "weight", WeightSpec),
-    },
     required=("ring",),
     formats=FORMATS,
     example={"ring": {"bore_mm": 20}},

@@ -291,12 +291,7 @@ KIND = Kind(
     doc="a train",
     design=TrainDesign,
     result=Result,
-    tables={
-        "drive": partial(table_of, "drive", Drive),
-        "output": partial(table_of, "output", OutputSpec),
-    },
     required=("drive",),
-    several=("drive",),
     formats=("csv",),
     example={"drive": [{"of": PAIR}, {"of": PAIR, "turns": 2}]},
 )

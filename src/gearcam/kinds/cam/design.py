@@ -59,12 +59,12 @@ class CamDesign(Design):
         Form, size, direction of turning.
     drive : DriveSpec or SlideDriveSpec
         Speed of the cam.
+    load : sequence of LoadSpec or SlideLoadSpec
+        What the follower works against.
     blank : CamBlank, PlateBlank or WheelBlank
         Bore, hub, holes, density.
     output : CamOutputSpec
         Files and their tolerance.
-    load : sequence of LoadSpec or SlideLoadSpec
-        What the follower works against.
     spring : sequence of SpringSpec
         Springs that press it onto the cam.
     mass : sequence of MassSpec
@@ -108,9 +108,9 @@ class CamDesign(Design):
     follower: FollowerSpec
     cam: CamSpec
     drive: DriveSpec = field(default_factory=DriveSpec)
+    load: tuple[LoadSpec, ...] = ()
     blank: WheelBlank | PlateBlank = field(default_factory=CamBlank)
     output: CamOutputSpec = field(default_factory=CamOutputSpec)
-    load: tuple[LoadSpec, ...] = ()
     spring: tuple[SpringSpec, ...] = ()
     mass: tuple[MassSpec, ...] = ()
     gravity: GravitySpec = field(default_factory=GravitySpec)

@@ -2,33 +2,15 @@
 
 from __future__ import annotations
 
-from functools import partial
 from typing import Final
 
 from gearcam.base.registry import DeferredMapping, deferred
 from gearcam.cams.spec import FITTED, FOLLOWED, FORCES, PRECISION
 from gearcam.cams.spec import KIND as CAM
-from gearcam.designs.table import table_of
-from gearcam.kinds.cam.design import (
-    NAME,
-    RULES,
-    CamDesign,
-    problems,
-)
-from gearcam.kinds.cam.forms.base import VARIANTS, Form
+from gearcam.kinds.cam.design import NAME, RULES, CamDesign, problems
+from gearcam.kinds.cam.forms.base import VARIANTS
 from gearcam.kinds.cam.main import MOTION
-from gearcam.kinds.cam.tables import (
-    CAM_FORMATS,
-    BoundsSpec,
-    FollowSpec,
-    ForcesSpec,
-    PrecisionSpec,
-)
-from gearcam.kinds.shared import AccuracySpec, GoalSpec
-from gearcam.mechanics.friction import FrictionSpec
-from gearcam.mechanics.mass import GravitySpec, MassSpec
-from gearcam.mechanics.material import MaterialSpec
-from gearcam.mechanics.spring import SpringSpec
+from gearcam.kinds.cam.tables import CAM_FORMATS
 from gearcam.parts.blank import KIND as PARTS
 from gearcam.results.kind import Kind
 
@@ -40,22 +22,7 @@ KIND: Final = Kind(
     design=CamDesign,
     result=deferred(f"{_HERE}.build:CamResult"),
     main=MOTION,
-    tables={
-        **{title: partial(VARIANTS.union, title) for title in Form.tables},
-        "spring": partial(table_of, "spring", SpringSpec),
-        "mass": partial(table_of, "mass", MassSpec),
-        "gravity": partial(table_of, "gravity", GravitySpec),
-        "friction": partial(table_of, "friction", FrictionSpec),
-        "material": partial(table_of, "material", MaterialSpec),
-        "forces": partial(table_of, "forces", ForcesSpec),
-        "follow": partial(table_of, "follow", FollowSpec),
-        "precision": partial(table_of, "precision", PrecisionSpec),
-        "accuracy": partial(table_of, "accuracy", AccuracySpec),
-        "bounds": partial(table_of, "bounds", BoundsSpec),
-        "goal": partial(table_of, "goal", GoalSpec),
-    },
     variants=VARIANTS,
-    several=("load", "spring", "mass"),
     required=("follower", "cam"),
     rules=RULES,
     problems=problems,

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from functools import partial
 from typing import Final
 
 from gearcam.base.registry import DeferredMapping, deferred
 from gearcam.designs.kind import Main
 from gearcam.designs.outputs import FORMATS
-from gearcam.designs.table import table_of
-from gearcam.gears.spec import PairSpec, Rack, RingSpec, StepsSpec
 from gearcam.gears.subject import KIND as TEETH
 from gearcam.kinds.gear_pair.design import (
     NAME,
     RULES,
     GearPairDesign,
-    PairOutputSpec,
     examine_law,
     law_homes,
     law_of,
@@ -23,12 +19,9 @@ from gearcam.kinds.gear_pair.design import (
     planetary,
     problems,
 )
-from gearcam.kinds.shared import AccuracySpec, GoalSpec
-from gearcam.mechanics.drive import DriveSpec
-from gearcam.meshing.settings import ERRORS, ErrorsSpec, MeshingSpec
+from gearcam.meshing.settings import ERRORS
 from gearcam.meshing.settings import KIND as MESHING
 from gearcam.parts.blank import KIND as PARTS
-from gearcam.parts.blank import Blank
 from gearcam.results.kind import Kind
 
 _HERE: Final = "gearcam.kinds.gear_pair"
@@ -48,22 +41,6 @@ KIND: Final = Kind(
         template=deferred(f"{_HERE}.describe:lines"),
         laws=deferred(f"{_HERE}.describe:laws"),
     ),
-    tables={
-        title: partial(table_of, title, owner)
-        for title, owner in {
-            "pair": PairSpec,
-            "drive": DriveSpec,
-            "rack": Rack,
-            "blank": Blank,
-            "ring": RingSpec,
-            "steps": StepsSpec,
-            "output": PairOutputSpec,
-            "meshing": MeshingSpec,
-            "errors": ErrorsSpec,
-            "accuracy": AccuracySpec,
-            "goal": GoalSpec,
-        }.items()
-    },
     required=("pair",),
     rules=RULES,
     problems=problems,

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from functools import partial
 from typing import Final
 
 from gearcam.base.registry import DeferredMapping, deferred
 from gearcam.designs.kind import Main
-from gearcam.designs.table import table_of
 from gearcam.kinds.globoidal_cam.design import (
     GLOBOIDAL_FORMATS,
     GloboidalCamDesign,
-    GloboidalOutput,
     not_made,
 )
 from gearcam.kinds.globoidal_cam.index import (
@@ -22,11 +19,7 @@ from gearcam.kinds.globoidal_cam.index import (
     index_document,
     known,
 )
-from gearcam.kinds.shared import AccuracySpec, GoalSpec
-from gearcam.mechanics.drive import DriveSpec
 from gearcam.results.kind import Kind
-from gearcam.spatial.globoidal_spec import GloboidalSpec, TurretSpec
-from gearcam.spatial.spec import CylinderBlank
 
 _HERE: Final = "gearcam.kinds.globoidal_cam"
 
@@ -45,15 +38,6 @@ KIND: Final = Kind(
         template=deferred(f"{_HERE}.describe:lines"),
         laws=deferred(f"{_HERE}.describe:laws"),
     ),
-    tables={
-        "turret": partial(table_of, "turret", TurretSpec),
-        "cam": partial(table_of, "cam", GloboidalSpec),
-        "drive": partial(table_of, "drive", DriveSpec),
-        "blank": partial(table_of, "blank", CylinderBlank),
-        "output": partial(table_of, "output", GloboidalOutput),
-        "accuracy": partial(table_of, "accuracy", AccuracySpec),
-        "goal": partial(table_of, "goal", GoalSpec),
-    },
     required=("turret", "cam"),
     later=not_made,
     formats=GLOBOIDAL_FORMATS,

@@ -2,78 +2,22 @@
 
 from __future__ import annotations
 
-from functools import partial
 from typing import Final
 
 from gearcam.base.registry import DeferredMapping, deferred
-from gearcam.designs.table import table_of
 from gearcam.kinds.mechanism.design import NAME, MechanismDesign
 from gearcam.kinds.mechanism.load_names import problems
-from gearcam.kinds.mechanism.load_tables import (
-    MachineLoad,
-    MachineSpring,
-    MemberMass,
-    TorqueSpec,
-)
-from gearcam.kinds.mechanism.tables import (
-    FORMATS,
-    ChainSpec,
-    CompareSpec,
-    CrankSpec,
-    DwellSpec,
-    DyadSpec,
-    GenevaSpec,
-    GuideSpec,
-    HoistSpec,
-    IntervalSpec,
-    JointSpec,
-    MachineDrive,
-    MechanismOutput,
-    PointSpec,
-    SlideSpec,
-    StretchSpec,
-)
+from gearcam.kinds.mechanism.tables import FORMATS
 from gearcam.kinds.mechanism.torque_checks import TORQUE
-from gearcam.kinds.shared import AccuracySpec, GoalSpec
-from gearcam.mechanics.mass import GravitySpec
 from gearcam.results.kind import Kind
 
 _HERE: Final = "gearcam.kinds.mechanism"
-
-_SEVERAL: Final = {
-    "drive": MachineDrive,
-    "compare": CompareSpec,
-    "joint": JointSpec,
-    "crank": CrankSpec,
-    "slide": SlideSpec,
-    "guide": GuideSpec,
-    "dyad": DyadSpec,
-    "point": PointSpec,
-    "chain": ChainSpec,
-    "hoist": HoistSpec,
-    "geneva": GenevaSpec,
-    "stretch": StretchSpec,
-    "interval": IntervalSpec,
-    "dwell": DwellSpec,
-    "load": MachineLoad,
-    "mass": MemberMass,
-    "spring": MachineSpring,
-}
 
 KIND: Final = Kind(
     name=NAME,
     doc="a linkage that a pair, a cam or an even shaft drives",
     design=MechanismDesign,
     result=deferred(f"{_HERE}.build:MechanismResult"),
-    tables={
-        **{title: partial(table_of, title, owner) for title, owner in _SEVERAL.items()},
-        "gravity": partial(table_of, "gravity", GravitySpec),
-        "torque": partial(table_of, "torque", TorqueSpec),
-        "output": partial(table_of, "output", MechanismOutput),
-        "accuracy": partial(table_of, "accuracy", AccuracySpec),
-        "goal": partial(table_of, "goal", GoalSpec),
-    },
-    several=tuple(_SEVERAL),
     required=("drive",),
     problems=problems,
     formats=FORMATS,

@@ -2,24 +2,16 @@
 
 from __future__ import annotations
 
-from functools import partial
 from typing import Final
 
 from gearcam.base.registry import DeferredMapping, deferred
-from gearcam.designs.table import table_of
 from gearcam.kinds.cam.public import MOTION
-from gearcam.kinds.shared import AccuracySpec, GoalSpec
 from gearcam.kinds.spatial_cam.design import (
     NAME,
     SPATIAL_FORMATS,
-    DevelopedSpec,
     SpatialCamDesign,
-    SpatialOutput,
 )
-from gearcam.mechanics.drive import DriveSpec
 from gearcam.results.kind import Kind
-from gearcam.spatial.spec import CylinderBlank, CylinderSpec, SpatialFollower
-from gearcam.spatial.tool import MillSpec
 
 _HERE: Final = "gearcam.kinds.spatial_cam"
 
@@ -29,17 +21,6 @@ KIND: Final = Kind(
     design=SpatialCamDesign,
     result=deferred(f"{_HERE}.build:SpatialCamResult"),
     main=MOTION,
-    tables={
-        "follower": partial(table_of, "follower", SpatialFollower),
-        "cam": partial(table_of, "cam", CylinderSpec),
-        "drive": partial(table_of, "drive", DriveSpec),
-        "blank": partial(table_of, "blank", CylinderBlank),
-        "tool": partial(table_of, "tool", MillSpec),
-        "output": partial(table_of, "output", SpatialOutput),
-        "developed": partial(table_of, "developed", DevelopedSpec),
-        "accuracy": partial(table_of, "accuracy", AccuracySpec),
-        "goal": partial(table_of, "goal", GoalSpec),
-    },
     required=("follower", "cam"),
     formats=SPATIAL_FORMATS,
     check_modules=("gearcam.spatial.checks",),
