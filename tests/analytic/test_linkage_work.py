@@ -10,25 +10,21 @@ import pytest
 
 from gearcam.linkages.chain import HoistChain
 from gearcam.linkages.closing import settled
+from gearcam.linkages.coordinates import Acting, JointDistance, MemberTurn, PointWay, ShaftTurn
 from gearcam.linkages.dyads import Lengths
-from gearcam.linkages.elements import Crank, Dyad, GivenMotion, GuideLine, MemberPoint, PushedSlide
-from gearcam.linkages.linkage import Linkage
-from gearcam.linkages.work import (
+from gearcam.linkages.efforts import (
     GRAVITY,
     INERTIA,
     SPRINGS,
-    Acting,
     ActiveRanges,
+    AppliedForce,
     Effort,
-    JointDistance,
-    MemberTurn,
-    MovedMass,
-    PointWay,
-    ShaftTurn,
-    VaryingForce,
-    VectorForce,
-    VirtualWork,
+    InertiaForce,
+    force_on,
 )
+from gearcam.linkages.elements import Crank, Dyad, GivenMotion, GuideLine, MemberPoint, PushedSlide
+from gearcam.linkages.linkage import Linkage
+from gearcam.linkages.work import VirtualWork
 from gearcam.numeric import jets
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet
@@ -49,8 +45,13 @@ G = -9.80665j
 MASSES = (("crank", 60.0, "G1", 0.55), ("rod", 45.0, "G2", 2.8), ("ram", 180.0, "slide", 0.0))
 
 
+def inertia(*masses: tuple[str, float, str, float]) -> list[Effort]:
+    turning = [InertiaForce.of_turn(MemberTurn(name), own, name) for name, _, _, own in masses]
+    return [*turning, *(InertiaForce.of_mass(at, mass, name) for name, mass, at, _ in masses)]
+
+
 def weights(masses: tuple[tuple[str, float, str, float], ...]) -> list[Effort]:
-    return [VectorForce(center, mass * G, GRAVITY) for _, mass, center, _ in masses]
+    return [force_on(center, mass * G, GRAVITY) for _, mass, center, _ in masses]
 
 
 def nail_machine(law: tuple[tuple[float, ...], tuple[float, ...]]) -> Linkage:
@@ -60,9 +61,9 @@ def nail_machine(law: tuple[tuple[float, ...], tuple[float, ...]]) -> Linkage:
     return linkage(*made.elements, *points, knots_deg=law[0])
 
 
-def forging(*ranges: tuple[float, float]) -> VaryingForce:
+def forging(*ranges: tuple[float, float]) -> AppliedForce:
     active = ActiveRanges([(radians(a), radians(b)) for a, b in ranges], TURN) if ranges else None
-    return VaryingForce(PointWay("slide", "bed"), lambda _: -35435.0, active=active)
+    return AppliedForce(PointWay("slide", "bed"), lambda _: -35435.0, active=active)
 
 
 class TestNailMachine:
@@ -76,7 +77,7 @@ class TestNailMachine:
         agree(1e-3 * work.on({"q": 1.0}, q), column(table, "wheel2_nm"))
 
     def work(self) -> VirtualWork:
-        efforts = [MovedMass(*one) for one in MASSES] + weights(MASSES)
+        efforts = inertia(*MASSES) + weights(MASSES)
         return VirtualWork(
             nail_machine(TWO_PHASES), [*efforts, forging((150.0, 170.0))], 180.0 * pi / 30.0
         )
@@ -143,8 +144,8 @@ class TestFourBar:
     """A force on the coupler's point and a moment on the rocker; no masses."""
 
     efforts = (
-        VectorForce("P", 30 - 200j),
-        VaryingForce(MemberTurn("rocker"), lambda _: -5000.0),
+        force_on("P", 30 - 200j),
+        AppliedForce(MemberTurn("rocker"), lambda _: -5000.0),
     )
 
     def test_printed(self) -> None:
@@ -189,7 +190,7 @@ class TestFurnaceDoor:
             knots_deg=knots,
             closed=False,
         )
-        return VirtualWork(made, [VectorForce("G", 1000.0 * G, GRAVITY)])
+        return VirtualWork(made, [force_on("G", 1000.0 * G, GRAVITY)])
 
     def test_printed(self) -> None:
         table, work = rows("door_moments"), self.work()
@@ -204,22 +205,22 @@ class TestFurnaceDoor:
         agree(work.mean * radians(171.65), work.work)
 
 
-def spring(rate: float, free: float = 0.0, damping: float = 0.0) -> VaryingForce:
+def spring(rate: float, free: float = 0.0, damping: float = 0.0) -> AppliedForce:
     def law(acting: Acting) -> Jet:
         return -((acting.place - free) * rate + acting.velocity * damping)
 
-    return VaryingForce(JointDistance("P", "D"), law, SPRINGS)
+    return AppliedForce(JointDistance("P", "D"), law, SPRINGS)
 
 
 class TestIdentities:
     masses = (("coupler", 0.7, "P", 3e-4), ("rocker", 0.5, "C", 1e-4), ("crank", 0.2, "B", 5e-5))
 
     def work(self, *more: Effort, speed: float = 11.0) -> VirtualWork:
-        efforts = [MovedMass(*one) for one in self.masses] + weights(self.masses)
+        efforts = inertia(*self.masses) + weights(self.masses)
         return VirtualWork(four_bar(), [*efforts, *more], speed)
 
     def test_nothing_is_left_over_a_turn(self) -> None:
-        swing = VaryingForce(MemberTurn("coupler", "rocker"), lambda a: -a.place * 40.0, SPRINGS)
+        swing = AppliedForce(MemberTurn("coupler", "rocker"), lambda a: -a.place * 40.0, SPRINGS)
         work = self.work(spring(3.0, 25.0), swing)
         for own, size in work.works.values():
             assert size > 100.0
@@ -235,30 +236,32 @@ class TestIdentities:
         agree(work.work, lost, relative=1e-11)
 
     def test_what_a_turn_lifts_or_winds_up_is_not_back(self) -> None:
-        spiral = VaryingForce(MemberTurn("crank"), lambda a: -a.place * 7.0, SPRINGS)
-        weight = VectorForce("P", 3.0 * G, GRAVITY)
+        spiral = AppliedForce(MemberTurn("crank"), lambda a: -a.place * 7.0, SPRINGS)
+        weight = force_on("P", 3.0 * G, GRAVITY)
         assert VirtualWork(four_bar(), [weight]).kept == (INERTIA, GRAVITY, SPRINGS)
         assert VirtualWork(four_bar(), [weight, spiral]).kept == (INERTIA, GRAVITY)
         lift = PushedSlide("door", "q", "way", "hook")
         made = linkage(GuideLine("way", 0j, 0.5 * pi), lift)
-        lifted = VirtualWork(made, [VectorForce("hook", 3.0 * G, GRAVITY)])
+        lifted = VirtualWork(made, [force_on("hook", 3.0 * G, GRAVITY)])
         assert lifted.kept == (INERTIA, SPRINGS)
         agree(lifted.work, 3.0 * 9.80665 * TURN)
 
     def test_masses_whose_velocity_jumps_are_not_kept(self) -> None:
         """A parallelogram that keeps its branch goes on as another linkage at its change points."""
-        mass = MovedMass("rocker", 2.0, "C", 0.1)
+        mass = inertia(("rocker", 2.0, "C", 0.1))
         folded = settled(four_bar(50.0, 120.0, 50.0, 120.0))
-        assert VirtualWork(folded, [mass], 5.0).kept == (GRAVITY, SPRINGS)
+        assert VirtualWork(folded, mass, 5.0).kept == (GRAVITY, SPRINGS)
         straight = settled(four_bar(50.0, 120.0, 50.0, 120.0, keeps="motion"))
-        assert VirtualWork(straight, [mass], 5.0).kept == (INERTIA, GRAVITY, SPRINGS)
+        assert VirtualWork(straight, mass, 5.0).kept == (INERTIA, GRAVITY, SPRINGS)
 
     def test_narrow_peaks(self) -> None:
         """A rocker is jerked next to a change point, while the crank's load goes up or down."""
         made = settled(four_bar(50.0, 120.0, 50.002, 120.0))
         made = replace(made, knots=np.array([0.5, 5.5]), closed=False)
-        wave = VaryingForce(ShaftTurn("q"), lambda a: jets.sin(a.angle) * 30.0)
-        work = VirtualWork(made, [MovedMass("rocker", 0.0, "", 5e-4), wave], 5.0)
+        wave = AppliedForce(ShaftTurn("q"), lambda a: jets.sin(a.angle) * 30.0)
+        work = VirtualWork(
+            made, [InertiaForce.of_turn(MemberTurn("rocker"), 5e-4, "rocker"), wave], 5.0
+        )
         q = np.linspace(pi - 0.01, pi + 0.01, 160001)
         _, rate, change = made.track("rocker.angle", q, 2).derivatives()
         dense = 1e3 * 25.0 * 5e-4 * rate * change - 30.0 * np.sin(q)
@@ -267,11 +270,11 @@ class TestIdentities:
 
     def test_torsion_over_whole_turns(self) -> None:
         """A spring from the ground to the crank is wound up by each turn."""
-        spiral = VaryingForce(MemberTurn("crank"), lambda a: -a.place * 7.0, SPRINGS)
+        spiral = AppliedForce(MemberTurn("crank"), lambda a: -a.place * 7.0, SPRINGS)
         agree(VirtualWork(four_bar(), [spiral]).work, 0.5 * 7.0 * TURN**2)
 
     def test_slopes(self) -> None:
-        against = VaryingForce(
+        against = AppliedForce(
             MemberTurn("rocker"), lambda a: a.velocity * -3.0 + a.angle * 2.0 + a.place * a.place
         )
         work, q, step = self.work(spring(2.0, 3.0, 0.1), against), np.linspace(0.3, 6.0, 9), 1e-5
@@ -292,8 +295,9 @@ class TestIdentities:
             Dyad("RRR", "B", "F", "C", ("left", "right"), Lengths(150.0, 160.0)),
             knots_deg=TWO_PHASES[0],
         )
-        mass = MovedMass("right", 0.4, "C", 0.002), MovedMass("first", 0.0, "", 0.003)
-        work = VirtualWork(made, [VectorForce("C", 40 - 70j), *mass], 6.0)
+        shaft = InertiaForce.of_turn(ShaftTurn("first"), 0.003, "first")
+        mass = *inertia(("right", 0.4, "C", 0.002)), shaft
+        work = VirtualWork(made, [force_on("C", 40 - 70j), *mass], 6.0)
         q = np.array([0.0, 0.4, 2.0, 4.4])
         turns = [law(q, 1).derivatives()[1] for law in laws]
         shares = work.on({"first": 1.0}, q), work.on({"second": 1.0}, q)
@@ -306,19 +310,19 @@ class TestIdentities:
         made = linkage(*crank_slider(50.0, 120.0).elements, bed)
         q = np.linspace(0.0, 6.0, 7)
         way, slope = made.track("slide.guide2", q, 1).derivatives()
-        force = VaryingForce(PointWay("slide", "far"), lambda a: a.place * 2.0)
+        force = AppliedForce(PointWay("slide", "far"), lambda a: a.place * 2.0)
         agree(VirtualWork(made, [force]).moment(q).c[0], 2.0 * (180.0 - way) * slope)
 
     def test_a_slide_that_rests_is_loaded(self) -> None:
         made = crank_slider(50.0, 120.0, law=lambda q, order: Jet.variable(q, order) * 0.0 + 1.0)
-        work = VirtualWork(made, [VaryingForce(PointWay("slide", "bed"), lambda _: -10.0)])
+        work = VirtualWork(made, [AppliedForce(PointWay("slide", "bed"), lambda _: -10.0)])
         q = np.array([0.5])
         assert work.moment(q).c[0] == 0.0
         moving = VirtualWork(crank_slider(50.0, 120.0), work.efforts)
         agree(work.on({"q": 1.0}, q), moving.moment(np.array([1.0])).c[0])
 
     def test_without_a_speed_masses_have_their_weight_only(self) -> None:
-        work = VirtualWork(four_bar(), [MovedMass(*one) for one in self.masses])
+        work = VirtualWork(four_bar(), inertia(*self.masses))
         assert not np.any(work.moment(np.linspace(0.0, 6.0, 5)).c[0])
 
 
@@ -339,7 +343,7 @@ class TestRanges:
     def test_extremes_between_knots(self) -> None:
         """Constant force on a slide: where the slide is fastest."""
         made = crank_slider(50.0, 120.0)
-        work = VirtualWork(made, [VaryingForce(PointWay("slide", "bed"), lambda _: -10.0)])
+        work = VirtualWork(made, [AppliedForce(PointWay("slide", "bed"), lambda _: -10.0)])
 
         def speed(q: Array) -> Array:
             return made.track("slide.guide2", q, 1).derivatives()[1]
@@ -351,7 +355,7 @@ class TestRanges:
 
 def test_a_torque_on_a_shaft() -> None:
     made = linkage(GivenMotion("q", phases(*TWO_PHASES)), knots_deg=TWO_PHASES[0])
-    work = VirtualWork(made, [VaryingForce(ShaftTurn("q"), lambda a: a.place * -2.0)])
+    work = VirtualWork(made, [AppliedForce(ShaftTurn("q"), lambda a: a.place * -2.0)])
     q = np.array([1.0, 3.0])
     turn, ratio = phases(*TWO_PHASES)(q, 1).derivatives()
     agree(work.moment(q).c[0], 2.0 * turn * ratio)

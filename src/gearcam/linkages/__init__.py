@@ -4,8 +4,10 @@
 three joints from what it begins at. `elements` has the parts of a linkage: shafts, cranks, slides,
 guides, dyads, points. `chain` has the one group with a root per position. `linkage` puts the parts
 in order and evaluates all of them. `closing` finds where a linkage closes, its change points, and
-the nearest length that closes. `work` finds the driver's
-moment under loads. `geneva` is one more part.
+the nearest length that closes. `geneva` is one more part.
+
+`efforts` are the forces and moments that act, each on one of the `coordinates`: the ways and angles
+on which they do work. `work` finds the driver's moment from them.
 
 `measures` has the extremes, dead centres, travel and time ratio of an output, `dwells` where it
 rests, `transmission` the pressure angles of dyads, `grashof` the class of a four-bar. `paths` has

@@ -65,6 +65,11 @@ def towards(angle: Jet) -> Jet:
     return cosine + sine * 1j
 
 
+def turning(direction: Jet) -> Jet:
+    """Return the derivative of the angle of a turning unit vector, its `direction`: ``u x u'``."""
+    return cross(direction.shortened(), direction.differentiated())
+
+
 def rotation(direction: Jet) -> Jet:
     """Return the angle of a turning unit vector, rad.
 
@@ -76,10 +81,9 @@ def rotation(direction: Jet) -> Jet:
     Returns
     -------
     Jet
-        Values in (-pi, pi], and the derivatives of the angle: ``a' = u x u'``.
+        Values in (-pi, pi], and the derivatives of the angle (see `turning`).
     """
     value = np.asarray(np.angle(direction.c[0]), dtype=np.float64)
     if not direction.order:
         return Jet([value])
-    speed = cross(direction.shortened(), direction.differentiated())
-    return Jet([value, *(one / k for k, one in enumerate(speed.c, start=1))])
+    return Jet([value, *(one / k for k, one in enumerate(turning(direction).c, start=1))])

@@ -18,27 +18,29 @@ from gearcam.kinds.mechanism.load_names import pushed_in, sorts_of, unturned
 from gearcam.kinds.mechanism.load_tables import OUTER
 from gearcam.kinds.mechanism.names import MEMBER, SHAFT, WAY, moves
 from gearcam.kinds.mechanism.wheel_masses import wheel_masses
-from gearcam.linkages.dwells import ShortRangeError, last_travels
-from gearcam.linkages.elements import GROUND, Element, MemberPoint
-from gearcam.linkages.measures import TrackMeasures
-from gearcam.linkages.work import (
-    GRAVITY,
-    SPRINGS,
+from gearcam.linkages.coordinates import (
     Acting,
-    ActiveRanges,
-    Effort,
-    ForceLaw,
     JointDistance,
     MemberTurn,
-    MovedMass,
     PointWay,
     ShaftTurn,
-    VaryingForce,
-    VectorForce,
-    VirtualWork,
     WorkCoordinate,
     WorkState,
 )
+from gearcam.linkages.dwells import ShortRangeError, last_travels
+from gearcam.linkages.efforts import (
+    GRAVITY,
+    SPRINGS,
+    ActiveRanges,
+    AppliedForce,
+    Effort,
+    ForceLaw,
+    InertiaForce,
+    force_on,
+)
+from gearcam.linkages.elements import GROUND, Element, MemberPoint
+from gearcam.linkages.measures import TrackMeasures
+from gearcam.linkages.work import VirtualWork
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import extremes, places_between
@@ -151,14 +153,14 @@ class _Efforts:
         for number, load in enumerate(self.design.load):
             active = self._active(load, number)
             if load.force is not None and len(load.force) == 2:
-                yield VectorForce(self._joint(load.on), complex(*load.force), active=active)
+                yield force_on(self._joint(load.on), complex(*load.force), active=active)
                 continue
             on = self.coordinate(load.on, load.direction)
             law = self._law(load, on, number)
             if load.against:
                 self.knots += self._still(on)
                 law = _opposing(law)
-            yield VaryingForce(on, law, active=active)
+            yield AppliedForce(on, law, active=active)
 
     def _active(self, load: MachineLoad, number: int) -> ActiveRanges | None:
         low, high = self.linkage.span
@@ -253,13 +255,17 @@ class _Efforts:
     def _masses(self) -> Iterator[Effort]:
         pull = self.design.gravity.pull
         for mass, center in zip(self.design.mass, self.centers, strict=True):
-            yield MovedMass(mass.of, mass.mass or 0.0, center, mass.inertia)
-            if pull and mass.mass:
-                yield VectorForce(center, mass.mass * pull, GRAVITY)
+            if mass.inertia:
+                turn = (ShaftTurn if self.sorts[mass.of] == SHAFT else MemberTurn)(mass.of)
+                yield InertiaForce.of_turn(turn, mass.inertia, mass.of)
+            if mass.mass:
+                yield InertiaForce.of_mass(center, mass.mass, mass.of)
+            if mass.mass and pull:
+                yield force_on(center, mass.mass * pull, GRAVITY)
         for wheel in self.wheels:
             yield wheel.effort
             if pull:
-                yield VectorForce(wheel.center, wheel.mass * pull, GRAVITY)
+                yield force_on(wheel.center, wheel.mass * pull, GRAVITY)
 
     def _springs(self) -> Iterator[Effort]:
         low, high = self.linkage.span
@@ -268,7 +274,7 @@ class _Efforts:
             on = self._joined(spring)
             self._demand_apart(on, number)
             at = float(np.asarray(on.place(start).c[0])[0])
-            yield VaryingForce(on, _spring_law(spring, at), SPRINGS)
+            yield AppliedForce(on, _spring_law(spring, at), SPRINGS)
 
     def _demand_apart(self, on: WorkCoordinate, number: int) -> None:
         """Refuse a spring whose ends meet: it has no direction there."""

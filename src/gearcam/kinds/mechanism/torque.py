@@ -17,7 +17,7 @@ from gearcam.base.quantities import TORQUE as NEWTON_METRES
 from gearcam.kinds.mechanism.loaded import work_of
 from gearcam.kinds.mechanism.torque_checks import TORQUE, DriverEffort
 from gearcam.kinds.mechanism.wheel_masses import BODY
-from gearcam.linkages.work import GRAVITY, PARTS, SPRINGS, MovedMass
+from gearcam.linkages.efforts import GRAVITY, PARTS, SPRINGS, InertiaForce
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.pictures.charts import Chart, Limit, Line
 from gearcam.results.result import StudyResult
@@ -327,8 +327,8 @@ def _error(result: MechanismResult, work: VirtualWork) -> float | None:
 
 
 def _assumptions(result: MechanismResult, work: VirtualWork) -> str:
-    heavy = [one.member for one in work.efforts if isinstance(one, MovedMass)]
-    names = ", ".join(name.removesuffix(BODY) for name in heavy)
+    heavy = (one.member for one in work.efforts if isinstance(one, InertiaForce))
+    names = ", ".join(name.removesuffix(BODY) for name in dict.fromkeys(heavy))
     words = [
         "no friction",
         "the driver turns evenly" if result.speed else "at rest, without inertia",

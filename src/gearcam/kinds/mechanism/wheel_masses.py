@@ -7,8 +7,9 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from gearcam.kinds.mechanism.drives import center_of, way_of
+from gearcam.linkages.coordinates import ShaftTurn
+from gearcam.linkages.efforts import InertiaForce
 from gearcam.linkages.elements import Crank, Element, PushedSlide
-from gearcam.linkages.work import MovedMass
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.drives import PlacedDrive
@@ -34,7 +35,7 @@ class WheelMass(NamedTuple):
         Joint in its centre of mass.
     mass : float, kg
         Its mass.
-    effort : MovedMass
+    effort : InertiaForce
         Its inertia.
     """
 
@@ -42,7 +43,7 @@ class WheelMass(NamedTuple):
     element: Element
     center: str
     mass: float
-    effort: MovedMass
+    effort: InertiaForce
 
 
 def wheel_masses(drives: Sequence[PlacedDrive]) -> Iterator[WheelMass]:
@@ -70,9 +71,10 @@ def _wheel(drive: PlacedDrive, word: str, found: MassProperties) -> WheelMass:
     member, center = name + BODY, f"{name}.center of mass"
     if drive.moved[word].along:  # any point of it has its way
         element = PushedSlide(member, name, way_of(name), center)
-        return WheelMass(name, element, center, found.mass, MovedMass(member, found.mass, center))
+        inertia = InertiaForce.of_mass(center, found.mass, member)
+        return WheelMass(name, element, center, found.mass, inertia)
     start = cmath.phase(drive.vector(placed))
     element = Crank(member, name, center_of(name), center, abs(placed), start)
     # about its shaft, which stands still
-    inertia = MovedMass(name, 0.0, "", _M2 * found.inertia)
+    inertia = InertiaForce.of_turn(ShaftTurn(name), _M2 * found.inertia, name)
     return WheelMass(name, element, center, found.mass, inertia)

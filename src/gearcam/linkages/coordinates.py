@@ -1,0 +1,248 @@
+"""Ways and angles on which forces and moments do work, at angles of a linkage's driver."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+
+import numpy as np
+
+from gearcam.base.display import ShortRepr
+from gearcam.linkages.elements import GROUND, Known
+from gearcam.linkages.linkage import Linkage
+from gearcam.linkages.plane import dot, square, turning
+from gearcam.numeric import jets
+from gearcam.numeric.arrays import Array
+from gearcam.numeric.jets import Jet
+
+
+class WorkState:
+    """A linkage at some angles of its driver, at an even speed, and a displacement from there.
+
+    Parameters
+    ----------
+    linkage : Linkage
+        The linkage.
+    q : (n,) array, rad
+        The driver's angles.
+    order : int
+        Highest derivative of forces; 0 with another displacement.
+    speed : float, rad/s, optional
+        Of the driver.
+    displaced : Linkage, optional
+        One with the same places, in which the displacement goes on; the linkage itself if None.
+    """
+
+    def __init__(
+        self,
+        linkage: Linkage,
+        q: Array,
+        order: int,
+        speed: float | None,
+        displaced: Linkage | None = None,
+    ) -> None:
+        self.linkage, self.order, self.speed = linkage, order, speed
+        self.q = np.asarray(q, dtype=float)
+        self.known = linkage.at(self.q, order + 2)
+        self.displaced = self.known if displaced is None else displaced.at(self.q, order + 1)
+
+    @property
+    def angle(self) -> Jet:
+        """The driver's angle itself, rad."""
+        return Jet.variable(self.q, self.order)
+
+
+class WorkCoordinate(ABC):
+    """A way or an angle on which a force or a moment does work."""
+
+    @abstractmethod
+    def place(self, state: WorkState) -> Jet:
+        """Return the way, mm, or the angle, rad."""
+
+    @abstractmethod
+    def rate(self, known: Known, order: int) -> Jet:
+        """Return its derivative by the driver's angle.
+
+        Parameters
+        ----------
+        known : Known
+            The solved linkage.
+        order : int
+            Highest derivative of the derivative.
+        """
+
+
+@dataclass(frozen=True)
+class PointPlace(ShortRepr, WorkCoordinate):
+    """The place of a point in the machine, on which a force of any direction does work.
+
+    Parameters
+    ----------
+    point : str
+        A joint.
+    """
+
+    point: str
+
+    def place(self, state: WorkState) -> Jet:
+        """Return the place, complex, mm."""
+        return Jet(state.known.jet(self.point).c[: state.order + 1])
+
+    def rate(self, known: Known, order: int) -> Jet:
+        """Return its derivative, of what is `known`, to an `order`."""
+        return _rate(known.jet(self.point), order)
+
+
+@dataclass(frozen=True)
+class PointWay(ShortRepr, WorkCoordinate):
+    """The way of a point in one direction.
+
+    Parameters
+    ----------
+    point : str
+        A joint.
+    guide : str
+        Frame from whose origin the way counts, and from whose x axis the direction does.
+    direction : complex
+        Of size 1, in that frame.
+    slide : str
+        Quantity that is the place; empty for the point's own.
+    """
+
+    point: str
+    guide: str = GROUND
+    direction: complex = 1 + 0j
+    slide: str = ""
+
+    def place(self, state: WorkState) -> Jet:
+        """Return the place from the guide's origin, mm."""
+        if self.slide:
+            return Jet(state.known.jet(self.slide).c[: state.order + 1])
+        guide = state.known.frame(self.guide)
+        way = state.known.jet(self.point) - guide.origin
+        return Jet(dot(guide.direction * self.direction, way).c[: state.order + 1])
+
+    def rate(self, known: Known, order: int) -> Jet:
+        """Return the point's derivative along the guide, of what is `known`, to an `order`."""
+        along = Jet(known.frame(self.guide).direction.c[: order + 1]) * self.direction
+        return dot(along, _rate(known.jet(self.point), order))
+
+
+@dataclass(frozen=True)
+class MemberTurn(ShortRepr, WorkCoordinate):
+    """The angle of a member, against another one.
+
+    Parameters
+    ----------
+    member : str
+        Its frame.
+    base : str
+        Frame of the member from which it counts.
+    """
+
+    member: str
+    base: str = GROUND
+
+    def place(self, state: WorkState) -> Jet:
+        """Return the angle without jumps, rad."""
+
+        def angle(name: str) -> Jet:
+            return state.linkage.real_track(f"{name}.angle", state.q, state.order)
+
+        return angle(self.member) if self.base == GROUND else angle(self.member) - angle(self.base)
+
+    def rate(self, known: Known, order: int) -> Jet:
+        """Return the derivative of the angle, of what is `known`, to an `order`."""
+
+        def turn(name: str) -> Jet:
+            return turning(Jet(known.frame(name).direction.c[: order + 2]))
+
+        return turn(self.member) if self.base == GROUND else turn(self.member) - turn(self.base)
+
+
+@dataclass(frozen=True)
+class ShaftTurn(ShortRepr, WorkCoordinate):
+    """The turn of a shaft, or the way of a slide that is given.
+
+    Parameters
+    ----------
+    shaft : str
+        The quantity.
+    """
+
+    shaft: str
+
+    def place(self, state: WorkState) -> Jet:
+        """Return the turn, rad, or the way, mm."""
+        return Jet(state.known.jet(self.shaft).c[: state.order + 1])
+
+    def rate(self, known: Known, order: int) -> Jet:
+        """Return its derivative, of what is `known`, to an `order`."""
+        return _rate(known.jet(self.shaft), order)
+
+
+@dataclass(frozen=True)
+class JointDistance(ShortRepr, WorkCoordinate):
+    """The distance of two joints.
+
+    Parameters
+    ----------
+    first, second : str
+        The joints.
+    """
+
+    first: str
+    second: str
+
+    def _distance(self, known: Known, order: int) -> Jet:
+        way = known.jet(self.second) - known.jet(self.first)
+        return jets.sqrt(square(Jet(way.c[: order + 1])))
+
+    def place(self, state: WorkState) -> Jet:
+        """Return the distance, mm."""
+        return self._distance(state.known, state.order)
+
+    def rate(self, known: Known, order: int) -> Jet:
+        """Return its derivative, of what is `known`, to an `order`."""
+        return self._distance(known, order + 1).differentiated()
+
+
+class Acting:
+    """A coordinate at some angles of the driver, for laws of forces.
+
+    Parameters
+    ----------
+    state : WorkState
+        The linkage there.
+    coordinate : WorkCoordinate
+        On which the force does work.
+    """
+
+    def __init__(self, state: WorkState, coordinate: WorkCoordinate) -> None:
+        self._state, self._coordinate = state, coordinate
+
+    @property
+    def angle(self) -> Jet:
+        """The driver's angle, rad."""
+        return self._state.angle
+
+    @property
+    def place(self) -> Jet:
+        """The way, mm, or the angle, rad."""
+        return self._coordinate.place(self._state)
+
+    @property
+    def rate(self) -> Jet:
+        """Its derivative by the driver's angle."""
+        found = self._coordinate.rate(self._state.known, self._state.order)
+        return found + np.zeros(self._state.q.shape)  # where it is a constant, too
+
+    @property
+    def velocity(self) -> Jet:
+        """Its velocity, mm/s or rad/s; 0 if the driver has no speed."""
+        return self.rate * (self._state.speed or 0.0)
+
+
+def _rate(x: Jet, order: int) -> Jet:
+    """Return the derivative of `x`, with its own derivatives to an `order`."""
+    return Jet(x.c[: order + 2]).differentiated()
