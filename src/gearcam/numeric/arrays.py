@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any, TypeVar
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,6 +12,8 @@ Ints = NDArray[np.int64]
 Mask = NDArray[np.bool_]
 Plane = NDArray[np.complex128]
 """Points or directions in the plane, ``x + 1j*y``."""
+
+ArrayOrPlane = TypeVar("ArrayOrPlane", Array, Plane)
 
 
 _BLOCK = 31 << 20
@@ -40,6 +44,26 @@ def as_pairs(points: Plane) -> Array:
 def apart(rising: Array, least: float) -> Array:
     """Return rising values (n,) without those that follow another by no more than `least`."""
     return rising[np.diff(rising, prepend=-np.inf) > least]
+
+
+def divided(values: ArrayOrPlane, counts: Ints) -> ArrayOrPlane:
+    """Return values with even steps between them.
+
+    Parameters
+    ----------
+    values : (n,) array
+        Numbers or points.
+    counts : (n - 1,) array of int
+        Steps from each to the next one, at least 1.
+
+    Returns
+    -------
+    (sum(counts) + 1,) array
+    """
+    first, step = (np.repeat(one, counts) for one in (values[:-1], np.diff(values) / counts))
+    number = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
+    made: Any = np.append(first + number * step, values[-1])
+    return made
 
 
 def bounds(points: Plane) -> tuple[complex, complex]:

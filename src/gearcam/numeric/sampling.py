@@ -20,7 +20,7 @@ import numpy as np
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import ABOVE, beyond_limit
 from gearcam.base.numerals import formatted
-from gearcam.numeric.arrays import Array, Ints, Mask, Plane
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane, divided
 from gearcam.numeric.contour import Run
 from gearcam.numeric.moments import halving
 
@@ -252,10 +252,7 @@ class Sampler(ShortRepr):
         )
         if self.closed:
             counts *= math.ceil(FEWEST / counts.sum())
-        first = np.repeat(ends[:-1], counts)
-        step = np.repeat(np.diff(ends) / counts, counts)
-        number = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
-        vertices = np.interp(np.append(first + number * step, ends[-1]), effort, places)
+        vertices = np.interp(divided(ends, counts), effort, places)
         vertices[np.cumsum(counts)[:-1]] = self.corners[1:]
         at = self._ends(vertices)
         errors, rough = self._errors(vertices, at)

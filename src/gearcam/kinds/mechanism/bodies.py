@@ -32,6 +32,7 @@ from gearcam.pictures.drawings import (
     Feature,
     Path,
     mirrored,
+    place,
 )
 from gearcam.pictures.geneva import geneva_crank, geneva_wheel
 from gearcam.pictures.links import block, guide, link, pin, pivot
@@ -184,9 +185,9 @@ def _named(shown: _Shown, every: tuple[MovingBody, ...]) -> Iterator[MovingBody]
     places = {name: shown.place(name) for name in shown.joints}
     for body in every:
         own: list[tuple[str, complex]] = []
-        for name, place in list(places.items()):
-            at = complex(body.pose[0].inverse.apply(place[0]))
-            if _carries(body, at) and np.abs(body.pose.apply(at) - place).max() < _ROUNDING:
+        for name, joint in list(places.items()):
+            at = complex(body.pose[0].inverse.apply(joint[0]))
+            if _carries(body, at) and np.abs(body.pose.apply(at) - joint).max() < _ROUNDING:
                 own.append((name, at))
                 del places[name]
         pins = pins_of(body)
@@ -236,8 +237,8 @@ def _members(shown: _Shown, half: float) -> dict[str, _Parts]:
 
 def _guide_on(shown: _Shown, spec: GuideSpec, half: float) -> Iterator[tuple[complex, complex]]:
     """Yield the guide on a member, and what joins it to the member's origin."""
-    place = shown.pose(spec.on)[0].inverse @ shown.pose(spec.name)[0]
-    ends, way, at = _ends(shown, spec.name), complex(place.rotation), complex(place.shift)
+    own = shown.pose(spec.on)[0].inverse @ shown.pose(spec.name)[0]
+    ends, way, at = _ends(shown, spec.name), complex(own.rotation), complex(own.shift)
     if ends is not None:
         yield _longer(at + min(0.0, ends[0]) * way, at + max(0.0, ends[1]) * way, half)
     if at:
@@ -329,15 +330,10 @@ def _grounds(shown: _Shown, half: float) -> Iterator[Feature]:
     ways += [f"{one.name}.guide" for one in design.hoist]
     for name in dict.fromkeys(ways):
         ends, pose = _ends(shown, name), shown.pose(name)[0]
-        for one in guide(ends, half) if ends is not None else ():
-            yield replace(one, shape=Path(points=pose.apply(_points(one)), closed=False))
+        if ends is not None:
+            yield from place(guide(ends, half), pose)
     for at in dict.fromkeys(_pivots(shown)):
         yield from pivot(at, half)
-
-
-def _points(feature: Feature) -> Plane:
-    shape = feature.shape
-    return shape.points if isinstance(shape, Path) else np.zeros(0, dtype=np.complex128)
 
 
 def _pivots(shown: _Shown) -> Iterator[complex]:

@@ -16,6 +16,7 @@ from gearcam.base.numerals import formatted
 from gearcam.kinds.mechanism.bodies import CHAIN_WHEEL, PIN, bodies, pins_of, traced
 from gearcam.kinds.mechanism.scene import shown_at
 from gearcam.kinds.mechanism.traces import path_within
+from gearcam.numeric.arrays import divided
 from gearcam.pictures.drawings import (
     GHOST,
     OUTER,
@@ -159,14 +160,9 @@ def _lines(features: tuple[Feature, ...], step: float) -> Plane:
     found = []
     for feature in features:
         for points, closed in chains(feature.shape, step):
-            ends = np.append(points[1:], points[:1]) if closed else points[1:]
-            starts = points[: len(ends)]
-            counts = np.ceil(np.abs(ends - starts) / step).astype(np.int64) + 1
-            own = np.repeat(np.arange(len(counts)), counts)
-            share = (np.arange(len(own)) - np.repeat(np.cumsum(counts) - counts, counts)) / counts[
-                own
-            ]
-            found.append(starts[own] + (ends - starts)[own] * share)
+            whole = np.append(points, points[:1]) if closed else points
+            counts = np.ceil(np.abs(np.diff(whole)) / step).astype(np.int64) + 1
+            found.append(divided(whole, counts)[:-1])
     return np.concatenate(found)
 
 
@@ -177,8 +173,7 @@ def paths_drawing(result: MechanismResult) -> Drawing:
     for name in names:
 
         def where(q: Array, name: str = name) -> Plane:
-            value = np.asarray(linkage.at(q, 0).jet(name).c[0])
-            return np.broadcast_to(value, q.shape) + 0j
+            return np.asarray(linkage.track(name, q, 0).c[0], dtype=np.complex128)
 
         _, points = path_within(where, linkage.knots, tolerance)
         points = points[:-1] if linkage.closed else points

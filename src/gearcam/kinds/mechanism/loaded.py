@@ -6,7 +6,6 @@ import cmath
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import fields, replace
-from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -43,7 +42,7 @@ from gearcam.linkages.measures import TrackMeasures
 from gearcam.linkages.work import VirtualWork
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet
-from gearcam.numeric.piecewise import extremes, places_between
+from gearcam.numeric.piecewise import places_between
 
 if TYPE_CHECKING:
     from gearcam.base.quantities import Row
@@ -173,10 +172,7 @@ class _Efforts:
     def _travels(
         self, load: MachineLoad, travel: float, number: int
     ) -> tuple[tuple[float, float], ...]:
-        way = self._way(load.on)
-        name = way.slide if isinstance(way, PointWay) else load.on
-        track = partial(self.linkage.real_track, name)
-        measures = TrackMeasures(track, self.linkage.knots, self.linkage.closed)
+        measures = self._measures(self._way(load.on))
         where = f"load[{number}].travel_mm"
         if travel >= measures.stroke:
             what = f"{load.on} has not so much travel"
@@ -190,13 +186,7 @@ class _Efforts:
 
     def _still(self, on: WorkCoordinate) -> list[float]:
         """Return the driver's angles at which something loaded reverses."""
-
-        def places(q: Array) -> tuple[Array, Array]:
-            acting = Acting(WorkState(self.linkage, q, 0, self.speed), on)
-            found = acting.place.c[0], acting.rate.c[0]
-            return np.broadcast_to(found[0], q.shape), np.broadcast_to(found[1], q.shape)
-
-        found, knots = extremes(places, self.linkage.knots)[0], self.linkage.knots
+        found, knots = self._measures(on).extremes[0][0], self.linkage.knots
         return found[np.abs(found[:, None] - knots).min(axis=1) > _SLACK].tolist()
 
     def _law(self, load: MachineLoad, on: WorkCoordinate, number: int) -> ForceLaw:
@@ -220,7 +210,7 @@ class _Efforts:
         place = load.place
         if place is None:
             way = load.way or (0.0,)
-            self.knots += self._passes(on, way)
+            self.knots += [q for one in way for q in self._measures(on).places_of(one).tolist()]
             return lambda acting: _between(acting.place, way, table) * per
         turns = self._turns(place, number)
         places = np.add.outer(_TURN * np.array(turns), place)
@@ -243,14 +233,14 @@ class _Efforts:
                 raise beyond_limit(what, where, value, most, unit="deg")
         return range(1)
 
-    def _passes(self, on: WorkCoordinate, way: Row) -> list[float]:
-        """Return the driver's angles at which a place passes those of a table."""
+    def _measures(self, on: WorkCoordinate) -> TrackMeasures:
+        """Return measures of the place of something loaded."""
 
         def track(q: Array, order: int) -> Jet:
-            return on.place(WorkState(self.linkage, q, order, self.speed))
+            found = on.place(WorkState(self.linkage, q, order, self.speed))
+            return Jet([one + np.zeros(q.shape) for one in found.c])  # where it rests, too
 
-        measures = TrackMeasures(track, self.linkage.knots, self.linkage.closed)
-        return [float(q) for one in way for q in measures.places_of(one)]
+        return TrackMeasures(track, self.linkage.knots, self.linkage.closed, highest=0)
 
     def _masses(self) -> Iterator[Effort]:
         pull = self.design.gravity.pull

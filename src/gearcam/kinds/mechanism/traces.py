@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 
 from gearcam.base.errors import InfeasibleError
-from gearcam.numeric.arrays import Array, Ints, Mask, Plane
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane, divided
 
 _BETWEEN: Final = 12
 """Chords between knots at first."""
@@ -108,11 +108,8 @@ def _divided(
     place: Callable[[Array], Plane], q: Array, points: Plane, counts: Ints
 ) -> tuple[Array, Plane, Mask]:
     """Return angles and points with chords divided, and which chords are new."""
-    first = np.repeat(np.arange(len(counts)), counts)
-    step = np.arange(len(first)) - np.repeat(np.cumsum(counts) - counts, counts)
-    angles = np.append(q[first] + np.diff(q)[first] * step / counts[first], q[-1])
-    old = np.append(step == 0, True)
-    moved = np.empty(len(angles), dtype=np.complex128)
-    moved[old] = points
-    moved[~old] = place(angles[~old])
-    return angles, moved, counts[first] > 1
+    angles, known = divided(q, counts), np.append(0, np.cumsum(counts))
+    moved, new = np.empty(len(angles), dtype=np.complex128), np.ones(len(angles), dtype=bool)
+    moved[known], new[known] = points, False
+    moved[new] = place(angles[new])
+    return angles, moved, np.repeat(counts > 1, counts)
