@@ -5,7 +5,7 @@ over the cam angle theta and the distance x along the roller's axis, from the ro
 the *edge*, where it meets the outside of the blank. A groove has both walls, made by a roller that
 is wider than the true one by the clearance.
 
-Depends on envelope, extremes, guides and laws; numpy only.
+Depends on walls, envelope, extremes and guides; numpy only.
 """
 
 from __future__ import annotations
@@ -18,59 +18,43 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.base.display import ShortRepr
-from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.roots import bracketed_root
-from gearcam.spatial.envelope import Roller, RollerAxis, RollerContact, touched
+from gearcam.spatial.envelope import RollerAxis, RollerContact, touched
 from gearcam.spatial.extremes import Spot, boxes_between, lowest
 from gearcam.spatial.guides import RollerGuide, carried
-
-_ROOT: Final = 1e-15
-"""Width of the bracket of a place or a radius, over the radius of the blank."""
+from gearcam.spatial.walls import ROOT, RollerCam, RollerWall
 
 _WIDEST: Final = 4.0
 """Largest radius of a roller that is looked for, over the radius of the blank."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class SpatialCam(ShortRepr):
-    """A cam whose walls are made by a roller.
+class SpatialCam(RollerCam):
+    """A cylinder cam (see `RollerCam`); its program is the lift over a turn.
 
     Parameters
     ----------
-    program : Program
-        The lift over a turn.
     guide : RollerGuide
         What carries the roller.
-    roller : Roller
-        Its shape.
     inner : float, mm
         Distance of its inner end along its axis: between this and the outside it presses.
     floor : float, mm
         Distance up to which the walls are cut; not above `inner`.
     outer_radius : float, mm
         Radius of the blank, a cylinder.
-    clearance : float, mm
-        Width of the groove less the diameter of the roller.
     sides : tuple of int
         The sides of the walls, of `gearcam.spatial.envelope.SIDES`.
-    clockwise : bool
-        Whether the cam turns clockwise: then it is the mirror image of what is computed.
     apart : float, mm
         Of a rib: distance of the axes of the two rollers that embrace it; each makes the wall on
         its side of the rib. 0: one roller makes all walls.
     """
 
-    program: Program
     guide: RollerGuide
-    roller: Roller
     inner: float
     floor: float
     outer_radius: float
-    clearance: float = 0.0
     sides: tuple[int, ...] = (1, -1)
-    clockwise: bool = False
     apart: float = 0.0
 
     @cached_property
@@ -79,59 +63,23 @@ class SpatialCam(ShortRepr):
         return tuple(SpatialWall(cam=self, side=side) for side in self.sides)
 
     @property
-    def undercut(self) -> bool:
-        """Whether the roller cuts away a part of a wall at another angle."""
-        return any(wall.undercut for wall in self.walls)
-
-    @property
-    def hand(self) -> float:
-        """What azimuths and y are multiplied by: -1 of a cam that turns clockwise, else 1."""
-        return -1.0 if self.clockwise else 1.0
-
-    @property
-    def tool(self) -> Roller:
-        """What makes the walls: the roller, wider by the clearance."""
-        return replace(self.roller, radius=self.roller.radius + 0.5 * self.clearance)
+    def widest(self) -> float:
+        """Largest radius of a roller that is looked for, mm."""
+        return _WIDEST * self.outer_radius
 
     @property
     def mean_radius(self) -> float:
         """Radius in the middle between the roller's inner end and the outside, mm."""
         return 0.5 * (self.inner + self.outer_radius)
 
-    def axis(self, theta: Array, side: int) -> RollerAxis:
-        """Return the axis of the roller that makes a wall, in the frame of the cam.
-
-        Parameters
-        ----------
-        theta : (n,) array, rad
-            Cam angles.
-        side : {1, -1}
-            The wall.
-        """
+    def axis(self, theta: Array, side: int = 1) -> RollerAxis:
+        """Return the axis of the roller that makes a wall (see `RollerCam.axis`)."""
         axis = carried(self.guide, theta, *self.program.derivatives(theta, 2))
         if not self.apart:
             return axis
         point = axis.point.copy()
         point[0, :, 2] -= 0.5 * side * self.apart  # the upper wall is made by the lower roller
         return replace(axis, point=point)
-
-    def contact(
-        self, theta: Array, x: Array, side: int, roller: Roller | None = None
-    ) -> RollerContact:
-        """Return where the roller touches a wall.
-
-        Parameters
-        ----------
-        theta : (n,) array, rad
-            Cam angles.
-        x : (n, k) array, mm
-            Distances along the axis of the roller.
-        side : {1, -1}
-            The wall.
-        roller : Roller, optional
-            By default the `tool`.
-        """
-        return touched(self.axis(theta, side), roller or self.tool, x, side)
 
     def pressure(self, x: float | None = None, kind: str = "") -> Spot | None:
         """Return the largest pressure angle, rad, of either wall.
@@ -164,14 +112,6 @@ class SpatialCam(ShortRepr):
 
         worst = self.least(gentle, (low, high), stretches)
         return replace(worst, value=-worst.value)
-
-    @cached_property
-    def largest_roller(self) -> Spot:
-        """Largest radius of a roller that makes all walls without undercut, mm, where it is `at`.
-
-        Infinite if there is none up to four times the radius of the blank.
-        """
-        return min((wall.largest_roller for wall in self.walls), key=lambda spot: spot.value)
 
     @cached_property
     def lost_motion(self) -> Spot | None:
@@ -233,28 +173,33 @@ class SpatialCam(ShortRepr):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class SpatialWall(ShortRepr):
-    """A wall of a cam.
-
-    Parameters
-    ----------
-    cam : SpatialCam
-        The cam.
-    side : {1, -1}
-        The side of the roller.
-    """
+class SpatialWall(RollerWall):
+    """A wall of a cylinder cam (see `RollerWall`)."""
 
     cam: SpatialCam
-    side: int
 
     @property
     def key(self) -> str:
         """Name in files and facts: ``upper`` or ``lower``."""
         return "upper" if self.side > 0 else "lower"
 
-    def contact(self, theta: Array, x: Array) -> RollerContact:
-        """Return where the roller touches it (see `SpatialCam.contact`)."""
-        return self.cam.contact(theta, x, self.side)
+    def least(
+        self,
+        measure: Callable[[RollerContact], Array],
+        ends: tuple[float, float] | None = None,
+    ) -> Spot:
+        """Return the least value of a measure of its points (see `RollerWall.least`).
+
+        Parameters
+        ----------
+        measure : callable
+            Gives values, (n, k), of a contact.
+        ends : (float, float), mm, optional
+            The places on the roller that count; from the floor to the outside if left out.
+        """
+        cam = self.cam
+        places = ends or (cam.floor, cam.outer_radius)
+        return cam.least(lambda theta, x: measure(self.contact(theta, x)), places)
 
     def edge(self, theta: Array) -> Array:
         """Return the places on the roller at which it meets the outside of the blank.
@@ -275,7 +220,7 @@ class SpatialWall(ShortRepr):
             return np.hypot(*contact.points[:, 0, :2].T) - radius
 
         low = np.full(len(theta), self.cam.floor)
-        return bracketed_root(outside, low, np.full(len(theta), radius), _ROOT * radius)
+        return bracketed_root(outside, low, np.full(len(theta), radius), ROOT * radius)
 
     def grid(self, theta: Array, count: int) -> RollerContact:
         """Return the wall as a grid, from its foot to its edge.
@@ -290,49 +235,3 @@ class SpatialWall(ShortRepr):
         share = np.linspace(0.0, 1.0, count)
         low = self.cam.floor
         return self.contact(theta, low + share * (self.edge(theta)[:, None] - low))
-
-    @property
-    def undercut(self) -> bool:
-        """Whether the roller cuts away a part of it at another angle."""
-        return self.spread.value <= 0.0
-
-    @cached_property
-    def spread(self) -> Spot:
-        """The least spread, mm (see `gearcam.spatial.envelope`); below 0 the wall is undercut."""
-        ends = (self.cam.floor, self.cam.outer_radius)
-        return self.cam.least(lambda theta, x: self.contact(theta, x).spread, ends)
-
-    @cached_property
-    def largest_roller(self) -> Spot:
-        """Largest radius of a roller that makes it without undercut, mm, where it is `at`."""
-        return self.largest_roller_at(self.cam.floor, self.cam.outer_radius)
-
-    def largest_roller_at(self, low: float, high: float) -> Spot:
-        """Return the largest radius of a roller without undercut, mm, where it is `at`.
-
-        Parameters
-        ----------
-        low, high : float, mm
-            Places along the roller that count.
-        """
-        cam, shape = self.cam, self.cam.roller
-        widest = _WIDEST * cam.outer_radius
-
-        def critical(theta: Array, x: Array) -> Array:
-            axis = cam.axis(theta, self.side)
-            narrower = (shape.at - x) * math.tan(shape.half_angle)
-
-            def spread(radius: Array) -> Array:
-                return RollerContact(
-                    axis=axis,
-                    x=x,
-                    radius=radius - narrower,
-                    half_angle=shape.half_angle,
-                    side=self.side,
-                ).spread
-
-            least = np.maximum(narrower, 0.0)
-            return bracketed_root(spread, least, np.full(x.shape, widest), _ROOT * widest)
-
-        spot = cam.least(critical, (low, high))
-        return spot if spot.value < 0.999 * widest else replace(spot, value=math.inf)

@@ -15,8 +15,8 @@ The *place* x along a roller is the distance from the turret's axis. Ribs end at
 this axis in each plane through the cam's axis: the *top*, outside the turret's body, and the
 *floor*, up to which the core of the cam is turned so that the ends of the rollers are clear.
 
-Source: 000 section 3.4.1; the walls are derived in `envelope`. Depends on envelope, extremes,
-guides and laws; numpy only.
+Source: 000 section 3.4.1; the walls are derived in `envelope`. Depends on walls, envelope,
+extremes, guides and laws; numpy only.
 """
 
 from __future__ import annotations
@@ -29,20 +29,17 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.base.display import ShortRepr
 from gearcam.laws.indexing import IndexProgram
 from gearcam.laws.phases_of_lift import TURN
 from gearcam.numeric.arrays import Array, Mask
 from gearcam.numeric.roots import bracketed_root
-from gearcam.spatial.envelope import Roller, RollerAxis, RollerContact, touched
+from gearcam.spatial.envelope import RollerAxis, RollerContact
 from gearcam.spatial.extremes import Box, OfPlaces, Spot, boxes_between, lowest
 from gearcam.spatial.guides import Turret, carried
+from gearcam.spatial.walls import ROOT, RollerCam, RollerWall
 
 WORDS: Final = {-1: "upper", 1: "lower"}
 """Words for walls, by the side of the roller that makes them: where they are, seen from it."""
-
-_ROOT: Final = 1e-15
-"""Width of the bracket of a place or a radius, over the centre distance."""
 
 _SCAN: Final = 720
 """Cam angles of a turn at which the beginning and end of the rib are looked for."""
@@ -50,52 +47,40 @@ _SCAN: Final = 720
 _ALONG: Final = 9
 """Places along a roller at which it is looked whether it is on the cam."""
 
-_WIDEST: Final = 1.0
-"""Largest radius of a roller that is looked for, over the centre distance."""
-
 _TURRET: Final = "axis of the turret"
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class GloboidalCam(ShortRepr):
-    """A cam that moves a turret by one pitch in each turn.
+class GloboidalCam(RollerCam):
+    """A cam that moves a turret by one pitch in each turn (see `RollerCam`).
+
+    Its program is the angle of the turret, its roller a cylinder.
 
     Parameters
     ----------
-    program : IndexProgram
-        The angle of the turret.
     distance : float, mm
         From the cam's axis to that of the turret.
     stops : int
         Number of stops, and of rollers.
-    roller : Roller
-        A cylinder.
     top, reach, floor : float, mm
         Distances from the turret's axis: of the tops of the ribs, where the roller begins to press;
         of the ends of the rollers; of the core.
     length : float, mm
         Of the cam, half of it to each side of the turret's axis.
-    clearance : float, mm
-        Width of a groove between ribs less the diameter of the roller.
-    clockwise : bool
-        Whether the cam turns clockwise: then it is the mirror image of what is computed.
     """
 
     program: IndexProgram
     distance: float
     stops: int
-    roller: Roller
     top: float
     reach: float
     floor: float
     length: float
-    clearance: float = 0.0
-    clockwise: bool = False
 
     @property
-    def hand(self) -> float:
-        """What azimuths and y are multiplied by: -1 of a cam that turns clockwise, else 1."""
-        return -1.0 if self.clockwise else 1.0
+    def widest(self) -> float:
+        """Largest radius of a roller that is looked for, mm."""
+        return self.distance
 
     @property
     def pitch(self) -> float:
@@ -106,11 +91,6 @@ class GloboidalCam(ShortRepr):
     def half_length(self) -> float:
         """Height of the upper face, mm."""
         return 0.5 * self.length
-
-    @property
-    def tool(self) -> Roller:
-        """What makes the walls: the roller, wider by the clearance."""
-        return replace(self.roller, radius=self.roller.radius + 0.5 * self.clearance)
 
     @property
     def middle(self) -> float:
@@ -127,31 +107,12 @@ class GloboidalCam(ShortRepr):
         """The walls, the upper one first."""
         return tuple(GloboidalWall(cam=self, side=side) for side in WORDS)
 
-    @property
-    def undercut(self) -> bool:
-        """Whether the rollers cut away a part of a wall at another angle."""
-        return any(wall.undercut for wall in self.walls)
-
     def angle(self, theta: Array) -> Array:
         """Return the angle of the roller from the common perpendicular, rad, at cam angles."""
         return self.program.derivatives(theta, 0)[0] - 0.5 * self.pitch
 
-    def contact(self, theta: Array, x: Array, side: int) -> RollerContact:
-        """Return where the roller touches a wall.
-
-        Parameters
-        ----------
-        theta : (n,) array, rad
-            Cam angles over all turns.
-        x : (n, k) array, mm
-            Places along the roller.
-        side : {1, -1}
-            The wall.
-        """
-        return touched(self.axis(theta), self.tool, x, side)
-
-    def axis(self, theta: Array) -> RollerAxis:
-        """Return the axis of the roller, in the frame of the cam, at cam angles, rad."""
+    def axis(self, theta: Array, side: int = 1) -> RollerAxis:  # noqa: ARG002
+        """Return the axis of the roller, which makes both walls (see `RollerCam.axis`)."""
         return carried(self.guide, theta, *self.program.derivatives(theta, 2))
 
     def depth(self, points: Array) -> Array:
@@ -297,28 +258,24 @@ class GloboidalCam(ShortRepr):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class GloboidalWall(ShortRepr):
-    """A wall of the rib.
-
-    Parameters
-    ----------
-    cam : GloboidalCam
-        The cam.
-    side : {1, -1}
-        The side of the roller that makes it.
-    """
+class GloboidalWall(RollerWall):
+    """A wall of the rib (see `RollerWall`)."""
 
     cam: GloboidalCam
-    side: int
 
     @property
     def key(self) -> str:
         """Name in files and facts: ``upper`` or ``lower``, seen from the roller."""
         return WORDS[self.side]
 
-    def contact(self, theta: Array, x: Array) -> RollerContact:
-        """Return where the roller touches it (see `GloboidalCam.contact`)."""
-        return self.cam.contact(theta, x, self.side)
+    def least(self, measure: Callable[[RollerContact], Array]) -> Spot:
+        """Return the least value of a measure of its points (see `RollerWall.least`)."""
+
+        def on_rib(theta: Array, x: Array) -> Array:
+            contact = self.contact(theta, x)
+            return np.where(self.cam.inside(contact.points), measure(contact), math.inf)
+
+        return _placed(lowest(on_rib, self.cam.boxes()))
 
     def place(self, theta: Array, depth: float) -> Array:
         """Return the places along the roller at which it is at a distance from the turret's axis.
@@ -340,7 +297,7 @@ class GloboidalWall(ShortRepr):
             return cam.depth(self.contact(theta, x[:, None]).points[:, 0]) - depth
 
         ends = np.full(len(theta), 0.0), np.full(len(theta), cam.distance)
-        return bracketed_root(beyond, *ends, _ROOT * cam.distance)
+        return bracketed_root(beyond, *ends, ROOT * cam.distance)
 
     def grid(self, theta: Array, count: int, beyond: float = 0.0) -> RollerContact:
         """Return the wall as a grid, from the top of the rib to the floor.
@@ -358,44 +315,6 @@ class GloboidalWall(ShortRepr):
         first = self.place(theta, cam.top - beyond)[:, None]
         last = self.place(theta, cam.floor + beyond)[:, None]
         return self.contact(theta, first + share * (last - first))
-
-    @property
-    def undercut(self) -> bool:
-        """Whether the roller cuts away a part of it at another angle."""
-        return self.spread.value <= 0.0
-
-    @cached_property
-    def spread(self) -> Spot:
-        """The least spread, mm (see `gearcam.spatial.envelope`); below 0 the wall is undercut."""
-
-        def least(theta: Array, x: Array) -> Array:
-            contact = self.contact(theta, x)
-            return np.where(self.cam.inside(contact.points), contact.spread, math.inf)
-
-        return _placed(lowest(least, self.cam.boxes()))
-
-    @cached_property
-    def largest_roller(self) -> Spot:
-        """Largest radius of a roller that makes it without undercut, mm, where it is.
-
-        Infinite if there is none up to the centre distance. Only places that are on the rib now
-        count.
-        """
-        cam = self.cam
-        widest = _WIDEST * cam.distance
-
-        def critical(theta: Array, x: Array) -> Array:
-            contact = self.contact(theta, x)
-
-            def spread(radius: Array) -> Array:
-                return replace(contact, radius=radius).spread
-
-            low, high = np.zeros(x.shape), np.full(x.shape, widest)
-            found = bracketed_root(spread, low, high, _ROOT * widest)
-            return np.where(cam.inside(contact.points), found, math.inf)
-
-        spot = _placed(lowest(critical, cam.boxes()))
-        return spot if spot.value < 0.999 * widest else replace(spot, value=math.inf)
 
 
 def _placed(spot: Spot, factor: float = 1.0) -> Spot:

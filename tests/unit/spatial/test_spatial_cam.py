@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -46,7 +47,7 @@ def test_the_largest_roller_is_smaller_than_the_developed_plane_allows(
 ) -> None:
     """In space: roots of w^4 - r*x*s''*w - r^2*s'^2, w^2 = x^2 + s'^2, in 30 digits."""
     cam = reference()
-    found = min(wall.largest_roller_at(x, x).value for wall in cam.walls)
+    found = min(wall.least(wall.critical, (x, x)).value for wall in cam.walls)
     assert found == pytest.approx(in_space, abs=1e-10)
     assert largest_in_plane(cam, x) == pytest.approx(in_plane, abs=1e-8)
 
@@ -65,9 +66,8 @@ def test_at_the_largest_roller_the_least_spread_is_zero(half_angle: float) -> No
 
 def second_difference(cam: SpatialCam, theta: float, x: float, radius: float) -> float:
     """Second derivative over the cam angle of the distance of a wall point from the roller."""
-    point = cam.contact(
-        np.array([theta]), np.array([[x]]), 1, Roller(radius=radius, at=40.0)
-    ).points[0, 0]
+    other = replace(cam, roller=Roller(radius=radius, at=40.0))
+    point = other.contact(np.array([theta]), np.array([[x]]), 1).points[0, 0]
 
     def distance(at: float) -> float:
         c, s = math.cos(at), math.sin(at)
