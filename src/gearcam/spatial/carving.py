@@ -1,26 +1,25 @@
-"""What cuts an undercut wall: the roller at many cam angles, as points with their convex hulls.
+"""What cuts an undercut wall of a cylinder cam: the roller at many cam angles, by its corners.
 
-Between two of them a scallop remains, a ridge of metal. The points at the ends of a roller lie
-where it touches its walls at even places, so that the edges of its hull are lines of the walls'
-contact. Without the other wall the roller reaches beyond the face of the blank.
+Without the other wall the roller reaches beyond the face of the blank.
 
-Depends on cam and surface; numpy only.
+Depends on hulls, cam and surface; numpy only.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
 
 from gearcam.numeric.arrays import Array
 from gearcam.spatial.cam import SpatialCam, SpatialWall
-from gearcam.spatial.envelope import Roller, RollerAxis
+from gearcam.spatial.hulls import RollerHulls, left_between, round_hulls
 from gearcam.spatial.surface import Cylinder
 
 _COARSE: Final = 24
-"""Points all around the roller, where it touches nothing."""
+"""Corners all around the roller, where it touches nothing."""
 
 _OUTSIDE: Final = 1.05
 """End of the roller outside the cam, over the radius of the cam."""
@@ -41,88 +40,59 @@ def roller_corners(cam: SpatialCam, blank: Cylinder, steps: int, places: int) ->
         Places along the roller at which its walls are touched, and on the rim of its end from
         the floor to the foot of a wall.
     """
-    theta = np.linspace(0.0, 2.0 * math.pi, steps, endpoint=False)
-    if len(cam.sides) > 1 and not cam.apart:
-        angles = np.concatenate([_touching(wall, theta, places) for wall in cam.walls], axis=1)
-        return _corners(cam, theta, angles, 1)
-    made = []
-    for wall in cam.walls:
-        near = _corners(cam, theta, _touching(wall, theta, places), wall.side)
-        far = near - [0.0, 0.0, 2.0 * wall.side * blank.length]
-        made.append(np.concatenate([near, far], axis=1))
+    theta, made = _even(steps)[:-1], []
+    for walls in _made_together(cam):
+        corners = _hulls(walls, theta, places).corners
+        if len(walls) == 1:
+            far = corners - [0.0, 0.0, 2.0 * walls[0].side * blank.length]
+            corners = np.concatenate([corners, far], axis=1)
+        made.append(corners)
     return np.concatenate(made)
 
 
 def scallop(cam: SpatialCam, steps: int, places: int) -> float:
     """Return the largest height of the metal left between two positions of the roller, mm.
 
-    With the chord error of its hull; measured at the middles of the steps.
+    Measured at the middles of the steps.
 
     Parameters
     ----------
     cam, steps, places
         As of `roller_corners`.
     """
-    step = 2.0 * math.pi / steps
-    theta, worst = step * np.arange(float(steps)), 0.0
-    for wall in cam.walls:
-        x = np.tile(_along(cam, places), (steps, 1))
-        points = wall.contact(theta + 0.5 * step, x).points
-        heights = [
-            beyond_roller(cam.axis(near, wall.side), cam.tool, points)
-            for near in (theta, theta + step)
-        ]
-        angle = np.abs(np.diff(_touching(wall, theta, places)[:, :places], axis=1)).max()
-        chord = cam.tool.radius_at(cam.outer_radius) * (1.0 - math.cos(0.5 * float(angle)))
-        worst = max(worst, float(np.minimum(*heights).max()) + chord)
+    theta, worst = _even(steps), 0.0
+    middle, x = 0.5 * (theta[:-1] + theta[1:]), _along(cam, 2 * places - 1)
+    for walls in _made_together(cam):
+        near = [_hulls(walls, at, places) for at in (theta[:-1], theta[1:])]
+        for wall in walls:
+            points = wall.contact(middle, np.tile(x, (steps, 1))).points
+            worst = max(worst, float(left_between(*near, points).max()))
     return worst
 
 
-def beyond_roller(axis: RollerAxis, roller: Roller, points: Array) -> Array:
-    """Return how far points are outside a roller, (n, k), mm; below 0 they are inside.
-
-    Parameters
-    ----------
-    axis : RollerAxis
-        Its axis at n cam angles.
-    roller : Roller
-        Its shape.
-    points : (n, k, 3) array, mm
-        Points for each of these, in the frame of the cam.
-    """
-    beside = points - axis.point[0][:, None, :]
-    at = np.einsum("nki,ni->nk", beside, axis.direction[0])
-    far = np.linalg.norm(beside - at[..., None] * axis.direction[0][:, None, :], axis=-1)
-    return math.cos(roller.half_angle) * (far - roller.radii(at))
+def _even(steps: int) -> Array:
+    return np.linspace(0.0, 2.0 * math.pi, steps + 1)
 
 
 def _along(cam: SpatialCam, places: int) -> Array:
     return np.linspace(cam.floor, cam.outer_radius, places)
 
 
-def _touching(wall: SpatialWall, theta: Array, places: int) -> Array:
-    """Return the directions around the roller, rad, in which it touches a wall and the ramp.
-
-    From the cam's axis upwards towards the tangent of its turning.
-    """
-    axis = wall.cam.axis(theta, wall.side)
-    contact = wall.contact(theta, np.tile(_along(wall.cam, places), (len(theta), 1)))
-    across = np.cross([0.0, 0.0, 1.0], axis.direction[0])
-    beside = np.einsum("nki,ni->nk", contact.radial, across)
-    angles = np.arctan2(beside, wall.side * contact.radial[..., 2])
-    foot = angles[:, :1] * np.linspace(0.0, 1.0, places, endpoint=False)
-    both = np.concatenate([angles, foot], axis=1)
-    return both if wall.side > 0 else math.pi - both
+def _made_together(cam: SpatialCam) -> list[tuple[SpatialWall, ...]]:
+    """Return the walls that one roller makes; those of a rib are made by two."""
+    return [(wall,) for wall in cam.walls] if cam.apart else [cam.walls]
 
 
-def _corners(cam: SpatialCam, theta: Array, angles: Array, side: int) -> Array:
-    around = np.linspace(0.0, 2.0 * math.pi, _COARSE, endpoint=False)
-    every = np.concatenate([angles, np.tile(around, (len(theta), 1))], axis=1)
-    axis = cam.axis(theta, side)
-    point, direction = axis.point[0][:, None, :], axis.direction[0][:, None, :]
-    up = np.array([0.0, 0.0, 1.0])
-    way = np.sin(every)[..., None] * np.cross(up, direction) + np.cos(every)[..., None] * up
+def _hulls(walls: Sequence[SpatialWall], theta: Array, places: int) -> RollerHulls:
+    """Return the roller, with corners that follow its walls and the ramps below their feet."""
+    cam, x, step = walls[0].cam, _along(walls[0].cam, places), theta[1] - theta[0]
     ends = cam.floor, _OUTSIDE * cam.outer_radius
-    return np.concatenate(
-        [point + x * direction + cam.tool.radius_at(x) * way for x in ends], axis=1
-    )
+    made = round_hulls(cam, walls[0].side, theta, ends, _COARSE)
+    angles = []
+    for wall in walls:
+        touching = made.touching(wall, x, step)
+        # from the direction along the cam, in which it cuts the floor, to the foot of the wall
+        along = math.pi if wall.side > 0 else 0.0
+        turned = np.mod(touching[:, :1] - along + math.pi, 2.0 * math.pi) - math.pi
+        angles += [touching, along + turned * np.linspace(0.0, 1.0, places, endpoint=False)]
+    return made.more(*angles)

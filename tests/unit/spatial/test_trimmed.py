@@ -6,6 +6,7 @@ import math
 from dataclasses import replace
 from typing import Any
 
+import manifold3d
 import numpy as np
 import pytest
 
@@ -17,6 +18,7 @@ from gearcam.spatial.checks import KIND
 from gearcam.spatial.developed import largest_in_plane
 from gearcam.spatial.envelope import Roller
 from gearcam.spatial.extremes import Spot
+from gearcam.spatial.hulls import round_hulls
 from gearcam.spatial.surface import Cylinder, blank_surface, surface
 from gearcam.spatial.trimmed import TrimmedWall, lost_lift
 from helpers_spatial import enclosed, reference, swinging
@@ -153,6 +155,52 @@ def test_carving_a_whole_groove_gives_its_surface(more: dict[str, Any]) -> None:
     errors = [carving(cam, n, n // 12).volume - true for n in (60, 120)]
     assert errors[1] > 0.0
     assert 2.5 < errors[0] / errors[1] < 5.0
+
+
+def roller(cam: SpatialCam, theta: float, less: float) -> Any:
+    """The roller from 1.5 mm above the floor as a prism, so much smaller, in the cam's frame."""
+    radius, depth = cam.roller.radius - less, cam.outer_radius - cam.inner
+    lift = float(cam.program.derivatives(np.array([theta]), 0)[0][0])
+    return (
+        manifold3d.Manifold.cylinder(depth, radius, radius, 1440)
+        .rotate((0.0, 90.0, 0.0))
+        .translate((cam.inner + 1.5, 0.0, 40.0 + lift))
+        .rotate((0.0, 0.0, -math.degrees(theta)))
+    )
+
+
+@pytest.mark.parametrize("radius", [8.0, 22.3])
+def test_nothing_is_left_higher_than_is_stated(radius: float) -> None:
+    """A roller between two positions, in dwells and on slopes, by intersections of manifold3d."""
+    cam, steps = cut(radius), 120
+    made, height = carving(cam, steps, 13), scallop(cam, steps, 13)
+    body = manifold3d.Manifold(manifold3d.Mesh64(made.vertices, made.triangles.astype(np.uint64)))
+    step = 2.0 * math.pi / steps
+    angles = [step * (k + 0.5) for k in (15, 30, 50, 66, 110)]
+    left = [(body ^ roller(cam, theta, height + 5e-4)).volume() for theta in angles]
+    assert max(left) == 0.0
+    assert max((body ^ roller(cam, theta, 0.95 * height)).volume() for theta in angles) > 0.0
+
+
+@pytest.mark.parametrize("half_angle", [0.0, 0.3])
+def test_the_distance_from_a_hull_is_that_from_its_faces(half_angle: float) -> None:
+    """Against the planes of the triangles of manifold3d."""
+    cam = cut(12.0, half_angle)
+    (wall, _), theta = cam.walls, np.array([0.7, 3.1])
+    hulls = round_hulls(cam, 1, theta, (28.0, 42.0), 24)
+    hulls = hulls.more(hulls.touching(wall, np.linspace(28.0, 40.0, 5), 0.05))
+    points = wall.contact(theta + 0.02, np.tile([30.0, 33.0, 39.0], (2, 1))).points
+    found = hulls.beyond(points)
+    for k, corners in enumerate(hulls.corners):
+        made = manifold3d.Manifold.hull_points(corners).to_mesh64()
+        a, b, c = np.moveaxis(made.vert_properties[:, :3][made.tri_verts], 1, 0)
+        normals = np.cross(b - a, c - a)
+        sizes = np.linalg.norm(normals, axis=1)
+        whole = sizes > 1e-3
+        planes = normals[whole] / sizes[whole][:, None]
+        far = [((point - a[whole]) * planes).sum(axis=1).max() for point in points[k]]
+        assert found[k] == pytest.approx(far, abs=1e-7)
+    assert found.min() > 0.0
 
 
 def test_scallops_fall_with_the_square_of_the_step() -> None:
