@@ -63,10 +63,10 @@ def scallop(cam: SpatialCam, steps: int, places: int) -> float:
     theta, worst = _even(steps), 0.0
     middle, x = 0.5 * (theta[:-1] + theta[1:]), _along(cam, 2 * places - 1)
     for walls in _made_together(cam):
-        near = [_hulls(walls, at, places) for at in (theta[:-1], theta[1:])]
+        before, after = (_hulls(walls, at, places) for at in (theta[:-1], theta[1:]))
         for wall in walls:
             points = wall.contact(middle, np.tile(x, (steps, 1))).points
-            worst = max(worst, float(left_between(*near, points).max()))
+            worst = max(worst, float(left_between(before, after, points).max()))
     return worst
 
 

@@ -259,7 +259,7 @@ class GloboidalCam(RollerCam):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class GloboidalWall(RollerWall):
-    """A wall of the rib (see `RollerWall`)."""
+    """A wall of the rib of a cam (see `RollerWall`)."""
 
     cam: GloboidalCam
 

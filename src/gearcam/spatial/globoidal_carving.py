@@ -65,13 +65,13 @@ def scallop(cam: GloboidalCam, steps: int, places: int) -> float:
         As of `roller_corners`.
     """
     theta = rib_angles(cam, steps)
-    near = [_hulls(cam, at, steps, places) for at in (theta[:-1], theta[1:])]
+    before, after = (_hulls(cam, at, steps, places) for at in (theta[:-1], theta[1:]))
     middle = 0.5 * (theta[:-1] + theta[1:])
     x = np.tile(np.linspace(*cam.places, 2 * places - 1), (len(middle), 1))
     worst = 0.0
     for wall in cam.walls:
         points = wall.contact(middle, x).points
-        height = left_between(*near, points)[cam.inside(points)]
+        height = left_between(before, after, points)[cam.inside(points)]
         worst = max(worst, float(height.max()))
     return worst
 
