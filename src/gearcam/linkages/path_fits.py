@@ -2,9 +2,9 @@
 
 Lines and circles are those with the smallest largest deviation. A line is the middle of the
 narrowest strip round the stretch: where the strip's width is least, its change with the strip's
-direction, the way between the points that touch both sides, goes through 0. A circle is found by
-exchange: it is as far, in turn inside and outside, from four points; these are replaced by the
-farthest ones until none is farther. Deviations are extremes, not samples.
+direction, the way between the points that touch both sides, goes through 0. A circle is the one
+nearest to points of the stretch; the points farthest from it are added until none is farther.
+Deviations are extremes, not samples.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from gearcam.linkages.measures import Extremes, Peak, extremes_of
+from gearcam.linkages.nearest_circle import moved_center, nearest_center
 from gearcam.linkages.paths import PointPath
 from gearcam.linkages.plane import imaginary, square
 from gearcam.numeric.arrays import Array, Plane
@@ -32,17 +33,10 @@ _FOUND: Final = 1e-15
 """Accuracy of a direction, rad."""
 
 _ROUNDS: Final = 40
-"""Largest number of exchanges, and of Newton steps in each."""
+"""Largest number of times that a circle is mended at the points farthest from it."""
 
 _EVEN: Final = 1e-12
-"""Difference of the largest deviation and that at the four points, as a share of the radius."""
-
-_STRAIGHT: Final = 1e-9
-"""Height over length of a stretch that is too straight for a circle."""
-
-
-class StraightError(ValueError):
-    """A stretch to which no circle is nearest."""
+"""Difference of deviations that is none, as a share of the radius."""
 
 
 class LineFit(NamedTuple):
@@ -158,20 +152,17 @@ def best_circle(path: PointPath, begin: float, end: float) -> CircleFit:
         straight.
     """
     knots = _knots(path, begin, end)
-    points = _samples(path, knots)
-    center, radius = _least_squares(points)
+    points = known = _samples(path, knots)
+    center = nearest_center(points)
     best = (math.inf, center)
     for _ in range(_ROUNDS):
         places, values = _distances(path, knots, center)
-        off = values - 0.5 * (values.max() + values.min())
-        deviation = float(off.max())
-        best = min(best, (deviation, center), key=lambda one: one[0])
-        four = _alternating(off)
-        if len(four) < 4 or np.abs(off[four]).min() >= deviation - _EVEN * radius:
+        best = min(best, (0.5 * float(np.ptp(values)), center), key=lambda one: one[0])
+        known = np.concatenate([known, np.asarray(path.at(places, 0).c[0])])
+        center, least = moved_center(known, center)
+        if best[0] - least <= _EVEN * values.max():
             break
-        touched = np.asarray(path.at(places[four], 0).c[0])
-        center, radius = _even(touched, np.sign(off[four]), center, radius)
-    deviation, center = best
+    _, center = best
     low, high = _ends(_distances(path, knots, center))
     return CircleFit(
         center,
@@ -247,53 +238,6 @@ def _ends(extremes: Extremes) -> tuple[Peak, Peak]:
         Peak(float(values[k]), float(places[k])) for k in (values.argmin(), values.argmax())
     )
     return low, high
-
-
-def _least_squares(points: Plane) -> tuple[complex, float]:
-    """Return centre and radius of the circle with the least squares of powers of the points."""
-    middle = points.mean()
-    away = points - middle
-    size = float(np.abs(away).max())
-    if size <= _EVEN * abs(middle):
-        raise StraightError("the stretch is a point: no circle is nearest to it; take a line")
-    away = away / size
-    spread = np.linalg.svd(np.stack([away.real, away.imag]), compute_uv=False)
-    if spread[1] <= _STRAIGHT * spread[0]:
-        raise StraightError("the stretch is straight: no circle is nearest to it; take a line")
-    matrix = np.stack([2.0 * away.real, 2.0 * away.imag, np.ones(away.size)], axis=1)
-    x, y, rest = np.linalg.lstsq(matrix, np.abs(away) ** 2, rcond=None)[0]
-    center = complex(middle + size * (x + 1j * y))
-    return center, size * math.sqrt(rest + x * x + y * y)
-
-
-def _alternating(off: Array) -> list[int]:
-    """Return the four neighbouring extremes with alternating signs that are largest together."""
-    kept: list[int] = []
-    for number, value in enumerate(off):
-        if kept and np.sign(off[kept[-1]]) == np.sign(value):
-            if abs(value) > abs(off[kept[-1]]):
-                kept[-1] = number
-        elif value:
-            kept.append(number)
-    groups = [kept[k : k + 4] for k in range(len(kept) - 3)]
-    return max(groups, key=lambda four: float(np.abs(off[four]).min()), default=[])
-
-
-def _even(touched: Plane, signs: Array, center: complex, radius: float) -> tuple[complex, float]:
-    """Return the circle that is equally far, in turn inside and outside, from four points."""
-    deviation = 0.0
-    for _ in range(_ROUNDS):
-        away = touched - center
-        distance = np.abs(away)
-        miss = distance - radius - signs * deviation
-        slopes = np.stack(
-            [-away.real / distance, -away.imag / distance, -np.ones(4), -signs], axis=1
-        )
-        x, y, wider, farther = np.linalg.solve(slopes, -miss)
-        center, radius, deviation = center + complex(x, y), radius + wider, deviation + farther
-        if max(abs(x), abs(y), abs(wider)) <= _EVEN * abs(radius):
-            break
-    return complex(center), float(radius)
 
 
 def _turned(away: Plane) -> float:

@@ -93,6 +93,38 @@ def test_circles_nearest_to_waves(seed: int) -> None:
     assert found.deviation == pytest.approx(best.fun, rel=1e-5)
 
 
+@pytest.mark.parametrize("seed", [0, 1, 2, 3, 4, 5, 9])
+def test_circles_nearest_to_stretches_that_are_not_round(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    ways = (random.normal(size=(4, 2)) @ np.array([1.0, 1j])) * [10.0, 6.0, 3.0, 1.0]
+
+    def wild(q: Array, order: int) -> Jet:  # turns back, bends both ways, crosses itself
+        x = Jet.variable(q, order)
+        total = Jet.variable(q * 0.0, order) * 0.0
+        for times, way in zip((1.0, -1.0, 2.0, -2.0), ways, strict=True):
+            total = total + towards(x * times) * way
+        return total
+
+    end = float(random.uniform(1.0, 6.6))
+    path = PointPath(wild, TURN)
+    found = best_circle(path, 0.4, end)
+    points = _even_points(path, 0.4, end, 2001)
+
+    def deviation(center: Array) -> float:
+        return 0.5 * float(np.ptp(np.abs(points - complex(*center))))
+
+    middle, size = points.mean(), np.abs(points - points.mean()).max()
+    starts = [found.center, *(middle + size * random.normal(size=(8, 2)) @ [1.0, 1j])]
+    tries = [
+        minimize(deviation, [one.real, one.imag], method="Nelder-Mead", options={"maxiter": 2000})
+        for one in starts
+    ]
+    assert found.deviation <= min(one.fun for one in tries) * (1.0 + 1e-4)
+    assert found.deviation == pytest.approx(
+        deviation(np.array([found.center.real, found.center.imag])), rel=1e-4
+    )
+
+
 @pytest.mark.parametrize(
     ("coupler", "base", "angle", "straight", "over"),
     [
@@ -170,6 +202,17 @@ def test_the_circle_nearest_to_an_ellipse() -> None:
     found = best_circle(_of(ellipse), 0.0, 2.0 * np.pi)
     assert found.center == pytest.approx(0.0, abs=1e-12)
     assert (found.radius, found.deviation) == pytest.approx((8.0, 2.0), rel=1e-13)
+
+
+def test_of_what_bends_both_ways_the_nearest_circle_is_nearly_a_line() -> None:
+    def bent(q: Array, order: int) -> Jet:
+        x = Jet.variable(q, order) - 1.0
+        return x * 10.0 + x * x * x * 1j
+
+    path = PointPath(bent, np.array([0.0, 2.0]), closed=False)
+    circle, line = best_circle(path, 0.0, 2.0), best_line(path, 0.0, 2.0)
+    assert circle.radius > 1e4
+    assert circle.deviation == pytest.approx(line.deviation, rel=1e-3)
 
 
 def test_a_distance_may_be_0() -> None:

@@ -408,7 +408,8 @@ class MechanismResult(Result):
         """
         if not self.design.stretch:
             return ()
-        from gearcam.linkages.path_fits import StraightError, best_circle, best_line
+        from gearcam.linkages.nearest_circle import StraightError
+        from gearcam.linkages.path_fits import best_circle, best_line
 
         found = []
         for number, one in enumerate(self.design.stretch):
