@@ -126,8 +126,7 @@ class AppliedForce(ShortRepr, Effort):
 
     def force(self, state: WorkState) -> Jet:
         """Return the force or moment."""
-        found = self.law(Acting(state, self.coordinate))
-        return found if isinstance(found, Jet) else state.angle * 0.0 + found
+        return state.angle * 0.0 + self.law(Acting(state, self.coordinate))
 
 
 def force_on(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import fields, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -16,6 +16,7 @@ from gearcam.kinds.mechanism.drives import way_of
 from gearcam.kinds.mechanism.load_names import pushed_in, sorts_of, unturned
 from gearcam.kinds.mechanism.load_tables import OUTER
 from gearcam.kinds.mechanism.names import MEMBER, SHAFT, WAY, moves
+from gearcam.kinds.mechanism.outputs import parts_of
 from gearcam.kinds.mechanism.wheel_masses import wheel_masses
 from gearcam.linkages.coordinates import (
     Acting,
@@ -93,7 +94,7 @@ class _Efforts:
         self, design: MechanismDesign, linkage: Linkage, drives: Sequence[PlacedDrive]
     ) -> None:
         self.design, self.speed = design, design.drive[0].speed
-        self.parts = {one.name: getattr(design, one.name) for one in fields(design)}
+        self.parts = parts_of(design)
         self.sorts = sorts_of(self.parts)
         self.centers = self._centers()
         points: list[Element] = [
@@ -305,10 +306,8 @@ def _opposing(law: ForceLaw) -> ForceLaw:
     """Return the law of a load of the same size that opposes the motion."""
 
     def opposed(acting: Acting) -> Jet:
-        size = law(acting)
-        found = size if isinstance(size, Jet) else acting.angle * 0.0 + size
-        against = -np.sign(np.asarray(acting.rate.c[0])) * np.sign(np.asarray(found.c[0]))
-        return found * against
+        size = acting.angle * 0.0 + law(acting)
+        return size * -(np.sign(acting.rate.c[0]) * np.sign(size.c[0]))
 
     return opposed
 

@@ -344,31 +344,21 @@ def _charts(
     beside: Mapping[str, VirtualWork],
 ) -> dict[str, Chart]:
     """Return charts of the driver's moment, its parts, and those behind other drives."""
-    angle = next(iter(columns.values()))
-    label = f"{result.driver[1]}, deg"
-    most = limit_of(TORQUE, "drive-torque", result.design.limits) / NEWTON_METRES.factor
-    own = result.design.drive[0].name
-    lines = [Line(label=own, x=angle, y=columns["torque_nm"])]
-    lines += [
-        Line(label=name, x=_DEG * q, y=_NM * np.asarray(work.moment(q).c[0]))
-        for name, work in beside.items()
-        for q in [_places(result, work)]
-    ]
-    charts = {
-        "torque": Chart(
-            title="Moment of the driver",
-            x=label,
-            y="moment, N m",
-            lines=tuple(lines),
-            limits=(Limit(label="limit", value=most),) if most else (),
-        )
-    }
-    parts = [name for name in PARTS if f"{name}_nm" in columns]
+    angle, design = next(iter(columns.values())), result.design
+
+    def chart(title: str, lines: list[Line], *limits: Limit) -> Chart:
+        x = f"{result.driver[1]}, deg"
+        return Chart(title=title, x=x, y="moment, N m", lines=tuple(lines), limits=limits)
+
+    lines = [Line(label=design.drive[0].name, x=angle, y=columns["torque_nm"])]
+    for name, work in beside.items():
+        q = _places(result, work)
+        lines.append(Line(label=name, x=_DEG * q, y=_NM * np.asarray(work.moment(q).c[0])))
+    most = limit_of(TORQUE, "drive-torque", design.limits) / NEWTON_METRES.factor
+    limits = [Limit(label="limit", value=most)] if most else []
+    charts = {"torque": chart("Moment of the driver", lines, *limits)}
+    own = [name for name in PARTS if f"{name}_nm" in columns]
+    parts = [Line(label=name, x=angle, y=columns[f"{name}_nm"]) for name in own]
     if parts:
-        charts["torque_parts"] = Chart(
-            title="What the driver's moment is made of",
-            x=label,
-            y="moment, N m",
-            lines=tuple(Line(label=name, x=angle, y=columns[f"{name}_nm"]) for name in parts),
-        )
+        charts["torque_parts"] = chart("What the driver's moment is made of", parts)
     return charts

@@ -27,8 +27,6 @@ class WheelMass(NamedTuple):
 
     Attributes
     ----------
-    name : str
-        Its shaft, or its way.
     element : Element
         What carries its centre of mass.
     center : str
@@ -39,7 +37,6 @@ class WheelMass(NamedTuple):
         Its inertia.
     """
 
-    name: str
     element: Element
     center: str
     mass: float
@@ -72,9 +69,9 @@ def _wheel(drive: PlacedDrive, word: str, found: MassProperties) -> WheelMass:
     if drive.moved[word].along:  # any point of it has its way
         element = PushedSlide(member, name, way_of(name), center)
         inertia = InertiaForce.of_mass(center, found.mass, member)
-        return WheelMass(name, element, center, found.mass, inertia)
+        return WheelMass(element, center, found.mass, inertia)
     start = cmath.phase(drive.vector(placed))
     element = Crank(member, name, center_of(name), center, abs(placed), start)
     # about its shaft, which stands still
     inertia = InertiaForce.of_turn(ShaftTurn(name), _M2 * found.inertia, name)
-    return WheelMass(name, element, center, found.mass, inertia)
+    return WheelMass(element, center, found.mass, inertia)
