@@ -16,20 +16,16 @@ from numpy.typing import ArrayLike
 from gearcam.base.errors import ABOVE, DesignError, InfeasibleError, Problem, beyond_limit
 from gearcam.base.findings import Finding, in_order, run_checks
 from gearcam.base.numerals import formatted
-from gearcam.designs.faults import show
 from gearcam.kinds.mechanism.chain_checks import guided_chains
 from gearcam.kinds.mechanism.design import MechanismDesign
 from gearcam.kinds.mechanism.drives import PlacedDrive, placed
 from gearcam.kinds.mechanism.make import make_linkage
+from gearcam.kinds.mechanism.names import parts_of
 from gearcam.kinds.mechanism.outputs import (
     AMOUNTS,
-    UNKNOWN,
     Output,
-    allowed_outputs,
-    asked_outputs,
-    known_outputs,
-    parts_of,
-    unknown_hint,
+    OutputNames,
+    paths_asked,
 )
 from gearcam.linkages import checks
 from gearcam.linkages.dwells import DriverRange, ShortRangeError, last_travels, longest_dwell
@@ -133,12 +129,12 @@ class MechanismResult(Result):
     @cached_property
     def outputs(self) -> tuple[Output, ...]:
         """What is asked for, in order."""
-        return asked_outputs(parts_of(self.design), self.design.output.outputs)
+        return self.output_names.asked(self.design.output.outputs)
 
     @cached_property
-    def _known_outputs(self) -> dict[str, tuple[Output, ...]]:
-        """All that may be asked for, by name."""
-        return known_outputs(parts_of(self.design))
+    def output_names(self) -> OutputNames:
+        """What may be asked for, by name."""
+        return OutputNames(parts_of(self.design))
 
     @property
     def angles(self) -> Array:
@@ -199,12 +195,9 @@ class MechanismResult(Result):
         DesignError
             If nothing moves by this name, or `q` is not an array of finite numbers.
         """
-        if name not in self._known_outputs:
-            parts = parts_of(self.design)
-            allowed, hint = allowed_outputs(parts), unknown_hint(name, parts)
-            what = f"{show(name)}: {UNKNOWN}"
-            raise DesignError([Problem(what, key="name", value=name, allowed=allowed, hint=hint)])
-        return self._motion_of(self._known_outputs[name], q)
+        if name not in self.output_names.known:
+            raise DesignError([self.output_names.unknown(("name",), name).problem("")])
+        return self._motion_of(self.output_names.known[name], q)
 
     def _motion_of(self, outputs: Iterable[Output], q: ArrayLike | None) -> Columns:
         where = self.angles if q is None else self._within_range(q)
@@ -335,10 +328,9 @@ class MechanismResult(Result):
     def paths(self) -> dict[str, PointPath]:
         """The paths of the points that are asked for, by name."""
         linkage = self.linkage
-        names = dict.fromkeys(one.name for one in self.outputs if one.quantity == f"{one.name}.x")
         return {
             name: PointPath(partial(linkage.track, name), linkage.knots, linkage.closed)
-            for name in names
+            for name in paths_asked(self.outputs)
         }
 
     @cached_property
@@ -526,6 +518,6 @@ class MechanismResult(Result):
             The amount in mm or rad.
         """
         table: Any = getattr(self.design, title)[number]
-        (found,) = self._known_outputs[table.on]
+        (found,) = self.output_names.known[table.on]
         word = AMOUNTS[title]
         return found, getattr(table, f"{word}_angle" if found.angle else word)

@@ -14,7 +14,7 @@ from gearcam.base.errors import InfeasibleError
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import LONGEST
 from gearcam.kinds.mechanism.drives import PlacedDrive
-from gearcam.kinds.mechanism.names import PARTS, needed
+from gearcam.kinds.mechanism.names import needed, parts_of
 from gearcam.linkages.closing import settled
 from gearcam.linkages.elements import MOTION
 from gearcam.linkages.geneva import GenevaWheel
@@ -64,8 +64,7 @@ def with_rests(linkage: Linkage) -> Linkage:
 
 def indexed(design: MechanismDesign) -> int:
     """Return after how many turns of their cranks all Geneva wheels that move others are back."""
-    parts = {title: getattr(design, title) for title in PARTS}
-    used = {one.name for one in needed(parts)}
+    used = {one.name for one in needed(parts_of(design))}
     return math.lcm(*(one.slots for one in design.geneva if one.name in used))
 
 

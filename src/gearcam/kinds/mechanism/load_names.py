@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.designs.faults import Fault
-from gearcam.kinds.mechanism import names, outputs
-from gearcam.kinds.mechanism.names import JOINT, MEMBER, SHAFT, WAY
+from gearcam.kinds.mechanism import names, outputs, unfit_drives
+from gearcam.kinds.mechanism.name_keys import JOINT, MEMBER, SHAFT, WAY
 from gearcam.linkages.elements import GROUND
 
 if TYPE_CHECKING:
@@ -79,7 +79,8 @@ def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
     found : Examined
         The valid tables.
     """
-    faults = [*names.problems(document, found), *outputs.problems(document, found)]
+    faults = [*unfit_drives.problems(found), *names.problems(document, found)]
+    faults += outputs.problems(document, found)
     yield from faults
     parts = found.parts
     sorts, still = sorts_of(parts), unturned(parts)

@@ -30,11 +30,13 @@ from gearcam.base.quantities import (
     param,
 )
 from gearcam.base.rules import Breach, exactly_one, needs
+from gearcam.kinds.mechanism.name_keys import JOINT, MEMBER, SHAFT, WAY, named
 from gearcam.linkages.elements import GROUND
 from gearcam.mechanics.load import WrittenLoad
 
 _MOST: Final = 1e9
 _TURN_DEG: Final = 36000.0
+_MOVING: Final = f"{JOINT} or {MEMBER} or {SHAFT} or {WAY}"
 
 INNER, OUTER = "inner", "outer"
 """Dead centres, where a slide's place is least, and where it is largest."""
@@ -62,9 +64,8 @@ class MachineLoad(ShortRepr, WrittenLoad):
     _variables: ClassVar[Mapping[str, str]] = {"q": "q", "x": "the place x", "v": "the velocity v"}
     _from: ClassVar[float] = math.inf
 
-    on: str = param(
-        TEXT,
-        min_length=1,
+    on: str = named(
+        needs=_MOVING,
         example="slide",
         doc="what is loaded: a joint, a point, a slide, a member, or a shaft such as pair.wheel2",
     )
@@ -204,10 +205,10 @@ class MemberMass(ShortRepr):
     MemberMass(of='rod', mass=45, at=(260, 0), inertia=2.8)
     """
 
-    of: str = param(TEXT, min_length=1, example="rod", doc="the member, or a shaft")
+    of: str = named(needs=f"{MEMBER} or {SHAFT}", example="rod", doc="the member, or a shaft")
     mass: float | None = param(MASS, default=None, gt=0, le=1e9, example=0.35, doc="its mass")
-    center: str | None = param(
-        TEXT, default=None, min_length=1, example="G", doc="joint or point in its centre of mass"
+    center: str | None = named(
+        needs=JOINT, default=None, example="G", doc="joint or point in its centre of mass"
     )
     at: tuple[float, float] | None = param(
         LENGTH,
@@ -248,17 +249,15 @@ class MachineSpring(ShortRepr):
     MachineSpring(between=('P', 'D'), stiffness=3, length=80)
     """
 
-    on: str | None = param(
-        TEXT,
+    on: str | None = named(
+        needs=_MOVING,
         default=None,
-        min_length=1,
         example="slide",
         doc="a slide that is joined to its guide, or a member or shaft that is joined to the frame",
     )
-    between: tuple[str, str] | None = param(
-        TEXT,
+    between: tuple[str, str] | None = named(
+        needs=f"{JOINT} or {MEMBER}",
         default=None,
-        min_length=1,
         order="first and second",
         example=["P", "D"],
         doc="the two joints between which it is, or the two members, one of which may be "

@@ -15,8 +15,8 @@ from gearcam.base.numerals import formatted
 from gearcam.kinds.mechanism.drives import way_of
 from gearcam.kinds.mechanism.load_names import pushed_in, sorts_of, unturned
 from gearcam.kinds.mechanism.load_tables import OUTER
-from gearcam.kinds.mechanism.names import MEMBER, SHAFT, WAY, moves
-from gearcam.kinds.mechanism.outputs import parts_of
+from gearcam.kinds.mechanism.name_keys import MEMBER, SHAFT, WAY
+from gearcam.kinds.mechanism.names import moves, parts_of
 from gearcam.kinds.mechanism.wheel_masses import wheel_masses
 from gearcam.linkages.coordinates import (
     Acting,

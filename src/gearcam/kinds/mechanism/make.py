@@ -180,7 +180,7 @@ def _start(crank: CrankSpec, number: int, drives: Sequence[PlacedDrive]) -> floa
 
 def _dyad(spec: DyadSpec) -> Dyad:
     lengths = Lengths(*spec.lengths, spec.beta, *spec.gammas)
-    second = spec.branch in ("right", "behind")
+    second = spec.branch in spec.branches[1:]
     return Dyad(
         spec.formula,
         spec.first,

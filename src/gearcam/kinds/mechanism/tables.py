@@ -31,6 +31,16 @@ from gearcam.base.quantities import (
 from gearcam.base.rules import Breach, distinct, exactly_one
 from gearcam.designs.design import Design
 from gearcam.designs.outputs import OutputSpec, files_param, pose_param, studies_param
+from gearcam.kinds.mechanism.name_keys import (
+    ANY,
+    GUIDE,
+    JOINT,
+    MEMBER,
+    SHAFT,
+    STANDING,
+    WAY,
+    named,
+)
 from gearcam.linkages.dyads import DYADS
 from gearcam.linkages.elements import BRANCH, GROUND, MOTION
 from gearcam.linkages.geneva import SLOTS
@@ -41,10 +51,6 @@ FORMATS: Final = ("csv", "dxf", "svg", "report")
 STUDIES: Final = ("torque", "accuracy")
 
 _TURN_DEG: Final = 36000.0
-
-
-def _name(*, doc: str, **rest: Any) -> Any:
-    return param(TEXT, min_length=1, doc=doc, **rest)
 
 
 def _point(*, doc: str, **rest: Any) -> Any:
@@ -66,7 +72,7 @@ class CompareSpec(ShortRepr):
     CompareSpec(name='without_a_pair', even=True)
     """
 
-    name: str = _name(doc="name of the comparison in tables and charts", example="without_a_pair")
+    name: str = named(doc="name of the comparison in tables and charts", example="without_a_pair")
     pair: Design | None = nested(
         "gear-pair", default=None, example="pair.toml", doc="the pair that drives it"
     )
@@ -99,7 +105,9 @@ class MachineDrive(ShortRepr):
     MachineDrive(name='motor', even=True)
     """
 
-    name: str = _name(doc="its name; cranks and slides name a shaft of it", example="pair")
+    name: str = named(
+        gives=ANY, doc="its name; cranks and slides name a shaft of it", example="pair"
+    )
     pair: Design | None = nested(
         "gear-pair", default=None, example="pair.toml", doc="the pair: its wheels or its rack move"
     )
@@ -154,13 +162,16 @@ class MachineDrive(ShortRepr):
             yield from _formula_problems(self.slide)
 
     @property
-    def shafts(self) -> tuple[str, ...]:
-        """Names of what turns or slides, behind the name of the drive."""
+    def shafts(self) -> dict[str, str]:
+        """What it moves, a shaft or a slide, by the words behind the name of the drive."""
         if self.pair is not None:
-            return ("wheel1", "rack" if _moves_a_rack(self.pair) else "wheel2")
+            rack = _moves_a_rack(self.pair)
+            return {"wheel1": SHAFT} | ({"rack": WAY} if rack else {"wheel2": SHAFT})
         if self.cam is not None:
-            return "shaft", "follower"
-        return ("shaft",) if self.even else ("slide",)
+            follower = getattr(self.cam, "follower", None)
+            swings = getattr(follower, "motion", "") == "oscillating"
+            return {"shaft": SHAFT, "follower": SHAFT if swings else WAY}
+        return {"shaft": SHAFT} if self.even else {"slide": WAY}
 
 
 def _moves_a_rack(pair: Design) -> bool:
@@ -190,7 +201,7 @@ class JointSpec(ShortRepr):
     JointSpec(name='D', at=(110, 0))
     """
 
-    name: str = _name(doc="its name", example="D")
+    name: str = named(gives=JOINT, doc="its name", example="D")
     at: tuple[float, float] = _point(doc="where it stands", order="x, y", example=[110, 0])
 
 
@@ -205,11 +216,13 @@ class CrankSpec(ShortRepr):
     CrankSpec(name='crank', on='motor', joint='B', length=40)
     """
 
-    name: str = _name(doc="its name", example="crank")
-    on: str = _name(
-        doc="the shaft: the name of an even drive, pair.wheel2, cam.follower", example="motor"
+    name: str = named(gives=MEMBER, doc="its name", example="crank")
+    on: str = named(
+        needs=SHAFT,
+        doc="the shaft: the name of an even drive, pair.wheel2, cam.follower",
+        example="motor",
     )
-    joint: str = _name(doc="name of its joint", example="B")
+    joint: str = named(gives=JOINT, doc="name of its joint", example="B")
     length: float = positive_length(default=REQUIRED, example=40, doc="from the shaft to the joint")
     angle: float | None = _direction(
         doc="its direction at the drive's zero; 0 if left out", default=None, example=0
@@ -219,8 +232,11 @@ class CrankSpec(ShortRepr):
         default=None,
         example=90,
     )
-    at: str | None = _name(
-        doc="joint in which the shaft stands, if not that of the drive", default=None, example="A"
+    at: str | None = named(
+        needs=JOINT,
+        doc="joint in which the shaft stands, if not that of the drive",
+        default=None,
+        example="A",
     )
 
     def problems(self) -> Iterator[Breach]:
@@ -240,12 +256,13 @@ class SlideSpec(ShortRepr):
     SlideSpec(name='tool', on='cam.follower', joint='T')
     """
 
-    name: str = _name(doc="its name", example="tool")
-    on: str = _name(
+    name: str = named(gives=MEMBER, doc="its name", example="tool")
+    on: str = named(
+        needs=WAY,
         doc="what pushes it: cam.follower, pair.rack, or the name of a slide",
         example="cam.follower",
     )
-    joint: str = _name(doc="name of its joint", example="T")
+    joint: str = named(gives=JOINT, doc="name of its joint", example="T")
     at: tuple[float, float] = _point(
         doc="the joint in the frame of the follower's end, the rack or the slide, x along its way",
         default=(0.0, 0.0),
@@ -264,14 +281,15 @@ class GuideSpec(ShortRepr):
     GuideSpec(name='bed', at=(180, 0))
     """
 
-    name: str = _name(doc="its name", example="bed")
-    on: str = _name(doc="the member that carries it", default="ground")
+    name: str = named(gives=GUIDE, doc="its name", example="bed")
+    on: str = named(needs=MEMBER, doc="the member that carries it", default="ground")
     at: tuple[float, float] = _point(
         doc="a point of it, from which places count, in the member's frame",
         default=(0.0, 0.0),
         order="x, y",
     )
-    through: str | None = _name(
+    through: str | None = named(
+        needs=STANDING,
         doc="a joint that stands still, or a shaft, from which at_mm counts",
         default=None,
         example="pair.wheel2",
@@ -284,10 +302,13 @@ class GuideSpec(ShortRepr):
             yield "through", None, f"is given beside on = {self.on!r}", "a guide on the ground"
 
 
-TYPES: Final = ("RRR", "RRT", "TRR", "RTR", "TRT", "RTT", "TTR", "RTRR")
-"""Types of dyads: R is a hinge, T a slide; of RTRR a drive gives the first length."""
+_CYLINDER: Final = "RTRR"
+"""An RRR whose first length a drive gives."""
 
-BRANCHES: Final = ("left", "right", "ahead", "behind")
+TYPES: Final = (*dict.fromkeys(name.rstrip("12") for name in DYADS), _CYLINDER)
+"""Types of dyads: R is a hinge, T a slide."""
+
+BRANCHES: Final = tuple(dict.fromkeys(name for one in DYADS.values() for name in one.branches))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -307,11 +328,14 @@ class DyadSpec(ShortRepr):
     type: str = param(
         TEXT, choices=TYPES, doc="its joints in order: R a hinge, T a slide", example="RRR"
     )
-    first: str = _name(doc="joint or guide at which member 1 begins", word="from", example="B")
-    last: str = _name(doc="joint or guide at which member 2 begins", word="to", example="D")
-    joint: str = _name(doc="name of the joint between its members", example="C")
-    members: tuple[str, str] = _name(
-        doc="names of its members", order="first and second", example=["coupler", "rocker"]
+    first: str = named(doc="joint or guide at which member 1 begins", word="from", example="B")
+    last: str = named(doc="joint or guide at which member 2 begins", word="to", example="D")
+    joint: str = named(gives=JOINT, doc="name of the joint between its members", example="C")
+    members: tuple[str, str] = named(
+        gives=MEMBER,
+        doc="names of its members",
+        order="first and second",
+        example=["coupler", "rocker"],
     )
     lengths: tuple[float, float] = param(
         LENGTH,
@@ -352,8 +376,11 @@ class DyadSpec(ShortRepr):
         choices=(BRANCH, MOTION),
         doc="what it keeps at a change point, where both positions meet",
     )
-    driven: str | None = _name(
-        doc="the slide that is added to the first length, of RTRR", default=None, example="cylinder"
+    driven: str | None = named(
+        needs=WAY,
+        doc="the slide that is added to the first length, of RTRR",
+        default=None,
+        example="cylinder",
     )
 
     def problems(self) -> Iterator[Breach]:
@@ -364,7 +391,7 @@ class DyadSpec(ShortRepr):
         if self.branch is not None and self.branch not in allowed:
             words = " or ".join(allowed) or f"no branch: {self.type} has one position"
             yield "branch", None, f"is not of {self.type}", words
-        if (self.driven is None) == (self.type == "RTRR"):
+        if (self.driven is None) == (self.type == _CYLINDER):
             what = "is missing" if self.driven is None else f"does not apply to {self.type}"
             yield "driven", None, what, "the name of a slide, with type RTRR"
         yield from self._missing_lengths()
@@ -389,7 +416,9 @@ class DyadSpec(ShortRepr):
     @property
     def formula(self) -> str:
         """Its type as in `gearcam.linkages.dyads.DYADS`."""
-        return f"RTR{self.slide_on}" if self.type == "RTR" else self.type.replace("RTRR", "RRR")
+        if self.type == _CYLINDER:
+            return "RRR"
+        return self.type if self.type in DYADS else f"{self.type}{self.slide_on}"
 
     @property
     def branches(self) -> tuple[str, ...]:
@@ -400,11 +429,14 @@ class DyadSpec(ShortRepr):
     def rods(self) -> tuple[int, ...]:
         """Which of its lengths must be above 0."""
         found = DYADS[self.formula].rods
-        return found[1:] if self.type == "RTRR" else found  # a drive gives the first
+        return found[1:] if self.type == _CYLINDER else found
 
     @property
     def _crossed(self) -> int | None:
-        return {"RTT": 1, "TTR": 0}.get(self.type)
+        """The member that slides on a guide and on the other member."""
+        slides = DYADS[self.formula].slides
+        both = (k for k in (0, 1) if {f"guide{k + 1}", f"member{k + 1}"} <= {*slides})
+        return next(both, None)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -418,8 +450,8 @@ class PointSpec(ShortRepr):
     PointSpec(name='P', on='coupler', at=(50, 35))
     """
 
-    name: str = _name(doc="its name", example="P")
-    on: str = _name(doc="the member", example="coupler")
+    name: str = named(gives=JOINT, doc="its name", example="P")
+    on: str = named(needs=MEMBER, doc="the member", example="coupler")
     at: tuple[float, float] = _point(doc="the point in its frame", order="x, y", example=[50, 35])
 
 
@@ -435,7 +467,7 @@ class ChainSpec(ShortRepr):
     'door'
     """
 
-    on: str = _name(doc="the wheel's shaft", example="pair.wheel2")
+    on: str = named(needs=SHAFT, doc="the wheel's shaft", example="pair.wheel2")
     at: tuple[float, float] = _point(doc="the wheel's centre", order="x, y", example=[600, 300])
     radius: float = positive_length(
         default=REQUIRED, example=100, doc="of the wheel, to the chain's middle"
@@ -443,8 +475,8 @@ class ChainSpec(ShortRepr):
     wind: str = param(
         TEXT, default="ccw", choices=("ccw", "cw"), doc="turn of the wheel that winds the chain up"
     )
-    joint: str = _name(doc="name of the joint at the chain's end", example="B")
-    lever: str = _name(doc="name of the lever", example="door")
+    joint: str = named(gives=JOINT, doc="name of the joint at the chain's end", example="B")
+    lever: str = named(gives=MEMBER, doc="name of the lever", example="door")
     hinge: tuple[float, float] = param(
         LENGTH,
         default=(0.0, 0.0),
@@ -504,9 +536,9 @@ class HoistSpec(ShortRepr):
     HoistSpec(name='door', on='pair.wheel2', joint='hook', radius=100)
     """
 
-    name: str = _name(doc="name of what is lifted", example="door")
-    on: str = _name(doc="the wheel's shaft", example="pair.wheel2")
-    joint: str = _name(doc="name of its joint, where the chain ends", example="hook")
+    name: str = named(gives=MEMBER, doc="name of what is lifted", example="door")
+    on: str = named(needs=SHAFT, doc="the wheel's shaft", example="pair.wheel2")
+    joint: str = named(gives=JOINT, doc="name of its joint, where the chain ends", example="hook")
     radius: float = positive_length(
         default=REQUIRED, example=100, doc="of the wheel, to the chain's middle"
     )
@@ -530,10 +562,13 @@ class GenevaSpec(ShortRepr):
     GenevaSpec(name='wheel', on='motor', slots=6, length=60)
     """
 
-    name: str = _name(doc="name of the wheel", example="wheel")
-    on: str = _name(doc="the crank's shaft", example="motor")
-    at: str | None = _name(
-        doc="joint in which the shaft stands, if not that of the drive", default=None, example="A"
+    name: str = named(gives=MEMBER, doc="name of the wheel", example="wheel")
+    on: str = named(needs=SHAFT, doc="the crank's shaft", example="motor")
+    at: str | None = named(
+        needs=JOINT,
+        doc="joint in which the shaft stands, if not that of the drive",
+        default=None,
+        example="A",
     )
     slots: int = param(COUNT, ge=SLOTS[0], le=SLOTS[1], doc="number of slots", example=6)
     length: float = positive_length(default=REQUIRED, example=60, doc="from the shaft to the pin")
@@ -553,7 +588,7 @@ class StretchSpec(ShortRepr):
     StretchSpec(on='P', start=1, end=2, shape='line')
     """
 
-    on: str = _name(doc="the point", example="P")
+    on: str = named(doc="the point", example="P")
     start: float = _direction(doc="the master's angle where it begins", word="from", example=100)
     end: float = _direction(doc="the master's angle where it ends", word="to", example=260)
     shape: str = param(
@@ -590,7 +625,7 @@ class IntervalSpec(ShortRepr):
     IntervalSpec(on='slide', travel=4)
     """
 
-    on: str = _name(doc="the output", example="slide")
+    on: str = named(doc="the output", example="slide")
     travel: float | None = positive_length(example=4, doc="travel before the dead centre")
     travel_angle: float | None = param(
         ANGLE,
@@ -622,7 +657,7 @@ class DwellSpec(ShortRepr):
     DwellSpec(on='slide', within=0.1)
     """
 
-    on: str = _name(doc="the output", example="slide")
+    on: str = named(doc="the output", example="slide")
     within: float | None = positive_length(example=0.1, doc="how much it may move")
     within_angle: float | None = param(
         ANGLE,

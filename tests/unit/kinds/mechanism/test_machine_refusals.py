@@ -160,7 +160,7 @@ WRONG: dict[str, tuple[Document, str, str, str, str]] = {
     ),
     "guide through what moves": (
         edited(("guide", 0, "through"), "B"), "guide[0].through", '"B" moves',
-        "a joint that stands still, or shaft: motor.shaft, motor, D", "",
+        "a joint that stands still, or shaft: D, motor, motor.shaft", "",
     ),
     "crank on a follower that slides": (
         on_cam(LIFTED), "crank[1].on", '"cam.follower" is a slide',

@@ -214,7 +214,7 @@ def test_intervals_and_dwells_of_coordinates() -> None:
 def test_all_outputs_of_each_machine_are_those_of_its_linkage() -> None:
     for name, machine in MACHINES.items():
         result = built(machine)
-        for one in (one for many in result._known_outputs.values() for one in many):
+        for one in (one for many in result.output_names.known.values() for one in many):
             values = result.track(one)(result.linkage.knots[:1], 1).derivatives()
             assert len(values) == 2, (name, one)
 
