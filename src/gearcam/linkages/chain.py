@@ -86,24 +86,24 @@ class HoistChain(ShortRepr, Element):
         leaving = seen + jets.acos(self.radius / jets.sqrt(distance)) * self.wind
         return free - leaving * (self.radius * self.wind)
 
+    def values(self, angle: Array) -> tuple[Array, Array]:
+        """Return `free` and its slope at angles (n,) of the lever, rad."""
+        value, slope = self.free(Jet.variable(angle, 1)).derivatives()
+        return value, slope
+
     @cached_property
     def stretch(self) -> tuple[float, float]:
         """The lever's angles round the start over which the chain's length is monotonic, rad."""
-
-        def length(angle: Array) -> tuple[Array, Array]:
-            value, slope = self.free(Jet.variable(angle, 1)).derivatives()
-            return value, slope
-
         low, high = self.limits
-        places, _ = extremes(length, [low, high])
+        places, _ = extremes(self.values, [low, high])
         below, above = places[places < self.start - _SLACK], places[places > self.start + _SLACK]
         return float(below.max(initial=low)), float(above.min(initial=high))
 
     def _ends(self) -> tuple[float, float, float]:
         """Return the chain's length at both ends of the stretch and at the start, mm."""
         low, high = self.stretch
-        first, last, start = self.free(Jet([np.array([low, high, self.start])])).derivatives()[0]
-        return float(first), float(last), float(start)
+        first, last, start = self.values(np.array([low, high, self.start]))[0].tolist()
+        return first, last, start
 
     def _wanted(self, known: Known) -> Jet:
         return self._ends()[2] - known.jet(self.shaft) * (self.radius * self.wind)
@@ -121,12 +121,12 @@ class HoistChain(ShortRepr, Element):
         target, rises = np.asarray(wanted.c[0]), 1.0 if last > first else -1.0
 
         def miss(angle: Array) -> tuple[Array, Array]:
-            found = self.free(Jet.variable(angle, 1))
-            return rises * (found.c[0] - target), rises * np.asarray(found.c[1])
+            value, slope = self.values(angle)
+            return rises * (value - target), rises * slope
 
         ends = np.full(target.shape, low), np.full(target.shape, high)
         at = newton_in_bracket(miss, *ends, np.full(target.shape, self.start), _TURNED)
-        slope = np.asarray(self.free(Jet.variable(at, 1)).c[1])
+        slope = self.values(at)[1]
         angle = Jet([at, *[0.0] * known.order])
         # each step with the slope at the root makes one derivative more exact
         for _ in range(known.order):
@@ -150,12 +150,7 @@ def roots_in(chain: HoistChain, turn: float) -> int:
     -------
     int
     """
-
-    def length(angle: Array) -> tuple[Array, Array]:
-        value, slope = chain.free(Jet.variable(angle, 1)).derivatives()
-        return value, slope
-
-    _, values = extremes(length, list(chain.limits))
-    target = chain.free(Jet([np.array([chain.start])])).c[0] - turn * chain.radius * chain.wind
+    _, values = extremes(chain.values, list(chain.limits))
+    target = chain.values(np.array([chain.start]))[0] - turn * chain.radius * chain.wind
     beyond = np.sign(values - target)
     return int(np.count_nonzero(beyond[1:] != beyond[:-1]))

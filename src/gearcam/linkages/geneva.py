@@ -25,7 +25,7 @@ from gearcam.linkages.elements import Element, Known, Law
 from gearcam.linkages.measures import TrackMeasures
 from gearcam.linkages.plane import Frame, towards
 from gearcam.numeric import jets
-from gearcam.numeric.arrays import Array
+from gearcam.numeric.arrays import Array, away
 from gearcam.numeric.jets import Jet
 
 _SAME: Final = 1e-9
@@ -155,8 +155,7 @@ class GenevaWheel(ShortRepr, Element):
         shaft = TrackMeasures(law, knots, closed=False, highest=0)
         turns = self.switches(shaft.least().value, shaft.largest().value)
         found = np.concatenate([[], *(shaft.places_of(float(one)) for one in turns)])
-        apart = np.abs(found[:, None] - knots).min(axis=1) > _SAME
-        return np.union1d(knots, found[apart])
+        return np.union1d(knots, away(found, knots, _SAME))
 
     def wheel_turn(self, turn: Jet) -> Jet:
         """Return the wheel's turn.

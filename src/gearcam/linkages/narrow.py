@@ -13,8 +13,9 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.linkages.linkage import Linkage
+from gearcam.linkages.linkage import Linkage, in_cycle
 from gearcam.linkages.transmission import guide_distance, transmission_of
+from gearcam.numeric.arrays import away
 
 _NARROW: Final = 0.1
 """Width, rad, from which a search sees it without knots of its own."""
@@ -41,12 +42,11 @@ def with_narrow_places(linkage: Linkage) -> Linkage:
     found = list(_places(linkage))
     if not found:
         return linkage
-    (low, high), places = linkage.span, np.concatenate(found)
+    (low, high), places, knots = linkage.span, np.concatenate(found), linkage.knots
     if linkage.closed:
-        places = low + (places - low) % (high - low)
-    places = np.unique(places[(places > low) & (places < high)])
-    apart = np.abs(places[:, None] - linkage.knots).min(axis=1) > _APART
-    return replace(linkage, knots=np.union1d(linkage.knots, places[apart]))
+        _, places = in_cycle(places, linkage.span)
+    inside = places[(places > low) & (places < high)]
+    return replace(linkage, knots=np.union1d(knots, away(inside, knots, _APART)))
 
 
 def _places(linkage: Linkage) -> Iterator[np.ndarray]:

@@ -290,9 +290,8 @@ class PointPath(ShortRepr):
         return q if self.closed else np.clip(q, *self.span)
 
     def _listed(self, first: Array, second: Array) -> tuple[SelfCrossing, ...]:
-        low, high = self.span
         if self.closed:
-            first, second = (low + (one - low) % (high - low) for one in (first, second))
+            first, second = (in_cycle(one, self.span)[1] for one in (first, second))
         pairs = np.sort(np.stack([first, second]), axis=0)
         found: list[SelfCrossing] = []
         points: Plane = np.asarray(self.at(pairs[0], 0).c[0])

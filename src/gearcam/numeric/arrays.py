@@ -46,6 +46,11 @@ def apart(rising: Array, least: float) -> Array:
     return rising[np.diff(rising, prepend=-np.inf) > least]
 
 
+def away(values: Array, others: Array, least: float) -> Array:
+    """Return the values (n,) that are farther than `least` from all `others` (k,)."""
+    return values[np.abs(values[:, None] - others).min(axis=1) > least]
+
+
 def divided(values: ArrayOrPlane, counts: Ints) -> ArrayOrPlane:
     """Return values with even steps between them.
 

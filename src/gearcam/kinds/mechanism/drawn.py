@@ -16,6 +16,7 @@ from gearcam.base.numerals import formatted
 from gearcam.kinds.mechanism.bodies import CHAIN_WHEEL, PIN, bodies, pins_of, traced
 from gearcam.kinds.mechanism.scene import shown_at
 from gearcam.kinds.mechanism.traces import path_within
+from gearcam.linkages.linkage import in_cycle
 from gearcam.numeric.arrays import divided
 from gearcam.pictures.drawings import (
     GHOST,
@@ -56,7 +57,8 @@ def _angles(result: MechanismResult) -> tuple[Array, int]:
     """Return the shown angle of the master, those of ghosts, and all; how many come before all."""
     (low, high), at = result.linkage.span, shown_at(result)
     if result.linkage.closed:
-        others = low + (at - low + (high - low) * np.arange(1, _GHOSTS) / _GHOSTS) % (high - low)
+        ahead = np.linspace(at, at + high - low, _GHOSTS, endpoint=False)[1:]
+        _, others = in_cycle(ahead, (low, high))
     else:
         others = np.linspace(low, high, _GHOSTS)
     first = np.concatenate([[at], others])

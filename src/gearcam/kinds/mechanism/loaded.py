@@ -41,7 +41,7 @@ from gearcam.linkages.efforts import (
 from gearcam.linkages.elements import GROUND, Element, MemberPoint
 from gearcam.linkages.measures import TrackMeasures
 from gearcam.linkages.work import VirtualWork
-from gearcam.numeric.arrays import Array
+from gearcam.numeric.arrays import Array, away
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import places_between
 
@@ -187,8 +187,7 @@ class _Efforts:
 
     def _still(self, on: WorkCoordinate) -> list[float]:
         """Return the driver's angles at which something loaded reverses."""
-        found, knots = self._measures(on).extremes[0][0], self.linkage.knots
-        return found[np.abs(found[:, None] - knots).min(axis=1) > _SLACK].tolist()
+        return away(self._measures(on).extremes[0][0], self.linkage.knots, _SLACK).tolist()
 
     def _law(self, load: MachineLoad, on: WorkCoordinate, number: int) -> ForceLaw:
         """Return a load's size, N or N mm."""
