@@ -10,7 +10,13 @@ import pytest
 
 from gearcam.linkages.chain import HoistChain
 from gearcam.linkages.closing import settled
-from gearcam.linkages.coordinates import Acting, JointDistance, MemberTurn, PointWay, ShaftTurn
+from gearcam.linkages.coordinates import (
+    Acting,
+    JointDistance,
+    MemberTurn,
+    NamedCoordinate,
+    PointWay,
+)
 from gearcam.linkages.dyads import Lengths
 from gearcam.linkages.efforts import (
     GRAVITY,
@@ -258,7 +264,7 @@ class TestIdentities:
         """A rocker is jerked next to a change point, while the crank's load goes up or down."""
         made = settled(four_bar(50.0, 120.0, 50.002, 120.0))
         made = replace(made, knots=np.array([0.5, 5.5]), closed=False)
-        wave = AppliedForce(ShaftTurn("q"), lambda a: jets.sin(a.angle) * 30.0)
+        wave = AppliedForce(NamedCoordinate("q"), lambda a: jets.sin(a.angle) * 30.0)
         work = VirtualWork(
             made, [InertiaForce.of_turn(MemberTurn("rocker"), 5e-4, "rocker"), wave], 5.0
         )
@@ -295,7 +301,7 @@ class TestIdentities:
             Dyad("RRR", "B", "F", "C", ("left", "right"), Lengths(150.0, 160.0)),
             knots_deg=TWO_PHASES[0],
         )
-        shaft = InertiaForce.of_turn(ShaftTurn("first"), 0.003, "first")
+        shaft = InertiaForce.of_turn(NamedCoordinate("first"), 0.003, "first")
         mass = *inertia(("right", 0.4, "C", 0.002)), shaft
         work = VirtualWork(made, [force_on("C", 40 - 70j), *mass], 6.0)
         q = np.array([0.0, 0.4, 2.0, 4.4])
@@ -355,7 +361,7 @@ class TestRanges:
 
 def test_a_torque_on_a_shaft() -> None:
     made = linkage(GivenMotion("q", phases(*TWO_PHASES)), knots_deg=TWO_PHASES[0])
-    work = VirtualWork(made, [AppliedForce(ShaftTurn("q"), lambda a: a.place * -2.0)])
+    work = VirtualWork(made, [AppliedForce(NamedCoordinate("q"), lambda a: a.place * -2.0)])
     q = np.array([1.0, 3.0])
     turn, ratio = phases(*TWO_PHASES)(q, 1).derivatives()
     agree(work.moment(q).c[0], 2.0 * turn * ratio)

@@ -73,24 +73,24 @@ class WorkCoordinate(ABC):
 
 
 @dataclass(frozen=True)
-class PointPlace(ShortRepr, WorkCoordinate):
-    """The place of a point in the machine, on which a force of any direction does work.
+class NamedCoordinate(ShortRepr, WorkCoordinate):
+    """The place of a joint, on which a force of any direction does work, or a quantity.
 
     Parameters
     ----------
-    point : str
-        A joint.
+    name : str
+        A joint, a shaft, or the way of a slide.
     """
 
-    point: str
+    name: str
 
     def place(self, state: WorkState) -> Jet:
-        """Return the place, complex, mm."""
-        return Jet(state.known.jet(self.point).c[: state.order + 1])
+        """Return the place, complex, mm, the turn, rad, or the way, mm."""
+        return state.known.jet(self.name).upto(state.order)
 
     def rate(self, known: Known, order: int) -> Jet:
         """Return its derivative, of what is `known`, to an `order`."""
-        return _rate(known.jet(self.point), order)
+        return known.jet(self.name).upto(order + 1).differentiated()
 
 
 @dataclass(frozen=True)
@@ -117,15 +117,15 @@ class PointWay(ShortRepr, WorkCoordinate):
     def place(self, state: WorkState) -> Jet:
         """Return the place from the guide's origin, mm."""
         if self.slide:
-            return Jet(state.known.jet(self.slide).c[: state.order + 1])
+            return state.known.jet(self.slide).upto(state.order)
         guide = state.known.frame(self.guide)
         way = state.known.jet(self.point) - guide.origin
-        return Jet(dot(guide.direction * self.direction, way).c[: state.order + 1])
+        return dot(guide.direction * self.direction, way).upto(state.order)
 
     def rate(self, known: Known, order: int) -> Jet:
         """Return the point's derivative along the guide, of what is `known`, to an `order`."""
-        along = Jet(known.frame(self.guide).direction.c[: order + 1]) * self.direction
-        return dot(along, _rate(known.jet(self.point), order))
+        along = known.frame(self.guide).direction.upto(order) * self.direction
+        return dot(along, NamedCoordinate(self.point).rate(known, order))
 
 
 @dataclass(frozen=True)
@@ -155,30 +155,9 @@ class MemberTurn(ShortRepr, WorkCoordinate):
         """Return the derivative of the angle, of what is `known`, to an `order`."""
 
         def turn(name: str) -> Jet:
-            return turning(Jet(known.frame(name).direction.c[: order + 2]))
+            return turning(known.frame(name).direction.upto(order + 1))
 
         return turn(self.member) if self.base == GROUND else turn(self.member) - turn(self.base)
-
-
-@dataclass(frozen=True)
-class ShaftTurn(ShortRepr, WorkCoordinate):
-    """The turn of a shaft, or the way of a slide that is given.
-
-    Parameters
-    ----------
-    shaft : str
-        The quantity.
-    """
-
-    shaft: str
-
-    def place(self, state: WorkState) -> Jet:
-        """Return the turn, rad, or the way, mm."""
-        return Jet(state.known.jet(self.shaft).c[: state.order + 1])
-
-    def rate(self, known: Known, order: int) -> Jet:
-        """Return its derivative, of what is `known`, to an `order`."""
-        return _rate(known.jet(self.shaft), order)
 
 
 @dataclass(frozen=True)
@@ -196,7 +175,7 @@ class JointDistance(ShortRepr, WorkCoordinate):
 
     def _distance(self, known: Known, order: int) -> Jet:
         way = known.jet(self.second) - known.jet(self.first)
-        return jets.sqrt(square(Jet(way.c[: order + 1])))
+        return jets.sqrt(square(way.upto(order)))
 
     def place(self, state: WorkState) -> Jet:
         """Return the distance, mm."""
@@ -241,8 +220,3 @@ class Acting:
     def velocity(self) -> Jet:
         """Its velocity, mm/s or rad/s; 0 if the driver has no speed."""
         return self.rate * (self._state.speed or 0.0)
-
-
-def _rate(x: Jet, order: int) -> Jet:
-    """Return the derivative of `x`, with its own derivatives to an `order`."""
-    return Jet(x.c[: order + 2]).differentiated()

@@ -17,7 +17,7 @@ from typing import Final
 import numpy as np
 
 from gearcam.base.display import ShortRepr
-from gearcam.linkages.coordinates import Acting, PointPlace, WorkCoordinate, WorkState
+from gearcam.linkages.coordinates import Acting, NamedCoordinate, WorkCoordinate, WorkState
 from gearcam.linkages.elements import Known
 from gearcam.linkages.plane import dot, square
 from gearcam.numeric.arrays import Array
@@ -145,7 +145,7 @@ def force_on(
     active : ActiveRanges, optional
         Where it acts.
     """
-    return AppliedForce(PointPlace(point), lambda _: force, part, active)
+    return AppliedForce(NamedCoordinate(point), lambda _: force, part, active)
 
 
 @dataclass(frozen=True)
@@ -171,7 +171,7 @@ class InertiaForce(ShortRepr, Effort):
     @classmethod
     def of_mass(cls, center: str, mass: float, member: str) -> InertiaForce:
         """Return that of a `mass`, kg, of a `member`, by the joint in its `center` of mass."""
-        return cls(PointPlace(center), _MILLI * mass, member)
+        return cls(NamedCoordinate(center), _MILLI * mass, member)
 
     @classmethod
     def of_turn(cls, turn: WorkCoordinate, inertia: float, member: str) -> InertiaForce:

@@ -175,7 +175,7 @@ def transmission_of(linkage: Linkage, dyad: Dyad) -> Transmission:
 
 def _measures(linkage: Linkage, of: Callable[[Known], Jet]) -> TrackMeasures:
     def track(q: Array, order: int) -> Jet:
-        return Jet(of(linkage.at(q, order)).c[: order + 1])
+        return of(linkage.at(q, order)).upto(order)
 
     return TrackMeasures(track, linkage.knots, linkage.closed, highest=0)
 

@@ -67,6 +67,10 @@ class Jet:
         """Return the derivative, of one order less."""
         return Jet([self.c[1], *(k * value for k, value in enumerate(self.c[2:], 2))])
 
+    def upto(self, order: int) -> Jet:
+        """Return the same function, with its derivatives to an `order`."""
+        return Jet(self.c[: order + 1])
+
     def shortened(self) -> Jet:
         """Return the same function, of one order less."""
         return Jet(self.c[:-1])

@@ -22,8 +22,8 @@ from gearcam.linkages.coordinates import (
     Acting,
     JointDistance,
     MemberTurn,
+    NamedCoordinate,
     PointWay,
-    ShaftTurn,
     WorkCoordinate,
     WorkState,
 )
@@ -129,7 +129,7 @@ class _Efforts:
         sort = self.sorts[name]
         if sort == MEMBER:
             return MemberTurn(name)
-        return self._way(name) if sort == WAY else ShaftTurn(name)
+        return self._way(name) if sort == WAY else NamedCoordinate(name)
 
     def _joint(self, name: str) -> str:
         pushed = {one.name: one.joint for one in pushed_in(self.parts)}
@@ -147,7 +147,7 @@ class _Efforts:
         for one in self.design.hoist:
             if name in (one.name, one.joint):
                 return PointWay(one.joint, f"{one.name}.guide", slide=f"{one.name}.way")
-        return ShaftTurn(name)
+        return NamedCoordinate(name)
 
     def _loads(self) -> Iterator[Effort]:
         for number, load in enumerate(self.design.load):
@@ -246,7 +246,7 @@ class _Efforts:
         pull = self.design.gravity.pull
         for mass, center in zip(self.design.mass, self.centers, strict=True):
             if mass.inertia:
-                turn = (ShaftTurn if self.sorts[mass.of] == SHAFT else MemberTurn)(mass.of)
+                turn = (NamedCoordinate if self.sorts[mass.of] == SHAFT else MemberTurn)(mass.of)
                 yield InertiaForce.of_turn(turn, mass.inertia, mass.of)
             if mass.mass:
                 yield InertiaForce.of_mass(center, mass.mass, mass.of)
@@ -283,7 +283,7 @@ class _Efforts:
         if spring.between is None:
             on = self.coordinate(spring.on or "")
             # between the slide and its guide, which may move
-            return ShaftTurn(on.slide) if isinstance(on, PointWay) else on
+            return NamedCoordinate(on.slide) if isinstance(on, PointWay) else on
         first, second = spring.between
         if self.sorts[first] == MEMBER:
             return MemberTurn(second, first)

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from gearcam.kinds.mechanism.drives import center_of, way_of
-from gearcam.linkages.coordinates import ShaftTurn
+from gearcam.linkages.coordinates import NamedCoordinate
 from gearcam.linkages.efforts import InertiaForce
 from gearcam.linkages.elements import Crank, Element, PushedSlide
 
@@ -73,5 +73,5 @@ def _wheel(drive: PlacedDrive, word: str, found: MassProperties) -> WheelMass:
     start = cmath.phase(drive.vector(placed))
     element = Crank(member, name, center_of(name), center, abs(placed), start)
     # about its shaft, which stands still
-    inertia = InertiaForce.of_turn(ShaftTurn(name), _M2 * found.inertia, name)
+    inertia = InertiaForce.of_turn(NamedCoordinate(name), _M2 * found.inertia, name)
     return WheelMass(element, center, found.mass, inertia)
