@@ -337,10 +337,25 @@ def _in_place(
     if name not in kinds:
         message = "is missing" if name is MISSING else f"{show(name)} does not belong here"
         return None, [Fault((*at, "kind"), message, name, quoted(kinds), did_you_mean(name, kinds))]
+    if (unfit := _unfit(key, KINDS[name], value)) is not None:
+        path, word, allowed = unfit
+        return None, [Fault((*at, *path), f"{show(word)} does not belong here", word, allowed)]
     outcome = examine({"kind": name, **value}, stem=str(at[-1]), place=place)
     if outcome.faults:
         return None, [_outward(fault, at, KINDS[name].titles) for fault in outcome.faults]
     return KINDS[outcome.kind].design(source=place.file, examined=True, **outcome.parts), []
+
+
+def _unfit(key: Key, kind: DesignKind, document: Mapping[str, Any]) -> tuple[Path, str, str] | None:
+    """Return the path of a variant whose designs do not belong here, its word, and those that do.
+
+    None if there is no such variant.
+    """
+    variants = kind.variants
+    if variants is None or kind.meant(document).name in key.param.nested:
+        return None
+    path = variants.title, variants.key
+    return path, document[variants.title][variants.key], quoted(tuple(variants.entries))
 
 
 def _outward(fault: Fault, at: Path, titles: tuple[str, ...]) -> Fault:
@@ -382,6 +397,11 @@ def _from_file(key: Key, value: str, at: Path, place: Place) -> tuple[Any, list[
     name = document.get("kind")
     if isinstance(name, str) and name in KINDS and name not in key.param.nested:
         return refused(f"its design is of kind {show(name)}")
+    kind = KINDS.get(name) if isinstance(name, str) else None
+    if kind is not None and (unfit := _unfit(key, kind, document)) is not None:
+        path, word, allowed = unfit
+        rule = f"{rule} with {dotted(path)} = {allowed}"
+        return refused(f"its {dotted(path)} is {show(word)}")
     outcome = examine_file(document, file, place.outer)
     if outcome.faults:
         lines = lines_of(text)

@@ -430,7 +430,7 @@ class MechanismResult(Result):
         low, high = self.linkage.span
         for key, value in (("from_deg", start), ("to_deg", end)):
             if not self.linkage.closed and not low <= value <= high:
-                what = "is beyond the master's range"
+                what = f"{formatted(_DEG * value, 8)} is beyond the master's range"
                 allowed = f"{formatted(_DEG * low, 8)} to {formatted(_DEG * high, 8)}"
                 where = f"{table}.{key}"
                 raise DesignError(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
-from gearcam.designs.faults import Fault
+from gearcam.designs.faults import Fault, show
 from gearcam.kinds.mechanism import names, outputs, unfit_drives
 from gearcam.kinds.mechanism.name_keys import JOINT, MEMBER, SHAFT, WAY
 from gearcam.linkages.elements import GROUND
@@ -79,10 +79,10 @@ def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
     found : Examined
         The valid tables.
     """
-    faults = [*unfit_drives.problems(found), *names.problems(document, found)]
-    faults += outputs.problems(document, found)
-    yield from faults
     parts = found.parts
+    faults = [*unfit_drives.problems(found), *names.problems(document, found)]
+    faults += [*outputs.problems(document, found), *_in_vain(parts)]
+    yield from faults
     sorts, still = sorts_of(parts), unturned(parts)
     wrong = {one.path[:2] for one in (*found.faults, *faults)}
     wrong |= {one.path[:2] for one in names.needed(parts) if one.name not in sorts}
@@ -98,6 +98,17 @@ def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
                 yield from _of_mass(one, sorts[one.of], one.of in still, path)
             else:
                 yield from _of_spring(one, sorts, path)
+
+
+def _in_vain(parts: Parts) -> Iterator[Fault]:
+    """Yield loads and masses of what stands still."""
+    standing = {GROUND, *(one.name for one in parts.get("joint", ()))}
+    for title, key in (("load", "on"), ("mass", "of")):
+        for number, one in enumerate(parts.get(title, ())):
+            name = getattr(one, key)
+            if name in standing:
+                what = f"{show(name)} stands still: what acts on it does no work"
+                yield Fault((title, number, key), what, name, "the name of what moves")
 
 
 def _of_load(load: MachineLoad, sort: str, driven: bool, path: Path) -> Iterator[Fault]:

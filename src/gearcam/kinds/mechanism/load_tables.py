@@ -31,6 +31,7 @@ from gearcam.base.quantities import (
 )
 from gearcam.base.rules import Breach, exactly_one, needs
 from gearcam.kinds.mechanism.name_keys import JOINT, MEMBER, SHAFT, WAY, named
+from gearcam.kinds.mechanism.tables import later
 from gearcam.linkages.elements import GROUND
 from gearcam.mechanics.load import WrittenLoad
 
@@ -163,7 +164,7 @@ class MachineLoad(ShortRepr, WrittenLoad):
         if self.travel is not None and self.start is not None:
             yield "travel", None, "is given beside from_deg", "from_deg and to_deg, or travel_mm"
         if self.start is not None and self.end is not None and self.start >= self.end:
-            yield "end", None, "is not above from_deg", "a later angle, above 360 if need be"
+            yield "end", None, "is not above from_deg", later(self.start, self.end)
         if self.force is not None:
             yield from self._force_problems(self.force)
 

@@ -15,7 +15,7 @@ from gearcam.base.numerals import formatted
 from gearcam.designs.design import document_of, value_at
 from gearcam.linkages.chain import HoistChain
 from gearcam.linkages.closing import NotClosingError
-from gearcam.linkages.elements import Element
+from gearcam.linkages.elements import Dyad, Element
 from gearcam.linkages.linkage import Linkage
 
 if TYPE_CHECKING:
@@ -37,8 +37,8 @@ def refusal(design: MechanismDesign, error: NotClosingError) -> InfeasibleError:
     name = element.gives[0]
     what = f"{name} does not close over the whole range: {_ranges(found.ranges)}"
     if found.least > -1e-9:
-        at = formatted(math.degrees(found.place), 8)
-        what = f"{name} is singular at {at} deg: its guides or members are in line there"
+        at = _in_degrees(found.place)
+        what = f"{name} is singular at {at} deg: {_singular(element)} there"
     lengths = [_keyed(title, number, one) for one in error.nearest]
     if not lengths:
         return InfeasibleError(what, where=f"{title}[{number}]")
@@ -131,6 +131,21 @@ def _angle_within_wider(chain: HoistChain, side: int, linkage: Linkage, q: float
             way = complex(np.asarray(known.frame(chain.name).direction.c[0])[0])
             return chain.start + cmath.phase(way * cmath.exp(-1j * chain.start))
     return None
+
+
+def _singular(element: Element) -> str:
+    """Return how the parts of a dyad stand where it is singular."""
+    if not isinstance(element, Dyad) or element.type == "TRT":
+        return "its guides are parallel"
+    if not element.type.startswith("RTR"):
+        return "its members are in line"
+    arm = element.lengths.second if element.type == "RTR1" else element.lengths.first
+    ends = f"{element.first} and {element.second}"
+    return (
+        f"{ends} meet"
+        if not arm * math.sin(element.lengths.beta)
+        else (f"the guide is at right angles to the way between {ends}")
+    )
 
 
 _FURTHER: Final = 2.0

@@ -577,6 +577,27 @@ class GenevaSpec(ShortRepr):
     internal: bool = param(default=False, doc="whether the wheel surrounds the crank")
 
 
+def later(start: float, end: float) -> str:
+    """Return what an end that is not above its start may be.
+
+    Parameters
+    ----------
+    start, end : float, rad
+        As given.
+
+    Returns
+    -------
+    str
+    """
+    turns = math.floor((start - end) / math.tau + _ROUNDING) + 1
+    place = formatted(math.degrees(end) + 360.0 * turns, 8)
+    return f"a later angle: {place} is the same place of the next turn"
+
+
+_ROUNDING: Final = 1e-9
+"""Share of a turn that is none."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class StretchSpec(ShortRepr):
     """A stretch of a point's path that is to be straight or round.
@@ -590,7 +611,11 @@ class StretchSpec(ShortRepr):
 
     on: str = named(doc="the point", example="P")
     start: float = _direction(doc="the master's angle where it begins", word="from", example=100)
-    end: float = _direction(doc="the master's angle where it ends", word="to", example=260)
+    end: float = _direction(
+        doc="the master's angle where it ends, above 360 over the end of a turn",
+        word="to",
+        example=260,
+    )
     shape: str = param(
         TEXT,
         choices=("line", "circle"),
@@ -611,7 +636,7 @@ class StretchSpec(ShortRepr):
     def problems(self) -> Iterator[Breach]:
         """Yield an end that is not above the start."""
         if self.end <= self.start:
-            yield "end", None, "is not above from_deg", "rising angles"
+            yield "end", None, "is not above from_deg", later(self.start, self.end)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -94,6 +94,10 @@ class ShaftLoad(NamedTuple):
     values: Array
     meaning: str
 
+    def of(self, drive: str) -> ShaftLoad:
+        """Return the same with the name of its drive: one of several."""
+        return ShaftLoad(f"{drive}_{self.column}", self.values, f"{drive}: {self.meaning}")
+
 
 def study_torque(result: MechanismResult, study: Study, progress: Progress | None) -> StudyResult:
     """Return the study of the driver's moment (see `gearcam.linkages.work`).
@@ -190,13 +194,12 @@ def shaft_loads(result: MechanismResult, work: VirtualWork, q: Array) -> Iterato
     """
     drives = [one for one in result.drives if one.spec.pair is not None or one.spec.cam is not None]
     for drive in drives:
-        stem = "" if len(drives) == 1 else f"{drive.spec.name}_"
-        yield from (
-            _of_pair(drive, stem, work, q) if drive.spec.pair else _of_cam(drive, stem, work, q)
-        )
+        one = _of_pair if drive.spec.pair else _of_cam
+        for load in one(drive, work, q):
+            yield load if len(drives) == 1 else load.of(drive.spec.name)
 
 
-def _of_pair(drive: PlacedDrive, stem: str, work: VirtualWork, q: Array) -> Iterator[ShaftLoad]:
+def _of_pair(drive: PlacedDrive, work: VirtualWork, q: Array) -> Iterator[ShaftLoad]:
     driven = "rack" if "rack" in drive.moved else "wheel2"
     rates = {
         word: np.asarray(work.linkage.track(f"{drive.spec.name}.{word}", q, 1).derivatives()[1])
@@ -206,22 +209,22 @@ def _of_pair(drive: PlacedDrive, stem: str, work: VirtualWork, q: Array) -> Iter
     own = work.on({f"{drive.spec.name}.{driven}": side}, q)
     ratio = np.abs(rates[driven] / rates["wheel1"])
     yield ShaftLoad(
-        f"{stem}wheel1_torque_nm", _NM * own * ratio, "moment that the pair takes from wheel 1"
+        "wheel1_torque_nm", _NM * own * ratio, "moment that the pair takes from wheel 1"
     )
     if driven == "rack":
-        yield ShaftLoad(f"{stem}rack_force_n", own, "force of the rack")
+        yield ShaftLoad("rack_force_n", own, "force of the rack")
     else:
-        yield ShaftLoad(f"{stem}wheel2_torque_nm", _NM * own, "moment on wheel 2")
+        yield ShaftLoad("wheel2_torque_nm", _NM * own, "moment on wheel 2")
 
 
-def _of_cam(drive: PlacedDrive, stem: str, work: VirtualWork, q: Array) -> Iterator[ShaftLoad]:
+def _of_cam(drive: PlacedDrive, work: VirtualWork, q: Array) -> Iterator[ShaftLoad]:
     name, follower = f"{drive.spec.name}.follower", drive.moved["follower"]
     own = work.on({name: _lifts(drive)}, q)
     if follower.along:
-        yield ShaftLoad(f"{stem}follower_force_n", own, "force of the follower in its lift")
+        yield ShaftLoad("follower_force_n", own, "force of the follower in its lift")
     else:
         meaning = "torque of the follower in its lift"
-        yield ShaftLoad(f"{stem}follower_torque_nm", _NM * own, meaning)
+        yield ShaftLoad("follower_torque_nm", _NM * own, meaning)
 
 
 def _lifts(drive: PlacedDrive) -> float:
@@ -272,17 +275,24 @@ def _facts(
     """Return the facts of the study."""
     speed = result.speed
     per = "cycle" if work.linkage.closed else "range"
+    low, high = work.linkage.span
+    # of what keeps its energy rounding is left over
+    noise = _NM * _NOISE * sum(size for _, size in work.works.values())
+    least = noise / (high - low)
     tree: Tree = {
         **_range(result, work, "moment of the driver"),
-        "mean_nm": Fact(_NM * work.mean, "mean moment of the driver", shown=True),
-        "work_j": Fact(_NM * work.work, f"work of the driver in a {per}", unit="J", shown=True),
+        "mean_nm": Fact(_NM * work.mean, "mean moment of the driver", shown=True, noise=least),
+        "work_j": Fact(
+            _NM * work.work, f"work of the driver in a {per}", unit="J", shown=True, noise=noise
+        ),
         "works_j": {
             part: Fact(_NM * own, unit="J", noise=_NM * _NOISE * size)
             for part, (own, size) in work.works.items()
         },
     }
     if speed is not None:
-        tree["mean_power_w"] = Fact(_NM * work.mean * speed, "mean power", unit="W", shown=True)
+        power = _NM * work.mean * speed
+        tree["mean_power_w"] = Fact(power, "mean power", unit="W", shown=True, noise=least * speed)
     tree |= {
         one.column: Fact(
             extent(float(one.values.min()), float(one.values.max())), one.meaning, shown=True

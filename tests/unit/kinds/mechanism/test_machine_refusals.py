@@ -65,6 +65,8 @@ FLAT = gc.load(PROFILES / "valve_lever.toml").to_dict()
 LIFTED = gc.load(PROFILES / "lathe_slide.toml").to_dict()
 OPEN = gc.load(PROFILES / "log_spiral.toml").to_dict()
 
+DRUM = {**gc.load(PROFILES / "cylinder_cam.toml").to_dict(), "kind": "cam"}
+
 Document = dict[str, Any]
 Path_ = tuple[str | int, ...]
 
@@ -211,6 +213,29 @@ WRONG: dict[str, tuple[Document, str, str, str, str]] = {
         "chain[0].start_deg", "-90: puts the joint h inside the wheel",
         "a direction in which it is outside", "",
     ),
+    "load on what stands still": (
+        longer(load=[{"on": "D", "force_n": [0, 1]}]), "load[0].on",
+        '"D" stands still: what acts on it does no work', "the name of what moves", "",
+    ),
+    "mass of the ground": (
+        longer(mass=[{"of": "ground", "mass_kg": 1}]), "mass[0].of",
+        '"ground" stands still: what acts on it does no work', "the name of what moves", "",
+    ),
+    "stretch over the end of a turn": (
+        longer(stretch=[{"on": "P", "from_deg": 280, "to_deg": 100, "shape": "line"}]),
+        "stretch[0].to_deg", "100: is not above from_deg",
+        "a later angle: 460 is the same place of the next turn", "",
+    ),
+    "load over no turn": (
+        longer(load=[{"on": "S", "force_n": 1, "from_deg": 370, "to_deg": 10}]),
+        "load[0].to_deg", "10: is not above from_deg",
+        "a later angle: 730 is the same place of the next turn", "",
+    ),
+    "cam in space": (
+        longer(drive=[{"name": "drum", "cam": DRUM}]), "drive[1].cam.cam.form",
+        '"cylinder" does not belong here',
+        '"disc", "groove", "conjugate", "yoke" or "translating"', "",
+    ),
     "no number": (
         edited(("crank", 0, "length_mm"), -40), "crank[0].length_mm", "-40 is out of range",
         "a number from 0.001 to 100000 mm", "",
@@ -333,6 +358,37 @@ IMPOSSIBLE: dict[str, tuple[Document, str, str]] = {
         "stretch[0].shape", "the stretch is a point: no circle is nearest to it; take a line",
     ),
 }  # fmt: skip
+
+
+def test_a_stretch_beyond_an_open_range_names_both() -> None:
+    stretch = {"on": "P", "from_deg": 60, "to_deg": 100, "shape": "line"}
+    result = gc.build(gc.design({**RANGED, "stretch": [stretch]}))
+    told = "stretch.0..to_deg: 100 is beyond the master's range"
+    with pytest.raises(gc.DesignError, match=told):
+        _ = result.stretches
+
+
+def guided(arm: float, across: float) -> Document:
+    """A crank whose block slides on a guide."""
+    dyad = {
+        "type": "RTR", "from": "D", "to": "B", "joint": "C", "members": ["rocker", "block"],
+        "lengths_mm": [0, arm], "beta_deg": across,
+    }  # fmt: skip
+    return {
+        **edited(("crank", 0, "length_mm"), 110 - arm),
+        "dyad": [dyad],
+        "point": [],
+        "output": {},
+    }
+
+
+@pytest.mark.parametrize(
+    ("arm", "told"),
+    [(0, "D and B meet there"), (30, "at right angles to the way between D and B there")],
+)
+def test_how_a_guide_is_singular(arm: float, told: str) -> None:
+    with pytest.raises(gc.InfeasibleError, match=f"C is singular at (0|360) deg: .*{told}"):
+        _ = gc.build(gc.design(guided(arm, 90))).linkage
 
 
 @pytest.mark.parametrize("name", IMPOSSIBLE)

@@ -460,6 +460,9 @@ def test_each_of_two_cams_has_its_share() -> None:
         slope = drive.result.program.derivatives(theta, 1)[1]
         total = total + 1e-3 * found.columns[f"{drive.spec.name}_follower_force_n"] * slope
     agree(found.columns["torque_nm"], total, relative=1e-8)
+    for drive in found.result.drives:
+        fact = found.facts.quantity(f"torque.{drive.spec.name}_follower_force_n")
+        assert fact.meaning == f"{drive.spec.name}: force of the follower in its lift"
 
 
 def test_a_hoist_lifts_its_weight() -> None:
@@ -612,6 +615,12 @@ def test_a_spring_that_is_wound_up_keeps_its_work() -> None:
 def test_against_an_even_shaft() -> None:
     found = torque(load=[{"on": "motor", "torque_nm": 3, "against": True}])
     agree(found.columns["torque_nm"], np.full(len(found.columns["torque_nm"]), 3.0))
+
+
+def test_what_rounding_leaves_of_work_is_shown_as_0() -> None:
+    found = torque(spring=[{"between": ["P", "D"], "stiffness_n_mm": 3, "preload_n": 50}])
+    for name, text in (("mean_nm", "0 N m"), ("work_j", "0 J"), ("mean_power_w", "0 W")):
+        assert found.facts.quantity(f"torque.{name}").text == text
 
 
 def test_forces_that_do_no_work() -> None:
