@@ -227,6 +227,21 @@ def _rtr(first: Jet, second: Jet, sizes: Lengths, sign: Sign) -> Solved:
     return Solved(joint, frames, {"member1": slide}, (room / (distance + _NEAR),))
 
 
+def rtr_reach(solved: Solved, sizes: Lengths) -> Jet:
+    """Return the place of the block of RTR less where it jams: its distance ``l0``, mm, signed.
+
+    Parameters
+    ----------
+    solved : Solved
+        Its position.
+    sizes : Lengths
+        Of the same dyad.
+    """
+    ((guide, slide),) = solved.slides.items()
+    arm = sizes.second if guide == "member1" else sizes.first
+    return slide - arm * np.cos(sizes.beta)
+
+
 @_OPEN
 def _trt(first: Frame, second: Frame, sizes: Lengths, _: Sign) -> Solved:
     turns = cmath.exp(1j * sizes.gamma1), cmath.exp(1j * sizes.gamma2)

@@ -21,6 +21,7 @@ from gearcam.linkages.measures import extremes_of
 from gearcam.linkages.plane import square
 from gearcam.numeric.arrays import Array, Mask, Plane
 from gearcam.numeric.crossings import chord_shares, near_chords
+from gearcam.numeric.gauss import gauss_cells
 from gearcam.numeric.jets import Jet
 
 _ACCURATE: Final = 1e-13
@@ -32,7 +33,8 @@ _ROUNDING: Final = 1e-15
 _LEVELS: Final = 40
 """Largest number of times a panel is halved."""
 
-_GAUSS: Final = np.polynomial.legendre.leggauss(16)
+_NODES: Final = 16
+"""Places of Gauss' rule in each panel."""
 
 _STOPPED: Final = 1e-7
 """Speed, as a share of the largest, at which the point counts as standing still."""
@@ -187,13 +189,11 @@ class PointPath(ShortRepr):
         is nothing but rounding.
         """
         edges = np.unique(np.concatenate([self.knots, self._slow[0]]))
-        nodes, weights = _GAUSS
         rounding = _ROUNDING * size * float(edges[-1] - edges[0])
 
         def panels(low: Array, high: Array) -> Array:
-            half, middle = 0.5 * (high - low), 0.5 * (high + low)
-            q = middle[:, None] + half[:, None] * nodes
-            return (function(q.ravel()).reshape(q.shape) @ weights) * half
+            q, weights = gauss_cells(low, high, _NODES)
+            return (function(q.ravel()).reshape(q.shape) * weights).sum(axis=1)
 
         low, high = edges[:-1], edges[1:]
         whole = panels(low, high)

@@ -23,6 +23,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
+from gearcam.linkages.dyads import rtr_reach
 from gearcam.linkages.elements import Dyad, Known
 from gearcam.linkages.linkage import Linkage
 from gearcam.linkages.measures import Peak, TrackMeasures
@@ -133,10 +134,8 @@ def guide_distance(known: Known, dyad: Dyad) -> Jet:
     -------
     Jet, mm2
     """
-    sizes, (slide,) = dyad.sizes(known), known.solved[dyad.joint].slides.values()
-    arm = sizes.second if dyad.type == "RTR1" else sizes.first
-    distance = slide - arm * np.cos(sizes.beta)
-    return distance * distance
+    reach = rtr_reach(known.solved[dyad.joint], dyad.sizes(known))
+    return reach * reach
 
 
 def transmissions(linkage: Linkage) -> tuple[Transmission, ...]:

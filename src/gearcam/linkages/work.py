@@ -23,6 +23,7 @@ from gearcam.linkages.linkage import Linkage
 from gearcam.linkages.measures import Extremes, Peak
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.chebyshev import FIRST_CUTS, NotSmoothError, expand
+from gearcam.numeric.gauss import gauss_cells
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import extremes
 
@@ -184,10 +185,8 @@ class VirtualWork(ShortRepr):
     @cached_property
     def _gauss(self) -> tuple[Array, Array]:
         """Places and weights of an integral over the driver's whole range."""
-        points, weights = np.polynomial.legendre.leggauss(_NODES)
-        begin, width = self.cells[:-1], np.diff(self.cells)
-        q = begin[:, None] + width[:, None] * (0.5 + 0.5 * points)
-        return q.ravel(), (0.5 * width[:, None] * weights).ravel()
+        q, weights = gauss_cells(self.cells[:-1], self.cells[1:], _NODES)
+        return q.ravel(), weights.ravel()
 
     @cached_property
     def works(self) -> dict[str, tuple[float, float]]:

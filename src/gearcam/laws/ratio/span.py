@@ -22,6 +22,7 @@ from gearcam.base.rules import together
 from gearcam.laws.entry import NO_JUMPS
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.chebyshev import NotSmoothError
+from gearcam.numeric.gauss import gauss_cells
 from gearcam.numeric.jets import Jet, exp, log
 from gearcam.numeric.piecewise import Piece, Piecewise
 
@@ -336,12 +337,10 @@ def continued(ratio: Piecewise, pieces: list[Piece], mate: int) -> tuple[Array, 
 
 def _length(ratio: Piecewise, mate: int) -> float:
     """Return the length of the centrode for unit centre distance, to a few digits."""
-    nodes, weights = np.polynomial.legendre.leggauss(48)
-    half = 0.5 * np.diff(ratio.knots)
-    x = ratio.knots[:-1] + half * (1.0 + nodes[:, None])
+    x, weights = gauss_cells(ratio.knots[:-1], ratio.knots[1:], 48)
     i, slope = ratio.derivatives(x, 1)
     turn = 1.0 + mate * i
-    return float((weights @ (np.hypot(i, slope / turn) / turn)) @ half)
+    return float((weights * np.hypot(i, slope / turn) / turn).sum())
 
 
 def _end(
