@@ -168,6 +168,12 @@ class _Efforts:
             return ActiveRanges(self._travels(load, load.travel, number), high - low)
         if load.start is None or load.end is None:
             return None
+        period = _TURN if self.linkage.closed else math.inf
+        if load.end - load.start > period + _SLACK:
+            what = "the load acts for more than a turn of the master, with which it repeats"
+            note = "without from_deg and to_deg it acts everywhere, by a table in some turns only"
+            value, most = math.degrees(load.end), math.degrees(load.start + period)
+            raise beyond_limit(what, f"load[{number}].to_deg", value, most, note, near=most)
         return ActiveRanges([(load.start, load.end)], _TURN if self.linkage.closed else None)
 
     def _travels(

@@ -592,6 +592,20 @@ def test_more_travel_than_there_is() -> None:
     assert 20.0 < caught.value.limit < 200.0
 
 
+def test_a_load_over_more_than_a_turn() -> None:
+    load = {"on": "S", "force_n": 80, "from_deg": 10, "to_deg": 371}
+    with pytest.raises(InfeasibleError, match=r"more than a turn of the master") as caught:
+        torque(load=[load])
+    assert (caught.value.where, caught.value.limit) == ("load[0].to_deg", pytest.approx(370.0))
+    whole = torque(load=[{**load, "to_deg": 370}])
+    assert whole.facts["torque.torque_nm.max"] == pytest.approx(
+        torque(load=[{"on": "S", "force_n": 80}]).facts["torque.torque_nm.max"]
+    )
+    # a master that does not turn on has no turns with which a load repeats
+    part = [{"name": "motor", "even": True, "speed_rpm": 90, "range_deg": [0, 400]}]
+    assert torque(load=[load], drive=part).columns["torque_nm"].any()
+
+
 def test_no_travel_before_the_dead_center() -> None:
     """The door begins at the bottom: it does not arrive there."""
     load = {"on": "door", "force_n": 80, "travel_mm": 5, "before": "inner"}
