@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property, partial
@@ -16,7 +16,8 @@ from numpy.typing import ArrayLike
 from gearcam.base.errors import ABOVE, DesignError, InfeasibleError, Problem, beyond_limit
 from gearcam.base.findings import Finding, in_order, run_checks
 from gearcam.base.numerals import formatted
-from gearcam.kinds.mechanism.chain_checks import guided_chains
+from gearcam.kinds.mechanism.asked import fits, last_bits
+from gearcam.kinds.mechanism.checks import machine_to_check, own_findings
 from gearcam.kinds.mechanism.design import MechanismDesign
 from gearcam.kinds.mechanism.drives import PlacedDrive, placed
 from gearcam.kinds.mechanism.make import make_linkage
@@ -27,8 +28,8 @@ from gearcam.kinds.mechanism.outputs import (
     OutputNames,
     paths_asked,
 )
-from gearcam.linkages import checks
-from gearcam.linkages.dwells import DriverRange, ShortRangeError, last_travels, longest_dwell
+from gearcam.linkages.checks import KIND
+from gearcam.linkages.dwells import DriverRange, longest_dwell
 from gearcam.linkages.linkage import Linkage
 from gearcam.linkages.measures import HIGHEST, TrackMeasures
 from gearcam.linkages.paths import PointPath
@@ -45,12 +46,6 @@ if TYPE_CHECKING:
     from gearcam.designs.design import Design
     from gearcam.linkages.path_fits import CircleFit, LineFit
 
-_ROUNDED: Final = 1e-9
-"""Stroke of what stands still but for rounding, mm or rad."""
-
-_LEAST_TRAVEL: Final = 2e-3
-"""Travel up to which none is offered that is smaller, mm or deg."""
-
 _MOST_STEPS: Final = 1e6
 """Largest number of steps of a table."""
 
@@ -62,6 +57,13 @@ _ENDS: Final = 1e-9
 
 ORDER: Final = 3
 """Highest derivative in tables."""
+
+_DRIVERS: Final = {
+    "pair": ("phi1", "driver angle phi1"),
+    "cam": ("theta", "cam angle theta"),
+    "even": ("theta", "crank angle theta"),
+}
+"""Symbol and name of the master's angle, by the key of the drive."""
 
 _DEG: Final = math.degrees(1.0)
 
@@ -104,8 +106,7 @@ class MechanismResult(Result):
         def build(nested: Design) -> Any:
             from gearcam.results.kind import kind_of
 
-            key = "pair" if spec.pair is not None else "cam"
-            with within(f"{at}.{key}"):
+            with within(f"{at}.{spec.key}"):
                 result = kind_of(nested).result(nested, self.tolerances)
                 _ = result.pair if spec.pair is not None else result.program
                 return result
@@ -122,9 +123,7 @@ class MechanismResult(Result):
     @property
     def driver(self) -> tuple[str, str]:
         """Symbol of the master's angle in columns, and what it is called."""
-        if self.design.drive[0].pair is not None:
-            return "phi1", "driver angle phi1"
-        return "theta", "cam angle theta" if self.design.drive[0].cam else "crank angle theta"
+        return _DRIVERS[self.design.drive[0].key]
 
     @cached_property
     def outputs(self) -> tuple[Output, ...]:
@@ -257,28 +256,14 @@ class MechanismResult(Result):
         below: list[Finding] = []
         for number, drive in enumerate(self.drives):
             if drive.result is not None:
-                key = f"drive[{number}].{'pair' if drive.spec.pair is not None else 'cam'}"
+                key = f"drive[{number}].{drive.spec.key}"
                 with within(key):
                     below += findings_of(key, drive.result.checked)
         _ = self.compared
-        machine = self._to_check
+        machine = machine_to_check(self)
         with self.stage("checks"):
-            own = run_checks(checks.KIND, machine, self.design.limits)
-            own += (*self._dwells_missed(), *self._second_centers(), *self._loads_unused())
-            return in_order((*below, *own, *guided_chains(self)))
-
-    @property
-    def _to_check(self) -> checks.CheckedMachine:
-        even = self.without_pair if self.linkage.closed else None
-        # of one that is not compared only the accelerations are looked at
-        beside = {} if even is None else even.measures if self.design.compare else even.measured(2)
-        return checks.CheckedMachine(
-            self.linkage,
-            self.measures,
-            {one.stem: one.rate_unit for one in self.outputs},
-            self.transmissions,
-            beside,
-        )
+            own = run_checks(KIND, machine, self.design.limits)
+            return in_order((*below, *own, *own_findings(self)))
 
     @cached_property
     def without_pair(self) -> MechanismResult | None:
@@ -308,11 +293,10 @@ class MechanismResult(Result):
 
     def measured(self, highest: int) -> dict[str, TrackMeasures]:
         """Return the `measures` with extremes of derivatives up to the `highest` only."""
-        linkage = self.linkage
-        return {
-            one.stem: TrackMeasures(self.track(one), linkage.knots, linkage.closed, highest)
-            for one in self.outputs
-        }
+        return {one.stem: self._measures(one, highest) for one in self.outputs}
+
+    def _measures(self, one: Output, highest: int) -> TrackMeasures:
+        return TrackMeasures(self.track(one), self.linkage.knots, self.linkage.closed, highest)
 
     @cached_property
     def closure_error(self) -> float:
@@ -342,29 +326,7 @@ class MechanismResult(Result):
         InfeasibleError
             If an output does not travel as far.
         """
-        found = []
-        for number, one in enumerate(self.design.interval):
-            output, travel = self.asked("interval", number)
-            measures = self.measures_of(output)
-            what, most = f"{one.on} does not travel as far", measures.stroke
-            if measures.rise:
-                raise InfeasibleError(
-                    f"{one.on} turns on and has no dead centre", where=f"interval[{number}].on"
-                )
-            if travel < most:
-                try:
-                    found.append(last_travels(measures, travel, outer=one.before == "outer")[0])
-                    continue
-                except ShortRangeError as error:
-                    what = f"{one.on} does not travel as far before its {one.before} dead centre"
-                    most = error.travel
-            if measures.stroke <= _ROUNDED:
-                what, most = f"{one.on} does not move", 0.0
-            scale, unit = output.unit
-            where = f"interval[{number}].travel_{unit}"
-            near = scale * most / ABOVE if scale * most > _LEAST_TRAVEL else None
-            raise beyond_limit(what, where, scale * travel, scale * most, near=near, unit=unit)
-        return tuple(found)
+        return tuple(last_bits(self))
 
     @cached_property
     def interval_velocities(self) -> tuple[float, ...]:
@@ -398,22 +360,7 @@ class MechanismResult(Result):
         InfeasibleError
             If it is straight and a circle is asked for.
         """
-        if not self.design.stretch:
-            return ()
-        from gearcam.linkages.nearest_circle import StraightError
-        from gearcam.linkages.path_fits import best_circle, best_line
-
-        found = []
-        for number, one in enumerate(self.design.stretch):
-            path = self.paths[one.on]
-            self._check_range(f"stretch[{number}]", one.start, one.end)
-            fit = best_line if one.shape == "line" else best_circle
-            try:
-                found.append(fit(path, one.start, one.end))
-            except StraightError as error:
-                where = f"stretch[{number}].shape"
-                raise InfeasibleError(str(error), where=where, nearest='shape = "line"') from None
-        return tuple(found)
+        return tuple(fits(self))
 
     def _within_range(self, q: ArrayLike) -> Array:
         """Return angles of the master; DesignError for one beyond an open range."""
@@ -425,82 +372,15 @@ class MechanismResult(Result):
             raise DesignError([Problem(what, key="q", value=float(beyond[0]), allowed=allowed)])
         return where
 
-    def _check_range(self, table: str, start: float, end: float) -> None:
-        """Raise `DesignError` for a stretch that an open range of the master does not hold."""
-        low, high = self.linkage.span
-        for key, value in (("from_deg", start), ("to_deg", end)):
-            if not self.linkage.closed and not low <= value <= high:
-                what = f"{formatted(_DEG * value, 8)} is beyond the master's range"
-                allowed = f"{formatted(_DEG * low, 8)} to {formatted(_DEG * high, 8)}"
-                where = f"{table}.{key}"
-                raise DesignError(
-                    [Problem(what, self.design.source, None, where, _DEG * value, allowed)]
-                )
-
     @cached_property
     def dwells(self) -> tuple[DriverRange, ...]:
         """The longest ranges in which outputs stay within what the design asks for."""
-        found = []
-        for number in range(len(self.design.dwell)):
-            output, amount = self.asked("dwell", number)
-            found.append(longest_dwell(self.measures_of(output), amount))
-        return tuple(found)
-
-    def _dwells_missed(self) -> Iterator[Finding]:
-        """Yield the dwells that are asked for and not long enough."""
-        for number, (one, found) in enumerate(zip(self.design.dwell, self.dwells, strict=True)):
-            if found.length < one.least:
-                yield Finding(
-                    code="no-dwell",
-                    severity="warning",
-                    message=f"{one.on} has no dwell as long as that: this is the longest.",
-                    value=_DEG * found.length,
-                    limit=_DEG * one.least,
-                    unit="deg",
-                    where=f"dwell[{number}], from {formatted(_DEG * found.begin, 6)} deg",
-                )
-
-    def _loads_unused(self) -> Iterator[Finding]:
-        """Yield that the study which uses loads, masses and springs is not asked for."""
-        design = self.design
-        given = [word for word in ("load", "mass", "spring") if getattr(design, word)]
-        if given and "torque" not in design.output.studies:
-            yield Finding(
-                code="loads-unused",
-                severity="note",
-                message="Only the study of the driver's moment uses loads, masses and springs: "
-                'gearcam torque FILE, or studies = ["torque"].',
-                where=", ".join(given),
-            )
-
-    def _second_centers(self) -> Iterator[Finding]:
-        """Yield intervals before a dead centre that is reached a second time."""
-        for number, (one, found) in enumerate(
-            zip(self.design.interval, self.intervals, strict=True)
-        ):
-            output, _ = self.asked("interval", number)
-            measures = self.measures_of(output)
-            outer = one.before == "outer"
-            top = (measures.largest() if outer else measures.least()).value
-            same = [
-                center.place
-                for center in measures.dead_centers
-                if center.outer == outer and math.isclose(center.value, top, rel_tol=1e-9)
-            ]
-            if len(same) > 1:
-                places = ", ".join(f"{formatted(_DEG * place, 6)} deg" for place in same)
-                yield Finding(
-                    code="second-dead-center",
-                    severity="note",
-                    message=f"{one.on} reaches this dead centre more than once in a cycle, at "
-                    f"{places}: the interval is before the first of them.",
-                    where=f"interval[{number}], to {formatted(_DEG * found.end, 6)} deg",
-                )
+        asked = [self.asked("dwell", number) for number in range(len(self.design.dwell))]
+        return tuple(longest_dwell(self.measures_of(one), amount) for one, amount in asked)
 
     def measures_of(self, one: Output) -> TrackMeasures:
         """Return the extremes and the like of any output."""
-        own = self.measures.get(one.stem)
-        return own or TrackMeasures(self.track(one), self.linkage.knots, self.linkage.closed)
+        return self.measures.get(one.stem) or self._measures(one, HIGHEST)
 
     def asked(self, title: str, number: int) -> tuple[Output, float]:
         """Return the one output that a table is about, and the amount that it gives.

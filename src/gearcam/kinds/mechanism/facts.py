@@ -51,14 +51,7 @@ def facts(result: MechanismResult) -> Facts:
 
 def _called(result: MechanismResult) -> str:
     """Return what the mechanism is, by its drive and its dyads."""
-    first = result.design.drive[0]
-    by = (
-        "a pair"
-        if first.pair is not None
-        else "a cam"
-        if first.cam is not None
-        else "an even shaft"
-    )
+    by = {"pair": "a pair", "cam": "a cam"}.get(result.design.drive[0].key, "an even shaft")
     groups = " + ".join(one.type for one in result.design.dyad) or "linkage"
     return f"{groups} behind {by}"
 

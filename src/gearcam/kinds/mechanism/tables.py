@@ -61,8 +61,27 @@ def _direction(*, doc: str, **rest: Any) -> Any:
     return param(ANGLE, ge=-_TURN_DEG, le=_TURN_DEG, doc=doc, **rest)
 
 
+class WrittenDrive(ShortRepr):
+    """What moves a mechanism, as tables say it: a pair, a cam, or a shaft that turns evenly."""
+
+    pair: Design | None
+    cam: Design | None
+    even: bool | None
+
+    @property
+    def key(self) -> str:
+        """The key that says what it is: ``pair``, ``cam``, ``even``, ``slide``; empty if none."""
+        given = (key for key in ("pair", "cam", "even", "slide") if getattr(self, key, None))
+        return next(given, "")
+
+    def problems(self) -> Iterator[Breach]:
+        """Yield ``even = false``: field, index, message, what is allowed."""
+        if self.even is False:
+            yield "even", None, "is no drive", "true, or the key left out"
+
+
 @dataclass(frozen=True, kw_only=True)
-class CompareSpec(ShortRepr):
+class CompareSpec(WrittenDrive):
     """Another drive in the place of the first one, to compare the same mechanism behind both.
 
     Examples
@@ -85,14 +104,9 @@ class CompareSpec(ShortRepr):
 
     rules = (exactly_one("pair", "cam", "even"),)
 
-    def problems(self) -> Iterator[Breach]:
-        """Yield ``even = false``: field, index, message, what is allowed."""
-        if self.even is False:
-            yield "even", None, "is no drive", "true, or the key left out"
-
 
 @dataclass(frozen=True, kw_only=True)
-class MachineDrive(ShortRepr):
+class MachineDrive(WrittenDrive):
     """A drive of a mechanism; the first one is the master, whose angle all motion is given over.
 
     The wheels of a pair, the follower of a cam or a slide move as their designs say; an even drive
@@ -150,8 +164,7 @@ class MachineDrive(ShortRepr):
 
     def problems(self) -> Iterator[Breach]:
         """Yield contradictions: field, index, message, what is allowed."""
-        if self.even is False:
-            yield "even", None, "is no drive", "true, or the key left out"
+        yield from super().problems()
         if not self.ratio:
             yield "ratio", None, "is 0", "a whole number, negative for the other sense of rotation"
         if self.span is not None and self.slide is not None:

@@ -66,8 +66,7 @@ def _not_comparable(number: int, one: CompareSpec, master: MachineDrive) -> Iter
             yield Fault(("compare", number, "even"), what, True, "where a pair is the master")
         return
     own = MachineDrive(name=master.name, pair=one.pair, cam=one.cam)
-    if own.shafts != master.shafts:
-        key = "pair" if one.pair is not None else "cam"
+    if one.key and own.shafts != master.shafts:
         what = f"does not have the shafts of {master.name}: {', '.join(master.shafts)}"
         allowed = "a drive of the same sort; an even shaft stands beside a pair with even = true"
-        yield Fault(("compare", number, key), what, allowed=allowed)
+        yield Fault(("compare", number, one.key), what, allowed=allowed)

@@ -78,6 +78,11 @@ def test_names_of_a_chain_without_a_range_count_as_given() -> None:
     assert list(told(door)) == ["chain[0].range_deg"]
 
 
+def test_a_comparison_without_a_drive_is_told_once() -> None:
+    machine = MACHINES["slide behind a pair"] | {"compare": [{"name": "other"}]}
+    assert list(told(machine)) == ["compare[0]"]
+
+
 def test_names_of_unknown_tables_count_as_given() -> None:
     machine = dict(MACHINES["four-bar"])
     machine["cranks"] = machine.pop("crank")
