@@ -30,6 +30,21 @@ SPY = """
 """
 
 
+WRITTEN = """
+    const kind = CanvasRenderingContext2D.prototype;
+    const [clear, write] = [kind.fillRect, kind.fillText];
+    window.names = [];
+    kind.fillRect = function (...at) { window.names.length = 0; clear.apply(this, at); };
+    kind.fillText = function (text, x, y) {
+      const { a, e, f } = this.getTransform();
+      const wide = this.measureText(text).width;
+      window.names.push({ text, x: e / a + x, y: f / a + y, wide, edge: this.canvas.width / a });
+      write.call(this, text, x, y);
+    };
+"""
+"""Keeps where names were last written, in pixels."""
+
+
 def poses(browser: Chrome) -> dict[str, Any]:
     return {one["name"]: one for one in browser.execute_script("return gearcam.poses()")}
 
@@ -93,6 +108,21 @@ def test_names_move_with_the_machine_until_they_are_unchecked(
     box.click()
     assert browser.execute_script(texts) == []
     assert complaints(browser) == []
+
+
+def test_names_do_not_cover_each_other_at_the_edge(browser: Chrome, page_of: BuildOutput) -> None:
+    open_page(browser, page_of("quick_return"))
+    browser.execute_script(WRITTEN)
+    for place in (0.0, 20.0, 330.0):
+        go(browser, place)
+        names = browser.execute_script("return window.names")
+        assert {"link", "E", "pivot"} <= {one["text"] for one in names}
+        assert all(one["x"] >= 0.0 and one["x"] + one["wide"] <= one["edge"] for one in names)
+        for k, one in enumerate(names):
+            for other in names[:k]:
+                beside = one["x"] >= other["x"] + 0.9 * other["wide"]
+                beside |= other["x"] >= one["x"] + 0.9 * one["wide"]
+                assert beside or abs(one["y"] - other["y"]) > 9.0, (place, one, other)
 
 
 def test_wheels_and_links_move_together(browser: Chrome, page_of: BuildOutput) -> None:

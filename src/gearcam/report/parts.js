@@ -163,7 +163,8 @@ class Parts {
     const size = scale * ratio;
     const base = [size, 0, 0, -size, 0.5 * wide - size * x, 0.5 * tall + size * y];
     const unit = (width < NARROW ? 0.6 : 1) / scale;
-    for (const mark of marksOf(this.own, place, cycles, seen, unit)) {
+    const edge = x + (0.5 * width) / scale;
+    for (const mark of marksOf(this.own, place, cycles, seen, unit, edge)) {
       pen.setTransform(...base);
       if (mark.text) this.name(pen, mark, ratio, colours);
       else this.mark(pen, mark, 1 / scale, 1 / size, colours);
@@ -171,16 +172,14 @@ class Parts {
   }
 
   // Letters are upright, with an edge that parts them from what is below.
-  name(pen, { text, x, y, drop, ink }, ratio, colours) {
+  name(pen, { text, x, y, drop, left, ink }, ratio, colours) {
     const at = pen.getTransform().transformPoint({ x, y });
     pen.setTransform(ratio, 0, 0, ratio, at.x, at.y);
     pen.font = `${NAMES}px sans-serif`;
     pen.setLineDash([]);
     pen.lineWidth = 3;
     pen.strokeStyle = colours.ground;
-    const wide = pen.measureText(text).width;
-    const right = at.x / ratio + BESIDE + wide < this.size.width; // else it would be cut off
-    const start = right ? BESIDE : -BESIDE - wide;
+    const start = left ? -BESIDE - pen.measureText(text).width : BESIDE;
     pen.strokeText(text, start, drop);
     pen.fillStyle = colours[ink];
     pen.fillText(text, start, drop);

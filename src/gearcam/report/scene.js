@@ -170,9 +170,10 @@ function* colouredMarks({ coloured, scales }, label, poses, pixel) {
 
 /* The marks to draw, later ones on top. A mark has `chains` of points (flat, mm), `closed` or not,
    the names of the colours of its area (`fill`) and edges (`ink`), an optional `pose`, and its
-   `width` and `dash` in units of `pixel`, mm; or a `text` on the right of `x` and `y`, its
-   base so many pixels below (`drop`). `seen` selects what is shown. */
-function* marksOf(scene, place, cycles, seen, pixel) {
+   `width` and `dash` in units of `pixel`, mm; or a `text` on the right of `x` and `y`, or `left` of
+   them where it would reach over `edge`, its base so many pixels below (`drop`). `seen` selects what
+   is shown. */
+function* marksOf(scene, place, cycles, seen, pixel, edge = Infinity) {
   const found = touchingIn(scene, seen.contacts, place);
   const poses = posesOf(scene, place, cycles);
   const tone = tones(scene);
@@ -195,12 +196,12 @@ function* marksOf(scene, place, cycles, seen, pixel) {
   if (seen.points) yield* found.map((one) => dot(one, 4 * pixel, "contact"));
   const pitch = seen.pitch && pitchAt(scene, place);
   if (pitch) yield dot(pitch, 4 * pixel, "pitch");
-  if (seen.names) yield* nameMarks(scene, poses, pixel);
+  if (seen.names) yield* nameMarks(scene, poses, pixel, edge);
 }
 
 // The names of joints and members: those of one place in one line, others that would cover each
 // other above and below.
-function nameMarks(scene, poses, pixel) {
+function nameMarks(scene, poses, pixel, edge) {
   const found = [];
   for (const [k, body] of scene.bodies.entries()) {
     const [cos, sin] = [Math.cos(poses[k].turn), Math.sin(poses[k].turn)];
@@ -211,10 +212,13 @@ function nameMarks(scene, poses, pixel) {
       else found.push({ text, chains: [], ink: "text", drop: ABOVE, ...at });
     }
   }
+  const wide = (one) => 0.6 * NAMES * one.text.length * pixel;
+  for (const one of found) one.left = one.x + BESIDE * pixel + wide(one) > edge;
+  const first = (one) => (one.left ? one.x - 2 * BESIDE * pixel - wide(one) : one.x);
   const covered = (one, other) =>
     Math.abs(one.y - other.y - (one.drop - other.drop) * pixel) < NAMES * pixel &&
-    one.x < other.x + 0.6 * NAMES * other.text.length * pixel &&
-    other.x < one.x + 0.6 * NAMES * one.text.length * pixel;
+    first(one) < first(other) + wide(other) &&
+    first(other) < first(one) + wide(one);
   for (const [k, one] of found.entries()) {
     if (found.slice(0, k).some((other) => covered(one, other))) one.drop = BELOW;
   }
