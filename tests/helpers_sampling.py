@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import pytest
@@ -31,6 +31,24 @@ def few(cases: Iterable[Any], every: int = 2) -> list[Any]:
         pytest.param(*case, marks=() if number % every == 0 else pytest.mark.slow)
         for number, case in enumerate(given)
     ]
+
+
+def chosen(cases: Iterable[Any] | Mapping[str, Any], *names: Any) -> list[Any]:
+    """Parameters of a test: those that are named are run each time, the others are slow.
+
+    A mapping gives its values, which its keys name; other cases name themselves.
+    """
+    values = dict(cases) if isinstance(cases, Mapping) else {}
+    given = list(cases)
+    assert all(name in given for name in names), names
+    found = []
+    for case in given:
+        marks = () if case in names else pytest.mark.slow
+        if values:
+            found.append(pytest.param(values[case], id=case, marks=marks))
+        else:
+            found.append(pytest.param(*(case if isinstance(case, tuple) else (case,)), marks=marks))
+    return found
 
 
 def rounded(low: float, high: float) -> st.SearchStrategy[float]:

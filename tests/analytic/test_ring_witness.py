@@ -15,6 +15,7 @@ import pytest
 import gearcam as gc
 from gearcam.gears.flank import Curve, trace
 from gearcam.gears.pair import Gear
+from helpers_sampling import chosen
 from witness import laws, shaper, sweep
 from witness.kinematics import Basic, Rolling
 
@@ -108,9 +109,7 @@ def test_the_witness_rolls_as_the_pair_does() -> None:
         assert np.abs(own - rolling.frames(2, s).point @ [1.0, 1.0j]).max() < 1e-10
 
 
-@pytest.mark.parametrize(
-    ("name", "k"), [*PLACES[:2], pytest.param(*PLACES[2], marks=pytest.mark.slow)]
-)
+@pytest.mark.parametrize(("name", "k"), chosen(PLACES, *PLACES[:2]))
 def test_flanks_and_fillets_are_those_that_a_shaper_leaves(name: str, k: int) -> None:
     found = points(name, k, Curve.FLANK, Curve.FILLET, Curve.LAND)
     assert len(found) > 150

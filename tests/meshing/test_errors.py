@@ -309,16 +309,16 @@ def test_errors_that_a_pair_cannot_have_are_refused(tmp_path: Path) -> None:
 
 
 def test_jamming_and_a_large_error_are_found() -> None:
-    found = built(with_errors({"eccentricity_mm": 0.3, "steps": 60})).study("errors")
+    found = built(with_errors({"eccentricity_mm": 0.3, "steps": 24})).study("errors")
     assert {one.code for one in found.study_findings} == {"jams", "transmission-error"}
-    free = built(with_errors({"eccentricity_mm": 0.01, "steps": 60})).study("errors")
+    free = built(with_errors({"eccentricity_mm": 0.01, "steps": 24})).study("errors")
     assert free.study_findings == ()
 
 
 @pytest.mark.parametrize("name", ["round", "ellipse"])
 def test_without_backlash_wheels_further_apart_run_free(name: str) -> None:
     document = ROUND if name == "round" else ELLIPSE
-    errors = {"center_mm": 0.01, "eccentricity_mm": 0.01, "steps": 60}
+    errors = {"center_mm": 0.01, "eccentricity_mm": 0.01, "steps": 24}
     pair = document["pair"] | {"backlash_mm": 0}
     found = built(gc.design({**document, "pair": pair, "errors": errors})).study("errors").to_dict()
     alone = found["errors"]["alone"]
@@ -343,11 +343,11 @@ def test_interference_is_found_where_outlines_overlap() -> None:
     document = {**ELLIPSE, "pair": ELLIPSE["pair"] | {"backlash_mm": 1.0}}
     made = built(gc.design(document))
     for center, hits in ((-0.45, False), (-0.56, True)):
-        errors = {"center_mm": center, "steps": 60}
+        errors = {"center_mm": center, "steps": 36}
         found = built(gc.design({**document, "errors": errors})).study("errors")
         seen = {one.code for one in found.study_findings}
         assert ("interference" in seen) == hits
-        assert (overlap(made, center, 60) > 0.01) == hits
+        assert (overlap(made, center, 36) > 0.01) == hits
 
 
 def overlap(made: Any, center: float, steps: int) -> float:

@@ -11,13 +11,14 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
-from itertools import pairwise
+from itertools import pairwise, product
 from typing import Any
 
 import numpy as np
 import pytest
 
 import gearcam as gc
+from helpers_sampling import chosen
 from witness.roller_in_space import Mechanism, cycloidal
 
 LOWEST = 25.0
@@ -211,7 +212,18 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize("case", CASES.values(), ids=CASES)
+OFTEN = (
+    "as wide as the groove",
+    "clockwise",
+    "an arm",
+    "a smaller cone",
+    "the upper wall",
+    "a rib",
+)
+"""Each sort of wall, follower, roller and tool."""
+
+
+@pytest.mark.parametrize("case", chosen(CASES, *OFTEN))
 def test_the_tool_cuts_no_wall_and_leaves_what_is_stated(case: Case) -> None:
     result = gc.build(design(**case.given))
     facts = result.to_dict()["tool_path"]
@@ -226,8 +238,18 @@ def test_the_tool_cuts_no_wall_and_leaves_what_is_stated(case: Case) -> None:
     assert facts["chord_mm"] <= TOLERANCE
 
 
-@pytest.mark.parametrize("name", ["as wide as the groove", "half as wide", "a smaller cone"])
-@pytest.mark.parametrize("axis", [0, 1, 2, 3])
+NAMES = ("as wide as the groove", "half as wide", "a smaller cone")
+
+
+@pytest.mark.parametrize(
+    ("name", "axis"),
+    chosen(
+        product(NAMES, range(4)),
+        *((NAMES[0], axis) for axis in range(3)),
+        (NAMES[1], 3),
+        (NAMES[2], 2),
+    ),
+)
 def test_a_path_that_is_10_um_off_is_found(name: str, axis: int) -> None:
     """Along the cam and around it; 10 um deeper a cylinder cuts no wall, but a cone does."""
     case = CASES[name]
@@ -295,12 +317,13 @@ def test_the_table_is_the_program() -> None:
     assert np.diff(table[:, 4]).min() >= 0.0
 
 
-def test_the_rest_falls_with_the_square_of_the_passes() -> None:
+@pytest.mark.parametrize("coarsest", [2.0, pytest.param(1.0, marks=pytest.mark.slow)])
+def test_the_rest_falls_with_the_square_of_the_passes(coarsest: float) -> None:
     def rest(depth: float) -> float:
         given = {"tool": {"diameter_mm": 8, "depth_mm": depth}, "output": {"path_tolerance_mm": 1}}
         return gc.build(design(**given)).to_dict()["tool_path"]["rest_mm"]
 
-    rests = [rest(depth) for depth in (1.0, 0.5, 0.25)]
+    rests = [rest(depth) for depth in (coarsest, coarsest / 2, coarsest / 4)]
     slopes = [math.log2(one / other) for one, other in pairwise(rests)]
     assert slopes == [pytest.approx(2.0, abs=0.15)] * 2
 

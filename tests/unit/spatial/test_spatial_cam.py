@@ -97,7 +97,7 @@ ERRORS = [  # azimuth; at the outside, plane less truth of z, upper and lower wa
 def test_the_error_of_the_developed_plane(azimuth: float, upper: float, lower: float) -> None:
     """Against differences of z, times the slope of the normal: to first order in the error."""
     for wall, dz in zip(reference().walls, (upper, lower), strict=True):
-        theta = np.linspace(-deg(azimuth) - 0.5, -deg(azimuth) + 0.5, 20001)
+        theta = np.linspace(-deg(azimuth) - 0.5, -deg(azimuth) + 0.5, 4001)
         found = developed(wall, theta, 2)
         k = int(np.argmin(np.abs(found.azimuth[:, 1] - deg(azimuth))))
         speed = float(wall.cam.program.derivatives(theta[k : k + 1], 1)[1][0])

@@ -100,7 +100,7 @@ def overlaps(body: Any, cam: SpatialCam, count: int, more: float) -> list[float]
     return [(body ^ roller(cam, float(theta), more)).volume() for theta in angles]
 
 
-COUNTS = [60, pytest.param(720, marks=pytest.mark.slow)]
+COUNTS = [20, pytest.param(720, marks=pytest.mark.slow)]
 
 
 @pytest.mark.parametrize("count", COUNTS)
@@ -119,8 +119,8 @@ def test_two_rollers_embrace_a_rib() -> None:
     body, error = solid(mesh(cam, length=100.0)), chord_error(cam, 720, 13)
     for shift in (12.0, -12.0):
         moved = body.translate((0.0, 0.0, shift))
-        assert max(overlaps(moved, cam, 24, -1.1 * error)) == 0.0
-        assert min(overlaps(moved, cam, 24, 1.1 * error)) > 0.0
+        assert max(overlaps(moved, cam, 10, -1.1 * error)) == 0.0
+        assert min(overlaps(moved, cam, 10, 1.1 * error)) > 0.0
 
 
 @pytest.mark.parametrize("side", [1, -1])
