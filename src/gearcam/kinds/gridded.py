@@ -8,7 +8,6 @@ from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, Final
 
-from gearcam.base.facts import Fact
 from gearcam.base.findings import Finding, in_order, run_checks
 from gearcam.kinds.shared import turn_in_steps
 from gearcam.numeric.arrays import Array
@@ -34,8 +33,8 @@ ROUND: Final = 4
 """Chords of the blank for each position of a roller that cuts a solid: the error of its volume is
 that of the walls then."""
 
-RATES: Final = ("velocity", "acceleration", "jerk")
-"""Names of the derivatives of a motion."""
+ORDERS: Final = (("velocity", 1, ""), ("acceleration", 2, "2"), ("jerk", 3, "3"))
+"""Derivatives of a motion: name, order, and this as the end of a unit."""
 
 
 class GriddedCam(Result):
@@ -71,6 +70,9 @@ class GriddedCam(Result):
         """Largest distance of the walls from the mesh, mm; of a carved one its scallops."""
 
     @abstractmethod
+    def solid_of(self, steps: int, places: int) -> Mesh:
+        """Return the cam as a mesh, as if it turned counter-clockwise (see `mesh_of`)."""
+
     def mesh_of(self, steps: int, places: int) -> Mesh:
         """Return the cam as a mesh.
 
@@ -79,6 +81,9 @@ class GriddedCam(Result):
         steps, places : int
             Numbers of cam angles in a turn, and of places along the roller.
         """
+        with self.stage("solid"):
+            made = self.solid_of(steps, places)
+            return made.mirrored if self.cam.clockwise else made
 
     def findings_of(self, kind: str, solid: str, subject: Any) -> tuple[Finding, ...]:
         """Return the findings of the checks, errors first.
@@ -115,14 +120,13 @@ class GriddedCam(Result):
             That unit.
         """
         speed = self.design.drive.speed
-        powers = [(name, k, k if k > 1 else "") for k, name in enumerate(RATES, start=1)]
         columns = {
-            f"{name}_{unit}_per_rad{power}": scale * derivatives[k - 1] for name, k, power in powers
+            f"{name}_{unit}_per_rad{power}": scale * derivatives[k - 1] for name, k, power in ORDERS
         }
         if speed is not None:
             columns |= {
                 f"{name}_{unit}_s{power}": scale * speed**k * derivatives[k - 1]
-                for name, k, power in powers
+                for name, k, power in ORDERS
             }
         return columns
 
@@ -185,17 +189,3 @@ class GriddedCam(Result):
 def mesh_from(made: Surface) -> Mesh:
     """Return the mesh of a surface that was `made`."""
     return Mesh(vertices=made.vertices, triangles=made.triangles)
-
-
-def solid_facts(result: GriddedCam) -> dict[str, Any] | None:
-    """Return volume and mass of a `result`, where files or a density ask for them."""
-    density = result.design.blank.density
-    if not (result.solid_asked or density):
-        return None
-    volume, error = result.volume
-    return {
-        "volume_mm3": volume,
-        "volume_error_mm3": error,
-        "triangles": len(result.mesh.triangles),
-        "mass_kg": None if density is None else Fact(1e-9 * density * volume, "mass", shown=True),
-    }

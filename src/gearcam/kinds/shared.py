@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from functools import cache, partial
-from typing import TYPE_CHECKING, Any, Final
+from functools import cache
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from gearcam.base.rules import Breach
 if TYPE_CHECKING:
     from gearcam.designs.design import Design
     from gearcam.numeric.arrays import Array
-    from gearcam.results.kind import FileMaker, Study
+    from gearcam.results.kind import Study
     from gearcam.results.result import Progress, Result, StudyResult
 
 TABLE: Final = "accuracy.csv"
@@ -142,33 +142,6 @@ def turn_in_steps(step: float) -> Array:
 
 _NAMED: Final = 90
 """Characters of a name that leave room for a word behind it."""
-
-
-def _mesh(kind: str, result: Any, _: Any) -> dict[str, bytes]:
-    from gearcam.export.mesh import mesh_bytes
-
-    return {
-        f"{name}.{kind}": mesh_bytes(kind, {name: mesh}, name)
-        for name, mesh in result.meshes.items()
-    }
-
-
-def mesh_files(kind: str) -> FileMaker:
-    """Return what makes the meshes of a cam in space in a format.
-
-    Parameters
-    ----------
-    kind : str
-        ``stl``, ``3mf`` or ``glb``.
-    """
-    maker = partial(_mesh, kind)
-    maker.__doc__ = f"""Return the solid.
-
-    Files: cam.{kind}.
-
-    The cam as a closed solid in mm; the report states the errors of walls and volume.
-    """
-    return maker
 
 
 def solved_file(design: Design) -> dict[str, bytes]:

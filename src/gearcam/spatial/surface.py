@@ -72,7 +72,7 @@ class Surface(ShortRepr):
 
 
 def surface(cam: SpatialCam, blank: Cylinder, steps: int, places: int) -> Surface:
-    """Return the surface of a cam.
+    """Return the surface of a cam, as if it turned counter-clockwise.
 
     Parameters
     ----------
@@ -90,10 +90,7 @@ def surface(cam: SpatialCam, blank: Cylinder, steps: int, places: int) -> Surfac
     Surface
     """
     theta = np.linspace(0.0, 2.0 * math.pi, steps, endpoint=False)
-    made = _closed(list(_rings(cam, blank, theta, places)), cam.outer_radius)
-    if not cam.clockwise:
-        return made
-    return Surface(vertices=made.vertices * [1.0, -1.0, 1.0], triangles=made.triangles[:, ::-1])
+    return _closed(list(_rings(cam, blank, theta, places)), cam.outer_radius)
 
 
 def blank_surface(cam: SpatialCam, blank: Cylinder, steps: int) -> Surface:

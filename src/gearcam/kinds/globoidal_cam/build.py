@@ -17,14 +17,21 @@ from gearcam.numeric.arguments import angles
 from gearcam.numeric.columns import Columns
 from gearcam.parts.solids import Mesh, carved, ribbed
 from gearcam.spatial.globoidal import GloboidalCam
+from gearcam.spatial.globoidal_carving import roller_corners, scallop, uncut_surface
 from gearcam.spatial.globoidal_make import make_globoidal
+from gearcam.spatial.globoidal_surface import (
+    blank_surface,
+    chord_error,
+    core_surface,
+    rib_surface,
+    turret_surface,
+)
 
 if TYPE_CHECKING:
     from gearcam.numeric.pose import SpacePose
 
-CAM: Final = STEM
 TURRET: Final = "turret"
-"""Names of the solids; that of the cam is also the stem of its files."""
+"""Name of its solid."""
 
 _SHOWN: Final = 360
 """Largest number of cam angles of a solid that is only looked at."""
@@ -113,50 +120,34 @@ class GloboidalCamResult(GriddedCam):
             columns[f"pressure_angle_{word}_deg"] = np.degrees(touched.pressure[:, 0])
         return Columns(columns)
 
-    def mesh_of(self, steps: int, places: int) -> Mesh:
-        """Return the cam as a mesh.
-
-        Parameters
-        ----------
-        steps, places : int
-            Numbers of cam angles in a turn, and of places along the roller.
-        """
-        from gearcam.spatial.globoidal_surface import blank_surface, core_surface, rib_surface
-
+    def solid_of(self, steps: int, places: int) -> Mesh:
+        """Return the cam as a mesh (see `GriddedCam.solid_of`)."""
         cam, bore, around = self.cam, self.design.blank.bore, steps
-        with self.stage("solid"):
-            if self.carved:
-                from gearcam.spatial.globoidal_carving import roller_corners, uncut_surface
-
-                around = ROUND * steps
-                uncut = mesh_from(uncut_surface(cam, around))
-                rib = carved(uncut, roller_corners(cam, steps, places))
-            else:
-                rib = mesh_from(rib_surface(cam, steps, places))
-            core, blank = core_surface(cam, around), blank_surface(cam, bore, around)
-            mesh = ribbed(mesh_from(core), rib, mesh_from(blank))
-            return mesh.mirrored if cam.clockwise else mesh
+        if self.carved:
+            around = ROUND * steps
+            uncut = mesh_from(uncut_surface(cam, around))
+            rib = carved(uncut, roller_corners(cam, steps, places))
+        else:
+            rib = mesh_from(rib_surface(cam, steps, places))
+        core, blank = core_surface(cam, around), blank_surface(cam, bore, around)
+        return ribbed(mesh_from(core), rib, mesh_from(blank))
 
     @cached_property
     def chord_error(self) -> float:
         """Largest distance of the walls from the mesh, mm; of a carved one its scallops."""
-        if self.carved:
-            from gearcam.spatial.globoidal_carving import scallop as error
-        else:
-            from gearcam.spatial.globoidal_surface import chord_error as error
+        error = scallop if self.carved else chord_error
         return error(self.cam, self.solid_steps, self.design.output.wall_points)
 
     def standing(self, chords: float = 0.0) -> dict[str, tuple[Mesh, SpacePose]]:
         """Return cam and turret at the angle of the design, as meshes (see `Result`)."""
         from gearcam.kinds.globoidal_cam.scene import in_space
         from gearcam.parts.shapes import circle_segments
-        from gearcam.spatial.globoidal_surface import turret_surface
 
         turret, places = self.design.turret, self.design.output.wall_points
         around = circle_segments(2.0 * turret.roller_radius, max(chords, SAGITTA))
         fine = self.solid_steps > _SHOWN
         meshes = {
-            CAM: self.mesh_of(_SHOWN, places) if chords and fine else self.mesh,
+            STEM: self.mesh_of(_SHOWN, places) if chords and fine else self.mesh,
             TURRET: mesh_from(turret_surface(self.cam, turret.hub, around)),
         }
         poses = in_space(self, np.array([self.design.output.pose]))

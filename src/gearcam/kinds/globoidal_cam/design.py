@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final
 
-from gearcam.base.quantities import ANGLE, COUNT, fixed, param
 from gearcam.base.registry import classes_in
-from gearcam.base.rules import distinct
 from gearcam.designs.design import Design, Wanted
 from gearcam.designs.faults import Fault
-from gearcam.designs.outputs import OutputSpec, files_param, pose_param, studies_param
+from gearcam.designs.outputs import files_param, studies_param
 from gearcam.kinds.globoidal_cam.index import NAME, TITLE
+from gearcam.kinds.gridded_output import GriddedOutput
 from gearcam.kinds.shared import AccuracySpec, GoalSpec
 from gearcam.laws.motion.base import MOTION_LAWS
 from gearcam.mechanics.drive import DriveSpec
@@ -52,15 +50,8 @@ def not_made(document: Mapping[str, Any]) -> Fault | None:
 
 
 @dataclass(frozen=True, kw_only=True)
-class GloboidalOutput(OutputSpec):
-    """Which files and studies of a globoidal cam are written, and how fine (see `OutputSpec`).
-
-    Parameters
-    ----------
-    pose : float, rad
-        Cam angle of the drawing.
-    chord_tolerance, kerf, dxf_curves, dxf_version
-        Its surfaces have steps instead, and what is drawn is not for cutting out.
+class GloboidalOutput(GriddedOutput):
+    """Which files and studies of a globoidal cam are written, and how fine (see `GriddedOutput`).
 
     Examples
     --------
@@ -71,27 +62,6 @@ class GloboidalOutput(OutputSpec):
 
     files: tuple[str, ...] = files_param(GLOBOIDAL_FORMATS)
     studies: tuple[str, ...] = studies_param(("accuracy",))
-    wall_step: float = param(
-        ANGLE,
-        default=math.radians(0.5),
-        ge=0.01,
-        le=5,
-        doc="step of the cam angle in walls.csv and in solids",
-    )
-    wall_points: int = param(
-        COUNT, default=13, ge=2, le=500, doc="places along the roller in walls.csv and in solids"
-    )
-    motion_step: float = param(
-        ANGLE, default=math.radians(1), gt=0, le=90, doc="step of the cam angle in motion.csv"
-    )
-    pose: float = pose_param("theta", "cam angle of the drawing")
-
-    chord_tolerance: float | None = fixed(None)
-    kerf: float = fixed(0.0)
-    dxf_curves: str = fixed("lines")
-    dxf_version: str | None = fixed(None)
-
-    rules = (distinct("files", "format"), distinct("studies", "study"))
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)

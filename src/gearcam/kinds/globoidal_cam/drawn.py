@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from gearcam.kinds.gridded_scene import filled
 from gearcam.laws.phases_of_lift import TURN
-from gearcam.numeric.contour import Contour
 from gearcam.numeric.pose import Pose
 from gearcam.parts.shapes import Circle
 from gearcam.pictures.drawings import BLANK, FOLLOWER, GROOVE, PITCH, Drawing, Feature, Path, place
@@ -27,9 +27,6 @@ if TYPE_CHECKING:
 
 _STEPS: Final = 1440
 """Cam angles of a turn at which curves are drawn."""
-
-_TOLERANCE: Final = 1e-3
-"""Chord tolerance that these stand for, mm."""
 
 
 def across(cam: GloboidalCam) -> float:
@@ -67,7 +64,7 @@ def picture(result: GloboidalCamResult) -> Drawing:
 def sheet(cam: GloboidalCam) -> Feature:
     """Return the sheet."""
     width, half = TURN * across(cam), 1j * half_height(cam)
-    return _filled(BLANK, np.array([-half, width - half, width + half, half]))
+    return filled(BLANK, np.array([-half, width - half, width + half, half]))
 
 
 def grooves(cam: GloboidalCam) -> tuple[Feature, ...]:
@@ -78,7 +75,7 @@ def grooves(cam: GloboidalCam) -> tuple[Feature, ...]:
     for turn in sorted(upper.keys() & lower.keys()):
         low, high = (_clipped(one[turn], half) for one in (lower, upper))
         if (high.imag > low.imag).any():
-            found.append(_filled(GROOVE, np.concatenate([low, high[::-1]])))
+            found.append(filled(GROOVE, np.concatenate([low, high[::-1]])))
     return tuple(found)
 
 
@@ -133,8 +130,3 @@ def _windings(cam: GloboidalCam, wall: GloboidalWall) -> Iterator[tuple[int, Pla
 
 def _clipped(line: Plane, half: float) -> Plane:
     return line.real + 1j * np.clip(line.imag, -half, half)
-
-
-def _filled(layer: str, points: Plane) -> Feature:
-    shape = Contour(dense=tuple, points=points, tolerance=_TOLERANCE, chord_error=0.0)
-    return Feature(layer=layer, shape=shape)

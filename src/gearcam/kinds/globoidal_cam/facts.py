@@ -7,13 +7,18 @@ from typing import TYPE_CHECKING, Any
 
 from gearcam.base.facts import Fact, Facts
 from gearcam.base.findings import limit_of
-from gearcam.kinds.gridded import solid_facts
+from gearcam.kinds.gridded_facts import (
+    accuracy_facts,
+    largest_roller,
+    peak_facts,
+    solid_facts,
+    spread_facts,
+)
 from gearcam.spatial.globoidal_checks import KIND
 from gearcam.spatial.globoidal_surface import outer_radius
 
 if TYPE_CHECKING:
     from gearcam.kinds.globoidal_cam.build import GloboidalCamResult
-    from gearcam.spatial.globoidal import GloboidalCam
 
 Tree = dict[str, Any]
 
@@ -25,7 +30,7 @@ def facts(result: GloboidalCamResult) -> Facts:
         "motion": _motion(result),
         "cam": _cam(result),
         "solid": solid_facts(result),
-        "accuracy": _accuracy(result),
+        "accuracy": accuracy_facts(result, "rollers that cut it", {}),
     }
     headline = ("indexer.stops", "indexer.index_deg", "cam.center_distance_mm")
     return Facts(tree, headline, "globoidal indexing cam")
@@ -48,20 +53,7 @@ def _indexer(result: GloboidalCamResult) -> Tree:
 
 def _motion(result: GloboidalCamResult) -> Tree:
     """Return the peaks of the turret's derivatives that are finite, by cam angle and by time."""
-    program, speed = result.program, result.design.drive.speed
-    tree: Tree = {
-        "unit": "deg",
-        "continuity": Fact(program.continuity, "continuity of the motion", unit=""),
-    }
-    names = ("velocity", "acceleration", "jerk")
-    for order, name in enumerate(names[: program.continuity + 1], start=1):
-        peak, power = math.degrees(program.peaks[order - 1]), order if order > 1 else ""
-        label = f"largest {name} of the turret"
-        tree[f"peak_{name}"] = Fact(peak, label, unit=f"deg/rad{power}")
-        if speed is not None:
-            place = f"at {result.design.drive.named}"
-            tree[f"peak_{name}_deg_s{power}"] = Fact(peak * speed**order, label, place=place)
-    return tree
+    return {"unit": "deg"} | peak_facts(result, math.degrees(1.0), "deg", " of the turret")
 
 
 def _cam(result: GloboidalCamResult) -> Tree:
@@ -83,15 +75,8 @@ def _cam(result: GloboidalCamResult) -> Tree:
         "least_rib_mm": Fact(rib.value, "least thickness of the rib, about", place=rib.place),
         "pressure_angle_deg": {"max": _pressure(result)},
         "lost_motion_mm": Fact(cam.lost_motion.value, "lost motion of a roller"),
-        "largest_roller_mm": _largest(cam),
-        "walls": {
-            wall.key: {
-                "least_spread_mm": Fact(
-                    wall.spread.value, "least spread of the wall", place=wall.spread.place
-                )
-            }
-            for wall in cam.walls
-        },
+        "largest_roller_mm": largest_roller(cam),
+        "walls": {wall.key: spread_facts(wall) for wall in cam.walls},
     }
 
 
@@ -101,27 +86,3 @@ def _pressure(result: GloboidalCamResult) -> Fact:
     limit = math.degrees(limit_of(KIND, "pressure-angle", result.design.limits))
     angle = math.degrees(spot.value)
     return Fact(angle, "largest pressure angle", at_most=limit, place=spot.place, shown=True)
-
-
-def _largest(cam: GloboidalCam) -> Fact | None:
-    """Return the largest roller without undercut."""
-    spot = min((wall.largest_roller for wall in cam.walls), key=lambda one: one.value)
-    if math.isinf(spot.value):
-        return None
-    value = spot.value - 0.5 * cam.clearance
-    return Fact(value, "largest roller radius without undercut", place=spot.place)
-
-
-def _accuracy(result: GloboidalCamResult) -> Tree | None:
-    if not result.solid_asked:
-        return None
-    return {
-        "chord_mm": result.chord_error,
-        "volume_mm3": result.volume[1],
-        "how": {
-            "chord_mm": "height of the scallops between the positions of the rollers that cut it"
-            if result.carved
-            else "distance of the walls from the middles of all edges of the mesh",
-            "volume_mm3": "a third of the change from a mesh of half the steps",
-        },
-    }

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.kinds.shared import mesh_files
+from gearcam.kinds.gridded_files import MESHES, picture_files, table_files, wall_columns
+from gearcam.laws.phases_of_lift import TURN
 from gearcam.report.file import report_files
 
 if TYPE_CHECKING:
@@ -28,35 +29,16 @@ def _tables(result: GloboidalCamResult, _: Any) -> Files:
     pressure angles over the cam angle: also the path of a mill as wide as the groove, whose axis is
     that of a roller.
     """
-    from gearcam.export.table import table_bytes
     from gearcam.spatial.globoidal_surface import rib_angles
 
-    cam, count = result.cam, result.design.output.wall_points
-    theta, turn = rib_angles(cam, result.steps), 2.0 * np.pi
-    rows: dict[str, list[Any]] = {}
+    cam, parts = result.cam, []
     for k, wall in enumerate(cam.walls):
-        over = theta + turn * k
-        grid = wall.grid(over, count)
-        on = cam.between_faces(grid.points)
-        turns = np.floor(over / turn)
-        points, normals = grid.points[on].T, grid.normals[on].T
-        columns = {
-            "wall": np.full(points.shape[1], wall.key),
-            "roller": np.broadcast_to(turns[:, None], on.shape)[on].astype(int),
-            "theta_deg": np.broadcast_to(np.degrees(over - turn * turns)[:, None], on.shape)[on],
-            "x_mm": grid.x[on],
-            "X": points[0],
-            "Y": cam.hand * points[1],
-            "Z": points[2],
-            "nx": normals[0],
-            "ny": cam.hand * normals[1],
-            "nz": normals[2],
-            "pressure_angle_deg": np.degrees(grid.pressure[on]),
-        }
-        for name, values in columns.items():
-            rows.setdefault(name, []).append(values)
-    walls = {name: np.concatenate(values) for name, values in rows.items()}
-    return {"walls.csv": table_bytes(walls), "motion.csv": table_bytes({**result.motion()})}
+        theta = rib_angles(cam, result.steps) + TURN * k
+        grid = wall.grid(theta, result.design.output.wall_points)
+        turns = np.floor(theta / TURN)
+        angles = {"roller": turns.astype(int), "theta_deg": np.degrees(theta - TURN * turns)}
+        parts.append((wall, angles, grid, cam.between_faces(grid.points)))
+    return table_files(wall_columns(parts, cam.hand), result.motion())
 
 
 def _svg(result: GloboidalCamResult, _: Any) -> Files:
@@ -66,17 +48,15 @@ def _svg(result: GloboidalCamResult, _: Any) -> Files:
 
     The globoid through the middle of the rollers, unrolled, with the rollers; not for cutting.
     """
-    from gearcam.export.svg import svg_bytes
     from gearcam.kinds.globoidal_cam.drawn import picture
 
-    notes = result.facts.headline
-    return {"cam.svg": svg_bytes(picture(result), title=result.design.name, notes=notes)}
+    return picture_files(result, picture(result))
 
 
 FILES: Final[Mapping[str, Callable[..., Files]]] = {
     "csv": _tables,
     "svg": _svg,
-    **{kind: mesh_files(kind) for kind in ("stl", "3mf", "glb")},
+    **MESHES,
     "report": report_files,
 }
 """What makes the files of each format: contents by name."""

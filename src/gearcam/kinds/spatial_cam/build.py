@@ -24,6 +24,7 @@ from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
 from gearcam.parts.solids import Mesh, carved
 from gearcam.spatial.cam import SpatialCam, SpatialWall
+from gearcam.spatial.carving import roller_corners, scallop
 from gearcam.spatial.make import make_cylinder
 from gearcam.spatial.surface import (
     Cylinder,
@@ -163,30 +164,18 @@ class SpatialCamResult(GriddedCam):
         """The cam angles of solids and of ``walls.csv``, rad."""
         return np.linspace(0.0, _TURN, self.steps, endpoint=False)
 
-    def mesh_of(self, steps: int, places: int) -> Mesh:
-        """Return the cam as a mesh.
-
-        Parameters
-        ----------
-        steps, places : int
-            Numbers of cam angles, and of places along the roller.
-        """
+    def solid_of(self, steps: int, places: int) -> Mesh:
+        """Return the cam as a mesh (see `GriddedCam.solid_of`)."""
         cam, blank = self.cam, self.blank
-        with self.stage("solid"):
-            if self.carved:
-                from gearcam.spatial.carving import roller_corners
-
-                whole = mesh_from(blank_surface(cam, blank, ROUND * steps))
-                mesh = carved(whole, roller_corners(cam, blank, steps, places))
-                return mesh.mirrored if cam.clockwise else mesh
+        if not self.carved:
             return mesh_from(surface(cam, blank, steps, places))
+        whole = mesh_from(blank_surface(cam, blank, ROUND * steps))
+        return carved(whole, roller_corners(cam, blank, steps, places))
 
     @cached_property
     def chord_error(self) -> float:
         """Largest distance of the walls from the mesh, mm; of a carved one its scallops."""
-        error = chord_error
-        if self.carved:
-            from gearcam.spatial.carving import scallop as error
+        error = scallop if self.carved else chord_error
         return error(self.cam, self.solid_steps, self.design.output.wall_points)
 
     @cached_property
@@ -231,14 +220,14 @@ class SpatialCamResult(GriddedCam):
 
     def standing(self, chords: float = 0.0) -> dict[str, tuple[Mesh, SpacePose]]:
         """Return cam and rollers at the angle of the design, as meshes (see `Result`)."""
-        from gearcam.kinds.spatial_cam.scene import CAM, in_space
+        from gearcam.kinds.spatial_cam.scene import in_space
         from gearcam.parts.shapes import circle_segments
 
         size = 2.0 * self.design.follower.roller_radius
         roller = mesh_from(roller_surface(self.cam, circle_segments(size, max(chords, SAGITTA))))
         poses = in_space(self, np.array([self.design.output.pose]))
         return {
-            name: (self.mesh if name == CAM else roller, pose[0]) for name, pose in poses.items()
+            name: (self.mesh if name == STEM else roller, pose[0]) for name, pose in poses.items()
         }
 
     @property
@@ -258,7 +247,7 @@ def _demand_whole(wall: SpatialWall) -> None:
     """Refuse a wall that the roller cuts away at another angle."""
     if not wall.undercut:
         return
-    most = wall.largest_roller.value - 0.5 * wall.cam.clearance
+    most = wall.allowed_radius
     at = formatted(math.degrees(wall.spread.theta), 5)
     raise beyond_limit(
         f"the {wall.key} wall is undercut at {at} deg, and has no whole surface",

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
 from gearcam.base.display import ShortRepr
-from gearcam.base.quantities import ANGLE, COUNT, LENGTH, fixed, param
-from gearcam.base.rules import distinct
+from gearcam.base.quantities import COUNT, LENGTH, param
 from gearcam.designs.design import Design, Wanted
-from gearcam.designs.outputs import OutputSpec, files_param, pose_param, studies_param
+from gearcam.designs.outputs import files_param, studies_param
 from gearcam.kinds.cam.public import phases_wanted
+from gearcam.kinds.gridded_output import GriddedOutput
 from gearcam.kinds.shared import AccuracySpec, GoalSpec
 from gearcam.mechanics.drive import DriveSpec
 from gearcam.spatial.spec import CylinderBlank, CylinderSpec, SpatialFollower
@@ -32,15 +31,8 @@ SPATIAL_FORMATS: Final = (
 
 
 @dataclass(frozen=True, kw_only=True)
-class SpatialOutput(OutputSpec):
-    """Which files and studies of a cam in space are written, and how fine (see `OutputSpec`).
-
-    Parameters
-    ----------
-    pose : float, rad
-        Cam angle of the drawing.
-    chord_tolerance, kerf, dxf_curves, dxf_version
-        Its surfaces have steps instead, and what is drawn is not for cutting out.
+class SpatialOutput(GriddedOutput):
+    """Which files and studies of a cam in space are written, and how fine (see `GriddedOutput`).
 
     Examples
     --------
@@ -51,19 +43,6 @@ class SpatialOutput(OutputSpec):
 
     files: tuple[str, ...] = files_param(SPATIAL_FORMATS)
     studies: tuple[str, ...] = studies_param(("developed", "accuracy"))
-    wall_step: float = param(
-        ANGLE,
-        default=math.radians(0.5),
-        ge=0.01,
-        le=5,
-        doc="step of the cam angle in walls.csv and in solids",
-    )
-    wall_points: int = param(
-        COUNT, default=13, ge=2, le=500, doc="places along the roller in walls.csv and in solids"
-    )
-    motion_step: float = param(
-        ANGLE, default=math.radians(1), gt=0, le=90, doc="step of the cam angle in motion.csv"
-    )
     path_tolerance: float = param(
         LENGTH,
         default=0.005,
@@ -71,14 +50,6 @@ class SpatialOutput(OutputSpec):
         le=1,
         doc="how far the moves of a tool may be off its path, and how much they may leave on walls",
     )
-    pose: float = pose_param("theta", "cam angle of the drawing")
-
-    chord_tolerance: float | None = fixed(None)
-    kerf: float = fixed(0.0)
-    dxf_curves: str = fixed("lines")
-    dxf_version: str | None = fixed(None)
-
-    rules = (distinct("files", "format"), distinct("studies", "study"))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from gearcam.numeric.contour import Contour
+from gearcam.kinds.gridded_scene import filled
 from gearcam.numeric.pose import Pose
 from gearcam.parts.shapes import Circle
 from gearcam.pictures.drawings import BLANK, FOLLOWER, GROOVE, PITCH, Drawing, Feature, Path, place
@@ -24,28 +24,6 @@ if TYPE_CHECKING:
 
 _STEPS: Final = 3600
 """Cam angles of drawn curves."""
-
-_TOLERANCE: Final = 1e-3
-"""Chord tolerance that these stand for, mm."""
-
-
-def across(result: SpatialCamResult, theta: Array) -> Array:
-    """Return where the roller is on the sheet.
-
-    Parameters
-    ----------
-    result : SpatialCamResult
-        The cam.
-    theta : (n,) array, rad
-        Cam angles.
-
-    Returns
-    -------
-    (n,) array, mm
-        Distances from the left.
-    """
-    radius = result.cam.outer_radius
-    return radius * (theta if result.cam.clockwise else 2.0 * math.pi - theta)
 
 
 def centers(result: SpatialCamResult, theta: Array) -> Plane:
@@ -62,10 +40,10 @@ def centers(result: SpatialCamResult, theta: Array) -> Plane:
     -------
     (n,) complex array, mm
     """
-    lift = result.program.derivatives(theta, 0)[0]
-    point, _ = result.cam.guide.placed(lift)
-    side = result.cam.hand
-    return across(result, theta) + side * point[0, :, 1] + 1j * point[0, :, 2]
+    cam = result.cam
+    point, _ = cam.guide.placed(result.program.derivatives(theta, 0)[0])
+    along = cam.outer_radius * (theta if cam.clockwise else 2.0 * math.pi - theta)
+    return along + cam.hand * point[0, :, 1] + 1j * point[0, :, 2]
 
 
 def edge(result: SpatialCamResult, wall: SpatialWall) -> Plane:
@@ -94,45 +72,38 @@ def edge(result: SpatialCamResult, wall: SpatialWall) -> Plane:
     return radius * x + 1j * np.concatenate([[at_ends], z, [at_ends]])
 
 
-def _sheet(result: SpatialCamResult) -> Feature:
-    width = 2.0 * math.pi * result.cam.outer_radius
-    height = result.design.cam.length
-    return Feature(
-        layer=BLANK, shape=_contour(np.array([0, width, width + 1j * height, 1j * height]))
-    )
+def _corners(result: SpatialCamResult) -> Plane:
+    """Return the corners of the sheet, from the lower left one, counter-clockwise."""
+    width, height = 2.0 * math.pi * result.cam.outer_radius, result.design.cam.length
+    return np.array([0.0, width, width + 1j * height, 1j * height])
 
 
-def _contour(points: Plane) -> Contour:
-    return Contour(dense=tuple, points=points, tolerance=_TOLERANCE, chord_error=0.0)
+def _path(result: SpatialCamResult) -> Feature:
+    """Return the path of the roller's centre."""
+    theta = np.linspace(0.0, 2.0 * math.pi, _STEPS + 1)
+    return Feature(layer=PITCH, shape=Path(points=centers(result, theta), closed=False))
 
 
 def developed_drawing(result: SpatialCamResult) -> Drawing:
     """Return the sheet with the edges of the walls and the path of the roller's centre."""
-    theta = np.linspace(0.0, 2.0 * math.pi, _STEPS + 1)
     edges = [
         Feature(layer=wall.key.upper(), shape=Path(points=edge(result, wall), closed=False))
         for wall in result.cam.walls
     ]
-    path = Path(points=centers(result, theta), closed=False)
-    sheet = _sheet(result)
-    sheet = Feature(layer=BLANK, shape=Path(points=sheet.shape.points))  # pyright: ignore
-    return Drawing(name="developed", features=(sheet, *edges, Feature(layer=PITCH, shape=path)))
+    sheet = Feature(layer=BLANK, shape=Path(points=_corners(result)))
+    return Drawing(name="developed", features=(sheet, *edges, _path(result)))
 
 
 def cut_away(result: SpatialCamResult) -> tuple[Feature, ...]:
     """Return what is cut away of the sheet: the groove, or all beside a wall or a rib."""
-    width, height = 2.0 * math.pi * result.cam.outer_radius, result.design.cam.length
-    top = np.array([1j * height, width + 1j * height])
-    bottom = np.array([0.0, width], dtype=np.complex128)
+    corners = _corners(result)
+    bottom, top = corners[:2], corners[:1:-1]
     lines = {wall.side: edge(result, wall) for wall in result.cam.walls}
     if result.cam.apart:
         between = (lines[-1], top), (bottom, lines[1])
     else:
         between = ((lines.get(-1, bottom), lines.get(1, top)),)
-    return tuple(
-        Feature(layer=GROOVE, shape=_contour(np.concatenate([low, high[::-1]])))
-        for low, high in between
-    )
+    return tuple(filled(GROOVE, np.concatenate([low, high[::-1]])) for low, high in between)
 
 
 def rollers(result: SpatialCamResult) -> tuple[Feature, ...]:
@@ -148,8 +119,6 @@ def picture(result: SpatialCamResult) -> Drawing:
     """Return the sheet with what is cut away and the roller at the angle of the design."""
     theta = np.array([result.design.output.pose % (2.0 * math.pi)])
     pose = Pose(0.0, complex(centers(result, theta)[0]))
-    path = Path(points=centers(result, np.linspace(0.0, 2.0 * math.pi, _STEPS + 1)), closed=False)
     shown = place(rollers(result), pose)
-    pitch = Feature(layer=PITCH, shape=path)
-    features = (_sheet(result), *cut_away(result), pitch, *shown)
-    return Drawing(name="cam", features=features)
+    sheet = filled(BLANK, _corners(result))
+    return Drawing(name="cam", features=(sheet, *cut_away(result), _path(result), *shown))

@@ -6,7 +6,13 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from gearcam.base.facts import Fact, Facts, extent
-from gearcam.kinds.gridded import solid_facts
+from gearcam.kinds.gridded_facts import (
+    accuracy_facts,
+    largest_roller,
+    peak_facts,
+    solid_facts,
+    spread_facts,
+)
 from gearcam.spatial import checks
 from gearcam.spatial.developed import largest_in_plane
 from gearcam.spatial.guides import SwingArm
@@ -15,7 +21,6 @@ from gearcam.spatial.trimmed import lost_lift
 if TYPE_CHECKING:
     from gearcam.kinds.spatial_cam.build import SpatialCamResult
     from gearcam.spatial.cam import SpatialWall
-    from gearcam.spatial.extremes import Spot
 
 Tree = dict[str, Any]
 
@@ -46,22 +51,11 @@ def _motion(result: SpatialCamResult) -> Tree:
     """Return lift and the peaks of its derivatives that are finite."""
     program, (scale, unit) = result.program, result.lift_unit
     low, high = program.range
-    tree: Tree = {
+    return {
         "unit": unit,
         "lift": Fact(extent(low, high, scale), "lift", unit=unit),
         "total_lift": Fact(scale * (high - low), "lift", unit=unit, shown=True),
-        "continuity": Fact(program.continuity, "continuity of the motion", unit=""),
-    }
-    speed, named = result.design.drive.speed, result.design.drive.named
-    names = ("velocity", "acceleration", "jerk")
-    for order, name in enumerate(names[: program.continuity + 1], start=1):
-        peak, power = program.peaks[order - 1], order if order > 1 else ""
-        tree[f"peak_{name}"] = Fact(scale * peak, f"largest {name}", unit=f"{unit}/rad{power}")
-        if speed is not None:
-            value = scale * peak * speed**order
-            label = f"largest {name}"
-            tree[f"peak_{name}_{unit}_s{power}"] = Fact(value, label, place=f"at {named}")
-    return tree
+    } | peak_facts(result, scale, unit)
 
 
 def _cam(result: SpatialCamResult) -> Tree:
@@ -90,7 +84,7 @@ def _cam(result: SpatialCamResult) -> Tree:
         "pressure_angle_deg": _pressure(result),
         "lost_motion_mm": None if cam.lost_motion is None else cam.lost_motion.value,
         "largest_roller_mm": {
-            "in_space": _largest(cam.largest_roller, 0.5 * cam.clearance),
+            "in_space": largest_roller(cam),
             "in_developed_plane": largest_in_plane(cam, cam.floor) - 0.5 * cam.clearance,
         },
         "walls": {wall.key: _wall(wall) for wall in cam.walls},
@@ -99,11 +93,7 @@ def _cam(result: SpatialCamResult) -> Tree:
 
 def _wall(wall: SpatialWall) -> Tree:
     """Return how much a wall spreads, and what undercut costs."""
-    tree: Tree = {
-        "least_spread_mm": Fact(
-            wall.spread.value, "least spread of the wall", place=wall.spread.place
-        )
-    }
+    tree = spread_facts(wall)
     if not wall.undercut:
         return tree
     loss, guide = lost_lift(wall), wall.cam.guide
@@ -119,13 +109,6 @@ def _wall(wall: SpatialWall) -> Tree:
         "lost_lift_mm": None if swings else Fact(loss.way.value, "lost lift", place=place),
         "lost_lift_error": math.degrees(loss.error) if swings else loss.error,
     }
-
-
-def _largest(spot: Spot, off: float) -> Fact | None:
-    """Return the largest roller without undercut."""
-    if math.isinf(spot.value):
-        return None
-    return Fact(spot.value - off, "largest roller radius without undercut", place=spot.place)
 
 
 def _pressure(result: SpatialCamResult) -> Tree:
@@ -171,19 +154,7 @@ def _tool_path(result: SpatialCamResult) -> Tree | None:
 
 
 def _accuracy(result: SpatialCamResult) -> Tree | None:
-    if not result.solid_asked:
-        return None
-    exact = "step" in result.design.output.files
     how = "distance of exact points from the B-splines, half-way between those interpolated"
-    return {
-        "chord_mm": result.chord_error,
-        "step_mm": result.bands.error if exact else None,
-        "volume_mm3": result.volume[1],
-        "how": {
-            "chord_mm": "height of the scallops between the positions of the roller that cuts it"
-            if result.carved
-            else "distance of the walls from the middles of all edges of the mesh",
-            "step_mm": how if exact else None,
-            "volume_mm3": "a third of the change from a mesh of half the steps",
-        },
-    }
+    exact = result.solid_asked and "step" in result.design.output.files
+    more = {"step_mm": (result.bands.error, how)} if exact else {}
+    return accuracy_facts(result, "roller that cuts it", more)

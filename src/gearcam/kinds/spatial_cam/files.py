@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.kinds.shared import mesh_files
+from gearcam.kinds.gridded_files import MESHES, picture_files, table_files, wall_columns
 from gearcam.kinds.spatial_cam.milled import MILLED
 from gearcam.report.file import report_files
 
@@ -26,33 +26,14 @@ def _tables(result: SpatialCamResult, _: Any) -> Files:
     distance along the roller's axis, X, Y, Z the point in mm, nx, ny, nz the normal into the metal;
     with the pressure angle. Lift, its derivatives and pressure angles over the cam angle.
     """
-    from gearcam.export.table import table_bytes
-
     theta, count = result.wall_angles, result.design.output.wall_points
-    side = result.cam.hand
-    rows: dict[str, list[Any]] = {}
-    for wall in result.cam.walls:
-        grid = wall.grid(theta, count)
-        points, normals = grid.points.reshape(-1, 3).T, grid.normals.reshape(-1, 3).T
-        columns = {
-            "wall": np.full(points.shape[1], wall.key),
-            "theta_deg": np.degrees(np.repeat(theta, count)),
-            "x_mm": grid.x.ravel(),
-            "X": points[0],
-            "Y": side * points[1],
-            "Z": points[2],
-            "nx": normals[0],
-            "ny": side * normals[1],
-            "nz": normals[2],
-            "pressure_angle_deg": np.degrees(grid.pressure.ravel()),
-        }
-        for name, values in columns.items():
-            rows.setdefault(name, []).append(values)
-    walls = {name: np.concatenate(values) for name, values in rows.items()}
+    all_of = np.ones((len(theta), count), dtype=bool)
+    angles = {"theta_deg": np.degrees(theta)}
+    parts = [(wall, angles, wall.grid(theta, count), all_of) for wall in result.cam.walls]
     table = result.motion()
     short = dict(zip([*table][1:5], ("s", "ds", "d2s", "d3s"), strict=True))
     motion = {short.get(name, name): values for name, values in table.items()}
-    return {"walls.csv": table_bytes(walls), "motion.csv": table_bytes(motion)}
+    return table_files(wall_columns(parts, result.cam.hand), motion)
 
 
 def _step(result: SpatialCamResult, _: Any) -> Files:
@@ -93,18 +74,16 @@ def _svg(result: SpatialCamResult, _: Any) -> Files:
 
     The outside of the cam, unrolled, with its roller; not for cutting.
     """
-    from gearcam.export.svg import svg_bytes
     from gearcam.kinds.spatial_cam.drawn import picture
 
-    notes = result.facts.headline
-    return {"cam.svg": svg_bytes(picture(result), title=result.design.name, notes=notes)}
+    return picture_files(result, picture(result))
 
 
 FILES: Final[Mapping[str, Callable[..., Files]]] = {
     "csv": _tables,
     "dxf": _dxf,
     "svg": _svg,
-    **{kind: mesh_files(kind) for kind in ("stl", "3mf", "glb")},
+    **MESHES,
     "step": _step,
     "report": report_files,
     **MILLED,

@@ -11,17 +11,17 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from gearcam.kinds.gridded_charts import DRIVER
+from gearcam.kinds.gridded_scene import turning, unrolled_scene
 from gearcam.kinds.spatial_cam.drawn import centers, picture, rollers
-from gearcam.numeric.pose import Pose, SpacePose
+from gearcam.numeric.pose import Pose
 from gearcam.pictures.drawings import FOLLOWER
 from gearcam.pictures.scenes import PLACES, MovingBody, Scene
 
 if TYPE_CHECKING:
     from gearcam.kinds.spatial_cam.build import SpatialCamResult
     from gearcam.numeric.arrays import Array
+    from gearcam.numeric.pose import SpacePose
 
-CAM: Final = "cam"
 ROLLER: Final = "roller"
 """Name of its solid; of two, those at a rib, the beginning of their names."""
 
@@ -44,22 +44,10 @@ def scene(result: SpatialCamResult, places: int = PLACES) -> Scene:
     Scene
     """
     theta = np.linspace(0.0, 2.0 * math.pi, places + 1)
-    still = Pose(np.zeros(len(theta)), np.zeros(len(theta), dtype=np.complex128))
-    sheet = tuple(one for one in picture(result).features if one.kind != FOLLOWER)
-    cam = MovingBody(name=CAM, called="cam, unrolled", features=sheet, pose=still)
+    sheet = (one for one in picture(result).features if one.kind != FOLLOWER)
     moving = Pose(np.zeros(len(theta)), centers(result, theta))
     follower = MovingBody(name="follower", called=ROLLER, features=rollers(result), pose=moving)
-    return Scene(
-        title=result.design.name,
-        driver=DRIVER,
-        places=np.degrees(theta),
-        closed=True,
-        start=math.degrees(result.design.output.pose % (2.0 * math.pi)),
-        bodies=(cam, follower),
-        in_space=in_space(result, theta),
-        eye=_EYE,
-        up=(0.0, 0.0, 1.0),
-    )
+    return unrolled_scene(result, theta, sheet, follower, in_space(result, theta), _EYE)
 
 
 def in_space(result: SpatialCamResult, theta: Array) -> dict[str, SpacePose]:
@@ -77,12 +65,8 @@ def in_space(result: SpatialCamResult, theta: Array) -> dict[str, SpacePose]:
     dict of str to SpacePose
         Of the cam and of the roller or rollers, by name.
     """
-    lift = result.program.derivatives(theta, 0)[0]
-    turned = SpacePose((0.0, 0.0, 1.0), theta, np.zeros((len(theta), 3)))
-    poses = {CAM: turned}
+    carried = result.cam.guide.pose(result.program.derivatives(theta, 0)[0])
     up = np.array([0.0, 0.0, 0.5 * result.cam.apart])
-    carried = result.cam.guide.pose(lift)
     beside = {f"{ROLLER}_upper": up, f"{ROLLER}_lower": -up} if up.any() else {ROLLER: up}
-    for name, way in beside.items():
-        poses[name] = replace(carried, shift=carried.shift + way)
-    return {name: one.mirrored if result.cam.clockwise else one for name, one in poses.items()}
+    poses = {name: replace(carried, shift=carried.shift + way) for name, way in beside.items()}
+    return turning(result.cam, theta, poses)

@@ -1,0 +1,97 @@
+"""The facts that cams in space have alike."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from gearcam.base.facts import Fact
+from gearcam.kinds.gridded import ORDERS
+
+if TYPE_CHECKING:
+    from gearcam.kinds.gridded import GriddedCam
+    from gearcam.spatial.walls import RollerCam, RollerWall
+
+Tree = dict[str, Any]
+
+
+def peak_facts(result: GriddedCam, scale: float, unit: str, whose: str = "") -> Tree:
+    """Return continuity, and the peaks of a motion's derivatives that are finite.
+
+    Parameters
+    ----------
+    result : GriddedCam
+        The cam.
+    scale : float
+        Factor to the unit.
+    unit : str
+        That unit.
+    whose : str
+        What moves, as the end of their labels.
+    """
+    program, drive = result.program, result.design.drive
+    tree: Tree = {"continuity": Fact(program.continuity, "continuity of the motion", unit="")}
+    for name, order, power in ORDERS[: program.continuity + 1]:
+        peak, label = scale * program.peaks[order - 1], f"largest {name}{whose}"
+        tree[f"peak_{name}"] = Fact(peak, label, unit=f"{unit}/rad{power}")
+        if drive.speed is not None:
+            value, place = peak * drive.speed**order, f"at {drive.named}"
+            tree[f"peak_{name}_{unit}_s{power}"] = Fact(value, label, place=place)
+    return tree
+
+
+def spread_facts(wall: RollerWall) -> Tree:
+    """Return how much a `wall` spreads."""
+    spot = wall.spread
+    return {"least_spread_mm": Fact(spot.value, "least spread of the wall", place=spot.place)}
+
+
+def largest_roller(cam: RollerCam) -> Fact | None:
+    """Return the largest roller of a `cam` without undercut; None if there is no limit."""
+    spot = cam.largest_roller
+    if math.isinf(spot.value):
+        return None
+    value = spot.value - 0.5 * cam.clearance
+    return Fact(value, "largest roller radius without undercut", place=spot.place)
+
+
+def solid_facts(result: GriddedCam) -> Tree | None:
+    """Return volume and mass of a `result`, where files or a density ask for them."""
+    density = result.design.blank.density
+    if not (result.solid_asked or density):
+        return None
+    volume, error = result.volume
+    return {
+        "volume_mm3": volume,
+        "volume_error_mm3": error,
+        "triangles": len(result.mesh.triangles),
+        "mass_kg": None if density is None else Fact(1e-9 * density * volume, "mass", shown=True),
+    }
+
+
+def accuracy_facts(
+    result: GriddedCam, cutter: str, more: Mapping[str, tuple[float, str]]
+) -> Tree | None:
+    """Return the errors of the solid, and how they were found, where files ask for it.
+
+    Parameters
+    ----------
+    result : GriddedCam
+        The cam.
+    cutter : str
+        What cuts a carved one.
+    more : mapping of str to (float, str)
+        Other errors, and how they were found, by name.
+    """
+    if not result.solid_asked:
+        return None
+    chords = "distance of the walls from the middles of all edges of the mesh"
+    scallops = f"height of the scallops between the positions of the {cutter}"
+    errors = {
+        "chord_mm": (result.chord_error, scallops if result.carved else chords),
+        **more,
+        "volume_mm3": (result.volume[1], "a third of the change from a mesh of half the steps"),
+    }
+    values = {name: value for name, (value, _) in errors.items()}
+    return values | {"how": {name: how for name, (_, how) in errors.items()}}
