@@ -18,7 +18,7 @@ from gearcam.base.display import ShortRepr
 from gearcam.linkages.dyads import rtr_distance
 from gearcam.linkages.elements import BRANCH, REACH, Dyad, Element
 from gearcam.linkages.linkage import Linkage
-from gearcam.numeric.arrays import Array, apart
+from gearcam.numeric.arrays import Array, apart, snapped
 from gearcam.numeric.piecewise import extremes_of_each
 from gearcam.numeric.roots import bracketed_root
 
@@ -198,9 +198,8 @@ def _polished(linkage: Linkage, element: Element, number: int, q: float) -> floa
         _, slope, bend = element.room(linkage.at(at, 2, element))[number].derivatives()[:3]
         with np.errstate(invalid="ignore", divide="ignore"):
             at = at - slope / bend
-    found = float(at[0]) if abs(at[0] - q) < _SAME else q
-    knot = float(linkage.knots[np.abs(linkage.knots - found).argmin()])
-    return knot if abs(knot - found) < _ON_KNOT else found
+    found = at if abs(at[0] - q) < _SAME else np.array([q])
+    return float(snapped(found, linkage.knots, _ON_KNOT)[0])
 
 
 def _crossings(room: Callable[[Array], Array], places: Array, values: Array) -> Array:

@@ -62,6 +62,15 @@ class Peak(NamedTuple):
     place: float
 
 
+def least_and_largest(extremes: Extremes) -> tuple[Peak, Peak]:
+    """Return the smallest and the largest of `extremes`."""
+    places, values = extremes
+    low, high = (
+        Peak(float(values[k]), float(places[k])) for k in (values.argmin(), values.argmax())
+    )
+    return low, high
+
+
 class DeadCenter(NamedTuple):
     """Where a motion reverses.
 

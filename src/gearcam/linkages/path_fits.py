@@ -15,7 +15,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from gearcam.linkages.measures import Extremes, Peak, extremes_of
+from gearcam.linkages.measures import Extremes, Peak, extremes_of, least_and_largest
 from gearcam.linkages.nearest_circle import moved_center, nearest_center
 from gearcam.linkages.paths import PointPath
 from gearcam.linkages.plane import imaginary, square
@@ -163,7 +163,7 @@ def best_circle(path: PointPath, begin: float, end: float) -> CircleFit:
         if best[0] - least <= _EVEN * values.max():
             break
     _, center = best
-    low, high = _ends(_distances(path, knots, center))
+    low, high = least_and_largest(_distances(path, knots, center))
     return CircleFit(
         center,
         0.5 * (low.value + high.value),
@@ -194,7 +194,7 @@ def distances_from(path: PointPath, center: complex, begin: float, end: float) -
     ValueError
         If the end is not behind the begin, or the stretch is not in the path's range.
     """
-    return _ends(_distances(path, _knots(path, begin, end), center))
+    return least_and_largest(_distances(path, _knots(path, begin, end), center))
 
 
 def _knots(path: PointPath, begin: float, end: float) -> Array:
@@ -223,21 +223,13 @@ def _extremes(path: PointPath, knots: Array, of: Callable[[Jet], Jet]) -> Extrem
 def _sides(path: PointPath, knots: Array, direction: float) -> tuple[Peak, Peak]:
     """Return the lowest and the highest point over a direction."""
     turn = np.exp(-1j * direction)
-    return _ends(_extremes(path, knots, lambda point: imaginary(point * turn)))
+    return least_and_largest(_extremes(path, knots, lambda point: imaginary(point * turn)))
 
 
 def _distances(path: PointPath, knots: Array, center: complex) -> Extremes:
     """Return extremes of the distance from a point."""
     places, _ = _extremes(path, knots, lambda point: square(point - center))
     return places, np.abs(np.asarray(path.at(places, 0).c[0]) - center)
-
-
-def _ends(extremes: Extremes) -> tuple[Peak, Peak]:
-    places, values = extremes
-    low, high = (
-        Peak(float(values[k]), float(places[k])) for k in (values.argmin(), values.argmax())
-    )
-    return low, high
 
 
 def _turned(away: Plane) -> float:

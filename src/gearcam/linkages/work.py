@@ -20,8 +20,8 @@ from gearcam.linkages.coordinates import WorkState
 from gearcam.linkages.efforts import GRAVITY, INERTIA, LOADS, PARTS, SPRINGS, Effort, InertiaForce
 from gearcam.linkages.elements import Dyad, Element, GivenMotion, Law
 from gearcam.linkages.linkage import Linkage
-from gearcam.linkages.measures import Extremes, Peak
-from gearcam.numeric.arrays import Array
+from gearcam.linkages.measures import Peak, least_and_largest
+from gearcam.numeric.arrays import Array, snapped
 from gearcam.numeric.chebyshev import FIRST_CUTS, NotSmoothError, expand
 from gearcam.numeric.gauss import gauss_cells
 from gearcam.numeric.jets import Jet
@@ -163,30 +163,19 @@ class VirtualWork(ShortRepr):
             return np.union1d(np.linspace(*self.linkage.span, FIRST_CUTS + 1), self.knots)
 
     @cached_property
-    def _extremes(self) -> Extremes:
+    def _peaks(self) -> tuple[Peak, Peak]:
         places, values = extremes(lambda q: self.moment(q, 1).derivatives(), self.cells, cells=True)
-        knot = self.knots[np.abs(places[:, None] - self.knots).argmin(axis=1)]
-        return np.where(np.abs(places - knot) <= _AT_KNOT, knot, places), values
+        return least_and_largest((snapped(places, self.knots, _AT_KNOT), values))
 
     @property
     def largest(self) -> Peak:
         """The largest moment, N mm, and its place: a root of the derivative, or a knot's side."""
-        places, values = self._extremes
-        top = int(values.argmax())
-        return Peak(float(values[top]), float(places[top]))
+        return self._peaks[1]
 
     @property
     def least(self) -> Peak:
         """The least moment, N mm (see `largest`)."""
-        places, values = self._extremes
-        bottom = int(values.argmin())
-        return Peak(float(values[bottom]), float(places[bottom]))
-
-    @cached_property
-    def _gauss(self) -> tuple[Array, Array]:
-        """Places and weights of an integral over the driver's whole range."""
-        q, weights = gauss_cells(self.cells[:-1], self.cells[1:], _NODES)
-        return q.ravel(), weights.ravel()
+        return self._peaks[0]
 
     @cached_property
     def works(self) -> dict[str, tuple[float, float]]:
@@ -195,8 +184,10 @@ class VirtualWork(ShortRepr):
         Each with the integral of the moment's size, to which an error compares. Over a whole cycle
         weights, springs without dampers, and inertia do no work: what is found is an error.
         """
-        q, weights = self._gauss
-        found = {part: np.asarray(one.c[0]) for part, one in self.parts(q).items()}
+        places, weights = (
+            one.ravel() for one in gauss_cells(self.cells[:-1], self.cells[1:], _NODES)
+        )
+        found = {part: np.asarray(one.c[0]) for part, one in self.parts(places).items()}
         return {
             part: (float(weights @ values), float(weights @ np.abs(values)))
             for part, values in found.items()

@@ -51,6 +51,12 @@ def away(values: Array, others: Array, least: float) -> Array:
     return values[np.abs(values[:, None] - others).min(axis=1) > least]
 
 
+def snapped(values: Array, marks: Array, within: float) -> Array:
+    """Return the values (n,), moved onto the nearest of the `marks` (k,) `within` a distance."""
+    nearest = marks[np.abs(values[:, None] - marks).argmin(axis=1)]
+    return np.where(np.abs(values - nearest) <= within, nearest, values)
+
+
 def divided(values: ArrayOrPlane, counts: Ints) -> ArrayOrPlane:
     """Return values with even steps between them.
 
