@@ -201,7 +201,12 @@ def _stretches(result: MechanismResult) -> list[Tree] | None:
         {
             "on": one.on,
             "shape": one.shape,
-            "deviation_mm": Fact(fit.deviation, f"deviation of {one.on} from the {one.shape}"),
+            "deviation_mm": Fact(
+                fit.deviation,
+                f"deviation of {one.on} from the {one.shape}",
+                place=_between(one.start, one.end),
+                shown=True,
+            ),
             **_fitted(fit),
             **_distance(result.paths[one.on], one),
         }
@@ -228,6 +233,17 @@ def _fitted(fit: LineFit | CircleFit) -> Tree:
     return {"radius_mm": fit.radius, "center_mm": [center.real, center.imag]}  # pyright: ignore[reportAttributeAccessIssue]
 
 
+def _amount(length: float | None, angle: float | None) -> str:
+    """Return a length, mm, or an angle, rad, as text, whichever is given."""
+    if length is not None:
+        return f"{formatted(length)} mm"
+    return f"{formatted(_DEG * (angle or 0.0))} deg"
+
+
+def _between(begin: float, end: float) -> str:
+    return f"{formatted(_DEG * begin, 6)} to {formatted(_DEG * end, 6)} deg"
+
+
 def _intervals(result: MechanismResult) -> list[Tree] | None:
     speed = result.speed
     return [
@@ -236,7 +252,13 @@ def _intervals(result: MechanismResult) -> list[Tree] | None:
             "before": one.before,
             "from_deg": _DEG * found.begin,
             "to_deg": _DEG * found.end,
-            "angle_deg": _DEG * found.length,
+            "angle_deg": Fact(
+                _DEG * found.length,
+                f"last {_amount(one.travel, one.travel_angle)} of {one.on} "
+                f"before its {one.before} dead centre",
+                place=_between(found.begin, found.end),
+                shown=True,
+            ),
             "time_s": None if speed is None else found.length / speed,
             f"velocity_{unit}_per_rad": rate,
             f"velocity_{unit}_s": None if speed is None else rate * speed,
@@ -254,7 +276,12 @@ def _dwells(result: MechanismResult) -> list[Tree] | None:
             "on": one.on,
             "from_deg": _DEG * found.begin,
             "to_deg": _DEG * found.end,
-            "angle_deg": _DEG * found.length,
+            "angle_deg": Fact(
+                _DEG * found.length,
+                f"longest dwell of {one.on} within {_amount(one.within, one.within_angle)}",
+                place=_between(found.begin, found.end),
+                shown=True,
+            ),
         }
         for one, found in zip(result.design.dwell, result.dwells, strict=True)
     ] or None

@@ -427,3 +427,27 @@ def test_a_length_that_is_off_is_told_by_its_member() -> None:
 def test_no_table_is_offered_its_own_names() -> None:
     (found,) = problems(changed("four-bar", "dyad", **{"from": "b"}))
     assert (found.hint, found.allowed) == ("did you mean B?", "a joint: B, D, P")
+
+
+def test_what_is_asked_for_is_answered_on_the_console() -> None:
+    asked = {
+        "output": {"files": ["csv"], "outputs": ["rocker.angle", "P"]},
+        "dwell": [{"on": "rocker.angle", "within_deg": 0.5}, {"on": "P.x", "within_mm": 2}],
+        "interval": [{"on": "rocker.angle", "travel_deg": 5, "before": "inner"}],
+        "stretch": [{"on": "P", "from_deg": 300, "to_deg": 400, "shape": "line"}],
+    }
+    document = {"kind": "mechanism", "name": "mine", **MACHINES["four-bar"], **asked}
+    result = gc.build(gc.design(document))
+    shown = {one.meaning: (one.value, one.unit, one.place) for one in result.facts.shown()}
+    deg = math.degrees(1.0)
+    for meaning, found in (
+        ("longest dwell of rocker.angle within 0.5 deg", result.dwells[0]),
+        ("longest dwell of P.x within 2 mm", result.dwells[1]),
+        ("last 5 deg of rocker.angle before its inner dead centre", result.intervals[0]),
+    ):
+        value, unit, place = shown[meaning]
+        assert (value, unit) == (pytest.approx(deg * found.length), "deg")
+        ends = [float(one) for one in place.removesuffix(" deg").split(" to ")]
+        assert ends == pytest.approx([deg * found.begin, deg * found.end], rel=1e-5)
+    line = shown["deviation of P from the line"]
+    assert line == (result.stretches[0].deviation, "mm", "300 to 400 deg")
