@@ -20,7 +20,7 @@ from gearcam.base.display import ShortRepr
 from gearcam.linkages.coordinates import Acting, NamedCoordinate, WorkCoordinate, WorkState
 from gearcam.linkages.elements import Known
 from gearcam.linkages.plane import dot, square
-from gearcam.numeric.arrays import Array
+from gearcam.numeric.arrays import Array, Mask
 from gearcam.numeric.jets import Jet
 
 LOADS, INERTIA, GRAVITY, SPRINGS = "loads", "inertia", "gravity", "springs"
@@ -32,6 +32,9 @@ _MILLI: Final = 1e-3
 
 _KILO: Final = 1e3
 """N mm over kg m2/s2."""
+
+_AROUND: Final = np.array([[-1.0], [0.0], [1.0]])
+"""Turns about the one of an angle in which a range may hold it."""
 
 
 @dataclass(frozen=True)
@@ -49,19 +52,14 @@ class ActiveRanges(ShortRepr):
     ranges: Sequence[tuple[float, float]]
     period: float | None = None
 
-    def at(self, q: Array) -> Array:
-        """Return 1 at angles `q` at which it acts, else 0; ends belong to what follows them."""
-        found = np.zeros(np.shape(q), dtype=bool)
+    def at(self, q: Array) -> Mask:
+        """Return at which of the angles `q` it acts; ends belong to what follows them."""
+        found, shift = np.zeros(np.shape(q), dtype=bool), np.zeros((1, 1))
         for begin, end in self.ranges:
-            if self.period is None:
-                found |= (begin <= q) & (q < end)
-            else:
-                # angles are compared as they are: a remainder would blur the ends
-                first = np.floor((q - begin) / self.period)
-                for turn in (first - 1, first, first + 1):
-                    shift = turn * self.period
-                    found |= (begin + shift <= q) & (q < end + shift)
-        return found.astype(float)
+            if self.period is not None:  # angles as they are: a remainder would blur the ends
+                shift = (np.floor((q - begin) / self.period) + _AROUND) * self.period
+            found |= np.any((begin + shift <= q) & (q < end + shift), axis=0)
+        return found
 
     def ends(self, low: float, high: float) -> Array:
         """Return where it begins and ends between the angles `low` and `high`, rad."""
@@ -100,7 +98,10 @@ class Effort(ABC):
         """
         way = self.coordinate.rate(state.displaced, state.order)
         found = state.angle * 0.0 - dot(self.force(state), way)
-        return found if self.active is None else found * self.active.at(state.q)
+        if self.active is None:
+            return found
+        acts = self.active.at(state.q)
+        return Jet([np.where(acts, one, 0.0) for one in found.c])
 
 
 @dataclass(frozen=True)

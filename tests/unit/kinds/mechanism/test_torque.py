@@ -651,6 +651,16 @@ def test_a_table_that_ends_too_early() -> None:
     assert caught.value.limit == pytest.approx(360.0)
 
 
+def test_a_load_need_not_be_finite_where_it_does_not_act() -> None:
+    load = {"on": "S", "formula": "sqrt(2 - q)", "from_deg": 0, "to_deg": 90}
+    found = torque(load=[load])
+    q = np.radians(found.columns["theta_deg"])
+    acts = q < pi / 2 - 1e-9
+    wanted = -1e-3 * np.sqrt(2.0 - q[acts]) * moved("S.guide2", found)[1][acts]
+    agree(found.columns["torque_nm"][acts], wanted)
+    assert not found.columns["torque_nm"][q > pi / 2 + 1e-9].any()
+
+
 def test_a_load_that_is_not_finite() -> None:
     with pytest.raises(InfeasibleError, match=r"not finite at theta = "):
         torque(load=[{"on": "S", "formula": "log(x - 200)"}])
