@@ -171,6 +171,7 @@ def test_the_smallest_cam_is_at_least_as_small_as_every_one_of_the_grid(
     assert least - step < family.of(found)[0] <= least
 
 
+@pytest.mark.slow
 def test_the_smallest_cam_is_that_of_its_solved_sizes(tmp_path: Path) -> None:
     text = CAMS.text.replace('angle_deg = "rest"', "angle_deg = 80")
     text = text.replace("angle_deg = 120", 'angle_deg = "rest"')
@@ -191,11 +192,9 @@ def area(front: Array, corner: Array) -> float:
 
 @pytest.mark.parametrize(
     ("family", "trials"),
-    [
-        pytest.param(CAMS, 192, id="cams"),
-        pytest.param(PAIRS, 576, id="pairs", marks=pytest.mark.slow),
-    ],
+    [pytest.param(CAMS, 192, id="cams"), pytest.param(PAIRS, 576, id="pairs")],
 )
+@pytest.mark.slow
 def test_the_front_of_two_goals_is_that_of_the_grid(
     family: Family, trials: int, tmp_path: Path
 ) -> None:

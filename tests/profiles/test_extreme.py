@@ -17,6 +17,7 @@ from gearcam.kinds.gear_pair.result import GearPairResult
 from helpers_extreme import EXTREME, misses, must_of, outcome, whole, with_nearest
 from helpers_pairs import Assembly, explained
 from helpers_rings import overlap
+from helpers_sampling import chosen
 
 CASES = {path.stem: must_of(path.read_text()) for path in sorted(EXTREME.glob("*.toml"))}
 BUILT = [name for name, must in CASES.items() if must.ending == "built"]
@@ -32,7 +33,10 @@ FOLLOWED = 3.0
 """Errors of a profile's chords by which the lift that it gives may differ from that asked for."""
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize(
+    "name",
+    chosen([*CASES], *(name for name in CASES if name not in ("formula_steep", "table_noise"))),
+)
 def test_what_must_happen_happens(name: str) -> None:
     """And what is made has outlines that are simple polygons; what is built, or only jams, runs."""
     wrong, result = outcome(EXTREME / f"{name}.toml")

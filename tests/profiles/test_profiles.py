@@ -171,7 +171,10 @@ def kind_of(file: str) -> str:
     return ("drawing-" if path.stem.endswith("_drawing") else "") + path.suffix[1:]
 
 
-LONG = {"nail_machine_three_phase", "ring_uneven", "nautilus"}
+LONG = {
+    "nail_machine_three_phase", "ring_uneven", "nautilus", "stepped_ellipse", "conjugate_cams",
+    "shop_order",
+}  # fmt: skip
 """Whose files take long, and are of the same kinds as those of other files of the gallery."""
 
 

@@ -18,6 +18,7 @@ from gearcam.designs.faults import dotted
 from gearcam.designs.table import Key
 from gearcam.view.numbers import equals, numbers, replaced, sliders, span
 from helpers_pairs import PROFILES
+from helpers_sampling import few
 
 FILES = sorted(PROFILES.glob("*.toml"))
 BY_NAME = pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)
@@ -57,7 +58,7 @@ def test_all_numbers_at_once_and_back_again_are_the_same_text(file: Path) -> Non
     assert replaced(text, {}) == text
 
 
-@BY_NAME
+@pytest.mark.parametrize("file", few(FILES, 3), ids=lambda file: file.stem)
 def test_sliders_hold_what_is_in_the_file_and_end_at_what_reads(file: Path) -> None:
     text, found = file.read_text(), numbers(file.read_text())
     design = loads(text, file=str(file))

@@ -199,9 +199,23 @@ def _get(target: Any, key: Any) -> Any:
 BEYOND = ("ratios for", "knots must", "first knot", "last ratio", "more than one", "too coarse")
 
 
-@given(st.lists(st.tuples(PLACES, VALUES | st.none()), min_size=1, max_size=3))
-@settings(max_examples=250, deadline=None)
+EDITS = st.lists(st.tuples(PLACES, VALUES | st.none()), min_size=1, max_size=3)
+
+
+@given(EDITS)
+@settings(max_examples=80, deadline=None)
 def test_reader_and_schema_refuse_the_same_files(edits: Edits) -> None:
+    demand_the_same(edits)
+
+
+@pytest.mark.slow
+@given(EDITS)
+@settings(max_examples=1000, deadline=None)
+def test_reader_and_schema_refuse_the_same_of_many_files(edits: Edits) -> None:
+    demand_the_same(edits)
+
+
+def demand_the_same(edits: Edits) -> None:
     document = _edited(edits)
     faults = examine(document, stem="file").faults
     told = [fault for fault in faults if not any(words in fault.message for words in BEYOND)]
@@ -235,9 +249,23 @@ BEYOND_CAMS = (
 )
 
 
-@given(st.lists(st.tuples(CAM_PLACES, CAM_VALUES | st.none()), min_size=1, max_size=3))
-@settings(max_examples=250, deadline=None)
+CAM_EDITS = st.lists(st.tuples(CAM_PLACES, CAM_VALUES | st.none()), min_size=1, max_size=3)
+
+
+@given(CAM_EDITS)
+@settings(max_examples=80, deadline=None)
 def test_reader_and_schema_refuse_the_same_cams(edits: Edits) -> None:
+    demand_the_same_of_cams(edits)
+
+
+@pytest.mark.slow
+@given(CAM_EDITS)
+@settings(max_examples=1000, deadline=None)
+def test_reader_and_schema_refuse_the_same_of_many_cams(edits: Edits) -> None:
+    demand_the_same_of_cams(edits)
+
+
+def demand_the_same_of_cams(edits: Edits) -> None:
     document = _edited(edits, CAM)
     faults = examine(document, stem="file").faults
     told = [fault for fault in faults if not any(words in fault.message for words in BEYOND_CAMS)]

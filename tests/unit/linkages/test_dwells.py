@@ -183,9 +183,10 @@ def test_travels_that_cannot_be_are_refused() -> None:
         last_travels(part, 0.5)
 
 
-def test_a_knot_on_a_slope_begins_no_dwell() -> None:
+@pytest.mark.parametrize("number", [30, pytest.param(300, marks=pytest.mark.slow)])
+def test_a_knot_on_a_slope_begins_no_dwell(number: int) -> None:
     wave = _waves(NONE, ONE)
-    for knot in np.linspace(0.3, 2.8, 300):
+    for knot in np.linspace(0.3, 2.8, number):
         found = longest_dwell(TrackMeasures(wave, np.array([0.0, knot, 2.0 * np.pi])), 0.1)
         values = wave(np.linspace(*found, 101), 0).c[0]
         assert np.ptp(values) == pytest.approx(0.1, abs=1e-9), knot

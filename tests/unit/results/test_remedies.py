@@ -104,14 +104,14 @@ LONG = [
     "an outside within the roots, and bolts",
     "a rim too thin for its bolts",
 ]
-"""Designs whose search takes long. Every third of the others is searched each time."""
+"""Designs whose search takes long. Every sixth of the others is searched each time."""
 
 
 OFTEN = [name for name in DESIGNS if name not in LONG]
 
 
 @pytest.mark.parametrize(
-    "name", [*few(OFTEN, 3), *(pytest.param(name, marks=pytest.mark.slow) for name in LONG)]
+    "name", [*few(OFTEN, 6), *(pytest.param(name, marks=pytest.mark.slow) for name in LONG)]
 )
 def test_what_a_search_names_is_true_when_followed(name: str, folder: Path) -> None:
     document, keys = DESIGNS[name]

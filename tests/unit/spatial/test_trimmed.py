@@ -94,7 +94,7 @@ def room(wall: SpatialWall, spot: Spot, more: float) -> float:
     return least
 
 
-@pytest.mark.parametrize("name", chosen(list(CAMS), "larger", "arm"))
+@pytest.mark.parametrize("name", chosen(list(CAMS), "arm"))
 def test_the_follower_moves_by_the_lost_lift_until_it_rests(name: str) -> None:
     wall = CAMS[name].walls[0]
     way = lost_lift(wall).way
@@ -150,7 +150,7 @@ def test_the_carved_solid_has_the_volume_of_the_search(count: int) -> None:
 
 @pytest.mark.parametrize(
     "more",
-    few([{"sides": (1,)}, {}, {"apart": 24.0, "half_angle": 0.1}, {"sides": (-1,)}]),
+    few([{"apart": 24.0, "half_angle": 0.1}, {}, {"sides": (1,)}, {"sides": (-1,)}], 4),
 )
 def test_carving_a_whole_groove_gives_its_surface(more: dict[str, Any]) -> None:
     cam = cut(8.0, **more)

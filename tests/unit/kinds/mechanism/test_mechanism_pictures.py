@@ -307,7 +307,7 @@ def layers(result: Any) -> dict[str, list[Any]]:
     return found
 
 
-@pytest.mark.parametrize("tolerance", [0.01, 1e-4])
+@pytest.mark.parametrize("tolerance", [0.01, pytest.param(1e-4, marks=pytest.mark.slow)])
 def test_the_dxf_holds_the_paths_within_the_tolerance(tolerance: float) -> None:
     result = machine("four-bar")
     result = type(result)(result.design.with_({"output.chord_tolerance_mm": tolerance}))
