@@ -60,6 +60,7 @@ def main() -> int:
         ring_cases.against_external,
         solid_cases.against_booleans,
         spatial_cases.of_cylinder_cams,
+        spatial_cases.of_globoidal_cams,
         linkage_cases.of_linkages,
         sweep_cases.of_sweeps,
         design_cases.of_cams,
