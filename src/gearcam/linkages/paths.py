@@ -21,20 +21,11 @@ from gearcam.linkages.measures import extremes_of
 from gearcam.linkages.plane import square
 from gearcam.numeric.arrays import Array, Mask, Plane
 from gearcam.numeric.crossings import chord_shares, near_chords
-from gearcam.numeric.gauss import gauss_cells
+from gearcam.numeric.gauss import Integral, integral
 from gearcam.numeric.jets import Jet
 
-_ACCURATE: Final = 1e-13
-"""Difference of a panel's integral and that of its parts at which it is taken, of the whole."""
-
 _ROUNDING: Final = 1e-15
-"""The same of an integral that is 0 but for rounding, of the distance from the origin."""
-
-_LEVELS: Final = 40
-"""Largest number of times a panel is halved."""
-
-_NODES: Final = 16
-"""Places of Gauss' rule in each panel."""
+"""Rounding of an integral that is 0, as a share of the distance from the origin."""
 
 _STOPPED: Final = 1e-7
 """Speed, as a share of the largest, at which the point counts as standing still."""
@@ -87,21 +78,6 @@ class SelfCrossing(NamedTuple):
     first: float
     second: float
     point: complex
-
-
-class Integral(NamedTuple):
-    """An integral along a path.
-
-    Attributes
-    ----------
-    value : float
-        mm for a length, mm2 for an area.
-    error : float
-        How much it changed when the panels were halved, in the same unit.
-    """
-
-    value: float
-    error: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -189,34 +165,7 @@ class PointPath(ShortRepr):
         is nothing but rounding.
         """
         edges = np.unique(np.concatenate([self.knots, self._slow[0]]))
-        rounding = _ROUNDING * size * float(edges[-1] - edges[0])
-
-        def panels(low: Array, high: Array) -> Array:
-            q, weights = gauss_cells(low, high, _NODES)
-            return (function(q.ravel()).reshape(q.shape) * weights).sum(axis=1)
-
-        low, high = edges[:-1], edges[1:]
-        whole = panels(low, high)
-        scale = float(np.abs(whole).sum())
-        value = error = 0.0
-        for _ in range(_LEVELS):
-            middle = 0.5 * (low + high)
-            parts = panels(low, middle), panels(middle, high)
-            change = np.abs(parts[0] + parts[1] - whole)
-            done = change <= max(_ACCURATE * scale, rounding)
-            value += float((parts[0] + parts[1])[done].sum())
-            error += float(change[done].sum())
-            if done.all():
-                break
-            left = ~done
-            low, high = (
-                np.concatenate([low[left], middle[left]]),
-                np.concatenate([middle[left], high[left]]),
-            )
-            whole = np.concatenate([parts[0][left], parts[1][left]])
-        else:
-            value, error = value + float(whole.sum()), error + float(np.abs(whole).sum())
-        return Integral(value, error)
+        return integral(function, edges, _ROUNDING * size * float(edges[-1] - edges[0]))
 
     @cached_property
     def cusps(self) -> tuple[Cusp, ...]:
