@@ -475,7 +475,7 @@ def _driven(shown: _Shown, number: int) -> Iterator[MovingBody]:
         return
     with within(f"drive[{number}].{'pair' if drive.spec.pair is not None else 'cam'}"):
         scene = drive.result.plain.scene(1)
-    x = drive.own(shown.q, not number)
+    x = drive.own(shown.q)
     for body in scene.bodies:
         moved = _moved(drive, body.name)
         yield replace(

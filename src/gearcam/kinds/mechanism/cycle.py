@@ -103,7 +103,7 @@ def cycle_of(drives: Sequence[PlacedDrive], least: int) -> tuple[tuple[float, fl
             )
     late = 0
     for turns in range(least, _CYCLES * least + 1, least):
-        found = (number for number, one in enumerate(drives) if not _back(one, number, turns))
+        found = (number for number, one in enumerate(drives) if not _back(one, turns))
         late = next(found, -1)
         if late < 0:
             return (0.0, turns * _TURN), True
@@ -134,7 +134,7 @@ def _part_of(master: PlacedDrive) -> tuple[float, float]:
 def _demand_inside(drives: Sequence[PlacedDrive], part: tuple[float, float]) -> None:
     """Refuse open drives that a range of the master takes beyond their ends."""
     for number, drive in enumerate(drives[1:], start=1):
-        own = sorted(drive.spec.ratio * q + drive.spec.phase for q in part)
+        own = sorted(drive.own(np.array(part)))
         ends = float(drive.knots[0]), float(drive.knots[-1])
         if not drive.closed and (own[0] < ends[0] - _WHOLE or own[1] > ends[1] + _WHOLE):
             goes, allowed = ([formatted(math.degrees(q), 6) for q in two] for two in (own, ends))
@@ -175,15 +175,14 @@ def demand_part(design: MechanismDesign, linkage: Linkage) -> None:
             )
 
 
-def _back(drive: PlacedDrive, number: int, turns: int) -> bool:
+def _back(drive: PlacedDrive, turns: int) -> bool:
     """Return whether a drive is where it was after some turns of the master."""
     if drive.spec.slide is not None:  # a formula in the master's angle may repeat later
         q = np.linspace(0.0, _TURN, _PLACES)
         moved = [one.law(np.stack([q, q + turns * _TURN]), 0).c[0] for one in drive.moved.values()]
         places = np.asarray(moved)
         return bool(np.ptp(places, axis=1).max() <= _WHOLE * turns * (1.0 + np.abs(places).max()))
-    ratio = drive.spec.ratio if number else 1
-    ends = np.array([0.0, ratio * turns * _TURN])
+    ends = np.array([0.0, drive.spec.ratio * turns * _TURN])
     shafts = [one.law for one in drive.moved.values() if not one.along]
     found = [float(np.diff(np.asarray(law(ends, 0).c[0]))[0]) for law in shafts]
     return all(abs(math.remainder(end, _TURN)) < _WHOLE * turns for end in found)

@@ -218,12 +218,8 @@ class PlacedDrive(ShortRepr):
             moved[word] = replace(one, law=law)
         if self.result is not None:
             return replace(self, spec=other.spec, moved=moved)
-        low, high = (
-            0.0,
-            other.period if _steady(other) else max(map(_travelled, _driven_laws(other))),
-        )
-        ends = np.array([low, high])
-        return PlacedDrive(other.spec, moved, ends, high, other.closed)
+        high = other.period if _steady(other) else max(map(_travelled, _driven_laws(other)))
+        return PlacedDrive(other.spec, moved, np.array([0.0, high]), high, other.closed)
 
     def elements(self, master: bool) -> Iterator[Element]:
         """Yield its shafts, where they stand, and the guides of its slides.
@@ -247,23 +243,21 @@ class PlacedDrive(ShortRepr):
                 else:
                     yield MemberPoint(center_of(name), self.machine(one.at))
 
-    def own(self, q: Array, master: bool) -> Array:
+    def own(self, q: Array) -> Array:
         """Return its own angles, rad.
 
         Parameters
         ----------
         q : (n,) array, rad
             The master's angles.
-        master : bool
-            Whether the master's angle is its own.
         """
-        return q if master else self.spec.ratio * q + self.spec.phase
+        return self.spec.ratio * q + self.spec.phase
 
     def _over_master(self, law: Law, factor: float, master: bool) -> Law:
-        ratio, phase = (1.0, 0.0) if master else (float(self.spec.ratio), self.spec.phase)
+        ratio = float(self.spec.ratio)
 
         def over(q: Array, order: int) -> Jet:
-            x = q if master else self._beside_knots(ratio * q + phase, ratio)
+            x = q if master else self._beside_knots(self.own(q), ratio)
             found = law(x, order)
             return Jet([factor * value * ratio**k for k, value in enumerate(found.c)])
 
@@ -281,26 +275,23 @@ class PlacedDrive(ShortRepr):
         late = at + math.copysign(_SIDE, ratio) * (np.abs(at) + self.period)
         return np.where(np.abs(within - self.knots[nearest]) <= _ROUNDED, late, x)
 
-    def knots_in(self, low: float, high: float, master: bool) -> Array:
+    def knots_in(self, low: float, high: float) -> Array:
         """Return where its laws are not smooth.
 
         Parameters
         ----------
         low, high : float, rad
             The master's angles between which they are looked for.
-        master : bool
-            Whether the master's angle is its own.
 
         Returns
         -------
         (k,) array, rad
             The master's angles.
         """
-        ratio, phase = (1.0, 0.0) if master else (float(self.spec.ratio), self.spec.phase)
-        ends = sorted((ratio * low + phase, ratio * high + phase))
+        ends = sorted(self.own(np.array([low, high])))
         turns = range(math.floor(ends[0] / self.period), math.ceil(ends[1] / self.period) + 1)
         every = [self.knots + k * self.period for k in turns] if self.closed else [self.knots]
-        found = (np.concatenate(every) - phase) / ratio
+        found = (np.concatenate(every) - self.spec.phase) / self.spec.ratio
         return np.unique(found[(found > low) & (found < high)])
 
 

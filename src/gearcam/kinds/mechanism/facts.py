@@ -226,11 +226,11 @@ def _distance(path: PointPath, one: StretchSpec) -> Tree:
 
 def _fitted(fit: LineFit | CircleFit) -> Tree:
     """Return the length of a line, or radius and centre of a circle."""
-    length = getattr(fit, "length", None)
-    if length is not None:
-        return {"length_mm": length}
-    center = fit.center  # pyright: ignore[reportAttributeAccessIssue]
-    return {"radius_mm": fit.radius, "center_mm": [center.real, center.imag]}  # pyright: ignore[reportAttributeAccessIssue]
+    from gearcam.linkages.path_fits import LineFit
+
+    if isinstance(fit, LineFit):
+        return {"length_mm": fit.length}
+    return {"radius_mm": fit.radius, "center_mm": [fit.center.real, fit.center.imag]}
 
 
 def _amount(length: float | None, angle: float | None) -> str:

@@ -2,16 +2,29 @@
 
 from __future__ import annotations
 
-from typing import Final
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.base.registry import DeferredMapping, deferred
+from gearcam.kinds.mechanism import load_names, names, outputs, unfit_drives
 from gearcam.kinds.mechanism.design import NAME, MechanismDesign
-from gearcam.kinds.mechanism.load_names import problems
 from gearcam.kinds.mechanism.tables import FORMATS
 from gearcam.kinds.mechanism.torque_checks import TORQUE
 from gearcam.results.kind import Kind
 
+if TYPE_CHECKING:
+    from gearcam.designs.faults import Fault
+    from gearcam.designs.kind import Examined
+
 _HERE: Final = "gearcam.kinds.mechanism"
+
+
+def _problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
+    faults = [*unfit_drives.problems(found), *names.problems(document, found)]
+    faults += outputs.problems(document, found)
+    yield from faults
+    yield from load_names.problems(found, faults)
+
 
 KIND: Final = Kind(
     name=NAME,
@@ -19,7 +32,7 @@ KIND: Final = Kind(
     design=MechanismDesign,
     result=deferred(f"{_HERE}.build:MechanismResult"),
     required=("drive",),
-    problems=problems,
+    problems=_problems,
     formats=FORMATS,
     check_modules=("gearcam.linkages.checks", f"{_HERE}.torque_checks"),
     check_groups=("mechanisms", TORQUE),

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.designs.faults import Fault, show
-from gearcam.kinds.mechanism import names, outputs, unfit_drives
+from gearcam.kinds.mechanism import names
 from gearcam.kinds.mechanism.name_keys import JOINT, MEMBER, SHAFT, WAY
 from gearcam.linkages.elements import GROUND
 
@@ -69,22 +69,21 @@ def unturned(parts: Parts) -> dict[str, str]:
     return found | {one.name: one.joint for one in pushed_in(parts)}
 
 
-def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
-    """Yield faults of names, and keys of loads, masses and springs that do not suit them.
+def problems(found: Examined, told: Iterable[Fault]) -> Iterator[Fault]:
+    """Yield keys of loads, masses and springs that do not suit what they act on.
 
     Parameters
     ----------
-    document : mapping
-        As read.
     found : Examined
         The valid tables.
+    told : iterable of Fault
+        Of names: nothing more is said of their tables.
     """
     parts = found.parts
-    faults = [*unfit_drives.problems(found), *names.problems(document, found)]
-    faults += [*outputs.problems(document, found), *_in_vain(parts)]
-    yield from faults
+    vain = list(_in_vain(parts))
+    yield from vain
     sorts, still = sorts_of(parts), unturned(parts)
-    wrong = {one.path[:2] for one in (*found.faults, *faults)}
+    wrong = {one.path[:2] for one in (*found.faults, *told, *vain)}
     wrong |= {one.path[:2] for one in names.needed(parts) if one.name not in sorts}
     ways = {one.name for one in names.given(parts) if one.sort == WAY}
     for title in ("load", "mass", "spring"):

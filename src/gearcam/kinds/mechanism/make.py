@@ -65,7 +65,7 @@ def make_linkage(design: MechanismDesign, drives: Sequence[PlacedDrive]) -> Link
         If it does not close over the master's whole range.
     """
     (low, high), closed = cycle_of(drives, indexed(design))
-    inner = [one.knots_in(low, high, not number) for number, one in enumerate(drives)]
+    inner = [one.knots_in(low, high) for one in drives]
     knots = apart(np.unique(np.concatenate([[low, high], *inner])), _SAME)
     knots[-1] = high  # rather than one that differs by rounding
     parts = list(in_order(_elements(design, drives)))

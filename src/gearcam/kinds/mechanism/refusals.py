@@ -39,32 +39,27 @@ def refusal(design: MechanismDesign, error: NotClosingError) -> InfeasibleError:
     if found.least > -1e-9:
         at = _in_degrees(found.place)
         what = f"{name} is singular at {at} deg: {_singular(element)} there"
-    lengths = [_keyed(title, number, one) for one in error.nearest]
-    if not lengths:
-        return InfeasibleError(what, where=f"{title}[{number}]")
-    ways = [_lengthened(design, one) for one in lengths]
-    key, value = next(iter(lengths[0].items()))
-    if len(lengths[0]) > 1:
-        both = " and ".join(
-            f"{k} = {formatted(v)} ({_member(element, k)})" for k, v in lengths[0].items()
-        )
-        note = f"one length alone cannot do it; with {both} it closes"
-        return InfeasibleError(what, where=f"{title}[{number}]", nearest=note, adjustments=ways)
+    where = f"{title}[{number}]"
+    if not error.nearest:
+        return InfeasibleError(what, where=where)
+    keyed = [_keyed(where, one) for one in error.nearest]
+    ways, spec = [_lengthened(design, one) for one in keyed], design.dyad[number]
+    names = [spec.members[k] for k in error.nearest[0]]
+    if len(names) > 1:
+        both = zip(keyed[0].items(), names, strict=True)
+        told = " and ".join(f"{key} = {formatted(value)} ({name})" for (key, value), name in both)
+        note = f"one length alone cannot do it; with {told} it closes"
+        return InfeasibleError(what, where=where, nearest=note, adjustments=ways)
+    ((key, value),), (k,) = keyed[0].items(), error.nearest[0]
     return InfeasibleError(
         what,
         where=key,
-        value=float(element.lengths[int(key[-2])]),  # pyright: ignore[reportAttributeAccessIssue]
+        value=spec.lengths[k],
         limit=value,
         unit="mm",
-        nearest=f"length of {_member(element, key)}; just inside the limit, where both positions "
-        "meet",
+        nearest=f"length of {names[0]}; just inside the limit, where both positions meet",
         adjustments=ways,
     )
-
-
-def _member(dyad: Element, key: str) -> str:
-    """Return the member whose length a key gives."""
-    return dyad.members[int(key[-2])]  # pyright: ignore[reportAttributeAccessIssue]
 
 
 _WIDER: Final = (5.0, 15.0, 45.0, 90.0)
@@ -141,23 +136,18 @@ def _singular(element: Element) -> str:
         return "its members are in line"
     arm = element.lengths.second if element.type == "RTR1" else element.lengths.first
     ends = f"{element.first} and {element.second}"
-    return (
-        f"{ends} meet"
-        if not arm * math.sin(element.lengths.beta)
-        else (f"the guide is at right angles to the way between {ends}")
-    )
+    if not arm * math.sin(element.lengths.beta):
+        return f"{ends} meet"
+    return f"the guide is at right angles to the way between {ends}"
 
 
 _FURTHER: Final = 2.0
 """How many times further than the least change a length is changed in the search for remedies."""
 
 
-def _keyed(title: str, number: int, lengths: dict[int, float]) -> dict[str, float]:
-    """Return lengths by their keys."""
-    return {
-        f"{title}[{number}].lengths_mm[{k}]": float(formatted(value, 6))
-        for k, value in lengths.items()
-    }
+def _keyed(where: str, lengths: dict[int, float]) -> dict[str, float]:
+    """Return the lengths of a table by their keys."""
+    return {f"{where}.lengths_mm[{k}]": float(formatted(one, 6)) for k, one in lengths.items()}
 
 
 def _lengthened(design: MechanismDesign, near: dict[str, float]) -> Adjustment:
