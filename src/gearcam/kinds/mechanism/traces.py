@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 
 from gearcam.base.errors import InfeasibleError
-from gearcam.numeric.arrays import Array, Ints, Mask, Plane, divided
+from gearcam.numeric.arrays import Array, Plane, divided
 
 _BETWEEN: Final = 12
 """Chords between knots at first."""
@@ -52,36 +52,23 @@ def path_within(
     InfeasibleError
         If the tolerance needs too many chords.
     """
-    parts = np.linspace(knots[:-1], knots[1:], _BETWEEN, endpoint=False)
-    q = np.append(parts.T.ravel(), knots[-1])
-    points = place(q)
-    fresh = np.ones(len(q) - 1, dtype=bool)
-    while fresh.any():
-        (own,) = np.nonzero(fresh)
-        counts = _counts(place, (q, points), own, _MARGIN * tolerance)
-        if counts.sum() + len(q) > _MOST:
-            raise InfeasibleError(
-                f"a path would have more than {_MOST} chords",
-                where="output.chord_tolerance_mm",
-                value=tolerance,
-                unit="mm",
-                nearest="a larger one",
-            )
-        whole = np.ones(len(q) - 1, dtype=np.int64)
-        whole[own] = counts
-        q, points, fresh = _divided(place, q, points, whole)
-    return q, points
-
-
-def _counts(
-    place: Callable[[Array], Plane], known: tuple[Array, Plane], own: Ints, allowed: float
-) -> Ints:
-    """Return into how many chords each of some chords is to be divided."""
-    q, points = known
-    inner = q[own] + np.outer(_INSIDE, np.diff(q)[own])
-    found = place(inner.ravel()).reshape(inner.shape)
-    off = distances(found, points[own], points[own + 1]).max(axis=0)
-    return np.where(off > allowed, np.ceil(np.sqrt(off / allowed)), 1.0).astype(np.int64)
+    q, counts = knots, np.full(len(knots) - 1, _BETWEEN)
+    while counts.sum() <= _MOST:
+        q = divided(q, counts)
+        points = place(q)
+        inner = q[:-1] + np.outer(_INSIDE, np.diff(q))
+        seen = place(inner.ravel()).reshape(inner.shape)
+        off = distances(seen, points[:-1], points[1:]).max(axis=0)
+        counts = np.maximum(np.ceil(np.sqrt(off / (_MARGIN * tolerance))), 1.0).astype(np.int64)
+        if counts.max() == 1:
+            return q, points
+    raise InfeasibleError(
+        f"a path would have more than {_MOST} chords",
+        where="output.chord_tolerance_mm",
+        value=tolerance,
+        unit="mm",
+        nearest="a larger one",
+    )
 
 
 def distances(points: Plane, start: Plane, end: Plane) -> Array:
@@ -102,14 +89,3 @@ def distances(points: Plane, start: Plane, end: Plane) -> Array:
     square = np.abs(chord) ** 2
     share = ((points - start) * chord.conj()).real / np.where(square > 0.0, square, 1.0)
     return np.abs(points - start - np.clip(share, 0.0, 1.0) * chord)
-
-
-def _divided(
-    place: Callable[[Array], Plane], q: Array, points: Plane, counts: Ints
-) -> tuple[Array, Plane, Mask]:
-    """Return angles and points with chords divided, and which chords are new."""
-    angles, known = divided(q, counts), np.append(0, np.cumsum(counts))
-    moved, new = np.empty(len(angles), dtype=np.complex128), np.ones(len(angles), dtype=bool)
-    moved[known], new[known] = points, False
-    moved[new] = place(angles[new])
-    return angles, moved, np.repeat(counts > 1, counts)
