@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
@@ -15,7 +16,7 @@ from gearcam.base.findings import limit_of, run_checks
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import TORQUE as NEWTON_METRES
 from gearcam.kinds.mechanism.loaded import work_of
-from gearcam.kinds.mechanism.torque_checks import TORQUE, DriverEffort
+from gearcam.kinds.mechanism.torque_checks import TORQUE, DriverEffort, Pull
 from gearcam.kinds.mechanism.wheel_masses import BODY
 from gearcam.linkages.efforts import GRAVITY, PARTS, SPRINGS, InertiaForce
 from gearcam.numeric.piecewise import with_both_sides
@@ -43,6 +44,9 @@ _NOTHING: Final = 1e-6
 """Work, N mm, that is none: what rounding makes of forces that do no work."""
 
 _DEG: Final = math.degrees(1.0)
+
+ONE_WALL: Final = "disc"
+"""Form of the cams with one wall."""
 
 EVEN: Final = "even_shaft"
 """What a mechanism behind a pair is compared with if the design does not say."""
@@ -88,15 +92,18 @@ class ShaftLoad(NamedTuple):
         N m, or N.
     meaning : str
         In words.
+    loose : str
+        Name of the drive if it is a cam with one wall, off which its follower can be lifted.
     """
 
     column: str
     values: Array
     meaning: str
+    loose: str = ""
 
     def of(self, drive: str) -> ShaftLoad:
         """Return the same with the name of its drive: one of several."""
-        return ShaftLoad(f"{drive}_{self.column}", self.values, f"{drive}: {self.meaning}")
+        return self._replace(column=f"{drive}_{self.column}", meaning=f"{drive}: {self.meaning}")
 
 
 def study_torque(result: MechanismResult, study: Study, progress: Progress | None) -> StudyResult:
@@ -135,7 +142,8 @@ def study_torque(result: MechanismResult, study: Study, progress: Progress | Non
         }
         shafts = list(shaft_loads(result, work, q))
         columns |= {one.column: one.values for one in shafts}
-        effort = _effort(result, work, beside)
+        pulls = tuple(_pulls(result, shafts, q))
+        effort = replace(_effort(result, work, beside), pulls=pulls)
         found = run_checks(TORQUE, effort, result.design.limits)
     speed = result.speed
     if speed is not None:
@@ -220,11 +228,25 @@ def _of_pair(drive: PlacedDrive, work: VirtualWork, q: Array) -> Iterator[ShaftL
 def _of_cam(drive: PlacedDrive, work: VirtualWork, q: Array) -> Iterator[ShaftLoad]:
     name, follower = f"{drive.spec.name}.follower", drive.moved["follower"]
     own = work.on({name: _lifts(drive)}, q)
+    form = getattr(getattr(drive.spec.cam, "cam", None), "form", "")
+    loose = drive.spec.name if form == ONE_WALL else ""
     if follower.along:
-        yield ShaftLoad("follower_force_n", own, "force of the follower in its lift")
+        yield ShaftLoad("follower_force_n", own, "force of the follower in its lift", loose)
     else:
         meaning = "torque of the follower in its lift"
-        yield ShaftLoad("follower_torque_nm", _NM * own, meaning)
+        yield ShaftLoad("follower_torque_nm", _NM * own, meaning, loose)
+
+
+def _pulls(result: MechanismResult, shafts: list[ShaftLoad], q: Array) -> Iterator[Pull]:
+    """Yield the most with which the mechanism pulls each loose follower off its cam."""
+    names = [one.name for one in result.design.drive]
+    for one in shafts:
+        worst = int(one.values.argmin())
+        size = -float(one.values[worst])
+        if one.loose and size > _NOISE * float(np.abs(one.values).max()):
+            unit = "N" if one.column.endswith("_n") else "N m"
+            cam = f"drive[{names.index(one.loose)}].cam"
+            yield Pull(cam, size, unit, _place(result, float(q[worst])))
 
 
 def _lifts(drive: PlacedDrive) -> float:

@@ -1,11 +1,11 @@
-"""The check of the study of a mechanism's torque; importing this module registers it."""
+"""The checks of the study of a mechanism's torque; importing this module registers them."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, NamedTuple
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.findings import Remark, check
@@ -18,6 +18,27 @@ TORQUE: Final = "torque of a mechanism"
 
 _LESS: Final = 0.99
 """Share of the driver's moment that is less than it."""
+
+
+class Pull(NamedTuple):
+    """The most with which a mechanism pulls a follower off a cam that does not hold it.
+
+    Attributes
+    ----------
+    cam : str
+        Where the cam is in the design.
+    size : float
+        Of the pull, above 0.
+    unit : str
+        N, or N m of an oscillating follower.
+    place : str
+        Where it is, in words.
+    """
+
+    cam: str
+    size: float
+    unit: str
+    place: str
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,12 +55,15 @@ class DriverEffort(ShortRepr):
         The same behind other drives, by their names.
     gain : str
         How a pair multiplies the moment there, as a sentence; empty without one.
+    pulls : tuple of Pull
+        Of followers that the mechanism pulls off their cams.
     """
 
     peak: float
     place: str
     others: Mapping[str, float]
     gain: str = ""
+    pulls: tuple[Pull, ...] = ()
 
 
 _LIMIT: Final = (
@@ -68,3 +92,19 @@ def drive_torque(effort: DriverEffort, limit: float) -> Iterator[Remark]:
                 f"{effort.gain}"
             )
             yield Remark(message, effort.place, effort.peak, limit=math.inf)
+
+
+@check("lift-off", kind=TORQUE, severity="note")
+def lift_off(effort: DriverEffort, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Tell where a mechanism pulls a follower off its cam, which must be held there.
+
+    Looks at: what each follower exerts in its lift, of cams with one wall, without the springs and
+    loads of the cam's own design.
+    """
+    for pull in effort.pulls:
+        message = (
+            f"The machine pulls the follower off its cam, with up to {formatted(pull.size, 5)} "
+            f"{pull.unit}. A spring in the cam's own design must hold it, or a groove or conjugate "
+            "cams."
+        )
+        yield Remark(message, f"{pull.cam}, {pull.place}", pull.size, unit=pull.unit)

@@ -451,6 +451,32 @@ def test_a_cam_takes_the_load_of_its_mechanism(name: str) -> None:
     np.testing.assert_allclose(own["torque_nm"][held], wanted[held], atol=2e-3 * scale)
 
 
+@pytest.mark.parametrize(
+    ("file", "force", "pulled"),
+    [
+        ("plate_cam_offset_roller", 30.0, 30.0),
+        ("plate_cam_offset_roller", -30.0, None),
+        ("groove_cam", 30.0, None),
+    ],
+)
+def test_a_follower_that_is_pulled_off_its_cam(
+    file: str, force: float, pulled: float | None
+) -> None:
+    cam: Any = gc.load(f"profiles/{file}.toml")
+    tables = {
+        "drive": [{"name": "cam", "cam": cam, "turn_deg": 40}],
+        "slide": [{"name": "arm", "on": "cam.follower", "joint": "B"}],
+        "load": [{"on": "arm", "force_n": force}],
+        "output": {"files": ["csv"]},
+    }
+    found = gc.build(gc.design({"kind": "mechanism", "name": "mine", **tables})).study("torque")
+    told = [one for one in found.study_findings if one.code == "lift-off"]
+    assert [(one.value, one.unit) for one in told] == [
+        (pytest.approx(size), "N") for size in (pulled,) if size is not None
+    ]
+    assert all(one.where.startswith("drive[0].cam, theta = ") for one in told)
+
+
 def test_each_of_two_cams_has_its_share() -> None:
     load = [{"on": "table", "force_n": [12, -7]}]
     found = study("two_cam_table", load=load)
