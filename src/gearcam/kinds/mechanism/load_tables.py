@@ -13,7 +13,6 @@ from typing import ClassVar, Final
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.quantities import (
-    ANGLE,
     COUNT,
     DAMPING,
     DAMPING_PER_RAD,
@@ -30,21 +29,16 @@ from gearcam.base.quantities import (
     param,
 )
 from gearcam.base.rules import Breach, exactly_one, needs
+from gearcam.kinds.mechanism.keys import angle_param, later, point_param
 from gearcam.kinds.mechanism.name_keys import JOINT, MEMBER, SHAFT, WAY, named
-from gearcam.kinds.mechanism.tables import later
 from gearcam.linkages.elements import GROUND
 from gearcam.mechanics.load import WrittenLoad
 
 _MOST: Final = 1e9
-_TURN_DEG: Final = 36000.0
 _MOVING: Final = f"{JOINT} or {MEMBER} or {SHAFT} or {WAY}"
 
 INNER, OUTER = "inner", "outer"
 """Dead centres, where a slide's place is least, and where it is largest."""
-
-
-def _angle(*, doc: str, **rest: object) -> float | None:
-    return param(ANGLE, default=None, ge=-_TURN_DEG, le=_TURN_DEG, doc=doc, **rest)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -99,11 +93,8 @@ class MachineLoad(ShortRepr, WrittenLoad):
         example=[0, -250, 0],
         doc="forces, N, or torques, N m, at the places of `at`, with straight lines between",
     )
-    place: Row | None = param(
-        ANGLE,
+    place: Row | None = angle_param(
         default=None,
-        ge=-_TURN_DEG,
-        le=_TURN_DEG,
         min_length=2,
         word="at",
         example=[0, 180, 360],
@@ -119,13 +110,16 @@ class MachineLoad(ShortRepr, WrittenLoad):
         example=[600, 750, 900],
         doc="places of a slide instead; beyond them the table keeps its end values",
     )
-    direction: float | None = _angle(
-        doc="direction of the force on a point, in the machine", example=-90
+    direction: float | None = angle_param(
+        default=None, doc="direction of the force on a point, in the machine", example=-90
     )
-    start: float | None = _angle(
-        doc="the master's angle at which the load begins, in each turn", word="from", example=150
+    start: float | None = angle_param(
+        default=None,
+        doc="the master's angle at which the load begins, in each turn",
+        word="from",
+        example=150,
     )
-    end: float | None = _angle(doc="where it ends", word="to", example=200)
+    end: float | None = angle_param(default=None, doc="where it ends", word="to", example=200)
     travel: float | None = param(
         LENGTH,
         default=None,
@@ -211,12 +205,8 @@ class MemberMass(ShortRepr):
     center: str | None = named(
         needs=JOINT, default=None, example="G", doc="joint or point in its centre of mass"
     )
-    at: tuple[float, float] | None = param(
-        LENGTH,
+    at: tuple[float, float] | None = point_param(
         default=None,
-        ge=-LONGEST,
-        le=LONGEST,
-        order="x, y",
         example=[60, 0],
         doc="the centre of mass in the member's frame, instead of center",
     )

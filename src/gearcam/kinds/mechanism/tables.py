@@ -11,7 +11,7 @@ import cmath
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Final
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.numerals import formatted
@@ -31,6 +31,7 @@ from gearcam.base.quantities import (
 from gearcam.base.rules import Breach, distinct, exactly_one
 from gearcam.designs.design import Design
 from gearcam.designs.outputs import OutputSpec, files_param, pose_param, studies_param
+from gearcam.kinds.mechanism.keys import angle_param, later, point_param, sweep_param
 from gearcam.kinds.mechanism.name_keys import (
     ANY,
     GUIDE,
@@ -49,16 +50,6 @@ FORMATS: Final = ("csv", "dxf", "svg", "report")
 """What ``output.files`` may list."""
 
 STUDIES: Final = ("torque", "accuracy")
-
-_TURN_DEG: Final = 36000.0
-
-
-def _point(*, doc: str, **rest: Any) -> Any:
-    return param(LENGTH, ge=-LONGEST, le=LONGEST, word="at", doc=doc, **rest)
-
-
-def _direction(*, doc: str, **rest: Any) -> Any:
-    return param(ANGLE, ge=-_TURN_DEG, le=_TURN_DEG, doc=doc, **rest)
 
 
 class WrittenDrive(ShortRepr):
@@ -143,19 +134,16 @@ class MachineDrive(WrittenDrive):
     ratio: int = param(
         COUNT, default=1, ge=-100, le=100, doc="turns of this drive's driver per turn of the master"
     )
-    phase: float = _direction(doc="angle of this drive's driver at the master's zero", default=0.0)
-    span: tuple[float, float] | None = param(
-        ANGLE,
+    phase: float = angle_param(doc="angle of this drive's driver at the master's zero", default=0.0)
+    span: tuple[float, float] | None = angle_param(
         default=None,
-        ge=-_TURN_DEG,
-        le=_TURN_DEG,
         word="range",
         order="first and last",
         example=[-60, 60],
         doc="first and last angle of a master that does not turn all the way",
     )
-    at: tuple[float, float] = _point(doc="where its frame stands", default=(0.0, 0.0), order="x, y")
-    turn: float = _direction(doc="direction of its x axis", default=0.0)
+    at: tuple[float, float] = point_param(doc="where its frame stands", default=(0.0, 0.0))
+    turn: float = angle_param(doc="direction of its x axis", default=0.0)
     mirror: bool = param(
         default=False, doc="whether it is reflected in its x axis: all turns are reversed"
     )
@@ -215,7 +203,7 @@ class JointSpec(ShortRepr):
     """
 
     name: str = named(gives=JOINT, doc="its name", example="D")
-    at: tuple[float, float] = _point(doc="where it stands", order="x, y", example=[110, 0])
+    at: tuple[float, float] = point_param(doc="where it stands", example=[110, 0])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -237,10 +225,10 @@ class CrankSpec(ShortRepr):
     )
     joint: str = named(gives=JOINT, doc="name of its joint", example="B")
     length: float = positive_length(default=REQUIRED, example=40, doc="from the shaft to the joint")
-    angle: float | None = _direction(
+    angle: float | None = angle_param(
         doc="its direction at the drive's zero; 0 if left out", default=None, example=0
     )
-    arm_angle: float | None = _direction(
+    arm_angle: float | None = angle_param(
         doc="its direction at the drive's zero, from the arm of an oscillating follower",
         default=None,
         example=90,
@@ -276,10 +264,9 @@ class SlideSpec(ShortRepr):
         example="cam.follower",
     )
     joint: str = named(gives=JOINT, doc="name of its joint", example="T")
-    at: tuple[float, float] = _point(
+    at: tuple[float, float] = point_param(
         doc="the joint in the frame of the follower's end, the rack or the slide, x along its way",
         default=(0.0, 0.0),
-        order="x, y",
     )
 
 
@@ -296,10 +283,8 @@ class GuideSpec(ShortRepr):
 
     name: str = named(gives=GUIDE, doc="its name", example="bed")
     on: str = named(needs=MEMBER, doc="the member that carries it", default="ground")
-    at: tuple[float, float] = _point(
-        doc="a point of it, from which places count, in the member's frame",
-        default=(0.0, 0.0),
-        order="x, y",
+    at: tuple[float, float] = point_param(
+        doc="a point of it, from which places count, in the member's frame", default=(0.0, 0.0)
     )
     through: str | None = named(
         needs=STANDING,
@@ -307,7 +292,7 @@ class GuideSpec(ShortRepr):
         default=None,
         example="pair.wheel2",
     )
-    direction: float = _direction(doc="its direction in the member's frame", default=0.0)
+    direction: float = angle_param(doc="its direction in the member's frame", default=0.0)
 
     def problems(self) -> Iterator[Breach]:
         """Yield a joint of the ground for a guide on a member."""
@@ -359,8 +344,8 @@ class DyadSpec(ShortRepr):
         example=[120, 90],
         doc="from the beginning of each member to the joint; of a slide on its guide 0",
     )
-    beta: float = _direction(doc="from member 1 to member 2, of RTR, RTT and TTR", default=0.0)
-    gammas: tuple[float, float] = _direction(
+    beta: float = angle_param(doc="from member 1 to member 2, of RTR, RTT and TTR", default=0.0)
+    gammas: tuple[float, float] = angle_param(
         doc="from the guide to the member that slides on it",
         default=(0.0, 0.0),
         order="first and second",
@@ -374,12 +359,9 @@ class DyadSpec(ShortRepr):
         doc="which of its positions: of RRR the joint to the left or right of the line from first "
         "to last, else ahead or behind in the guide's direction; left or ahead if left out",
     )
-    near: tuple[float, float] | None = param(
-        LENGTH,
+    near: tuple[float, float] | None = point_param(
+        word="",
         default=None,
-        ge=-LONGEST,
-        le=LONGEST,
-        order="x, y",
         example=[80, 60],
         doc="where the joint is at the master's zero, roughly, instead of branch",
     )
@@ -465,7 +447,7 @@ class PointSpec(ShortRepr):
 
     name: str = named(gives=JOINT, doc="its name", example="P")
     on: str = named(needs=MEMBER, doc="the member", example="coupler")
-    at: tuple[float, float] = _point(doc="the point in its frame", order="x, y", example=[50, 35])
+    at: tuple[float, float] = point_param(doc="the point in its frame", example=[50, 35])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -481,7 +463,7 @@ class ChainSpec(ShortRepr):
     """
 
     on: str = named(needs=SHAFT, doc="the wheel's shaft", example="pair.wheel2")
-    at: tuple[float, float] = _point(doc="the wheel's centre", order="x, y", example=[600, 300])
+    at: tuple[float, float] = point_param(doc="the wheel's centre", example=[600, 300])
     radius: float = positive_length(
         default=REQUIRED, example=100, doc="of the wheel, to the chain's middle"
     )
@@ -490,19 +472,16 @@ class ChainSpec(ShortRepr):
     )
     joint: str = named(gives=JOINT, doc="name of the joint at the chain's end", example="B")
     lever: str = named(gives=MEMBER, doc="name of the lever", example="door")
-    hinge: tuple[float, float] = param(
-        LENGTH,
+    hinge: tuple[float, float] = point_param(
+        word="",
         default=(0.0, 0.0),
-        ge=-LONGEST,
-        le=LONGEST,
-        order="x, y",
         doc="where the lever is hinged",
     )
     length: float = positive_length(
         default=REQUIRED, example=1735, doc="from the hinge to the joint"
     )
-    start: float = _direction(doc="the lever's direction at the drive's zero", example=-90)
-    range: tuple[float, float] = _direction(
+    start: float = angle_param(doc="the lever's direction at the drive's zero", example=-90)
+    range: tuple[float, float] = angle_param(
         doc="the lever's least and largest direction", order="least and largest", example=[-90, -30]
     )
 
@@ -558,10 +537,10 @@ class HoistSpec(ShortRepr):
     wind: str = param(
         TEXT, default="ccw", choices=("ccw", "cw"), doc="turn of the wheel that winds the chain up"
     )
-    at: tuple[float, float] = _point(
-        doc="the joint where the wheel's turn is 0", default=(0.0, 0.0), order="x, y"
+    at: tuple[float, float] = point_param(
+        doc="the joint where the wheel's turn is 0", default=(0.0, 0.0)
     )
-    direction: float = _direction(doc="in which it is lifted", default=math.radians(90.0))
+    direction: float = angle_param(doc="in which it is lifted", default=math.radians(90.0))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -585,30 +564,9 @@ class GenevaSpec(ShortRepr):
     )
     slots: int = param(COUNT, ge=SLOTS[0], le=SLOTS[1], doc="number of slots", example=6)
     length: float = positive_length(default=REQUIRED, example=60, doc="from the shaft to the pin")
-    angle: float = _direction(doc="the crank's direction at the drive's zero", default=0.0)
-    direction: float = _direction(doc="from the crank's shaft to the wheel's", default=0.0)
+    angle: float = angle_param(doc="the crank's direction at the drive's zero", default=0.0)
+    direction: float = angle_param(doc="from the crank's shaft to the wheel's", default=0.0)
     internal: bool = param(default=False, doc="whether the wheel surrounds the crank")
-
-
-def later(start: float, end: float) -> str:
-    """Return what an end that is not above its start may be.
-
-    Parameters
-    ----------
-    start, end : float, rad
-        As given.
-
-    Returns
-    -------
-    str
-    """
-    turns = math.floor((start - end) / math.tau + _ROUNDING) + 1
-    place = formatted(math.degrees(end) + 360.0 * turns, 8)
-    return f"a later angle: {place} is the same place of the next turn"
-
-
-_ROUNDING: Final = 1e-9
-"""Share of a turn that is none."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -623,8 +581,8 @@ class StretchSpec(ShortRepr):
     """
 
     on: str = named(doc="the point", example="P")
-    start: float = _direction(doc="the master's angle where it begins", word="from", example=100)
-    end: float = _direction(
+    start: float = angle_param(doc="the master's angle where it begins", word="from", example=100)
+    end: float = angle_param(
         doc="the master's angle where it ends, above 360 over the end of a turn",
         word="to",
         example=260,
@@ -636,12 +594,9 @@ class StretchSpec(ShortRepr):
         doc="what is fitted to it, by the least deviation",
     )
 
-    center: tuple[float, float] | None = param(
-        LENGTH,
+    center: tuple[float, float] | None = point_param(
+        word="",
         default=None,
-        ge=-LONGEST,
-        le=LONGEST,
-        order="x, y",
         example=[300, 827],
         doc="a point whose distances from the stretch are wanted too",
     )
@@ -665,14 +620,8 @@ class IntervalSpec(ShortRepr):
 
     on: str = named(doc="the output", example="slide")
     travel: float | None = positive_length(example=4, doc="travel before the dead centre")
-    travel_angle: float | None = param(
-        ANGLE,
-        default=None,
-        gt=0,
-        le=_TURN_DEG,
-        word="travel",
-        example=22,
-        doc="the same of an angle",
+    travel_angle: float | None = sweep_param(
+        default=None, word="travel", example=22, doc="the same of an angle"
     )
     before: str = param(
         TEXT,
@@ -697,20 +646,11 @@ class DwellSpec(ShortRepr):
 
     on: str = named(doc="the output", example="slide")
     within: float | None = positive_length(example=0.1, doc="how much it may move")
-    within_angle: float | None = param(
-        ANGLE,
-        default=None,
-        gt=0,
-        le=_TURN_DEG,
-        word="within",
-        example=0.5,
-        doc="the same of an angle",
+    within_angle: float | None = sweep_param(
+        default=None, word="within", example=0.5, doc="the same of an angle"
     )
-    least: float = param(
-        ANGLE,
+    least: float = sweep_param(
         default=math.radians(10.0),
-        gt=0,
-        le=_TURN_DEG,
         doc="the master's angle over which it must last",
     )
 
