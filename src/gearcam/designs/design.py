@@ -200,13 +200,17 @@ class Design:
         document, rule = document_of(self), "a mapping of dotted keys to values"
         for key, value in instance("changes", changes, Mapping, rule).items():
             place: Any = document
+            step: str | int = ""
             try:
                 *path, last = path_of(key)
                 for step in path:
                     place = place.setdefault(step, {}) if isinstance(place, dict) else place[step]
+                step = last
                 place[last] = value
             except (IndexError, KeyError, TypeError, ValueError):  # the last: no step at all
-                problem = Problem("there is no such key or index", self.source, key=key)
+                allowed, hint = _numbered(place, step)
+                what = "there is no such key or index"
+                problem = Problem(what, self.source, key=key, allowed=allowed, hint=hint)
                 raise DesignError([problem]) from None
         return design(document, self.source)
 
@@ -216,6 +220,19 @@ class Design:
     def _wanted(self) -> Iterable[Wanted]:
         """Return the allowed types of fields whose types depend on a registry."""
         return ()
+
+
+def _numbered(place: Any, step: str | int) -> tuple[str, str]:
+    """Return the numbers of a list, and that of the table with a name that was written instead."""
+    if not isinstance(place, list | tuple) or not place:
+        return "", ""
+    allowed = f"a number from 0 to {len(place) - 1} in the brackets" if place[1:] else "[0]"
+    named = [
+        number
+        for number, one in enumerate(place)
+        if isinstance(one, Mapping) and step in (one.get("name"), one.get("joint"))
+    ]
+    return allowed, f"{step} is number {named[0]}" if named else ""
 
 
 def _suiting(design: Design, title: str) -> Any:

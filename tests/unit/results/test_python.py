@@ -77,6 +77,7 @@ def test_a_design_is_made_of_a_dict_with_the_numbers_of_numpy() -> None:
         ({"law.eccentricity": 1.5}, "law.eccentricity", "1.5 is out of range"),
         ({"law.eccentricty": 0.2}, "law.eccentricty", "did you mean eccentricity?"),
         ({"pair.teeth[2]": 7}, "pair.teeth[2]", "there is no such key or index"),
+        ({"pair.teeth[2]": 7}, "pair.teeth[2]", "a number from 0 to 1 in the brackets"),
         ({"name.first": 7}, "name.first", "there is no such key or index"),
         ({"limits.contact_ratio": "high"}, "limits.contact_ratio", "is not a number"),
     ],

@@ -451,3 +451,20 @@ def test_what_is_asked_for_is_answered_on_the_console() -> None:
         assert ends == pytest.approx([deg * found.begin, deg * found.end], rel=1e-5)
     line = shown["deviation of P from the line"]
     assert line == (result.stretches[0].deviation, "mm", "300 to 400 deg")
+
+
+@pytest.mark.parametrize(
+    ("key", "allowed", "hint"),
+    [
+        ("crank[crank].length_mm", "[0]", "crank is number 0"),
+        ("dyad[C].lengths_mm[0]", "[0]", "C is number 0"),
+        ("point[Q].at_mm[0]", "[0]", ""),
+        ("drive.even", "[0]", ""),
+    ],
+)
+def test_tables_are_changed_by_their_numbers(key: str, allowed: str, hint: str) -> None:
+    design = gc.design({"kind": "mechanism", "name": "mine", **MACHINES["four-bar"]})
+    with pytest.raises(DesignError) as caught:
+        design.with_({key: 30})
+    (problem,) = caught.value.problems
+    assert (problem.allowed, problem.hint) == (allowed, hint)
