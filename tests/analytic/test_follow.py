@@ -314,7 +314,7 @@ MADE = [
 
 
 @pytest.mark.parametrize("follower", MADE)
-@pytest.mark.parametrize("rise", [parabolas, polynomial])
+@pytest.mark.parametrize("rise", few([parabolas, polynomial]))
 @pytest.mark.parametrize("uneven", few([True, False]))
 def test_a_cam_gives_the_lift_it_was_made_for(
     rise: MotionFunction, follower: Sizes, uneven: bool

@@ -151,7 +151,7 @@ def test_a_rounded_square(radius: float) -> None:
 
 @pytest.mark.parametrize(
     ("by", "sign"),
-    few([(1e-3, 1), (1e-3, -1), (0.3, -1), (0.3, 1), (1.0, 1), (1.0, -1), (2.5, -1), (2.5, 1)]),
+    few([(1e-3, 1), (1e-3, -1), (0.3, -1), (0.3, 1), (1.0, 1), (1.0, -1), (2.5, -1), (2.5, 1)], 5),
 )
 def test_a_wheel_moves_as_a_buffer_does(by: float, sign: int) -> None:
     contour = gear()

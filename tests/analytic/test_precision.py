@@ -21,6 +21,7 @@ from gearcam.kinds.cam.tables import SIZES
 from gearcam.numeric.arrays import Array, Plane
 from helpers_built import built
 from helpers_files import ROLLER, read
+from helpers_sampling import few
 
 _CAMS = (
     "flat_follower", "plate_cam_offset_roller", "plate_cam_oscillating", "conjugate_cams",
@@ -98,7 +99,7 @@ def _followable(wall: Wall, size: str) -> bool:
     return not turned and size not in ("roller_distance", "arms_angle", "face_angle")
 
 
-@pytest.mark.parametrize("name", _CAMS)
+@pytest.mark.parametrize("name", few(_CAMS))
 def test_sensitivities_are_the_differences_of_the_inverse_problem(name: str) -> None:
     for wall, linked in _walls(name):
         theta = _SHARES * wall.program.period

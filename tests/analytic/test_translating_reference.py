@@ -20,6 +20,7 @@ from gearcam.cams.spec import PlateFollower
 from gearcam.laws.phases_of_lift import DwellPhase, ReturnPhase, RisePhase
 from gearcam.laws.program import make_program
 from helpers_cams import law, there_and_back
+from helpers_sampling import few
 
 mp: Any = mpmath.mp
 
@@ -242,7 +243,7 @@ def test_stretches_at_both_ends_of_a_way_are_two() -> None:
 
 @pytest.mark.parametrize("scale", [1e-3, 1e3])
 @pytest.mark.parametrize("name", FOLLOWERS)
-@pytest.mark.parametrize("radius", [6.0, 40.0])
+@pytest.mark.parametrize("radius", few([6.0, 40.0]))
 def test_a_plate_of_another_size_is_the_same_plate(name: str, radius: float, scale: float) -> None:
     """Walls, undercut, lost lift and lost motion, also of a roller that undercuts both walls."""
     sizes = {"radius": radius, "run": 60.0, "clearance": 0.2, "height": 160.0}

@@ -9,6 +9,7 @@ import pytest
 import shapely
 from numpy.typing import NDArray
 
+from helpers_sampling import few
 from witness import laws, oracle, shaper, sweep
 from witness.kinematics import Basic, Rolling
 from witness.oracle import mp
@@ -47,7 +48,7 @@ NAIL = {
 }
 
 
-@pytest.mark.parametrize("name", NAIL)
+@pytest.mark.parametrize("name", few(NAIL))
 def test_nail_machine(name: str) -> None:
     law, length, module, convex, concave, driven, limit = NAIL[name]
     pair = oracle.Pair(law, mp.mpf(180))

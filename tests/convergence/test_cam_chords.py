@@ -20,6 +20,7 @@ from gearcam.cams.disc import DiscCam
 from gearcam.cams.follow import follow
 from gearcam.numeric.contour import polygon_area
 from helpers_cams import TURN, angles, cam, corners_of, dense, lever, witness_of
+from helpers_sampling import few
 from witness.cam_sweep import swept
 
 STEEP = (60.0, 90.0, 60.0, 150.0)
@@ -64,7 +65,7 @@ def test_the_lift_converges_with_the_square_of_the_vertices(kind: str) -> None:
 
 
 @pytest.mark.parametrize("kind", SMOOTH)
-@pytest.mark.parametrize("tolerance", [1e-2, 3e-4])
+@pytest.mark.parametrize("tolerance", few([3e-4, 1e-2]))
 def test_the_polygon_keeps_its_tolerance(kind: str, tolerance: float) -> None:
     """By the distance of much finer points from the polygon."""
     made = cam(kind, "3-4-5", 8.0, tolerance=tolerance)

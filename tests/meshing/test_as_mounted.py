@@ -44,7 +44,7 @@ def searched(pairs: FlankPairs, phi1: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize("name", MADE)
-@pytest.mark.parametrize("more", few(MORE))
+@pytest.mark.parametrize("more", few(MORE, 4))
 @pytest.mark.parametrize("side", SIDES)
 def test_common_normals_and_the_gap_agree(name: str, more: float, side: int) -> None:
     made = profile(name)
@@ -55,7 +55,7 @@ def test_common_normals_and_the_gap_agree(name: str, more: float, side: int) -> 
 
 @pytest.mark.parametrize("name", MADE)
 @pytest.mark.parametrize(
-    ("more", "side"), few([(more, side) for more in MORE for side in SIDES], 3)
+    ("more", "side"), few([(more, side) for more in MORE for side in SIDES], 5)
 )
 def test_arcs_end_where_an_edge_begins_to_touch(name: str, more: float, side: int) -> None:
     """A hundred-thousandth of a degree inside a pair shares a tangent, outside its end touches."""

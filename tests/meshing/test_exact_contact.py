@@ -43,7 +43,7 @@ def touched(made: GearPairResult, side: int, phi1: np.ndarray, distance: complex
 
 @pytest.mark.parametrize("made", samples(), ids=NAMES)
 @pytest.mark.parametrize("side", [DRIVE, COAST])
-@pytest.mark.parametrize("more", few([0.1, 0.0, -0.1]))
+@pytest.mark.parametrize("more", few([0.1, 0.0, -0.1], 3))
 def test_first_touch_is_that_of_dense_points(made: GearPairResult, side: int, more: float) -> None:
     phases = np.linspace(0.1, 6.2, 23)
     distance = made.pair.center_distance + more

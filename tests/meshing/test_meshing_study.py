@@ -100,7 +100,7 @@ def test_held_back_the_flanks_come_apart_by_the_overclosure(name: str) -> None:
     assert held["max"] <= OVERCLOSURE * setup.lever * 1.01
 
 
-@pytest.mark.parametrize("by", [0.02, -0.02])
+@pytest.mark.parametrize("by", few([0.02, -0.02]))
 def test_a_tooth_moved_by_20_um_is_found(by: float) -> None:
     """Tooth 1 driving: forward is the side of falling s."""
     spec = MeshingSpec(start=math.radians(-8.0), end=math.radians(8.0), steps=64)
@@ -141,7 +141,7 @@ def test_half_a_pitch_off_phase_is_found() -> None:
     assert areas.min() > made.pair.module**2
 
 
-@pytest.mark.parametrize("name", NAILS)
+@pytest.mark.parametrize("name", few(NAILS))
 def test_mounted_close_interferes_and_wide_plays(name: str) -> None:
     made = profile(name)
     close = study(made.gears, MeshingSpec(steps=72, center_distance=179.9))
@@ -168,7 +168,7 @@ def test_mounted_close_interferes_and_wide_plays(name: str) -> None:
         assert (len(touched) == 0) == free
 
 
-@pytest.mark.parametrize("name", NAILS)
+@pytest.mark.parametrize("name", few(NAILS))
 def test_corners_not_taken_from_the_roots_are_found(name: str) -> None:
     made = profile(name)
     first, second = (

@@ -160,7 +160,7 @@ def test_arms_and_hubs_are_seen(name: str, turn: float) -> None:
     assert not found.facing[(found.half[0] == bodies[0]) | (found.half[1] == bodies[1])].any()
 
 
-@pytest.mark.parametrize("name", PAIRS)
+@pytest.mark.parametrize("name", few(PAIRS))
 def test_in_place_nothing_overlaps_and_nothing_plays(name: str) -> None:
     angles = np.linspace(0.0, stop(name), 91)
     found = turning(name).overlaps(angles, 0.0)

@@ -16,6 +16,7 @@ from gearcam.meshing.numbers import numbers
 from gearcam.meshing.settings import MeshingSpec
 from gearcam.meshing.study import study
 from helpers_pairs import Assembly, explained, profile
+from helpers_sampling import few
 
 
 def turned(points: np.ndarray, angle: float) -> np.ndarray:
@@ -45,7 +46,7 @@ def test_the_steps_of_round_wheels_are_turned_copies() -> None:
                 assert apart(number, gear, -sense) > 0.05 * job.pair.module
 
 
-@pytest.mark.parametrize("name", ["nail_machine_two_phase", "formula"])
+@pytest.mark.parametrize("name", few(["nail_machine_two_phase", "formula"]))
 def test_every_step_meshes_without_error_and_without_overlap(name: str) -> None:
     design = replace(profile(name).design, steps=StepsSpec(count=3, offset=-1.7))
     spec = MeshingSpec(steps=90)

@@ -131,7 +131,7 @@ def run(name: str, examples: int, most: int = 200) -> list[bool]:
     return built
 
 
-@pytest.mark.parametrize("family", few(LAWS))
+@pytest.mark.parametrize("family", few(LAWS, 3))
 def test_a_few_designs_of_each_family(family: str) -> None:
     run(family, 2, most=FEW_TEETH)
 

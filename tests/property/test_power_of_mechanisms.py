@@ -10,6 +10,7 @@ import pytest
 import gearcam as gc
 from gearcam.base.errors import GearcamError
 from gearcam.kinds.mechanism.loaded import work_of
+from helpers_sampling import few
 from random_designs import mechanism
 from random_designs.draw import Draw
 from witness.power_balance import PowerBalance
@@ -67,7 +68,7 @@ def apart(result: Any, work: Any) -> float:
     return float(np.abs(total - moment).max() / max(np.abs(moment).max(), _NONE))
 
 
-@pytest.mark.parametrize("block", range(4))
+@pytest.mark.parametrize("block", few(range(4)))
 def test_power_balance(block: int) -> None:
     compared = 0
     for seed in range(40 * block, 40 * block + 40):

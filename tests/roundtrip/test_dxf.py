@@ -22,6 +22,7 @@ from gearcam.pictures.drawings import Drawing, wheel_drawing
 from gearcam.pictures.drawings import Path as Chain
 from helpers_built import built
 from helpers_contour import bore, gear_contour, layers, square_contour
+from helpers_sampling import few
 
 TOLERANCE = 1e-3
 
@@ -148,7 +149,7 @@ BENDS: dict[str, dict[str, Any]] = {
 }
 
 
-@pytest.mark.parametrize("curves", ["arcs", "splines"])
+@pytest.mark.parametrize("curves", few(["arcs", "splines"]))
 @pytest.mark.parametrize("document", BENDS.values(), ids=BENDS)
 def test_long_curves_that_end_in_short_bends_keep_the_tolerance(
     document: dict[str, Any], curves: str

@@ -11,6 +11,7 @@ from gearcam.kinds.gear_pair.design import PairOutputSpec
 from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.parts.blank import Blank
 from helpers_pairs import profile
+from helpers_sampling import few
 from helpers_step import read_step
 
 
@@ -29,7 +30,7 @@ def files(job: GearPairResult) -> dict[str, bytes]:
     return job.files("step")
 
 
-@pytest.mark.parametrize("number", [0, 1])
+@pytest.mark.parametrize("number", few([0, 1]))
 def test_a_spur_wheel_has_a_face_for_each_flank_piece(
     job: GearPairResult, files: dict[str, bytes], number: int
 ) -> None:

@@ -19,6 +19,7 @@ from gearcam.cams.groove import make_groove
 from gearcam.cams.spec import KIND
 from helpers_cams import follower_of, there_and_back
 from helpers_remedies import ARM, FACE, ROLLER, cam, followed, job_of, plate
+from helpers_sampling import few
 
 GROOVE = {"form": "groove", "outer_diameter_mm": 130, "groove_depth_mm": 5}
 TWO = {"form": "conjugate", "prime_radius2_mm": 30}
@@ -62,7 +63,7 @@ def steep(document: Any, folder: Path, motion: str = "") -> list[Any]:
     return [one for one in found if one.where.startswith(motion)]
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", few(CASES))
 def test_the_radius_that_is_named_is_the_smallest_that_keeps_the_limit(
     name: str, tmp_path: Path
 ) -> None:

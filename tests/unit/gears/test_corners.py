@@ -21,6 +21,7 @@ from gearcam.numeric.arrays import Array, Mask, Plane, as_pairs
 from helpers_built import fresh
 from helpers_pairs import job
 from helpers_rings import CHORDS, random_ring, ring
+from helpers_sampling import few
 
 RACK = Cutter(
     alpha=math.radians(20),
@@ -77,7 +78,7 @@ def tooth(cutter: Cutter) -> shapely.Polygon:
 
 
 @pytest.mark.parametrize("teeth", [math.inf, 60.0, 24.0])
-@pytest.mark.parametrize("tip_radius", [0.3, 0.1])
+@pytest.mark.parametrize("tip_radius", few([0.3, 0.1]))
 def test_the_gap_to_a_cutters_tooth_is_the_distance_from_it(
     teeth: float, tip_radius: float
 ) -> None:

@@ -15,6 +15,7 @@ from gearcam.base.tolerances import DEFAULT
 from gearcam.laws.motion_table import MotionTable
 from gearcam.laws.program import Program
 from helpers_cams import back, dwell, program, rise, there_and_back
+from helpers_sampling import few
 
 Array = NDArray[np.float64]
 TURN = 2.0 * math.pi
@@ -71,7 +72,7 @@ def test_the_lift_goes_through_the_rows_and_is_smooth(name: str, shift: float) -
     assert len(found.knots) == 241 + (shift > 0.0)
 
 
-@pytest.mark.parametrize("count", [72, 180, 360, 715])
+@pytest.mark.parametrize("count", few([72, 180, 715, 360], 2))
 @pytest.mark.parametrize("name", MOTIONS)
 def test_the_error_between_rows_is_foreseen(name: str, count: int) -> None:
     """From rows left out: never less than the error, and nine times at most."""
@@ -176,7 +177,7 @@ def noisy(name: str, theta: Array, seed: int = 7) -> Array:
     return lift_of(MOTIONS[name], theta) + noise
 
 
-@pytest.mark.parametrize("tolerance", [0.0035, 0.005, 0.02])
+@pytest.mark.parametrize("tolerance", few([0.0035, 0.005, 0.02]))
 @pytest.mark.parametrize("name", MOTIONS)
 def test_no_row_is_farther_off_than_the_tolerance(name: str, tolerance: float) -> None:
     """Nearly all of it is used, and what is told is the largest distance, with its place."""

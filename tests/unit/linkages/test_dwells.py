@@ -19,6 +19,7 @@ from helpers_measured import (
     nail_machine,
     six_bar_with_dwell,
 )
+from helpers_sampling import few
 
 
 def _waves(cosines: Array, sines: Array, rise: float = 0.0) -> Law:
@@ -79,7 +80,7 @@ def _by_steps(track: Law, amount: float, steps: int) -> float:
 
 
 @pytest.mark.parametrize("rise", [0.0, 1.0, -2.0])
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", few(range(8), 4))
 def test_dwells_of_waves_against_a_search_by_steps(seed: int, rise: float) -> None:
     random = np.random.default_rng(seed)
     track = _waves(random.normal(size=4), random.normal(size=4), rise)

@@ -22,6 +22,7 @@ from gearcam.numeric.columns import Columns
 from gearcam.parts.solids import volume_error
 from helpers_files import ROLLER, table
 from helpers_pairs import PROFILES, job, profile
+from helpers_sampling import few
 
 
 @pytest.fixture(scope="module")
@@ -232,7 +233,7 @@ def test_a_dictionary_is_what_the_summary_holds(name: str, tmp_path: Path) -> No
     assert found == summary
 
 
-@pytest.mark.parametrize("name", ["ellipse", "stepped_ellipse", "eccentric_cam"])
+@pytest.mark.parametrize("name", few(["ellipse", "stepped_ellipse", "eccentric_cam"]))
 def test_solids_are_the_parts(name: str) -> None:
     result = gearcam.build(gearcam.load(PROFILES / f"{name}.toml"))
     solids = result.solids

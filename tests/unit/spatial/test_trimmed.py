@@ -53,7 +53,7 @@ CAMS = {
 
 
 def test_a_roller_that_the_developed_plane_allows_is_cut_in_space() -> None:
-    cam = cut()
+    cam = CAMS["cylinder"]
     assert cam.largest_roller.value < 22.3 < largest_in_plane(cam, 28.0)
     assert all(lost_lift(wall).depth.value > 3e-3 for wall in cam.walls)
 
@@ -114,7 +114,7 @@ def test_no_other_place_loses_more() -> None:
 
 @pytest.mark.parametrize(("limit", "severity"), [(5.4e-4, "error"), (5.5e-4, "warning")])
 def test_the_lost_lift_decides_whether_undercut_is_an_error(limit: float, severity: str) -> None:
-    found = [*run_checks(KIND, (cut(), BLANK), {"lost_lift": limit})]
+    found = [*run_checks(KIND, (CAMS["cylinder"], BLANK), {"lost_lift": limit})]
     both = [one for one in found if one.code == "undercut"]
     assert [one.severity for one in both] == [severity, severity]
     assert both[0].value == pytest.approx(5.4736e-4, abs=1e-7)

@@ -17,6 +17,7 @@ import pytest
 import compare
 from compare_files import called, files, folders, summaries, told
 from compare_sides import Side
+from helpers_sampling import few
 from random_designs.designs import MAKERS, design
 from random_designs.documented import known_keys, schema
 
@@ -74,7 +75,7 @@ def test_every_law_and_rise_and_follower_is_drawn() -> None:
     assert guided >= {(kind, motion) for kind in kinds for motion in (None, "oscillating")}
 
 
-@pytest.mark.parametrize("kind", MAKERS)
+@pytest.mark.parametrize("kind", few(MAKERS))
 def test_every_key_and_file_that_the_program_documents_is_drawn(kind: str) -> None:
     drawn: dict[str, set[str]] = {}
     made = documents(kind)

@@ -211,7 +211,7 @@ def test_step_files_hold_both() -> None:
     assert re.search(r"CARTESIAN_POINT\('',\(0\.,0\.,14\.\)\)", text)
 
 
-@pytest.mark.parametrize("rotation", ["ccw", "cw"])
+@pytest.mark.parametrize("rotation", few(["cw", "ccw"]))
 @pytest.mark.parametrize("file", [FILE, SLIDING])
 def test_each_follows_its_own_file(file: str, rotation: str, tmp_path: File) -> None:
     turned = ('form = "conjugate"', f'form = "conjugate"\nrotation = "{rotation}"')

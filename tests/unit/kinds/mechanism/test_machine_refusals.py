@@ -15,6 +15,7 @@ import gearcam as gc
 from gearcam.base.errors import Adjustment
 from gearcam.cli import main
 from gearcam.designs.writing import toml_text
+from helpers_sampling import few
 from random_designs.designs import design as random_design
 
 PROFILES = Path(__file__).parents[4] / "profiles"
@@ -499,7 +500,7 @@ def _refused_ones() -> list[Any]:
     return made
 
 
-@pytest.mark.parametrize("number", range(24))
+@pytest.mark.parametrize("number", few(range(24), 3))
 def test_the_range_that_is_told_is_the_one_in_which_it_closes(number: int) -> None:
     made = _refused_ones()[number]
     with pytest.raises(gc.InfeasibleError) as caught:
@@ -544,7 +545,7 @@ def _told(path: Path) -> gc.DesignError | gc.InfeasibleError | None:
     return None
 
 
-@pytest.mark.parametrize("number", [12, pytest.param(60, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("number", [11, pytest.param(60, marks=pytest.mark.slow)])
 def test_random_machines_are_built_or_refused_with_reasons(number: int, tmp_path: Path) -> None:
     """Campaigns of `make fuzz` build more."""
     ends = {"built": 0, "refused": 0, "wrong": 0}
