@@ -8,9 +8,13 @@ from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, Final
 
+import numpy as np
+
 from gearcam.base.findings import Finding, in_order, run_checks
 from gearcam.kinds.shared import turn_in_steps
+from gearcam.numeric.arguments import angles
 from gearcam.numeric.arrays import Array
+from gearcam.numeric.columns import Columns
 from gearcam.parts.solids import Mesh
 from gearcam.results.result import Result
 
@@ -20,7 +24,6 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
     from trimesh import Trimesh
 
-    from gearcam.numeric.columns import Columns
     from gearcam.spatial.surface import Surface
 
 STEM: Final = "cam"
@@ -59,6 +62,23 @@ class GriddedCam(Result):
 
     program: Any
     cam: Any
+
+    @property
+    @abstractmethod
+    def places(self) -> Mapping[str, float]:
+        """Places along the roller, mm, by their names in columns."""
+
+    @abstractmethod
+    def pressure_at(self, theta: Array, x: float) -> Array:
+        """Return the pressure angle at a place along the roller, (n,), rad.
+
+        Parameters
+        ----------
+        theta : (n,) array, rad
+            Cam angles.
+        x : float, mm
+            The place.
+        """
 
     @abstractmethod
     def motion(self, theta: ArrayLike | None = None) -> Columns:
@@ -107,28 +127,34 @@ class GriddedCam(Result):
         """The cam angles of the motion's table, rad, in steps of the design, both ends."""
         return turn_in_steps(self.design.output.motion_step)
 
-    def rates(self, derivatives: Sequence[Array], scale: float, unit: str) -> dict[str, Array]:
-        """Return the columns of the derivatives of a motion, by cam angle and by time.
+    def moved(self, theta: ArrayLike | None, name: str, scale: float, unit: str) -> Columns:
+        """Return a motion with its derivatives, by cam angle and by time, and pressure angles.
 
         Parameters
         ----------
-        derivatives : sequence of (n,) arrays
-            The first three, in mm or rad.
+        theta : (n,) array, rad, optional
+            Cam angles; by default those of ``motion.csv``.
+        name : str
+            What the motion is called.
         scale : float
             Factor to the unit of the table.
         unit : str
             That unit.
         """
-        speed = self.design.drive.speed
-        columns = {
-            f"{name}_{unit}_per_rad{power}": scale * derivatives[k - 1] for name, k, power in ORDERS
+        where = self.angles if theta is None else angles("theta", theta)
+        speed, derivatives = self.design.drive.speed, self.program.derivatives(where, 3)
+        columns = {"theta_deg": np.degrees(where), f"{name}_{unit}": scale * derivatives[0]}
+        columns |= {
+            f"{name}_{unit}_per_rad{power}": scale * derivatives[k] for name, k, power in ORDERS
         }
         if speed is not None:
             columns |= {
-                f"{name}_{unit}_s{power}": scale * speed**k * derivatives[k - 1]
+                f"{name}_{unit}_s{power}": scale * speed**k * derivatives[k]
                 for name, k, power in ORDERS
             }
-        return columns
+        for word, x in self.places.items():
+            columns[f"pressure_angle_{word}_deg"] = np.degrees(self.pressure_at(where, x))
+        return Columns(columns)
 
     @property
     def steps(self) -> int:

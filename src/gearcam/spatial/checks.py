@@ -14,6 +14,7 @@ from gearcam.base.numerals import formatted, shortened
 from gearcam.base.quantities import ANGLE, LENGTH, Param
 from gearcam.spatial.cam import SpatialCam
 from gearcam.spatial.guides import Straight, SwingArm
+from gearcam.spatial.remarks import at, shocks, smaller_roller, thin_rib
 from gearcam.spatial.surface import Cylinder
 from gearcam.spatial.trimmed import lost_lift
 
@@ -58,10 +59,6 @@ def allowed_pressure(cam: SpatialCam, limits: Limits) -> float:
     return pressure_limit(cam, limit_of(KIND, "pressure-angle", limits))
 
 
-def _at(theta: float) -> str:
-    return f"at {formatted(math.degrees(theta), 5)} deg"
-
-
 Subject = tuple[SpatialCam, Cylinder]
 """What is checked: a cam and what it is made from."""
 
@@ -100,7 +97,7 @@ def pressure_angle(subject: Subject, limit: float) -> Iterator[Remark]:
     yield Remark(
         f"The pressure angle reaches {formatted(angle)} deg, {formatted(worst.x, 4)} mm from the "
         f"axis.{hint}",
-        _at(worst.theta),
+        at(worst.theta),
         angle,
         limit=math.degrees(largest),
     )
@@ -129,13 +126,10 @@ def undercut(subject: Subject, limit: float) -> Iterator[Remark]:
         angle = ""
         if isinstance(guide, SwingArm):
             angle = f" ({formatted(math.degrees(loss.way.value), 3)} deg)"
-        most = wall.largest_roller.value - 0.5 * cam.clearance
-        radius = shortened(most, -1.0) if most > 0.0 else 0.0
-        hint = f" A roller_radius_mm of up to {formatted(radius)} does not." if radius > 0.0 else ""
         yield Remark(
             f"The roller cuts up to {formatted(loss.depth.value, 3)} mm off the {wall.key} wall at "
             "other angles. There the follower rests on an edge, and can move by "
-            f"{formatted(lost, 3)} mm{angle} beyond its lift.{hint}",
+            f"{formatted(lost, 3)} mm{angle} beyond its lift.{smaller_roller(wall)}",
             f"{wall.key} wall, {loss.way.place}",
             lost,
             limit=limit if lost > limit else math.inf,
@@ -173,7 +167,7 @@ def lost_motion(subject: Subject, limit: float) -> Iterator[Remark]:
         return
     yield Remark(
         f"The follower can move by {formatted(lost.value, 4)} mm while the cam does not.",
-        _at(lost.theta),
+        at(lost.theta),
         lost.value,
     )
 
@@ -190,7 +184,7 @@ def thin_wall(subject: Subject, limit: float) -> Iterator[Remark]:
     """
     cam, blank = subject
     if cam.least_rib is not None:
-        yield from _thin_rib(cam, limit)
+        yield from thin_rib(cam.least_rib, limit)
         return
     low, high = cam.heights
     half = cam.tool.radius_at(cam.outer_radius)
@@ -204,16 +198,6 @@ def thin_wall(subject: Subject, limit: float) -> Iterator[Remark]:
             yield Remark(
                 f"The metal {where} is {formatted(thickness, 4)} mm thick.", where, thickness
             )
-
-
-def _thin_rib(cam: SpatialCam, limit: float) -> Iterator[Remark]:
-    least = cam.least_rib
-    if least is not None and least.value < limit:
-        yield Remark(
-            f"The rib is about {formatted(least.value, 3)} mm thick where it is steep.",
-            f"rib, {least.place}",
-            least.value,
-        )
 
 
 @check("roller-slip", kind=KIND, severity="note")
@@ -240,8 +224,4 @@ def acceleration_jump(subject: Subject, limit: float) -> Iterator[Remark]:  # no
 
     Looks at: knots where the acceleration jumps.
     """
-    for jump in subject[0].program.jumps:
-        if jump.order == 2:
-            yield Remark(
-                "The acceleration jumps: the follower vibrates at high speed.", _at(jump.theta)
-            )
+    yield from shocks(subject[0].program, "follower")

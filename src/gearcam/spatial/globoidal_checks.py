@@ -13,6 +13,7 @@ from gearcam.base.findings import Remark, check
 from gearcam.base.numerals import formatted, shortened
 from gearcam.base.quantities import ANGLE, LENGTH, Param
 from gearcam.spatial.globoidal import GloboidalCam
+from gearcam.spatial.remarks import shocks, smaller_roller, thin_rib
 
 KIND: Final = "globoidal cams"
 """Their group."""
@@ -66,11 +67,9 @@ def undercut(subject: Subject, limit: float) -> Iterator[Remark]:  # noqa: ARG00
     for wall in cam.walls:
         if not wall.undercut:
             continue
-        most = wall.largest_roller.value - 0.5 * cam.clearance
-        radius = shortened(most, -1.0) if most > 0.0 else 0.0
-        hint = f" A roller_radius_mm of up to {formatted(radius)} does not." if radius else ""
         yield Remark(
-            f"The rollers cut away a part of the {wall.key} wall at other angles.{hint}",
+            f"The rollers cut away a part of the {wall.key} wall at other angles."
+            f"{smaller_roller(wall)}",
             f"{wall.key} wall, {wall.spread.place}",
             wall.spread.value,
         )
@@ -145,13 +144,7 @@ def thin_wall(subject: Subject, limit: float) -> Iterator[Remark]:
     Looks at: the thickness of the rib along its normal to first order, and the core at its middle.
     """
     cam, bore = subject
-    rib = cam.least_rib
-    if rib.value < limit:
-        yield Remark(
-            f"The rib is about {formatted(rib.value, 3)} mm thick where it is steep.",
-            f"rib, {rib.place}",
-            rib.value,
-        )
+    yield from thin_rib(cam.least_rib, limit)
     core = cam.distance - cam.floor - bore
     if bore and core < limit:
         yield Remark(
@@ -167,9 +160,4 @@ def acceleration_jump(subject: Subject, limit: float) -> Iterator[Remark]:  # no
 
     Looks at: knots where the acceleration jumps, the ends of the index among them.
     """
-    for jump in subject[0].program.jumps:
-        if jump.order == 2:
-            angle = formatted(math.degrees(jump.theta), 5)
-            yield Remark(
-                "The acceleration jumps: the turret vibrates at high speed.", f"at {angle} deg"
-            )
+    yield from shocks(subject[0].program, "turret")

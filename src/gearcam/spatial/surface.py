@@ -242,39 +242,26 @@ class _Ring:
 
 
 def _rings(cam: SpatialCam, blank: Cylinder, theta: Array, places: int) -> Iterator[_Ring]:
-    """Yield the rings from the bore over the upper face and the groove to the lower face."""
-    walls = {wall.side: wall for wall in cam.walls}
-    outer = cam.outer_radius
-    if cam.apart:
-        yield from _rib(cam, blank, theta, places)
-        return
+    """Yield the rings from the bore over the upper face and the walls to the lower face."""
+    walls, outer = {wall.side: wall for wall in cam.walls}, cam.outer_radius
     yield _circle(theta, blank.bore, 0.0)
     yield _circle(theta, blank.bore, blank.length)
+    if cam.apart:  # a rib on a core: the wall of the upper roller is the upper one
+        yield _circle(theta, cam.floor, blank.length)
+        yield from _out(walls[-1], theta, places)
+        yield from _in(walls[1], theta, places)
+        yield _circle(theta, cam.floor, 0.0)
+        return
     if 1 in walls:
         yield _Ring(_circle(theta, outer, blank.length).points, apart=True)
-        yield from _wall(walls[1], theta, places)
+        yield from _in(walls[1], theta, places)
     else:
         yield _circle(theta, cam.floor, blank.length)
     if -1 in walls:
-        *most, edge = reversed([*_wall(walls[-1], theta, places)])
-        yield from most
-        yield _Ring(edge.points, apart=True)
+        yield from _out(walls[-1], theta, places)
         yield _circle(theta, outer, 0.0)
     else:
         yield _circle(theta, cam.floor, 0.0)
-
-
-def _rib(cam: SpatialCam, blank: Cylinder, theta: Array, places: int) -> Iterator[_Ring]:
-    """Yield the rings of a rib on a core: the wall of the upper roller is the upper one here."""
-    below, above = cam.walls
-    yield _circle(theta, blank.bore, 0.0)
-    yield _circle(theta, blank.bore, blank.length)
-    yield _circle(theta, cam.floor, blank.length)
-    *most, edge = reversed([*_wall(above, theta, places)])
-    yield from most
-    yield _Ring(edge.points, apart=True)
-    yield from _wall(below, theta, places)
-    yield _circle(theta, cam.floor, 0.0)
 
 
 def _circle(theta: Array, radius: float, height: float) -> _Ring:
@@ -285,17 +272,17 @@ def _circle(theta: Array, radius: float, height: float) -> _Ring:
     return _Ring(np.stack([radius * np.cos(theta), -radius * np.sin(theta), heights], axis=1))
 
 
-def _wall(wall: SpatialWall, theta: Array, places: int) -> Iterator[_Ring]:
-    """Yield the rings of a wall, from its edge to its foot, and of the ramp down to the floor."""
-    points = wall.grid(theta, places).points
-    yield from (_Ring(points[:, k]) for k in range(places - 1, -1, -1))
-    yield from _ramp(wall, theta, places)
+def _in(wall: SpatialWall, theta: Array, places: int) -> list[_Ring]:
+    """Return the rings of a wall from its edge to its foot, and of its ramp down to the floor."""
+    below = ramp(wall, theta, places)[:, :-1]  # without the foot, which the wall has too
+    points = np.concatenate([below, wall.grid(theta, places).points], axis=1)
+    return [_Ring(points[:, k]) for k in reversed(range(points.shape[1]))]
 
 
-def _ramp(wall: SpatialWall, theta: Array, places: int) -> Iterator[_Ring]:
-    """Yield the rings of the ramp below the foot of a wall, down to the floor."""
-    points = ramp(wall, theta, places)
-    yield from (_Ring(points[:, k]) for k in range(places - 2, -1, -1))
+def _out(wall: SpatialWall, theta: Array, places: int) -> list[_Ring]:
+    """Return the same rings from the floor to the edge, beside which others are not in line."""
+    edge, *others = _in(wall, theta, places)
+    return [*reversed(others), _Ring(edge.points, apart=True)]
 
 
 def ramp(wall: SpatialWall, theta: Array, places: int) -> Array:

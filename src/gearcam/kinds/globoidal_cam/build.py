@@ -13,7 +13,6 @@ from gearcam.base.findings import Finding
 from gearcam.kinds.globoidal_cam.design import GloboidalCamDesign
 from gearcam.kinds.gridded import ROUND, SAGITTA, STEM, GriddedCam, mesh_from
 from gearcam.laws.indexing import IndexProgram, index_program
-from gearcam.numeric.arguments import angles
 from gearcam.numeric.columns import Columns
 from gearcam.parts.solids import Mesh, carved, ribbed
 from gearcam.spatial.globoidal import GloboidalCam
@@ -28,6 +27,7 @@ from gearcam.spatial.globoidal_surface import (
 )
 
 if TYPE_CHECKING:
+    from gearcam.numeric.arrays import Array
     from gearcam.numeric.pose import SpacePose
 
 TURRET: Final = "turret"
@@ -109,16 +109,12 @@ class GloboidalCamResult(GriddedCam):
         InfeasibleError
             If the cam is impossible.
         """
-        where = self.angles if theta is None else angles("theta", theta)
-        cam = self.cam
-        place, *slopes = self.program.derivatives(where, 3)
-        columns = {"theta_deg": np.degrees(where), "turret_deg": np.degrees(place)}
-        columns |= self.rates(slopes, math.degrees(1.0), "deg")
-        within = where % (2.0 * math.pi)
-        for word, x in self.places.items():
-            touched = cam.contact(within, np.full((len(where), 1), x), 1)
-            columns[f"pressure_angle_{word}_deg"] = np.degrees(touched.pressure[:, 0])
-        return Columns(columns)
+        return self.moved(theta, TURRET, math.degrees(1.0), "deg")
+
+    def pressure_at(self, theta: Array, x: float) -> Array:
+        """Return the pressure angle of the roller nearest to the middle (see `GriddedCam`)."""
+        place = np.full((len(theta), 1), x)
+        return self.cam.contact(theta % (2.0 * math.pi), place, 1).pressure[:, 0]
 
     def solid_of(self, steps: int, places: int) -> Mesh:
         """Return the cam as a mesh (see `GriddedCam.solid_of`)."""

@@ -19,7 +19,6 @@ from gearcam.kinds.gridded import ROUND, SAGITTA, STEM, GriddedCam, mesh_from
 from gearcam.kinds.shared import solved_file
 from gearcam.kinds.spatial_cam.design import SpatialCamDesign
 from gearcam.laws.program import Program
-from gearcam.numeric.arguments import angles
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
 from gearcam.parts.solids import Mesh, carved
@@ -148,16 +147,19 @@ class SpatialCamResult(GriddedCam):
         InfeasibleError
             If the cam is impossible.
         """
-        where = self.angles if theta is None else angles("theta", theta)
-        cam, (scale, unit) = self.cam, self.lift_unit
-        derivatives = self.program.derivatives(where, 3)
-        columns = {"theta_deg": np.degrees(where), f"lift_{unit}": scale * derivatives[0]}
-        columns |= self.rates(derivatives[1:], scale, unit)
-        for word, x in zip(PLACES, (cam.inner, cam.mean_radius, cam.outer_radius), strict=True):
-            at = np.full((len(where), 1), x)
-            both = [cam.contact(where, at, side).pressure[:, 0] for side in cam.sides]
-            columns[f"pressure_angle_{word}_deg"] = np.degrees(np.max(both, axis=0))
-        return Columns(columns)
+        return self.moved(theta, "lift", *self.lift_unit)
+
+    @property
+    def places(self) -> dict[str, float]:
+        """Places along the roller, mm from the axis, by their names in columns."""
+        cam = self.cam
+        return {"inner": cam.inner, "mean": cam.mean_radius, "outer": cam.outer_radius}
+
+    def pressure_at(self, theta: Array, x: float) -> Array:
+        """Return the larger pressure angle of both walls (see `GriddedCam.pressure_at`)."""
+        cam, place = self.cam, np.full((len(theta), 1), x)
+        both = [cam.contact(theta, place, side).pressure[:, 0] for side in cam.sides]
+        return np.max(both, axis=0)
 
     @property
     def wall_angles(self) -> Array:
@@ -237,10 +239,6 @@ class SpatialCamResult(GriddedCam):
             return super().main_errors
         walls, volume = super().main_errors
         return walls, ("walls of the STEP solid, between its points", ["step_mm"]), volume
-
-
-PLACES: Final = ("inner", "mean", "outer")
-"""Names of the roller's inner end, its middle and the outside, in columns."""
 
 
 def _demand_whole(wall: SpatialWall) -> None:
