@@ -175,6 +175,18 @@ def test_each_arrival_at_a_dead_center_has_its_last_travel() -> None:
     )
 
 
+def test_a_travel_ends_where_a_rest_over_the_end_of_a_turn_begins() -> None:
+    def track(q: Array, order: int) -> Jet:
+        x = Jet.variable(q, order)
+        up, down = 0.5 - 0.5 * jets.cos(x * 0.9), 0.5 + 0.5 * jets.cos((x - knots[1]) * 1.8)
+        moved = [np.where(q < knots[1], *both) for both in zip(up.c, down.c, strict=True)]
+        return Jet([np.where(q < knots[2], one, 0.0) for one in moved])
+
+    knots = np.radians([0.0, 200.0, 300.0, 360.0])
+    (found,) = last_travels(TrackMeasures(track, knots), 0.5, outer=False)
+    assert np.degrees(found) == pytest.approx([250.0, 300.0], abs=1e-10)
+
+
 def test_travels_that_cannot_be_are_refused() -> None:
     wave = _waves(NONE, ONE)
     with pytest.raises(ValueError, match=r"travel 2\.5: must be between 0 and 2$"):
