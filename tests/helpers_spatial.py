@@ -5,6 +5,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import manifold3d
+import numpy as np
+
 from gearcam.base.tolerances import DEFAULT
 from gearcam.laws.motion.base import MOTION_LAWS
 from gearcam.laws.phases_of_lift import DwellPhase, ReturnPhase, RisePhase
@@ -53,6 +56,13 @@ def swinging() -> SpatialCam:
         length=60.0, distance=distance, start=-0.5 * swing, height=60.0 * math.sin(-swing / 2)
     )
     return reference(program=program(swing, "modified-sine", oscillating=True), guide=arm)
+
+
+def solid(made: Mesh | Surface) -> Any:
+    """A closed surface as an object of manifold3d."""
+    found = manifold3d.Manifold(manifold3d.Mesh64(made.vertices, made.triangles.astype(np.uint64)))
+    assert found.status() == manifold3d.Error.NoError
+    return found
 
 
 def enclosed(made: Surface) -> float:

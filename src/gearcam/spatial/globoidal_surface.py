@@ -64,7 +64,7 @@ def rib_surface(cam: GloboidalCam, steps: int, places: int) -> Surface:
     theta, beyond = rib_angles(cam, steps), _BEYOND * cam.roller.radius
     # the rib is above the roller that is followed, and below the next one
     low, high = (
-        _polar(cam, wall.grid(theta + TURN * k, places, beyond).points, theta)
+        polar(cam, wall.grid(theta + TURN * k, places, beyond).points, theta)
         for k, wall in enumerate(cam.walls)
     )
     high[..., 1] = low[..., 1] + np.mod(high[..., 1] - low[..., 1], TURN)
@@ -211,8 +211,22 @@ def _arc(cam: GloboidalCam, radius: float, half: float, steps: int) -> list[tupl
     return [(cam.distance - radius * math.cos(a), radius * math.sin(a)) for a in angle.tolist()]
 
 
-def _polar(cam: GloboidalCam, points: Array, theta: Array) -> Array:
-    """Return distance and direction from the turret's axis, mm and rad, and azimuth at rest."""
+def polar(cam: GloboidalCam, points: Array, theta: Array) -> Array:
+    """Return distance and direction from the turret's axis, mm and rad, and azimuth at rest.
+
+    Parameters
+    ----------
+    cam : GloboidalCam
+        The cam.
+    points : (n, k, 3) array, mm
+        Points in the frame of the cam.
+    theta : (n,) array, rad
+        Cam angles: the azimuth, rad, is that in the fixed frame.
+
+    Returns
+    -------
+    (n, k, 3) array
+    """
     x, y, z = np.moveaxis(points, -1, 0)
     turn = theta[:, None]
     azimuth = np.arctan2(x * np.sin(turn) + y * np.cos(turn), x * np.cos(turn) - y * np.sin(turn))
@@ -221,7 +235,7 @@ def _polar(cam: GloboidalCam, points: Array, theta: Array) -> Array:
 
 
 def _points(cam: GloboidalCam, polar: Array, theta: Array) -> Array:
-    """Return the points of `_polar` in the frame of the cam; theta of the first axis."""
+    """Return the points of `polar` in the frame of the cam; theta of the first axis."""
     depth, direction, azimuth = np.moveaxis(polar, -1, 0)
     radius = cam.distance - depth * np.cos(direction)
     at = azimuth - theta[:, None, None]

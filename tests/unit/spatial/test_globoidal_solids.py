@@ -8,7 +8,6 @@ from functools import cache
 from itertools import product
 from typing import Any
 
-import manifold3d
 import numpy as np
 import pytest
 
@@ -25,9 +24,10 @@ from gearcam.spatial.globoidal_surface import (
     rib_surface,
     turret_surface,
 )
-from gearcam.spatial.surface import Surface, revolved
+from gearcam.spatial.surface import revolved
 from helpers_globoidal import DESIGN, indexer
 from helpers_sampling import chosen
+from helpers_spatial import solid
 from witness.roller_of_turret import Wheel
 
 
@@ -42,12 +42,6 @@ def body(steps: int, places: int, clearance: float = 0.0) -> Any:
     """The solid of a cam with a clearance, mm."""
     more = {"cam.roller_clearance_mm": clearance} if clearance else {}
     return solid(built(steps, places, **more))
-
-
-def solid(made: Mesh | Surface) -> Any:
-    found = manifold3d.Manifold(manifold3d.Mesh64(made.vertices, made.triangles.astype(np.uint64)))
-    assert found.status() == manifold3d.Error.NoError
-    return found
 
 
 def roller(cam: GloboidalCam, angle: float, wider: float, moved: float = 0.0) -> Any:

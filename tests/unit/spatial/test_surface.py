@@ -16,7 +16,7 @@ from gearcam.spatial.cam import SpatialCam
 from gearcam.spatial.guides import RollerGuide, Turret
 from gearcam.spatial.surface import Cylinder, chord_error, roller_surface, surface
 from helpers_pairs import PROFILES
-from helpers_spatial import reference, swinging
+from helpers_spatial import reference, solid, swinging
 
 EXACT = 44298.298
 """Volume of the groove of the reference cam, mm^3: two quadratures agree to 1e-4."""
@@ -25,12 +25,6 @@ EXACT = 44298.298
 def mesh(cam: SpatialCam, steps: int = 720, places: int = 13, **blank: float) -> Mesh:
     made = surface(cam, Cylinder(**({"length": 60.0} | blank)), steps, places)
     return Mesh(vertices=made.vertices, triangles=made.triangles)
-
-
-def solid(made: Mesh) -> Any:
-    found = manifold3d.Manifold(manifold3d.Mesh64(made.vertices, made.triangles.astype(np.uint64)))
-    assert found.status() == manifold3d.Error.NoError
-    return found
 
 
 @pytest.mark.parametrize("sides", [(1, -1), (1,), (-1,)])

@@ -22,7 +22,7 @@ from gearcam.spatial.hulls import round_hulls
 from gearcam.spatial.surface import Cylinder, blank_surface, surface
 from gearcam.spatial.trimmed import TrimmedWall, lost_lift
 from helpers_sampling import chosen, few
-from helpers_spatial import enclosed, reference, swinging
+from helpers_spatial import enclosed, reference, solid, swinging
 from witness.roller_in_space import Mechanism
 
 _DENSE = 20001
@@ -176,8 +176,7 @@ def roller(cam: SpatialCam, theta: float, less: float) -> Any:
 def test_nothing_is_left_higher_than_is_stated(radius: float) -> None:
     """A roller between two positions, in dwells and on slopes, by intersections of manifold3d."""
     cam, steps = cut(radius), 120
-    made, height = carving(cam, steps, 13), scallop(cam, steps, 13)
-    body = manifold3d.Manifold(manifold3d.Mesh64(made.vertices, made.triangles.astype(np.uint64)))
+    body, height = solid(carving(cam, steps, 13)), scallop(cam, steps, 13)
     step = 2.0 * math.pi / steps
     angles = [step * (k + 0.5) for k in (15, 30, 50, 66, 110)]
     left = [(body ^ roller(cam, theta, height + 5e-4)).volume() for theta in angles]

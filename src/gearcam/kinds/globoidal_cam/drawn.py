@@ -19,6 +19,7 @@ from gearcam.laws.phases_of_lift import TURN
 from gearcam.numeric.pose import Pose
 from gearcam.parts.shapes import Circle
 from gearcam.pictures.drawings import BLANK, FOLLOWER, GROOVE, PITCH, Drawing, Feature, Path, place
+from gearcam.spatial.globoidal_surface import polar
 
 if TYPE_CHECKING:
     from gearcam.kinds.globoidal_cam.build import GloboidalCamResult
@@ -111,12 +112,10 @@ def _windings(cam: GloboidalCam, wall: GloboidalWall) -> Iterator[tuple[int, Pla
     start, end = cam.span
     first, last = math.floor(start / TURN) - 1, math.ceil(end / TURN) + 1
     theta = np.linspace(first * TURN, last * TURN, (last - first) * _STEPS + 1)
-    points = wall.contact(theta, wall.place(theta, cam.middle)[:, None]).points[:, 0]
-    x, y, z = points.T
+    points = wall.contact(theta, wall.place(theta, cam.middle)[:, None]).points
+    _, direction, ahead = polar(cam, points, theta)[:, 0].T
     # the azimuth falls with the cam angle, and is nearest to minus this
-    ahead = np.arctan2(x * np.sin(theta) + y * np.cos(theta), x * np.cos(theta) - y * np.sin(theta))
-    azimuth = (ahead - theta) * cam.hand
-    height = cam.middle * np.arctan2(z, cam.distance - np.hypot(x, y))
+    azimuth, height = (ahead - theta) * cam.hand, cam.middle * direction
     order = np.argsort(azimuth)
     azimuth, height = azimuth[order], height[order]
     for turn in range(first + 1, last - 1):
