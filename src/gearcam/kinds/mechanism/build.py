@@ -224,13 +224,10 @@ class MechanismResult(Result):
     @cached_property
     def compared(self) -> dict[str, MechanismResult]:
         """The same mechanism behind the drives to compare, by their names."""
-        first, found = self.drives[0], {}
-        for number, other in enumerate(self.design.compare):
-            spec = replace(first.spec, pair=other.pair, cam=other.cam, even=other.even, span=None)
-            master = self._placed(f"compare[{number}]", spec).instead_of(first)
-            with within(f"compare[{number}]"):
-                found[other.name] = self._behind(master)
-        return found
+        return {
+            one.name: self._behind(f"compare[{number}]", pair=one.pair, cam=one.cam, even=one.even)
+            for number, one in enumerate(self.design.compare)
+        }
 
     @property
     def machines(self) -> dict[str, MechanismResult]:
@@ -271,19 +268,20 @@ class MechanismResult(Result):
         for other in self.design.compare:
             if other.even:
                 return self.compared[other.name]
-        first = self.drives[0]
-        if first.spec.pair is None:
+        if self.drives[0].spec.pair is None:
             return None
-        spec = replace(first.spec, pair=None, even=True, span=None)
         with suppress(InfeasibleError):
-            return self._behind(self._placed("drive[0]", spec).instead_of(first))
+            return self._behind("drive[0]", pair=None, cam=None, even=True)
         return None
 
-    def _behind(self, master: PlacedDrive) -> MechanismResult:
-        """Return the same mechanism behind another master."""
+    def _behind(self, at: str, **drive: Any) -> MechanismResult:
+        """Return the same mechanism with what stands at a key in the place of its first drive."""
+        first = self.drives[0]
+        master = self._placed(at, replace(first.spec, span=None, **drive)).instead_of(first)
         made = type(self)(replace(self.design, compare=(), examined=True), self.tolerances)
         made._given = (master, *self.drives[1:])
-        _ = made.linkage
+        with within(at):
+            _ = made.linkage
         return made
 
     @cached_property

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import Any, Final
+from functools import cache
+from typing import Any, Final, NamedTuple
 
 from gearcam.base.quantities import TEXT, param
 
@@ -37,8 +38,25 @@ def named(*, doc: str, gives: str | None = None, needs: str | None = None, **res
     return dataclasses.field(default=made.default, metadata={**made.metadata, **sorts})
 
 
-def name_keys(owner: type, use: str) -> dict[str, str]:
-    """Return what the names in a table are or must be, by field.
+class NameKey(NamedTuple):
+    """A key with a name, or with several.
+
+    Attributes
+    ----------
+    field, key : str
+        In the class of its table, and in a file.
+    sort : str
+        What its name is, or must be.
+    """
+
+    field: str
+    key: str
+    sort: str
+
+
+@cache
+def name_keys(owner: type, use: str) -> tuple[NameKey, ...]:
+    """Return the keys of a table with names.
 
     Parameters
     ----------
@@ -47,5 +65,9 @@ def name_keys(owner: type, use: str) -> dict[str, str]:
     use : str
         `GIVES` or `NEEDS`.
     """
-    found = {one.name: one.metadata.get(use) for one in dataclasses.fields(owner)}
-    return {name: sort for name, sort in found.items() if sort is not None}
+    found = ((one, one.metadata.get(use)) for one in dataclasses.fields(owner))
+    return tuple(
+        NameKey(one.name, one.metadata["param"].key(one.name), sort)
+        for one, sort in found
+        if sort is not None
+    )

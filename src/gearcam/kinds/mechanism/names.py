@@ -12,7 +12,6 @@ from dataclasses import fields
 from functools import cache
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
-from gearcam.base.quantities import params_of
 from gearcam.designs.faults import Fault, dotted, show
 from gearcam.designs.kind import KINDS
 from gearcam.designs.slips import did_you_mean
@@ -26,6 +25,7 @@ from gearcam.kinds.mechanism.name_keys import (
     NEEDS,
     SHAFT,
     STANDING,
+    NameKey,
     name_keys,
 )
 from gearcam.linkages.dyads import DYADS
@@ -92,9 +92,8 @@ def _several(parts: Parts) -> Iterator[tuple[str, int, Any]]:
 
 def _uses(table: Any, use: str, at: Path) -> Iterator[NameUse]:
     """Yield the names that the keys of a table give or need."""
-    params = params_of(type(table))
-    for field, sort in name_keys(type(table), use).items():
-        for place, name in _placed(getattr(table, field), (*at, params[field].key(field))):
+    for field, key, sort in name_keys(type(table), use):
+        for place, name in _placed(getattr(table, field), (*at, key)):
             if name is not None:
                 yield NameUse(name, sort, place)
 
@@ -198,8 +197,8 @@ def _unread(found: Examined) -> bool:
 
 
 @cache
-def _giving() -> dict[str, dict[str, str]]:
-    """Return what the names are that tables give, by title and key."""
+def _giving() -> dict[str, tuple[NameKey, ...]]:
+    """Return the keys with names that tables give, by title."""
     found = {title: name_keys(owner, GIVES) for title, owner in KINDS[NAME].tables.items()}
     return {title: keys for title, keys in found.items() if keys}
 
@@ -209,7 +208,7 @@ def _of_faulty(document: Mapping[str, Any], found: Examined) -> Iterator[NameUse
     for title, keys in _giving().items():
         rows = () if is_read(title, found) else document.get(title)
         for number, row in enumerate(rows if isinstance(rows, list) else ()):
-            for key, sort in keys.items():
+            for _, key, sort in keys:
                 value = row.get(key) if isinstance(row, Mapping) else None
                 for place, name in _placed(value, (title, number, key)):
                     yield NameUse(name if isinstance(name, str) else "", sort, place)
