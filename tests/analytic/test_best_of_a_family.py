@@ -30,7 +30,6 @@ from gearcam.sweep.optimum import Trials
 from gearcam.sweep.plan import Plan
 from gearcam.sweep.rows import Built, measured
 from gearcam.sweep.run import head_of
-from helpers_sampling import chosen
 
 
 @dataclass
@@ -159,7 +158,8 @@ files = ["csv"]
 )
 
 
-@pytest.mark.parametrize(("method", "trials"), chosen([(None, 96), ("scipy", 144)], (None, 96)))
+@pytest.mark.slow
+@pytest.mark.parametrize(("method", "trials"), [(None, 96), ("scipy", 144)])
 def test_the_smallest_cam_is_at_least_as_small_as_every_one_of_the_grid(
     tmp_path: Path, method: str | None, trials: int
 ) -> None:
@@ -171,7 +171,6 @@ def test_the_smallest_cam_is_at_least_as_small_as_every_one_of_the_grid(
     assert least - step < family.of(found)[0] <= least
 
 
-@pytest.mark.slow
 def test_the_smallest_cam_is_that_of_its_solved_sizes(tmp_path: Path) -> None:
     text = CAMS.text.replace('angle_deg = "rest"', "angle_deg = 80")
     text = text.replace("angle_deg = 120", 'angle_deg = "rest"')

@@ -22,7 +22,7 @@ from gearcam.meshing.measured import as_half_teeth, chord_error, demand_near, ou
 from gearcam.meshing.overlap import Turning
 from helpers_built import built
 from helpers_pairs import profile
-from helpers_sampling import chosen
+from helpers_sampling import chosen, few
 
 CHORD = 1e-3
 ROUND: dict[str, Any] = {
@@ -92,7 +92,7 @@ def test_a_wheels_own_outline_has_no_error(name: str, written: str, tmp_path: Pa
             result.write(tmp_path, files=["dxf"])
             file = next(tmp_path.rglob(f"gear{number}.dxf"))
         keys[f"errors.outline{number}"] = str(file)
-    study = gc.build(result.design.with_({**keys, "errors.steps": 90})).study("errors")
+    study = gc.build(result.design.with_({**keys, "errors.steps": 40})).study("errors")
     radius = 0.5 * result.pair.center_distance
     facts = study.to_dict()
     found, own = facts["errors"], facts["errors"]["without"]
@@ -170,7 +170,7 @@ def test_own_outlines_touch_where_flanks_do(name: str) -> None:
     assert exact.interference is None
 
 
-@pytest.mark.parametrize("turned", [3.0, -7.5])
+@pytest.mark.parametrize("turned", few([-7.5, 3.0]))
 def test_a_round_outline_is_turned_by_less_than_half_a_pitch(turned: float) -> None:
     own = complex_of(made("round").gear1.outline)
     with pytest.raises(InfeasibleError, match=f"is turned by {turned:g} deg"):

@@ -62,7 +62,7 @@ def demand_fit_or_way(result: GearPairResult) -> str:
     return min(errors)[:12]
 
 
-@pytest.mark.parametrize("seed", QUICK)
+@pytest.mark.parametrize("seed", few(QUICK))
 def test_a_ring_fits_or_has_a_way_out(seed: int) -> None:
     demand_fit_or_way(random_ring(seed))
 

@@ -63,9 +63,10 @@ def strictly(
     return strict
 
 
-def test_libraries_are_loaded_quietly(tmp_path: Path) -> None:
+@pytest.mark.parametrize("files", [GEARS, pytest.param(GEARS + STEP, marks=pytest.mark.slow)])
+def test_libraries_are_loaded_quietly(files: str, tmp_path: Path) -> None:
     """In a process of its own, since some warn only where they are imported."""
-    words = "build", str(PROFILES / "log_spiral.toml"), "--only", GEARS + STEP, "-o", str(tmp_path)
+    words = "build", str(PROFILES / "log_spiral.toml"), "--only", files, "-o", str(tmp_path)
     done = run("-W", "error", "-m", "gearcam", *words)
     assert (done.returncode in (GOOD, FINDINGS), done.stderr) == (True, "")
 

@@ -14,6 +14,7 @@ import trimesh
 import gearcam as gc
 from gearcam.pictures.drawings import OUTER
 from helpers_pairs import PROFILES
+from helpers_sampling import few
 
 PARTS = {
     "shop_order": ("gears.{}", ("gear1", "gear2")),
@@ -42,7 +43,7 @@ def box(path: Path) -> Any:
 @pytest.mark.parametrize(
     ("name", "changes"),
     [
-        *((name, {}) for name in PARTS if name not in LONG),
+        *few((name, {}) for name in PARTS if name not in LONG),
         ("stepped_ellipse", {"steps.count": 2}),
         *(pytest.param(name, {}, marks=pytest.mark.slow) for name in LONG),
     ],

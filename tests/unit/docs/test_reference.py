@@ -19,7 +19,7 @@ from gearcam.laws.motion.base import MOTION_LAWS
 from gearcam.laws.ratio.base import LAWS
 from gearcam.results.kind import KINDS
 from helpers_pairs import PROFILES
-from helpers_sampling import chosen
+from helpers_sampling import chosen, few
 
 PAGES = reference.pages()
 DESIGNS = (
@@ -152,7 +152,7 @@ def test_a_default_limit_is_that_of_the_program() -> None:
     assert row[2] == "`end_gap_deg` = 10 deg"
 
 
-@pytest.mark.parametrize("name", DESIGNS)
+@pytest.mark.parametrize("name", few(DESIGNS))
 def test_the_names_of_files_are_those_written(name: str) -> None:
     """Every file of every form; those of steps by the first."""
     result = gearcam.build(gearcam.load(PROFILES / f"{name}.toml"))

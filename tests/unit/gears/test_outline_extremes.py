@@ -278,7 +278,7 @@ LOOPS = [
 ]
 
 
-@pytest.mark.parametrize(("law", "z", "rack"), LOOPS)
+@pytest.mark.parametrize(("law", "z", "rack"), few(LOOPS))
 def test_undercut_flanks_end_on_their_fillets(law: Any, z: int, rack: Rack) -> None:
     made = built(law, (z, z), rack=rack)
     for gear in made.gears:

@@ -26,6 +26,7 @@ import gearcam
 from gearcam.cli import main
 from gearcam.designs.kind import KINDS
 from helpers_pairs import PROFILES
+from helpers_sampling import few
 
 WATCHED = {
     "gearcam.gears.rolling": ("roll",),
@@ -248,7 +249,7 @@ EXPECTED: dict[tuple[str, Callable[[str, Path], None]], dict[str, int]] = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize(("name", "output"), EXPECTED)
+@pytest.mark.parametrize(("name", "output"), few(EXPECTED))
 def test_nothing_is_computed_twice(
     name: str, output: Callable[[str, Path], None], tmp_path: Path
 ) -> None:

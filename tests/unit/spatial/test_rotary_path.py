@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 
 import gearcam as gc
-from helpers_sampling import chosen
+from helpers_sampling import chosen, few
 from witness.roller_in_space import Mechanism, cycloidal
 
 LOWEST = 25.0
@@ -262,7 +262,7 @@ def test_a_path_that_is_10_um_off_is_found(name: str, axis: int) -> None:
     assert bool(found.min() < -(TOLERANCE + ROUNDED)) is (axis != 2 or bool(case.half_angle))
 
 
-@pytest.mark.parametrize("diameter", [4.0, 6.0, 8.0, 11.0])
+@pytest.mark.parametrize("diameter", few([4.0, 6.0, 8.0, 11.0], 3))
 def test_the_middle_of_the_groove_is_cut(diameter: float) -> None:
     result = gc.build(design(tool={"diameter_mm": diameter}, output={"path_tolerance_mm": 0.02}))
     places = program_of(result).densely(0.5)

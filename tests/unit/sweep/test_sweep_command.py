@@ -16,6 +16,7 @@ import gearcam as gc
 from gearcam.cli import main
 from gearcam.sweep.rows import measured
 from helpers_processes import ENVIRONMENT
+from helpers_sampling import few
 
 TEXT = """
 kind = "gear-pair"
@@ -141,7 +142,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> pl.DataFrame:
     return table(str(folder / "out"))
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
+@pytest.mark.parametrize("number", few([signal.SIGINT, signal.SIGKILL]))
 def test_a_sweep_that_was_ended_goes_on(file: str, number: int, whole: pl.DataFrame) -> None:
     command = [sys.executable, "-m", "gearcam", "sweep", file, "-o", "out", "--jobs", "1", *RANGE]
     running = subprocess.Popen(command, env=ENVIRONMENT, stdout=subprocess.PIPE, stderr=-1)

@@ -131,7 +131,7 @@ def evolved(cost: Any, bounds: list[tuple[float, float]]) -> float:
 CASES = [*((stem, name) for name in PROGRAMS), *((arm, name) for name in PROGRAMS)]
 
 
-@pytest.mark.parametrize(("make", "name"), few(CASES, 3))
+@pytest.mark.parametrize(("make", "name"), few(CASES, 7))
 def test_no_other_optimiser_finds_a_smaller_cam(make: Any, name: str) -> None:
     result = gc.build(gc.design(make(name)))
     found = result.solution
@@ -153,7 +153,7 @@ def test_no_other_optimiser_finds_a_smaller_cam(make: Any, name: str) -> None:
     assert size * (1.0 - 1e-3) < best < size * (1.0 + 2e-2)
 
 
-@pytest.mark.parametrize(("make", "name"), CASES[::3])
+@pytest.mark.parametrize(("make", "name"), few(CASES[::3], 3))
 def test_random_tries_find_no_smaller_cam(make: Any, name: str) -> None:
     result = gc.build(gc.design(make(name)))
     task = Task(result)
@@ -181,7 +181,7 @@ KNOWN = [
 ]
 
 
-@pytest.mark.parametrize("known", KNOWN)
+@pytest.mark.parametrize("known", few(((one,) for one in KNOWN), 2))
 def test_a_cam_that_is_known_to_keep_its_limits_is_not_smaller_than_the_solution(
     known: tuple[str, float, float, float, float, float, float],
 ) -> None:
@@ -197,7 +197,7 @@ def test_a_cam_that_is_known_to_keep_its_limits_is_not_smaller_than_the_solution
     assert found.facts[size] <= given.facts[size]
 
 
-@pytest.mark.parametrize(("make", "name"), CASES)
+@pytest.mark.parametrize(("make", "name"), few(CASES, 3))
 def test_a_solved_cam_has_no_finding_and_decides_by_its_limits(make: Any, name: str) -> None:
     result = gc.build(gc.design(make(name)))
     assert not {one.code for one in result.findings} & {
