@@ -240,7 +240,8 @@ def _guide_on(shown: _Shown, spec: GuideSpec, half: float) -> Iterator[tuple[com
     own = shown.pose(spec.on)[0].inverse @ shown.pose(spec.name)[0]
     ends, way, at = _ends(shown, spec.name), complex(own.rotation), complex(own.shift)
     if ends is not None:
-        yield _longer(at + min(0.0, ends[0]) * way, at + max(0.0, ends[1]) * way, half)
+        low, high = _reach(*ends, half)
+        yield at + low * way, at + high * way
     if at:
         yield 0j, at
 
@@ -262,7 +263,7 @@ def _of_dyad(shown: _Shown, dyad: DyadSpec, k: int, half: float) -> _Parts:
     parts.pins.append(0j)
     if own in slides:
         along = shown.turn(f"{dyad.joint}.{own}")
-        parts.ways.append(_longer(min(0.0, along.min()), max(0.0, along.max()), half))
+        parts.ways.append(_reach(float(along.min()), float(along.max()), half))
         return parts
     if dyad.driven is not None and k == 0:  # drawn as a cylinder
         return _Parts()
@@ -274,11 +275,10 @@ def _of_dyad(shown: _Shown, dyad: DyadSpec, k: int, half: float) -> _Parts:
     return parts
 
 
-def _longer(first: complex, last: complex, half: float) -> tuple[complex, complex]:
-    """Return the ends of a way with room for the block on it."""
-    way = last - first
-    room = 3.0 * half * (way / abs(way) if way else 1.0)
-    return first - room, last + room
+def _reach(least: float, most: float, half: float) -> tuple[float, float]:
+    """Return the ends of a way on a member, from its origin on, with room for the block on it."""
+    room = 3.0 * half
+    return min(0.0, least - room), max(0.0, most + room)
 
 
 def _ends(shown: _Shown, name: str) -> tuple[float, float] | None:

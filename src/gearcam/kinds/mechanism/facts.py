@@ -50,10 +50,17 @@ def facts(result: MechanismResult) -> Facts:
 
 
 def _called(result: MechanismResult) -> str:
-    """Return what the mechanism is, by its drive and its dyads."""
-    by = {"pair": "a pair", "cam": "a cam"}.get(result.design.drive[0].key, "an even shaft")
+    """Return what the mechanism is, by its dyads and its drives."""
     groups = " + ".join(one.type for one in result.design.dyad) or "linkage"
-    return f"{groups} behind {by}"
+    keys = [one.key for one in result.design.drive]
+    drives = (_counted(keys.count(key), key) for key in dict.fromkeys(keys))
+    return f"{groups} behind {' and '.join(drives)}"
+
+
+def _counted(number: int, key: str) -> str:
+    """Return how many drives of a sort there are, in words."""
+    one, several = {"even": ("an even shaft", "even shafts")}.get(key, (f"a {key}", f"{key}s"))
+    return one if number == 1 else f"{number} {several}"
 
 
 def _machine(result: MechanismResult) -> Tree:

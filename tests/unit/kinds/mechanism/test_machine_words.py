@@ -468,3 +468,17 @@ def test_tables_are_changed_by_their_numbers(key: str, allowed: str, hint: str) 
         design.with_({key: 30})
     (problem,) = caught.value.problems
     assert (problem.allowed, problem.hint) == (allowed, hint)
+
+
+@pytest.mark.parametrize(
+    ("profile", "called"),
+    [
+        ("two_cam_table", "TRT behind 2 cams"),
+        ("oscillating_cylinder", "RTRR behind an even shaft and a slide"),
+        ("geneva", "linkage behind an even shaft"),
+        ("lathe_levers", "RRR + RRT behind a cam"),
+    ],
+)
+def test_all_drives_are_named(profile: str, called: str) -> None:
+    result = gc.build(gc.load(f"profiles/{profile}.toml"))
+    assert result.facts.headline[0] == called

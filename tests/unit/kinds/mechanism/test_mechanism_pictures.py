@@ -476,3 +476,12 @@ def test_names_stay_on_their_joints(name: str) -> None:
     for joint_name in joints:
         place = joint(result, joint_name, scene.places)
         assert np.abs(where[joint_name] - place).max() < 1e-6
+
+
+def test_a_swinging_guide_begins_at_its_pivot() -> None:
+    """The block of the shaper is never next to it."""
+    rocker = next(one for one in machine("shaper").scene(FEW).bodies if one.called == "rocker")
+    outlines: Any = [f.shape for f in rocker.features if not isinstance(f.shape, Circle)]
+    points = np.concatenate([points for one in outlines for points, _ in chains(one, 1e-3)])
+    half = np.abs(points.imag).max()
+    assert points.real.min() == pytest.approx(-half, rel=1e-3)
