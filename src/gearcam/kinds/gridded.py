@@ -15,6 +15,7 @@ from gearcam.kinds.shared import turn_in_steps
 from gearcam.numeric.arguments import angles
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
+from gearcam.numeric.pose import SpacePose
 from gearcam.parts.solids import Mesh
 from gearcam.results.result import Result
 
@@ -104,6 +105,43 @@ class GriddedCam(Result):
         with self.stage("solid"):
             made = self.solid_of(steps, places)
             return made.mirrored if self.cam.clockwise else made
+
+    @abstractmethod
+    def moved_poses(self, theta: Array) -> dict[str, SpacePose]:
+        """Return the poses of what a cam that turns counter-clockwise moves, by name.
+
+        Parameters
+        ----------
+        theta : (n,) array, rad
+            Cam angles.
+        """
+
+    @abstractmethod
+    def shown(self, chords: float) -> dict[str, Mesh]:
+        """Return the solids that are shown, by name.
+
+        Parameters
+        ----------
+        chords : float, mm
+            Chord error that is allowed for the eye; 0: that of files.
+        """
+
+    def in_space(self, theta: Array) -> dict[str, SpacePose]:
+        """Return the poses of the cam and of what it moves, by name.
+
+        Parameters
+        ----------
+        theta : (n,) array, rad
+            Cam angles.
+        """
+        turned = SpacePose((0.0, 0.0, 1.0), theta, np.zeros((len(theta), 3)))
+        poses = {STEM: turned, **self.moved_poses(theta)}
+        return {name: one.mirrored if self.cam.clockwise else one for name, one in poses.items()}
+
+    def standing(self, chords: float = 0.0) -> dict[str, tuple[Mesh, SpacePose]]:
+        """Return cam and follower at the angle of the design, as meshes (see `Result`)."""
+        poses, meshes = self.in_space(np.array([self.design.output.pose])), self.shown(chords)
+        return {name: (meshes[name], pose[0]) for name, pose in poses.items()}
 
     def findings_of(self, kind: str, solid: str, subject: Any) -> tuple[Finding, ...]:
         """Return the findings of the checks, errors first.

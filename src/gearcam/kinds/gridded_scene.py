@@ -1,12 +1,9 @@
-"""What is drawn and moved of cams in space alike: a sheet, the unrolled cam, and what runs on it.
-
-The solids move in space: the cam turns, and its follower moves with it.
-"""
+"""What is drawn of cams in space alike: a sheet, the unrolled cam, and what runs along it."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -14,14 +11,13 @@ import numpy as np
 from gearcam.kinds.gridded import STEM
 from gearcam.kinds.gridded_charts import DRIVER
 from gearcam.numeric.contour import Contour
-from gearcam.numeric.pose import Pose, SpacePose
+from gearcam.numeric.pose import Pose
 from gearcam.pictures.drawings import Feature
 from gearcam.pictures.scenes import MovingBody, Scene
 
 if TYPE_CHECKING:
     from gearcam.kinds.gridded import GriddedCam
     from gearcam.numeric.arrays import Array, Plane
-    from gearcam.spatial.walls import RollerCam
 
 _TOLERANCE: Final = 1e-3
 """Chord tolerance that the points of drawn curves stand for, mm."""
@@ -46,7 +42,6 @@ def unrolled_scene(
     theta: Array,
     sheet: Iterable[Feature],
     follower: MovingBody,
-    in_space: Mapping[str, SpacePose],
     eye: tuple[float, float, float],
 ) -> Scene:
     """Return the unrolled cam at rest and what runs along it.
@@ -61,10 +56,8 @@ def unrolled_scene(
         The unrolled cam.
     follower : MovingBody
         What runs along it.
-    in_space : mapping of str to SpacePose
-        Poses of the solids.
     eye : (float, float, float)
-        Where they are seen from.
+        Where the solids are seen from.
 
     Returns
     -------
@@ -79,29 +72,7 @@ def unrolled_scene(
         closed=True,
         start=math.degrees(result.design.output.pose % (2.0 * math.pi)),
         bodies=(cam, follower),
-        in_space=in_space,
+        in_space=result.in_space(theta),
         eye=eye,
         up=(0.0, 0.0, 1.0),
     )
-
-
-def turning(cam: RollerCam, theta: Array, others: Mapping[str, SpacePose]) -> dict[str, SpacePose]:
-    """Return the poses of the solids of a cam that turns.
-
-    Parameters
-    ----------
-    cam : RollerCam
-        The cam.
-    theta : (n,) array, rad
-        Cam angles.
-    others : mapping of str to SpacePose
-        Poses of the other solids by name, beside a cam that turns counter-clockwise.
-
-    Returns
-    -------
-    dict of str to SpacePose
-        Of the cam and of the others.
-    """
-    turned = SpacePose((0.0, 0.0, 1.0), theta, np.zeros((len(theta), 3)))
-    poses = {STEM: turned, **others}
-    return {name: one.mirrored if cam.clockwise else one for name, one in poses.items()}

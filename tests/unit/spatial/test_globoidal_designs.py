@@ -16,7 +16,6 @@ import pytest
 import gearcam as gc
 from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.designs.writing import toml_text
-from gearcam.kinds.globoidal_cam.scene import in_space
 from helpers_globoidal import DESIGN
 from helpers_pairs import PROFILES
 
@@ -166,7 +165,7 @@ def test_the_motion_in_the_table() -> None:
 @pytest.mark.parametrize("rotation", ["ccw", "cw"])
 def test_after_a_turn_the_turret_stands_where_its_next_roller_stood(rotation: str) -> None:
     result = built(cam__rotation=rotation)
-    turret = in_space(result, np.array([0.0, 2.0 * math.pi]))["turret"].matrix
+    turret = result.in_space(np.array([0.0, 2.0 * math.pi]))["turret"].matrix
     pitch = math.pi / 4
     c, s = math.cos(pitch), math.sin(pitch)
     step = np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])  # about y, which is mirrored on itself

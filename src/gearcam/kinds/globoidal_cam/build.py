@@ -134,17 +134,18 @@ class GloboidalCamResult(GriddedCam):
         error = scallop if self.carved else chord_error
         return error(self.cam, self.solid_steps, self.design.output.wall_points)
 
-    def standing(self, chords: float = 0.0) -> dict[str, tuple[Mesh, SpacePose]]:
-        """Return cam and turret at the angle of the design, as meshes (see `Result`)."""
-        from gearcam.kinds.globoidal_cam.scene import in_space
+    def moved_poses(self, theta: Array) -> dict[str, SpacePose]:
+        """Return the pose of the turret (see `GriddedCam.moved_poses`)."""
+        return {TURRET: self.cam.guide.pose(self.program.derivatives(theta, 0)[0])}
+
+    def shown(self, chords: float) -> dict[str, Mesh]:
+        """Return cam and turret (see `GriddedCam.shown`)."""
         from gearcam.parts.shapes import circle_segments
 
         turret, places = self.design.turret, self.design.output.wall_points
         around = circle_segments(2.0 * turret.roller_radius, max(chords, SAGITTA))
-        fine = self.solid_steps > _SHOWN
-        meshes = {
-            STEM: self.mesh_of(_SHOWN, places) if chords and fine else self.mesh,
+        coarser = chords and self.solid_steps > _SHOWN
+        return {
+            STEM: self.mesh_of(_SHOWN, places) if coarser else self.mesh,
             TURRET: mesh_from(turret_surface(self.cam, turret.hub, around)),
         }
-        poses = in_space(self, np.array([self.design.output.pose]))
-        return {name: (mesh, poses[name][0]) for name, mesh in meshes.items()}

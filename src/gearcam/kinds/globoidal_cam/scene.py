@@ -11,15 +11,13 @@ import numpy as np
 
 from gearcam.kinds.globoidal_cam.build import TURRET
 from gearcam.kinds.globoidal_cam.drawn import center, grooves, paths, rollers, sheet
-from gearcam.kinds.gridded_scene import turning, unrolled_scene
+from gearcam.kinds.gridded_scene import unrolled_scene
 from gearcam.laws.phases_of_lift import TURN
 from gearcam.numeric.pose import Pose
 from gearcam.pictures.scenes import PLACES, MovingBody, Scene
 
 if TYPE_CHECKING:
     from gearcam.kinds.globoidal_cam.build import GloboidalCamResult
-    from gearcam.numeric.arrays import Array
-    from gearcam.numeric.pose import SpacePose
 
 _EYE: Final = (0.45, -1.0, 0.55)
 """Cam and turret are beside each other then, and rollers between the ribs are seen."""
@@ -44,23 +42,4 @@ def scene(result: GloboidalCamResult, places: int = PLACES) -> Scene:
     # the end of the turn, at which the next roller is where this one began
     moving = Pose(np.zeros(len(theta)), center(cam, theta))
     turret = MovingBody(name=TURRET, called="rollers", features=rollers(cam), pose=moving)
-    return unrolled_scene(result, theta, sheet_of, turret, in_space(result, theta), _EYE)
-
-
-def in_space(result: GloboidalCamResult, theta: Array) -> dict[str, SpacePose]:
-    """Return the poses of the solids.
-
-    Parameters
-    ----------
-    result : GloboidalCamResult
-        The cam.
-    theta : (n,) array, rad
-        Cam angles.
-
-    Returns
-    -------
-    dict of str to SpacePose
-        Of the cam and of the turret, by name.
-    """
-    cam = result.cam
-    return turning(cam, theta, {TURRET: cam.guide.pose(cam.program.derivatives(theta, 0)[0])})
+    return unrolled_scene(result, theta, sheet_of, turret, _EYE)

@@ -39,6 +39,9 @@ if TYPE_CHECKING:
     from gearcam.spatial.milling import RotaryPath
     from gearcam.spatial.sizing import SolvedDiameter
 
+ROLLER: Final = "roller"
+"""Name of its solid; of two, those at a rib, the beginning of their names."""
+
 _TURN: Final = 2.0 * math.pi
 
 _WITNESSES: Final = ((360, 13), (720, 25))
@@ -220,17 +223,27 @@ class SpatialCamResult(GriddedCam):
         """Whether a file needs the path of the tool."""
         return not {"tool-path", "gcode"}.isdisjoint(self.design.output.files)
 
-    def standing(self, chords: float = 0.0) -> dict[str, tuple[Mesh, SpacePose]]:
-        """Return cam and rollers at the angle of the design, as meshes (see `Result`)."""
-        from gearcam.kinds.spatial_cam.scene import in_space
+    @property
+    def rollers(self) -> dict[str, float]:
+        """How far above the follower's place its rollers are, mm, by name: two at a rib, or one."""
+        half = 0.5 * self.cam.apart
+        return {f"{ROLLER}_upper": half, f"{ROLLER}_lower": -half} if half else {ROLLER: 0.0}
+
+    def moved_poses(self, theta: Array) -> dict[str, SpacePose]:
+        """Return the poses of the rollers (see `GriddedCam.moved_poses`)."""
+        carried = self.cam.guide.pose(self.program.derivatives(theta, 0)[0])
+        return {
+            name: replace(carried, shift=carried.shift + np.array([0.0, 0.0, up]))
+            for name, up in self.rollers.items()
+        }
+
+    def shown(self, chords: float) -> dict[str, Mesh]:
+        """Return cam and rollers (see `GriddedCam.shown`)."""
         from gearcam.parts.shapes import circle_segments
 
         size = 2.0 * self.design.follower.roller_radius
         roller = mesh_from(roller_surface(self.cam, circle_segments(size, max(chords, SAGITTA))))
-        poses = in_space(self, np.array([self.design.output.pose]))
-        return {
-            name: (self.mesh if name == STEM else roller, pose[0]) for name, pose in poses.items()
-        }
+        return {STEM: self.mesh, **dict.fromkeys(self.rollers, roller)}
 
     @property
     def main_errors(self) -> Sequence[tuple[str, Sequence[str]]]:
