@@ -24,6 +24,7 @@ from gearcam.kinds.mechanism.make import make_linkage
 from gearcam.kinds.mechanism.names import parts_of
 from gearcam.kinds.mechanism.outputs import (
     AMOUNTS,
+    RATES,
     Output,
     OutputNames,
     paths_asked,
@@ -54,9 +55,6 @@ _WITNESSES: Final = 1000
 
 _ENDS: Final = 1e-9
 """How far an angle may be beyond an open range by rounding, rad."""
-
-ORDER: Final = 3
-"""Highest derivative in tables."""
 
 _DRIVERS: Final = {
     "pair": ("phi1", "driver angle phi1"),
@@ -206,15 +204,13 @@ class MechanismResult(Result):
         return Columns(columns)
 
     def _columns(self, one: Output, where: Array) -> dict[str, Array]:
-        values = self.track(one)(where, ORDER).derivatives()
-        scale, unit = one.unit
-        columns, rate = {f"{one.stem}_{unit}": scale * values[0]}, one.rate_unit
-        powers = [(order, order if order > 1 else "") for order in range(1, ORDER + 1)]
-        columns |= {f"{one.stem}_{rate}_per_rad{power}": values[k] for k, power in powers}
-        speed = self.speed
+        orders, speed, (scale, unit) = range(1, len(RATES) + 1), self.speed, one.unit
+        values = self.track(one)(where, len(RATES)).derivatives()
+        keys = {order: one.rate_keys(order) for order in orders}
+        columns = {f"{one.stem}_{unit}": scale * values[0]}
+        columns |= {f"{one.stem}_{keys[k][0]}": values[k] for k in orders}
         if speed is not None:
-            by_time = {f"{one.stem}_{rate}_s{power}": values[k] * speed**k for k, power in powers}
-            columns |= by_time
+            columns |= {f"{one.stem}_{keys[k][1]}": values[k] * speed**k for k in orders}
         return columns
 
     def track(self, one: Output) -> Callable[[Array, int], Jet]:

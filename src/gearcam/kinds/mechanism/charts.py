@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from gearcam.kinds.mechanism.outputs import RATES
 from gearcam.linkages.transmission import ADMISSIBLE, pressure_angle
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.pictures.charts import Chart, Charts, Limit, Line, MarkedPlace, knot_marks
@@ -34,7 +35,7 @@ _STEADY: Final = 1e-9
 
 _DEG: Final = math.degrees(1.0)
 
-_WORDS: Final = ("place", "velocity", "acceleration", "jerk")
+_WORDS: Final = ("place", *RATES)
 
 
 def _angles(result: MechanismResult) -> Array:

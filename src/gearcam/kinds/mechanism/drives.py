@@ -218,7 +218,7 @@ class PlacedDrive(ShortRepr):
             moved[word] = replace(one, law=law)
         if self.result is not None:
             return replace(self, spec=other.spec, moved=moved)
-        high = other.period if _steady(other) else max(map(_travelled, _driven_laws(other)))
+        high = other.period if _steady(other) else _furthest(other)
         return PlacedDrive(other.spec, moved, np.array([0.0, high]), high, other.closed)
 
     def elements(self, master: bool) -> Iterator[Element]:
@@ -341,21 +341,19 @@ def _steady(drive: PlacedDrive) -> bool:
     return drive.closed or any(one.along for one in drive.moved.values())
 
 
-def _driven_laws(drive: PlacedDrive) -> list[tuple[Law, float]]:
-    """Return the laws of what the driver moves, with the period."""
+def _travel(law: Law, drive: PlacedDrive) -> tuple[float, float]:
+    """Return where a law of a drive begins, and how far it gets over its range."""
+    first, last = np.asarray(law(np.array([0.0, drive.period]), 0).c[0])
+    return float(first), float(last - first)
+
+
+def _furthest(drive: PlacedDrive) -> float:
+    """Return how far what is driven gets, or the driver if nothing is."""
     driven = [one for word, one in drive.moved.items() if word not in ("wheel1", "shaft")]
-    return [(one.law, drive.period) for one in driven or drive.moved.values()]
-
-
-def _travelled(one: tuple[Law, float]) -> float:
-    """Return how far a law gets over its range."""
-    law, period = one
-    first, last = np.asarray(law(np.array([0.0, period]), 0).c[0])
-    return abs(float(last - first))
+    return max(abs(_travel(one.law, drive)[1]) for one in driven or drive.moved.values())
 
 
 def _evenly(law: Law, drive: PlacedDrive) -> Law:
     """Return the even law in the place of another one."""
-    first, last = np.asarray(law(np.array([0.0, drive.period]), 0).c[0])
-    way = float(last - first)
-    return linear(way / drive.period if _steady(drive) else math.copysign(1.0, way), float(first))
+    first, way = _travel(law, drive)
+    return linear(way / drive.period if _steady(drive) else math.copysign(1.0, way), first)

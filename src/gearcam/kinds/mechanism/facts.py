@@ -188,17 +188,15 @@ def _output(result: MechanismResult, one: Output, number: int) -> Tree:
 def _peaks(result: MechanismResult, one: Output, *, shown: bool = False) -> Tree:
     """Return the derivatives of an output furthest from 0; the velocity may be shown."""
     measures: TrackMeasures = result.measures[one.stem]
-    speed, unit, tree = result.speed, one.rate_unit, {}
+    speed, tree = result.speed, {}
     for order, word in enumerate(RATES, start=1):
-        peak, power = measures.size(order), order if order > 1 else ""
-        seen = shown and order == 1
-        label, place, still = f"largest {word} of {one.stem}", _place(peak), speed is None
-        name = f"{word}_{unit}_per_rad{power}"
-        tree[name] = Fact(peak.value, label, place=place, shown=seen and still, noise=1e-9)
+        peak, (per_rad, per_s) = measures.size(order), one.rate_keys(order)
+        seen, label, place = shown and order == 1, f"largest {word} of {one.stem}", _place(peak)
+        told = seen and speed is None
+        tree[f"{word}_{per_rad}"] = Fact(peak.value, label, place=place, shown=told, noise=1e-9)
         if speed is not None:
             value = peak.value * speed**order
-            name = f"{word}_{unit}_s{power}"
-            tree[name] = Fact(value, label, place=place, shown=seen, noise=1e-9)
+            tree[f"{word}_{per_s}"] = Fact(value, label, place=place, shown=seen, noise=1e-9)
         tree[f"{word}_at_deg"] = _DEG * peak.place
     return tree
 
@@ -267,13 +265,13 @@ def _intervals(result: MechanismResult) -> list[Tree] | None:
                 shown=True,
             ),
             "time_s": None if speed is None else found.length / speed,
-            f"velocity_{unit}_per_rad": rate,
-            f"velocity_{unit}_s": None if speed is None else rate * speed,
+            f"velocity_{per_rad}": rate,
+            f"velocity_{per_s}": None if speed is None else rate * speed,
         }
         for number, (one, found, rate) in enumerate(
             zip(result.design.interval, result.intervals, result.interval_velocities, strict=True)
         )
-        for unit in [result.asked("interval", number)[0].rate_unit]
+        for per_rad, per_s in [result.asked("interval", number)[0].rate_keys(1)]
     ] or None
 
 

@@ -23,7 +23,7 @@ AMOUNTS: Final = {"interval": "travel", "dwell": "within"}
 """The amount that a table about one output gives."""
 
 RATES: Final = ("velocity", "acceleration", "jerk")
-"""Names of the derivatives."""
+"""Names of the derivatives, those in tables."""
 
 
 class Output(NamedTuple):
@@ -55,6 +55,11 @@ class Output(NamedTuple):
     def rate_unit(self) -> str:
         """Unit of its velocity but for the time."""
         return "rad" if self.angle else "mm"
+
+    def rate_keys(self, order: int) -> tuple[str, str]:
+        """Return the units of a derivative as in keys: by the master's angle, and by time."""
+        power = order if order > 1 else ""
+        return f"{self.rate_unit}_per_rad{power}", f"{self.rate_unit}_s{power}"
 
 
 Known = dict[str, tuple[Output, ...]]
