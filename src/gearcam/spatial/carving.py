@@ -65,8 +65,8 @@ def scallop(cam: SpatialCam, steps: int, places: int) -> float:
     for walls in _made_together(cam):
         before, after = (_hulls(walls, at, places) for at in (theta[:-1], theta[1:]))
         for wall in walls:
-            points = wall.contact(middle, np.tile(x, (steps, 1))).points
-            worst = max(worst, float(left_between(before, after, points).max()))
+            touched = wall.contact(middle, np.tile(x, (steps, 1)))
+            worst = max(worst, float(left_between(before, after, touched).max()))
     return worst
 
 

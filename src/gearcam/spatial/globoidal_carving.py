@@ -70,8 +70,8 @@ def scallop(cam: GloboidalCam, steps: int, places: int) -> float:
     x = np.tile(np.linspace(*cam.places, 2 * places - 1), (len(middle), 1))
     worst = 0.0
     for wall in cam.walls:
-        points = wall.contact(middle, x).points
-        height = left_between(before, after, points)[cam.inside(points)]
+        touched = wall.contact(middle, x)
+        height = left_between(before, after, touched)[cam.inside(touched.points)]
         worst = max(worst, float(height.max()))
     return worst
 

@@ -7,7 +7,7 @@ other corner is near: the hull gets corners in the directions of the first and l
 too, or it would leave a face on either side that slopes away from the wall.
 
 Between two positions a *scallop* remains, a ridge of metal. It is highest near the middle of a
-step, and as high as the wall's point there is outside the nearer one of both hulls.
+step: there it is as high as it is far from the wall, along its normal, to the nearer hull.
 
 Depends on walls; numpy only.
 """
@@ -22,7 +22,7 @@ import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.numeric.arrays import Array
-from gearcam.spatial.envelope import Roller, RollerAxis
+from gearcam.spatial.envelope import Roller, RollerAxis, RollerContact
 from gearcam.spatial.walls import RollerCam, RollerWall
 
 
@@ -115,26 +115,48 @@ class RollerHulls(ShortRepr):
         """Return the hulls with corners in more directions, (n, k) arrays, rad."""
         return replace(self, angles=np.concatenate([self.angles, *angles], axis=1))
 
-    def beyond(self, points: Array) -> Array:
-        """Return how far points are outside the hulls, (n, k), mm; below 0 they are inside.
-
-        Measured from the plane of the face in whose sector of directions they are.
+    def faces(self, points: Array) -> tuple[Array, Array]:
+        """Return the faces of the hulls in whose sectors of directions points are.
 
         Parameters
         ----------
         points : (n, k, 3) array, mm
             As of `seen`.
+
+        Returns
+        -------
+        off : (n, k) array, mm
+            How far the points are outside their planes.
+        normals : (n, k, 3) array
+            Their unit normals outwards.
         """
         along, far, angle = self.seen(points)
         around = np.sort(self.angles % (2.0 * math.pi), axis=1)
-        angle = angle % (2.0 * math.pi)
-        after = (around[:, None, :] <= angle[..., None]).sum(axis=-1)
+        after = (around[:, None, :] <= (angle % (2.0 * math.pi))[..., None]).sum(axis=-1)
         rows = np.arange(len(around))[:, None]
         low, high = (around[rows, k % around.shape[1]] for k in (after - 1, after))
         half = 0.5 * ((high - low) % (2.0 * math.pi))
+        middle = low + half
+        first, second = (one[:, None, :] for one in self._across)
+        direction = self.axis.direction[0][:, None, :]
+        # a face of a cone leans by its slope
         slope = math.tan(self.roller.half_angle) * np.cos(half)
-        off = far * np.cos(angle - low - half) - self.roller.radii(along) * np.cos(half)
-        return off / np.hypot(1.0, slope)
+        size = np.hypot(1.0, slope)
+        off = far * np.cos(angle - middle) - self.roller.radii(along) * np.cos(half)
+        c, s = np.cos(middle)[..., None], np.sin(middle)[..., None]
+        normals = c * first + s * second - slope[..., None] * direction
+        return off / size, normals / size[..., None]
+
+    def left_on(self, wall: RollerContact) -> Array:
+        """Return how much these hulls leave on a wall along its normal, (n, k), mm.
+
+        Parameters
+        ----------
+        wall : RollerContact
+            Points of the wall, at other cam angles.
+        """
+        off, normals = self.faces(wall.points)
+        return off / (normals * wall.normals).sum(axis=-1)
 
 
 def round_hulls(
@@ -161,14 +183,14 @@ def round_hulls(
     return RollerHulls(theta=theta, axis=axis, roller=cam.tool, angles=angles, ends=ends)
 
 
-def left_between(before: RollerHulls, after: RollerHulls, points: Array) -> Array:
+def left_between(before: RollerHulls, after: RollerHulls, wall: RollerContact) -> Array:
     """Return the heights of what two positions of a roller leave on a wall, (n, k), mm.
 
     Parameters
     ----------
     before, after : RollerHulls
         The roller at n cam angles, and one step later.
-    points : (n, k, 3) array, mm
+    wall : RollerContact
         Points of the wall between them.
     """
-    return np.minimum(before.beyond(points), after.beyond(points))
+    return np.minimum(before.left_on(wall), after.left_on(wall))
