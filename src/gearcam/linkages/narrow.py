@@ -13,9 +13,10 @@ from typing import Final
 
 import numpy as np
 
+from gearcam.linkages.elements import Dyad
 from gearcam.linkages.linkage import Linkage, in_cycle
-from gearcam.linkages.transmission import guide_distance, transmission_of
-from gearcam.numeric.arrays import away
+from gearcam.linkages.transmission import guide_distance, guide_distances
+from gearcam.numeric.arrays import apart, away
 
 _NARROW: Final = 0.1
 """Width, rad, from which a search sees it without knots of its own."""
@@ -45,17 +46,23 @@ def with_narrow_places(linkage: Linkage) -> Linkage:
     (low, high), places, knots = linkage.span, np.concatenate(found), linkage.knots
     if linkage.closed:
         _, places = in_cycle(places, linkage.span)
-    inside = places[(places > low) & (places < high)]
+    inside = apart(np.sort(places[(places > low) & (places < high)]), _APART)
     return replace(linkage, knots=np.union1d(knots, away(inside, knots, _APART)))
 
 
 def _places(linkage: Linkage) -> Iterator[np.ndarray]:
     for dyad in linkage.dyads:
-        nearest = transmission_of(linkage, dyad).distance if dyad.type.startswith("RTR") else None
-        if nearest is None:
-            continue
-        known = linkage.at(np.array([nearest.place]), 2)
-        bend = float(guide_distance(known, dyad).derivatives()[2][0])
-        width = nearest.value / np.sqrt(0.5 * bend) if bend > 0.0 else np.inf
+        if dyad.type in ("RTR1", "RTR2"):
+            yield from _passes(linkage, dyad)
+
+
+def _passes(linkage: Linkage, dyad: Dyad) -> Iterator[np.ndarray]:
+    """Yield the knots about each place at which a pin passes the pivot of its guide closely."""
+    places, squares = guide_distances(linkage, dyad).extremes[0]
+    beside = np.minimum(np.append(squares[1:], np.inf), np.append(np.inf, squares[:-1]))
+    places, squares = places[squares <= beside], squares[squares <= beside]
+    bends = guide_distance(linkage.at(places, 2), dyad).derivatives()[2]
+    for place, square, bend in zip(places, squares, bends, strict=True):
+        width = np.sqrt(max(square, 0.0) / (0.5 * bend)) if bend > 0.0 else np.inf
         if width < _NARROW:
-            yield nearest.place + width * _AROUND
+            yield place + width * _AROUND

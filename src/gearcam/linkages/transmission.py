@@ -138,6 +138,11 @@ def guide_distance(known: Known, dyad: Dyad) -> Jet:
     return reach * reach
 
 
+def guide_distances(linkage: Linkage, dyad: Dyad) -> TrackMeasures:
+    """Return measures of the squared distance of an RTR `dyad` of a `linkage`, mm2."""
+    return _measures(linkage, lambda known: guide_distance(known, dyad))
+
+
 def transmissions(linkage: Linkage) -> tuple[Transmission, ...]:
     """Return the worst place of each dyad of a linkage.
 
@@ -157,7 +162,7 @@ def transmissions(linkage: Linkage) -> tuple[Transmission, ...]:
 def transmission_of(linkage: Linkage, dyad: Dyad) -> Transmission:
     """Return the worst place of one `dyad` of a `linkage` (see `transmissions`)."""
     if dyad.type in ("RTR1", "RTR2"):
-        least = _measures(linkage, lambda known: guide_distance(known, dyad)).least()
+        least = guide_distances(linkage, dyad).least()
         known = linkage.at(np.array([least.place]), 0)
         whole = np.asarray(square(known.jet(dyad.second) - known.jet(dyad.first)).c[0])
         distance = math.sqrt(max(least.value, 0.0))
