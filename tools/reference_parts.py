@@ -32,6 +32,7 @@ GROUPS: Final = {
     "cams": "Motion and profile",
     "cams in space": "Walls",
     "mechanisms": "Motion",
+    "tables of mechanisms": "What is asked for, loads, and chains",
     "torque of a mechanism": "Torque (`gearcam torque`)",
     "globoidal cams": "Walls and hold",
     "solids of globoidal cams": "Solids",

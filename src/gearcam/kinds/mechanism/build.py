@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable
 from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property, partial
+from itertools import chain
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final
 
@@ -17,7 +18,7 @@ from gearcam.base.errors import ABOVE, DesignError, InfeasibleError, Problem, be
 from gearcam.base.findings import Finding, in_order, run_checks
 from gearcam.base.numerals import formatted
 from gearcam.kinds.mechanism.asked import fits, last_bits
-from gearcam.kinds.mechanism.checks import machine_to_check, own_findings
+from gearcam.kinds.mechanism.checks import TABLES, machine_to_check
 from gearcam.kinds.mechanism.design import MechanismDesign
 from gearcam.kinds.mechanism.drives import PlacedDrive, placed
 from gearcam.kinds.mechanism.make import make_linkage
@@ -255,8 +256,9 @@ class MechanismResult(Result):
         _ = self.compared
         machine = machine_to_check(self)
         with self.stage("checks"):
-            own = run_checks(KIND, machine, self.design.limits)
-            return in_order((*below, *own, *own_findings(self)))
+            subjects = {KIND: machine, TABLES: self}
+            own = [run_checks(kind, one, self.design.limits) for kind, one in subjects.items()]
+            return in_order(chain(below, *own))
 
     @cached_property
     def without_pair(self) -> MechanismResult | None:

@@ -1,4 +1,7 @@
-"""Findings on a mechanism: on its linkage, on what is asked of it, on its loads and chains."""
+"""The checks of what the tables of a mechanism ask for, and of its chains.
+
+Importing this module registers them. Those of its motion are in `gearcam.linkages.checks`.
+"""
 
 from __future__ import annotations
 
@@ -9,13 +12,16 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from gearcam.base.findings import Finding
+from gearcam.base.findings import Remark, check
 from gearcam.base.numerals import formatted
 from gearcam.kinds.mechanism.drives import center_of
 from gearcam.linkages.checks import CheckedMachine
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.build import MechanismResult
+
+TABLES: Final = "tables of mechanisms"
+"""Their group."""
 
 _NEAR: Final = 1e-3
 """Distance, relative to the wheel's radius, that is none: places are rounded in design files."""
@@ -43,43 +49,32 @@ def machine_to_check(result: MechanismResult) -> CheckedMachine:
     )
 
 
-def own_findings(result: MechanismResult) -> Iterator[Finding]:
-    """Yield what is asked for and missed, what is given in vain, and chains that are guided.
+@check("no-dwell", kind=TABLES, unit="deg")
+def no_dwell(result: MechanismResult, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Warn of a dwell that is asked for and not long enough.
 
-    Parameters
-    ----------
-    result : MechanismResult
-        The mechanism.
+    Looks at: the longest range of the master in which the output stays within the amount.
     """
-    yield from _dwells_missed(result)
-    yield from _second_centers(result)
-    yield from _loads_unused(result)
-    yield from _wheels_apart(result)
-    yield from _chains_beside(result)
-
-
-def _dwells_missed(result: MechanismResult) -> Iterator[Finding]:
-    """Yield the dwells that are asked for and not long enough."""
     for number, (one, found) in enumerate(zip(result.design.dwell, result.dwells, strict=True)):
         if found.length < one.least:
-            yield Finding(
-                code="no-dwell",
-                severity="warning",
-                message=f"{one.on} has no dwell as long as that: this is the longest.",
-                value=_DEG * found.length,
+            yield Remark(
+                f"{one.on} has no dwell as long as that: this is the longest.",
+                f"dwell[{number}], from {formatted(_DEG * found.begin, 6)} deg",
+                _DEG * found.length,
                 limit=_DEG * one.least,
-                unit="deg",
-                where=f"dwell[{number}], from {formatted(_DEG * found.begin, 6)} deg",
             )
 
 
-def _second_centers(result: MechanismResult) -> Iterator[Finding]:
-    """Yield intervals before a dead centre that is reached a second time."""
+@check("second-dead-center", kind=TABLES, severity="note")
+def second_center(result: MechanismResult, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Note an interval before a dead centre that is reached more than once.
+
+    Looks at: the dead centres of the output with the same value.
+    """
     for number, (one, found) in enumerate(
         zip(result.design.interval, result.intervals, strict=True)
     ):
-        output, _ = result.asked("interval", number)
-        measures = result.measures_of(output)
+        measures = result.measures_of(result.asked("interval", number)[0])
         outer = one.before == "outer"
         top = (measures.largest() if outer else measures.least()).value
         same = [
@@ -89,47 +84,52 @@ def _second_centers(result: MechanismResult) -> Iterator[Finding]:
         ]
         if len(same) > 1:
             places = ", ".join(f"{formatted(_DEG * place, 6)} deg" for place in same)
-            yield Finding(
-                code="second-dead-center",
-                severity="note",
-                message=f"{one.on} reaches this dead centre more than once in a cycle, at "
-                f"{places}: the interval is before the first of them.",
-                where=f"interval[{number}], to {formatted(_DEG * found.end, 6)} deg",
+            yield Remark(
+                f"{one.on} reaches this dead centre more than once in a cycle, at {places}: the "
+                "interval is before the first of them.",
+                f"interval[{number}], to {formatted(_DEG * found.end, 6)} deg",
             )
 
 
-def _loads_unused(result: MechanismResult) -> Iterator[Finding]:
-    """Yield that the study which uses loads, masses and springs is not asked for."""
+@check("loads-unused", kind=TABLES, severity="note")
+def loads_unused(result: MechanismResult, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Note loads, masses and springs that nothing uses.
+
+    Looks at: whether the study of the driver's moment is asked for.
+    """
     design = result.design
     given = [word for word in ("load", "mass", "spring") if getattr(design, word)]
     if given and "torque" not in design.output.studies:
-        yield Finding(
-            code="loads-unused",
-            severity="note",
-            message="Only the study of the driver's moment uses loads, masses and springs: "
+        yield Remark(
+            "Only the study of the driver's moment uses loads, masses and springs: "
             'gearcam torque FILE, or studies = ["torque"].',
-            where=", ".join(given),
+            ", ".join(given),
         )
 
 
-def _wheels_apart(result: MechanismResult) -> Iterator[Finding]:
-    """Yield the wheels of levers' chains that are not where their shafts are."""
+@check("wheel-apart", kind=TABLES, severity="note", unit="mm")
+def wheel_apart(result: MechanismResult, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Note the wheel of a lever's chain that is not where its shaft is.
+
+    Looks at: the distance of the wheel from its shaft.
+    """
     for number, one in enumerate(result.design.chain):
         shaft, wheel = _shaft(result, one.on), complex(*one.at)
         if abs(wheel - shaft) > _NEAR * one.radius:
-            yield Finding(
-                code="wheel-apart",
-                severity="note",
-                message=f"The chain wheel is not on the shaft {one.on}, which is at {_at(shaft)}: "
+            yield Remark(
+                f"The chain wheel is not on the shaft {one.on}, which is at {_at(shaft)}: "
                 "it is taken to turn with that shaft, by what is no part of the machine.",
-                value=abs(wheel - shaft),
-                unit="mm",
-                where=f"chain[{number}].at_mm",
+                f"chain[{number}].at_mm",
+                abs(wheel - shaft),
             )
 
 
-def _chains_beside(result: MechanismResult) -> Iterator[Finding]:
-    """Yield the chains of hoists that do not lead straight to their wheels."""
+@check("guided-chain", kind=TABLES, severity="note", unit="mm")
+def guided_chain(result: MechanismResult, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Note the chain of a hoist that does not lead straight to its wheel.
+
+    Looks at: how far it passes beside the shaft, and the radius of the wheel.
+    """
     for number, one in enumerate(result.design.hoist):
         shaft, at = _shaft(result, one.on), complex(*one.at)
         # the chain is wound up on this side of the wheel
@@ -137,16 +137,13 @@ def _chains_beside(result: MechanismResult) -> Iterator[Finding]:
         beside = ((at - shaft) * side.conjugate()).real
         if abs(beside - one.radius) > _NEAR * one.radius:
             straight = at + side * (one.radius - beside)
-            yield Finding(
-                code="guided-chain",
-                severity="note",
-                message="The chain does not lead straight to its wheel on the shaft "
+            yield Remark(
+                "The chain does not lead straight to its wheel on the shaft "
                 f"{one.on}, at {_at(shaft)}: this is how far it passes beside the shaft, on the "
                 f"side where it is wound up, not the radius of {formatted(one.radius, 6)} mm. It "
                 f"is taken to be guided; it is straight with at_mm = [{_numbers(straight)}].",
-                value=beside,
-                unit="mm",
-                where=f"hoist[{number}].at_mm",
+                f"hoist[{number}].at_mm",
+                beside,
             )
 
 

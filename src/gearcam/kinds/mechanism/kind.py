@@ -34,8 +34,8 @@ KIND: Final = Kind(
     required=("drive",),
     problems=_problems,
     formats=FORMATS,
-    check_modules=("gearcam.linkages.checks", f"{_HERE}.torque_checks"),
-    check_groups=("mechanisms", TORQUE),
+    check_modules=("gearcam.linkages.checks", f"{_HERE}.checks", f"{_HERE}.torque_checks"),
+    check_groups=("mechanisms", "tables of mechanisms", TORQUE),
     study_tables={name: name for name in ("torque", "accuracy")},
     example={
         "drive": [{"name": "motor", "even": True, "speed_rpm": 60}],
