@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import partial
+from itertools import product
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
@@ -19,6 +20,7 @@ from gearcam.kinds.mechanism.loaded import work_of
 from gearcam.kinds.mechanism.torque_checks import TORQUE, DriverEffort, Pull
 from gearcam.kinds.mechanism.wheel_masses import BODY
 from gearcam.linkages.efforts import GRAVITY, PARTS, SPRINGS, InertiaForce
+from gearcam.linkages.measures import Peak
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.pictures.charts import Chart, Limit, Line
 from gearcam.results.result import StudyResult
@@ -26,13 +28,15 @@ from gearcam.results.result import StudyResult
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.build import MechanismResult
     from gearcam.kinds.mechanism.drives import PlacedDrive
-    from gearcam.linkages.measures import Peak
     from gearcam.linkages.work import VirtualWork
     from gearcam.numeric.arrays import Array
     from gearcam.results.kind import Study
     from gearcam.results.result import Progress
 
 Tree = dict[str, Any]
+
+Ends = tuple[Peak, Peak]
+"""The least and the largest value of a quantity."""
 
 _NM: Final = 1e-3
 """N m of a N mm."""
@@ -44,6 +48,12 @@ _NOTHING: Final = 1e-6
 """Work, N mm, that is none: what rounding makes of forces that do no work."""
 
 _DEG: Final = math.degrees(1.0)
+
+_BESIDE: Final = np.linspace(-1.0, 1.0, 33)
+"""Places beside a largest value, in steps, at which a larger one is looked for."""
+
+_ROUNDS: Final = 4
+"""How often, each time more closely."""
 
 ONE_WALL: Final = "disc"
 """Form of the cams with one wall."""
@@ -142,7 +152,8 @@ def study_torque(result: MechanismResult, study: Study, progress: Progress | Non
         }
         shafts = list(shaft_loads(result, work, q))
         columns |= {one.column: one.values for one in shafts}
-        pulls = tuple(_pulls(result, shafts, q))
+        ends = _ends(result, work, shafts, q)
+        pulls = tuple(_pulls(result, shafts, ends))
         effort = replace(_effort(result, work, beside), pulls=pulls)
         found = run_checks(TORQUE, effort, result.design.limits)
     speed = result.speed
@@ -153,7 +164,7 @@ def study_torque(result: MechanismResult, study: Study, progress: Progress | Non
         study=study,
         file="torque.csv",
         table=columns,
-        group=_facts(result, work, beside, shafts),
+        group=_facts(result, work, beside, shafts, ends),
         study_findings=found,
         drawn=partial(_charts, result, columns, beside),
     )
@@ -186,6 +197,13 @@ def _columns(result: MechanismResult, work: VirtualWork, q: Array) -> dict[str, 
 
 def _place(result: MechanismResult, q: float) -> str:
     return f"{result.driver[0]} = {formatted(_DEG * q, 6)} deg"
+
+
+def _least_and_largest(result: MechanismResult, least: Peak, largest: Peak) -> str:
+    """Return where both are, in words; nothing of what does not change."""
+    if largest.value - least.value <= _NOISE * max(abs(largest.value), abs(least.value)):
+        return ""
+    return f"least {_place(result, least.place)}, largest {_place(result, largest.place)}"
 
 
 def shaft_loads(result: MechanismResult, work: VirtualWork, q: Array) -> Iterator[ShaftLoad]:
@@ -237,16 +255,44 @@ def _of_cam(drive: PlacedDrive, work: VirtualWork, q: Array) -> Iterator[ShaftLo
         yield ShaftLoad("follower_torque_nm", _NM * own, meaning, loose)
 
 
-def _pulls(result: MechanismResult, shafts: list[ShaftLoad], q: Array) -> Iterator[Pull]:
+def _ends(
+    result: MechanismResult, work: VirtualWork, shafts: list[ShaftLoad], q: Array
+) -> dict[str, Ends]:
+    """Return the least and the largest of what each shaft exerts, between the rows too."""
+    found = {}
+    for one, side in product(shafts, (-1.0, 1.0)):
+        top = int((side * one.values).argmax())
+        found[one.column, side] = Peak(side * float(one.values[top]), float(q[top]))
+    step = float(q[-1] - q[0]) / result.design.torque.steps
+    for _ in range(_ROUNDS):
+        near = np.clip([peak.place + step * _BESIDE for peak in found.values()], q[0], q[-1])
+        again = {one.column: one.values for one in shaft_loads(result, work, near.ravel())}
+        for number, ((column, side), peak) in enumerate(list(found.items())):
+            values = side * again[column].reshape(near.shape)[number]
+            top = int(values.argmax())
+            closer = Peak(float(values[top]), float(near[number, top]))
+            found[column, side] = max(peak, closer, key=lambda one: one.value)
+        step *= 2.0 / (_BESIDE.size - 1)
+    return {
+        one.column: (
+            found[one.column, -1.0]._replace(value=-found[one.column, -1.0].value),
+            found[one.column, 1.0],
+        )
+        for one in shafts
+    }
+
+
+def _pulls(
+    result: MechanismResult, shafts: list[ShaftLoad], ends: Mapping[str, Ends]
+) -> Iterator[Pull]:
     """Yield the most with which the mechanism pulls each loose follower off its cam."""
     names = [one.name for one in result.design.drive]
     for one in shafts:
-        worst = int(one.values.argmin())
-        size = -float(one.values[worst])
-        if one.loose and size > _NOISE * float(np.abs(one.values).max()):
+        least, largest = ends[one.column]
+        if one.loose and -least.value > _NOISE * abs(largest.value):
             unit = "N" if one.column.endswith("_n") else "N m"
             cam = f"drive[{names.index(one.loose)}].cam"
-            yield Pull(cam, size, unit, _place(result, float(q[worst])))
+            yield Pull(cam, -least.value, unit, _place(result, least.place))
 
 
 def _lifts(drive: PlacedDrive) -> float:
@@ -293,6 +339,7 @@ def _facts(
     work: VirtualWork,
     beside: Mapping[str, VirtualWork],
     shafts: list[ShaftLoad],
+    ends: Mapping[str, Ends],
 ) -> Tree:
     """Return the facts of the study."""
     speed = result.speed
@@ -317,7 +364,10 @@ def _facts(
         tree["mean_power_w"] = Fact(power, "mean power", unit="W", shown=True, noise=least * speed)
     tree |= {
         one.column: Fact(
-            extent(float(one.values.min()), float(one.values.max())), one.meaning, shown=True
+            extent(*(end.value for end in ends[one.column])),
+            one.meaning,
+            place=_least_and_largest(result, *ends[one.column]),
+            shown=True,
         )
         for one in shafts
     }
@@ -335,11 +385,10 @@ def _facts(
 def _range(result: MechanismResult, work: VirtualWork, meaning: str) -> Tree:
     """Return the least and the largest moment of the driver, and where they are."""
     least, largest = work.least, work.largest
-    places = _place(result, least.place), _place(result, largest.place)
     fact = Fact(
         extent(_NM * least.value, _NM * largest.value),
         meaning,
-        place=f"least {places[0]}, largest {places[1]}",
+        place=_least_and_largest(result, least, largest),
         shown=True,
         noise=_NM * _NOISE * max(abs(least.value), abs(largest.value)),
     )

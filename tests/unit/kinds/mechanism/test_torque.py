@@ -657,6 +657,24 @@ def test_against_an_even_shaft() -> None:
     agree(found.columns["torque_nm"], np.full(len(found.columns["torque_nm"]), 3.0))
 
 
+@pytest.mark.parametrize("steps", [36, 720])
+def test_peaks_of_shafts_are_between_the_rows_too(steps: int) -> None:
+    load = [{"on": "slide", "formula": "-0.4*v"}]
+    found = study("nail_machine_slide", load=load, torque={"steps": steps}).facts
+    fine = study("nail_machine_slide", load=load, torque={"steps": 50000}).columns
+    for end, choose in (("min", np.min), ("max", np.max)):
+        # all that it works against is behind the pair
+        whole = found[f"torque.torque_nm.{end}"]
+        assert found[f"torque.wheel1_torque_nm.{end}"] == pytest.approx(whole, rel=1e-8, abs=1e-9)
+        value = choose(fine["wheel2_torque_nm"])
+        assert found[f"torque.wheel2_torque_nm.{end}"] == pytest.approx(value, rel=1e-7, abs=1e-9)
+
+
+def test_what_does_not_change_has_no_place() -> None:
+    found = torque(load=[{"on": "motor", "torque_nm": -3}])
+    assert found.facts.quantity("torque.torque_nm").place == ""
+
+
 def test_what_rounding_leaves_of_work_is_shown_as_0() -> None:
     found = torque(spring=[{"between": ["P", "D"], "stiffness_n_mm": 3, "preload_n": 50}])
     for name, text in (("mean_nm", "0 N m"), ("work_j", "0 J"), ("mean_power_w", "0 W")):
