@@ -163,16 +163,15 @@ def demand_part(design: MechanismDesign, linkage: Linkage) -> None:
     """
     if not linkage.closed:
         return
-    pulled = [(f"hoist[{number}]", one.on) for number, one in enumerate(design.hoist)]
-    pulled += [(f"chain[{number}]", one.on) for number, one in enumerate(design.chain)]
-    for where, shaft in pulled:
-        first, last = np.asarray(linkage.track(shaft, linkage.knots[[0, -1]], 0).c[0])
-        if abs(last - first) > _WHOLE * _CYCLES:
-            raise InfeasibleError(
-                "its chain is not back after a turn of the master",
-                where=where,
-                nearest="give drive[0].range_deg, over which it winds up and off",
-            )
+    for title in ("hoist", "chain"):
+        for number, one in enumerate(getattr(design, title)):
+            first, last = np.asarray(linkage.track(one.on, linkage.knots[[0, -1]], 0).c[0])
+            if abs(last - first) > _WHOLE * _CYCLES:
+                raise InfeasibleError(
+                    "its chain is not back after a turn of the master",
+                    where=f"{title}[{number}]",
+                    nearest="give drive[0].range_deg, over which it winds up and off",
+                )
 
 
 def _back(drive: PlacedDrive, turns: int) -> bool:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 from gearcam.base.registry import DeferredMapping, deferred
 from gearcam.kinds.mechanism import load_names, names, outputs, unfit_drives
 from gearcam.kinds.mechanism.design import NAME, MechanismDesign
-from gearcam.kinds.mechanism.tables import FORMATS
+from gearcam.kinds.mechanism.tables import FORMATS, STUDIES
 from gearcam.kinds.mechanism.torque_checks import TORQUE
 from gearcam.results.kind import Kind
 
@@ -36,7 +36,7 @@ KIND: Final = Kind(
     formats=FORMATS,
     check_modules=("gearcam.linkages.checks", f"{_HERE}.checks", f"{_HERE}.torque_checks"),
     check_groups=("mechanisms", "tables of mechanisms", TORQUE),
-    study_tables={name: name for name in ("torque", "accuracy")},
+    study_tables={name: name for name in STUDIES},
     example={
         "drive": [{"name": "motor", "even": True, "speed_rpm": 60}],
         "joint": [{"name": "D", "at_mm": [110, 0]}],

@@ -50,6 +50,7 @@ FORMATS: Final = ("csv", "dxf", "svg", "report")
 """What ``output.files`` may list."""
 
 STUDIES: Final = ("torque", "accuracy")
+"""Its studies, and the titles of the tables of their settings."""
 
 
 class WrittenDrive(ShortRepr):
