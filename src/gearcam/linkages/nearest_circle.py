@@ -143,7 +143,7 @@ def _best_move(points: Plane, center: complex) -> complex:
     """Return the move of a centre that is best if distances were linear in it."""
     away = points - center
     distance = np.abs(away)
-    toward = away / distance
+    toward = away / np.where(distance > 0.0, distance, 1.0)  # the centre may be a point
     rows = np.stack([np.ones(away.size), toward.real, toward.imag], axis=1)
     even, scales = np.linalg.qr(rows)  # of a far circle the directions hardly differ
     if np.abs(np.diag(scales)).min() <= _EVEN * abs(scales[0, 0]):

@@ -29,6 +29,9 @@ _PLACES: Final = 256
 _DIRECTIONS: Final = 720
 """Directions of strips that are compared at first, over half a turn."""
 
+_STRIPS: Final = 3
+"""Of the narrowest ones, how many are compared exactly: between points one may be wider."""
+
 _FOUND: Final = 1e-15
 """Accuracy of a direction, rad."""
 
@@ -101,10 +104,29 @@ def best_line(path: PointPath, begin: float, end: float) -> LineFit:
         If the end is not behind the begin, or the stretch is not in the path's range.
     """
     knots = _knots(path, begin, end)
-    points = _samples(path, knots)
+    strips = [_strip(path, knots, one) for one in _narrow(_samples(path, knots))]
+    near, low, high = min(strips, key=lambda one: one[2].value - one[1].value)
+    along = _sides(path, knots, near - 0.5 * np.pi)  # by the height over a line across
+    middle = 0.5 * (along[0].value + along[1].value) + 0.5j * (low.value + high.value)
+    direction = math.remainder(near, math.pi)
+    return LineFit(
+        complex(middle * np.exp(1j * near)),
+        direction,
+        0.5 * (high.value - low.value),
+        along[1].value - along[0].value,
+    )
+
+
+def _narrow(points: Plane) -> Array:
+    """Return directions next to which a strip round points is narrowest, the best first."""
     turned = np.linspace(-0.5 * np.pi, 0.5 * np.pi, _DIRECTIONS, endpoint=False)
     widths = np.array([np.ptp((points * np.exp(-1j * one)).imag) for one in turned])
-    near, step = float(turned[widths.argmin()]), np.pi / _DIRECTIONS
+    least = widths <= np.minimum(np.roll(widths, 1), np.roll(widths, -1))
+    return turned[least][widths[least].argsort()][:_STRIPS]
+
+
+def _strip(path: PointPath, knots: Array, near: float) -> tuple[float, Peak, Peak]:
+    """Return the direction of the narrowest strip next to one, and the points at its sides."""
 
     def change(direction: Array) -> Array:
         """Return the slope of the strip's width."""
@@ -115,20 +137,12 @@ def best_line(path: PointPath, begin: float, end: float) -> LineFit:
             found.append(((ends[0] - ends[1]) * np.exp(-1j * one)).real)
         return np.array(found)
 
+    step = np.pi / _DIRECTIONS
     edges = np.array([near - step]), np.array([near + step])
     slopes = change(edges[0]), change(edges[1])
     if slopes[0][0] < 0.0 < slopes[1][0]:
         near = float(bracketed_root(change, *edges, _FOUND, slopes)[0])
-    low, high = _sides(path, knots, near)
-    along = _sides(path, knots, near - 0.5 * np.pi)  # by the height over a line across
-    middle = 0.5 * (along[0].value + along[1].value) + 0.5j * (low.value + high.value)
-    direction = math.remainder(near, math.pi)
-    return LineFit(
-        complex(middle * np.exp(1j * near)),
-        direction,
-        0.5 * (high.value - low.value),
-        along[1].value - along[0].value,
-    )
+    return near, *_sides(path, knots, near)
 
 
 def best_circle(path: PointPath, begin: float, end: float) -> CircleFit:

@@ -9,6 +9,7 @@ import pytest
 from scipy.optimize import linprog, minimize
 
 from gearcam.linkages.elements import Law
+from gearcam.linkages.nearest_circle import moved_center
 from gearcam.linkages.path_fits import best_circle, best_line, distances_from
 from gearcam.linkages.paths import PointPath
 from gearcam.linkages.plane import towards
@@ -213,6 +214,32 @@ def test_of_what_bends_both_ways_the_nearest_circle_is_nearly_a_line() -> None:
     circle, line = best_circle(path, 0.0, 2.0), best_line(path, 0.0, 2.0)
     assert circle.radius > 1e4
     assert circle.deviation == pytest.approx(line.deviation, rel=1e-3)
+
+
+@pytest.mark.parametrize("seed", [2, 6, 9, 11])
+def test_the_narrowest_of_strips_that_are_nearly_as_narrow(seed: int) -> None:
+    """A triangle with round sides has three, which 256 points do not tell apart."""
+    random = np.random.default_rng(seed)
+    ways = (random.normal(size=2) + 1j * random.normal(size=2)) * 2e-3
+
+    def triangle(q: Array, order: int) -> Jet:
+        x = Jet.variable(q, order)
+        round_ = towards(x) * 10.0 + towards(x * -2.0)
+        return round_ + towards(x * 3.0) * ways[0] + towards(x * -3.0) * ways[1]
+
+    found = best_line(_of(triangle), 0.0, 2.0 * np.pi)
+    points = _even_points(_of(triangle), 0.0, 2.0 * np.pi, 2001)
+    turned = np.exp(-1j * np.linspace(0.0, np.pi, 4001))
+    widths = np.array([np.ptp((points * one).imag) for one in turned])
+    assert 2.0 * found.deviation == pytest.approx(widths.min(), rel=2e-6)
+
+
+def test_a_center_may_be_a_point() -> None:
+    x = np.linspace(0.0, 2.0 * np.pi, 256, endpoint=False)
+    eight = np.sin(x) + 1j * np.sin(2.0 * x)
+    center, deviation = moved_center(eight, complex(eight[0]))
+    assert deviation == pytest.approx(0.5 * np.ptp(np.abs(eight - center)), rel=1e-14)
+    assert deviation < 0.5 * np.abs(eight).max()
 
 
 def test_a_distance_may_be_0() -> None:
