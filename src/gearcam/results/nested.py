@@ -7,6 +7,7 @@ become those of the design around it.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
@@ -45,9 +46,31 @@ def within(key: str) -> Iterator[None]:
         ) from error
 
 
-def placed(key: str, findings: Iterable[Finding]) -> tuple[Finding, ...]:
-    """Return the `findings` of the design at a `key` with the key in their places."""
-    return tuple(replace(one, where=_placed(key, one.where)) for one in findings)
+def placed(
+    key: str, findings: Iterable[Finding], titles: Iterable[str] = ()
+) -> tuple[Finding, ...]:
+    """Return the findings of the design at a key with the key in their places.
+
+    Parameters
+    ----------
+    key : str
+        Dotted key of the design, such as ``drive.pair``.
+    findings : iterable of Finding
+        Its own.
+    titles : iterable of str
+        Its titles, if it is written in the design around it: then keys in messages begin with them,
+        and are those of the design around it. Those of a design in a file are keys of that file.
+
+    Returns
+    -------
+    tuple of Finding
+    """
+    words = "|".join(map(re.escape, titles))
+    own = re.compile(rf"(?<![\w.\]])(?=(?:{words})(?:\[\d+\])?\.[a-z])" if words else r"(?!)")
+    return tuple(
+        replace(one, where=_placed(key, one.where), message=own.sub(f"{key}.", one.message))
+        for one in findings
+    )
 
 
 def _placed(key: str, where: str) -> str:

@@ -40,6 +40,7 @@ from gearcam.numeric.arguments import angles
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
 from gearcam.numeric.jets import Jet
+from gearcam.results.kind import kind_of
 from gearcam.results.nested import placed as findings_of
 from gearcam.results.nested import within
 from gearcam.results.result import Result
@@ -103,8 +104,6 @@ class MechanismResult(Result):
 
     def _placed(self, at: str, spec: Any) -> PlacedDrive:
         def build(nested: Design) -> Any:
-            from gearcam.results.kind import kind_of
-
             with within(f"{at}.{spec.key}"):
                 result = kind_of(nested).result(nested, self.tolerances)
                 _ = result.pair if spec.pair is not None else result.program
@@ -251,8 +250,10 @@ class MechanismResult(Result):
         for number, drive in enumerate(self.drives):
             if drive.result is not None:
                 key = f"drive[{number}].{drive.spec.key}"
+                nested = drive.result.design
+                own = kind_of(nested).titles if nested.source == self.design.source else ()
                 with within(key):
-                    below += findings_of(key, drive.result.checked)
+                    below += findings_of(key, drive.result.checked, own)
         _ = self.compared
         machine = machine_to_check(self)
         with self.stage("checks"):

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
+
 import pytest
 
 import gearcam as gc
@@ -99,3 +102,34 @@ def test_rates_of_angles_have_their_units() -> None:
     assert units["outputs.rocker.velocity_rad_s"] == "rad/s"
     assert units["outputs.rocker.velocity_rad_per_rad"] == "rad/rad"
     assert units["outputs.P_x.velocity_mm_per_rad"] == "mm/rad"
+
+
+def test_the_key_in_a_finding_of_a_cam_is_that_of_the_machine(tmp_path: Path) -> None:
+    """In a table of the machine, as it is followed here; in a file of its own that of the file."""
+    cam = PROFILES / "plate_cam_offset_roller.toml"
+    machine = {
+        "kind": "mechanism", "name": "mine", "drive": [{"name": "cam", "cam": None}],
+        "slide": [{"name": "rod", "on": "cam.follower", "joint": "R"}],
+        "output": {"files": ["csv"]},
+    }  # fmt: skip
+    given = {**machine, "drive": [{"name": "cam", "cam": gc.load(cam).to_dict()}]}
+    design = gc.design(given)
+    (finding,) = gc.build(design).findings
+    change = re.search(r"has (drive\[0\]\.cam\.cam\.prime_radius_mm) = ([\d.]+)\.", finding.message)
+    assert finding.code == "pressure-angle"
+    assert change is not None
+    assert gc.build(design.with_({change[1]: float(change[2])})).findings == ()
+    file = tmp_path / "mine.toml"
+    file.write_text(
+        f"""kind = "mechanism"
+        [[drive]]
+        name = "cam"
+        cam = "{cam}"
+        [[slide]]
+        name = "rod"
+        on = "cam.follower"
+        joint = "R"
+        """
+    )
+    (finding,) = gc.build(gc.load(file)).findings
+    assert "limit has cam.prime_radius_mm = " in finding.message
