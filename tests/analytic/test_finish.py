@@ -41,7 +41,7 @@ def finished(made: GearPairResult, number: int, clearance: float, rounding: floa
     return make_gear(pair, 1 if number == 1 else 2, TOLERANCE, DEFAULT)
 
 
-@pytest.mark.parametrize("name", few(["ellipse", "circular", "press"], 2))
+@pytest.mark.parametrize("name", few(["ellipse", "circular", "press"], 3))
 @pytest.mark.parametrize("number", few([1, 2]))
 @pytest.mark.parametrize(
     ("clearance", "rounding"),

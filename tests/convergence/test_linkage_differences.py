@@ -20,6 +20,7 @@ from helpers_linkages import (
     swinging_guide,
 )
 from helpers_random_linkages import TURN, drawn
+from helpers_sampling import few
 
 STENCILS = {
     1: ({1: 0.5, -1: -0.5}, 0.5 ** np.arange(5, 9)),
@@ -80,7 +81,7 @@ def far_from_open() -> list[Linkage]:
     return chosen
 
 
-@pytest.mark.parametrize("order", STENCILS)
+@pytest.mark.parametrize("order", few(STENCILS))
 def test_of_random_linkages(order: int) -> None:
     for number, made in enumerate(far_from_open()):
         found = slope(made, made.dyads[-1].joint, order)

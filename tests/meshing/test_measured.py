@@ -92,7 +92,7 @@ def test_a_wheels_own_outline_has_no_error(name: str, written: str, tmp_path: Pa
             result.write(tmp_path, files=["dxf"])
             file = next(tmp_path.rglob(f"gear{number}.dxf"))
         keys[f"errors.outline{number}"] = str(file)
-    study = gc.build(result.design.with_({**keys, "errors.steps": 40})).study("errors")
+    study = gc.build(result.design.with_({**keys, "errors.steps": 24})).study("errors")
     radius = 0.5 * result.pair.center_distance
     facts = study.to_dict()
     found, own = facts["errors"], facts["errors"]["without"]

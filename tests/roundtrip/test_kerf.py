@@ -137,7 +137,7 @@ def test_holes_are_narrower_by_the_kerf_to_the_last_digit() -> None:
     assert radii[1] == pytest.approx([0.9, 0.9], abs=1e-15)
 
 
-@pytest.mark.parametrize("curves", ["splines", "lines"])
+@pytest.mark.parametrize("curves", few(["splines", "lines"]))
 def test_paths_are_measured_however_they_are_drawn(curves: str) -> None:
     made = job(KERF)
     output = replace(made.design.output, dxf_curves=curves)

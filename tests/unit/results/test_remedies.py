@@ -324,7 +324,7 @@ LATE = {
 """Designs without and with a file that is refused though the parts are made, and what helped."""
 
 
-@pytest.mark.parametrize("name", few(LATE, 3))
+@pytest.mark.parametrize("name", few(LATE, 8))
 def test_a_remedy_makes_all_files_that_are_asked_for(name: str, folder: Path) -> None:
     document, output, key = LATE[name]
 

@@ -212,15 +212,8 @@ CASES = {
 }
 
 
-OFTEN = (
-    "as wide as the groove",
-    "clockwise",
-    "an arm",
-    "a smaller cone",
-    "the upper wall",
-    "a rib",
-)
-"""Each sort of wall, follower, roller and tool."""
+OFTEN = ("clockwise", "an arm", "a smaller cone", "a rib")
+"""Each sort of follower, roller and tool."""
 
 
 @pytest.mark.parametrize("case", chosen(CASES, *OFTEN))
@@ -317,7 +310,7 @@ def test_the_table_is_the_program() -> None:
     assert np.diff(table[:, 4]).min() >= 0.0
 
 
-@pytest.mark.parametrize("coarsest", [2.0, pytest.param(1.0, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("coarsest", [3.0, pytest.param(1.0, marks=pytest.mark.slow)])
 def test_the_rest_falls_with_the_square_of_the_passes(coarsest: float) -> None:
     def rest(depth: float) -> float:
         given = {"tool": {"diameter_mm": 8, "depth_mm": depth}, "output": {"path_tolerance_mm": 1}}

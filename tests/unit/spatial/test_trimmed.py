@@ -94,7 +94,7 @@ def room(wall: SpatialWall, spot: Spot, more: float) -> float:
     return least
 
 
-@pytest.mark.parametrize("name", chosen(list(CAMS), "arm"))
+@pytest.mark.parametrize("name", chosen(list(CAMS), "cylinder"))
 def test_the_follower_moves_by_the_lost_lift_until_it_rests(name: str) -> None:
     wall = CAMS[name].walls[0]
     way = lost_lift(wall).way
@@ -145,7 +145,7 @@ def test_the_carved_solid_has_the_volume_of_the_search(count: int) -> None:
         removed += 0.5 * weight * 24.0 * u * radius * 2.0 * math.pi * float(np.mean(heights))
     made = carving(cam, 2 * count, 9)
     assert made.watertight
-    assert ROUND - made.volume == pytest.approx(removed, rel=2e-3 * (90 / count) ** 2)
+    assert ROUND - made.volume == pytest.approx(removed, rel=2e-3 * 90 / count)
 
 
 @pytest.mark.parametrize(
@@ -172,7 +172,7 @@ def roller(cam: SpatialCam, theta: float, less: float) -> Any:
     )
 
 
-@pytest.mark.parametrize(("radius", "steps"), [(8.0, 60), (8.0, 120), (22.3, 120)])
+@pytest.mark.parametrize(("radius", "steps"), few([(8.0, 60), (8.0, 120), (22.3, 120)]))
 def test_nothing_is_left_higher_than_is_stated(radius: float, steps: int) -> None:
     """A roller between two positions, in dwells and on slopes, by intersections of manifold3d."""
     cam = cut(radius)

@@ -385,7 +385,7 @@ def test_what_cannot_be_asked_is_refused(
 
 
 @pytest.mark.parametrize(
-    "words", [["--count", "5", "--seed", "1"], pytest.param(["--quick"], marks=pytest.mark.slow)]
+    "words", [["--count", "4", "--seed", "1"], pytest.param(["--quick"], marks=pytest.mark.slow)]
 )
 def test_a_campaign_finds_nothing(
     words: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]

@@ -288,10 +288,10 @@ def least_base(program: Any, radius: float) -> float:
     return radius - float(min((s + second).min(), at_ends.min()))
 
 
-@pytest.mark.parametrize("first", few(range(0, 400, 20), 20))
+@pytest.mark.parametrize("first", few(range(0, 400, 10), 40))
 def test_base_radii_of_random_flat_followers_are_the_closed_form(first: int) -> None:
     met = 0
-    for number in range(first, first + 20):
+    for number in range(first, first + 10):
         document = flat(number)
         result = gc.build(gc.design(document))
         if falls(Task(result).program):
@@ -301,7 +301,7 @@ def test_base_radii_of_random_flat_followers_are_the_closed_form(first: int) -> 
             met += 1
             wanted = least_base(result.program, document["limits"]["profile_radius_mm"])
             assert found.sizes["cam.base_radius_mm"] == pytest.approx(wanted, rel=1e-5), number
-    assert met > 10
+    assert met > 4
 
 
 @pytest.mark.parametrize("number", few(range(24), 8))
@@ -680,6 +680,7 @@ def test_the_pressure_angle_that_has_to_give_is_named_alone() -> None:
     assert not gc.build(gc.design(document)).findings
 
 
+@pytest.mark.slow
 def test_a_contact_pressure_that_has_to_give_is_named_and_works() -> None:
     document = loaded(stem("polynomial"), 400.0, bounds={"prime_radius_mm": [12, 16]})
     with pytest.raises(InfeasibleError, match="contact pressure would be") as caught:
