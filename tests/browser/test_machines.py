@@ -125,6 +125,19 @@ def test_names_do_not_cover_each_other_at_the_edge(browser: Chrome, page_of: Bui
                 assert beside or abs(one["y"] - other["y"]) > 9.0, (place, one, other)
 
 
+def test_the_place_is_told_with_the_name_of_the_output(
+    browser: Chrome, page_of: BuildOutput
+) -> None:
+    words = {}
+    for name in ("nail_machine_slide", "lathe_levers", BAR):
+        open_page(browser, page_of(name))
+        go(browser, 0.0)
+        words[name] = browser.find_element(By.ID, "told").text.partition(", ")[2]
+    assert words["nail_machine_slide"].startswith("pair: place of slide = ")
+    assert words["lathe_levers"].startswith("place of slide = ")
+    assert words[BAR].startswith("P_x: place = ")
+
+
 def test_wheels_and_links_move_together(browser: Chrome, page_of: BuildOutput) -> None:
     open_page(browser, page_of("nail_machine_slide"))
     turns = []

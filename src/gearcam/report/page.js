@@ -67,8 +67,13 @@ function told() {
   const chart = moving.find((one) => one.name === "ratio") ?? moving[0];
   const lines = chart?.lines.filter((one) => !one.dots) ?? [];
   const values = lines.length ? valuesAt(lines[0], page.place) : [];
-  const [what, measure = ""] = chart?.y.split(", ") ?? [];
+  const [axis, measure = ""] = chart?.y.split(", ") ?? [];
   const whose = lines.length > 1 ? `${lines[0].label}: ` : "";
+  // of one output by name, as in "Place of ram"; lines of several outputs have their names
+  const [title, output] = chart?.title.toLowerCase().split(" of ") ?? [];
+  const alone = title === axis && output && !/, |^the /.test(output);
+  const named = alone && !whose.toLowerCase().startsWith(output);
+  const what = named ? axis + chart.title.slice(axis.length) : axis;
   if (values.length) words.push(`${whose}${what} = ${values.join(" | ")} ${measure}`.trim());
   return words.join(", ");
 }
