@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from gearcam.designs.faults import Fault, show
-from gearcam.designs.slips import did_you_mean
+from gearcam.designs.slips import did_you_mean, nearest
 from gearcam.kinds.mechanism import names
 from gearcam.kinds.mechanism.name_keys import JOINT, SHAFT
 from gearcam.kinds.mechanism.names import moves
@@ -187,8 +187,11 @@ class OutputNames:
             return f"{owner} is a joint, which has no direction: write {owner}, for {gives}"
         if name in (one.name for one in self._tables("joint")):
             return f"{name} stands still"
-        below = [one for one in self.whole if one.startswith(f"{name}.")]
-        return f"did you mean {' or '.join(below)}?" if below else did_you_mean(name, self.whole)
+        owners = [one.rpartition(".")[0] for one in self.whole if "." in one]
+        hint = "" if name in owners else did_you_mean(name, self.whole)
+        meant = nearest(name, owners)
+        below = [one for one in self.whole if one.startswith(f"{meant}.") and meant]
+        return hint or (f"did you mean {' or '.join(below)}?" if below else "")
 
 
 def _coordinates(name: str) -> tuple[Output, ...]:

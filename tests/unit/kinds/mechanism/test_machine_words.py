@@ -117,14 +117,15 @@ def output(*names: str, machine: str = "four-bar", **tables: Any) -> Document:
 
 
 def test_all_outputs_that_do_not_move_are_told() -> None:
-    found = problems(output("rocker", "P", "coupler.angel", "D", "C.angle"))
-    assert [one.key for one in found] == [f"output.outputs[{k}]" for k in (0, 2, 3, 4)]
+    found = problems(output("rocker", "P", "coupler.angel", "D", "C.angle", "rockr"))
+    assert [one.key for one in found] == [f"output.outputs[{k}]" for k in (0, 2, 3, 4, 5)]
     assert found[0].message == '"rocker": nothing moves by this name'
     assert [one.hint for one in found] == [
         "did you mean rocker.angle?",
         "did you mean coupler.angle?",
         "D stands still",
         "C is a joint, which has no direction: write C, for its two coordinates",
+        "did you mean rocker.angle?",
     ]
     assert "of a joint also NAME.x and NAME.y" in found[0].allowed
     (found,) = problems(output("C.angle", machine="slide behind a pair"))
