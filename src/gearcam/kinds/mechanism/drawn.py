@@ -105,11 +105,15 @@ def picture(result: MechanismResult) -> tuple[Drawing, tuple[Label, ...]]:
     q, count = _angles(result)
     every = bodies(result, q, count)
     paths = [one for body in every for one in body.features if one.kind == TRACE]
-    shown = tuple(posed(every))
-    features = (*_ghosts(every, count), *shown, *paths)
+    # wheels and cams would cover the thin lines of cranks on their shafts
+    below, above = (
+        tuple(posed(tuple(one for one in every if bool(len(pins_of(one))) == linked)))
+        for linked in (False, True)
+    )
+    features = (*below, *_ghosts(every, count), *above, *paths)
     low, high = with_room(*box(features))
     size = _LETTERS * (high - low).real / PIXELS
-    lines = _lines(shown, 0.4 * size)
+    lines = _lines((*below, *above), 0.4 * size)
     names = labelled(_names(every), lines, size, size)
     less, angles = _SMALLER * size, _other_angles(every, q[:count], size)
     return Drawing(name="poses", features=features), (

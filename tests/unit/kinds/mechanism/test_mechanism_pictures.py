@@ -15,9 +15,10 @@ import shapely
 
 import gearcam as gc
 from gearcam.kinds.mechanism import bodies as drawn_bodies
+from gearcam.kinds.mechanism.drawn import picture
 from gearcam.kinds.mechanism.traces import distances, path_within
 from gearcam.numeric.arrays import as_pairs
-from gearcam.pictures.drawings import MEMBER, TRACE, Circle, chains
+from gearcam.pictures.drawings import GHOST, MEMBER, TRACE, Circle, chains
 from gearcam.pictures.scenes import MovingBody, Scene
 from gearcam.report.data import scene_data
 from gearcam.report.page import blocks
@@ -485,3 +486,13 @@ def test_a_swinging_guide_begins_at_its_pivot() -> None:
     points = np.concatenate([points for one in outlines for points, _ in chains(one, 1e-3)])
     half = np.abs(points.imag).max()
     assert points.real.min() == pytest.approx(-half, rel=1e-3)
+
+
+def test_thin_lines_are_drawn_over_wheels_and_under_members() -> None:
+    drawing, _ = picture(machine("slide behind a pair"))
+    layers = [one.layer for one in drawing.features]
+    thin = [k for k, layer in enumerate(layers) if layer == GHOST]
+    wheels = [k for k, layer in enumerate(layers) if layer.startswith("GEAR")]
+    members = [k for k, layer in enumerate(layers) if layer == MEMBER]
+    assert max(wheels) < min(thin)
+    assert max(thin) < min(members)
