@@ -116,7 +116,7 @@ def valid(data: bytes) -> bool:
     return bool(occt.BRepCheck_Analyzer(reader.OneShape()).IsValid())
 
 
-@pytest.mark.parametrize("name", chosen(list(CASES), "groove", "lower", "rib"))
+@pytest.mark.parametrize("name", chosen(list(CASES), "groove", "rib"))
 def test_solids_are_valid_and_have_their_volume(name: str) -> None:
     made, cylinders = named(name), CASES[name][2]
     data = file_of(name)  # refuses a solid that is invalid or has another volume
@@ -131,7 +131,7 @@ def test_solids_are_valid_and_have_their_volume(name: str) -> None:
     assert valid(data)
 
 
-@pytest.mark.parametrize("name", chosen(list(CASES), "lower"))
+@pytest.mark.parametrize("name", chosen(list(CASES), "rib"))
 def test_the_same_cam_gives_the_same_bytes(name: str) -> None:
     assert written(body(*CASES[name][:2])) == file_of(name)
 

@@ -32,8 +32,8 @@ def test_every_kind_can_be_begun_for_each_process() -> None:
         assert set(KINDS[kind].processes) == printed | cut
 
 
-LONG = {("spatial-cam", ""), ("globoidal-cam", "")}
-"""Their solids are made for printing too."""
+LONG = {("spatial-cam", ""), ("globoidal-cam", ""), ("globoidal-cam", "printing")}
+"""Solids of cams in space are made for printing a cylinder cam."""
 
 
 @pytest.mark.parametrize(

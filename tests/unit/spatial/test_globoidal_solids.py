@@ -81,7 +81,7 @@ AROUND = ((-30.1, (1,)), (60.13, (1, -1)), (71.2, (1, -1)), (200.3, (-1,)))
 
 @pytest.mark.parametrize(
     ("steps", "angle"),
-    chosen(product((720, 1080), ANGLES), (720, -30.1), (720, 71.2), (720, 110.01)),
+    chosen(product((720, 1080), ANGLES), (720, -30.1), (720, 71.2)),
 )
 def test_rollers_fit_between_the_ribs(steps: int, angle: float) -> None:
     """A roller that is smaller by the chord error is clear; one that is wider is not."""
@@ -106,7 +106,7 @@ def test_there_is_no_gap(steps: int, around: tuple[float, tuple[int, ...]]) -> N
         assert (found.volume() > 2e-4) == (side in sides)
 
 
-@pytest.mark.parametrize("angle", chosen(ANGLES, 60.13, 200.3))
+@pytest.mark.parametrize("angle", chosen(ANGLES, 60.13))
 def test_a_clearance_is_half_to_each_side(angle: float) -> None:
     cam = indexer(clearance=0.04)
     error = chord_error(cam, 720, 13)

@@ -172,7 +172,7 @@ def roller(cam: SpatialCam, theta: float, less: float) -> Any:
     )
 
 
-@pytest.mark.parametrize(("radius", "steps"), few([(8.0, 60), (8.0, 120), (22.3, 120)]))
+@pytest.mark.parametrize(("radius", "steps"), few([(8.0, 60), (8.0, 120), (22.3, 120)], 3))
 def test_nothing_is_left_higher_than_is_stated(radius: float, steps: int) -> None:
     """A roller between two positions, in dwells and on slopes, by intersections of manifold3d."""
     cam = cut(radius)
