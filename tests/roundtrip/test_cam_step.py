@@ -287,6 +287,7 @@ def test_a_wall_that_does_not_join_is_refused() -> None:
         banded_solid(replace(made, bands=tuple(bands)))
 
 
+@pytest.mark.slow
 def test_a_design_states_the_error() -> None:
     design = gc.load("profiles/cylinder_cam.toml").with_({"output.files": ["step"]})
     result = gc.build(design)

@@ -86,6 +86,7 @@ def test_lots_of_a_session_are_built_by_the_processes_of_all_workers(local: Any)
     assert len(pids[1]) == len(pids[3]) == 2
 
 
+@pytest.mark.slow
 def test_a_worker_that_is_killed_costs_nothing(local: Any) -> None:
     wanted = deeds(*["nap"] * 16)
     with Cluster(address=local.scheduler_address, measure=odd).session(BASE) as build:

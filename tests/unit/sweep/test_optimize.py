@@ -87,6 +87,7 @@ def test_the_best_is_written_with_a_table_and_a_page(
     }  # fmt: skip
 
 
+@pytest.mark.slow
 def test_a_search_goes_on_from_its_log_and_is_the_same_for_two_processes(folder: Path) -> None:
     goals = ("cam.profile.radius_mm.max", "cam.pressure_angle_deg.max")
     words = ["optimize", "cam.toml", "--trials", "18", "--set", "motion[0].angle_deg=90:120:10"]
