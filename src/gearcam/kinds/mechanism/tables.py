@@ -395,7 +395,12 @@ class DyadSpec(ShortRepr):
             yield "last", None, "is also where it comes from", "another joint or guide"
         for number, gamma in enumerate(self.gammas):
             if self._crossed == number and abs(math.sin(gamma)) < 1e-3:
-                yield "gammas", number, "leaves the slides parallel", "not 0 or 180 deg"
+                yield (
+                    "gammas",
+                    number,
+                    "leaves the slides parallel",
+                    "90 for a right angle, not 0 or 180 deg",
+                )
 
     def _missing_lengths(self) -> Iterator[Breach]:
         """Yield lengths that the type asks for, by the names of their members."""

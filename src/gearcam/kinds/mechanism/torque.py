@@ -362,15 +362,7 @@ def _facts(
     if speed is not None:
         power = _NM * work.mean * speed
         tree["mean_power_w"] = Fact(power, "mean power", unit="W", shown=True, noise=least * speed)
-    tree |= {
-        one.column: Fact(
-            extent(*(end.value for end in ends[one.column])),
-            one.meaning,
-            place=_least_and_largest(result, *ends[one.column]),
-            shown=True,
-        )
-        for one in shafts
-    }
+    tree |= {one.column: _extent(result, ends[one.column], one.meaning, 1.0) for one in shafts}
     if beside:
         tree["compared"] = {
             name: _range(result, other, f"moment of the driver: {name}")
@@ -385,15 +377,21 @@ def _facts(
 def _range(result: MechanismResult, work: VirtualWork, meaning: str) -> Tree:
     """Return the least and the largest moment of the driver, and where they are."""
     least, largest = work.least, work.largest
-    fact = Fact(
-        extent(_NM * least.value, _NM * largest.value),
-        meaning,
-        place=_least_and_largest(result, least, largest),
-        shown=True,
-        noise=_NM * _NOISE * max(abs(least.value), abs(largest.value)),
-    )
+    fact = _extent(result, (least, largest), meaning, _NM)
     at = {"min": math.degrees(least.place), "max": math.degrees(largest.place)}
     return {"torque_nm": fact, "torque_at_deg": at}
+
+
+def _extent(result: MechanismResult, ends: Ends, meaning: str, scale: float) -> Fact:
+    """Return the least and the largest of what is exerted, times a scale, as a fact."""
+    least, largest = (scale * end.value for end in ends)
+    return Fact(
+        extent(least, largest),
+        meaning,
+        place=_least_and_largest(result, *ends),
+        shown=True,
+        noise=_NOISE * max(abs(least), abs(largest)),
+    )
 
 
 def _error(result: MechanismResult, work: VirtualWork) -> float | None:

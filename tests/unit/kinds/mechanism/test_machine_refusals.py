@@ -183,7 +183,7 @@ WRONG: dict[str, tuple[Document, str, str, str, str]] = {
     ),
     "parallel slides": (
         edited(("dyad", 1), {**SLIDER, "gammas_deg": [0, 180]}), "dyad[1].gammas_deg[1]",
-        "180: leaves the slides parallel", "not 0 or 180 deg", "",
+        "180: leaves the slides parallel", "90 for a right angle, not 0 or 180 deg", "",
     ),
     "no length": (
         edited((*DYAD, "lengths_mm"), [120, 0]), "dyad[0].lengths_mm[1]",

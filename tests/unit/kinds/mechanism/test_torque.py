@@ -681,6 +681,13 @@ def test_what_rounding_leaves_of_work_is_shown_as_0() -> None:
         assert found.facts.quantity(f"torque.{name}").text == text
 
 
+def test_what_rounding_leaves_on_a_wheel_is_shown_as_0() -> None:
+    load = [{"on": "slide", "force_n": -800, "against": True}]
+    found = study("nail_machine_slide", load=load, mass=[], spring=[])
+    assert found.columns["wheel2_torque_nm"].min() < 1e-9
+    assert found.facts.quantity("torque.wheel2_torque_nm").text.startswith("0 to ")
+
+
 def test_forces_that_do_no_work() -> None:
     found = torque(spring=[{"between": ["C", "D"], "stiffness_n_mm": 3}])
     assert np.abs(found.columns["torque_nm"]).max() < 1e-12
