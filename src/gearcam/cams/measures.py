@@ -19,6 +19,7 @@ from gearcam.cams.curve import CamCurve, ProfileSegments
 from gearcam.cams.followers import Contact
 from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array
+from gearcam.numeric.gauss import gauss_rule
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import extremes_among, places_between
 from gearcam.numeric.roots import bracketed_root
@@ -251,9 +252,9 @@ def _integrals(segments: ProfileSegments, cells: int, nodes: int) -> tuple[Array
     Also the error of the area from the rounding of angles, of nodes and of ends, which are large
     where a curve moves far within such a rounding.
     """
-    places, weights = np.polynomial.legendre.leggauss(nodes)
-    share = ((np.arange(cells)[:, None] + 0.5 * (places + 1.0)) / cells).ravel()
-    weight = np.tile(0.5 * weights / cells, cells)
+    places, weights = gauss_rule(nodes)
+    share = ((np.arange(cells)[:, None] + places) / cells).ravel()
+    weight = np.tile(weights / cells, cells)
     count = len(segments.start)
     index = np.repeat(np.arange(count), len(share))
     run = (segments.end - segments.start)[index]

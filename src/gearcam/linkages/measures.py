@@ -17,7 +17,7 @@ import numpy as np
 from gearcam.base.display import ShortRepr
 from gearcam.linkages.elements import Law
 from gearcam.linkages.linkage import in_cycle
-from gearcam.numeric.arrays import Array, Ints
+from gearcam.numeric.arrays import Array, Ints, snapped
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import extremes_of_each
 from gearcam.numeric.roots import bracketed_root
@@ -146,11 +146,9 @@ def extremes_of(track: Law, knots: Array, highest: int = HIGHEST) -> tuple[Extre
     which = np.concatenate([np.full(len(one[0]), k) for k, one in enumerate(rough)])
     places = np.concatenate([one[0] for one in rough])
     values = np.concatenate([one[1] for one in rough])
-    knot = grid[np.abs(places[:, None] - grid).argmin(axis=1)]
     cell = np.clip(np.searchsorted(grid, places), 1, len(grid) - 1)
-    at_knot = np.abs(places - knot) <= _NEAR * np.diff(grid)[cell - 1]
-    places[at_knot] = knot[at_knot]
-    free = np.flatnonzero(~at_knot)
+    places = snapped(places, grid, _NEAR * np.diff(grid)[cell - 1])
+    free = np.flatnonzero(~np.isin(places, grid))
     if free.size:
         places[free], values[free] = _polished(derivatives, grid, which[free], places[free])
     return tuple((places[which == k], values[which == k]) for k in range(highest + 1))

@@ -48,9 +48,6 @@ _AT_KNOT: Final = 1e-9
 _BACK: Final = 1e-7
 """Change of a place or an angle over a cycle, as a share, up to which it is as before."""
 
-_NODES: Final = 16
-"""Points of Gauss' rule in each cell of an integral."""
-
 _RESOLVED: Final = 1e-7
 """Error of polynomials of degree 8 on cells, over the largest moment."""
 
@@ -184,9 +181,7 @@ class VirtualWork(ShortRepr):
         Each with the integral of the moment's size, to which an error compares. Over a whole cycle
         weights, springs without dampers, and inertia do no work: what is found is an error.
         """
-        places, weights = (
-            one.ravel() for one in gauss_cells(self.cells[:-1], self.cells[1:], _NODES)
-        )
+        places, weights = (one.ravel() for one in gauss_cells(self.cells[:-1], self.cells[1:]))
         found = {part: np.asarray(one.c[0]) for part, one in self.parts(places).items()}
         return {
             part: (float(weights @ values), float(weights @ np.abs(values)))

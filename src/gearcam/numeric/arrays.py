@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -51,8 +51,8 @@ def away(values: Array, others: Array, least: float) -> Array:
     return values[np.abs(values[:, None] - others).min(axis=1) > least]
 
 
-def snapped(values: Array, marks: Array, within: float) -> Array:
-    """Return the values (n,), moved onto the nearest of the `marks` (k,) `within` a distance."""
+def snapped(values: Array, marks: Array, within: ArrayLike) -> Array:
+    """Return values (n,), moved onto the nearest of `marks` (k,) `within` one or n distances."""
     nearest = marks[np.abs(values[:, None] - marks).argmin(axis=1)]
     return np.where(np.abs(values - nearest) <= within, nearest, values)
 

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import GearcamError
-from gearcam.numeric.arrays import Array
+from gearcam.numeric.arrays import Array, divided
 
 _DEGREE = 8
 
@@ -173,9 +173,8 @@ def expand(
     nodes, to_coefficients = _basis(degree)
     halvings = (_FINEST // cuts).bit_length() - 1
     parts = np.ceil(cuts * np.diff(grid) / span).astype(int)
-    number = np.arange(parts.sum()) - np.repeat(np.cumsum(parts) - parts, parts)
-    low = grid[:-1].repeat(parts) + number * (np.diff(grid) / parts).repeat(parts)
-    high = np.append(low[1:], grid[-1])
+    edges = divided(grid, parts)
+    low, high = edges[:-1], edges[1:]
     done: list[tuple[Array, Array, Array]] = []
     scale = 0.0
     before = np.full(low.shape, np.inf)

@@ -10,8 +10,8 @@ import numpy as np
 
 from gearcam.numeric.arrays import Array
 
-_NODES: Final = 16
-"""Places in each cell of an integral."""
+NODES: Final = 16
+"""Usual number of places in each cell of an integral."""
 
 _ACCURATE: Final = 1e-13
 """Difference of a cell's integral and that of its parts at which it is taken, of the whole."""
@@ -20,7 +20,24 @@ _LEVELS: Final = 40
 """Largest number of times a cell is halved."""
 
 
-def gauss_cells(low: Array, high: Array, count: int) -> tuple[Array, Array]:
+@lru_cache
+def gauss_rule(count: int) -> tuple[Array, Array]:
+    """Return places and weights of Gauss' rule from 0 to 1.
+
+    Parameters
+    ----------
+    count : int
+        Their number: exact for polynomials of degree ``2*count - 1``.
+
+    Returns
+    -------
+    places, weights : (count,) arrays
+    """
+    places, weights = np.polynomial.legendre.leggauss(count)
+    return 0.5 * (places + 1.0), 0.5 * weights
+
+
+def gauss_cells(low: Array, high: Array, count: int = NODES) -> tuple[Array, Array]:
     """Return places and weights of Gauss' rule in cells.
 
     Parameters
@@ -28,20 +45,15 @@ def gauss_cells(low: Array, high: Array, count: int) -> tuple[Array, Array]:
     low, high : (n,) arrays
         Their ends.
     count : int
-        Places in each: exact for polynomials of degree ``2*count - 1``.
+        Places in each (see `gauss_rule`).
 
     Returns
     -------
     places, weights : (n, count) arrays
     """
-    nodes, weights = _rule(count)
-    half = 0.5 * (high - low)[:, None]
-    return low[:, None] + half * (1.0 + nodes), half * weights
-
-
-@lru_cache
-def _rule(count: int) -> tuple[Array, Array]:
-    return np.polynomial.legendre.leggauss(count)
+    places, weights = gauss_rule(count)
+    width = (high - low)[:, None]
+    return low[:, None] + width * places, width * weights
 
 
 class Integral(NamedTuple):
@@ -77,7 +89,7 @@ def integral(function: Callable[[Array], Array], edges: Array, rounding: float) 
     """
 
     def parts_of(low: Array, high: Array) -> Array:
-        x, weights = gauss_cells(low.ravel(), high.ravel(), _NODES)
+        x, weights = gauss_cells(low.ravel(), high.ravel())
         return (function(x.ravel()).reshape(x.shape) * weights).sum(axis=1).reshape(low.shape)
 
     low, high = edges[:-1], edges[1:]

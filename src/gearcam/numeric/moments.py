@@ -16,6 +16,7 @@ import numpy as np
 from gearcam.base.display import ShortRepr
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.bulges import bulge_pieces, on_arcs
+from gearcam.numeric.gauss import gauss_rule
 from gearcam.numeric.hermite import hermite_arms, hermite_cubic
 
 _ON_ARC: Final = 16
@@ -85,7 +86,7 @@ def arc_moments(points: Plane, bulges: Array) -> Moments:
         Exact to rounding.
     """
     start, chord, bends = bulge_pieces(points, bulges, closed=True)
-    place, weight = _gauss(_ON_ARC)
+    place, weight = gauss_rule(_ON_ARC)
     way, speed = on_arcs(chord, bends, place[:, None])
     return _moments(_swept(start + way, speed, weight).sum(axis=1))
 
@@ -164,7 +165,7 @@ def _by_curve(curves: Sequence[tuple[Plane, Plane]], every: int) -> Array:
 
 def _on_cubics(p: Plane, u: Plane) -> Plane:
     """Return area, first and polar moment of each step of a sampled curve, (3, n - 1)."""
-    place, weight = _gauss(_ON_CUBIC)
+    place, weight = gauss_rule(_ON_CUBIC)
     found = np.empty((3, len(p) - 1), dtype=np.complex128)
     for begin in range(0, len(p) - 1, _BLOCK):
         q, t = (one[begin : begin + _BLOCK + 1] for one in (p, u))
@@ -172,12 +173,6 @@ def _on_cubics(p: Plane, u: Plane) -> Plane:
         way, slope = hermite_cubic(np.diff(q), t[:-1] * arms, t[1:] * arms, place[:, None])
         found[:, begin : begin + _BLOCK] = _swept(q[:-1] + way, slope, weight)
     return found
-
-
-def _gauss(count: int) -> tuple[Array, Array]:
-    """Gauss points and weights on [0, 1]."""
-    place, weight = np.polynomial.legendre.leggauss(count)
-    return 0.5 * (place + 1.0), 0.5 * weight
 
 
 def _swept(points: Plane, speed: Plane, weight: Array) -> Plane:

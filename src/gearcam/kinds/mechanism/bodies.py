@@ -473,7 +473,7 @@ def _driven(shown: _Shown, number: int) -> Iterator[MovingBody]:
     drive = shown.result.drives[number]
     if drive.result is None:
         return
-    with within(f"drive[{number}].{'pair' if drive.spec.pair is not None else 'cam'}"):
+    with within(f"drive[{number}].{drive.spec.key}"):
         scene = drive.result.plain.scene(1)
     x = drive.own(shown.q)
     for body in scene.bodies:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 from functools import partial
 from itertools import product
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
@@ -153,8 +152,7 @@ def study_torque(result: MechanismResult, study: Study, progress: Progress | Non
         shafts = list(shaft_loads(result, work, q))
         columns |= {one.column: one.values for one in shafts}
         ends = _ends(result, work, shafts, q)
-        pulls = tuple(_pulls(result, shafts, ends))
-        effort = replace(_effort(result, work, beside), pulls=pulls)
+        effort = _effort(result, work, beside, tuple(_pulls(result, shafts, ends)))
         found = run_checks(TORQUE, effort, result.design.limits)
     speed = result.speed
     if speed is not None:
@@ -307,7 +305,10 @@ def _lifts(drive: PlacedDrive) -> float:
 
 
 def _effort(
-    result: MechanismResult, work: VirtualWork, beside: Mapping[str, VirtualWork]
+    result: MechanismResult,
+    work: VirtualWork,
+    beside: Mapping[str, VirtualWork],
+    pulls: tuple[Pull, ...],
 ) -> DriverEffort:
     top = _largest(work)
     return DriverEffort(
@@ -315,6 +316,7 @@ def _effort(
         place=_place(result, top.place),
         others={name: _NM * abs(_largest(one).value) for name, one in beside.items()},
         gain=_gain(result, work),
+        pulls=pulls,
     )
 
 
