@@ -11,6 +11,7 @@ import tarfile
 import tomllib
 import venv
 import zipfile
+from datetime import date
 from pathlib import Path
 from typing import NamedTuple
 
@@ -124,6 +125,8 @@ def test_the_demo_runs_from_the_wheel_far_from_the_checkout(
     assert json.loads((made / "summary.json").read_text("utf-8"))["gears"][0]["teeth"] == 36
 
 
-def test_the_citation_names_the_version_and_the_licence() -> None:
+def test_the_citation_names_the_version_its_date_and_the_licence() -> None:
     lines = (ROOT / "CITATION.cff").read_text("utf-8").splitlines()
     assert {f"version: {__version__}", "license: MIT", "title: gearcam"} < set(lines)
+    (dated,) = (line for line in lines if line.startswith("date-released: "))
+    assert date.fromisoformat(dated.removeprefix("date-released: "))

@@ -52,7 +52,7 @@ COLORS: Final = {
     **dict.fromkeys((*drawings.OUTER, *drawings.THROUGH, drawings.OUTER_WALL, drawings.TOOL), RED),
     **dict.fromkeys(drawings.ENGRAVED, BLUE),
 }
-"""Colours by layer type; all others, for reference, are grey."""
+"""Colours by layer type; all others, and drawings that are for reference, are grey."""
 
 MILLIMETRES: Final = 4
 """$INSUNITS."""
@@ -140,7 +140,7 @@ def _fill(document: Document, drawing: Drawing, style: DxfStyle) -> None:
     for feature in drawing.features:
         if feature.layer not in document.layers:
             dashed = "DASHED" if feature.kind in drawings.DASHED else "Continuous"
-            color = COLORS.get(feature.kind, GREY)
+            color = COLORS.get(feature.kind, GREY) if drawing.cut else GREY
             document.layers.add(feature.layer, color=color, linetype=dashed)
     space = document.modelspace()
     low, high = box(drawing.features)

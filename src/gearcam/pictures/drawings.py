@@ -121,10 +121,11 @@ class Feature(ShortRepr):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Drawing(ShortRepr):
-    """A `name` and its `features`, in drawing order."""
+    """A `name` and its `features`, in drawing order; if not `cut`, all of it is for reference."""
 
     name: str
     features: tuple[Feature, ...]
+    cut: bool = True
 
     @property
     def contours(self) -> tuple[Contour, ...]:

@@ -57,16 +57,17 @@ function elementOf({ chains, closed, pose, fill, ink, width = 1.2, dash }, pixel
 
 // y is downwards here
 function nameOf({ text, x, y, drop, ink }, pixel, colours) {
-  return `<text${attributes({
+  const place = {
     x: x + BESIDE * pixel,
     y: -y + drop * pixel,
     "font-family": "sans-serif",
     "font-size": NAMES * pixel,
-    fill: colours[ink],
-    stroke: colours.ground,
-    "stroke-width": 3 * pixel,
-    "paint-order": "stroke",
-  })}>${escaped(text)}</text>`;
+  };
+  // twice, as few programs but browsers know paint-order
+  const halo = { fill: "none", stroke: colours.ground, "stroke-width": 3 * pixel };
+  return [halo, { fill: colours[ink] }]
+    .map((paint) => `<text${attributes({ ...place, ...paint })}>${escaped(text)}</text>`)
+    .join("");
 }
 
 const escaped = (text) => text.replace(/[&<>"]/g, (sign) => `&#${sign.charCodeAt(0)};`);

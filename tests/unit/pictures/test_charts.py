@@ -56,6 +56,19 @@ def test_every_chart_of_every_design_is_drawn(path):
         plt.close("all")
 
 
+def test_a_legend_is_beside_axes_that_it_would_cover():
+    import matplotlib.pyplot as plt
+
+    _, small = plt.subplots(2, 4, layout="constrained")
+    for ax, name, beside in ((small[0, 1], "ratio", True), (None, "pressure_angle", False)):
+        ax = built(PAIR).plot(name, ax=ax)
+        ax.figure.draw_without_rendering()
+        legend, axes = ax.get_legend().get_window_extent(), ax.get_window_extent()
+        assert (legend.x0 >= axes.x1) is beside
+        assert axes.contains(*legend.min) is not beside
+    plt.close("all")
+
+
 def test_a_smoothed_lift_is_drawn_with_the_points_that_were_given():
     import matplotlib.pyplot as plt
 

@@ -186,7 +186,7 @@ def paths_drawing(result: MechanismResult) -> Drawing:
         layer = _layer(name, taken)
         features.append(Feature(layer=layer, shape=Path(points=points, closed=linkage.closed)))
     q, _ = _angles(result)
-    return Drawing(name="paths", features=(*features, *posed(bodies(result, q))))
+    return Drawing(name="paths", features=(*features, *posed(bodies(result, q))), cut=False)
 
 
 def _layer(name: str, taken: set[str]) -> str:

@@ -42,7 +42,8 @@ def _dxf(result: MechanismResult, _: Any) -> Files:
     The paths of the points, and of the joints that are asked for, 1:1 in mm and within the chord
     tolerance, each on a layer of its own, NAME_PATH; with the machine at its pose: members, drawn
     symbolically, on MEMBER and MEMBER_BORE, guides and pivots on GROUND, the wheels or the cam on
-    theirs. Widths and bores of members are not for cutting.
+    theirs. All is grey, for reference: widths and bores of members are not for cutting, and the
+    wheels are those of the pair without their kerf.
     """
     from gearcam.export.dxf import DxfStyle, dxf_bytes
     from gearcam.kinds.mechanism.drawn import CHORDS, paths_drawing

@@ -14,6 +14,7 @@ import pytest
 import shapely
 
 import gearcam as gc
+from gearcam.export.dxf import GREY
 from gearcam.kinds.mechanism import bodies as drawn_bodies
 from gearcam.kinds.mechanism.drawn import picture
 from gearcam.kinds.mechanism.traces import distances, path_within
@@ -299,11 +300,13 @@ def test_a_path_with_cusps_and_rests_is_within_its_tolerance() -> None:
 # --- files ---------------------------------------------------------------------------------------
 
 
+def paths_dxf(result: Any) -> Any:
+    return ezdxf.filemanagement.read(io.StringIO(result.files("dxf")["paths.dxf"].decode()))
+
+
 def layers(result: Any) -> dict[str, list[Any]]:
-    data = result.files("dxf")["paths.dxf"].decode()
     found: dict[str, list[Any]] = {}
-    document: Any = ezdxf.filemanagement.read(io.StringIO(data))
-    for entity in document.modelspace():
+    for entity in paths_dxf(result).modelspace():
         found.setdefault(entity.dxf.layer, []).append(entity)
     return found
 
@@ -330,6 +333,13 @@ def test_the_dxf_shows_the_machine_at_its_angle() -> None:
     assert len(found["MEMBER"]) == 3
 
 
+@pytest.mark.parametrize("name", ["slide behind a pair", "table on two cams"])
+def test_nothing_in_the_dxf_has_the_colour_of_cuts(name: str) -> None:
+    found = {one.dxf.name: one.color for one in paths_dxf(machine(name)).layers}
+    assert {"GEAR1_OUTLINE", "PROFILE"} & found.keys()
+    assert {color for layer, color in found.items() if layer not in ("0", "Defpoints")} == {GREY}
+
+
 def test_layers_of_points_are_different() -> None:
     document = {"kind": "mechanism", "name": "drawn", **MACHINES["four-bar"]}
     names = ["p", "P", "P_2"]
@@ -354,6 +364,10 @@ def test_the_picture_has_all_names(name: str) -> None:
     assert joints | members <= set(texts)
     classes = {one.get("class") for one in root.iter() if one.get("class")}
     assert {"member", "ghost"} <= classes
+    # a light edge below each name, for readers that do not know paint-order
+    halos = [one.text for one in root.findall(".//s:text[@class='halo']", space)]
+    assert halos == texts
+    assert not any(one.get("stroke") for one in root.findall(".//s:text[@class='name']", space))
     width, height = (float(one) for one in root.get("viewBox").split()[2:])
     left, top = (float(one) for one in root.get("viewBox").split()[:2])
     for one in root.findall(".//s:text[@class='name']", space):
