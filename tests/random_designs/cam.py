@@ -33,6 +33,14 @@ _SHARES: Final = {
 """Share of cams with each kind of file, by its cost."""
 
 
+def in_turn(index: int, laws: int) -> tuple[int, int]:
+    """Return the numbers of the law, of so many `laws`, and of the follower of a design.
+
+    Every law meets every follower, also where the two counts have a common divisor.
+    """
+    return index % laws, sum(divmod(index, laws)) % len(FOLLOWERS)
+
+
 def _moved(d: Draw, kind: str, law: str) -> dict[str, Any]:
     return {"type": kind, **random_motion_law(d, law)}
 
@@ -289,8 +297,8 @@ def design(d: Draw, index: int) -> dict[str, Any]:
     index : int
         Number of the design.
     """
-    law = [*MOTION_LAWS][index % len(MOTION_LAWS)]
-    kind = FOLLOWERS[index % len(FOLLOWERS)]
+    at, follower_at = in_turn(index, len(MOTION_LAWS))
+    law, kind = [*MOTION_LAWS][at], FOLLOWERS[follower_at]
     swings = d.chance(0.4)
     size = d.pick([d.log(0.1, 1e5), d.log(10, 100)])
     follower, wheel = _mechanism(d, kind, swings, size)

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import math
+import os
 import re
 import shlex
+import shutil
+import subprocess
 import sys
 import tomllib
 import types
 from collections.abc import Collection, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -17,12 +21,18 @@ import pytest
 
 import gearcam
 from arch import rules
+from claims.laws import LAW_CLAIMS
+from claims.motion import MOTION_CLAIMS
 from gearcam.base.tolerances import DEFAULT
 from gearcam.cli import main
 from gearcam.designs import KINDS
 from gearcam.kinds.cam.motion import phase_table, rise_table, turn_tables
 from gearcam.kinds.gear_pair.design import law_table
+from gearcam.laws.motion.base import MOTION_LAWS
+from gearcam.laws.ratio.base import LAWS
 from gearcam.laws.ratio.span import Lobes
+from random_designs.law_draw import LawDraw
+from random_designs.laws import parameters, random_law, random_motion_law
 
 PAGES = [rules.ROOT / "README.md", *sorted((rules.ROOT / "docs").glob("*.md"))]
 FENCE = re.compile(r"^```(\w+)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
@@ -153,30 +163,87 @@ def test_every_key_of_studies_is_described(tmp_path: Path) -> None:
     assert unknown({"accuracy": {}, "new_key": 1}, SUMMARY) == {"new_key"}  # a control
 
 
+GUIDE = (rules.ROOT / "docs" / "contributing.md").read_text("utf-8")
+BLOCKS = [block for language, block in FENCE.findall(GUIDE) if language == "python"]
+"""What docs/contributing.md adds: a ratio law and its claims, a motion law and its claims."""
+
+
 def _added(name: str, number: int, monkeypatch: pytest.MonkeyPatch) -> Any:
-    """A law that docs/contributing.md adds, with its claims, as a module that registers nothing."""
-    page = (rules.ROOT / "docs" / "contributing.md").read_text("utf-8")
-    blocks = re.findall(r"^```python\n(.*?)^```$", page, re.DOTALL | re.MULTILINE)
-    block, claims = blocks[number : number + 2]
+    """A law of the guide with its claims: a module that has registered it for this test."""
+    registry, known = ((LAWS, LAW_CLAIMS), (MOTION_LAWS, MOTION_CLAIMS))[number // 2]
+    # the original entries come back after the test
+    monkeypatch.setattr(registry, "_entries", {**registry})
     module = types.ModuleType(name)
     monkeypatch.setitem(sys.modules, name, module)
-    kept = re.sub(r"^(MOTION_)?LAWS.register\(", "ENTRY = (", block, flags=re.MULTILINE)
-    exec(compile(kept, "law.py", "exec"), vars(module))
-    exec(compile(claims, "claims.py", "exec"), vars(module))
-    assert list(module.CLAIMS) == [module.ENTRY.name]
+    for block in BLOCKS[number : number + 2]:
+        exec(compile(block, "law.py", "exec"), vars(module))
+    (added,) = module.CLAIMS
+    assert [*registry][-1] == added
+    monkeypatch.setitem(known, added, module.CLAIMS[added])
     return module
 
 
 @pytest.fixture
 def joint(monkeypatch: pytest.MonkeyPatch) -> Any:
-    """The ratio law that docs/contributing.md adds."""
+    """The ratio law of the guide."""
     return _added("gearcam.laws.ratio.joint", 0, monkeypatch)
 
 
-def test_the_motion_law_of_the_contributing_page_is_the_double_harmonic(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    module = _added("gearcam.laws.motion.double", 2, monkeypatch)
+@pytest.fixture
+def double(monkeypatch: pytest.MonkeyPatch) -> Any:
+    """The motion law of the guide."""
+    return _added("gearcam.laws.motion.double", 2, monkeypatch)
+
+
+@pytest.mark.usefixtures("joint", "double")
+def test_random_members_of_the_laws_of_the_guide_are_made() -> None:
+    for seed in "12345":
+        law, teeth = random_law(LawDraw(seed), "universal-joint")
+        common = math.gcd(*teeth)
+        built = parameters(law).build(Lobes(teeth[0] // common, teeth[1] // common), DEFAULT)
+        c = math.cos(math.radians(law["shaft_angle_deg"]))
+        assert float(built.ratio(0.0)) == pytest.approx(c * teeth[0] / teeth[1])
+        rise = parameters(random_motion_law(LawDraw(seed), "double-harmonic"))
+        assert float(rise.build(DEFAULT).function(0.5)) == pytest.approx(0.25)
+
+
+@pytest.mark.slow
+def test_the_guide_is_followed_to_its_end(tmp_path: Path) -> None:
+    """In a copy of the checkout, with the lines that it asks for and the tests that it names."""
+    for name in ("src", "tests", "docs", "profiles", "tools", "pyproject.toml", "README.md"):
+        link = rules.ROOT / name
+        if link.is_dir():
+            shutil.copytree(link, tmp_path / name, ignore=shutil.ignore_patterns("__pycache__"))
+        else:
+            shutil.copy(link, tmp_path / name)
+    for kind, module, names in (("ratio", "joint", "laws"), ("motion", "double", "motion")):
+        number = 2 * (kind == "motion")
+        law, laws = f"src/gearcam/laws/{kind}", f"tests/claims/{names}"
+        assert {f"`{law}/{module}.py`", f"`{laws}/{module}.py`"} < set(
+            re.findall(r"`[^`\n]+`", GUIDE)
+        )
+        (tmp_path / law / f"{module}.py").write_text(BLOCKS[number])
+        (tmp_path / laws / f"{module}.py").write_text(BLOCKS[number + 1])
+        (home,) = re.findall(rf'`("{module}": .*?)`', GUIDE)
+        (line,) = re.findall(rf"`(from gearcam.laws.{kind}.{module} import .*)`", GUIDE)
+        base, init = tmp_path / law / "base.py", tmp_path / law / "__init__.py"
+        base.write_text(base.read_text().replace("_HOMES: Final = {", f"_HOMES: Final = {{ {home}"))
+        init.write_text(f"{init.read_text()}{line}\n")
+    commands = re.findall(r"^    \.venv/bin/python -m (pytest .*)$", GUIDE, re.MULTILINE)
+    assert len(commands) == 3
+    tested = [one for command in commands for one in shlex.split(command) if "tests/" in one]
+    here = {**os.environ, "PYTHONPATH": str(tmp_path / "src")}
+    for arguments in (
+        ["tools/reference.py"],
+        ["-m", "pytest", "-q", "-m", "not slow", *dict.fromkeys(tested), "tests/unit/tools"],
+    ):
+        run = partial(subprocess.run, check=False, capture_output=True, text=True)
+        done = run([sys.executable, *arguments], cwd=tmp_path, env=here)
+        assert done.returncode == 0, done.stdout[-2000:]
+
+
+def test_the_motion_law_of_the_contributing_page_is_the_double_harmonic(double: Any) -> None:
+    module = double
     rise = module.DoubleHarmonic().build(DEFAULT).function
     phi = np.linspace(0.0, 1.0, 41)
     expected = (1 - np.cos(np.pi * phi)) / 2 - (1 - np.cos(2 * np.pi * phi)) / 8
@@ -205,7 +272,7 @@ def test_the_law_of_the_contributing_page_is_that_of_the_joint(joint: Any) -> No
 
 
 def test_the_claims_of_the_contributing_page_hold(joint: Any) -> None:
-    claims = joint.CLAIMS[joint.ENTRY.name]
+    (claims,) = joint.CLAIMS.values()
     for claim in claims.values:
         law = claim.parameters.build(claim.lobes, DEFAULT)
         for phi, ratio in claim.ratio.items():
@@ -218,11 +285,10 @@ def test_the_claims_of_the_contributing_page_hold(joint: Any) -> None:
 
 
 def test_the_pair_of_the_contributing_page_has_the_size_shown() -> None:
-    page = (rules.ROOT / "docs" / "contributing.md").read_text("utf-8")
     law = gearcam.laws.Formula(ratio="1/(1 - 0.25*sin(phi1)**2)")  # the joint's, up to a factor
     pair = gearcam.PairSpec(teeth=(40, 40), module=2.0)
     result = gearcam.build(gearcam.GearPairDesign(name="joint", law=law, pair=pair))
-    assert f"`centre distance {result.pair.center_distance:.4f} mm`" in page
+    assert f"`centre distance {result.pair.center_distance:.4f} mm`" in GUIDE
 
 
 def misspelt(document: dict[str, Any], kind: str) -> list[str]:
