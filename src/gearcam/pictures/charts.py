@@ -31,8 +31,8 @@ _MARGIN: Final = 0.06
 _DECADES: Final = 1.2
 """Least number of decades on a logarithmic axis, so that noise does not fill the chart."""
 
-_COVERED: Final = 0.25
-"""Largest share of the area of axes that a legend may cover."""
+_SMALL: Final = 3.0
+"""Width of axes, inches, below which a legend would cover too much of them."""
 
 _MOST_KNOTS: Final = 36
 """Largest number of knots that are marked: one in ten degrees."""
@@ -135,8 +135,8 @@ class Chart:
         Returns
         -------
         Axes
-            With title, labels, limits, marked places and legend, which is beside axes that it
-            would cover; a figure with ``layout="constrained"`` makes room for it.
+            With title, labels, limits, marked places and legend, which is beside small axes: a
+            figure with ``layout="constrained"`` makes room for it.
 
         Raises
         ------
@@ -163,7 +163,9 @@ class Chart:
         ax.set(title=self.title, xlabel=self.x, ylabel=self.y, xlim=self.ends[0], ylim=self.ends[1])
         ax.grid(visible=True, alpha=0.3)
         if self.limits or self.marks or len(self.lines) > 1:
-            _add_legend(ax)
+            small = ax.get_window_extent().width < _SMALL * ax.figure.dpi
+            beside = {"loc": "upper left", "bbox_to_anchor": (1.0, 1.0)} if small else {}
+            ax.legend(fontsize="small", **beside)
         return ax
 
     @property
@@ -234,14 +236,6 @@ def _set_logarithmic(ax: Axes, log: str) -> None:
         set_scale, axis = (ax.set_xscale, ax.xaxis) if name == "x" else (ax.set_yscale, ax.yaxis)
         set_scale("log", subs=(2, 5), nonpositive="mask")
         axis.set_minor_formatter(LogFormatterSciNotation(minor_thresholds=(_SHORT, _SHORT)))
-
-
-def _add_legend(ax: Axes) -> None:
-    """Add the legend, beside the axes if it would cover much of them."""
-    boxes = ax.legend(fontsize="small").get_window_extent(), ax.get_window_extent()
-    (wide, high), (room, tall) = ((box.width, box.height) for box in boxes)
-    if wide * high > _COVERED * room * tall or wide > room or high > tall:
-        ax.legend(fontsize="small", loc="upper left", bbox_to_anchor=(1.0, 1.0))
 
 
 def _new_axes() -> Axes:

@@ -56,7 +56,7 @@ def test_every_chart_of_every_design_is_drawn(path):
         plt.close("all")
 
 
-def test_a_legend_is_beside_axes_that_it_would_cover():
+def test_a_legend_is_beside_small_axes():
     import matplotlib.pyplot as plt
 
     _, small = plt.subplots(2, 4, layout="constrained")
@@ -64,8 +64,8 @@ def test_a_legend_is_beside_axes_that_it_would_cover():
         ax = built(PAIR).plot(name, ax=ax)
         ax.figure.draw_without_rendering()
         legend, axes = ax.get_legend().get_window_extent(), ax.get_window_extent()
-        assert (legend.x0 >= axes.x1) is beside
-        assert axes.contains(*legend.min) is not beside
+        assert bool(legend.x0 >= axes.x1) is beside
+        assert bool(axes.contains(*legend.min)) is not beside
     plt.close("all")
 
 
