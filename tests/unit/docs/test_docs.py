@@ -207,38 +207,43 @@ def test_random_members_of_the_laws_of_the_guide_are_made() -> None:
         assert float(rise.build(DEFAULT).function(0.5)) == pytest.approx(0.25)
 
 
+def _with_line(path: Path, before: str, line: str) -> None:
+    """Add a line to a file before a text that it has once."""
+    head, tail = path.read_text("utf-8").split(before)
+    path.write_text(f"{head}{line}\n{before}{tail}", encoding="utf-8")
+
+
 @pytest.mark.slow
 def test_the_guide_is_followed_to_its_end(tmp_path: Path) -> None:
     """In a copy of the checkout, with the lines that it asks for and the tests that it names."""
-    for name in ("src", "tests", "docs", "profiles", "tools", "pyproject.toml", "README.md"):
-        link = rules.ROOT / name
-        if link.is_dir():
-            shutil.copytree(link, tmp_path / name, ignore=shutil.ignore_patterns("__pycache__"))
-        else:
-            shutil.copy(link, tmp_path / name)
-    for kind, module, names in (("ratio", "joint", "laws"), ("motion", "double", "motion")):
-        number = 2 * (kind == "motion")
-        law, laws = f"src/gearcam/laws/{kind}", f"tests/claims/{names}"
-        assert {f"`{law}/{module}.py`", f"`{laws}/{module}.py`"} < set(
-            re.findall(r"`[^`\n]+`", GUIDE)
+    for name in ("src", "tests", "docs", "profiles", "tools"):
+        left_out = shutil.ignore_patterns("__pycache__")
+        shutil.copytree(rules.ROOT / name, tmp_path / name, ignore=left_out)
+    for name in ("pyproject.toml", "README.md"):
+        shutil.copy(rules.ROOT / name, tmp_path / name)
+    for number, (kind, module, last) in enumerate(
+        (
+            ("ratio", "joint", "    from gearcam.laws.ratio.table import TableLaw"),
+            ("motion", "double", "    from gearcam.laws.motion.formula import FormulaRise"),
         )
-        (tmp_path / law / f"{module}.py").write_text(BLOCKS[number])
-        (tmp_path / laws / f"{module}.py").write_text(BLOCKS[number + 1])
-        (home,) = re.findall(rf'`("{module}": .*?)`', GUIDE)
-        (line,) = re.findall(rf"`(from gearcam.laws.{kind}.{module} import .*)`", GUIDE)
-        base, init = tmp_path / law / "base.py", tmp_path / law / "__init__.py"
-        base.write_text(base.read_text().replace("_HOMES: Final = {", f"_HOMES: Final = {{ {home}"))
-        init.write_text(f"{init.read_text()}{line}\n")
-    commands = re.findall(r"^    \.venv/bin/python -m (pytest .*)$", GUIDE, re.MULTILINE)
-    assert len(commands) == 3
-    tested = [one for command in commands for one in shlex.split(command) if "tests/" in one]
-    here = {**os.environ, "PYTHONPATH": str(tmp_path / "src")}
-    for arguments in (
-        ["tools/reference.py"],
-        ["-m", "pytest", "-q", "-m", "not slow", *dict.fromkeys(tested), "tests/unit/tools"],
     ):
-        run = partial(subprocess.run, check=False, capture_output=True, text=True)
-        done = run([sys.executable, *arguments], cwd=tmp_path, env=here)
+        law = tmp_path / "src" / "gearcam" / "laws" / kind
+        claims = tmp_path / "tests" / "claims" / ("laws", "motion")[number]
+        for folder, block in zip((law, claims), BLOCKS[2 * number :], strict=False):
+            path = folder / f"{module}.py"
+            assert f"`{path.relative_to(tmp_path)}`" in GUIDE
+            path.write_text(block, encoding="utf-8")
+        (home,) = re.findall(rf'`("{module}": .*?)`', GUIDE)
+        _with_line(law / "base.py", '}\n"""The laws of each module', f"    {home}")
+        (line,) = re.findall(rf"`(from gearcam.laws.{kind}.{module} import .*)`", GUIDE)
+        _with_line(law / "__init__.py", last, f"    {line}")
+    commands = re.findall(r"^    \.venv/bin/python -m (pytest .*)$", GUIDE, re.MULTILINE)
+    tested = [one for command in commands for one in shlex.split(command) if "tests/" in one]
+    run = partial(subprocess.run, check=False, cwd=tmp_path, capture_output=True, text=True)
+    here = {**os.environ, "PYTHONPATH": str(tmp_path / "src")}
+    tests = ["-m", "pytest", "-q", "-m", "not slow", *dict.fromkeys(tested)]
+    for arguments in (["tools/reference.py"], tests):
+        done = run([sys.executable, *arguments], env=here)
         assert done.returncode == 0, done.stdout[-2000:]
 
 
