@@ -160,7 +160,7 @@ def _start(result: SpatialCamResult) -> Iterator[str]:
     low, high = (formatted(one, 9) for one in (moves[:, 0].min(), moves[:, 0].max()))
     yield "Start: home the machine. Z0 of the machine must be its top."
     yield f"The tool rises there, goes to X{x} Y{y}, then down to Z{z}."
-    yield f"Its axis stays from X{low} to X{high}: keep chuck and tailstock clear."
+    yield f"Its axis stays from X{low} to X{high}: keep chuck and centre clear."
     yield "If the machine is not homed no start is safe."
     yield f"Then stand the tool above X{x} Y{y} by hand, at Z{z} or higher,"
     yield "and take out both lines with G53."
