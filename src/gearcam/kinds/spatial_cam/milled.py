@@ -128,7 +128,7 @@ def _sense(result: SpatialCamResult) -> Iterator[str]:
         yield f"A grows from 0 to {most}: the axis must not be wrapped."
     if len(sides) > 1:
         yield "M3 climb-mills the wall on the X- side of the tool, not that on X+."
-    elif sides[0] > 0:
+    elif 1 in sides:
         yield "The wall is on the X+ side of the tool: M3 does not climb-mill it."
     else:
         yield "The wall is on the X- side of the tool: M3 climb-mills it."
