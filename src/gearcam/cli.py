@@ -206,7 +206,7 @@ def _new_arguments(parser: argparse.ArgumentParser) -> None:
     words = f"kind of design: {' or '.join(KINDS)}"
     parser.add_argument("kind", metavar="KIND", help=words)
     parser.add_argument("file", nargs="?", metavar="FILE", help="default: stdout")
-    words = "preset backlash, clearance and kerf for printing, laser or wire"
+    words = "preset backlash, clearance, kerf and tool for printing, laser, wire or milling"
     parser.add_argument("--for", dest="process", metavar="PROCESS", help=words)
 
 

@@ -1,75 +1,147 @@
 """Programs of milling machines with a rotary axis A about X, as G-code.
 
-Only words that free controllers run alike (LinuxCNC; grbl with a fourth axis): G0, G1, G17, G21,
-G54, G61, G90, G93, G94, M3, M5, M30, one comment a line. Lengths are in mm in four decimals, A in
-degrees in five, neither with an exponent.
+Only words that free controllers run alike (LinuxCNC; grbl with a fourth axis): G0, G1, G4, G17,
+G21, G40, G49, G53, G54, G61, G80, G90, G93, G94, M0, M3, M5, M30, one comment a line. Numbers have
+no exponent.
+
+The tool rises before anything else moves: to Z0 of the machine, which homing has put at its top.
+There X, Y and A are brought to the start, the spindle is started, and then the tool comes down.
 
 In inverse time (G93) each move has its own F, one over its duration in minutes: how fast a tool
 moves along a path that turns cannot be said by a feed in mm/min alone. G61 has each point reached,
 where controllers otherwise round corners.
+
+On a wrapped axis a word of A is a place from 0 to below 360, and its sign the way there. So a word
+for a place where A is already, even by rounding, may make a whole turn; it is left out.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
+from gearcam.base.display import ShortRepr
 from gearcam.base.numerals import decimal
 from gearcam.numeric.arrays import Array
 
 _LONGEST: int = 70
 """Longest comment: a line of grbl has at most 80 characters."""
 
+RUN_UP: int = 3
+"""Time for the spindle to come to its speed, s."""
 
-def gcode_bytes(
-    moves: Array, per_minute: Array, spindle: float, notes: Sequence[str], *, crosswise: bool
-) -> bytes:
-    """Write a program.
+_START = "G21 G17 G40 G49 G54 G80 G90 G94", "G61", "G53 G0 Z0"
+_END = "G53 G0 Z0", "M5", "M30"
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class RotaryProgram(ShortRepr):
+    """What a program says.
 
     Parameters
     ----------
     moves : (n, 4) array, mm and deg
-        X, Y, Z, A at the end of each move. The first one is rapid, and begins with Z.
+        X, Y, Z, A at the end of each move; A never falls. The first one is rapid, to above the
+        first point.
     per_minute : (n,) array, 1/min
         Inverse times; 0 of rapid moves.
-    spindle : float, rpm
-        Speed of the spindle.
-    notes : sequence of str
-        Comments at its head; what is not ASCII and brackets are left out.
+    decimals : sequence of int
+        Decimals of X, Y, Z and A.
+    spindle : float, rpm, or None
+        Speed of the spindle; None: the program stops until it has been started by hand.
     crosswise : bool
         Whether the machine has the axis Y.
+    wrapped : bool
+        Whether A is stated from 0 to below 360 deg, for a wrapped axis.
+    notes : sequence of str
+        Comments at its head; what is not ASCII and brackets are left out.
+    """
+
+    moves: Array
+    per_minute: Array
+    decimals: Sequence[int]
+    spindle: float | None
+    crosswise: bool
+    wrapped: bool
+    notes: Sequence[str]
+
+
+def gcode_bytes(program: RotaryProgram) -> bytes:
+    """Write a program.
+
+    Parameters
+    ----------
+    program : RotaryProgram
+        What it says.
 
     Returns
     -------
     bytes
         ASCII.
     """
-    lines = [f"({line})" for note in notes for line in _wrapped(note)]
-    lines += ["G21 G90 G94 G17 G54", "G61", f"G0 Z{_short(moves[0, 2], 4)}"]
-    lines += [f"S{decimal(spindle, 0)} M3", *_moved(moves, per_minute, crosswise=crosswise)]
-    lines += ["M5", "M30"]
+    lines = [f"({line})" for note in program.notes for line in _wrapped(note)]
+    lines += [*_START, *_moved(program), *_END]
     return ("\n".join(lines) + "\n").encode("ascii")
 
 
-def _moved(moves: Array, per_minute: Array, *, crosswise: bool) -> Iterator[str]:
-    """Yield the moves, in inverse time where they cut."""
+def _moved(program: RotaryProgram) -> Iterator[str]:
+    """Yield the moves, in inverse time where they cut, and the start of the spindle."""
+    words = _words(program)
+    down, beside = _parted(next(words))
+    yield f"G0 {beside}"
+    if program.spindle is None:
+        yield "(MSG, Start the spindle by hand, clockwise from above. Then resume.)"
+        yield "M0"
+    else:
+        yield f"S{decimal(program.spindle, 0)} M3"
+        yield f"G4 P{RUN_UP}"
+    yield f"G0 {down}"
     inverse = False
-    for (x, y, z, a), rate in zip(moves.tolist(), per_minute.tolist(), strict=True):
+    for given, rate in zip(words, program.per_minute[1:].tolist(), strict=True):
         if inverse is not (rate > 0.0):
             inverse = not inverse
             yield "G93" if inverse else "G94"
-        words = [f"X{_short(x, 4)}", f"Y{_short(y, 4)}", f"Z{_short(z, 4)}", f"A{_short(a, 5)}"]
-        if not crosswise:
-            del words[1]
         if inverse:
-            words.append(f"F{np.format_float_positional(rate, 5, fractional=False, trim='-')}")
-        yield " ".join(["G1" if inverse else "G0", *words])
+            yield f"G1 {' '.join(given)} F{_significant(rate)}"
+        else:
+            yield f"G0 {' '.join(given)}"
+    if inverse:
+        yield "G94"
+
+
+def _parted(words: list[str]) -> tuple[str, str]:
+    """Return the word of Z, and the others."""
+    down = next(word for word in words if word.startswith("Z"))
+    return down, " ".join(word for word in words if word != down)
+
+
+def _words(program: RotaryProgram) -> Iterator[list[str]]:
+    """Yield the words of each move; that of A only if it turns."""
+    *places, fine = program.decimals
+    step, last = 10**fine, None
+    for *place, angle in program.moves.tolist():
+        named = zip("XYZ", place, places, strict=True)
+        words = [f"{axis}{_short(value, count)}" for axis, value, count in named]
+        if not program.crosswise:
+            del words[1]
+        turned = round(angle * step)
+        if turned != last:
+            shown = turned % (360 * step) if program.wrapped else turned
+            words.append(f"A{_short(shown / step, fine)}")
+        last = turned
+        yield words
 
 
 def _short(value: float, places: int) -> str:
     """Return a number in so many decimals, without a minus before zero."""
     return f"{round(value, places) + 0.0:.{places}f}"
+
+
+def _significant(value: float) -> str:
+    """Return a number with five digits that count."""
+    return np.format_float_positional(value, 5, fractional=False, trim="-")
 
 
 def _wrapped(note: str) -> Iterator[str]:

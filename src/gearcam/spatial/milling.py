@@ -30,7 +30,14 @@ number of passes. As many are taken as keep it within the tolerance.
 
 Between two points a controller moves X, Y, Z and A in proportion. The turn is then exact, and the
 tool off its true place by what a straight line is off the functions X(A) and Y(A): steps are halved
-until this is within the tolerance. So nothing is cut deeper than that.
+until this is within the tolerance. The ends of the moves are the rounded numbers of a program. What
+is left on a wall and cut into it follows from both, with p the place of the tool's axis beside that
+of the roller: the tool is off the point of the wall in the direction m by ::
+
+    sqrt(R^2 - 2*R*(p . m) + p^2) - r
+
+LinuxCNC moves no slower than 0.1 mm/min along X, Y and Z, A in its time. Where these move less in
+a step, at the ends of dwells, they are kept until it is more.
 
 Refused: tools wider than the groove, and cones of another angle. Source: derived here. Depends on
 cam and tool; numpy only.
@@ -39,7 +46,7 @@ cam and tool; numpy only.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -56,8 +63,17 @@ from gearcam.spatial.tool import MillSpec
 _WIDEST_STEP: Final = math.radians(15.0)
 """Largest turn in one move, rad."""
 
-_BETWEEN: Final = np.arange(1, 8) / 8.0
+_ALONG: Final = np.arange(9) / 8.0
 """Places in a step at which its straight line is compared with the true path."""
+
+_SEEN: Final = 0.98
+"""Least share of the largest error that one of them shows; of a parabola or a cubic 0.988."""
+
+DECIMALS: Final = (4, 4, 4, 5)
+"""Decimals of X, Y and Z, mm, and of A, deg, in a program."""
+
+_SLOWEST: Final = 0.11
+"""Least speed of X, Y and Z together, mm/min, in a move that also turns."""
 
 _OVERLAP: Final = 0.8
 """Distance of paths side by side over the diameter of the tool's end."""
@@ -71,6 +87,8 @@ _SAME: Final = 1e-9
 PLUNGE: Final = 1.0 / 3.0
 """Feed of a move into the metal over that along the path."""
 
+_MINUTE: Final = 60.0
+
 Lane = tuple[tuple[int, float], ...]
 """Sides and shares: where across the groove the tool runs, 1 at a wall; share 0: in the middle."""
 
@@ -82,7 +100,7 @@ class RotaryPath(ShortRepr):
     Parameters
     ----------
     moves : (n, 4) array, mm and rad
-        X, Y, Z and A at the end of each move; A never falls.
+        X, Y, Z and A at the end of each move, rounded as in a program; A never falls.
     turn : (n,) array of int
         Number of the turn round the cam, from 1; 0 of moves between turns.
     rapid : (n,) array of bool
@@ -94,7 +112,10 @@ class RotaryPath(ShortRepr):
     radius : float, mm
         Radius of the cam, at which feeds are measured.
     rest, chord : float, mm
-        Largest thickness that is left on a wall, and largest distance of the moves from the path.
+        What a tool smaller than the roller leaves on a wall where it is on its path, and largest
+        distance of the moves from the path.
+    left, cut : float, mm
+        The whole: most that is left on a wall, and most that is cut into one.
     """
 
     moves: Array
@@ -105,6 +126,8 @@ class RotaryPath(ShortRepr):
     radius: float
     rest: float
     chord: float
+    left: float
+    cut: float
 
     @property
     def crosswise(self) -> bool:
@@ -146,7 +169,7 @@ def rotary_path(cam: SpatialCam, tool: MillSpec, tolerance: float) -> RotaryPath
     tool : MillSpec
         The end mill.
     tolerance : float, mm
-        Bound of what the moves are off the path, and of what they leave on the walls.
+        Bound of what the moves are off the path, and of what a smaller tool leaves beside that.
 
     Returns
     -------
@@ -157,10 +180,10 @@ def rotary_path(cam: SpatialCam, tool: MillSpec, tolerance: float) -> RotaryPath
     InfeasibleError
         If the tool is wider than the groove, or has another angle than the roller.
     """
-    mill = _Mill(cam=cam, spare=_spare(cam, tool, tolerance))
+    mill = _Mill(cam=cam, spare=_spare(cam, tool, tolerance), feed=_MINUTE * tool.feed)
     layers = mill.layers(tool.depth or 0.5 * (tool.diameter or 2.0 * mill.outer), tolerance)
     parts = [_part(mill, lanes, layers, tolerance) for lanes in mill.groups]
-    high = cam.outer_radius + tool.clearance_height
+    high = round(cam.outer_radius + tool.clearance_height, DECIMALS[2])
     moves, turn, rapid, begun, turned = [], [], [], 0, 0.0
     for points, numbers, _ in parts:
         shifted = _ahead(points, turned)
@@ -172,6 +195,8 @@ def rotary_path(cam: SpatialCam, tool: MillSpec, tolerance: float) -> RotaryPath
         begun, turned = begun + int(numbers.max()), float(after[0, 3])
     joined = np.concatenate(moves)
     joined[:, 3] = np.maximum.accumulate(joined[:, 3])  # whole turns are off by rounding
+    left, cut, chord = np.max([errors for *_, errors in parts], axis=0).tolist()
+    thinner = _thinner(cam, tool)
     return RotaryPath(
         moves=joined,
         turn=np.concatenate(turn),
@@ -180,18 +205,18 @@ def rotary_path(cam: SpatialCam, tool: MillSpec, tolerance: float) -> RotaryPath
         tool=(mill.radius_at(cam.floor, layers[-1]), mill.outer),
         radius=cam.outer_radius,
         rest=max(mill.rest(layer) for layer in layers),
-        chord=max(chord for *_, chord in parts),
+        chord=chord,
+        left=left + max(0.0, thinner),
+        cut=cut + max(0.0, -thinner),
     )
 
 
 def _spare(cam: SpatialCam, tool: MillSpec, tolerance: float) -> float:
     """Return the radius of the roller less that of the tool; refuses tools that do not fit."""
     widest, taper = cam.tool.radius_at(cam.outer_radius), math.tan(cam.tool.half_angle)
-    reach = cam.outer_radius - cam.floor
-    own = cam.tool.half_angle if tool.cone is None else tool.cone
-    if reach * abs(math.tan(own) - taper) > tolerance:
+    if tool.cone is not None and abs(_thinner(cam, tool)) > tolerance:
         what = "an end mill of another angle than the roller cannot cut true walls"
-        value, limit = math.degrees(own), math.degrees(cam.tool.half_angle)
+        value, limit = math.degrees(tool.cone), math.degrees(cam.tool.half_angle)
         note = "the limit is half the angle of the roller's cone"
         raise beyond_limit(what, "tool.cone_deg", value, limit, note, near=limit, unit="deg")
     if tool.diameter is None:
@@ -202,12 +227,19 @@ def _spare(cam: SpatialCam, tool: MillSpec, tolerance: float) -> float:
         raise beyond_limit(
             what, "tool.diameter_mm", tool.diameter, 2.0 * widest, note, near=2.0 * widest
         )
-    least = 2.0 * reach * taper
+    least = 2.0 * (cam.outer_radius - cam.floor) * taper
     if tool.diameter <= least:
         what = "an end mill of the roller's angle comes to its tip above the floor of the groove"
         near = ABOVE * least
         raise beyond_limit(what, "tool.diameter_mm", tool.diameter, least, near=near)
     return max(0.0, widest - 0.5 * tool.diameter)
+
+
+def _thinner(cam: SpatialCam, tool: MillSpec) -> float:
+    """Return how much thinner a tool of another angle than the roller is at its end, mm."""
+    roller = cam.tool.half_angle
+    own = roller if tool.cone is None else tool.cone
+    return (cam.outer_radius - cam.floor) * (math.tan(own) - math.tan(roller))
 
 
 @dataclass(frozen=True)
@@ -224,10 +256,11 @@ class _Layer:
 
 @dataclass(frozen=True, eq=False)
 class _Mill:
-    """A cam and the tool that cuts it."""
+    """A cam and the tool that cuts it; `feed` along the path in mm/min."""
 
     cam: SpatialCam
     spare: float
+    feed: float
 
     @property
     def outer(self) -> float:
@@ -267,7 +300,7 @@ class _Mill:
 
     def _divided(self, count: int) -> list[_Layer]:
         cam, taper = self.cam, math.tan(self.cam.tool.half_angle)
-        ends = np.linspace(cam.outer_radius, cam.floor, count + 1).tolist()
+        ends = np.linspace(cam.outer_radius, cam.floor, count + 1).round(DECIMALS[2]).tolist()
         # a cone is thinner at a place while its end is higher
         return [
             _Layer(low, high, self.spare + (low - cam.floor) * taper)
@@ -286,32 +319,105 @@ class _Mill:
 
     def _left(self, theta: Array, layer: _Layer, side: int) -> Array:
         """Return what is left at the worse end of a layer, (n, 1)."""
-        low, high = self._angles(theta, layer, side)
-        off = 1.0 - np.cos(0.5 * (high - low))
-        worst = np.zeros(len(theta))
-        for x in (layer.low, layer.high):
-            roller, tool = self.cam.tool.radius_at(x), self.radius_at(x, layer)
-            left = np.sqrt(tool**2 + 2.0 * roller * layer.spare * off) - tool
-            worst = np.maximum(worst, left)
-        return worst[:, None]
+        ends = (layer.low, layer.high)
+        angles = self._angles(theta, ends, side)
+        beside = layer.spare * side * _direction(0.5 * angles.sum(axis=1))
+        return self._off(beside, angles, ends, layer, side).max(axis=1, keepdims=True)
 
-    def _angles(self, theta: Array, layer: _Layer, side: int) -> tuple[Array, Array]:
-        """Return the directions of the contact at both ends of a layer, rad, from +-z to y."""
-        ends = np.array([[layer.low, layer.high]]) * np.ones((len(theta), 1))
-        _, y, z = _unturned(self.cam.contact(theta, ends, side).radial, theta)
-        return tuple(np.arctan2(side * y, side * z).T)  # pyright: ignore
+    def _angles(self, theta: Array, places: Sequence[float], side: int) -> Array:
+        """Return the directions of the contact at places on the roller, rad, from +-z to y."""
+        x = np.array([places]) * np.ones((len(theta), 1))
+        _, y, z = _unturned(self.cam.contact(theta, x, side).radial, theta)
+        return np.arctan2(side * y, side * z)
+
+    def _off(
+        self, beside: Array, angles: Array, places: Sequence[float], layer: _Layer, side: int
+    ) -> Array:
+        """Return how far the tool, `beside` the roller's axis, is off the wall, (n, k), mm."""
+        x = np.array(places)
+        roller = self.cam.tool.radii(x)
+        towards = side * np.einsum("nj,nkj->nk", beside, _direction(angles))
+        square = np.sum(beside**2, axis=1, keepdims=True)
+        return np.sqrt(roller**2 - 2.0 * roller * towards + square) - (roller - layer.spare)
+
+    def errors(self, theta: Array, placed: Array, lane: Lane, layer: _Layer) -> tuple[float, float]:
+        """Return what a tool at places (n, 2) leaves on the walls, and cuts into them, at most."""
+        left = cut = 0.0
+        sides, top = self._finished(lane, layer)
+        for side in sides:
+            beside = placed - self.center(theta, side)
+            places = (layer.low, top, self.cam.outer_radius)
+            angles = self._angles(theta, places, side)
+            off = self._off(beside, angles, places, layer, side)
+            own = np.arctan2(*(side * beside).T)
+            # nearest to the wall where the contact has the direction of the tool's axis
+            within = (own - angles[:, 0]) * (own - angles[:, 2]) < 0.0
+            deepest = np.where(within, layer.spare - np.hypot(*beside.T), off[:, ::2].min(axis=1))
+            left = max(left, float(off[:, :2].max()))
+            cut = max(cut, -float(deepest.min()))
+        return left, cut
+
+    def _finished(self, lane: Lane, layer: _Layer) -> tuple[tuple[int, ...], float]:
+        """Return the sides of the walls that become true in a turn, and up to which place."""
+        if self.spare >= _SAME:
+            return tuple(side for side, share in lane if share == 1.0), layer.high
+        if layer.low > round(self.cam.floor, DECIMALS[2]):
+            return (), layer.high  # the last pass makes the whole wall
+        sides = (lane[0][0],) if self.cam.apart else self.cam.sides
+        return sides, self.cam.outer_radius
+
+    def center(self, theta: Array, side: int) -> Array:
+        """Return y and z of the roller's axis beside its azimuth, (n, 2), mm."""
+        axis = self.cam.axis(theta, side)
+        return _unturned(axis.point[0][:, None], theta)[1:, :, 0].T
 
     def place(self, theta: Array, lane: Lane, layer: _Layer) -> Array:
         """Return y and z of the tool's axis beside the roller's azimuth, (n, 2), mm."""
-        axis = self.cam.axis(theta, lane[0][0])
-        place = _unturned(axis.point[0][:, None], theta)[1:, :, 0]
+        place = self.center(theta, lane[0][0])
         for side, share in lane:
             if share:
-                low, high = self._angles(theta, layer, side)
-                middle = 0.5 * (low + high)
-                beside = side * np.array([np.sin(middle), np.cos(middle)])
-                place = place + share * layer.spare * beside
-        return place.T
+                angles = self._angles(theta, (layer.low, layer.high), side)
+                place = place + share * layer.spare * side * _direction(0.5 * angles.sum(axis=1))
+        return place
+
+    def steps(self, lane: Lane, layer: _Layer, tolerance: float) -> tuple[Array, Array, Array]:
+        """Return cam angles, places (n, 2) between which a path is straight, and its errors.
+
+        Errors: what is left on walls, what is cut into them, the distance from the path.
+        """
+        cam = self.cam
+        theta = _first_steps(cam.program.cuts_between(0.0, cam.program.period))
+        while True:
+            placed = self._kept(theta, self.place(theta, lane, layer).round(DECIMALS[0]))
+            between = theta[:-1, None] + np.diff(theta)[:, None] * _ALONG
+            reached = placed[:-1, None] + np.diff(placed, axis=0)[:, None] * _ALONG[:, None]
+            at, straight = between.ravel(), reached.reshape(-1, 2)
+            off = np.linalg.norm(straight - self.place(at, lane, layer), axis=1)
+            off = off.reshape(between.shape).max(axis=1)
+            wide = off > _SEEN * tolerance
+            if not wide.any():
+                left, cut = self.errors(at, straight, lane, layer)
+                return theta, placed, np.array([left, cut, off.max()]) / _SEEN
+            middle = _rounded(0.5 * (theta[:-1] + theta[1:])[wide])
+            theta = np.unique(np.append(theta, middle))
+
+    def _kept(self, theta: Array, placed: Array) -> Array:
+        """Return places in which those stay the same that are reached too slowly."""
+        share, kept = _SLOWEST / self.feed, [placed[0]]
+        for place, length in zip(placed[1:], self.cam.outer_radius * np.diff(theta), strict=True):
+            step = math.hypot(*(place - kept[-1]))
+            kept.append(kept[-1] if step < share * math.hypot(step, length) else place)
+        return np.array(kept)
+
+
+def _direction(angles: Array) -> Array:
+    """Return directions across the roller at angles from z to y, as y and z."""
+    return np.stack([np.sin(angles), np.cos(angles)], axis=-1)
+
+
+def _rounded(angles: Array) -> Array:
+    """Return angles, rad, as a program states them."""
+    return np.radians(np.degrees(angles).round(DECIMALS[3]))
 
 
 def _ahead(points: Array, angle: float) -> Array:
@@ -328,12 +434,12 @@ def _unturned(vectors: Array, theta: Array) -> Array:
 
 def _part(
     mill: _Mill, lanes: list[Lane], layers: list[_Layer], tolerance: float
-) -> tuple[Array, Ints, float]:
-    """Return points, numbers of turns, and the chord error of what is cut without lifting."""
-    points, numbers, worst, number = [], [], 0.0, 0
+) -> tuple[Array, Ints, Array]:
+    """Return points, numbers of turns, and the errors of what is cut without lifting."""
+    points, numbers, errors, number = [], [], [], 0
     for k, layer in enumerate(layers):
         for lane in lanes[:: -1 if k % 2 else 1]:
-            turn, chord = _turn(mill, lane, layer, tolerance)
+            turn, off = _turn(mill, lane, layer, tolerance)
             if points:
                 points.append(points[-1][-1:] * [0, 0, 1, 0] + turn[:1] * [1, 1, 0, 0])
                 points[-1][0, 3] = 2.0 * math.pi * number
@@ -341,41 +447,28 @@ def _part(
             points.append(_ahead(turn, 2.0 * math.pi * number))
             number += 1
             numbers.append([0, *[number] * (len(turn) - 1)])
-            worst = max(worst, chord)
+            errors.append(off)
     joined, counts = np.concatenate(points), np.concatenate(numbers)
     moved = np.r_[True, np.any(np.diff(joined, axis=0) != 0.0, axis=1)]
-    return joined[moved], counts[moved], worst
+    return joined[moved], counts[moved], np.max(errors, axis=0)
 
 
-def _turn(mill: _Mill, lane: Lane, layer: _Layer, tolerance: float) -> tuple[Array, float]:
-    """Return X, Y, Z and A over one turn round the cam, and the chord error."""
-    cam = mill.cam
-    knots = cam.program.cuts_between(0.0, cam.program.period)
-    theta, chord = _steps(lambda at: mill.place(at, lane, layer), knots, tolerance)
-    y, z = mill.place(theta, lane, layer).T
+def _turn(mill: _Mill, lane: Lane, layer: _Layer, tolerance: float) -> tuple[Array, Array]:
+    """Return X, Y, Z and A over one turn round the cam, and its errors (see `_Mill.steps`)."""
+    theta, placed, errors = mill.steps(lane, layer, tolerance)
+    y, z = placed.T
     turn = np.stack([z, y, np.full_like(y, layer.low), theta], axis=1)
-    if not cam.clockwise:
+    if not mill.cam.clockwise:
         turn[:, 1:] *= [-1.0, 1.0, -1.0]
         turn = _ahead(turn[::-1], theta[-1])
-    return turn + 0.0, chord  # no minus zero
+    return turn + 0.0, errors  # no minus zero
 
 
-def _steps(place: Callable[[Array], Array], knots: Array, tolerance: float) -> tuple[Array, float]:
-    """Return angles between which a path is straight within the tolerance, and its error."""
+def _first_steps(knots: Array) -> Array:
+    """Return angles that divide a turn evenly between knots."""
     counts = np.maximum(1, np.ceil(np.diff(knots) / _WIDEST_STEP - _SAME)).astype(int)
     parts = [
         np.linspace(left, right, count, endpoint=False)
         for (left, right), count in zip(pairwise(knots), counts, strict=True)
     ]
-    theta = np.append(np.concatenate(parts), knots[-1])
-    while True:
-        left, right = theta[:-1, None], theta[1:, None]
-        between = left + (right - left) * _BETWEEN
-        true = place(between.ravel()).reshape(*between.shape, 2)
-        at = place(theta)[:, None]
-        straight = at[:-1] + (at[1:] - at[:-1]) * _BETWEEN[:, None]
-        errors = np.linalg.norm(true - straight, axis=-1).max(axis=1)
-        wide = errors > tolerance
-        if not wide.any():
-            return theta, float(errors.max())
-        theta = np.sort(np.append(theta, 0.5 * (left + right)[wide, 0]))
+    return _rounded(np.append(np.concatenate(parts), knots[-1]))

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from gearcam.base.display import ShortRepr
-from gearcam.base.quantities import ANGLE, RPM, SPEED_PER_MINUTE, param, positive_length
+from gearcam.base.quantities import ANGLE, RPM, SPEED_PER_MINUTE, TEXT, param, positive_length
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,12 +42,24 @@ class MillSpec(ShortRepr):
     feed: float = param(
         SPEED_PER_MINUTE,
         default=5.0,
-        gt=0,
+        ge=10,
         le=1e5,
         doc="feed along the path, at the outside of the cam",
     )
-    spindle: float = param(
-        RPM, default=10000.0 * RPM.factor, gt=0, le=1e6, doc="speed of the spindle"
+    spindle: float | None = param(
+        RPM,
+        default=None,
+        ge=1,
+        le=1e6,
+        example=10000,
+        doc="speed of the spindle; if left out the program stops for you to start it by hand",
+    )
+    rotary: str = param(
+        TEXT,
+        default="growing",
+        choices=("growing", "wrapped"),
+        doc="words of A in the program: growing over all turns, or from 0 to below 360 deg for a "
+        "wrapped axis (LinuxCNC: WRAPPED_ROTARY = 1)",
     )
     clearance_height: float = positive_length(
         default=5.0, doc="height above the cam at which the tool moves rapidly"

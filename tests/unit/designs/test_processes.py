@@ -19,7 +19,7 @@ from gearcam.designs.template import template
 from helpers_sampling import chosen
 
 PROCESSES = [(kind, process) for kind in KINDS for process in ("", *KINDS[kind].processes)]
-FILES = {"": "report", "printing": "stl", "laser": "cut-svg", "wire": "dxf"}
+FILES = {"": "report", "printing": "stl", "laser": "cut-svg", "wire": "dxf", "milling": "gcode"}
 """What each process cannot do without."""
 
 
@@ -29,7 +29,8 @@ def test_every_kind_can_be_begun_for_each_process() -> None:
     for kind in KINDS:
         cut = {"laser", "wire"} if kind in flat else set()
         printed = {"printing"} if "stl" in KINDS[kind].formats else set()
-        assert set(KINDS[kind].processes) == printed | cut
+        milled = {"milling"} if "gcode" in KINDS[kind].formats else set()
+        assert set(KINDS[kind].processes) == printed | cut | milled
 
 
 LONG = {("spatial-cam", ""), ("globoidal-cam", ""), ("globoidal-cam", "printing")}
@@ -47,8 +48,9 @@ def test_it_builds_without_warnings_at_a_size_that_people_make(
     document = tomllib.loads(Path("mine.toml").read_text("utf-8"))
     assert main(["build", "mine.toml"]) == 0
     found = json.loads(Path("output/mine/summary.json").read_text("utf-8"))
-    # a pair without backlash is noted, where no process asks for some
-    noted = [("note", "no-backlash")] if kind == "gear-pair" and not process else []
+    # a pair without backlash is noted, where no process asks for some, and that a cylinder slips
+    plain = [("note", "no-backlash")] if kind == "gear-pair" and not process else []
+    noted = [("note", "roller-slip")] if kind == "spatial-cam" else plain
     assert [(one["severity"], one["code"]) for one in found["findings"]] == noted
     output = document["output"]
     assert {FILES[process], "report"} <= set(output["files"])
@@ -57,6 +59,8 @@ def test_it_builds_without_warnings_at_a_size_that_people_make(
     # a chord error disappears in the kerf, and fine cuts are drawn finely
     assert output.get("chord_tolerance_mm", 0.0) <= 0.15 * output.get("kerf_mm", 0.1)
     result = gc.build(gc.load("mine.toml"))
+    if "gcode" in output["files"]:  # with an end mill that is sold
+        assert "conical" not in Path("output/mine/cam.nc").read_text("ascii")
     # a mechanism has no solids of its own
     meshes = result.meshes if "stl" in result.kind.formats else {}
     for mesh in meshes.values():

@@ -48,7 +48,8 @@ class SpatialOutput(GriddedOutput):
         default=0.005,
         ge=5e-4,
         le=1,
-        doc="how far the moves of a tool may be off its path, and how much they may leave on walls",
+        doc="how far the moves of a tool may be off its path, and how much a tool smaller than the "
+        "roller may leave on walls beside that",
     )
 
 

@@ -147,7 +147,9 @@ def _tool_path(result: SpatialCamResult) -> Tree | None:
         "passes_in_depth": path.layers,
         "turns": path.turns,
         "moves": len(path.moves),
-        "rest_mm": Fact(path.rest, "most that is left on a wall", shown=True),
+        "left_mm": Fact(path.left, "most that is left on a wall", shown=True),
+        "cut_mm": Fact(path.cut, "most that is cut into a wall", shown=True),
+        "rest_mm": Fact(path.rest, "left by a tool smaller than the roller on its path"),
         "chord_mm": Fact(path.chord, "distance of the moves from the path"),
         "cutting_time_s": float(times.sum()),
     }

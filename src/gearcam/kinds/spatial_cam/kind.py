@@ -33,7 +33,7 @@ KIND: Final = Kind(
             {"type": "return", "angle_deg": 150, "law": "cycloidal"},
             {"type": "dwell", "angle_deg": "rest"},
         ],
-        "follower": {"motion": "translating", "roller_radius_mm": 8, "cone_deg": "apex"},
+        "follower": {"motion": "translating", "roller_radius_mm": 8},
         "cam": {
             "form": "cylinder",
             "outer_diameter_mm": 100,
@@ -48,6 +48,11 @@ KIND: Final = Kind(
         "printing": {
             "cam": {"roller_clearance_mm": 0.08, "floor_clearance_mm": 0.5},
             "output": {"files": ["stl", "report"], "wall_step_deg": 1},
+        },
+        "milling": {
+            "cam": {"roller_clearance_mm": 0.05, "floor_clearance_mm": 0.5},
+            "tool": {"diameter_mm": 10},
+            "output": {"files": ["gcode", "tool-path", "report"]},
         },
     },
     notes={"motion": "Phases of the motion, one after the other, 360 deg in all."},
