@@ -104,6 +104,7 @@ def _at(motion: PitchMotion, place: str) -> str:
         ),
         math.nan,
     ),
+    relation="at most",
 )
 def pressure_angle(cam: Cam, limit: float | tuple[float, ...]) -> Iterator[Remark]:
     """Warn of large pressure angles on rises and returns.
@@ -130,6 +131,7 @@ def pressure_angle(cam: Cam, limit: float | tuple[float, ...]) -> Iterator[Remar
         ),
         math.nan,
     ),
+    relation="at most",
 )
 def jamming(cam: Cam, limit: float) -> Iterator[Remark]:
     """Report pressure angles at which friction blocks the follower.
@@ -168,6 +170,7 @@ def _steep(motion: PitchMotion, kinds: tuple[str, ...], largest: float) -> Itera
     "undercut",
     kind=KIND,
     limit=("lost_lift", Param(LENGTH, ge=0, doc="largest lift that trimming may lose"), 0.01),
+    relation="at most",
     severity=("warning", "error"),
 )
 def undercut(cam: Cam, limit: float) -> Iterator[Remark]:
@@ -270,6 +273,7 @@ def acceleration_jump(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG0
     "sharp-profile",
     kind=KIND,
     limit=("profile_radius", Param(LENGTH, ge=0, doc="least convex radius of the profile"), 1.0),
+    relation="at least",
 )
 def sharp_profile(cam: Cam, limit: float) -> Iterator[Remark]:
     """Warn of a sharp profile.
@@ -292,7 +296,7 @@ def sharp_profile(cam: Cam, limit: float) -> Iterator[Remark]:
             )
 
 
-@check("coarse-rows", kind=KIND, unit="mm")
+@check("coarse-rows", kind=KIND, relation="at most", unit="mm")
 def coarse_rows(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Warn of a motion table whose rows do not give the lift as accurately as the profile is cut.
 
@@ -317,6 +321,7 @@ def coarse_rows(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     "lost-motion",
     kind=KIND,
     limit=("lost_motion", Param(LENGTH, ge=0, doc="largest lost motion between two walls"), 0.1),
+    relation="at most",
 )
 def lost_motion(cam: Cam, limit: float) -> Iterator[Remark]:
     """Warn of a follower that can move between the two walls of a groove.
@@ -351,7 +356,7 @@ def face_width(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
         )
 
 
-@check("other-profile", kind=FOLLOWED)
+@check("other-profile", kind=FOLLOWED, relation="at most")
 def other_profile(followed: tuple[Wall, Followed], limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Warn if a followed profile is probably not that of the design.
 
@@ -376,7 +381,7 @@ def other_profile(followed: tuple[Wall, Followed], limit: float) -> Iterator[Rem
         )
 
 
-@check("lift-error", kind=PRECISION)
+@check("lift-error", kind=PRECISION, relation="at most")
 def lift_error(deviation: LiftError, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Warn if the tolerances let the lift deviate by more than is wanted.
 
@@ -415,7 +420,7 @@ class FittedMotion(NamedTuple):
     of_profile: bool
 
 
-@check("unknown-law", kind=FITTED)
+@check("unknown-law", kind=FITTED, relation="at most")
 def unknown_law(fitted: FittedMotion, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Warn if no motion law moves as a measured lift does.
 

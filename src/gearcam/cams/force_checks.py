@@ -85,7 +85,7 @@ class Loaded(ShortRepr):
         return "" if self.way is None else on_way(float(self.way[index]))
 
 
-@check("self-locking", kind=FORCES, severity="error")
+@check("self-locking", kind=FORCES, relation="at least", severity="error")
 def self_locking(loaded: Loaded, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Report where friction locks the follower: no force of the cam can move it.
 
@@ -129,7 +129,7 @@ _PRESSURE: Final = (
 )
 
 
-@check("contact-pressure", kind=FORCES, limit=_PRESSURE, unit="MPa")
+@check("contact-pressure", kind=FORCES, limit=_PRESSURE, relation="at most", unit="MPa")
 def contact_pressure(loaded: Loaded, limit: float) -> Iterator[Remark]:
     """Warn of a contact pressure at which the surface wears or yields.
 
@@ -154,7 +154,7 @@ _TORQUE: Final = (
 )
 
 
-@check("drive-torque", kind=FORCES, limit=_TORQUE, unit="N m")
+@check("drive-torque", kind=FORCES, limit=_TORQUE, relation="at most", unit="N m")
 def drive_torque(loaded: Loaded, limit: float) -> Iterator[Remark]:
     """Warn if the cam needs more torque than its drive has.
 

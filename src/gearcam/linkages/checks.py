@@ -79,6 +79,7 @@ def _at(q: float) -> str:
         ),
         math.nan,
     ),
+    relation="at most",
 )
 def pressure_angle(machine: CheckedMachine, limit: float) -> Iterator[Remark]:
     """Warn of dyads through which a force hardly passes.
@@ -105,7 +106,7 @@ def pressure_angle(machine: CheckedMachine, limit: float) -> Iterator[Remark]:
             )
 
 
-@check("guide-distance", kind=KIND)
+@check("guide-distance", kind=KIND, relation="at least")
 def guide_distance(machine: CheckedMachine, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Warn of a block that comes near the pivot of the guide on which it slides.
 
