@@ -213,7 +213,8 @@ def solved(result: CamResult, *, advise: bool = True) -> Solution:
 
 def _demand_smooth_ends(task: Task) -> None:
     """Refuse a lift whose velocity falls at once: the profile has a corner whatever its size."""
-    falls = [jump for jump in task.program.hard if jump.after < jump.before]
+    hard = task.program.hard
+    falls = [jump for jump in hard if jump.after < jump.before and not jump.slight]
     if falls:
         at = formatted(math.degrees(falls[0].theta))
         raise InfeasibleError(
