@@ -578,7 +578,8 @@ def test_a_plate_presses_hardest_on_its_steeper_way() -> None:
     assert found.facts["forces.normal_n.max"] == pytest.approx(force(15, 40, 1), rel=1e-9)
     assert force(15, 40, 1) > 1.05 * force(15, 60, 1)
     assert "on the way back" in found.group["normal_n"].place
-    most = found.facts["forces.pressure_mpa"]
+    # where the velocity falls at once the plate has corners, of which nothing is said
+    most = found.facts["forces.pressure_off_edges_mpa"]
     assert most == pytest.approx(float(np.nanmax(columns["pressure_mpa"][way == -1])))
     chart = found.charts["normal"]
     assert [one.label for one in chart.lines] == ["normal force, forward", "normal force, back"]

@@ -20,6 +20,9 @@ from gearcam.base.quantities import NUMBER, Param
 
 Severity = Literal["note", "warning", "error"]
 
+Relation = Literal["at most", "at least"]
+"""How a value keeps its limit."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Finding(ShortRepr):
@@ -36,6 +39,8 @@ class Finding(ShortRepr):
     value, limit : float or None
         The value found and its limit, in `unit`; a value that is rounding noise relative to the
         limit becomes 0.
+    relation : {"at most", "at least"}, optional
+        How a value keeps this limit; a finding may be about a value that does.
     unit : str
         Unit of both.
     where : str
@@ -54,6 +59,7 @@ class Finding(ShortRepr):
     message: str
     value: float | None = None
     limit: float | None = None
+    relation: Relation | None = None
     unit: str = ""
     where: str = ""
 
@@ -68,15 +74,14 @@ class Finding(ShortRepr):
 
     @property
     def limit_text(self) -> str:
-        """The limit that the value violates, as text: ``at most 30 deg``."""
-        if self.value is None or self.limit is None:
+        """The limit as text: ``at most 30 deg``."""
+        if self.limit is None:
             return ""
-        words = "at most" if self.value > self.limit else "at least"
-        return f"{words} {with_unit(self.limit, self.unit)}"
+        return f"{self.relation or ''} {with_unit(self.limit, self.unit)}".lstrip()
 
     def as_dict(self) -> dict[str, Any]:
         """Return the finding as a dict for JSON, without empty entries."""
-        fields = ("code", "severity", "message", "value", "limit", "unit", "where")
+        fields = ("code", "severity", "message", "value", "limit", "relation", "unit", "where")
         return {
             name: getattr(self, name) for name in fields if getattr(self, name) not in (None, "")
         }
@@ -125,6 +130,8 @@ class Check:
         The kind of subject that it examines.
     limit : tuple of (str, Param, float) or None
         Name in ``[limits]``, quantity with its range, and default in internal units (mm, rad).
+    relation : {"at most", "at least"} or None
+        How a value keeps the limit, that of the table or of a finding; None without limits.
     severities : tuple of str
         Severities that its findings may have, the usual one first.
     run : callable
@@ -134,6 +141,7 @@ class Check:
     code: str
     kind: str
     limit: tuple[str, Param, float] | None
+    relation: Relation | None
     severities: tuple[Severity, ...]
     run: Run
 
@@ -155,6 +163,7 @@ def check(
     *,
     kind: str | tuple[str, ...],
     limit: tuple[str, Param, float] | None = None,
+    relation: Relation | None = None,
     severity: Severity | tuple[Severity, ...] = "warning",
     unit: str = "",
 ) -> Callable[[Look], Run]:
@@ -162,7 +171,7 @@ def check(
 
     Parameters
     ----------
-    code, kind, limit
+    code, kind, limit, relation
         As in a `Check`.
     severity : {"note", "warning", "error"} or tuple of them
         Severities that its findings may have; the first is the default.
@@ -172,20 +181,26 @@ def check(
     Raises
     ------
     ValueError
-        If the code is already registered for a kind.
+        If the code is already registered for a kind, or a limit has no relation.
     """
     quantity = limit[1].quantity if limit else NUMBER
     unit = unit or quantity.unit
     severities = (severity,) if isinstance(severity, str) else severity
+    if limit and relation is None:
+        raise ValueError(f"check {code!r} does not say how a value keeps its limit")
 
     def finding(remark: Remark, limit: Any) -> Finding:
         bound = limit / quantity.factor if math.isnan(remark.limit) else remark.limit
+        limited = remark.value is not None and math.isfinite(bound)
+        if limited and relation is None:
+            raise ValueError(f"check {code!r} does not say how a value keeps its limit")
         return Finding(
             code=code,
             severity=remark.severity or severities[0],
             message=remark.message,
             value=remark.value,
-            limit=bound if remark.value is not None and math.isfinite(bound) else None,
+            limit=bound if limited else None,
+            relation=relation if limited else None,
             unit="" if remark.value is None else remark.unit or unit,
             where=remark.where,
         )
@@ -199,7 +214,12 @@ def check(
             if (one, code) in CHECKS:
                 raise ValueError(f"check {code!r} is registered twice")
             CHECKS[one, code] = Check(
-                code=code, kind=one, limit=limit, severities=severities, run=run
+                code=code,
+                kind=one,
+                limit=limit,
+                relation=relation,
+                severities=severities,
+                run=run,
             )
         return run
 

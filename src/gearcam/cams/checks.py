@@ -15,13 +15,14 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 import numpy as np
 
 from gearcam.base.findings import ROUNDING, Remark, check
-from gearcam.base.numerals import formatted, rounded_down, shortened
+from gearcam.base.numerals import formatted, rounded_down, settled, shortened
 from gearcam.base.quantities import ANGLE, LENGTH, Param
 from gearcam.base.registry import name_of
 from gearcam.cams.cam import Cam
 from gearcam.cams.followers import Follower
 from gearcam.cams.spec import FITTED, FOLLOWED, KIND, PRECISION
 from gearcam.cams.wall import PitchMotion, Wall
+from gearcam.laws.displacement import Jump
 from gearcam.laws.motion.base import MOTION_LAWS
 
 if TYPE_CHECKING:
@@ -104,6 +105,7 @@ def _at(motion: PitchMotion, place: str) -> str:
         ),
         math.nan,
     ),
+    relation="at most",
 )
 def pressure_angle(cam: Cam, limit: float | tuple[float, ...]) -> Iterator[Remark]:
     """Warn of large pressure angles on rises and returns.
@@ -130,6 +132,7 @@ def pressure_angle(cam: Cam, limit: float | tuple[float, ...]) -> Iterator[Remar
         ),
         math.nan,
     ),
+    relation="at most",
 )
 def jamming(cam: Cam, limit: float) -> Iterator[Remark]:
     """Report pressure angles at which friction blocks the follower.
@@ -168,6 +171,7 @@ def _steep(motion: PitchMotion, kinds: tuple[str, ...], largest: float) -> Itera
     "undercut",
     kind=KIND,
     limit=("lost_lift", Param(LENGTH, ge=0, doc="largest lift that trimming may lose"), 0.01),
+    relation="at most",
     severity=("warning", "error"),
 )
 def undercut(cam: Cam, limit: float) -> Iterator[Remark]:
@@ -185,9 +189,9 @@ def undercut(cam: Cam, limit: float) -> Iterator[Remark]:
 def _undercut(wall: Wall, limit: float) -> Iterator[Remark]:
     left = wall.undercut_ranges
     follower, text = wall.follower, wall.carrier.driver.text
-    for corner, loss in zip(wall.corners, wall.lost, strict=True):
+    for corner, loss in zip(wall.edges, wall.lost, strict=True):
         low, high = corner.before, corner.after
-        inside = [pair for pair in left if _within(pair, low, high, wall.program.period)]
+        inside = [pair for pair in wall.undercut_at(corner) if pair in left]
         left = [pair for pair in left if pair not in inside]
         lost = loss.value * follower.lever
         angle = f" ({formatted(math.degrees(loss.value), 4)} deg)" if follower.angular else ""
@@ -208,11 +212,6 @@ def _undercut(wall: Wall, limit: float) -> Iterator[Remark]:
         )
 
 
-def _within(pair: tuple[float, float], low: float, high: float, turn: float) -> bool:
-    """Whether a range begins within a part of a turn, which may continue over its end."""
-    return (pair[0] - low) % turn <= (high - low) % turn
-
-
 def _stretches(pairs: list[tuple[float, float]], text: Callable[[float], str]) -> str:
     if not pairs:
         return "cut away by the follower at another angle"
@@ -223,53 +222,70 @@ def _stretches(pairs: list[tuple[float, float]], text: Callable[[float], str]) -
     return "undercut " + " and ".join(words)
 
 
-def _shocks(cam: Cam, order: int) -> Iterator[tuple[str, float, str]]:
-    """Yield place, jump and unit of every knot whose derivative of this order jumps."""
-    lead = cam.motions[0]
+def _shocks(cam: Cam, order: int, harm: str) -> Iterator[Remark]:
+    """Yield the remarks on knots whose derivative of this order jumps, with the harm that does."""
+    lead, name = cam.motions[0], ("velocity", "acceleration")[order - 1]
     driver, (scale, unit) = lead.carrier.driver, lead.follower.lift_unit
     unit = f"{unit}/{driver.per}{order if order > 1 else ''}"
     for jump in lead.program.jumps:
-        if jump.order == order:
-            by = scale * (jump.after - jump.before)
-            yield f"at {driver.text(jump.theta)}", by, unit
+        if jump.order != order:
+            continue
+        by = scale * (jump.after - jump.before)
+        told = f"{jump.small}. {_bent(cam, jump)}".rstrip() if jump.slight else f": {harm}"
+        yield Remark(
+            f"The {name} jumps by {formatted(by)} {unit}{told}",
+            f"at {driver.text(jump.theta)}",
+            by,
+            severity="note" if jump.slight else None,
+            unit=unit,
+        )
 
 
-@check("velocity-jump", kind=KIND)
+def _bent(cam: Cam, jump: Jump) -> str:
+    """Return what a velocity jump too small to matter does to the profiles, in words."""
+    found = [
+        wall.bent_by(own)
+        for wall in cam.walls
+        for own in wall.program.hard
+        if own.theta == jump.theta and jump.order == 1
+    ]
+    bend, lost = (max(one) for one in zip((0.0, 0.0), *found, strict=True))
+    if not bend:
+        return ""  # a straight piece below a face
+    lead = cam.motions[0]
+    lost = settled(lost, lead.follower.lever * lead.program.range[1])
+    loses = f", by which {formatted(lost, 3)} mm of lift is lost" if lost else ""
+    return f"It bends the profile by {formatted(math.degrees(bend), 3)} deg{loses}."
+
+
+@check("velocity-jump", kind=KIND, severity=("warning", "note"))
 def velocity_jump(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Warn of a knot at which the velocity jumps.
 
+    A note if it jumps by no more than a thousandth of the largest velocity, as by coefficients
+    that were printed in few digits: then its corner counts neither as undercut nor as a radius.
+
     Looks at: knots where the velocity jumps.
     """
-    for where, by, unit in _shocks(cam, 1):
-        yield Remark(
-            f"The velocity jumps by {formatted(by)} {unit}: except at very low speed the follower "
-            "strikes the cam or leaves it.",
-            where,
-            by,
-            unit=unit,
-        )
+    yield from _shocks(
+        cam, 1, "except at very low speed the follower strikes the cam or leaves it."
+    )
 
 
 @check("acceleration-jump", kind=KIND, severity="note")
 def acceleration_jump(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
-    """Note a knot at which the acceleration jumps.
+    """Note a knot at which the acceleration jumps, and whether it is too little to matter.
 
     Looks at: knots where the acceleration jumps.
     """
-    for where, by, unit in _shocks(cam, 2):
-        yield Remark(
-            f"The acceleration jumps by {formatted(by)} {unit}: the follower vibrates at high "
-            "speed.",
-            where,
-            by,
-            unit=unit,
-        )
+    yield from _shocks(cam, 2, "the follower vibrates at high speed.")
 
 
 @check(
     "sharp-profile",
     kind=KIND,
     limit=("profile_radius", Param(LENGTH, ge=0, doc="least convex radius of the profile"), 1.0),
+    relation="at least",
 )
 def sharp_profile(cam: Cam, limit: float) -> Iterator[Remark]:
     """Warn of a sharp profile.
@@ -279,7 +295,7 @@ def sharp_profile(cam: Cam, limit: float) -> Iterator[Remark]:
     """
     for wall in cam.walls:
         convex, _ = wall.profile_radius
-        if not wall.corners and convex < limit:
+        if not wall.edges and convex < limit:
             base, hint = cam.least_base_radius, ""
             if base is not None:
                 base = shortened(base + limit, 1.0)
@@ -292,7 +308,7 @@ def sharp_profile(cam: Cam, limit: float) -> Iterator[Remark]:
             )
 
 
-@check("coarse-rows", kind=KIND, unit="mm")
+@check("coarse-rows", kind=KIND, relation="at most", unit="mm")
 def coarse_rows(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Warn of a motion table whose rows do not give the lift as accurately as the profile is cut.
 
@@ -317,6 +333,7 @@ def coarse_rows(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     "lost-motion",
     kind=KIND,
     limit=("lost_motion", Param(LENGTH, ge=0, doc="largest lost motion between two walls"), 0.1),
+    relation="at most",
 )
 def lost_motion(cam: Cam, limit: float) -> Iterator[Remark]:
     """Warn of a follower that can move between the two walls of a groove.
@@ -351,7 +368,7 @@ def face_width(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
         )
 
 
-@check("other-profile", kind=FOLLOWED)
+@check("other-profile", kind=FOLLOWED, relation="at most")
 def other_profile(followed: tuple[Wall, Followed], limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Warn if a followed profile is probably not that of the design.
 
@@ -376,7 +393,7 @@ def other_profile(followed: tuple[Wall, Followed], limit: float) -> Iterator[Rem
         )
 
 
-@check("lift-error", kind=PRECISION)
+@check("lift-error", kind=PRECISION, relation="at most")
 def lift_error(deviation: LiftError, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Warn if the tolerances let the lift deviate by more than is wanted.
 
@@ -415,7 +432,7 @@ class FittedMotion(NamedTuple):
     of_profile: bool
 
 
-@check("unknown-law", kind=FITTED)
+@check("unknown-law", kind=FITTED, relation="at most")
 def unknown_law(fitted: FittedMotion, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Warn if no motion law moves as a measured lift does.
 

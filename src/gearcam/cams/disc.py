@@ -37,8 +37,9 @@ class DiscCam(Wall, Cam):
     @property
     def least_base_radius(self) -> float | None:
         """Least base radius, mm, that is not undercut below a translating flat face."""
-        radius, back = self.face_radius, (jump.after < jump.before for jump in self.program.hard)
-        if radius is None or self.follower.angular or any(back):
+        radius, jumps = self.face_radius, self.program.hard
+        back = any(jump.after < jump.before and not jump.slight for jump in jumps)
+        if radius is None or self.follower.angular or back:
             return None
         return self.follower.start - radius.low.value
 

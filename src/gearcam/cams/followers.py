@@ -166,7 +166,7 @@ class Follower(ShortRepr, ABC):
 
     @property
     def bend(self) -> float:
-        """Curvature of its end, 1/mm: 0 of a face, nan of a point."""
+        """Curvature of its end, 1/mm: 0 of a face, infinite of a point."""
         return 0.0
 
     @abstractmethod
@@ -463,7 +463,7 @@ class Round(Follower):
     @property
     def bend(self) -> float:
         """Curvature of its end, 1/mm (see `Follower.bend`)."""
-        return 1.0 / self.radius if self.radius else math.nan
+        return 1.0 / self.radius if self.radius else math.inf
 
     highest: ClassVar[float]
     """Limit of its positions over a cam that turns, mm or rad."""

@@ -37,7 +37,9 @@ class Loaded(ShortRepr):
     statics : Statics
         The forces.
     pressure : (n,) array, MPa
-        Contact pressure.
+        Contact pressure, infinite where an edge carries.
+    pointed : bool
+        Whether the edge is that of the follower.
     yields : float or None, MPa
         The lower yield stress.
     torque : (n,) array
@@ -58,10 +60,16 @@ class Loaded(ShortRepr):
     pressure: Array
     yields: float | None
     torque: Array
+    pointed: bool = False
     way: Array | None = None
     release: str = ""
     loose: str = ""
     holding: str = ""
+
+    @property
+    def on_edge(self) -> Mask:
+        """Where an edge carries, (n,)."""
+        return np.isinf(self.pressure)
 
     def stretch(self, mask: Mask) -> str:
         """Return where a mask first holds, in words."""
@@ -74,7 +82,8 @@ class Loaded(ShortRepr):
         )
         more = f", and {breaks.size} more" if breaks.size else ""
         unit = self.driver.unit + self._on(int(places[0]))
-        return f"{self.driver.symbol} = {low} to {high} {unit}{more}"
+        reach = low if low == high else f"{low} to {high}"
+        return f"{self.driver.symbol} = {reach} {unit}{more}"
 
     def at(self, index: int) -> str:
         """Return a place in words."""
@@ -85,7 +94,7 @@ class Loaded(ShortRepr):
         return "" if self.way is None else on_way(float(self.way[index]))
 
 
-@check("self-locking", kind=FORCES, severity="error")
+@check("self-locking", kind=FORCES, relation="at least", severity="error")
 def self_locking(loaded: Loaded, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Report where friction locks the follower: no force of the cam can move it.
 
@@ -129,18 +138,38 @@ _PRESSURE: Final = (
 )
 
 
-@check("contact-pressure", kind=FORCES, limit=_PRESSURE, unit="MPa")
+@check(
+    "contact-pressure",
+    kind=FORCES,
+    limit=_PRESSURE,
+    relation="at most",
+    severity=("warning", "note"),
+    unit="MPa",
+)
 def contact_pressure(loaded: Loaded, limit: float) -> Iterator[Remark]:
     """Warn of a contact pressure at which the surface wears or yields.
+
+    On an edge, a corner that trimming leaves or that of a pointed follower, it is unbounded: a note
+    if there is no limit.
 
     Looks at: Hertz pressure between profile and follower, over the turn; without a limit against
     1.79 times the lower yield stress, where a line contact first yields, if one is given.
     """
     most = limit or FIRST_YIELD * (loaded.yields or np.inf)
-    if np.isnan(loaded.pressure).all():
+    if loaded.on_edge.any():
+        beyond = "" if np.isinf(most) else f", beyond the limit of {formatted(most)} MPa"
+        why = " where the follower rides on a corner of the profile"
+        yield Remark(
+            f"The contact pressure is unbounded{beyond}"
+            + (": the follower is pointed." if loaded.pointed else f"{beyond and ','}{why}."),
+            loaded.stretch(loaded.on_edge),
+            severity="note" if np.isinf(most) else None,
+        )
+    finite = np.where(loaded.on_edge, np.nan, loaded.pressure)
+    if np.isnan(finite).all():
         return
-    worst = int(np.nanargmax(loaded.pressure))
-    found = float(loaded.pressure[worst])
+    worst = int(np.nanargmax(finite))
+    found = float(finite[worst])
     if found > most:
         message = "The contact pressure is too high: a larger roller or cam, a wider face or a "
         message += "weaker spring lowers it."
@@ -154,7 +183,7 @@ _TORQUE: Final = (
 )
 
 
-@check("drive-torque", kind=FORCES, limit=_TORQUE, unit="N m")
+@check("drive-torque", kind=FORCES, limit=_TORQUE, relation="at most", unit="N m")
 def drive_torque(loaded: Loaded, limit: float) -> Iterator[Remark]:
     """Warn if the cam needs more torque than its drive has.
 

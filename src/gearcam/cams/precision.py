@@ -75,7 +75,7 @@ def sensitivities(wall: Wall, linked: Mapping[str, float], theta: Array) -> dict
     turn, shift = wall.carrier.frame(theta)
     normals = wall.side * 1j * tangents * turn
     by_position, by_size = wall.follower.along_normal(position, points * turn + shift, normals)
-    touched = np.where(wall.touched(theta), 1.0, np.nan)
+    touched = np.where(wall.on_edge(theta), np.nan, 1.0)
     with np.errstate(divide="ignore", invalid="ignore"):
         moved = {"profile": 1.0 / by_position} | {
             name: -value / by_position for name, value in by_size.items()

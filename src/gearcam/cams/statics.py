@@ -135,12 +135,18 @@ class Touch(ShortRepr):
         return np.concatenate([[0.0], np.cumsum(np.abs(np.diff(path)))])
 
     def curvature(self, x: Array) -> Array:
-        """Return the relative curvature of wall and follower, 1/mm; nan where undercut."""
+        """Return the relative curvature of wall and follower, 1/mm; infinite on an edge."""
         x, _, _ = self._state(x)
         speed = self.wall.curve.contact(x, 0).speed.c[0] + np.zeros_like(x)
         with np.errstate(divide="ignore"):
             bent = 1.0 / self.wall.radii(x) + self.end.bend
-        return np.where(speed > 0.0, bent, np.nan)
+        return np.where((speed > 0.0) & ~self.wall.on_edge(x), bent, np.inf)
+
+    @property
+    def edges(self) -> Array:
+        """Positions of the driver, (n,), at which it rides on each edge of its wall."""
+        lost = np.array([one.theta for one in self.wall.lost])
+        return np.mod(lost - self.across, self.wall.program.period) if self.across else lost
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -172,7 +178,7 @@ class Statics(ShortRepr):
     bearing : (n,) complex array, N
         Force of the cam's bearing on the cam, in that frame.
     curvature : (n,) array, 1/mm
-        Relative curvature at the touch that carries.
+        Relative curvature at the touch that carries; infinite on an edge of cam or follower.
     """
 
     force: Array

@@ -53,11 +53,15 @@ _AROUND = 97
 _BESIDE = 3.0
 """Distance of these points to both sides, in widths of the stretch: loops close within twice."""
 
+_WIDEST = 0.01
+"""Largest distance of these points from a jump that goes back, in periods."""
+
 _RUNS = 8.0
 """Run-in and run-out tried as remedy where a wall is undercut at its ends, in follower radii."""
 
 _ROUNDS = 3
-"""How often crossings are searched, each time with chords four times finer."""
+"""How often crossings are searched, each time with chords four times finer; then once more around
+jumps."""
 
 _MOST = 500
 """Largest number of undercut stretches: with more, each crosses hundreds of others."""
@@ -210,8 +214,10 @@ def trimmed(
         raise beyond_limit(
             what, "[cam]", len(undercut), _MOST, "use a lift with fewer waves or less noise"
         )
-    for number in range(_ROUNDS):
-        chain = _chain(segments, undercut, tolerance * 0.25**number)
+    for number in range(_ROUNDS + 1):
+        # a loop of a slight jump, whose sides are nearly straight, is seen among short chords only
+        jumps = number == _ROUNDS
+        chain = _chain(segments, undercut, tolerance * 0.25**number, jumps=jumps)
         rings = [
             ring for ring in remaining(segments, [chain])[0] if chain.open or _about_axis(ring)
         ]
@@ -266,11 +272,18 @@ def _about_axis(ring: Ring) -> bool:
 
 
 def _chain(
-    segments: ProfileSegments, undercut: Sequence[tuple[float, float]], tolerance: float
+    segments: ProfileSegments,
+    undercut: Sequence[tuple[float, float]],
+    tolerance: float,
+    *,
+    jumps: bool,
 ) -> Chain:
-    """Return all segments as chords, fine around undercut stretches, counter-clockwise."""
+    """Return all segments as chords, counter-clockwise.
+
+    They are fine around undercut stretches, and around `jumps` if these are wanted.
+    """
     number, low, high = [], [], []
-    beside = _beside(undercut, segments.curve.program.period)
+    beside = _beside(segments, undercut, jumps=jumps)
     for k in range(len(segments.start)):
         start, end = float(segments.start[k]), float(segments.end[k])
         probes = np.linspace(start, end, _PROBES)
@@ -299,13 +312,33 @@ def _chain(
     return Chain(curve=curve, low=lows, high=highs, points=points)
 
 
-def _beside(stretches: Sequence[tuple[float, float]], period: float) -> Array:
+def _beside(
+    segments: ProfileSegments, stretches: Sequence[tuple[float, float]], *, jumps: bool
+) -> Array:
     """Return angles in and next to undercut stretches, also a period before and after, rising."""
     low, high = np.reshape(stretches, (-1, 2)).T
-    more = _BESIDE * (high - low)
+    period = segments.curve.program.period
+    width = np.where(low < high, high - low, _jumped(segments, low)) if jumps else high - low
+    more = _BESIDE * width
     places = np.linspace(low - more, high + more, _AROUND)
     turns = period * np.array([-1.0, 0.0, 1.0])  # an open curve has nothing there
     return np.sort((places + turns[:, None, None]).ravel())
+
+
+def _jumped(segments: ProfileSegments, theta: Array) -> Array:
+    """Return by which angle a profile needs to go on as far as jumps at `theta` go back, (n,)."""
+    program, widths = segments.curve.program, np.zeros(len(theta))
+    for k in np.flatnonzero(segments.backward):
+        both, ends = np.full(2, k), np.array([segments.start[k], segments.end[k]])
+        points, _ = segments.at(both, ends)
+        beside = np.array([(k - 1) % len(segments.start), (k + 1) % len(segments.start)])
+        places = np.array([segments.end[beside[0]], segments.start[beside[1]]])
+        speed = float(np.abs(segments.moving(beside, places)[1]).min())
+        width = _WIDEST * program.period
+        back = abs(points[1] - points[0])
+        at = theta == program.knots[segments.piece[k]]
+        widths[at] = back / speed if back < width * speed else width
+    return widths
 
 
 def crossing_chords(

@@ -34,6 +34,7 @@ from gearcam.cams.trim import (
     trimmed,
     without_tiny_loops,
 )
+from gearcam.laws.displacement import Jump
 from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
 from gearcam.numeric.contour import Contour
@@ -236,9 +237,10 @@ class Wall(PitchMotion):
 
     @cached_property
     def profile_radius(self) -> tuple[float, float]:
-        """Smallest convex and smallest concave radius of the profile, mm; a corner has radius 0.
+        """Smallest convex and smallest concave radius of the profile, mm; an edge has radius 0.
 
-        Infinite where there is no convex or no concave part.
+        Infinite where there is no convex or no concave part. Jumps of the velocity that are too
+        small to matter are left out.
         """
         if self.face_radius is not None:
             convex, concave = self.face_radius.low.value, math.inf
@@ -250,12 +252,14 @@ class Wall(PitchMotion):
             convex = 1.0 / high - radius if high > 0.0 else math.inf
             concave = -1.0 / low + radius if low < 0.0 else math.inf
             for jump in self.program.hard:
+                if jump.slight:
+                    continue
                 # an arc about the roller's centre, or an edge
                 if self.curve.lift_sign * (jump.after - jump.before) > 0.0:
                     concave = min(concave, radius)
                 else:
                     convex = 0.0
-        return (0.0 if self.corners else max(convex, 0.0)), concave
+        return (0.0 if self.edges else max(convex, 0.0)), concave
 
     @cached_property
     def face_radius(self) -> Range | None:
@@ -271,10 +275,30 @@ class Wall(PitchMotion):
 
     @property
     def undercut_ranges(self) -> list[tuple[float, float]]:
-        """The same for output: a stretch across the end of the turn ends beyond it."""
+        """The same for output: a stretch across the end of the turn ends beyond it.
+
+        Without velocity jumps that are too small to matter.
+        """
+        return [(low, high) for low, high in self._stretches if not self._slight(low, high)]
+
+    @cached_property
+    def _stretches(self) -> list[tuple[float, float]]:
         joined = over_the_end(self.undercut, self.program)
         ends = (parts[0][1] + (self.program.period if len(parts) > 1 else 0.0) for parts in joined)
         return [(parts[-1][0], end) for parts, end in zip(joined, ends, strict=True)]
+
+    def _slight(self, low: float, high: float) -> bool:
+        """Return whether an undercut stretch is a velocity jump too small to matter."""
+        return low == high and self.program.slight(low)
+
+    def undercut_at(self, corner: Corner) -> list[tuple[float, float]]:
+        """Return the undercut stretches that trimming cuts away at a corner, for output."""
+        return [pair for pair in self._stretches if self._rides(corner, np.array([pair[0]]))[0]]
+
+    def _rides(self, corner: Corner, theta: Array) -> Mask:
+        """Return where a follower is between the two sides of a corner, at cam angles (n,)."""
+        turn = self.program.period
+        return np.mod(theta - corner.before, turn) <= (corner.after - corner.before) % turn
 
     @cached_property
     def _kept(self) -> _Kept:
@@ -317,9 +341,45 @@ class Wall(PitchMotion):
         return self._kept.corners
 
     @cached_property
+    def edges(self) -> tuple[Corner, ...]:
+        """The corners on which the follower rides.
+
+        All but those of velocity jumps that are too small to matter.
+        """
+
+        def slight(corner: Corner) -> bool:
+            cut = self.undercut_at(corner)
+            return bool(cut) and all(self._slight(*pair) for pair in cut)
+
+        return tuple(corner for corner in self.corners if not slight(corner))
+
+    @cached_property
     def lost(self) -> tuple[Extreme, ...]:
-        """Largest lost lift, mm or rad, of each corner, with its cam angle, rad."""
-        return tuple(lost_lift(self.curve, corner) for corner in self.corners)
+        """Largest lost lift, mm or rad, of each edge, with its cam angle, rad."""
+        return tuple(lost_lift(self.curve, corner) for corner in self.edges)
+
+    def bent_by(self, jump: Jump) -> tuple[float, float]:
+        """Return how far a velocity jump bends the profile, rad, and the lift that is lost, mm.
+
+        Parameters
+        ----------
+        jump : Jump
+            One of `Program.hard`, too small to matter.
+        """
+        at, speeds = np.full(2, jump.theta), np.array([jump.before, jump.after])
+        sides, lost = [self.curve.trace(at, self.program.derivatives(at, 0)[0], speeds)[1]], 0.0
+        for corner in self.corners:
+            if (jump.theta, jump.theta) in self.undercut_at(corner):
+                places = np.array([corner.before, corner.after])
+                sides.append(self.curve.trace(places, *self.program.derivatives(places, 1))[1])
+                lost = self.follower.lever * lost_lift(self.curve, corner).value
+        bends = [abs(float(np.angle(after / before))) for before, after in sides]
+        return max(bends), lost
+
+    def on_edge(self, theta: Array) -> Mask:
+        """Return where the follower rides on an edge, at cam angles (n,), any number of turns."""
+        riding = [self._rides(corner, theta) for corner in self.edges]
+        return np.any([np.zeros(theta.shape, dtype=bool), *riding], axis=0)
 
     @cached_property
     def shortfall(self) -> float:

@@ -93,7 +93,9 @@ def _straight_depth(cutter: Cutter) -> float:
 
 
 @pair_check(
-    "closure", limit=("closure", Param(ANGLE, ge=0, le=1, doc="largest closure error"), CLOSURE)
+    "closure",
+    limit=("closure", Param(ANGLE, ge=0, le=1, doc="largest closure error"), CLOSURE),
+    relation="at most",
 )
 def closure(subject: CheckedPair, limit: float) -> Iterator[Remark]:
     """Warn if the law does not close exactly, as its ratios have too few digits.
@@ -112,7 +114,9 @@ def closure(subject: CheckedPair, limit: float) -> Iterator[Remark]:
 
 
 @pair_check(
-    "ratio-positive", limit=("ratio_swing", Param(NUMBER, gt=1, doc="largest i21 or 1/i21"), 10.0)
+    "ratio-positive",
+    limit=("ratio_swing", Param(NUMBER, gt=1, doc="largest i21 or 1/i21"), 10.0),
+    relation="at most",
 )
 def ratio_positive(subject: CheckedPair, limit: float) -> Iterator[Remark]:
     """Warn if the ratio comes close to zero or becomes very large.
@@ -136,6 +140,7 @@ def ratio_positive(subject: CheckedPair, limit: float) -> Iterator[Remark]:
 @pair_check(
     "ratio-continuity",
     limit=("ratio_continuity", Param(COUNT, ge=1, le=3, doc="least order of continuity"), 1.0),
+    relation="at least",
 )
 def ratio_continuity(subject: CheckedPair, limit: float) -> Iterator[Remark]:
     """Warn of a knot at which a derivative of the ratio jumps, up to the order of the limit.
@@ -160,6 +165,7 @@ def ratio_continuity(subject: CheckedPair, limit: float) -> Iterator[Remark]:
         Param(LENGTH, gt=0, doc="concave radii below this are reported"),
         _ANY_RADIUS,
     ),
+    relation="at least",
     severity="note",
 )
 def concave(subject: CheckedPair, limit: float) -> Iterator[Remark]:
@@ -184,6 +190,7 @@ def concave(subject: CheckedPair, limit: float) -> Iterator[Remark]:
 @pair_check(
     "sharp",
     limit=("convex_radius", Param(NUMBER, gt=0, doc="least convex radius, in modules"), 2.5),
+    relation="at least",
     unit="modules",
 )
 def sharp(subject: CheckedPair, limit: float) -> Iterator[Remark]:
@@ -203,7 +210,7 @@ def sharp(subject: CheckedPair, limit: float) -> Iterator[Remark]:
             )
 
 
-@pair_check("concave-teeth", limit=_CUTTER_TEETH, unit="teeth")
+@pair_check("concave-teeth", limit=_CUTTER_TEETH, relation="at least", unit="teeth")
 def concave_teeth(subject: CheckedPair, limit: float) -> Iterator[Remark]:
     """Warn of a concave part into which only a pinion cutter with few teeth fits.
 
@@ -220,7 +227,7 @@ def concave_teeth(subject: CheckedPair, limit: float) -> Iterator[Remark]:
             )
 
 
-@pair_check("small-cutter", limit=_CUTTER_TEETH, severity="note", unit="teeth")
+@pair_check("small-cutter", limit=_CUTTER_TEETH, relation="at least", severity="note", unit="teeth")
 def small_cutter(subject: CheckedPair, limit: float) -> Iterator[Remark]:
     """Note that the pinion cutter of a ring has few teeth.
 
@@ -244,6 +251,7 @@ def small_cutter(subject: CheckedPair, limit: float) -> Iterator[Remark]:
         Param(ANGLE, gt=0, le=90, doc="largest pressure angle of the tooth force"),
         math.radians(50.0),
     ),
+    relation="at most",
 )
 def pressure_angle(subject: CheckedPair, limit: float) -> Iterator[Remark]:
     """Warn of a tooth force that loads the bearings more than it turns the wheel.
@@ -273,6 +281,7 @@ def pressure_angle(subject: CheckedPair, limit: float) -> Iterator[Remark]:
         Param(ANGLE, ge=0, le=360, doc="least angle between the ends"),
         math.radians(10.0),
     ),
+    relation="at least",
 )
 def self_crossing(subject: CheckedPair, limit: float) -> Iterator[Remark]:
     """Warn of an open wheel whose ends nearly meet; a wheel whose ends meet is refused.
@@ -296,6 +305,7 @@ def self_crossing(subject: CheckedPair, limit: float) -> Iterator[Remark]:
 @pair_check(
     "acceleration",
     limit=("acceleration_ratio", Param(NUMBER, gt=0, doc="largest d(i21)/dphi1"), 2.0),
+    relation="at most",
 )
 def acceleration(subject: CheckedPair, limit: float) -> Iterator[Remark]:
     """Warn of a large acceleration of the driven wheel at constant speed of the driver.
@@ -314,7 +324,7 @@ def acceleration(subject: CheckedPair, limit: float) -> Iterator[Remark]:
         )
 
 
-@pair_check("remote-cutter", unit="mm")
+@pair_check("remote-cutter", relation="at most", unit="mm")
 def remote_cutter(subject: CheckedPair, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Warn of a pinion cutter that would cut another part of the wheel too.
 
@@ -350,7 +360,13 @@ def remote_cutter(subject: CheckedPair, limit: float) -> Iterator[Remark]:  # no
                 break
 
 
-@pair_check("undercut", limit=CONTACT_RATIO, severity=("warning", "error"), unit="teeth")
+@pair_check(
+    "undercut",
+    limit=CONTACT_RATIO,
+    relation="at least",
+    severity=("warning", "error"),
+    unit="teeth",
+)
 def undercut(subject: CheckedPair, limit: float) -> Iterator[Remark]:
     """Warn of undercut flanks.
 
@@ -393,6 +409,7 @@ def undercut(subject: CheckedPair, limit: float) -> Iterator[Remark]:
 @pair_check(
     "thin-tip",
     limit=("tip_thickness", Param(NUMBER, ge=0, doc="least tip thickness, in modules"), 0.2),
+    relation="at least",
     unit="modules",
 )
 def thin_tip(subject: CheckedPair, limit: float) -> Iterator[Remark]:
@@ -415,6 +432,7 @@ def thin_tip(subject: CheckedPair, limit: float) -> Iterator[Remark]:
 @pair_check(
     "short-flank",
     limit=("tip_height", Param(NUMBER, ge=0, le=1, doc="least tip height, in addenda"), 0.9),
+    relation="at least",
     severity="note",
     unit="addenda",
 )
@@ -438,6 +456,7 @@ def short_flank(subject: CheckedPair, limit: float) -> Iterator[Remark]:
 @pair_check(
     "tips-collide",
     limit=("tip_pass", Param(LENGTH, ge=0, doc="least margin by which tips pass each other"), 0.0),
+    relation="at least",
     severity=("error", "warning"),
 )
 def tips_collide(subject: CheckedPair, limit: float) -> Iterator[Remark]:
@@ -473,6 +492,7 @@ def tips_collide(subject: CheckedPair, limit: float) -> Iterator[Remark]:
 @pair_check(
     "thin-rim",
     limit=("rim_thickness", Param(NUMBER, ge=0, doc="least rim, in modules"), 2.7),
+    relation="at least",
     unit="modules",
 )
 def thin_rim(subject: CheckedPair, limit: float) -> Iterator[Remark]:
@@ -508,6 +528,7 @@ def thin_rim(subject: CheckedPair, limit: float) -> Iterator[Remark]:
 @pair_check(
     "no-backlash",
     limit=("backlash", Param(LENGTH, ge=0, doc="least backlash that is not reported"), 0.01),
+    relation="at least",
     severity="note",
 )
 def no_backlash(subject: CheckedPair, limit: float) -> Iterator[Remark]:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from gearcam.base.facts import Fact
 from gearcam.kinds.gridded import ORDERS
+from gearcam.kinds.shared import peak_of
 
 if TYPE_CHECKING:
     from gearcam.kinds.gridded import GriddedCam
@@ -17,7 +18,7 @@ Tree = dict[str, Any]
 
 
 def peak_facts(result: GriddedCam, scale: float, unit: str, whose: str = "") -> Tree:
-    """Return continuity, and the peaks of a motion's derivatives that are finite.
+    """Return continuity, and the peaks of a motion's derivatives.
 
     Parameters
     ----------
@@ -32,12 +33,13 @@ def peak_facts(result: GriddedCam, scale: float, unit: str, whose: str = "") -> 
     """
     program, drive = result.program, result.design.drive
     tree: Tree = {"continuity": Fact(program.continuity, "continuity of the motion", unit="")}
-    for name, order, power in ORDERS[: program.continuity + 1]:
-        peak, label = scale * program.peaks[order - 1], f"largest {name}{whose}"
-        tree[f"peak_{name}"] = Fact(peak, label, unit=f"{unit}/rad{power}")
+    for name, order, power in ORDERS:
+        peak, (key, what) = scale * program.peaks[order - 1], peak_of(program, name, order)
+        label = what.replace(name, f"{name}{whose}")
+        tree[key] = Fact(peak, label, unit=f"{unit}/rad{power}")
         if drive.speed is not None:
             value, place = peak * drive.speed**order, f"at {drive.named}"
-            tree[f"peak_{name}_{unit}_s{power}"] = Fact(value, label, place=place)
+            tree[f"{key}_{unit}_s{power}"] = Fact(value, label, place=place)
     return tree
 
 

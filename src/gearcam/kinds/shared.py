@@ -17,6 +17,7 @@ from gearcam.base.rules import Breach
 
 if TYPE_CHECKING:
     from gearcam.designs.design import Design
+    from gearcam.laws.program import Program
     from gearcam.numeric.arrays import Array
     from gearcam.results.kind import Study
     from gearcam.results.result import Progress, Result, StudyResult
@@ -115,6 +116,28 @@ _TURN: Final = 2.0 * math.pi
 
 _MOST_STEPS: Final = 1e6
 """Largest number of steps of a table."""
+
+
+def peak_of(program: Program, name: str, order: int) -> tuple[str, str]:
+    """Return the key and the label of the largest value of a derivative of a lift.
+
+    Where a lower derivative jumps it is infinite there, and its largest value between jumps has a
+    key of its own; jumps that are too small to matter are left out of it.
+
+    Parameters
+    ----------
+    program : Program
+        The lift.
+    name : str
+        Name of the derivative.
+    order : int
+        Its order.
+    """
+    below = [jump for jump in program.jumps if jump.order < order]
+    if any(not jump.slight for jump in below):
+        return f"peak_{name}_between_jumps", f"largest {name}, between jumps"
+    aside = ", slight jumps aside" if below else ""
+    return f"peak_{name}", f"largest {name}{aside}"
 
 
 def turn_in_steps(step: float) -> Array:

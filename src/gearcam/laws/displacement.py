@@ -20,11 +20,16 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gearcam.base.numerals import formatted
 from gearcam.numeric.arrays import Array
 
 JUMP: Final = 1e-9
 """Smallest jump of a derivative that counts, over its largest value: far above rounding."""
 
+SLIGHT: Final = 1e-3
+"""Largest jump of a derivative that does not matter, over its largest value. Rounded by a
+micrometre of lift, such a jump of the velocity takes about a hundredth of the acceleration that a
+lift of 100 mm has anyway, and less of a smaller one. Five printed digits stay below."""
 
 EXACT: Final = (0.0, 0.0, 0.0, 0.0)
 """Errors beyond rounding of a function in closed form and of its first three derivatives."""
@@ -42,12 +47,25 @@ class Jump:
         Order of the lowest derivative that jumps: 1 velocity, 2 acceleration, 3 jerk.
     before, after : float
         Values of the derivative on both sides, per rad^order.
+    share : float
+        Size of the jump over the largest value of the derivative.
     """
 
     theta: float
     order: int
     before: float
     after: float
+    share: float = 1.0
+
+    @property
+    def slight(self) -> bool:
+        """Whether it is too small to matter, as by coefficients that were printed in few digits."""
+        return self.share <= SLIGHT
+
+    @property
+    def small(self) -> str:
+        """What is said of a jump that is too small to matter, after its size."""
+        return f", {formatted(100.0 * self.share, 2)} % of its largest value: too small to matter"
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -196,7 +196,10 @@ class Program(ShortRepr, Displacement):
 
     @cached_property
     def jumps(self) -> tuple[Jump, ...]:
-        """The lowest derivative that jumps at each knot; both ends of the turn are one knot."""
+        """The lowest derivative that jumps at each knot; both ends of the turn are one knot.
+
+        If it jumps too little to matter also the next one that does.
+        """
         survey = self.survey
         # a sixth of the places gives the size of derivatives well enough
         inside = np.abs(survey.values[..., 5:-5:6]).max(axis=(1, 2))
@@ -206,21 +209,26 @@ class Program(ShortRepr, Displacement):
         rounding = 4.0 * np.finfo(float).eps * self.period
         limits = JUMP * scales + rounding * np.append(scales[1:], inside[4])
         jumping = (np.abs(survey.after - survey.before)[:, :4] > limits)[:, 1:]
-        return tuple(
-            Jump(
-                theta=float(self.knots[knot]),
-                order=(order := 1 + int(jumping[knot].argmax())),
-                before=float(survey.before[knot, order]),
-                after=float(survey.after[knot, order]),
-            )
-            for knot in np.flatnonzero(jumping.any(axis=1)).tolist()
-            if knot or not self.open
-        )
+        found: list[Jump] = []
+        for knot in np.flatnonzero(jumping.any(axis=1)).tolist():
+            for order in 1 + np.flatnonzero(jumping[knot] & (knot > 0 or not self.open)):
+                before, after = (float(one[knot, order]) for one in (survey.before, survey.after))
+                share = abs(after - before) / self.peaks[order - 1]
+                theta = float(self.knots[knot])
+                jump = Jump(theta=theta, order=int(order), before=before, after=after, share=share)
+                found.append(jump)
+                if not jump.slight:
+                    break
+        return tuple(found)
 
     @property
     def hard(self) -> tuple[Jump, ...]:
         """The knots where the velocity jumps."""
         return tuple(jump for jump in self.jumps if jump.order == 1)
+
+    def slight(self, theta: float) -> bool:
+        """Return whether the velocity jumps at a knot, rad, too little to matter."""
+        return any(jump.theta == theta and jump.slight for jump in self.hard)
 
     @property
     def continuity(self) -> int:

@@ -16,6 +16,7 @@ from gearcam.base.display import ShortRepr
 from gearcam.base.findings import Remark, check
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import ANGLE, Param
+from gearcam.laws.displacement import Jump
 from gearcam.linkages.elements import BRANCH, Crank
 from gearcam.linkages.linkage import Linkage
 from gearcam.linkages.measures import TrackMeasures
@@ -79,6 +80,7 @@ def _at(q: float) -> str:
         ),
         math.nan,
     ),
+    relation="at most",
 )
 def pressure_angle(machine: CheckedMachine, limit: float) -> Iterator[Remark]:
     """Warn of dyads through which a force hardly passes.
@@ -105,7 +107,7 @@ def pressure_angle(machine: CheckedMachine, limit: float) -> Iterator[Remark]:
             )
 
 
-@check("guide-distance", kind=KIND)
+@check("guide-distance", kind=KIND, relation="at least")
 def guide_distance(machine: CheckedMachine, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Warn of a block that comes near the pivot of the guide on which it slides.
 
@@ -166,18 +168,24 @@ def _told(machine: CheckedMachine, order: int, what: str) -> Iterator[Remark]:
         found = list(_jumps(measures, order))
         if found:
             where, by = max(found, key=lambda one: abs(one[1]))
+            share = abs(by) / float(np.abs(measures.extremes[order][1]).max())
+            jump = Jump(theta=where, order=order, before=0.0, after=by, share=share)
             more = f"; the largest of {len(found)} jumps" if len(found) > 1 else ""
             yield Remark(
-                f"The {what} of {name} jumps by {formatted(by, 5)} {unit}{more}.",
+                f"The {what} of {name} jumps by {formatted(by, 5)} {unit}"
+                f"{jump.small if jump.slight else ''}{more}.",
                 f"{name}, {_at(where)}",
                 abs(by),
+                severity="note" if jump.slight else None,
                 unit=unit,
             )
 
 
-@check("velocity-jump", kind=KIND)
+@check("velocity-jump", kind=KIND, severity=("warning", "note"))
 def velocity_jump(machine: CheckedMachine, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Warn of outputs whose velocity jumps: a shock.
+
+    A note if it jumps by no more than a thousandth of the largest velocity.
 
     Looks at: both sides of the knots of laws and motions.
     """

@@ -23,16 +23,18 @@ def line_pressure(force: Array, curvature: Array, material: MaterialSpec) -> Arr
     force : (n,) array, N/mm
         Force per length, not negative.
     curvature : (n,) array, 1/mm
-        Sum of both curvatures; where it is not positive there is no line contact.
+        Sum of both curvatures, infinite of an edge; where it is not positive there is no line
+        contact.
     material : MaterialSpec
         Of both.
 
     Returns
     -------
     (n,) array, MPa
-        nan where there is no line contact.
+        nan where there is no line contact; infinite on an edge under load.
     """
-    product = force * np.where(curvature > 0.0, curvature, np.nan) * material.contact_modulus
+    with np.errstate(invalid="ignore"):  # an edge without load
+        product = force * np.where(curvature > 0.0, curvature, np.nan) * material.contact_modulus
     return np.sqrt(product / np.pi)
 
 

@@ -55,7 +55,7 @@ def _at(meshing: Meshing, chosen: Mask) -> str:
     return spans(meshing.phi1[chosen], (end - start) / meshing.setup.spec.steps)
 
 
-@check("interference", kind=KIND, severity="error", unit="mm")
+@check("interference", kind=KIND, relation="at most", severity="error", unit="mm")
 def interference(meshing: Meshing, limit: float) -> Iterator[Remark]:
     """Report outlines that overlap where they should not.
 
@@ -131,7 +131,7 @@ def fillet_interference(meshing: Meshing, limit: float) -> Iterator[Remark]:  # 
         )
 
 
-@check("tip-clearance", kind=KIND, limit=_CLEARANCE, unit="modules")
+@check("tip-clearance", kind=KIND, limit=_CLEARANCE, relation="at least", unit="modules")
 def tip_clearance(meshing: Meshing, limit: float) -> Iterator[Remark]:
     """Warn of tips that come close to the root of the mate.
 

@@ -61,6 +61,7 @@ def _repeats(pairs: FlankPairs) -> str:
     "contact-ratio",
     kind=(PAIR_KIND, KIND),
     limit=CONTACT_RATIO,
+    relation="at least",
     severity=("warning", "error"),
 )
 def contact_ratio(subject: Sided, limit: float) -> Iterator[Remark]:

@@ -24,7 +24,7 @@ _LIMIT: Final = (
 )
 
 
-@check(TRANSMISSION, kind=ERRORS, limit=_LIMIT)
+@check(TRANSMISSION, kind=ERRORS, limit=_LIMIT, relation="at most")
 def transmission_error(together: Running, limit: float) -> Iterator[Remark]:
     """Warn of a large transmission error with all errors together; not of a rack.
 
@@ -39,7 +39,7 @@ def transmission_error(together: Running, limit: float) -> Iterator[Remark]:
         )
 
 
-@check("jams", kind=ERRORS, severity="error", unit="mm")
+@check("jams", kind=ERRORS, relation="at least", severity="error", unit="mm")
 def jams(together: Running, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Report a pair that its errors press together: its backlash is negative.
 
@@ -54,7 +54,7 @@ def jams(together: Running, limit: float) -> Iterator[Remark]:  # noqa: ARG001
         )
 
 
-@check("interference", kind=ERRORS, severity="error", unit="mm")
+@check("interference", kind=ERRORS, relation="at most", severity="error", unit="mm")
 def interference(together: Running, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Report wheels that their errors press into each other beside their flanks.
 
@@ -71,7 +71,7 @@ def interference(together: Running, limit: float) -> Iterator[Remark]:  # noqa: 
         )
 
 
-@check("contact-ratio", kind=ERRORS)
+@check("contact-ratio", kind=ERRORS, relation="at least")
 def contact_ratio(together: Running, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Warn of a contact ratio below 1: tips and edges drive in turn with flanks.
 
@@ -99,7 +99,6 @@ def nothing_touches(together: Running, limit: float) -> Iterator[Remark]:  # noq
             "With these errors nothing touches in some phases.",
             f"first at {_place(together, int(np.argmax(apart)))}",
             float(np.count_nonzero(apart)),
-            limit=math.inf,
         )
 
 

@@ -60,7 +60,12 @@ def _tools(part: Part) -> ToolLimits:
     return min(found, key=lambda limits: limits.diameter)
 
 
-@check("thin-wall", kind=KIND, limit=("wall", Param(LENGTH, ge=0, doc="least wall"), 1.0))
+@check(
+    "thin-wall",
+    kind=KIND,
+    limit=("wall", Param(LENGTH, ge=0, doc="least wall"), 1.0),
+    relation="at least",
+)
 def thin_wall(subject: CheckedParts, limit: float) -> Iterator[Remark]:
     """Warn of thin walls.
 
@@ -130,7 +135,7 @@ def _apart(one: Any, other: Any) -> float:
     return float(length(shortest_line(one, other)))
 
 
-@check("wide-kerf", kind=KIND, severity=("warning", "error"), unit="mm")
+@check("wide-kerf", kind=KIND, relation="at most", severity=("warning", "error"), unit="mm")
 def wide_kerf(subject: CheckedParts, _: float) -> Iterator[Remark]:
     """Warn of a kerf that is too wide for an inner corner or a slot, so that metal is left.
 
@@ -157,6 +162,7 @@ def wide_kerf(subject: CheckedParts, _: float) -> Iterator[Remark]:
     "tool-too-large",
     kind=KIND,
     limit=("tool_diameter", Param(LENGTH, ge=0, doc="diameter of the tool at hand"), 0.3),
+    relation="at least",
     severity="note",
 )
 def tool_too_large(subject: CheckedParts, limit: float) -> Iterator[Remark]:

@@ -77,6 +77,7 @@ Subject = tuple[SpatialCam, Cylinder]
         ),
         math.nan,
     ),
+    relation="at most",
 )
 def pressure_angle(subject: Subject, limit: float) -> Iterator[Remark]:
     """Warn of large pressure angles anywhere along the roller.
@@ -107,6 +108,7 @@ def pressure_angle(subject: Subject, limit: float) -> Iterator[Remark]:
     "undercut",
     kind=KIND,
     limit=("lost_lift", Param(LENGTH, ge=0, doc="largest lift that undercut may lose"), 0.01),
+    relation="at most",
     severity=("warning", "error"),
 )
 def undercut(subject: Subject, limit: float) -> Iterator[Remark]:
@@ -126,13 +128,19 @@ def undercut(subject: Subject, limit: float) -> Iterator[Remark]:
         angle = ""
         if isinstance(guide, SwingArm):
             angle = f" ({formatted(math.degrees(loss.way.value), 3)} deg)"
+        cut = (
+            f"The roller cuts the {wall.key} wall at other angles, so little that no lift is lost."
+        )
+        if lost > 0.0:
+            cut = (
+                f"The roller cuts up to {formatted(loss.depth.value, 3)} mm off the {wall.key} "
+                "wall at other angles. There the follower rests on an edge, and can move by "
+                f"{formatted(lost, 3)} mm{angle} beyond its lift."
+            )
         yield Remark(
-            f"The roller cuts up to {formatted(loss.depth.value, 3)} mm off the {wall.key} wall at "
-            "other angles. There the follower rests on an edge, and can move by "
-            f"{formatted(lost, 3)} mm{angle} beyond its lift.{smaller_roller(wall)}",
+            f"{cut}{smaller_roller(wall)}",
             f"{wall.key} wall, {loss.way.place}",
-            lost,
-            limit=limit if lost > limit else math.inf,
+            lost or None,
             severity="error" if lost > limit else "warning",
         )
 
@@ -155,6 +163,7 @@ def carved_solid(subject: tuple[int, float], limit: float) -> Iterator[Remark]: 
     "lost-motion",
     kind=KIND,
     limit=("lost_motion", Param(LENGTH, ge=0, doc="largest lost motion between two walls"), 0.1),
+    relation="at most",
 )
 def lost_motion(subject: Subject, limit: float) -> Iterator[Remark]:
     """Warn of a follower that can move between the two walls.
@@ -176,6 +185,7 @@ def lost_motion(subject: Subject, limit: float) -> Iterator[Remark]:
     "thin-wall",
     kind=KIND,
     limit=("wall_thickness", Param(LENGTH, ge=0, doc="least thickness of metal"), 2.0),
+    relation="at least",
 )
 def thin_wall(subject: Subject, limit: float) -> Iterator[Remark]:
     """Warn of little metal beside the walls or below the floor.

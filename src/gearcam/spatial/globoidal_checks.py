@@ -36,6 +36,7 @@ Subject = tuple[GloboidalCam, float]
         Param(ANGLE, gt=0, lt=90, doc="largest pressure angle along the rollers"),
         math.radians(45.0),
     ),
+    relation="at most",
 )
 def pressure_angle(subject: Subject, limit: float) -> Iterator[Remark]:
     """Warn of large pressure angles anywhere along the rollers.
@@ -89,7 +90,7 @@ def carved_solid(subject: tuple[int, float], limit: float) -> Iterator[Remark]: 
     )
 
 
-@check("loose-turret", kind=KIND, severity=("warning", "error"), unit="mm")
+@check("loose-turret", kind=KIND, relation="at least", severity=("warning", "error"), unit="mm")
 def loose_turret(subject: Subject, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Warn of a cam that is too short to hold the turret at all angles.
 
@@ -118,6 +119,7 @@ def loose_turret(subject: Subject, limit: float) -> Iterator[Remark]:  # noqa: A
     "lost-motion",
     kind=KIND,
     limit=("lost_motion", Param(LENGTH, ge=0, doc="largest lost motion of a roller"), 0.1),
+    relation="at most",
 )
 def lost_motion(subject: Subject, limit: float) -> Iterator[Remark]:
     """Warn of rollers that can move between two walls.
@@ -137,6 +139,7 @@ def lost_motion(subject: Subject, limit: float) -> Iterator[Remark]:
     "thin-wall",
     kind=KIND,
     limit=("wall_thickness", Param(LENGTH, ge=0, doc="least thickness of metal"), 2.0),
+    relation="at least",
 )
 def thin_wall(subject: Subject, limit: float) -> Iterator[Remark]:
     """Warn of a thin rib, and of little metal between core and bore.

@@ -52,6 +52,5 @@ def shocks(program: Program, what: str) -> Iterator[Remark]:
     """
     for jump in program.jumps:
         if jump.order == 2:
-            yield Remark(
-                f"The acceleration jumps: the {what} vibrates at high speed.", at(jump.theta)
-            )
+            told = f"{jump.small}." if jump.slight else f": the {what} vibrates at high speed."
+            yield Remark(f"The acceleration jumps{told}", at(jump.theta))

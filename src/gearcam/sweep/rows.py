@@ -104,4 +104,9 @@ def _excess(finding: Finding) -> float:
     """Return by how much a finding is beyond its limit, as a share of it; 1 without numbers."""
     if finding.value is None or not finding.limit:
         return 1.0
-    return max(abs(finding.value / finding.limit - 1.0), 1e-12)
+    beyond = (
+        finding.value - finding.limit
+        if finding.relation == "at most"
+        else finding.limit - finding.value
+    )
+    return max(beyond / abs(finding.limit), 1e-12)

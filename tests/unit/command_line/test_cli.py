@@ -69,7 +69,7 @@ class Result:
             ),
             "warning": Finding(
                 code="undercut", severity="warning", message="Teeth are undercut.",
-                value=4.92, limit=3.4259, unit="mm", where="gear 2",
+                value=4.92, limit=3.4259, relation="at most", unit="mm", where="gear 2",
             ),
         }  # fmt: skip
         if self.outcome == "warning":

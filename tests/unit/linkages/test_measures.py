@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from functools import partial
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from gearcam.base.findings import CHECKS
+from gearcam.linkages.checks import KIND
 from gearcam.linkages.elements import Crank, GivenMotion, MemberPoint
 from gearcam.linkages.linkage import Linkage, in_order
 from gearcam.linkages.measures import DeadCenter, TrackMeasures, extremes_of
@@ -211,3 +215,18 @@ def test_an_output_that_turns_and_steps_back(shift: float) -> None:
     q = np.array([-7.0, -1.0, 6.0, 20.0])
     for got, wanted in zip(found.at(q, 2).c, pilgrim(q, 2).c, strict=True):
         assert got == pytest.approx(wanted, abs=1e-13)
+
+
+@pytest.mark.parametrize(("jump", "slight"), [(0.9e-3, True), (1.1e-3, False)])
+def test_a_jump_of_a_thousandth_of_the_largest_velocity_is_too_small_to_matter(
+    jump: float, slight: bool
+) -> None:
+    places, values = np.array([0.0, 1.0, 1.0, 2.0]), np.array([0.0, -2.0, -2.0 + 2.0 * jump, 0.0])
+    track = SimpleNamespace(
+        extremes={1: (places, values)}, knots=np.array([0.0, 1.0, 2.0]), closed=True
+    )
+    machine = SimpleNamespace(outputs={"s": track}, units={"s": "mm"})
+    (found,) = CHECKS[KIND, "velocity-jump"].run(machine, math.nan)
+    assert found.value == pytest.approx(2.0 * jump)
+    assert found.severity == ("note" if slight else "warning")
+    assert ("too small to matter" in found.message) == slight

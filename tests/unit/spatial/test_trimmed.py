@@ -120,6 +120,14 @@ def test_the_lost_lift_decides_whether_undercut_is_an_error(limit: float, severi
     assert both[0].value == pytest.approx(5.4736e-4, abs=1e-7)
 
 
+@pytest.mark.parametrize("more", [1e-6, 1e-2])
+def test_an_undercut_that_takes_no_lift_does_not_tell_of_0_mm(more: float) -> None:
+    cam = cut(cut().largest_roller.value + more)
+    assert all(wall.undercut and lost_lift(wall).way.value == 0.0 for wall in cam.walls)
+    both = [one for one in run_checks(KIND, (cam, BLANK), {}) if one.code == "undercut"]
+    assert [(one.value, " 0 mm" in one.message) for one in both] == [(None, False)] * 2
+
+
 def carving(cam: SpatialCam, steps: int, places: int) -> Mesh:
     made = blank_surface(cam, BLANK, 4 * steps)
     whole = Mesh(vertices=made.vertices, triangles=made.triangles)

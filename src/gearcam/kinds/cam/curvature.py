@@ -64,7 +64,8 @@ def curvature_columns(
         If the profile has cusps, where there is no curvature.
     """
     curve = motion.pitch_curve
-    if undercut(curve):  # only the profile below a face, which is its own pitch curve
+    cusps = (low < high or not motion.program.slight(low) for low, high in undercut(curve))
+    if any(cusps):  # only of the profile below a face, which is its own pitch curve
         what = "the profile is undercut and has cusps, where there is no curvature to study"
         note = "leave out the curvature study, or remove the undercut"
         raise InfeasibleError(what, where="output.files", nearest=note)

@@ -11,6 +11,7 @@ from gearcam.base.facts import Fact, Facts, extent
 from gearcam.base.findings import limit_of
 from gearcam.base.numerals import formatted
 from gearcam.cams.checks import KIND, pressure_limits
+from gearcam.kinds.shared import peak_of
 from gearcam.parts.mass import part_facts
 
 if TYPE_CHECKING:
@@ -22,11 +23,7 @@ if TYPE_CHECKING:
 
 Tree = dict[str, Any]
 
-_PEAKS = (
-    ("peak_velocity", "largest velocity", 1),
-    ("peak_acceleration", "largest acceleration", 2),
-    ("peak_jerk", "largest jerk", 3),
-)
+_DERIVATIVES: Final = ("velocity", "acceleration", "jerk")
 
 
 _RADII: Final = {
@@ -59,7 +56,7 @@ def facts(result: CamResult) -> Facts:
 
 
 def _motion(result: CamResult) -> Tree:
-    """Return lift in mm or deg and the peaks of its derivatives that are finite."""
+    """Return lift in mm or deg and the peaks of its derivatives."""
     program, driver = result.program, result.driver
     scale, unit = result.follower.lift_unit
     low, high = program.range
@@ -70,15 +67,14 @@ def _motion(result: CamResult) -> Tree:
         "continuity": Fact(program.continuity, "continuity of the motion", unit=""),
         "deviation": _deviation(program, scale, unit),
         **{
-            name: Fact(
+            key: Fact(
                 scale * peak,
                 meaning,
                 unit=f"{unit}/{driver.per}{order if order > 1 else ''}",
                 shown=True,
             )
-            for (name, meaning, order), peak in zip(
-                _PEAKS[: program.continuity + 1], program.peaks, strict=False
-            )
+            for order, (name, peak) in enumerate(zip(_DERIVATIVES, program.peaks, strict=True), 1)
+            for key, meaning in [peak_of(program, name, order)]
         },
         **_timed(result),
     }
@@ -99,14 +95,15 @@ def _solution(result: CamResult) -> Tree | None:
 
 
 def _timed(result: CamResult) -> Tree:
-    """Return the peaks of the derivatives by time that are finite; none without a speed."""
+    """Return the peaks of the derivatives by time; none without a speed."""
     program, drive = result.program, result.design.drive
-    scales = result.cam.motions[0].timed_scales(drive.speed)
-    rows = zip(scales.items(), _PEAKS[: program.continuity + 1], program.peaks, strict=False)
-    return {
-        f"peak_{name}": Fact(factor * peak, meaning, place=f"at {drive.named}", shown=True)
-        for (name, factor), (_, meaning, _), peak in rows
-    }
+    scales, tree = result.cam.motions[0].timed_scales(drive.speed), Tree()
+    for order, (column, factor) in enumerate(scales.items(), 1):
+        name = _DERIVATIVES[order - 1]
+        (key, meaning), peak = peak_of(program, name, order), factor * program.peaks[order - 1]
+        place = f"at {drive.named}"
+        tree[key + column.removeprefix(name)] = Fact(peak, meaning, place=place, shown=True)
+    return tree
 
 
 def _deviation(program: Program, scale: float, unit: str) -> Fact | None:
@@ -262,7 +259,7 @@ def start_angle(motion: PitchMotion) -> float | None:
 
 def trimming(wall: Wall) -> Tree:
     """Return where a `wall` is undercut, and the lift lost by trimming."""
-    corners, swings, scale = bool(wall.corners), wall.follower.angular, wall.carrier.driver.scale
+    corners, swings, scale = bool(wall.edges), wall.follower.angular, wall.carrier.driver.scale
     return {
         "undercut": [[scale * low, scale * high] for low, high in wall.undercut_ranges],
         "lost_lift_deg": math.degrees(wall.shortfall) if corners and swings else None,

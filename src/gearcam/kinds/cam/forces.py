@@ -108,13 +108,14 @@ def _no_stiffness(loads: Loads) -> InfeasibleError:
 def places(result: CamResult) -> Array:
     """Return the positions of the driver that are studied, on both sides of knots.
 
-    These are the knots of the lift and of the loads. The positions rise; a cam that slides comes
-    back through them.
+    These are the knots of the lift and of the loads, and where edges of walls are ridden on. The
+    positions rise; a cam that slides comes back through them.
     """
     period, count = result.program.period, result.design.forces.steps
     even = period * np.arange(count + 1.0) / count
     even[-1] = np.nextafter(period, 0.0)
     knots = [result.program.knots, *(one.knots for one in result.design.load)]
+    knots += [touch.edges for touch in result.cam.touches]
     return with_both_sides(even, np.concatenate(knots))
 
 
@@ -140,6 +141,8 @@ def _under_load(result: CamResult) -> tuple[Loads, Array, Array, Statics]:
 
 def largest_pressure(result: CamResult) -> float:
     """Return the largest contact pressure of a cam, MPa; 0 without any contact under load.
+
+    It is infinite where an edge of the cam or the follower carries.
 
     Parameters
     ----------
@@ -186,7 +189,8 @@ def study_forces(result: CamResult, study: Study, progress: Progress | None) -> 
         loads, x, way, statics = _under_load(result)
         per_width = statics.force / result.form.contact_width
         pressure = line_pressure(per_width, statics.curvature, design.material)
-        width = half_width(per_width, statics.curvature, design.material)
+        half = half_width(per_width, statics.curvature, design.material)
+        width = np.where(np.isinf(pressure), np.nan, half)
         only_presses = len(cam.touches) == 1
         release = loads.release if only_presses else None
         _, scale = design.drive.effort
@@ -196,6 +200,7 @@ def study_forces(result: CamResult, study: Study, progress: Progress | None) -> 
             driver=result.driver,
             statics=statics,
             pressure=pressure,
+            pointed=math.isinf(result.follower.bend),
             yields=design.material.weakest,
             torque=scale * statics.torque if turns else np.full(x.shape, np.nan),
             way=way if len(loads.ways) > 1 else None,
@@ -253,7 +258,7 @@ def _columns(result: CamResult, loaded: Loaded, width: Array) -> dict[str, Array
         effort: scale * statics.torque,
         "efficiency": statics.efficiency,
         "reserve": statics.reserve,
-        "pressure_mpa": pressure,
+        "pressure_mpa": np.where(loaded.on_edge, np.nan, pressure),
         "half_width_mm": width,
     }
     if drive.speed is not None:
@@ -294,7 +299,7 @@ def _facts(
         ),
         "efficiency": _efficiency(loaded),
         "reserve": _least(loaded, statics.reserve, "share that friction leaves"),
-        "pressure_mpa": _most(loaded, loaded.pressure, "contact pressure"),
+        **_pressure(loaded),
         "locked": bool(statics.locked.any()),
         "lifted": bool(statics.lifted.any()),
         "reversals": _reversals(statics),
@@ -329,13 +334,17 @@ def _least(loaded: Loaded, values: Array, label: str) -> Fact | None:
     return Fact(float(values[index]), label, place=loaded.at(index), unit="")
 
 
-def _most(loaded: Loaded, values: Array, label: str) -> Fact | None:
+def _pressure(loaded: Loaded) -> Tree:
+    """Return the largest contact pressure; off the edges of a profile, where it has any."""
+    values = np.where(loaded.on_edge, np.nan, loaded.pressure)
     if np.isnan(values).all():
-        return None
-    index = int(np.nanargmax(values))
-    return Fact(
-        float(values[index]), f"largest {label}", place=loaded.at(index), unit="MPa", shown=True
+        return {}
+    name, off = (
+        ("pressure_off_edges_mpa", ", off edges") if loaded.on_edge.any() else ("pressure_mpa", "")
     )
+    index = int(np.nanargmax(values))
+    label = f"largest contact pressure{off}"
+    return {name: Fact(float(values[index]), label, place=loaded.at(index), unit="MPa", shown=True)}
 
 
 def _efficiency(loaded: Loaded) -> Tree | None:

@@ -241,7 +241,7 @@ def enlarged(result: CamResult, findings: Iterable[Finding]) -> tuple[Finding, .
 
     found: list[Finding] = []
     for one in findings:
-        if one.code == "contact-pressure" and result.form.solvable:
+        if one.code == "contact-pressure" and one.limit and result.form.solvable:
             key = next(
                 key
                 for key in ("cam.prime_radius_mm", "cam.base_radius_mm")

@@ -213,7 +213,8 @@ def solved(result: CamResult, *, advise: bool = True) -> Solution:
 
 def _demand_smooth_ends(task: Task) -> None:
     """Refuse a lift whose velocity falls at once: the profile has a corner whatever its size."""
-    falls = [jump for jump in task.program.hard if jump.after < jump.before]
+    hard = task.program.hard
+    falls = [jump for jump in hard if jump.after < jump.before and not jump.slight]
     if falls:
         at = formatted(math.degrees(falls[0].theta))
         raise InfeasibleError(
@@ -237,8 +238,15 @@ def _pressed(result: CamResult, task: Task, found: Found) -> tuple[Task, Found]:
     for _ in range(_ROUNDS):
         before = task.by_key(found[0])
         cam = type(result)(_sized(result.design, before), result.tolerances)
-        if task.sizing.load is None and largest_pressure(cam) <= task.pressure:
+        most = largest_pressure(cam) if task.sizing.load is None else math.inf
+        if most <= task.pressure:
             break  # the other limits keep it
+        if math.isinf(cam.follower.bend):
+            raise InfeasibleError(
+                "no sizes keep the limit: the contact pressure of a pointed follower is unbounded",
+                where="limits.contact_pressure_mpa",
+                nearest="a roller or a domed follower, or no limit",
+            )
         task = Task(result, _load_on(cam, task.pressure), advise=task.advise)
         found = task.found()
         after = task.by_key(found[0])

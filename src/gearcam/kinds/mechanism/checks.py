@@ -49,7 +49,7 @@ def machine_to_check(result: MechanismResult) -> CheckedMachine:
     )
 
 
-@check("no-dwell", kind=TABLES, unit="deg")
+@check("no-dwell", kind=TABLES, relation="at least", unit="deg")
 def no_dwell(result: MechanismResult, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Warn of a dwell that is asked for and not long enough.
 

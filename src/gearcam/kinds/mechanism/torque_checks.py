@@ -73,7 +73,14 @@ _LIMIT: Final = (
 )
 
 
-@check("drive-torque", kind=TORQUE, limit=_LIMIT, severity=("note", "warning"), unit="N m")
+@check(
+    "drive-torque",
+    kind=TORQUE,
+    limit=_LIMIT,
+    relation="at most",
+    severity=("note", "warning"),
+    unit="N m",
+)
 def drive_torque(effort: DriverEffort, limit: float) -> Iterator[Remark]:
     """Warn if the mechanism needs more torque than its drive has; tell if another drive needs less.
 
