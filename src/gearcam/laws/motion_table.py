@@ -150,8 +150,8 @@ class MotionTable(FromFile):
         """Return angles, rad, lifts, mm or rad, and their lines in the file, if there is one."""
         if self.rows is None:
             return np.array(self.theta, dtype=float), np.array(self.lift, dtype=float), []
-        columns, wrong = _columns(oscillating), _columns(not oscillating)[1]
-        if wrong in self.rows.cells[0] and columns[1] not in self.rows.cells[0]:
+        columns, wrong = _columns(oscillating), self.rows.spelt(_columns(not oscillating)[1])
+        if wrong and not self.rows.spelt(columns[1]):
             kind = "an oscillating" if oscillating else "a translating"
             message = f"{wrong} is of the wrong kind for {kind} follower"
             raise ColumnsError(f"line {self.rows.lines[0]}: {message}")

@@ -81,11 +81,10 @@ def read_lift(file: Any, wall: Wall) -> tuple[Array, Array] | None:
         rows = read_rows(name)
     except ColumnsError:
         return None
-    head = rows.cells[0]
-    if not {"lift_mm", "lift_deg"} & set(head):
+    if not rows.spelt("lift_mm") and not rows.spelt("lift_deg"):
         return None
     try:
-        angle = next((one for one in _ANGLES if one in head), _ANGLES[0])
+        angle = next((one for one in _ANGLES if rows.spelt(one)), _ANGLES[0])
         points, lines = rows.columns((angle, f"lift_{unit}"))
     except ColumnsError as error:
         raise DesignError([Problem(f"not a lift: {error}", file=name, allowed=needed)]) from error

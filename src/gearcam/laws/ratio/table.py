@@ -100,7 +100,7 @@ class TableLaw(FromFile):
         if self.rows is None:
             kind = next(name for name in _VALUES if getattr(self, name) is not None)
             return kind, np.array(self.phi1), np.array(getattr(self, kind)), []
-        names = [name for name, column in _VALUES.items() if column in self.rows.cells[0]]
+        names = [name for name, column in _VALUES.items() if self.rows.spelt(column)]
         columns = [_ANGLE, _VALUES[names[0]]] if len(names) == 1 else []
         points, lines = self.rows.columns(columns)
         factor = math.pi / 180.0 if names[0] == "phi2" else 1.0
