@@ -211,9 +211,14 @@ class FittedDesign:
 
     @cached_property
     def named_as_given(self) -> CamResult:
-        """The result of the fitted design, with the name of the given one."""
+        """The result of the fitted design, with name and hash of the given one.
+
+        Its files stand beside those of the given one, and are made from it.
+        """
         design = replace(self.design, name=self.result.design.name)
-        return type(self.result)(design, self.result.tolerances)
+        made = type(self.result)(design, self.result.tolerances)
+        vars(made)["design_hash"] = self.result.design_hash
+        return made
 
     @cached_property
     def columns(self) -> dict[str, Array]:
