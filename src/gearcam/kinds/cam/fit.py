@@ -93,6 +93,9 @@ def read_lift(file: Any, wall: Wall) -> tuple[Array, Array] | None:
     for _, row, message, rule in table.turn_problems(oscillating=wall.follower.angular):
         place = f"line {lines[row]}: " if row is not None else ""
         raise DesignError([Problem(f"not a lift: {place}{message}", file=name, allowed=rule)])
+    for one in table.stray(oscillating=wall.follower.angular):
+        message = f"line {lines[one.row]}: the {one.text(scale, unit)}"
+        raise DesignError([Problem(message, file=name, allowed=needed)])
     repeated = TURN - float(theta[-1] - theta[0]) < 1e-6
     return (theta[:-1], lift[:-1]) if repeated else (theta, lift)
 
