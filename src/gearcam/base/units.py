@@ -37,7 +37,12 @@ _GROUPS: Final = (
 
 
 def factor(unit: str, wanted: str) -> float | None:
-    """Return how many of the unit `wanted` are in a `unit`; None if they measure different things.
+    """Return the size of a unit in another; None if they measure different things.
+
+    Parameters
+    ----------
+    unit, wanted : str
+        Their names.
 
     Examples
     --------
@@ -52,6 +57,6 @@ def factor(unit: str, wanted: str) -> float | None:
 
 
 def like(unit: str) -> tuple[str, ...]:
-    """Return the units of the same quantity with which the name of a column can end."""
+    """Return the units with which the name of a column can end that measure what `unit` does."""
     group = next((group for group in _GROUPS if unit in group), {})
     return tuple(name for name in group if name.isascii() and name.isalpha())

@@ -386,7 +386,8 @@ def other_profile(followed: tuple[Wall, Followed], limit: float) -> Iterator[Rem
         yield Remark(
             f"The lift differs by up to {formatted(scale * float(off[worst]), 4)} {unit} from that "
             f"of the design, {formatted(scale * (high - low))} {unit}: the profile belongs to "
-            "another wall or another cam, or is in another frame.",
+            "another wall or another cam, is in another frame, or its file is not in mm and states "
+            "no unit.",
             _at(wall, f"at {wall.carrier.driver.text(float(motion.theta[worst]))}"),
             scale * float(off[worst]),
             unit=unit,

@@ -38,7 +38,7 @@ class DxfError(GearcamError, ValueError):
 
 
 @dataclass(frozen=True, eq=False)
-class Piece:
+class DrawnPiece:
     """A chain of lines and arcs in a drawing.
 
     Parameters
@@ -59,9 +59,9 @@ class Piece:
     whole_circle: bool = False
 
     @property
-    def reverse(self) -> Piece:
+    def reverse(self) -> DrawnPiece:
         """The same chain from its end."""
-        return Piece(self.points[::-1], -self.bulges[::-1], self.closed)
+        return DrawnPiece(self.points[::-1], -self.bulges[::-1], self.closed)
 
     @property
     def size(self) -> tuple[float, float]:
@@ -92,7 +92,7 @@ def entities_of(space: Iterable[Any], layer: str = "") -> Iterator[tuple[str, An
 
 def pieces_of(
     entities: Iterable[Any], *, scale: float = 1.0, within: float | None = None
-) -> Iterator[Piece]:
+) -> Iterator[DrawnPiece]:
     """Yield the lines, arcs, splines and polylines among entities.
 
     Parameters
@@ -120,22 +120,22 @@ def pieces_of(
         if found is not None and len(found.points) > 1:
             if not all(np.isfinite(values).all() for values in (found.points, found.bulges)):
                 raise DxfError("the outline has coordinates that are not finite")
-            yield Piece(scale * found.points, found.bulges, found.closed, found.whole_circle)
+            yield DrawnPiece(scale * found.points, found.bulges, found.closed, found.whole_circle)
 
 
-def joined(pieces: Sequence[Piece], gap: float = JOINED) -> list[Piece]:
+def joined(pieces: Sequence[DrawnPiece], gap: float = JOINED) -> list[DrawnPiece]:
     """Return pieces joined where two of them meet.
 
     Parameters
     ----------
-    pieces : sequence of Piece
+    pieces : sequence of DrawnPiece
         Of one outline or several.
     gap : float, mm
         Largest distance between ends that are joined.
 
     Returns
     -------
-    list of Piece
+    list of DrawnPiece
         In the order of their first parts, each in the direction of its own.
     """
     for distance in (min(_SAME, gap), gap):
@@ -143,7 +143,7 @@ def joined(pieces: Sequence[Piece], gap: float = JOINED) -> list[Piece]:
     return list(pieces)
 
 
-def _joined_at(pieces: list[Piece], gap: float) -> list[Piece]:
+def _joined_at(pieces: list[DrawnPiece], gap: float) -> list[DrawnPiece]:
     """Return pieces joined where the ends of two, and of no third, are up to a gap apart."""
     found = {number: piece for number, piece in enumerate(pieces) if piece.closed}
     loose = [k for k, one in enumerate(pieces) if not one.closed and sum(one.size) > gap]
@@ -165,25 +165,25 @@ def _joined_at(pieces: list[Piece], gap: float) -> list[Piece]:
         whole = abs(parts[-1].points[-1] - parts[0].points[0]) <= gap
         parts = parts[first:] + parts[:first] if whole else parts
         points = np.concatenate([part.points[:-1] for part in parts] + [parts[-1].points[-1:]])
-        chained = Piece(points, np.concatenate([part.bulges for part in parts]), closed=False)
+        chained = DrawnPiece(points, np.concatenate([part.bulges for part in parts]), closed=False)
         found[min(one.payload for one in chain)] = _ended(chained, gap)
     return [piece for _, piece in sorted(found.items())]
 
 
-def _ended(piece: Piece, gap: float) -> Piece:
+def _ended(piece: DrawnPiece, gap: float) -> DrawnPiece:
     """Return a piece, closed if its ends meet."""
     meets = abs(piece.points[-1] - piece.points[0]) <= gap < sum(piece.size)
     if piece.closed or not meets:
         return piece
-    return Piece(piece.points[:-1], piece.bulges, closed=True)
+    return DrawnPiece(piece.points[:-1], piece.bulges, closed=True)
 
 
-def _light_polyline(entity: Any, _: float) -> Piece:
+def _light_polyline(entity: Any, _: float) -> DrawnPiece:
     rows = entity.lwpoints.values
     return _polyline(rows[:, :2], rows[:, 4], bool(entity.closed))
 
 
-def _heavy_polyline(entity: Any, _: float) -> Piece | None:
+def _heavy_polyline(entity: Any, _: float) -> DrawnPiece | None:
     if not (entity.is_2d_polyline or entity.is_3d_polyline):
         return None  # a mesh
     rows = [(*v.dxf.location.vec2, v.dxf.get("bulge", 0.0)) for v in entity.vertices]
@@ -191,46 +191,46 @@ def _heavy_polyline(entity: Any, _: float) -> Piece | None:
     return _polyline(table[:, :2], table[:, 2], bool(entity.is_closed))
 
 
-def _polyline(points: Array, bulges: Array, closed: bool) -> Piece:
-    return Piece(as_complex(points), bulges if closed else bulges[:-1], closed)
+def _polyline(points: Array, bulges: Array, closed: bool) -> DrawnPiece:
+    return DrawnPiece(as_complex(points), bulges if closed else bulges[:-1], closed)
 
 
-def _line(entity: Any, _: float) -> Piece:
+def _line(entity: Any, _: float) -> DrawnPiece:
     ends = [complex(end.x, end.y) for end in (entity.dxf.start, entity.dxf.end)]
-    return Piece(np.array(ends), np.zeros(1), closed=False)
+    return DrawnPiece(np.array(ends), np.zeros(1), closed=False)
 
 
-def _arc(entity: Any, _: float) -> Piece:
+def _arc(entity: Any, _: float) -> DrawnPiece:
     start, end = math.radians(entity.dxf.start_angle), math.radians(entity.dxf.end_angle)
     turn = (end - start) % (2.0 * math.pi) or 2.0 * math.pi
     return _round(entity, start, turn)
 
 
-def _circle(entity: Any, _: float) -> Piece:
+def _circle(entity: Any, _: float) -> DrawnPiece:
     whole = _round(entity, 0.0, 2.0 * math.pi)
-    return Piece(whole.points[:-1], whole.bulges, closed=True, whole_circle=True)
+    return DrawnPiece(whole.points[:-1], whole.bulges, closed=True, whole_circle=True)
 
 
-def _round(entity: Any, start: float, turn: float) -> Piece:
+def _round(entity: Any, start: float, turn: float) -> DrawnPiece:
     """Return an arc in parts of at most a quarter of a turn."""
     count = math.ceil(turn / (0.5 * math.pi) - 1e-9)
     angles = start + turn * np.arange(count + 1) / count
     center = complex(entity.dxf.center.x, entity.dxf.center.y)
     points = center + entity.dxf.radius * np.exp(1j * angles)
-    return Piece(points, np.full(count, math.tan(0.25 * turn / count)), closed=False)
+    return DrawnPiece(points, np.full(count, math.tan(0.25 * turn / count)), closed=False)
 
 
-def _ellipse(entity: Any, within: float) -> Piece:
+def _ellipse(entity: Any, within: float) -> DrawnPiece:
     from ezdxf.math import BSpline
 
     return _arcs(BSpline.from_ellipse(entity.construction_tool()), within)
 
 
-def _spline(entity: Any, within: float) -> Piece:
+def _spline(entity: Any, within: float) -> DrawnPiece:
     return _arcs(entity.construction_tool(), within)
 
 
-def _arcs(curve: Any, within: float) -> Piece:
+def _arcs(curve: Any, within: float) -> DrawnPiece:
     """Return arcs through points of a spline, by ezdxf's own evaluation."""
     breaks, count = np.unique(np.array(curve.knots())), _ON_CUBIC
     fine = math.isfinite(within)  # points between are evaluated too
@@ -245,13 +245,13 @@ def _arcs(curve: Any, within: float) -> Piece:
         chord = np.diff(used)
         # the turn at an inner point of an arc is half the arc's angle
         turn = np.angle(chord[1::2] * np.conj(chord[::2]))
-        piece = Piece(used[::2], np.tan(0.5 * turn), closed=False)
+        piece = DrawnPiece(used[::2], np.tan(0.5 * turn), closed=False)
         if not fine or count >= _MOST_ARCS or _missed(piece, points) <= within:
             return piece
         count *= 2
 
 
-def _missed(piece: Piece, points: Plane) -> float:
+def _missed(piece: DrawnPiece, points: Plane) -> float:
     """Return by how much arcs, through every second point, miss the points between, mm."""
     start, chord, bends = bulge_pieces(piece.points, piece.bulges, False)
     half = 2.0 * np.arctan(bends)

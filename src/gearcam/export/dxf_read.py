@@ -19,7 +19,7 @@ import numpy as np
 from gearcam.base.numerals import formatted
 from gearcam.base.units import factor
 from gearcam.export.dxf import MILLIMETRES
-from gearcam.export.dxf_pieces import JOINED, DxfError, Piece, entities_of, joined, pieces_of
+from gearcam.export.dxf_pieces import JOINED, DrawnPiece, DxfError, entities_of, joined, pieces_of
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.bulges import deviation
 from gearcam.numeric.contour import Contour
@@ -149,7 +149,7 @@ def read_outline(data: bytes, *, outer: bool = False) -> tuple[Plane, Array]:
         )
 
     @cache
-    def outlines(*layers: str) -> list[Piece]:
+    def outlines(*layers: str) -> list[DrawnPiece]:
         drawn = (entity for layer in layers for entity in by_layer[layer])
         return joined(list(pieces_of(drawn, scale=scale, within=_FINE)))
 
@@ -184,7 +184,7 @@ def _unit(document: Document) -> float:
     return scale
 
 
-def _several(closed: Sequence[tuple[str, Piece]]) -> str:
+def _several(closed: Sequence[tuple[str, DrawnPiece]]) -> str:
     """Return the message on several closed outlines: what they are, and how to choose."""
     sizes = [(f"layer {layer}, " * bool(layer), *one.size) for layer, one in closed]
     listed = "; ".join(
@@ -198,7 +198,7 @@ def _several(closed: Sequence[tuple[str, Piece]]) -> str:
     )
 
 
-def _open(types: Counter[str], pieces: Sequence[Piece]) -> str:
+def _open(types: Counter[str], pieces: Sequence[DrawnPiece]) -> str:
     """Return the message on a drawing without a closed outline: what there is, and the gap."""
     listed = ", ".join(f"{count} {name}" for name, count in types.most_common(_LISTED))
     found = f"the DXF file holds no closed outline (it holds {listed or 'nothing'})"

@@ -302,9 +302,19 @@ def _move(stage: Path, folder: Path, files: Collection[str], outdated: Sequence[
 
 
 def aside(path: Path, content: bytes) -> Path | None:
-    """Return where an existing design file must go before it is replaced by another `content`.
+    """Return where an existing design file must go before it is replaced.
 
-    None if it is no design file, is not there, or has this content.
+    Parameters
+    ----------
+    path : Path
+        The file.
+    content : bytes
+        What takes its place.
+
+    Returns
+    -------
+    Path or None
+        None if it is no design file, is not there, or has this content.
     """
     if path.suffix.lower() != DESIGN or not path.exists() or path.read_bytes() == content:
         return None

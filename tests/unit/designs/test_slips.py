@@ -59,7 +59,7 @@ SLIPS: dict[str, tuple[str, str, str, str, str]] = {
     "a space that does not break": (PAIR, "= 180", "=\u00a0180", "", "write a plain space"),
     "no width": (PAIR, "180", "180\u200b", "", "zero width space (U+200B)  leave it out"),
     "a dash in a key": (PAIR, "center_", "center\u2013", "", "en dash (U+2013)  write -"),
-    "a dwell of a pair": (PAIR, "0.4", "0", "law.ratios[1]", "cannot stand still while its driver turns"),
+    "a dwell of a pair": (PAIR, "0.4", "0", "law.ratios[1]", "cannot stand still"),
     "decimal comma": (PAIR, "180", "180,5", "", "use a decimal point: 180.5"),
     "slash": (PAIR, '"slip"', '"a/slip"', "name", 'name = "a_slip"'),
     "key and table": (PAIR, "[law]", 'law = "phases"\n[law]', "", "the name law is given twice"),
