@@ -81,9 +81,11 @@ def written_lines(written: BuildOutput) -> Iterator[str]:
     """Yield the files written, with their sizes, and those removed or outdated."""
     folder = written.directory
     yield f"written to {folder}"
-    width = max(map(len, (*written.files, *written.removed)), default=0)
+    width = max(map(len, (*written.files, *written.former, *written.removed)), default=0)
     for name in written.files:
         yield f"  {name:<{width}}  {_size(folder / name):>9}"
+    for name, before in written.former.items():
+        yield f"  {name:<{width}}  kept: what {before} was before"
     for name in written.removed:
         yield f"  {name:<{width}}  removed: no longer part of this build"
     if outdated := ", ".join(written.summary.get("outdated", ())):

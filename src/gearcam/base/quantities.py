@@ -138,6 +138,8 @@ class Param:
     constant_at : float, "mean" or None
         Value at which the ratio of a law is constant: the search for remedies moves towards it;
         "mean" is the mean ratio.
+    at_zero : str
+        What to tell of the value 0 where it is not allowed.
     solvable : bool
         Whether "solve" may be given in the place of a value, which the program then finds.
     """
@@ -162,6 +164,7 @@ class Param:
     when: tuple[str, ...] = ()
     other: Param | None = None
     constant_at: float | Literal["mean"] | None = None
+    at_zero: str = ""
     solvable: bool = False
 
     def __post_init__(self) -> None:

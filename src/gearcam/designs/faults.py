@@ -13,14 +13,12 @@ from gearcam.base.errors import Problem
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import Param
 from gearcam.designs.lines import Path
+from gearcam.designs.measures import measure_hint
 from gearcam.designs.slips import did_you_mean, nearest
 from gearcam.designs.table import Key, default_of
 
 MISSING: Final = object()
 """Value of a fault about a missing key."""
-
-_MEASURE = re.compile(r"[+-]?\d[\d.]*\s*([^\W\d_]+|°)")
-"""A number with a unit."""
 
 _KINDS: Final = {float: "number", int: "whole number", str: "text", bool: "true or false"}
 _SHOWN: Final = 60
@@ -232,7 +230,8 @@ def value_fault(path: Path, value: Any, entry: Key, *, item: bool = False) -> Fa
     if not message:
         return None
     words = entry.param.choices or ((entry.literal,) if entry.literal else ())
-    hint = did_you_mean(value, words) or _type_hint(value, entry)
+    standing = is_of(value, float) and value == 0 and entry.param.at_zero
+    hint = standing or did_you_mean(value, words) or _type_hint(value, entry)
     return Fault(path, f"{show(value)} {message}", value, allowed(entry, item=item), hint)
 
 
@@ -312,11 +311,10 @@ def _list_hint(value: Any, entry: Key) -> str:
 
 def _type_hint(value: Any, entry: Key) -> str:
     if isinstance(value, str) and entry.base in (int, float):
-        if _MEASURE.fullmatch(value):
-            return "write the number alone, without its unit and without quotes"
         try:
             float(value)
         except ValueError:
-            return ""
+            unit = entry.param.quantity.unit
+            return measure_hint(value, unit, lambda number: not _objection(short(number), entry))
         return "write the number without quotes"
     return "write the text in quotes" if entry.base is str and not entry.param.choices else ""

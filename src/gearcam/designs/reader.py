@@ -7,6 +7,7 @@ import os
 import re
 import sys
 import tomllib
+import unicodedata
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, Final
@@ -17,6 +18,7 @@ from gearcam.base.reading import UnreadableError, read
 from gearcam.designs.faults import DEEPEST, TOO_DEEP, Fault, is_deep
 from gearcam.designs.kind import KINDS
 from gearcam.designs.lines import line_at, lines_of
+from gearcam.designs.measures import measure_hint
 
 LARGEST: Final = 2_000_000
 """Largest size of a design file, bytes: twice that of a motion table of 20 000 rows."""
@@ -35,8 +37,23 @@ _DEEP_KEY = re.compile(
 _COMMA = re.compile(r"(?<![\w.])([+-]?\d+),(\d+)\s*(#.*)?$")
 """A number with a decimal comma at the end of a line."""
 
+_MEASURE = re.compile(r"\s*[\w.-]*?_([a-z]+)\s*=\s*([^#\"'\[{]*[^#\s\"'\[{]\"?)\s*(#.*)?$")
+"""A key with a unit, and a value without quotes."""
+
 _UNIT = re.compile(r"=\s*[+-]?\d[\d.]*\s*[^\W\d_]+\s*(#.*)?$")
 """A number with a unit at the end of a line."""
+
+_TEXT = re.compile(r"\"[^\"]*\"|'[^']*'|#.*")
+"""A text in quotes, or a comment."""
+
+_TYPED: Final = {
+    **dict.fromkeys("\u201c\u201d\u201e\u201f\u00ab\u00bb\u2033", '"'),
+    **dict.fromkeys("\u2018\u2019\u201a\u201b\u2032\u00b4`", "'"),
+    **dict.fromkeys("\u2010\u2011\u2012\u2013\u2014\u2212", "-"),
+    **dict.fromkeys("\u00a0\u2002\u2003\u2007\u2009\u202f\u3000", "a plain space"),
+    **dict.fromkeys("\u200b\u200c\u200d\u2060\ufeff", ""),
+}
+"""Characters of typesetting, and what is typed in their place."""
 
 _BARE = re.compile(r"\s*([\w.-]+)\s*=\s*([^\W\d][\w.-]*)\s*(#.*)?$")
 """A key and a word without quotes."""
@@ -170,11 +187,16 @@ def _syntax_problem(message: str, text: str, file: str) -> Problem:
         number = int(place.group(1))
         line = text.split("\n")[number - 1]
         first = _NAME.match(line)
+        if typeset := _typeset(line):
+            column, what, hint = typeset
+            return Problem(f"column {column}: {what}", file=file, line=number, hint=hint)
         if what == "Cannot overwrite a value" and first:
             what = f"the {'name' if first[1] else 'key'} {first[2]} is given twice"
             hint = _many_hint(first[2])
         elif comma := _COMMA.search(line):
             hint = f"use a decimal point: {comma[1]}.{comma[2]}"
+        elif (measure := _MEASURE.match(line)) and (told := measure_hint(measure[2], measure[1])):
+            hint = told
         elif _UNIT.search(line):
             hint = "write the number alone, without its unit"
         elif bare := _BARE.match(line):
@@ -191,6 +213,18 @@ def _syntax_problem(message: str, text: str, file: str) -> Problem:
     line = text.count("\n", 0, long.start()) + 1 if long else None
     rule = f"numbers of at most {most} digits"
     return Problem("a number has too many digits", file=file, line=line, allowed=rule)
+
+
+def _typeset(line: str) -> tuple[int, str, str] | None:
+    """Return column, message and hint of the first character of typesetting outside of texts."""
+    bare = _TEXT.sub(lambda found: " " * len(found[0]), line)
+    place = next((k for k, one in enumerate(bare) if one in _TYPED), None)
+    if place is None:
+        return None
+    one, plain = bare[place], _TYPED[bare[place]]
+    shown = f"{one} is" if one.isprintable() else "here is"
+    what = f"{shown} a typographic character, {unicodedata.name(one).lower()} (U+{ord(one):04X})"
+    return place + 1, what, f"write {plain} in its place" if plain else "leave it out"
 
 
 def _many_hint(name: str) -> str:

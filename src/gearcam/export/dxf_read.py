@@ -1,7 +1,7 @@
 """DXF files read back: their outlines, and the error of these against the true curves.
 
-Refused: files that are damaged, that the audit of ezdxf would repair, that are not in millimetres,
-or whose outlines are not those expected.
+Refused: files that are damaged, that the audit of ezdxf would repair, that are in no unit of
+length that is read, or whose outlines are not those expected.
 
 Depends on drawings and numeric; ezdxf only inside the functions.
 """
@@ -9,14 +9,18 @@ Depends on drawings and numeric; ezdxf only inside the functions.
 from __future__ import annotations
 
 import io
-from collections.abc import Callable, Iterator, Sequence
+from collections import Counter
+from collections.abc import Sequence
+from functools import cache
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.base.errors import GearcamError
+from gearcam.base.numerals import formatted
+from gearcam.base.units import factor
 from gearcam.export.dxf import MILLIMETRES
-from gearcam.numeric.arrays import Array, Plane, as_complex
+from gearcam.export.dxf_pieces import JOINED, DrawnPiece, DxfError, entities_of, joined, pieces_of
+from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.bulges import deviation
 from gearcam.numeric.contour import Contour
 from gearcam.pictures.drawings import CLOSED, INNER, KERF, OUTER_WALL, OUTLINE, PROFILE
@@ -25,19 +29,17 @@ if TYPE_CHECKING:
     from ezdxf.document import Drawing as Document
 
 
-_Outline = tuple[Plane, Array, bool]
-"""Points, bulges, and whether it is closed."""
-
 _SHOWN: Final = 80
 """Characters of messages of ezdxf that are printed: they may quote a whole file."""
 
 _R12: Final = "AC1009"
 """The version without units and light polylines."""
 
-_ON_CUBIC: Final = 16
-"""Arcs that replace each cubic of a spline, each through three of its points: they deviate by half
-a percent of the spline's own tolerance; 8 arcs would deviate by 3 %."""
+_FINE: Final = 1e-5
+"""Largest deviation of arcs from the splines and ellipses of other programs, mm."""
 
+_LISTED: Final = 6
+"""Outlines, or types of entities, that a message lists."""
 
 _ROUNDING: Final = 1e-9
 """Largest difference of coordinates, mm, and bulges of one outline in two poses: rounding, far
@@ -45,10 +47,6 @@ below the errors that are measured."""
 
 Known = dict[Contour, tuple[Plane, Array, float]]
 """Outlines as read in their own frames: points, bulges, and the measured error, mm."""
-
-
-class DxfError(GearcamError, ValueError):
-    """A DXF file does not hold the expected outlines, or cannot be read."""
 
 
 def measure_dxf(data: bytes, contours: Sequence[Contour], known: Known | None = None) -> float:
@@ -77,17 +75,24 @@ def measure_dxf(data: bytes, contours: Sequence[Contour], known: Known | None = 
     document = read_dxf(data)
     if document.dxfversion != _R12 and document.header.get("$INSUNITS") != MILLIMETRES:
         raise DxfError("the DXF file is not in millimetres")
-    every = _outlines(document, lambda layer: layer.endswith(CLOSED))
-    outlines = [outline for outline in every if outline[2]]  # a pitch curve may be open
+    drawn = [entity for entity in document.modelspace() if _layer(entity).endswith(CLOSED)]
+    every = joined(list(pieces_of(drawn)), _ROUNDING)
+    # a pitch curve may be open; rims are circles, which are exact
+    outlines = [outline for outline in every if outline.closed and not outline.whole_circle]
     if len(outlines) != len(contours):
         raise DxfError(
             f"the DXF file should hold {len(contours)} closed outlines, but holds {len(outlines)}"
         )
     known = {} if known is None else known
     return max(
-        _error(points, bulges, contour, known)
-        for (points, bulges, _), contour in zip(outlines, contours, strict=True)
+        _error(outline.points, outline.bulges, contour, known)
+        for outline, contour in zip(outlines, contours, strict=True)
     )
+
+
+def _layer(entity: Any) -> str:
+    """Return the layer of an entity; empty if ezdxf does not know its type."""
+    return entity.dxf.layer if entity.dxf.is_supported("layer") else ""
 
 
 def _error(points: Plane, bulges: Array, contour: Contour, known: Known) -> float:
@@ -106,54 +111,15 @@ def _error(points: Plane, bulges: Array, contour: Contour, known: Known) -> floa
     return error
 
 
-def _outlines(document: Document, wanted: Callable[[str], bool]) -> Iterator[_Outline]:
-    """Yield polylines, and splines chained until one ends where the first begins."""
-    from ezdxf.entities.lwpolyline import LWPolyline
-    from ezdxf.entities.polyline import Polyline
-    from ezdxf.entities.spline import Spline
-
-    chain: list[tuple[Plane, Array]] = []
-    for entity in document.modelspace():
-        if not wanted(_layer(entity)):
-            continue
-        if isinstance(entity, LWPolyline):
-            rows = entity.lwpoints.values
-            yield as_complex(rows[:, :2]), rows[:, 4], bool(entity.closed)
-        elif isinstance(entity, Polyline):
-            rows = np.array(
-                [(*v.dxf.location.vec2, v.dxf.get("bulge", 0.0)) for v in entity.vertices]
-            )
-            yield as_complex(rows[:, :2]), rows[:, 2], bool(entity.is_closed)
-        elif isinstance(entity, Spline):
-            chain.append(_arcs(entity))
-            if chain[-1][0][-1] == chain[0][0][0]:
-                yield _joined(chain)
-                chain = []
-    if chain:
-        yield _joined(chain)
-
-
-def _layer(entity: Any) -> str:
-    """Return the layer of an entity; empty if ezdxf does not know its type."""
-    return entity.dxf.layer if entity.dxf.is_supported("layer") else ""
-
-
-def _joined(chain: Sequence[tuple[Plane, Array]]) -> _Outline:
-    """Join splines; they are closed if each begins where the one before ends."""
-    following = [*chain[1:], chain[0]]
-    closed = all(a[-1] == b[0] for (a, _), (b, _) in zip(chain, following, strict=True))
-    points = np.concatenate([points[:-1] for points, _ in chain])
-    return points, np.concatenate([bulges for _, bulges in chain]), closed
-
-
 def read_outline(data: bytes, *, outer: bool = False) -> tuple[Plane, Array]:
     """Return the closed outline of a DXF file.
 
     Parameters
     ----------
     data : bytes
-        The file. If it holds several outlines, the one on layer PROFILE, OUTLINE or INNER is
-        taken.
+        The file, in the unit of its $INSUNITS; without one in mm. If it holds several outlines, the
+        one on layer PROFILE, OUTLINE or INNER is taken. Lines, arcs, splines and open polylines
+        are joined where two of them meet. A circle is the outline if there is nothing but circles.
     outer : bool
         Whether to take the wall of a groove on layer OUTER.
 
@@ -162,50 +128,94 @@ def read_outline(data: bytes, *, outer: bool = False) -> tuple[Plane, Array]:
     points : (n,) complex array, mm
         First not repeated.
     bulges : (n,) array
-        Of the pieces between them; splines become arcs through their points.
+        Of the pieces between them; splines and ellipses become arcs through their points.
 
     Raises
     ------
     DxfError
-        If the file is damaged, holds paths of a cutter, or does not hold one closed outline of
-        finite numbers.
+        If the file is damaged, is in a unit that nobody cuts in, holds paths of a cutter, or does
+        not hold one closed outline of finite numbers.
     """
     document = read_dxf(data)
-    layers = dict.fromkeys(_layer(entity) for entity in document.modelspace())
-    paths = [layer for layer in layers if layer.upper().endswith(KERF)]
+    scale = _unit(document)
+    by_layer: dict[str, list[Any]] = {}
+    for layer, entity in entities_of(document.modelspace()):
+        by_layer.setdefault(layer, []).append(entity)
+    paths = [layer for layer in by_layer if layer.upper().endswith(KERF)]
     if paths:
         raise DxfError(
             f"the layer {paths[0]} holds the path of a cutter, not an edge: "
             "take one written without a kerf, or the _reference.dxf of a cam"
         )
+
+    @cache
+    def outlines(*layers: str) -> list[DrawnPiece]:
+        drawn = (entity for layer in layers for entity in by_layer[layer])
+        return joined(list(pieces_of(drawn, scale=scale, within=_FINE)))
+
     for wanted in (PROFILE, OUTLINE, OUTER_WALL if outer else INNER, ""):
-        candidates = [
-            (points, bulges)
-            for layer in layers
-            if layer.upper().endswith(wanted)
-            for points, bulges, closed in _outlines(document, layer.__eq__)
-            if closed
-        ]
-        if len(candidates) == 1:
-            if not all(np.isfinite(values).all() for values in candidates[0]):
-                raise DxfError("the outline has coordinates that are not finite")
-            return candidates[0]
-    raise DxfError(f"the DXF file should hold one closed outline, but it holds {len(candidates)}")
+        layers = [layer for layer in by_layer if layer.upper().endswith(wanted)]
+        closed = [(layer, one) for layer in layers for one in outlines(layer) if one.closed]
+        if not closed:  # some draw lines and arcs on layers of their own
+            closed = [("", one) for one in outlines(*layers) if one.closed]
+        types = Counter(one.dxftype() for layer in layers for one in by_layer[layer])
+        if types.keys() != {"CIRCLE"}:  # beside other edges they are bores, rims and bolt circles
+            closed = [(layer, one) for layer, one in closed if not one.whole_circle]
+        if len(closed) == 1:
+            return closed[0][1].points, closed[0][1].bulges
+    if closed:
+        raise DxfError(_several(closed))
+    raise DxfError(_open(types, [one for one in outlines(*by_layer) if not one.closed]))
 
 
-def _arcs(entity: Any) -> tuple[Plane, Array]:
-    """Points and bulges of arcs through points of a spline, by ezdxf's own evaluation."""
-    curve = entity.construction_tool()
-    breaks = np.unique(np.array(curve.knots()))
-    steps = np.linspace(0.0, 1.0, 2 * _ON_CUBIC, endpoint=False)
-    places = np.append((breaks[:-1, None] + np.diff(breaks)[:, None] * steps).ravel(), breaks[-1])
-    points = np.array([complex(point.x, point.y) for point in curve.points(places.tolist())])
-    ends = [curve.control_points[k] for k in (0, -1)]
-    points[[0, -1]] = [complex(end.x, end.y) for end in ends]
-    chord = np.diff(points)
-    # the turn at an inner point of an arc is half the arc's angle
-    turn = np.angle(chord[1::2] * np.conj(chord[::2]))
-    return points[::2], np.tan(0.5 * turn)
+def _unit(document: Document) -> float:
+    """Return the unit of a drawing, mm; that of one without a unit is 1 mm."""
+    code = document.header.get("$INSUNITS", 0)
+    if code == 0:
+        return 1.0
+    from ezdxf.units import decode, unit_name
+
+    try:
+        scale, name = factor(decode(code) or "", "mm"), unit_name(code).lower()
+    except (IndexError, ValueError):
+        scale, name = None, f"an unknown unit, $INSUNITS = {code}"
+    if scale is None:
+        raise DxfError(f"the DXF file is in {name}: save it in millimetres or inches")
+    return scale
+
+
+def _several(closed: Sequence[tuple[str, DrawnPiece]]) -> str:
+    """Return the message on several closed outlines: what they are, and how to choose."""
+    sizes = [(f"layer {layer}, " * bool(layer), *one.size) for layer, one in closed]
+    listed = "; ".join(
+        f"{layer}{formatted(width, 5)} x {formatted(height, 5)} mm"
+        for layer, width, height in sizes[:_LISTED]
+    )
+    more = f"; and {len(sizes) - _LISTED} more" if len(sizes) > _LISTED else ""
+    return (
+        f"the DXF file should hold one closed outline, but it holds {len(sizes)}: {listed}{more}. "
+        f"Put the one meant on a layer named {PROFILE}"
+    )
+
+
+def _open(types: Counter[str], pieces: Sequence[DrawnPiece]) -> str:
+    """Return the message on a drawing without a closed outline: what there is, and the gap."""
+    listed = ", ".join(f"{count} {name}" for name, count in types.most_common(_LISTED))
+    found = f"the DXF file holds no closed outline (it holds {listed or 'nothing'})"
+    if not pieces:
+        rule = "a closed polyline, or lines and arcs that meet"
+        return f"{found}: draw it as {rule}; a circle alone, on a layer named {PROFILE}"
+    longest = max(pieces, key=lambda piece: sum(piece.size))
+    end = longest.points[-1]
+    others = [piece.points[k] for piece in pieces for k in (0, -1)]
+    gaps = np.sort(np.abs(np.array(others) - end))[1:]  # without the end itself
+    at = f"x = {formatted(end.real)}, y = {formatted(end.imag)} mm"
+    if np.count_nonzero(gaps <= JOINED) > 1:
+        return f"{found}: more than two lines meet at {at}; leave only those of the outline"
+    return (
+        f"{found}: its longest part ends at {at}, {formatted(gaps[0], 3)} mm from the next end; "
+        f"ends up to {formatted(JOINED)} mm apart are joined"
+    )
 
 
 def read_dxf(data: bytes) -> Document:

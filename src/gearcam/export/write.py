@@ -3,10 +3,11 @@
 The folder is created if it is missing, and locked: a second build waits. All files are first
 written into a temporary folder in it; then old files are moved there and new ones into place, the
 summary last. If a move fails, all are undone; an interruption waits until the end. Files that the
-*previous summary* lists and this build no longer writes are *outdated* and removed, so that nobody
-cuts one. Temporary folders of writers that were killed are removed by the next writer. Files are
-not forced to the disk (fsync, which would double the time of writing, 40 ms for eleven files), so a
-power failure may lose them.
+*previous summary* lists and the new one does not are *outdated* and removed, so that nobody cuts
+one. A design file is its user's, who may have edited it: none is removed, and one with another
+content gets a new name before it is replaced. Temporary folders of writers that were killed are
+removed by the next writer. Files are not forced to the disk (fsync, which would double the time of
+writing, 40 ms for eleven files), so a power failure may lose them.
 
 A user's design file is *rewritten* in the same way, and keeps its permissions; links are followed.
 
@@ -27,6 +28,7 @@ import tempfile
 import time
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
+from itertools import count
 from pathlib import Path
 from typing import Any, Final
 
@@ -37,6 +39,9 @@ from gearcam.base.reading import read
 
 SUMMARY: Final = "summary.json"
 """The file that lists the others; replaced last."""
+
+DESIGN: Final = ".toml"
+"""End of the names of design files."""
 
 _LARGEST: Final = 10_000_000
 """Largest size of a summary, bytes: a thousand times the usual size."""
@@ -97,7 +102,9 @@ def write_all(
             before = previous_files(folder)
             files = make(before)
             _fill(stage, folder, files)
-            outdated = [] if keep else [old for old in before if old not in files]
+            listed = _listed(files.get(SUMMARY, b""))
+            stay = before if keep else {**files, **listed}
+            outdated = [old for old in before if old not in stay]
             with unbroken():
                 _move(stage, folder, files, outdated)
     except OSError as error:
@@ -122,24 +129,52 @@ def previous_files(folder: str | os.PathLike[str]) -> dict[str, str]:
     Returns
     -------
     dict of str to str
-        By plain name the hash of the design that a file was made from; without the summary itself.
-        Empty where there is no summary that can be read, or it is not one of gearcam's.
+        By plain name the hash of the design that a file was made from; without the summary itself
+        and design files. Empty where there is no summary that can be read, or it is not one of
+        gearcam's.
     """
     place = Path(folder)
-    try:
-        content = json.loads(read(place / SUMMARY, _LARGEST))
-    except (OSError, ValueError, RecursionError):
-        return {}
-    found: dict[str, Any] = {}
-    own = isinstance(content, dict) and isinstance(content.get("format"), int)
-    for key in ("files", "outdated") if own else ():
-        listed = content.get(key)
-        found |= listed if isinstance(listed, dict) else {}
     return {
         name: made
-        for name, made in found.items()
+        for name, made in _listed(_summary(place)).items()
         if isinstance(made, str) and is_plain(name) and name != SUMMARY and _is_there(place / name)
+        if not name.lower().endswith(DESIGN)
     }
+
+
+def studied_files(folder: str | os.PathLike[str]) -> frozenset[str]:
+    """Return the names in a folder's summary of what commands of studies have written."""
+    content = _content(_summary(Path(folder)))
+    names = content.get("studied")
+    given = names if isinstance(names, list) else ()
+    return frozenset(name for name in given if isinstance(name, str))
+
+
+def _summary(folder: Path) -> bytes:
+    """Return the summary in a folder; empty if there is none that can be read."""
+    try:
+        return read(folder / SUMMARY, _LARGEST)
+    except OSError:
+        return b""
+
+
+def _content(summary: bytes) -> dict[str, Any]:
+    """Return the content of a summary; empty if it is not one of gearcam's."""
+    try:
+        content = json.loads(summary)
+    except (ValueError, RecursionError):
+        return {}
+    own = isinstance(content, dict) and isinstance(content.get("format"), int)
+    return content if own else {}
+
+
+def _listed(summary: bytes) -> dict[str, Any]:
+    """Return the files that a summary lists, current and outdated."""
+    content, found = _content(summary), dict[str, Any]()
+    for key in ("files", "outdated"):
+        listed = content.get(key)
+        found |= listed if isinstance(listed, dict) else {}
+    return found
 
 
 def _is_there(place: Path) -> bool:
@@ -255,7 +290,8 @@ def _move(stage: Path, folder: Path, files: Collection[str], outdated: Sequence[
         # if case does not matter, a outdated name may be that of a new file: outdated ones go first
         for name in (*outdated, *sorted(files, key=SUMMARY.__eq__)):
             if os.path.lexists(folder / name):
-                move(folder / name, old / name)
+                kept = aside(folder / name, (stage / name).read_bytes()) if name in files else None
+                move(folder / name, kept or old / name)
             if name in files:
                 move(stage / name, folder / name)
     except BaseException:
@@ -263,6 +299,27 @@ def _move(stage: Path, folder: Path, files: Collection[str], outdated: Sequence[
             with suppress(OSError):
                 target.replace(source)
         raise
+
+
+def aside(path: Path, content: bytes) -> Path | None:
+    """Return where an existing design file must go before it is replaced.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    content : bytes
+        What takes its place.
+
+    Returns
+    -------
+    Path or None
+        None if it is no design file, is not there, or has this content.
+    """
+    if path.suffix.lower() != DESIGN or not path.exists() or path.read_bytes() == content:
+        return None
+    names = (path.with_stem(f"{path.stem}.{number}") for number in count(1))
+    return next(name for name in names if not os.path.lexists(name))
 
 
 def write_new(path: str | os.PathLike[str], text: str) -> None:

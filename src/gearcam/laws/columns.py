@@ -16,6 +16,7 @@ from gearcam.base.errors import InfeasibleError
 from gearcam.base.numerals import formatted
 from gearcam.base.reading import UnreadableError, read
 from gearcam.base.rules import Breach
+from gearcam.base.units import factor, like
 from gearcam.numeric.arrays import Array
 
 MOST_ROWS: Final = 20000
@@ -65,7 +66,8 @@ class CsvRows(ShortRepr):
         Parameters
         ----------
         names : sequence of k str
-            Names of the columns; others are ignored.
+            Names of the columns; others are ignored. A column may be in another unit than its
+            name ends with, such as ``lift_in`` for ``lift_mm``, and is converted.
 
         Returns
         -------
@@ -77,19 +79,42 @@ class CsvRows(ShortRepr):
         Raises
         ------
         ColumnsError
-            If a row is incomplete or not numeric, with its line.
+            If a column is missing or in an unknown unit, or a row is incomplete or not numeric,
+            with its line.
         """
         head, *rows = self.cells
-        if not names or any(head.count(name) != 1 for name in names):
-            raise ColumnsError(f"line {self.lines[0]}: the columns are {', '.join(head)}")
-        places = [head.index(name) for name in names]
+        found = [self._found(name) for name in names]
+        wrong = [name for name, _ in found if head.count(name) != 1]
+        if wrong or not names:
+            units = {f"_{unit}" for name in wrong for unit in like(name.rpartition("_")[2])}
+            hint = f"; units that are read: {', '.join(sorted(units))}" if units else ""
+            raise ColumnsError(f"line {self.lines[0]}: the columns are {', '.join(head)}{hint}")
+        places = [head.index(name) for name, _ in found]
         lines = list(self.lines[1:])
         for line, row in zip(lines, rows, strict=True):
             if any(row[len(head) :]):
                 state = f"line {line}: {len(row)} values for {len(head)} columns"
                 raise ColumnsError(state + _HINT)
         numbers = [_numbers(row, places, line) for line, row in zip(lines, rows, strict=True)]
-        return np.array(numbers).reshape(-1, len(names)), lines
+        units = [unit for _, unit in found]
+        return np.array(numbers).reshape(-1, len(names)) * units, lines
+
+    def spelt(self, name: str) -> str:
+        """Return how the file names a column, in the unit of `name` or another; empty if nohow."""
+        found = self._found(name)[0]
+        return found if found in self.cells[0] else ""
+
+    def _found(self, name: str) -> tuple[str, float]:
+        """Return the name of a column in the file, and the factor to the unit of its `name`.
+
+        The name itself comes first, then the only one with another unit.
+        """
+        stem, _, unit = name.rpartition("_")
+        units = {f"{stem}_{other}": other for other in like(unit)}
+        there = [cell for cell in self.cells[0] if cell in units]
+        if name in there or len(there) != 1:
+            return name, 1.0
+        return there[0], factor(units[there[0]], unit) or 1.0
 
 
 class FromFile(ShortRepr):

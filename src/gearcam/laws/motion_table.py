@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
 from typing import Final
 
@@ -40,10 +40,11 @@ from gearcam.laws.displacement import Deviation
 from gearcam.laws.entry import TYPED
 from gearcam.laws.motion.pieces import from_both_ends, spline
 from gearcam.laws.phases_of_lift import TURN
-from gearcam.laws.program import Program, stretches_of
+from gearcam.laws.program import Program, StrayRow, stretches_of
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.least_jerk import coefficients, ring_slopes, smoothed_ring
 from gearcam.numeric.piecewise import Piecewise, piecewise
+from gearcam.numeric.stray import stray_rows
 
 _FEWEST: Final = 6
 _MOST: Final = 3600
@@ -150,8 +151,8 @@ class MotionTable(FromFile):
         """Return angles, rad, lifts, mm or rad, and their lines in the file, if there is one."""
         if self.rows is None:
             return np.array(self.theta, dtype=float), np.array(self.lift, dtype=float), []
-        columns, wrong = _columns(oscillating), _columns(not oscillating)[1]
-        if wrong in self.rows.cells[0] and columns[1] not in self.rows.cells[0]:
+        columns, wrong = _columns(oscillating), self.rows.spelt(_columns(not oscillating)[1])
+        if wrong and not self.rows.spelt(columns[1]):
             kind = "an oscillating" if oscillating else "a translating"
             message = f"{wrong} is of the wrong kind for {kind} follower"
             raise ColumnsError(f"line {self.rows.lines[0]}: {message}")
@@ -202,11 +203,33 @@ class MotionTable(FromFile):
         """
         demand(self.turn_problems(oscillating=oscillating), "motion")
         (theta, lift, _), spread = self._rows(oscillating), 0.0
+        stray = tuple(self.stray(oscillating=oscillating))
         if _repeats(theta):
             spread = 0.5 * abs(float(lift[-1] - lift[0]))
             lift[0] = 0.5 * (lift[0] + lift[-1])
             theta, lift = theta[:-1], lift[:-1]
-        return _program_of_rows(theta, lift, self.smoothing_tolerance or 0.0, spread)
+        program = _program_of_rows(theta, lift, self.smoothing_tolerance or 0.0, spread)
+        return replace(program, stray=stray)
+
+    def stray(self, *, oscillating: bool) -> Iterator[StrayRow]:
+        """Yield the rows that are out of line with those around them.
+
+        Parameters
+        ----------
+        oscillating : bool
+            Whether lifts are angles.
+        """
+        theta, lift, lines = self._rows(oscillating)
+        count = len(theta) - 1 if _repeats(theta) else len(theta)
+        rows, suggested = stray_rows(theta[:count], lift[:count], TURN)
+        for row, near in zip(rows.tolist(), suggested.tolist(), strict=True):
+            yield StrayRow(
+                row=row,
+                where=f"line {lines[row]}" if lines else f"lift[{row}]",
+                theta=float(theta[row]),
+                lift=float(lift[row]),
+                suggested=near,
+            )
 
 
 def _columns(oscillating: bool) -> tuple[str, str]:

@@ -601,26 +601,42 @@ class Result(NotebookView):
         """
         import json
 
-        from gearcam.export.write import SUMMARY, write_all
+        from gearcam.export.write import SUMMARY, aside, studied_files, write_all
 
-        version = self.design_hash
+        version, folder = self.design_hash, Path(directory) / self.design.name
         summary: dict[str, Any] = {}
+        former: dict[str, str] = {}
 
         def complete(before: Mapping[str, str]) -> dict[str, bytes]:
-            hashes = {**(before if keep else {}), **dict.fromkeys(contents, version)}
-            outdated = {name: old for name, old in hashes.items() if old != version}
-            about = {"files": {name: version for name in hashes if name not in outdated}}
-            more = {"outdated": outdated} if outdated else {}
-            summary.update(self.document(facts, findings, {**about, **more}))
+            # a build keeps what commands of studies have written for the same design
+            studied = studied_files(folder)
+            kept = {
+                one: old
+                for one, old in before.items()
+                if keep or (one in studied and old == version)
+            }
+            hashes = {**kept, **dict.fromkeys(contents, version)}
+            outdated = {one: old for one, old in hashes.items() if old != version}
+            about: dict[str, Any] = {
+                "files": {one: version for one in hashes if one not in outdated}
+            }
+            about |= {"outdated": outdated} if outdated else {}
+            studied = (studied & kept.keys()) - contents.keys() | (
+                contents.keys() if keep else set()
+            )
+            about |= {"studied": sorted(studied)} if studied else {}
+            summary.update(self.document(facts, findings, about))
+            places = {one: aside(folder / one, content) for one, content in contents.items()}
+            former.update({place.name: one for one, place in places.items() if place})
             text = json.dumps(summary, indent=2, ensure_ascii=False, allow_nan=False)
             return {**contents, SUMMARY: (text + "\n").encode()}
 
-        name = self.design.name
-        removed = write_all(directory, complete, name=name, keep=keep)
+        removed = write_all(directory, complete, name=self.design.name, keep=keep)
         return BuildOutput(
-            directory=Path(directory) / name,
+            directory=folder,
             files=(*contents, SUMMARY),
             removed=removed,
+            former=former,
             summary=summary,
             facts=facts,
             findings=tuple(findings),

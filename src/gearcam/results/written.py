@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import platform
 import sys
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -36,6 +36,9 @@ class BuildOutput(ShortRepr):
         The facts in the summary.
     findings : tuple of Finding
         The findings in the summary.
+    former : dict of str to str
+        Design files that were there with another content and are kept: their names before, by
+        those that they have now.
     interrupted : str
         How much of a study was done when it was interrupted; empty if it is complete.
     table : tuple of str
@@ -48,6 +51,7 @@ class BuildOutput(ShortRepr):
     summary: dict[str, Any]
     facts: Facts
     findings: tuple[Finding, ...]
+    former: Mapping[str, str] = field(default_factory=dict)
     interrupted: str = ""
     table: tuple[str, ...] = ()
 

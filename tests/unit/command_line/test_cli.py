@@ -45,6 +45,7 @@ class BuildOutput:
     facts: Facts = field(default_factory=lambda: Facts(TREE, list(TREE)))
     summary: dict[str, Any] = field(default_factory=dict)
     findings: tuple[Finding, ...] = ()
+    former: dict[str, str] = field(default_factory=dict)
     interrupted: str = ""
     table: tuple[str, ...] = ()
 

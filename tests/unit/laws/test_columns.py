@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import tracemalloc
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,9 +16,12 @@ from gearcam.base.errors import InfeasibleError
 from gearcam.base.tolerances import DEFAULT
 from gearcam.laws.columns import ColumnsError, FromFile, read_rows, tables_in
 from gearcam.laws.motion.points import TableRise
+from gearcam.laws.motion_table import MotionTable
 from gearcam.laws.ratio.formula import Formula
 from gearcam.laws.ratio.span import ONE_LOBE
 from gearcam.laws.ratio.table import TableLaw
+from gearcam.meshing.settings import ErrorsSpec
+from gearcam.results.outline_file import read_closed
 from helpers_sampling import few
 
 POINTS = "x,y\n0,0\n0.25,0.125\n0.75,0.875\n1,1\n"
@@ -71,6 +75,75 @@ def test_what_is_not_clear_is_refused(tmp_path: Path, text: str, message: str) -
     with pytest.raises(ColumnsError) as caught:
         read_rows(written(tmp_path, text)).columns(("x", "y"))
     assert str(caught.value) == message
+
+
+@pytest.mark.parametrize(
+    ("head", "factors"),
+    [
+        ("theta_deg,lift_mm", (1.0, 1.0)),
+        ("theta_rad,lift_in", (180.0 / math.pi, 25.4)),
+        ("theta_deg,lift_inch", (1.0, 25.4)),
+        ("theta_arcmin,lift_um", (1 / 60, 1e-3)),
+        ("theta_deg,lift_mil", (1.0, 0.0254)),
+        ("theta_deg,lift_ft", (1.0, 304.8)),
+        ("theta_deg,lift_m", (1.0, 1e3)),
+        ("theta_deg,lift_in,lift_mm", (1.0, 1.0)),
+    ],
+)
+def test_a_column_is_in_the_unit_of_its_name(
+    tmp_path: Path, head: str, factors: tuple[float, float]
+) -> None:
+    last = ",3.0" if head.count(",") == 2 else ""
+    rows = read_rows(written(tmp_path, f"{head}\n0.5,3.0{last}\n-2.0,0.25{last}\n"))
+    found, _ = rows.columns(("theta_deg", "lift_mm"))
+    expected = np.array([[0.5, 3.0], [-2.0, 3.0 if last else 0.25]]) * factors
+    np.testing.assert_allclose(found, expected, rtol=1e-15)
+
+
+@pytest.mark.parametrize("head", ["theta_deg,lift_foo", "theta_deg,lift", "theta_deg,lift_deg"])
+def test_a_unit_that_is_not_known_is_refused_by_name(tmp_path: Path, head: str) -> None:
+    rows = read_rows(written(tmp_path, f"{head}\n0,1\n"))
+    name = head.split(",")[1]
+    with pytest.raises(ColumnsError, match=rf"the columns are .*{name}; .* read: .*_in, .*_mm"):
+        rows.columns(("theta_deg", "lift_mm"))
+
+
+def test_two_units_of_one_column_are_not_chosen_from(tmp_path: Path) -> None:
+    rows = read_rows(written(tmp_path, "theta_deg,lift_in,lift_cm\n0,1,2.54\n"))
+    with pytest.raises(ColumnsError, match="the columns are theta_deg, lift_in, lift_cm"):
+        rows.columns(("theta_deg", "lift_mm"))
+
+
+def test_every_reader_of_columns_takes_other_units(tmp_path: Path) -> None:
+    """The same numbers, once in inches and radians, once in mm and degrees."""
+    theta = np.linspace(0.0, 2.0 * math.pi, 37)
+    table = np.column_stack([theta, 0.2 * (1.0 - np.cos(theta)), theta + 0.3 * np.sin(theta)])
+
+    def file(head: str, scales: Sequence[float]) -> str:
+        rows = [",".join(map(repr, row)) for row in (table * scales).tolist()]
+        return written(tmp_path, "\n".join([head, *rows]))
+
+    def lifts(file: str) -> Any:
+        return MotionTable(file=file).program(DEFAULT).derivatives(np.array([1.0, 4.0]), 0)
+
+    def ratios(file: str) -> Any:
+        return TableLaw(file=file).points[2]
+
+    def outline(file: str) -> Any:
+        return read_closed(file, what="an outline")[0]
+
+    def pitches(file: str) -> Any:
+        return ErrorsSpec(file=file).pitch_errors[0][7]
+
+    deg = 180.0 / math.pi
+    for read, head, in_mm, scales in (
+        (lifts, "theta_rad,lift_in,z", "theta_deg,lift_mm,z", (deg, 25.4, 1.0)),
+        (ratios, "phi1_rad,z,phi2_rad", "phi1_deg,z,phi2_deg", (deg, 1.0, deg)),
+        (outline, "x_in,z,y_um", "x_mm,z,y_mm", (25.4, 1.0, 1e-3)),
+    ):
+        values = [read(file(head, (1.0, 1.0, 1.0))), read(file(in_mm, scales))]
+        np.testing.assert_allclose(*values, rtol=1e-12)
+    assert pitches(written(tmp_path, "wheel,tooth,pitch_um\n1,7,12\n")) == 0.012
 
 
 RATIOS = "phi1_deg,ratio\n" + "".join(f"{60 * k},1\n" for k in range(7))

@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import gearcam
@@ -232,7 +233,9 @@ def test_a_study_is_new_and_the_build_stale_and_later_the_study_too(tmp_path: Pa
     assert again["outdated"] == dict.fromkeys(OUTLINES, first)
     built = desk.run("build", "--only", "csv")
     assert "outdated" not in built
-    assert set(built["files"]) == OUTLINES
+    assert set(built["files"]) == {*OUTLINES, "meshing.csv"}
+    desk.edit("eccentricity = 0.22", "eccentricity = 0.23")
+    assert set(desk.run("build", "--only", "csv")["files"]) == OUTLINES
 
 
 def test_a_followed_profile_is_new_and_the_cam_stale(tmp_path: Path) -> None:
@@ -251,3 +254,58 @@ def test_a_file_that_was_deleted_is_not_listed(tmp_path: Path) -> None:
     desk.run("build")
     (desk.folder / "pair.svg").unlink()
     assert set(desk.run("check")["files"]) == OUTLINES
+
+
+@pytest.mark.parametrize(
+    ("study", "file"), [("forces", "forces.csv"), ("accuracy", "accuracy.csv")]
+)
+def test_what_a_study_wrote_stays_with_its_design(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], study: str, file: str
+) -> None:
+    """In each order of building and studying; a build of another design removes it."""
+    desk = Desk(tmp_path, CAM)
+    for command in (study, "build", study, "check", "build"):
+        found = desk.run(command)
+        assert file in found["files"]
+        assert "outdated" not in found
+    told = capsys.readouterr().out
+    assert "removed" not in told
+    assert "outdated" not in told
+    desk.edit("prime_radius_mm = 40", "prime_radius_mm = 41")
+    assert file not in desk.run("build")["files"]
+
+
+def test_a_design_file_is_neither_removed_nor_written_over(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out, folder = tmp_path / "out", tmp_path / "out" / str(loads(CAM).name)
+    design, rows = tmp_path / "design.toml", tmp_path / "rows.csv"
+    design.write_text(CAM, encoding="utf-8")
+    motion = build(loads(CAM)).motion(np.radians(np.arange(0.0, 360.0, 5.0)))  # type: ignore[attr-defined]
+    pairs = zip(motion["theta_deg"], motion["lift_mm"], strict=True)
+    rows.write_text("theta_deg,lift_mm\n" + "".join(f"{a},{s:.9f}\n" for a, s in pairs))
+
+    def run(*words: str) -> dict[str, Any]:
+        assert main([words[0], str(design), *words[1:], "-o", str(out)]) == 0
+        found = json.loads((folder / "summary.json").read_text("utf-8"))
+        assert "outdated" not in found
+        return dict(found["files"])
+
+    fit, fitted = ("follow", str(rows), "--fit"), folder / "fitted.toml"
+    run("build")
+    both = run(*fit)  # files of one version: that of the given design
+    assert set(both.values()) == {design_hash(CAM)}
+    assert {"fitted.toml", "followed.csv", "profile.csv"} <= both.keys()
+    fresh = fitted.read_bytes()
+    mine = fresh + b"# mine"
+    fitted.write_bytes(mine)
+    assert "followed.csv" in run("build")
+    assert fitted.read_bytes() == mine
+    assert "before" not in capsys.readouterr().out
+    run(*fit)
+    assert fitted.read_bytes() == fresh
+    assert "fitted.1.toml  kept: what fitted.toml was before" in capsys.readouterr().out
+    design.write_text(changed(CAM, "prime_radius_mm = 40", "prime_radius_mm = 41"))
+    run("build")
+    assert fitted.read_bytes() == fresh
+    assert (folder / "fitted.1.toml").read_bytes() == mine

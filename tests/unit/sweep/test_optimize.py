@@ -124,6 +124,11 @@ def test_the_best_of_a_design_with_a_file_builds_from_any_folder(
     words = ["--set", "cam.prime_radius_mm=40:60", "--minimize", "cam.profile.radius_mm.max"]
     words += ["--method", "random", "--trials", "2", "--jobs", "1", "-o", "out"]
     assert main(["optimize", "given/measured_cam.toml", *words]) == 0
+    best = Path("out/best.toml")
+    mine = best.read_text() + "# mine\n"
+    best.write_text(mine)
+    assert main(["optimize", "given/measured_cam.toml", *words]) == 0
+    assert Path("out/best.1.toml").read_text() == mine != best.read_text()
     least = pl.read_csv("out/optimize.csv")["cam.profile.radius_mm.max"].min()
     for place, file in (("out", "best.toml"), ("given", "../out/best.toml")):
         monkeypatch.chdir(folder / place)

@@ -81,11 +81,10 @@ def read_lift(file: Any, wall: Wall) -> tuple[Array, Array] | None:
         rows = read_rows(name)
     except ColumnsError:
         return None
-    head = rows.cells[0]
-    if not {"lift_mm", "lift_deg"} & set(head):
+    if not rows.spelt("lift_mm") and not rows.spelt("lift_deg"):
         return None
     try:
-        angle = next((one for one in _ANGLES if one in head), _ANGLES[0])
+        angle = next((one for one in _ANGLES if rows.spelt(one)), _ANGLES[0])
         points, lines = rows.columns((angle, f"lift_{unit}"))
     except ColumnsError as error:
         raise DesignError([Problem(f"not a lift: {error}", file=name, allowed=needed)]) from error
@@ -94,6 +93,9 @@ def read_lift(file: Any, wall: Wall) -> tuple[Array, Array] | None:
     for _, row, message, rule in table.turn_problems(oscillating=wall.follower.angular):
         place = f"line {lines[row]}: " if row is not None else ""
         raise DesignError([Problem(f"not a lift: {place}{message}", file=name, allowed=rule)])
+    for one in table.stray(oscillating=wall.follower.angular):
+        message = f"line {lines[one.row]}: the {one.text(scale, unit)}"
+        raise DesignError([Problem(message, file=name, allowed=needed)])
     repeated = TURN - float(theta[-1] - theta[0]) < 1e-6
     return (theta[:-1], lift[:-1]) if repeated else (theta, lift)
 
@@ -212,9 +214,14 @@ class FittedDesign:
 
     @cached_property
     def named_as_given(self) -> CamResult:
-        """The result of the fitted design, with the name of the given one."""
+        """The result of the fitted design, with name and hash of the given one.
+
+        Its files stand beside those of the given one, and are made from it.
+        """
         design = replace(self.design, name=self.result.design.name)
-        return type(self.result)(design, self.result.tolerances)
+        made = type(self.result)(design, self.result.tolerances)
+        vars(made)["design_hash"] = self.result.design_hash
+        return made
 
     @cached_property
     def columns(self) -> dict[str, Array]:

@@ -26,6 +26,7 @@ from gearcam.base.tolerances import Tolerances
 from gearcam.laws.displacement import Displacement, Jump
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.ratio.span import (
+    NO_DWELL,
     RING,
     Span,
     angle_text,
@@ -299,7 +300,7 @@ def _demand_positive(ratio: Piecewise, cells: Array) -> None:
     (place, smallest), (top, largest) = ratio.extremes_over(cells)
     if not smallest > 0.0:
         what = "the ratio must stay positive: the driven wheel would stand still or turn back"
-        raise beyond_limit(what, angle_text(place), smallest, 0.0)
+        raise beyond_limit(what, angle_text(place), smallest, 0.0, NO_DWELL)
     if not largest <= _SWING * smallest:
         what = f"the ratio swings between {formatted(smallest)} and {formatted(largest)}"
         note = "the largest is at most a million times the smallest"

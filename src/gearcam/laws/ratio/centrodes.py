@@ -20,6 +20,7 @@ from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.driver import law_of_centrode
 from gearcam.laws.ratio.span import (
     LOBES,
+    NO_DWELL,
     ONE_LOBE,
     RING,
     WHEEL,
@@ -156,6 +157,7 @@ class LogSpiral(ShortRepr):
         NUMBER,
         ge=1e-3,
         le=1e3,
+        at_zero=NO_DWELL,
         doc="i21 at the start and at the end of the spiral; of a closed pair k and 1/k, of which "
         'one may be "solve"',
     )

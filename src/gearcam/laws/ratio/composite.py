@@ -29,7 +29,7 @@ from gearcam.laws.entry import LawEntry
 from gearcam.laws.formula import derivative
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.phases import ARCS, SMOOTH, arcs_law, knot_problems, one_lobe
-from gearcam.laws.ratio.span import SAME, Lobes, angle_text, open_travel, span_of
+from gearcam.laws.ratio.span import NO_DWELL, SAME, Lobes, angle_text, open_travel, span_of
 from gearcam.numeric.jets import Jet, harmonics, polynomial, primitive
 from gearcam.numeric.piecewise import Piece, piecewise
 
@@ -46,6 +46,7 @@ class Multispeed(ShortRepr):
         NUMBER,
         gt=0,
         min_length=2,
+        at_zero=NO_DWELL,
         constant_at="mean",
         doc='the constant ratios in turn; one may be "solve"',
     )
@@ -111,7 +112,9 @@ class ThreePhasePolynomial(ShortRepr):
     knots: tuple[float, float, float, float] = param(
         ANGLE, ge=0, le=360, doc="driver angles of the knots, from 0 to a turn or one lobe"
     )
-    lowest: float = param(NUMBER, gt=0, doc="i21 at the second knot, below the mean ratio")
+    lowest: float = param(
+        NUMBER, gt=0, at_zero=NO_DWELL, doc="i21 at the second knot, below the mean ratio"
+    )
 
     def problems(self) -> Iterator[Breach]:
         """Yield what is wrong by reading: field, index, message, allowed."""
@@ -199,7 +202,7 @@ class Fourier(ShortRepr):
         if not smallest > 0.0:
             share = mean / (mean - smallest)
             what = "the ratio must stay positive: the driven wheel would stand still or turn back"
-            note = f"with all coefficients times {formatted(share)} it would just be 0"
+            note = f"with all coefficients times {formatted(share)} it would just be 0; {NO_DWELL}"
             far = {"law.cosines": 0.0, "law.sines": 0.0}
             raise beyond_limit(what, angle_text(place), smallest, 0.0, note, far=far)
         return make_law(lobes, knots, pieces, tolerances)

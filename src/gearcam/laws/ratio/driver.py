@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.ratio.base import RatioLaw, make_law
-from gearcam.laws.ratio.span import PLACES, WHEEL, Span, angle_text, demand_smooth
+from gearcam.laws.ratio.span import NO_DWELL, PLACES, WHEEL, Span, angle_text, demand_smooth
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.chebyshev import NotSmoothError, expand
 from gearcam.numeric.jets import Jet, Value
@@ -124,7 +124,10 @@ def demand_radii(name: str, angles: Array, values: Array, place: str = "") -> No
         for row in np.flatnonzero(wrong)[:1].tolist():
             value = None if limit is None else float(values[row])
             where = place + angle_text(float(angles[row]))
-            raise InfeasibleError(f"{name} {state}", where=where, value=value, limit=limit)
+            note = NO_DWELL if name == "ratio" and limit == 0.0 else ""
+            raise InfeasibleError(
+                f"{name} {state}", where=where, value=value, limit=limit, nearest=note
+            )
 
 
 def solve_center(

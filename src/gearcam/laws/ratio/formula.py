@@ -26,6 +26,7 @@ from gearcam.laws.formula import (
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.driver import demand_positive, law_of_centrode
 from gearcam.laws.ratio.span import (
+    NO_DWELL,
     OPEN,
     PLACES,
     RING,
@@ -176,7 +177,7 @@ def from_phi2(
     if (slopes <= 0).any():
         place = int(np.argmax(slopes <= 0))
         what = "phi2 is not monotonic: the driven wheel would stand still or turn back"
-        note = "this is the ratio, which must be positive"
+        note = f"this is the ratio, which must be positive; {NO_DWELL}"
         raise beyond_limit(what, angle_text(x[place]), float(slopes[place]), 0.0, note)
     with demand_smooth("phi2"):
         expand(values_of(ratio), [0.0, lobes.period], tolerances.expansion)

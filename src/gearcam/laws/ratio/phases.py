@@ -32,7 +32,7 @@ from gearcam.base.rules import Breach
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
-from gearcam.laws.ratio.span import SAME, Lobes, Span, open_travel, span_of
+from gearcam.laws.ratio.span import NO_DWELL, SAME, Lobes, Span, open_travel, span_of
 from gearcam.numeric.jets import Jet, Value, cos, polynomial, primitive, sin
 from gearcam.numeric.piecewise import Piece
 
@@ -142,6 +142,7 @@ class Phases(ShortRepr):
         NUMBER,
         gt=0,
         min_length=2,
+        at_zero=NO_DWELL,
         constant_at="mean",  # a mixture of two laws that close closes too
         doc='i21 there; one may be "solve" (the first: the last too)',
     )

@@ -42,6 +42,12 @@ RING: Final = -1
 """Type of the mate, w in ``r1 = A*i/(1 + w*i)``: an external wheel, a rack, a ring."""
 
 
+NO_DWELL: Final = (
+    "a pair of wheels cannot stand still while its driver turns: a cam, a Geneva wheel or a "
+    "linkage with a dwell can"
+)
+"""What is told of a ratio of 0."""
+
 LOBES: Final = "lobes of driver and driven wheel; default: tooth counts in lowest terms"
 """Meaning of the key ``lobes``."""
 

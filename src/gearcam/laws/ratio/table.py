@@ -19,7 +19,7 @@ from gearcam.laws.columns import MOST_ROWS, FromFile, close_angles, demand
 from gearcam.laws.entry import TYPED, LawEntry
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.driver import demand_radii, law_of_centrode
-from gearcam.laws.ratio.span import Lobes, Span, open_travel, span_of
+from gearcam.laws.ratio.span import NO_DWELL, Lobes, Span, open_travel, span_of
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet, polynomial, primitive, slope
 from gearcam.numeric.piecewise import Piece, integrate
@@ -49,7 +49,12 @@ class TableLaw(FromFile):
         ANGLE, default=None, ge=0, le=360, min_length=_FEWEST, doc="driver angles, without a file"
     )
     ratio: Row | None = param(
-        NUMBER, default=None, gt=0, min_length=_FEWEST, doc="i21 at phi1, scaled so that it closes"
+        NUMBER,
+        default=None,
+        gt=0,
+        min_length=_FEWEST,
+        at_zero=NO_DWELL,
+        doc="i21 at phi1, scaled so that it closes",
     )
     phi2: Row | None = param(
         ANGLE, default=None, min_length=_FEWEST, doc="driven angles at phi1; must close"
@@ -100,7 +105,7 @@ class TableLaw(FromFile):
         if self.rows is None:
             kind = next(name for name in _VALUES if getattr(self, name) is not None)
             return kind, np.array(self.phi1), np.array(getattr(self, kind)), []
-        names = [name for name, column in _VALUES.items() if column in self.rows.cells[0]]
+        names = [name for name, column in _VALUES.items() if self.rows.spelt(column)]
         columns = [_ANGLE, _VALUES[names[0]]] if len(names) == 1 else []
         points, lines = self.rows.columns(columns)
         factor = math.pi / 180.0 if names[0] == "phi2" else 1.0

@@ -237,7 +237,7 @@ def test_the_error_of_a_function_is_told() -> None:
 
 def test_remedies_are_sought_for_tables_too() -> None:
     """Only sizes of the cam can help: rows stay as they are."""
-    deep = BY_LISTS.replace("lift_mm = [0.0,", "lift_mm = [-40.0,")
+    deep = f"theta_deg = {THETA.tolist()}\nlift_mm = {(LIFT - 40.0).tolist()}"
     result = gearcam.build(read(text(deep)))
     with pytest.raises(InfeasibleError, match="onto the cam's axis"):
         result.profile  # noqa: B018
