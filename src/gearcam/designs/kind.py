@@ -21,7 +21,7 @@ from typing import Any, Final, Protocol, get_args, get_type_hints
 from gearcam.base.findings import CHECKS
 from gearcam.base.rules import Rule
 from gearcam.designs.faults import Fault
-from gearcam.designs.slips import nearest
+from gearcam.designs.slips import cam_of, nearest
 from gearcam.designs.table import Key, Table, table_of
 
 _HOME: Final = "gearcam.kinds"
@@ -161,9 +161,14 @@ class Variants:
             entries.setdefault(key, entry)
         return Table(title, None, entries)  # no class has them all
 
-    def owners(self, title: str, key: str) -> list[str]:
-        """Return the values for which the table of a `title` has a `key`."""
-        return [value for value in self.entries if key in self.table(title, value).entries]
+    def owners(self, title: str, key: str) -> dict[str, Key]:
+        """Return a `key` in the table of a `title`, by the values for which this has it."""
+        tables = {value: self.table(title, value) for value in self.entries}
+        for value, name in self.elsewhere.items():
+            if title in KINDS[name].tables:
+                tables[value] = KINDS[name].table(title)
+        found = {value: table.entries.get(key) for value, table in tables.items()}
+        return {value: entry for value, entry in found.items() if entry is not None}
 
 
 FAMILY: Final = {"sweep": "what `gearcam sweep` gives to keys: values, ranges, distributions"}
@@ -353,6 +358,44 @@ class _Kinds(Mapping[str, DesignKind]):
 
 KINDS: Final[Mapping[str, DesignKind]] = _Kinds()
 """The kinds of design by name."""
+
+
+def variant_of(kind: DesignKind) -> tuple[DesignKind, str] | None:
+    """Return the kind of which a kind is one of the variants, and the word for it; or None."""
+    for one in KINDS.values():
+        for value, name in one.variants.elsewhere.items() if one.variants else ():
+            if name == kind.name:
+                return one, value
+    return None
+
+
+def as_written(kind: DesignKind, value: str = "") -> str:
+    """Return how a kind, or one of its variants, is written in a file.
+
+    Parameters
+    ----------
+    kind : DesignKind
+        The kind.
+    value : str
+        A value of the key that decides on its variants; empty for any.
+    """
+    if found := variant_of(kind):
+        kind, value = found
+    words = f'kind = "{kind.name}"'
+    variants = kind.variants
+    return (
+        f'{words} with {variants.title}.{variants.key} = "{value}"' if variants and value else words
+    )
+
+
+def named_variant(word: str) -> tuple[DesignKind, str] | None:
+    """Return the kind and the variant that a `word` for a kind names, as ``barrel-cam`` does."""
+    for kind in KINDS.values():
+        plain = cam_of(word)
+        if kind.variants and word not in KINDS and (plain != word or not nearest(word, KINDS)):
+            value = nearest(plain, kind.variants.values)
+            return (kind, value) if value else None
+    return None
 
 
 def all_formats() -> tuple[str, ...]:

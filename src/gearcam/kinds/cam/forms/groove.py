@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from gearcam.base.errors import beyond_limit
 from gearcam.base.facts import Fact
@@ -92,7 +92,7 @@ class GrooveBlank(CamBlank):
 
     Parameters
     ----------
-    clearance_bores : bool
+    clearance, clearance_bores
         A groove has the clearance of its roller instead.
 
     Examples
@@ -102,7 +102,11 @@ class GrooveBlank(CamBlank):
     GrooveBlank(bore_diameter=16)
     """
 
+    clearance: float = fixed(0.0)
     clearance_bores: bool = fixed(False)
+
+    without: ClassVar[str] = "the clearance of a groove is cam.roller_clearance_mm"
+    """Why it does not have what other blanks have."""
 
     rules = OPENING_RULES
 

@@ -152,6 +152,9 @@ class PlateBlank(ShortRepr):
     density: float | None = _of_wheels("density")
     clearance: float = _of_wheels("clearance")
 
+    without: ClassVar[str] = "it slides, and has no other openings than a row of bolts"
+    """Why it does not have what other blanks have."""
+
     rules = (
         needs("bolts", "bolt_diameter", "bolt_height"),
         *(needs(f"bolt_{size}", "bolts") for size in ("diameter", "height", "spacing")),
