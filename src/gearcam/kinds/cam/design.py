@@ -148,6 +148,7 @@ def _toleranced(sizes: str, key: str, *words: str) -> Rule:
 
 
 _ROUND: Final = tuple(name for name in FOLLOWERS if name != "flat")
+_SLIDING: Final = tuple(name for name in FOLLOWERS if name != "roller")
 _TURNING: Final = tuple(name for name in FORMS if name != "translating")
 
 _ARMS: Final = {
@@ -173,7 +174,13 @@ RULES: Final = (
     _toleranced("travel", "cam.form", "translating"),
     only_with(("precision.lift_error",), "follower.motion", "translating"),
     only_with(("precision.swing_error",), "follower.motion", "oscillating"),
-)
+    only_with(
+        (f"friction.{name}" for name in ("guide", "guide_length", "guide_at")),
+        "follower.motion", "translating",
+    ),
+    only_with(("friction.roller",), "follower.type", "roller"),
+    only_with(("friction.flank",), "follower.type", *_SLIDING),
+)  # fmt: skip
 """Rules between the tables of a cam."""
 
 
@@ -182,6 +189,7 @@ def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
     output, follower = document.get("output"), document.get("follower")
     yield from _follow_faults(output, document.get("follow"))
     yield from _tool_faults(output, follower)
+    yield from _weightless(document)
     if "follower" in found.parts:
         yield from _load_faults(found, document)
     asked = unknowns(document)
@@ -283,6 +291,15 @@ def _follow_faults(output: Any, follow: Any) -> Iterator[Fault]:
     if isinstance(asked, list) and "follow" in asked and not given:
         message = 'is missing: output.studies lists "follow", which needs a profile'
         yield Fault(("follow", "file"), message, allowed="a DXF or CSV file of a closed profile")
+
+
+def _weightless(document: Mapping[str, Any]) -> Iterator[Fault]:
+    """Yield the fault of gravity where there is no mass on which it acts."""
+    gravity = document.get("gravity")
+    if isinstance(gravity, Mapping) and "direction_deg" in gravity and "mass" not in document:
+        value = gravity["direction_deg"]
+        message = f"{show(value)}: the follower has no mass on which gravity acts"
+        yield Fault(("gravity", "direction_deg"), message, value, "with a table [[mass]]")
 
 
 def _tool_faults(output: Any, follower: Any) -> Iterator[Fault]:

@@ -24,7 +24,7 @@ from gearcam.base.quantities import (
     params_of,
     positive_length,
 )
-from gearcam.base.rules import Breach
+from gearcam.base.rules import Breach, needs
 from gearcam.designs.outputs import FORMATS, OutputSpec, files_param, pose_param, studies_param
 from gearcam.parts.blank import OPENING_RULES, WheelBlank, least_metal, widening_rules
 
@@ -161,6 +161,8 @@ class PrecisionSpec(ShortRepr):
         choices=("worst-case", "root-of-squares"),
         doc="how errors of several sizes add up where they must keep the wanted one",
     )
+
+    rules = (needs("combined", "lift_error", "swing_error", one=True),)
 
     @property
     def tolerances(self) -> dict[str, float]:
