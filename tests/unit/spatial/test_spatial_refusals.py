@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
+import numpy as np
 import pytest
 
 import gearcam as gc
@@ -41,6 +43,50 @@ def test_the_nearest_value_is_named_and_can_be_built(
     near = caught.value.adjustments[0].near
     assert near[key] != value
     _ = gc.build(design.with_(near)).cam
+
+
+@pytest.mark.parametrize("design", [DESIGN, SWINGING], ids=["straight", "on an arm"])
+@pytest.mark.parametrize(
+    "more",
+    [
+        {},
+        {"cam.roller_clearance_mm": 0.4},
+        {"cam.floor_clearance_mm": 3},
+        {"follower.roller_length_mm": 9, "cam.floor_clearance_mm": 0},
+        {"cam.walls": "upper"},
+    ],
+    ids=["groove", "wide", "high floor", "short roller", "one wall"],
+)
+def test_a_cone_whose_tip_lies_in_the_groove(design: gc.Design, more: dict[str, Any]) -> None:
+    """The wall above the roller stays above the wall below it down to the floor."""
+    steep = design.with_({"follower.cone_deg": 59.0, **more})
+    with pytest.raises(InfeasibleError, match="tip of the conical roller lies") as caught:
+        _ = gc.build(steep).cam
+    assert caught.value.where.endswith("follower.cone_deg")
+    near = [dict(one.near) for one in caught.value.adjustments]
+    assert near[0] == {"follower.cone_deg": caught.value.limit}
+    for change in near:
+        cam = gc.build(steep.with_(change)).cam
+        assert cam.tool.radius_at(cam.floor) > 0.0
+        assert cam.roller.radius_at(cam.inner) > 0.0
+        theta = np.linspace(0.0, cam.program.period, 60)
+        x = np.full((60, 1), cam.floor)
+        heights = [cam.contact(theta, x, side).points[..., 2] for side in (1, -1)]
+        assert np.all(heights[0] > heights[1])
+
+
+def test_the_largest_angle_and_depth_of_a_cone_are_those_of_its_triangle() -> None:
+    """The roller of 4 mm in a groove of 22 mm: atan(4/22), and 4/tan(18 deg)."""
+    sizes = {
+        "cam.outer_diameter_mm": 130, "cam.groove_depth_mm": 22, "cam.roller_clearance_mm": 0,
+        "cam.floor_clearance_mm": 0, "follower.roller_radius_mm": 4, "follower.cone_deg": 18,
+    }  # fmt: skip
+    with pytest.raises(InfeasibleError) as caught:
+        _ = gc.build(DESIGN.with_(sizes)).cam
+    angle, depth = (next(iter(one.near.values())) for one in caught.value.adjustments)
+    assert 0.99 < angle / math.degrees(math.atan(4 / 22)) < 1.0
+    assert 0.99 < depth / (4 / math.tan(math.radians(18))) < 1.0
+    assert f"up to {depth:g}" in str(caught.value)
 
 
 def test_a_rib_that_its_rollers_cut_through() -> None:
