@@ -26,6 +26,7 @@ from gearcam.designs.kind import (
     Examined,
     as_written,
     named_variant,
+    nearest_kind,
     variant_of,
 )
 from gearcam.designs.lines import Path, line_at, lines_of
@@ -157,7 +158,7 @@ def _as_meant(document: Mapping[str, Any]) -> tuple[DesignKind | None, Mapping[s
 def _meant_kind(document: Mapping[str, Any]) -> DesignKind | None:
     """Return the kind of a document; if it is missing or misspelt the likeliest one, or None."""
     name = document.get("kind")
-    if isinstance(name, str) and (near := name if name in KINDS else nearest(name, KINDS)):
+    if isinstance(name, str) and (near := nearest_kind(name)):
         return KINDS[near].meant(document)
     likely = {
         name: sum(title in document for title in kind.tables)
@@ -227,18 +228,20 @@ def _near_home(kind: DesignKind, key: str, least: float) -> str:
 
 
 def _kind_faults(document: Mapping[str, Any]) -> Iterator[Fault]:
-    rule = quoted(name for name, kind in KINDS.items() if not variant_of(kind))
+    kind = document.get("kind")
+    if isinstance(kind, str) and kind in KINDS:
+        return
+    rule = quoted(name for name, one in KINDS.items() if not variant_of(one))
     if "kind" not in document:
         yield Fault(("kind",), "is missing", allowed=rule)
-    elif not isinstance(document["kind"], str) or document["kind"] not in KINDS:
-        kind = document["kind"]
+    else:
         hint = _meant_words(kind) if isinstance(kind, str) else ""
         yield Fault(("kind",), f"{show(kind)} is not a kind of design", kind, rule, hint)
 
 
 def _meant_words(word: str) -> str:
     """Return the hint that says how the kind that a `word` may mean is written."""
-    found, near = named_variant(word), nearest(word, KINDS)
+    found, near = named_variant(word), nearest_kind(word)
     meant = as_written(*found) if found else as_written(KINDS[near]) if near else ""
     return f"did you mean {meant}?" if meant else ""
 
@@ -347,13 +350,14 @@ def _without_foreign(
     Where such a key has its default value it changes nothing: it is no fault. The class of the
     table may say in ``without`` why it does not have them.
     """
-    family, value = variant_of(kind) or (kind, "")
-    variants, faults = family.variants, list[Fault]()
-    if variants is None or title not in variants.titles or not isinstance(raw, Mapping):
+    table, faults = kind.table_in(document, title), list[Fault]()
+    unknown = [key for key in raw if key not in table.entries] if isinstance(raw, Mapping) else []
+    family, value = (variant_of(kind) if unknown else None) or (kind, "")
+    variants = family.variants
+    if not unknown or variants is None or title not in variants.titles:
         return raw, faults
-    table, kept = kind.table_in(document, title), dict(raw)
-    called = variants.called.format(value or variants.meant(document))
-    for key in [key for key in raw if key not in table.entries]:
+    kept, called = dict(raw), variants.called.format(value or variants.meant(document))
+    for key in unknown:
         owners = variants.owners(title, key)
         if owners:
             entry, given = next(iter(owners.values())), kept.pop(key)

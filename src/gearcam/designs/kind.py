@@ -189,6 +189,8 @@ class DesignKind:
         Name in design files.
     doc : str
         Short description.
+    also : tuple of str
+        Other names that people use for it.
     design : type
         Class of its designs: a frozen dataclass with ``name``, ``source``, ``limits``, the result
         of the main part's ``examine`` and a field for each table, whose type is the class of the
@@ -226,6 +228,7 @@ class DesignKind:
 
     name: str
     doc: str
+    also: tuple[str, ...] = ()
     design: type
     result: Callable[..., Any]
     main: Main | None = None
@@ -388,13 +391,23 @@ def as_written(kind: DesignKind, value: str = "") -> str:
     )
 
 
+def nearest_kind(word: str) -> str:
+    """Return the name of the kind that a `word` names or is nearest to; empty if there is none."""
+    if word in KINDS:
+        return word
+    also = {other: kind.name for kind in KINDS.values() for other in kind.also}
+    return also.get(word.lower()) or nearest(word, KINDS)
+
+
 def named_variant(word: str) -> tuple[DesignKind, str] | None:
     """Return the kind and the variant that a `word` for a kind names, as ``barrel-cam`` does."""
+    plain = cam_of(word)
+    if word in KINDS or (plain == word and nearest_kind(word)):
+        return None
     for kind in KINDS.values():
-        plain = cam_of(word)
-        if kind.variants and word not in KINDS and (plain != word or not nearest(word, KINDS)):
-            value = nearest(plain, kind.variants.values)
-            return (kind, value) if value else None
+        value = nearest(plain, kind.variants.values) if kind.variants else ""
+        if value:
+            return kind, value
     return None
 
 

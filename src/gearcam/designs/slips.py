@@ -72,12 +72,10 @@ _SYNONYMS: Final[Mapping[str, tuple[str, ...]]] = {
     **dict.fromkeys(("plate", "radial", "disk"), ("disc",)),
     **dict.fromkeys(("face", "track"), ("groove",)),
     **dict.fromkeys(("linear", "wedge"), ("translating",)),
-    **dict.fromkeys(("gear", "gears", "wheels", "pair", "gearpair"), ("gear-pair",)),
-    **dict.fromkeys(("linkage", "linkages", "four-bar", "machine"), ("mechanism",)),
     **dict.fromkeys(("nc", "cnc", "ngc", "g-code"), ("gcode",)),
     **dict.fromkeys(("print", "printing", "3d", "3d-print"), ("stl", "3mf")),
 }
-"""Other words that people use: phases of a motion, forms of cams, kinds of designs, files."""
+"""Other words that people use: phases of a motion, forms of cams, files."""
 
 _SLIDES: Final = {
     "rrp": "rrt", "prr": "trr", "rpr": "rtr", "prp": "trt", "rpp": "rtt", "ppr": "ttr",

@@ -101,7 +101,13 @@ def _count(*, doc: str, le: int) -> Any:
 
 
 def least_metal(*, example: float, doc: str) -> Any:
-    """Return the least metal beside lightening holes, a field that may be left out, as 0 too."""
+    """Return a field of the least metal beside lightening holes; None or 0: a usual one.
+
+    Parameters
+    ----------
+    example, doc
+        See `gearcam.base.quantities.param`.
+    """
     bounds = {"ge": 0, "le": LONGEST, "zero_is_none": True}
     return param(LENGTH, default=None, example=example, doc=doc, **bounds)
 

@@ -102,7 +102,7 @@ class Workpiece:
         return f"blank.{name}" if self.wheel is None else f"blank.{name}[{self.wheel - 1}]"
 
     def without(self, blank: WheelBlank, name: str) -> dict[str, object]:
-        """Return the change that leaves out what is called `name`, with all that serves it."""
+        """Return the change of a `blank` that leaves out `name`, with all that serves it."""
         params = params_of(WheelBlank)
         names = [one for one in (name, *sorted(serving((name,)))) if getattr(blank, one)]
         return {self.key(params[one].key(one)): 0 for one in names}

@@ -296,7 +296,7 @@ def _follow_faults(output: Any, follow: Any) -> Iterator[Fault]:
 def _weightless(document: Mapping[str, Any]) -> Iterator[Fault]:
     """Yield the fault of gravity where there is no mass on which it acts."""
     gravity = document.get("gravity")
-    if isinstance(gravity, Mapping) and "direction_deg" in gravity and "mass" not in document:
+    if isinstance(gravity, Mapping) and "direction_deg" in gravity and not document.get("mass"):
         value = gravity["direction_deg"]
         message = f"{show(value)}: the follower has no mass on which gravity acts"
         yield Fault(("gravity", "direction_deg"), message, value, "with a table [[mass]]")
