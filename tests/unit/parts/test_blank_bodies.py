@@ -157,7 +157,8 @@ def _made(body: str, key: str, value: Any) -> tuple[Any, list[Any]]:
     """Return what is made: the region of the part, and what else is measured of it."""
     bare, wheel, _ = BODIES[body]
     document = bare | {"blank": _blank(body, key, value)}
-    design, text = gc.design(document), json.dumps(document)
+    design: Any = gc.design(document)
+    text = json.dumps(document)
     if body in ("cylinder", "globoidal"):
         result = _built(text)
         return None, [result.mesh.volume, (solid_facts(result) or {}).get("mass_kg")]

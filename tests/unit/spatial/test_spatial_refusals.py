@@ -84,7 +84,8 @@ def test_the_largest_angle_and_depth_of_a_cone_are_those_of_its_triangle() -> No
     }  # fmt: skip
     with pytest.raises(InfeasibleError) as caught:
         _ = gc.build(DESIGN.with_(sizes)).cam
-    angle, depth = (next(iter(one.near.values())) for one in caught.value.adjustments)
+    found: list[Any] = [next(iter(one.near.values())) for one in caught.value.adjustments]
+    angle, depth = found
     assert 0.99 < angle / math.degrees(math.atan(4 / 22)) < 1.0
     assert 0.99 < depth / (4 / math.tan(math.radians(18))) < 1.0
     assert f"up to {depth:g}" in str(caught.value)
