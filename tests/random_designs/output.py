@@ -112,16 +112,13 @@ def forces(d: Draw, design: dict[str, Any], swings: bool) -> None:
     if d.chance(0.5):
         design["gravity"] = {"direction_deg": d.even(-180, 180), "g_m_s2": 9.81}
     if d.chance(0.7):
-        ends = "roller" if design["follower"]["type"] == "roller" else "flank"
         design["friction"] = {
-            **{name: short(d.even(0.01, 0.3)) for name in ("joint", ends)},
+            **{name: short(d.even(0, 0.3)) for name in ("joint", "guide", "roller", "flank")},
             "journal_radius_mm": [short(d.log(1, 20)), short(d.log(0.5, 5))],
+            "guide_length_mm": short(d.log(10, 100)),
         }
-        if not swings:
-            guide = {"guide": short(d.even(0, 0.3)), "guide_length_mm": short(d.log(10, 100))}
-            design["friction"] |= guide
-            if d.chance(0.5):
-                design["friction"]["guide_at_mm"] = short(d.even(40, 200))
+        if d.chance(0.5):
+            design["friction"]["guide_at_mm"] = short(d.even(40, 200))
     if d.chance(0.5):
         design["material"] = {
             "name": [d.pick(["steel", "bronze", "pom"])],

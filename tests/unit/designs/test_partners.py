@@ -10,8 +10,7 @@ import gearcam as gc
 from gearcam.base.errors import DesignError
 from helpers_pairs import PROFILES
 
-ROLLER, FLAT = "plate_cam_offset_roller", "flat_follower"
-SWINGING, PAIR = "plate_cam_oscillating", "ellipse"
+ROLLER, SWINGING, PAIR = "plate_cam_offset_roller", "plate_cam_oscillating", "ellipse"
 
 CASES: list[tuple[str, dict[str, Any], str, dict[str, Any]]] = [
     # profile, table with the key, the key, what makes it right
@@ -51,20 +50,6 @@ def test_a_key_without_its_partner_is_refused(
     assert problem.allowed
     if right:
         assert _read(profile, {title: table | right})
-
-
-@pytest.mark.parametrize(
-    ("profile", "key", "value"),
-    [
-        (FLAT, "roller", 0.1), (ROLLER, "flank", 0.1), (SWINGING, "guide_length_mm", 40),
-        (SWINGING, "guide_at_mm", 40),
-    ],
-)  # fmt: skip
-def test_friction_is_that_of_the_follower(profile: str, key: str, value: float) -> None:
-    table = {"journal_radius_mm": [9, 3], "joint": 0.1, key: value}
-    with pytest.raises(DesignError, match="does not apply with follower") as caught:
-        _read(profile, {"friction": table})
-    assert [problem.key for problem in caught.value.problems] == [f"friction.{key}"]
 
 
 def test_gravity_needs_a_mass() -> None:

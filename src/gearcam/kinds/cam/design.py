@@ -148,7 +148,6 @@ def _toleranced(sizes: str, key: str, *words: str) -> Rule:
 
 
 _ROUND: Final = tuple(name for name in FOLLOWERS if name != "flat")
-_SLIDING: Final = tuple(name for name in FOLLOWERS if name != "roller")
 _TURNING: Final = tuple(name for name in FORMS if name != "translating")
 
 _ARMS: Final = {
@@ -174,13 +173,7 @@ RULES: Final = (
     _toleranced("travel", "cam.form", "translating"),
     only_with(("precision.lift_error",), "follower.motion", "translating"),
     only_with(("precision.swing_error",), "follower.motion", "oscillating"),
-    only_with(
-        (f"friction.{name}" for name in ("guide", "guide_length", "guide_at")),
-        "follower.motion", "translating",
-    ),
-    only_with(("friction.roller",), "follower.type", "roller"),
-    only_with(("friction.flank",), "follower.type", *_SLIDING),
-)  # fmt: skip
+)
 """Rules between the tables of a cam."""
 
 
