@@ -29,6 +29,7 @@ from gearcam.console import (
     say,
 )
 from gearcam.designs import Design, load
+from gearcam.designs.kind import as_written
 from gearcam.results.kind import KINDS, Kind, Study
 
 if TYPE_CHECKING:
@@ -176,9 +177,9 @@ def studied(study: Study, design: Design, options: Options) -> Any:
     DesignError
         If designs of this kind have no such study, or a value is not allowed.
     """
-    kinds = [kind.name for kind in KINDS.values() if study.name in kind.studies]
+    kinds = {kind.name: kind for kind in KINDS.values() if study.name in kind.studies}
     if design.kind not in kinds:
-        message = f"this command is for designs of kind {' or '.join(kinds)}"
+        message = f"this command is for designs of {' or '.join(map(as_written, kinds.values()))}"
         raise DesignError([Problem(message, file=design.source, key="kind", value=design.kind)])
     settings = {f"{study.table}.{key}": one for key, one in options.items() if one is not None}
     changed = design.with_(settings) if settings else design

@@ -46,10 +46,20 @@ def blank(d: Draw, radius: float, unit: float, both: bool) -> dict[str, Any]:
     if d.chance(0.5):
         made["density_kg_m3"] = d.log(100, 20000)
     if d.chance(0.2):
-        made |= {"clearance_mm": short(unit * d.log(1e-3, 0.05)), "clearance_bores": d.chance(0.5)}
+        made["clearance_mm"] = short(unit * d.log(1e-3, 0.05))
+        if bore or "bolts" in made:
+            made["clearance_bores"] = d.chance(0.5)
     if both:
         _edges(d, unit, made)
     return made
+
+
+def without_openings(made: dict[str, Any]) -> None:
+    """Ask openings and hub of wheel 1 alone: wheel 2 is a rack."""
+    for key in ("bore_diameter_mm", "hub_diameter_mm", "bolts", "lightening_holes"):
+        value = made.get(key, 0)
+        if value:
+            made[key] = [value[0] if isinstance(value, list) else value, 0]
 
 
 def _bore(d: Draw, bore: float, made: dict[str, Any]) -> float:
@@ -70,5 +80,5 @@ def _edges(d: Draw, unit: float, made: dict[str, Any]) -> None:
         made["tip_rounding_mm"] = d.pick([radius, [radius, 0], [0, radius]])
     if d.chance(0.2):
         made["timing_marks"] = d.chance(0.3)
-    if d.chance(0.2):
+    if made.get("timing_marks", True) and d.chance(0.2):
         made["mark_diameter_mm"] = short(unit * d.even(0.2, 0.6))

@@ -253,8 +253,8 @@ def _precision(d: Draw, design: dict[str, Any], size: float) -> dict[str, Any]:
     if d.chance(0.7):
         key, scale = ("lift_error_deg", 1.0) if swings else ("lift_error_mm", size)
         made[key] = max(1e-6, short(scale * d.log(1e-5, 1e-3)))
-    if d.chance(0.3):
-        made["combined"] = d.pick(["worst-case", "root-of-squares"])
+        if d.chance(0.3):
+            made["combined"] = d.pick(["worst-case", "root-of-squares"])
     return made
 
 

@@ -9,7 +9,7 @@ import math
 from typing import Any, Final
 
 from gearcam.laws.ratio.base import LAWS
-from random_designs.blank import blank
+from random_designs.blank import blank, without_openings
 from random_designs.draw import Draw, short
 from random_designs.goals import seek
 from random_designs.law_draw import Counts, LawDraw
@@ -109,7 +109,7 @@ def _errors(d: Draw, design: dict[str, Any], module: float) -> dict[str, Any]:
         errors["center_mm"] = size()
     if d.chance(0.5):
         errors["eccentricity_mm"] = [size(), 0 if rack else size()]
-        errors["eccentricity_deg"] = [d.even(-180, 180), d.even(-180, 180)]
+        errors["eccentricity_deg"] = [d.even(-180, 180), 0 if rack else d.even(-180, 180)]
     if d.chance(0.3):
         errors["tilt_deg"] = [d.even(-0.1, 0.1), d.even(-0.1, 0.1)]
     if d.chance(0.15):
@@ -165,7 +165,9 @@ def design(d: Draw, index: int) -> dict[str, Any]:
     if d.chance(0.4):
         made["rack"] = _cutter(d)
     if d.chance(0.5):
-        made["blank"] = blank(d, 0.3 * module * min(z), module, closed)
+        made["blank"] = blank(d, 0.3 * module * min(z), module, both=True)
+        if not closed:
+            without_openings(made["blank"])
         if opened and d.chance(0.3):
             made["blank"]["stop_pin_mm"] = short(module * d.log(0.5, 2))
     if closed and not opened and d.chance(0.12):

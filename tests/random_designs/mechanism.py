@@ -677,7 +677,7 @@ def _added(
         sizes["sign"] = 1.0 if row["branch"] == branches[0] else -1.0
     if driven:
         row["driven"] = driven
-    if d.chance(0.15):
+    if branches and d.chance(0.15):
         row["change"] = d.pick(["branch", "motion"])
     joint, *members = solved(kind, first, last, sizes, m.ways[driven][0] if driven else ())
     roots = joint.roots | ({driven.split(".")[0]} if driven else NOTHING)

@@ -12,6 +12,7 @@ Knows nothing of tables and files: each rule gets its values, or its keys, by th
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Final
@@ -44,6 +45,9 @@ class Value:
         Whether 0 means that there is none.
     wrong : bool
         Whether it is wrong by itself, or its key misspelt.
+    contents : tuple
+        Of a key that has a value for each of two wheels: both of them; empty where they are the
+        same, or one is written for both.
     """
 
     key: str
@@ -53,6 +57,7 @@ class Value:
     default: Any
     zero_is_none: bool
     wrong: bool
+    contents: tuple[Any, ...] = ()
 
     @property
     def right(self) -> Any:
@@ -74,6 +79,11 @@ class Value:
     def missing(self) -> bool:
         """Whether it is left out, or is 0 and this means that there is none."""
         return not self.wrong and self._is_none(self.right)
+
+    @property
+    def missing_on_both(self) -> bool:
+        """Whether neither of two wheels has it."""
+        return self.missing and all(self._is_none(one) for one in self.contents)
 
     def _is_none(self, value: Any) -> bool:
         return value is None or (self.zero_is_none and _is_number(value) and value == 0)
@@ -179,7 +189,9 @@ def exactly_one(*names: str, note: str = "") -> Rule:
     return Rule(breaches, lambda keys: {"oneOf": [keys[name].written for name in names]})
 
 
-def needs(name: str, *others: str, one: bool = False, allowed: str = "") -> Rule:
+def needs(
+    name: str, *others: str, one: bool = False, serves: bool = False, allowed: str = ""
+) -> Rule:
     """Return the rule that a field is given only with all of `others`, or at least with `one`.
 
     Parameters
@@ -190,12 +202,20 @@ def needs(name: str, *others: str, one: bool = False, allowed: str = "") -> Rule
         What it needs.
     one : bool
         Whether one of them is enough.
+    serves : bool
+        Whether it says more of them, as the circle of bolts does: one value for two wheels then
+        holds for those that have them, if one has.
     allowed : str
         What is allowed, in place of ``NAME with OTHERS``.
     """
 
     def breaches(values: Values) -> Iterator[Breach]:
-        missing = [other for other in others if values[other].missing]
+        either = serves and not values[name].contents
+        missing = [
+            other
+            for other in others
+            if (values[other].missing_on_both if either else values[other].missing)
+        ]
         if not values[name].given or (one and len(missing) < len(others)):
             return
         rule = f"{values[name].key} with {_listed(_keys(values, *others), one=one)}"
@@ -443,6 +463,4 @@ def _listed(words: Iterable[str], *, one: bool = False) -> str:
 
 
 def _quoted(words: Iterable[Any]) -> str:
-    return _listed(
-        (f'"{word}"' if isinstance(word, str) else f"{word}" for word in words), one=True
-    )
+    return _listed((json.dumps(word, ensure_ascii=False) for word in words), one=True)

@@ -57,6 +57,11 @@ class Cam(NotebookView):
         return None
 
     @property
+    def clearance(self) -> float | None:
+        """Width of the groove less the diameter of the one roller that fills it, mm; else None."""
+        return None
+
+    @property
     def face_width(self) -> float | None:
         """Least width of the faces, mm, of a follower with two; None for others."""
         return None

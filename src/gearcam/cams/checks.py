@@ -371,6 +371,22 @@ def lost_motion(cam: Cam, limit: float) -> Iterator[Remark]:
         )
 
 
+@check("no-clearance", kind=KIND, severity="note", unit="mm")
+def no_clearance(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Note a roller without clearance in its groove.
+
+    Looks at: `cam.roller_clearance_mm`; two rollers in steps of a groove each touch one wall and
+    need none.
+    """
+    if cam.clearance is not None and cam.clearance <= 0.0:
+        yield Remark(
+            "A roller has no clearance between its walls: it touches both, and they turn it in "
+            "opposite directions. cam.roller_clearance_mm gives it some.",
+            "between the walls",
+            0.0,
+        )
+
+
 @check("face-width", kind=KIND, severity="note")
 def face_width(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Note how wide the faces of a yoke must be: twice the farthest contact from their middle.

@@ -76,6 +76,11 @@ class GrooveCam(ShortRepr, Cam):
         return self.inner.follower.radius + self.outer.follower.radius
 
     @property
+    def clearance(self) -> float | None:
+        """Width of the groove less the roller's diameter, mm; None with two rollers."""
+        return self.width - 2.0 * self.rollers[0].radius if self.relief is None else None
+
+    @property
     def reach(self) -> float:
         """Largest distance of the groove from the axis, mm."""
         walls = (self.outer, self.relief or self.outer)

@@ -197,6 +197,11 @@ class SlidingCam(ShortRepr, Cam):
         return 2.0 * self.lower.follower.radius
 
     @property
+    def clearance(self) -> float | None:
+        """Width of the groove less the roller's diameter, mm; None for a cam with one wall."""
+        return None if self.upper is None else self.width - 2.0 * self.roller.radius
+
+    @property
     def plate(self) -> Plate:
         """The plate from which it is cut."""
         return self.lower.plate

@@ -19,7 +19,16 @@ from gearcam.base.errors import DesignError
 from gearcam.base.quantities import REQUIRED
 from gearcam.base.reading import UnreadableError, read
 from gearcam.designs.faults import MISSING, TOO_DEEP, Fault, dotted, is_deep, quoted, show
-from gearcam.designs.kind import FAMILY, KINDS, DesignKind, Examined
+from gearcam.designs.kind import (
+    FAMILY,
+    KINDS,
+    DesignKind,
+    Examined,
+    as_written,
+    named_variant,
+    nearest_kind,
+    variant_of,
+)
 from gearcam.designs.lines import Path, line_at, lines_of
 from gearcam.designs.reader import LARGEST, decoded, document_in, find_tables
 from gearcam.designs.slips import STRONG, SURE, did_you_mean, hinted, key_hint, nearest
@@ -79,16 +88,17 @@ def examine(document: Mapping[str, Any], *, stem: str = "", place: Place | None 
     if is_deep(document):
         outcome.faults.append(Fault((), TOO_DEEP))
         return outcome
-    kind = _meant_kind(document)
+    unknown = list(_kind_faults(document))
+    kind, document = _as_meant(document)
     if kind is None:
-        outcome.faults += _kind_faults(document)
+        outcome.faults += unknown
         return outcome
     later = kind.later(document)
     if later is not None:
         outcome.faults.append(later)
         return outcome
     outcome.kind = kind.name
-    outcome.faults += _kind_faults(document)
+    outcome.faults += unknown
     outcome.faults += _top_faults(document, kind)
     _examine_name(document, stem, outcome)
     if kind.main:
@@ -128,16 +138,32 @@ def examine_file(document: dict[str, Any], file: str, outer: tuple[str, ...] = (
     return examine(document, stem=FilePath(file).stem, place=place)
 
 
+def _as_meant(document: Mapping[str, Any]) -> tuple[DesignKind | None, Mapping[str, Any]]:
+    """Return the likeliest kind of a document, or None, and the document as one of this kind.
+
+    Where its kind is a name of a variant, as ``barrel-cam`` is, it is one of this variant.
+    """
+    name = document.get("kind")
+    found = named_variant(name) if isinstance(name, str) else None
+    if found is None:
+        return _meant_kind(document), document
+    kind, value = found
+    variants = kind.variants
+    given = document.get(variants.title) if variants else None
+    if variants and isinstance(given, Mapping):
+        document = {**document, variants.title: {variants.key: value, **given}}
+    return kind.meant(document), document
+
+
 def _meant_kind(document: Mapping[str, Any]) -> DesignKind | None:
     """Return the kind of a document; if it is missing or misspelt the likeliest one, or None."""
     name = document.get("kind")
-    if isinstance(name, str) and (near := name if name in KINDS else nearest(name, KINDS)):
+    if isinstance(name, str) and (near := nearest_kind(name)):
         return KINDS[near].meant(document)
-    within = [kind.variants.elsewhere for kind in KINDS.values() if kind.variants]
     likely = {
         name: sum(title in document for title in kind.tables)
         for name, kind in KINDS.items()
-        if not any(name in elsewhere.values() for elsewhere in within)
+        if not variant_of(kind)
     }
     most = max(likely.values())
     best = [name for name, count in likely.items() if count == most > 0]
@@ -156,22 +182,41 @@ def home_of(kind: DesignKind, key: str) -> str:
     return homes.get(key) or (kind.main.homes().get(key, "") if kind.main else "")
 
 
-def _owners(what: str, has: Callable[[DesignKind], bool]) -> str:
-    """Return a hint that says to which kinds of design a key or table, `what`, belongs."""
-    owners = [kind.name for kind in KINDS.values() if has(kind)]
-    return f"this {what} belongs to kind = {quoted(owners)}" if owners else ""
+def _owners(what: str, kind: DesignKind, has: Callable[[DesignKind], bool]) -> str:
+    """Return a hint that says where else than in a kind of design a key or table belongs.
+
+    Parameters
+    ----------
+    what : str
+        ``key`` or ``table``.
+    kind : DesignKind
+        The kind of the design.
+    has : callable
+        Whether another kind has it.
+    """
+    found, owners = (
+        variant_of(kind),
+        [one for one in KINDS.values() if one is not kind and has(one)],
+    )
+    family = found[0] if found else kind
+    variants = family.variants
+    if variants:
+        names = {one.name for one in owners}
+        values = [*variants.entries] if family in owners else []
+        values += [value for value, name in variants.elsewhere.items() if name in names]
+        if values:
+            place = f"{variants.title}.{variants.key}"
+            known = f"{place} = {quoted(values)}" if what == "table" else f"another {place}"
+            return f"this {what} belongs to {known}"
+    apart = [one for one in owners if (of := variant_of(one)) is None or of[0] not in owners]
+    return f"this {what} belongs to {' or '.join(map(as_written, apart))}" if apart else ""
 
 
-def _other_home(document: Mapping[str, Any], kind: DesignKind, key: str) -> str:
+def _other_home(kind: DesignKind, key: str) -> str:
     def has(other: DesignKind) -> bool:
         return any(key in other.table(title).entries for title in other.tables)
 
-    written = document.get("kind")
-    if written != kind.name and isinstance(written, str) and written in KINDS:
-        given = KINDS[written]  # one of its variants is of another kind
-        if has(given) and given.variants:
-            return f"this key belongs to another {given.variants.title}.{given.variants.key}"
-    return _owners("key", has)
+    return _owners("key", kind, has)
 
 
 def _near_home(kind: DesignKind, key: str, least: float) -> str:
@@ -183,13 +228,22 @@ def _near_home(kind: DesignKind, key: str, least: float) -> str:
 
 
 def _kind_faults(document: Mapping[str, Any]) -> Iterator[Fault]:
-    rule = quoted(KINDS)
+    kind = document.get("kind")
+    if isinstance(kind, str) and kind in KINDS:
+        return
+    rule = quoted(name for name, one in KINDS.items() if not variant_of(one))
     if "kind" not in document:
         yield Fault(("kind",), "is missing", allowed=rule)
-    elif not isinstance(document["kind"], str) or document["kind"] not in KINDS:
-        kind = document["kind"]
-        hint = did_you_mean(kind, KINDS)
+    else:
+        hint = _meant_words(kind) if isinstance(kind, str) else ""
         yield Fault(("kind",), f"{show(kind)} is not a kind of design", kind, rule, hint)
+
+
+def _meant_words(word: str) -> str:
+    """Return the hint that says how the kind that a `word` may mean is written."""
+    found, near = named_variant(word), nearest_kind(word)
+    meant = as_written(*found) if found else as_written(KINDS[near]) if near else ""
+    return f"did you mean {meant}?" if meant else ""
 
 
 def _top_faults(document: Mapping[str, Any], kind: DesignKind) -> Iterator[Fault]:
@@ -197,7 +251,7 @@ def _top_faults(document: Mapping[str, Any], kind: DesignKind) -> Iterator[Fault
     unknown = (key for key in document if key not in titles)
 
     def hint_of(key: str) -> str:
-        hint = home_of(kind, key) or _owners("table", lambda other: key in other.titles)
+        hint = home_of(kind, key) or _owners("table", kind, lambda other: key in other.titles)
         return hint or key_hint(key, titles) or _near_home(kind, key, STRONG)
 
     for key, hint in hinted(unknown, hint_of):
@@ -274,7 +328,7 @@ def _examine_table(
     for at, given in items:
         content, foreign = _without_foreign(kind, document, title, given)
         content, below = _with_designs(table, content, at, place)
-        far = partial(_other_home, document, kind)
+        far = partial(_other_home, kind)
         faults = [*below, *faults_of(table, content, home=home, far=far, at=at)]
         part, problems = None, list[Fault]()
         if isinstance(content, Mapping):
@@ -293,20 +347,25 @@ def _without_foreign(
 ) -> tuple[Any, list[Fault]]:
     """Return a table without keys that other variants have, and the faults of those keys.
 
-    Where such a key has its default value it changes nothing: it is no fault.
+    Where such a key has its default value it changes nothing: it is no fault. The class of the
+    table may say in ``without`` why it does not have them.
     """
-    variants, faults = kind.variants, list[Fault]()
-    if variants is None or title not in variants.titles or not isinstance(raw, Mapping):
+    table, faults = kind.table_in(document, title), list[Fault]()
+    unknown = [key for key in raw if key not in table.entries] if isinstance(raw, Mapping) else []
+    family, value = (variant_of(kind) if unknown else None) or (kind, "")
+    variants = family.variants
+    if not unknown or variants is None or title not in variants.titles:
         return raw, faults
-    value = variants.meant(document)
-    entries, kept = variants.table(title, value).entries, dict(raw)
-    for key in [key for key in raw if key not in entries]:
+    kept, called = dict(raw), variants.called.format(value or variants.meant(document))
+    for key in unknown:
         owners = variants.owners(title, key)
         if owners:
-            entry, given = variants.table(title, owners[0]).entries[key], kept.pop(key)
+            entry, given = next(iter(owners.values())), kept.pop(key)
             if entry.default in (None, REQUIRED) or given != entry.outward(entry.default):
-                message = f"{show(given)}: does not apply to {variants.called.format(value)}"
+                why = getattr(table.owner, "without", "")
+                message = f"{show(given)}: does not apply to {called}{why and f': {why}'}"
                 rule = f"with {variants.title}.{variants.key} = {quoted(owners)}"
+                rule = f"{', '.join(table.entries)}; this one {rule}" if why else rule
                 faults.append(Fault((title, key), message, given, rule))
     return kept, faults
 

@@ -21,7 +21,7 @@ from typing import Any, Final, Protocol, get_args, get_type_hints
 from gearcam.base.findings import CHECKS
 from gearcam.base.rules import Rule
 from gearcam.designs.faults import Fault
-from gearcam.designs.slips import nearest
+from gearcam.designs.slips import cam_of, nearest
 from gearcam.designs.table import Key, Table, table_of
 
 _HOME: Final = "gearcam.kinds"
@@ -161,9 +161,14 @@ class Variants:
             entries.setdefault(key, entry)
         return Table(title, None, entries)  # no class has them all
 
-    def owners(self, title: str, key: str) -> list[str]:
-        """Return the values for which the table of a `title` has a `key`."""
-        return [value for value in self.entries if key in self.table(title, value).entries]
+    def owners(self, title: str, key: str) -> dict[str, Key]:
+        """Return a `key` in the table of a `title`, by the values for which this has it."""
+        tables = {value: self.table(title, value) for value in self.entries}
+        for value, name in self.elsewhere.items():
+            if title in KINDS[name].tables:
+                tables[value] = KINDS[name].table(title)
+        found = {value: table.entries.get(key) for value, table in tables.items()}
+        return {value: entry for value, entry in found.items() if entry is not None}
 
 
 FAMILY: Final = {"sweep": "what `gearcam sweep` gives to keys: values, ranges, distributions"}
@@ -184,6 +189,8 @@ class DesignKind:
         Name in design files.
     doc : str
         Short description.
+    also : tuple of str
+        Other names that people use for it.
     design : type
         Class of its designs: a frozen dataclass with ``name``, ``source``, ``limits``, the result
         of the main part's ``examine`` and a field for each table, whose type is the class of the
@@ -221,6 +228,7 @@ class DesignKind:
 
     name: str
     doc: str
+    also: tuple[str, ...] = ()
     design: type
     result: Callable[..., Any]
     main: Main | None = None
@@ -353,6 +361,54 @@ class _Kinds(Mapping[str, DesignKind]):
 
 KINDS: Final[Mapping[str, DesignKind]] = _Kinds()
 """The kinds of design by name."""
+
+
+def variant_of(kind: DesignKind) -> tuple[DesignKind, str] | None:
+    """Return the kind of which a kind is one of the variants, and the word for it; or None."""
+    for one in KINDS.values():
+        for value, name in one.variants.elsewhere.items() if one.variants else ():
+            if name == kind.name:
+                return one, value
+    return None
+
+
+def as_written(kind: DesignKind, value: str = "") -> str:
+    """Return how a kind, or one of its variants, is written in a file.
+
+    Parameters
+    ----------
+    kind : DesignKind
+        The kind.
+    value : str
+        A value of the key that decides on its variants; empty for any.
+    """
+    if found := variant_of(kind):
+        kind, value = found
+    words = f'kind = "{kind.name}"'
+    variants = kind.variants
+    return (
+        f'{words} with {variants.title}.{variants.key} = "{value}"' if variants and value else words
+    )
+
+
+def nearest_kind(word: str) -> str:
+    """Return the name of the kind that a `word` names or is nearest to; empty if there is none."""
+    if word in KINDS:
+        return word
+    also = {other: kind.name for kind in KINDS.values() for other in kind.also}
+    return also.get(word.lower()) or nearest(word, KINDS)
+
+
+def named_variant(word: str) -> tuple[DesignKind, str] | None:
+    """Return the kind and the variant that a `word` for a kind names, as ``barrel-cam`` does."""
+    plain = cam_of(word)
+    if word in KINDS or (plain == word and nearest_kind(word)):
+        return None
+    for kind in KINDS.values():
+        value = nearest(plain, kind.variants.values) if kind.variants else ""
+        if value:
+            return kind, value
+    return None
 
 
 def all_formats() -> tuple[str, ...]:

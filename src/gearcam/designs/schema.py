@@ -13,7 +13,7 @@ from typing import Any, Final
 from gearcam.base.quantities import REQUIRED
 from gearcam.base.rules import Field, Fields, Rule
 from gearcam.designs.faults import description
-from gearcam.designs.kind import FAMILY, KINDS, DesignKind, Variants
+from gearcam.designs.kind import FAMILY, KINDS, DesignKind, Variants, variant_of
 from gearcam.designs.table import Key, Table, default_of
 
 DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
@@ -67,13 +67,9 @@ def _meant(kind: DesignKind) -> Schema:
 
 
 def _names(kind: DesignKind) -> list[str]:
-    """Return the words for a kind in files: its name, and kinds whose variants it has."""
-    others = [
-        one.name
-        for one in KINDS.values()
-        if one.variants and kind.name in one.variants.elsewhere.values()
-    ]
-    return [kind.name, *others]
+    """Return the words for a kind in files: its name, and the kind of which it is a variant."""
+    found = variant_of(kind)
+    return [kind.name, found[0].name] if found else [kind.name]
 
 
 def _when(key: str, value: str, then: Schema) -> Schema:

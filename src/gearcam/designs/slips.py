@@ -64,18 +64,27 @@ _NAMES: Final = {"thickness": "face_width"}
 """Other names of keys, where no table has the written one."""
 
 _RELATED: Final = ({"radius", "diameter"}, {"width", "thickness"})
-_SYNONYMS: Final = {
-    **dict.fromkeys(("up", "raise", "lift"), "rise"),
-    **dict.fromkeys(("fall", "down", "lower"), "return"),
-    **dict.fromkeys(("pause", "hold", "stay", "rest", "wait"), "dwell"),
+_SYNONYMS: Final[Mapping[str, tuple[str, ...]]] = {
+    **dict.fromkeys(("up", "raise", "lift"), ("rise",)),
+    **dict.fromkeys(("fall", "down", "lower"), ("return",)),
+    **dict.fromkeys(("pause", "hold", "stay", "rest", "wait"), ("dwell",)),
+    **dict.fromkeys(("barrel", "drum", "cylindrical", "axial"), ("cylinder",)),
+    **dict.fromkeys(("plate", "radial", "disk"), ("disc",)),
+    **dict.fromkeys(("face", "track"), ("groove",)),
+    **dict.fromkeys(("linear", "wedge"), ("translating",)),
+    **dict.fromkeys(("nc", "cnc", "ngc", "g-code"), ("gcode",)),
+    **dict.fromkeys(("print", "printing", "3d", "3d-print"), ("stl", "3mf")),
 }
-"""Other words for the phases of a motion."""
+"""Other words that people use: phases of a motion, forms of cams, files."""
 
 _SLIDES: Final = {
     "rrp": "rrt", "prr": "trr", "rpr": "rtr", "prp": "trt", "rpp": "rtt", "ppr": "ttr",
     "rprr": "rtrr",
 }  # fmt: skip
 """Types of dyads with P for a joint that slides, as others write them."""
+
+_OF_CAMS = re.compile(r"(?<=.)[-_ ]?cams?$")
+"""The end of a word such as ``barrel-cam``."""
 
 _FILLERS: Final = frozenset({"number", "num", "no", "n", "of", "the", "size", "value"})
 _SIZES: Final = frozenset({"diameter", "radius", "width", "distance"})
@@ -90,20 +99,39 @@ def _letters(word: str, other: str) -> float:
 
 def nearest(word: str, known: Iterable[str]) -> str:
     """Return the most similar known word, or an empty text."""
+    return next(iter(_meant(word, known)), "")
+
+
+def _meant(word: str, known: Iterable[str]) -> list[str]:
+    """Return the known words that a word may mean: itself, other words for it, or the nearest."""
     by_lower = {name.lower(): name for name in known}
     if word in by_lower.values():
-        return word
-    meant = (_SYNONYMS | _SLIDES).get(word.lower(), word.lower())
-    close = difflib.get_close_matches(meant, by_lower, n=1, cutoff=STRONG)
-    close += [near for near in difflib.get_close_matches(meant, by_lower) if near[0] == meant[0]]
-    return by_lower[close[0]] if close else ""
+        return [word]
+    for one in dict.fromkeys((word.lower(), cam_of(word.lower()))):
+        close = [name for name in _SYNONYMS.get(one, ()) if name in by_lower]
+        close = close or _similar(_SLIDES.get(one, one), by_lower)[:1]
+        if close:
+            return [by_lower[name] for name in close]
+    return []
+
+
+def cam_of(word: str) -> str:
+    """Return a word such as ``barrel-cam`` without its end."""
+    return _OF_CAMS.sub("", word)
+
+
+def _similar(word: str, known: Iterable[str]) -> list[str]:
+    """Return the known words that a word is similar to, the best first."""
+    names = list(known)
+    close = difflib.get_close_matches(word, names, n=1, cutoff=STRONG)
+    return close + [near for near in difflib.get_close_matches(word, names) if near[0] == word[0]]
 
 
 def did_you_mean(word: Any, known: Iterable[str]) -> str:
     """Return the hint ``did you mean ...?`` with the nearest known word, or an empty text."""
-    near = nearest(word, known) if isinstance(word, str) else ""
-    note = " (T is a slide)" if near and near.lower() == _SLIDES.get(word.lower()) else ""
-    return f"did you mean {near}?{note}" if near else ""
+    near = _meant(word, known) if isinstance(word, str) else []
+    note = " (T is a slide)" if near and near[0].lower() == _SLIDES.get(word.lower()) else ""
+    return f"did you mean {' or '.join(near)}?{note}" if near else ""
 
 
 def meant_by(key: str, known: Mapping[str, Key], least: float = _WEAK) -> list[Key]:

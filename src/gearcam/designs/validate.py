@@ -98,7 +98,9 @@ def _values(
             continue  # of two keys of a field the one that is written
         content, default = written.get(key), default_of(entry)
         path: Path = (key,)
+        contents: tuple[Any, ...] = ()
         if entry.param.both and isinstance(content, list):
+            contents = tuple(content) if content[1:] != content[:-1] else ()
             content, path = content[wheel] if wheel < len(content) else None, (key, wheel)
         values[title + entry.name] = Value(
             key=title + key,
@@ -108,6 +110,7 @@ def _values(
             default=default,
             zero_is_none=entry.param.zero_is_none,
             wrong=not wrong.isdisjoint([(), (key,), path]),
+            contents=contents,
         )
     return values
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from gearcam.base.display import ShortRepr
@@ -14,7 +15,7 @@ from gearcam.base.quantities import (
     param,
     positive_length,
 )
-from gearcam.base.rules import exactly_one, excludes, only_with
+from gearcam.base.rules import Breach, exactly_one, excludes, only_with
 
 RIM = 2.7
 """Default rim beyond the roots, in modules: 1.2 tooth depths."""
@@ -129,6 +130,11 @@ class StepsSpec:
         doc="offset of each step's teeth from those of the step below, along the pitch curves; the "
         "pitch divided by the number of steps if left out",
     )
+
+    def problems(self) -> Iterator[Breach]:
+        """Yield an offset of a single step: field, index, message, what is allowed."""
+        if self.count == 1 and self.offset is not None:
+            yield "offset", None, "is given, but there is one step", "with a count of 2 or more"
 
 
 @dataclass(frozen=True, kw_only=True)

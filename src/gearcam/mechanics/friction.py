@@ -12,7 +12,7 @@ from gearcam.base.rules import needs
 
 
 def _coefficient(*, doc: str) -> Any:
-    return param(default=0.0, ge=0, le=2, doc=doc)
+    return param(default=0.0, ge=0, le=2, zero_is_none=True, doc=doc)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,6 +57,7 @@ class FrictionSpec(ShortRepr):
         needs("joint", "journal_radius"),
         needs("roller", "journal_radius"),
         needs("guide", "guide_length"),
+        needs("journal_radius", "joint", "roller", one=True),
     )
 
     @property

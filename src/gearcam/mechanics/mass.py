@@ -17,7 +17,7 @@ from gearcam.base.quantities import (
     TEXT,
     param,
 )
-from gearcam.base.rules import Breach
+from gearcam.base.rules import Breach, needs
 
 G = 9.80665
 """Standard acceleration of gravity, m/s2."""
@@ -52,6 +52,8 @@ class MassSpec(ShortRepr):
         example=30,
         doc="centre of mass of an oscillating follower, from its pivot towards the contact",
     )
+
+    rules = (needs("center", "mass"),)
 
     def problems(self) -> Iterator[Breach]:
         """Yield contradictions: field, index, message, what is allowed."""
@@ -88,6 +90,8 @@ class GravitySpec(ShortRepr):
         doc="direction of the pull, from the x axis of the assembled cam, or of the machine",
     )
     g: float = param(ACCELERATION, default=G, ge=0, le=1000, doc="acceleration")
+
+    rules = (needs("g", "direction"),)
 
     @property
     def given(self) -> bool:

@@ -221,8 +221,15 @@ class ErrorsSpec(FromFile):
 
     def problems(self) -> Iterator[Breach]:
         """Yield the faults of a file that cannot be read, and of trials without tolerances."""
-        if self.trials and not any(self.tolerances):
-            yield "trials", None, "needs a tolerance", "with center_tolerance_mm, for example"
+        if not any(self.tolerances):
+            usual = {"trials": None, "seed": 1, "distribution": "uniform"}
+            for name in (name for name, one in usual.items() if getattr(self, name) != one):
+                yield name, None, "needs a tolerance", "with center_tolerance_mm, for example"
+        for wheel, one in enumerate(self.eccentricity_angle):
+            alike = len({*self.eccentricity_angle}) == 1 and any(self.eccentricity)
+            if one and not self.eccentricity[wheel] and not alike:
+                rule = "with eccentricity_mm of this wheel"
+                yield "eccentricity_angle", wheel, "is the direction of no eccentricity", rule
         try:
             _ = self.pitch_errors
         except ColumnsError as error:

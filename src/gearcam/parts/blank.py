@@ -15,7 +15,7 @@ Depends on quantities only.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field, fields, make_dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar, Final, get_type_hints
 
@@ -33,7 +33,7 @@ from gearcam.base.quantities import (
     params_of,
     positive_length,
 )
-from gearcam.base.rules import Breach, below, excludes, needs, together
+from gearcam.base.rules import Breach, Rule, below, excludes, needs, only_with
 
 KIND: Final = "parts"
 """The checks of parts."""
@@ -44,16 +44,47 @@ _FOLLOWING: Final = ("bore_diameter", "keyway_width", "bore_flat", "bolt_diamete
 _COMMON: Final = ("timing_marks", "mark_diameter", "clearance_bores")
 """Given once for both wheels."""
 
-SHAFT_RULES: Final = (
-    *(needs(name, "bore_diameter") for name in ("keyway_width", "keyway_depth", "bore_flat")),
-    *together("keyway_width", "keyway_depth"),
+_SERVES: Final = {
+    "keyway_width": ("bore_diameter",),
+    "keyway_depth": ("bore_diameter", "keyway_width"),
+    "keyway_angle": ("keyway_width", "bore_flat"),
+    "bore_flat": ("bore_diameter",),
+    "hub_front": ("hub_diameter",),
+    "hub_back": ("hub_diameter",),
+    "bolt_circle": ("bolts",),
+    "bolt_diameter": ("bolts",),
+    "bolt_angle": ("bolts",),
+    "rim": ("lightening_holes",),
+    "web": ("lightening_holes",),
+}
+"""What says more of something else, which it needs."""
+
+OPENING_RULES: Final = (
+    *(
+        needs(name, *others, one=name == "keyway_angle", serves=True)
+        for name, others in _SERVES.items()
+    ),
+    needs("keyway_width", "keyway_depth"),
     below("keyway_width", "bore_diameter", why="is as wide as the bore"),
     excludes("bore_flat", "keyway_width"),
-    needs("hub_front", "hub_diameter"),
-    needs("hub_back", "hub_diameter"),
     needs("hub_diameter", "hub_front", "hub_back", one=True),
+    needs("bolts", "bolt_circle", "bolt_diameter"),
 )
-"""Rules for bore and hub."""
+"""Rules for bore, hub and holes."""
+
+
+def serving(names: Collection[str]) -> set[str]:
+    """Return the names of the values that say more of some things, at any remove."""
+    found = {name for name, others in _SERVES.items() if not {*names}.isdisjoint(others)}
+    return found if found <= {*names} else serving({*names, *found})
+
+
+def widening_rules(*openings: str) -> tuple[Rule, ...]:
+    """Return the rules for ``clearance_bores`` of a blank that may have some `openings`."""
+    return (
+        needs("clearance_bores", "clearance", serves=True),
+        needs("clearance_bores", *openings, one=True, serves=True),
+    )
 
 
 def _length(*, doc: str, le: float = LONGEST) -> Any:
@@ -66,7 +97,19 @@ def _angle(*, doc: str) -> Any:
 
 
 def _count(*, doc: str, le: int) -> Any:
-    return param(COUNT, default=0, ge=0, le=le, doc=doc)
+    return param(COUNT, default=0, ge=0, le=le, zero_is_none=True, doc=doc)
+
+
+def least_metal(*, example: float, doc: str) -> Any:
+    """Return a field of the least metal beside lightening holes; None or 0: a usual one.
+
+    Parameters
+    ----------
+    example, doc
+        See `gearcam.base.quantities.param`.
+    """
+    bounds = {"ge": 0, "le": LONGEST, "zero_is_none": True}
+    return param(LENGTH, default=None, example=example, doc=doc, **bounds)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -101,10 +144,10 @@ class WheelBlank(ShortRepr):
     hub_front: float = _length(doc="height of the hub on the front face (+z)")
     hub_back: float = _length(doc="height of the hub on the back face")
     lightening_holes: int = _count(doc="number of round lightening holes", le=36)
-    rim: float | None = positive_length(
+    rim: float | None = least_metal(
         example=6, doc="least metal between lightening holes and roots; 2.7 modules if left out"
     )
-    web: float | None = positive_length(
+    web: float | None = least_metal(
         example=5,
         doc="least metal between lightening holes, and from them to bore, hub and bolt holes; the "
         "rim if left out",
@@ -140,7 +183,7 @@ class WheelBlank(ShortRepr):
     @property
     def bore_reach(self) -> float:
         """Largest radius of the bore, mm: at the corners of its keyway, or its own."""
-        if not self.keyway_width:
+        if not self.bore or not self.keyway_width:
             return 0.5 * self.bore
         floor = 0.5 * self.bore + self.keyway_depth
         return float((floor**2 + 0.25 * self.keyway_width**2) ** 0.5)
@@ -162,7 +205,11 @@ class WheelBlank(ShortRepr):
         wider = {name: size + self.widening for name, size in sizes.items() if size}
         return replace(self, clearance_bores=False, **wider)
 
-    rules = (*SHAFT_RULES, needs("bolts", "bolt_circle", "bolt_diameter"))
+    rules = (
+        *OPENING_RULES,
+        *widening_rules("bore_diameter", "bolts", "stop_pin"),
+        only_with(("mark_diameter",), "timing_marks", True),
+    )
 
     def problems(self) -> Iterator[Breach]:
         """Yield what is wrong by reading: field, None, message, allowed."""

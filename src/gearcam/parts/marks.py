@@ -108,10 +108,7 @@ def timing_mark(
         what = f"the timing mark is too large for the rim between {between}"
         where = f"direction {formatted(math.degrees(direction))} deg, blank.mark_diameter_mm"
         note = "the limit is a third of the rim"
-        adjustments = (Adjustment(near={"blank.timing_marks": False}),)
-        raise beyond_limit(
-            what, where, diameter, largest, note, near=0.99 * largest, adjustments=adjustments
-        )
+        raise beyond_limit(what, where, diameter, largest, note, near=0.99 * largest)
     diameter = diameter or min(MARK_DIAMETER * module, largest)
     gap = min(MARK_GAP * module, RIM_PART * rim)
     radius = pitch_radius + outward * (dedendum_mm + gap + 0.5 * diameter) / lean

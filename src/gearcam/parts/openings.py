@@ -22,9 +22,10 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from gearcam.base.errors import Adjustment, InfeasibleError, beyond_limit
+from gearcam.base.quantities import params_of
 from gearcam.numeric.arrays import Array, as_pairs
 from gearcam.numeric.contour import Contour
-from gearcam.parts.blank import WheelBlank
+from gearcam.parts.blank import WheelBlank, serving
 from gearcam.parts.body import Edge, Opening
 from gearcam.parts.shapes import Circle, Loop
 
@@ -99,6 +100,12 @@ class Workpiece:
     def key(self, name: str) -> str:
         """Return the dotted key of its value of key `name` in ``[blank]``."""
         return f"blank.{name}" if self.wheel is None else f"blank.{name}[{self.wheel - 1}]"
+
+    def without(self, blank: WheelBlank, name: str) -> dict[str, object]:
+        """Return the change of a `blank` that leaves out `name`, with all that serves it."""
+        params = params_of(WheelBlank)
+        names = [one for one in (name, *sorted(serving((name,)))) if getattr(blank, one)]
+        return {self.key(params[one].key(one)): 0 for one in names}
 
     def refusal(
         self,
@@ -375,8 +382,8 @@ def _lightening(
     """Yield the largest circle in each sector that leaves rim and web."""
     from shapely import Point, Polygon, maximum_inscribed_circle, union_all
 
-    rim = blank.rim if blank.rim is not None else work.rim
-    web = blank.web if blank.web is not None else rim
+    rim = blank.rim or work.rim
+    web = blank.web or rim
     count = blank.lightening_holes
     core = max(blank.bore_reach, 0.5 * blank.hub_diameter)
     far = 2.0 * float(np.abs(solid.bounds).max())
@@ -400,7 +407,7 @@ def _lightening(
                     size, center = float(spoke.length), complex(*spoke.coords[0])
         size -= fine
         if center is None or size <= 0.0:
-            raise _no_lightening(number + 1, solid, core, rim, work)
+            raise _no_lightening(number + 1, solid, core, rim, blank, work)
         name = f"lightening hole {number + 1}"
         yield Opening(kind="HOLE", shape=Circle(center=center, diameter=2.0 * size), name=name)
 
@@ -416,7 +423,7 @@ def _sector(middle: float, half: float, far: float, web: float) -> Polygon:
 
 
 def _no_lightening(
-    number: int, solid: Polygon, core: float, rim: float, work: Workpiece
+    number: int, solid: Polygon, core: float, rim: float, blank: WheelBlank, work: Workpiece
 ) -> InfeasibleError:
     from shapely import Point
 
@@ -426,6 +433,6 @@ def _no_lightening(
     adjustments = (
         Adjustment(near={"blank.rim_mm": 0.5 * rim}),
         Adjustment(far={work.key("hub_diameter_mm"): 0.0}),
-        Adjustment(near={work.key("lightening_holes"): 0}),
+        Adjustment(near=work.without(blank, "lightening_holes")),
     )
     return work.refusal(what, least - core, None, note, adjustments)

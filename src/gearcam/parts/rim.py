@@ -111,7 +111,7 @@ def demand_bolts(
                 adjustments[-1] = replace(
                     adjustments[-1], far={**moved, **outside(radius + far - low)}
                 )
-    adjustments.append(Adjustment(near={work.key("bolts"): 0}))
+    adjustments.append(Adjustment(near=work.without(blank, "bolts")))
     roomiest = f"no bolt circle keeps walls of {formatted(wall)} mm: a larger rim in [ring] may"
     if most > 0.0:
         roomiest = f"a bolt circle of {formatted(best)} mm allows up to {rounded_down(most, 4)} mm"

@@ -14,7 +14,7 @@ from gearcam.base.errors import DesignError, Problem
 from gearcam.base.facts import Facts
 from gearcam.base.findings import Finding
 from gearcam.designs.design import Design
-from gearcam.designs.kind import KINDS
+from gearcam.designs.kind import KINDS, as_written
 from gearcam.version import __version__
 
 
@@ -80,7 +80,7 @@ def demand_formats(design: Design, formats: Sequence[str] | None) -> tuple[str, 
     wanted = (names,) if isinstance(names, str) else tuple(names)
     problems = [
         Problem(
-            f"designs of kind {design.kind} have no {name} files",
+            f"designs of {as_written(KINDS[design.kind])} have no {name} files",
             file=design.source,
             key="output.files",
             value=name,

@@ -14,7 +14,7 @@ from gearcam.base.numerals import formatted, shortened
 from gearcam.base.quantities import ANGLE, LENGTH, Param
 from gearcam.spatial.cam import SpatialCam
 from gearcam.spatial.guides import Straight, SwingArm
-from gearcam.spatial.remarks import at, shocks, smaller_roller, thin_rib
+from gearcam.spatial.remarks import at, no_clearance, shocks, smaller_roller, thin_rib
 from gearcam.spatial.surface import Cylinder
 from gearcam.spatial.trimmed import lost_lift
 
@@ -179,6 +179,18 @@ def lost_motion(subject: Subject, limit: float) -> Iterator[Remark]:
         at(lost.theta),
         lost.value,
     )
+
+
+@check("no-clearance", kind=KIND, severity="note", unit="mm")
+def clearances(subject: Subject, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Note a roller without clearance between two walls, or at the floor.
+
+    Looks at: `cam.roller_clearance_mm` where there are two walls, and the gap between the floor and
+    the end of the roller.
+    """
+    cam, _ = subject
+    between = cam.clearance if len(cam.sides) > 1 else math.inf
+    yield from no_clearance(between, cam.inner - cam.floor)
 
 
 @check(

@@ -13,7 +13,7 @@ from gearcam.base.findings import Remark, check
 from gearcam.base.numerals import formatted, shortened
 from gearcam.base.quantities import ANGLE, LENGTH, Param
 from gearcam.spatial.globoidal import GloboidalCam
-from gearcam.spatial.remarks import shocks, smaller_roller, thin_rib
+from gearcam.spatial.remarks import no_clearance, shocks, smaller_roller, thin_rib
 
 KIND: Final = "globoidal cams"
 """Their group."""
@@ -133,6 +133,17 @@ def lost_motion(subject: Subject, limit: float) -> Iterator[Remark]:
             lost.place,
             lost.value,
         )
+
+
+@check("no-clearance", kind=KIND, severity="note", unit="mm")
+def clearances(subject: Subject, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Note rollers without clearance between two ribs, or at the core.
+
+    Looks at: `cam.roller_clearance_mm` and `cam.floor_clearance_mm`.
+    """
+    cam, _ = subject
+    gap = cam.floor - math.hypot(cam.reach, cam.roller.radius)
+    yield from no_clearance(cam.clearance, gap)
 
 
 @check(

@@ -1,7 +1,7 @@
 """From the sizes of a design to a cam in space; refuses what cannot be.
 
 Refused: velocities that jump (a corner in space), a groove that leaves the cylinder, a floor at the
-bore, an arm that carries the roller past the middle of the cam.
+bore, a cone whose tip lies in the groove, an arm that carries the roller past the middle.
 """
 
 from __future__ import annotations
@@ -11,9 +11,11 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.base.errors import ABOVE, InfeasibleError, beyond_limit
+from gearcam.base.errors import ABOVE, Adjustment, InfeasibleError, beyond_limit
 from gearcam.base.numerals import formatted, shortened
+from gearcam.base.quantities import LENGTH
 from gearcam.laws.program import Program
+from gearcam.numeric.arrays import Array
 from gearcam.spatial.cam import SpatialCam
 from gearcam.spatial.envelope import Roller
 from gearcam.spatial.guides import RollerGuide, Straight, SwingArm
@@ -79,6 +81,7 @@ def make_cylinder(
         clockwise=cam.clockwise,
         apart=0.0 if cam.rib is None else cam.rib + 2.0 * follower.roller_radius,
     )
+    _demand_cone(made, follower, cam)
     _demand_rib(made, follower)
     _demand_middle(made)
     _demand_room(made, cam)
@@ -118,6 +121,40 @@ def demand_smooth(program: Program, title: str = "motion") -> None:
         )
 
 
+def _demand_cone(cam: SpatialCam, follower: SpatialFollower, size: CylinderSpec) -> None:
+    """Refuse a cone whose tip lies in the groove: below it the walls would change places.
+
+    On an arm the roller must reach past the middle of the cam at the floor too.
+    """
+    slope, reach = math.tan(cam.tool.half_angle), cam.outer_radius - cam.inner
+    thick = cam.roller.radius - LENGTH.least
+    wide = cam.tool.radius - max(LENGTH.least, ABOVE * float(np.abs(_aside(cam)).max()))
+    deep = cam.outer_radius - cam.floor
+    least = min(cam.roller.radius - reach * slope, cam.tool.radius - deep * slope)
+    if least >= LENGTH.least or min(thick, wide) <= 0.0:
+        return
+    most = math.degrees(math.atan(min(thick / reach, wide / deep)))
+    what, angle = "the tip of the conical roller lies in the groove", shortened(most, -1.0)
+    depth = wide / slope - size.floor_clearance
+    if follower.roller_length is None:
+        depth = min(depth, thick / slope)
+    note, others = "the limit is for this depth of the groove", list[Adjustment]()
+    if depth > LENGTH.least and (follower.roller_length or 0.0) <= min(depth, thick / slope):
+        shallow = shortened(depth, -1.0)
+        note += f"; with this angle cam.groove_depth_mm may be up to {formatted(shallow)}"
+        others = [Adjustment(near={"cam.groove_depth_mm": shallow})]
+    value = math.degrees(cam.tool.half_angle)
+    raise beyond_limit(
+        what, "follower.cone_deg", value, angle, note, near=angle, adjustments=others
+    )
+
+
+def _aside(cam: SpatialCam) -> Array:
+    """Return how far the roller is from the middle of the cam over a turn, mm."""
+    point, _ = cam.guide.placed(cam.program.derivatives(cam.program.survey.places.ravel(), 0)[0])
+    return point[0, :, 1]
+
+
 def _demand_rib(cam: SpatialCam, follower: SpatialFollower) -> None:
     """Refuse a rib under an arm, and one that its rollers cut through."""
     if not cam.apart:
@@ -137,9 +174,7 @@ def _demand_middle(cam: SpatialCam) -> None:
     """Refuse an arm that carries the end of the roller past the middle of the cam."""
     if not isinstance(cam.guide, SwingArm):
         return
-    theta = cam.program.survey.places.ravel()
-    point, _ = cam.guide.placed(cam.program.derivatives(theta, 0)[0])
-    aside, radius = point[0, :, 1], cam.tool.radius_at(cam.floor)
+    aside, radius = _aside(cam), cam.tool.radius_at(cam.floor)
     if np.abs(aside).max() < radius:
         return
     distance = cam.guide.distance

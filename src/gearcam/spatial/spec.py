@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Literal
+from typing import ClassVar, Literal
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.numerals import formatted
@@ -223,6 +223,9 @@ class CylinderBlank(ShortRepr):
     density: float | None = param(
         DENSITY, default=None, gt=0, le=1e5, example=7850, doc="density, for the mass"
     )
+
+    without: ClassVar[str] = "its blank is turned, with a bore and nothing else"
+    """Why it does not have what other blanks have."""
 
     @property
     def bore(self) -> float:

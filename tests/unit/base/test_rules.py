@@ -199,6 +199,40 @@ def test_each_wheel_is_judged_by_itself(
 
 
 @dataclass(frozen=True, kw_only=True)
+class Served:
+    """Something that two wheels may have, and a size that serves it."""
+
+    holes: tuple[int, int] = param(COUNT, default=(0, 0), ge=0, le=9, both=True, zero_is_none=True)
+    size: tuple[float, float] = param(
+        LENGTH, default=(0, 0), ge=0, le=9, both=True, zero_is_none=True
+    )
+
+    rules = (needs("size", "holes", serves=True),)
+
+
+@pytest.mark.parametrize(
+    ("raw", "paths", "verdict"),
+    [
+        ({"size_mm": 3}, [("holes",)], False),
+        ({"size_mm": 3, "holes": 0}, [("holes",)], False),
+        ({"size_mm": 3, "holes": 2}, [], True),
+        ({"size_mm": 3, "holes": [2, 0]}, [], True),
+        ({"size_mm": [3, 3], "holes": [2, 0]}, [], True),
+        ({"size_mm": [3, 4], "holes": [2, 0]}, [("holes", 1)], True),
+        ({"size_mm": [3, 0], "holes": [2, 0]}, [], True),
+        ({"size_mm": [0, 3], "holes": [2, 0]}, [("holes", 1)], True),
+        ({"size_mm": 0}, [], True),
+    ],
+)
+def test_one_value_for_both_wheels_serves_the_one_that_has_something(
+    raw: dict[str, Any], paths: list[tuple[Any, ...]], verdict: bool
+) -> None:
+    known = table_of("sample", Served)
+    assert [one.path[1:] for one in rule_faults(known, raw, [], ("sample",))] == paths
+    assert jsonschema.Draft202012Validator(table_schema(known)).is_valid(raw) is verdict
+
+
+@dataclass(frozen=True, kw_only=True)
 class Box:
     """A table beside the sample."""
 

@@ -155,6 +155,19 @@ def test_lost_motion_is_told(limit: float, count: int) -> None:
     assert [one.code for one in told].count("lost-motion") == count
 
 
+@pytest.mark.parametrize("clearance", [0.0, 0.01])
+def test_a_roller_that_fills_its_groove_is_noted(clearance: float) -> None:
+    """But not two rollers that touch a wall each."""
+
+    def told(cam: GrooveCam) -> list[str]:
+        return [one.severity for one in run_checks(KIND, cam, {}) if one.code == "no-clearance"]
+
+    made = groove(clearance=clearance)
+    assert made.clearance == pytest.approx(clearance)
+    assert told(made) == ["note"] * (not clearance)
+    assert told(groove(clearance=clearance, radius2=4.0)) == []
+
+
 def test_findings_name_the_wall() -> None:
     motion = there_and_back("3-4-5", 25.0, STEEP)
     made = make_groove(motion, follower_of("roller", roller_radius=9.5), clearance=0.1)

@@ -194,6 +194,36 @@ def test_where_the_kind_is_missing_and_any_is_likely_only_that_is_told() -> None
     assert (problem.key, problem.message) == ("kind", "is missing")
 
 
+@pytest.mark.parametrize(
+    ("text", "word", "meant"),
+    [
+        (CAM, "plate-cam", 'kind = "cam" with cam.form = "disc"'),
+        (CAM, "disk cam", 'kind = "cam" with cam.form = "disc"'),
+        (CAM, "cams", 'kind = "cam"'),
+        (PAIR, "gears", 'kind = "gear-pair"'),
+        (PAIR, "gearpair", 'kind = "gear-pair"'),
+    ],
+)
+def test_another_name_of_a_kind_is_answered_alone(text: str, word: str, meant: str) -> None:
+    kind = 'kind = "gear-pair"' if text is PAIR else 'kind = "cam"'
+    (problem,) = problems(text.replace(kind, f'kind = "{word}"', 1))
+    assert (problem.key, problem.hint) == ("kind", f"did you mean {meant}?")
+    assert "spatial" not in problem.allowed, "how cylinder cams are called inside"
+
+
+@pytest.mark.parametrize(
+    ("table", "hint"),
+    [
+        ("[tool]\ndepth_mm = 1", 'belongs to cam.form = "cylinder"'),
+        ("[turret]\nstops = 8", 'belongs to cam.form = "globoidal"'),
+        ("[pair]\nmodule_mm = 1", 'belongs to kind = "gear-pair"'),
+    ],
+)
+def test_a_table_of_another_form_or_kind_is_told_as_it_is_written(table: str, hint: str) -> None:
+    (problem,) = problems(f"{CAM}\n{table}\n")
+    assert problem.hint.endswith(hint)
+
+
 def hints_of(text: str) -> dict[str, str]:
     return {problem.key: problem.hint for problem in problems(text)}
 

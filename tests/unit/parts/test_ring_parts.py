@@ -125,8 +125,8 @@ def test_marks_face_each_other_across_the_mesh(ring: RingSpec, blank: Blank) -> 
 
 SHAFT: dict[str, tuple[Any, Any]] = {
     "bore_diameter_mm": (10, 12), "keyway_width_mm": (3, 4), "keyway_depth_mm": (1.5, 2),
-    "bore_flat_mm": (8, 9), "hub_diameter_mm": (16, 20), "hub_front_mm": (5, 5),
-    "hub_back_mm": (5, 5), "lightening_holes": (4, 4), "stop_pin_mm": (2, 2),
+    "bore_flat_mm": (8, 9), "hub_diameter_mm": (16, 20), "hub_front_mm": (5, 6),
+    "hub_back_mm": (5, 6), "lightening_holes": (4, 4), "stop_pin_mm": (2, 2),
 }  # fmt: skip
 
 
@@ -144,19 +144,21 @@ def test_a_ring_has_nothing_of_a_shaft(key: str) -> None:
     assert told.value == SHAFT[key][1]
 
 
-def test_one_value_for_both_wheels_is_the_drivers() -> None:
-    sizes = {
-        "bore_diameter_mm": 10,
-        "hub_diameter_mm": 16,
-        "hub_front_mm": 5,
-        "lightening_holes": 3,
-    }
-    document = ring_design(pair={"teeth": (40, 80)}).to_dict() | {"blank": sizes}
+def test_one_value_for_both_wheels_asks_it_of_the_ring_too() -> None:
+    """What serves a bore or a hub may be given once: it is made where these are."""
+    sizes: dict[str, Any] = {"bore_diameter_mm": 10, "hub_diameter_mm": 16, "lightening_holes": 3}
+    rest = {"hub_front_mm": 5, "keyway_width_mm": 3, "keyway_depth_mm": 1.5, "rim_mm": 5}
+    document = ring_design(pair={"teeth": (40, 80)}).to_dict() | {"blank": sizes | rest}
+    with pytest.raises(DesignError) as refused:
+        gearcam.design(document)
+    told = {problem.key: problem for problem in refused.value.problems}
+    assert {*told} == {f"blank.{key}" for key in sizes}
+    for key, value in sizes.items():
+        assert "wheel 2 is a ring" in told[f"blank.{key}"].message
+        assert f"[{value}, 0]" in told[f"blank.{key}"].allowed
+    document["blank"] = {key: [value, 0] for key, value in sizes.items()} | rest
     design: Any = gearcam.design(document)
-    assert design.blank.bore_diameter == (10.0, 0.0)
-    assert design.blank.lightening_holes == (3, 0)
-    again = gearcam.design(design.to_dict())
-    assert again == design
+    assert gearcam.design(design.to_dict()) == design
     one, two = gearcam.build(design).parts
     assert [len(one.openings), len(two.openings)] == [4, 0]
     assert (one.hub is None, two.hub) == (False, None)

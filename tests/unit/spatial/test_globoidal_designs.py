@@ -94,6 +94,8 @@ def test_findings() -> None:
     assert codes(built(cam__length_mm=43)) == [("warning", "loose-turret")]
     assert codes(built(cam__length_mm=30)) == [("error", "loose-turret")]
     assert codes(built(cam__roller_clearance_mm=0.08)) == [("warning", "lost-motion")]
+    assert codes(built(cam__roller_clearance_mm=0)) == [("note", "no-clearance")]
+    assert codes(built(cam__floor_clearance_mm=0)) == [("note", "no-clearance")]
     assert codes(built(index__law="harmonic")) == [("note", "acceleration-jump")] * 2
     assert codes(built(limits__wall_thickness_mm=16)) == [("warning", "thin-wall")]
     assert codes(built(blank__bore_diameter_mm=80)) == [("warning", "thin-wall")]

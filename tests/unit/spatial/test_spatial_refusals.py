@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import math
+import re
 from typing import Any
 
+import numpy as np
 import pytest
 
 import gearcam as gc
@@ -41,6 +44,56 @@ def test_the_nearest_value_is_named_and_can_be_built(
     near = caught.value.adjustments[0].near
     assert near[key] != value
     _ = gc.build(design.with_(near)).cam
+
+
+@pytest.mark.parametrize("design", [DESIGN, SWINGING], ids=["straight", "on an arm"])
+@pytest.mark.parametrize(
+    "more",
+    [
+        {},
+        {"cam.roller_clearance_mm": 0.4},
+        {"cam.floor_clearance_mm": 3},
+        {"follower.roller_length_mm": 9, "cam.floor_clearance_mm": 0},
+        {"cam.walls": "upper"},
+    ],
+    ids=["groove", "wide", "high floor", "short roller", "one wall"],
+)
+def test_a_cone_whose_tip_lies_in_the_groove(design: gc.Design, more: dict[str, Any]) -> None:
+    """The wall above the roller stays above the wall below it down to the floor."""
+    steep = design.with_({"follower.cone_deg": 59.0, **more})
+    with pytest.raises(InfeasibleError, match="tip of the conical roller lies") as caught:
+        _ = gc.build(steep).cam
+    assert caught.value.where.endswith("follower.cone_deg")
+    near = [dict(one.near) for one in caught.value.adjustments]
+    assert near[0] == {"follower.cone_deg": caught.value.limit}
+    for change in near:
+        cam = gc.build(steep.with_(change)).cam
+        assert cam.tool.radius_at(cam.floor) > 0.0
+        assert cam.roller.radius_at(cam.inner) > 0.0
+        theta = np.linspace(0.0, cam.program.period, 60)
+        x = np.full((60, 1), cam.floor)
+        heights = [cam.contact(theta, x, side).points[..., 2] for side in (1, -1)]
+        assert np.all(heights[0] > heights[1])
+
+
+def test_the_largest_angle_and_depth_of_a_cone_are_those_of_its_triangle() -> None:
+    """The roller of 4 mm in a groove of 22 mm: atan(4/22), and 4/tan(18 deg)."""
+    sizes = {
+        "cam.outer_diameter_mm": 130, "cam.groove_depth_mm": 22, "cam.roller_clearance_mm": 0,
+        "cam.floor_clearance_mm": 0, "follower.roller_radius_mm": 4, "follower.cone_deg": 18,
+    }  # fmt: skip
+    with pytest.raises(InfeasibleError) as caught:
+        _ = gc.build(DESIGN.with_(sizes)).cam
+    found: list[Any] = [next(iter(one.near.values())) for one in caught.value.adjustments]
+    angle, depth = found
+    assert 0.99 < angle / math.degrees(math.atan(4 / 22)) < 1.0
+    assert 0.99 < depth / (4 / math.tan(math.radians(18))) < 1.0
+    assert f"up to {depth:g}" in str(caught.value)
+    touching = sizes | {"follower.cone_deg": math.degrees(math.atan(4 / 22))}
+    with pytest.raises(InfeasibleError, match="tip of the conical roller"):
+        _ = gc.build(DESIGN.with_(touching)).cam
+    on_the_axis = gc.build(DESIGN.with_(sizes | {"follower.cone_deg": "apex"})).cam
+    assert on_the_axis.roller.radius_at(43.0) == pytest.approx(4 * 43 / 65, rel=1e-12)
 
 
 def test_a_rib_that_its_rollers_cut_through() -> None:
@@ -105,3 +158,60 @@ def test_a_misspelt_form_is_judged_as_what_was_meant() -> None:
     (problem,) = caught.value.problems
     assert problem.key == "cam.form"
     assert "did you mean cylinder" in problem.hint
+
+
+@pytest.mark.parametrize(
+    ("changes", "places"),
+    [
+        ({}, []),
+        ({"cam.roller_clearance_mm": 0}, ["between the walls"]),
+        ({"cam.roller_clearance_mm": 0, "cam.walls": "lower"}, []),
+        ({"cam.floor_clearance_mm": 0}, ["at the floor"]),
+        ({"cam.floor_clearance_mm": 0, "follower.roller_length_mm": 11}, []),
+    ],
+)
+def test_a_roller_without_clearance_is_noted(changes: dict[str, Any], places: list[str]) -> None:
+    found = gc.build(DESIGN.with_(changes)).findings
+    told = [(one.severity, one.where) for one in found if one.code == "no-clearance"]
+    assert told == [("note", place) for place in places]
+
+
+NAMES = ("barrel", "drum", "cylindrical", "barrel-cam", "cylinder-cam", "Barrel")
+
+
+@pytest.mark.parametrize("word", NAMES)
+@pytest.mark.parametrize("key", ["form", "kind"])
+def test_other_names_are_answered_and_the_rest_is_read_as_meant(key: str, word: str) -> None:
+    """No key of a cylinder cam is told to be missing, unknown or in the wrong place."""
+    text = (PROFILES / "cylinder_cam.toml").read_text("utf-8")
+    old = {"form": 'form = "cylinder"', "kind": 'kind = "cam"'}[key]
+    assert old in text
+    with pytest.raises(DesignError) as caught:
+        gc.loads('name = "mine"\n' + text.replace(old, f'{key} = "{word}"', 1))
+    (problem,) = caught.value.problems
+    assert problem.key == {"form": "cam.form", "kind": "kind"}[key]
+    meant = {"form": "cylinder", "kind": 'kind = "cam" with cam.form = "cylinder"'}[key]
+    assert problem.hint == f"did you mean {meant}?"
+
+
+def test_a_kind_that_names_the_form_stands_for_it() -> None:
+    text = (PROFILES / "cylinder_cam.toml").read_text("utf-8").replace('form = "cylinder"\n', "")
+    with pytest.raises(DesignError) as caught:
+        gc.loads('name = "mine"\n' + text.replace('kind = "cam"', 'kind = "barrel-cam"', 1))
+    assert [problem.key for problem in caught.value.problems] == ["kind"]
+
+
+@pytest.mark.parametrize(
+    ("word", "hint"),
+    [
+        ("nc", "did you mean gcode?"),
+        ("g-code", "did you mean gcode?"),
+        ("print", "did you mean stl or 3mf?"),
+    ],
+)
+def test_other_names_of_files(word: str, hint: str) -> None:
+    text = (PROFILES / "cylinder_cam.toml").read_text("utf-8")
+    with pytest.raises(DesignError) as caught:
+        gc.loads('name = "mine"\n' + re.sub(r"files = \[[^]]*\]", f'files = ["{word}"]', text))
+    (problem,) = caught.value.problems
+    assert (problem.key, problem.hint) == ("output.files[0]", hint)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import fields, replace
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
@@ -18,7 +18,6 @@ from gearcam.cams.carriers import ROUNDING
 from gearcam.cams.checks import KIND
 from gearcam.kinds.cam.design import CamDesign
 from gearcam.kinds.cam.forms.base import FORMS, Form
-from gearcam.kinds.cam.tables import CamBlank
 from gearcam.kinds.shared import solved_file
 from gearcam.laws.program import Program
 from gearcam.numeric.arguments import angles, one_of
@@ -228,7 +227,9 @@ class CamResult(PartsResult):
     def ordered(self) -> bool:
         """Whether the design needs a part: a blank, or files of parts."""
         plain = {"csv", "curvature", "inspection"}
-        return self.design.blank != CamBlank() or not set(self.design.output.files) <= plain
+        blank = self.design.blank
+        described = any(getattr(blank, one.name) != one.default for one in fields(blank))
+        return described or not set(self.design.output.files) <= plain
 
     @cached_property
     def parts(self) -> tuple[Part, ...]:

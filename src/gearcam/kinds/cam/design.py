@@ -182,6 +182,7 @@ def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
     output, follower = document.get("output"), document.get("follower")
     yield from _follow_faults(output, document.get("follow"))
     yield from _tool_faults(output, follower)
+    yield from _weightless(document)
     if "follower" in found.parts:
         yield from _load_faults(found, document)
     asked = unknowns(document)
@@ -283,6 +284,15 @@ def _follow_faults(output: Any, follow: Any) -> Iterator[Fault]:
     if isinstance(asked, list) and "follow" in asked and not given:
         message = 'is missing: output.studies lists "follow", which needs a profile'
         yield Fault(("follow", "file"), message, allowed="a DXF or CSV file of a closed profile")
+
+
+def _weightless(document: Mapping[str, Any]) -> Iterator[Fault]:
+    """Yield the fault of gravity where there is no mass on which it acts."""
+    gravity = document.get("gravity")
+    if isinstance(gravity, Mapping) and "direction_deg" in gravity and not document.get("mass"):
+        value = gravity["direction_deg"]
+        message = f"{show(value)}: the follower has no mass on which gravity acts"
+        yield Fault(("gravity", "direction_deg"), message, value, "with a table [[mass]]")
 
 
 def _tool_faults(output: Any, follower: Any) -> Iterator[Fault]:

@@ -7,7 +7,7 @@ from gearcam.kinds.cam.build import CamResult
 from gearcam.kinds.cam.design import CamDesign
 from gearcam.kinds.cam.forms.base import lift_program as lift_program
 from gearcam.kinds.cam.forms.conjugate import ConjugateFollower, ConjugateSpec
-from gearcam.kinds.cam.forms.groove import GrooveFollower, GrooveSpec
+from gearcam.kinds.cam.forms.groove import GrooveBlank, GrooveFollower, GrooveSpec
 from gearcam.kinds.cam.forms.translating import PlateBlank, PlateOutput, PlateSpec
 from gearcam.kinds.cam.forms.yoke import YokeFollower, YokeSpec
 from gearcam.kinds.cam.main import MOTION as MOTION
@@ -36,11 +36,11 @@ from gearcam.parts.blank import WheelBlank
 __all__ = [
     "AccuracySpec", "BoundsSpec", "CamBlank", "CamDesign", "CamOutputSpec", "CamResult", "CamSpec",
     "ConjugateFollower", "ConjugateSpec", "DriveSpec", "DwellPhase", "FollowSpec", "FollowerSpec",
-    "ForcesSpec", "FrictionSpec", "GoalSpec", "GravitySpec", "GrooveFollower", "GrooveSpec",
-    "LoadSpec", "MassSpec", "MaterialSpec", "MotionFormula", "MotionTable", "PlateBlank",
-    "PlateFollower", "PlateOutput", "PlateSpec", "PrecisionSpec", "ReturnPhase", "RisePhase",
-    "SegmentPhase", "SlideDriveSpec", "SlideLoadSpec", "SpringSpec", "WheelBlank", "YokeFollower",
-    "YokeSpec",
+    "ForcesSpec", "FrictionSpec", "GoalSpec", "GravitySpec", "GrooveBlank", "GrooveFollower",
+    "GrooveSpec", "LoadSpec", "MassSpec", "MaterialSpec", "MotionFormula", "MotionTable",
+    "PlateBlank", "PlateFollower", "PlateOutput", "PlateSpec", "PrecisionSpec", "ReturnPhase",
+    "RisePhase", "SegmentPhase", "SlideDriveSpec", "SlideLoadSpec", "SpringSpec", "WheelBlank",
+    "YokeFollower", "YokeSpec",
 ]  # fmt: skip
 
 PUBLIC = {name: globals()[name] for name in __all__}

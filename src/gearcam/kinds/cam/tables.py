@@ -24,9 +24,9 @@ from gearcam.base.quantities import (
     params_of,
     positive_length,
 )
-from gearcam.base.rules import Breach
+from gearcam.base.rules import Breach, needs
 from gearcam.designs.outputs import FORMATS, OutputSpec, files_param, pose_param, studies_param
-from gearcam.parts.blank import WheelBlank
+from gearcam.parts.blank import OPENING_RULES, WheelBlank, least_metal, widening_rules
 
 CAM_FORMATS: Final = (*FORMATS, "tool-path", "curvature")
 """What ``output.files`` of a cam may list."""
@@ -54,7 +54,7 @@ class CamBlank(WheelBlank):
 
     keyway_angle: float = _direction(doc="direction of the keyway in the cam's frame")
     bolt_angle: float = _direction(doc="direction of the first bolt hole in the cam's frame")
-    rim: float | None = positive_length(
+    rim: float | None = least_metal(
         example=6,
         doc="least metal between lightening holes and profile; two thirds of the thickness if left "
         "out",
@@ -69,6 +69,8 @@ class CamBlank(WheelBlank):
     timing_marks: bool = fixed(False)
     mark_diameter: float | None = fixed(None)
     tip_rounding: float = fixed(0.0)
+
+    rules = (*OPENING_RULES, *widening_rules("bore_diameter", "bolts"))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -159,6 +161,8 @@ class PrecisionSpec(ShortRepr):
         choices=("worst-case", "root-of-squares"),
         doc="how errors of several sizes add up where they must keep the wanted one",
     )
+
+    rules = (needs("combined", "lift_error", "swing_error", one=True),)
 
     @property
     def tolerances(self) -> dict[str, float]:

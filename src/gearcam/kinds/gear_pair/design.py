@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, fields, replace
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass, field, fields
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final, TypeGuard
 
@@ -22,7 +22,7 @@ from gearcam.kinds.shared import AccuracySpec, GoalSpec
 from gearcam.laws.ratio.base import LAWS
 from gearcam.mechanics.drive import DriveSpec
 from gearcam.meshing.settings import ErrorsSpec, MeshingSpec
-from gearcam.parts.blank import Blank
+from gearcam.parts.blank import Blank, serving
 
 if TYPE_CHECKING:
     from gearcam.kinds.gear_pair.result import GearPairResult
@@ -30,11 +30,11 @@ if TYPE_CHECKING:
 NAME: Final = "gear-pair"
 """As in a file."""
 
-_OF_SHAFT: Final = (
-    "bore_diameter", "keyway_width", "keyway_depth", "bore_flat", "hub_diameter", "hub_front",
-    "hub_back", "lightening_holes", "stop_pin",
-)  # fmt: skip
-"""Keys of a blank that do not apply to a ring."""
+_OF_SHAFT: Final = ("bore_diameter", "hub_diameter", "lightening_holes", "stop_pin")
+"""What a ring does not have."""
+
+_OF_HOLES: Final = (*_OF_SHAFT, "bolts")
+"""What a rack does not have."""
 
 _COARSEST: Final = 50
 """Largest chord tolerance is the module over this: a coarser one does not show the teeth."""
@@ -197,11 +197,14 @@ def planetary(document: Mapping[str, Any]) -> Fault | None:
     )
 
 
-def problems(document: Mapping[str, Any], outcome: Examined) -> Iterator[Fault]:
-    """Yield what is wrong between the tables of a `document` of which parts are in `outcome`."""
-    pair = document.get("pair")
-    if isinstance(pair, Mapping) and pair.get("type") == "internal":
-        yield from _shaft_faults(document.get("blank"), outcome)
+def problems(document: Mapping[str, Any], _: Examined) -> Iterator[Fault]:
+    """Yield what is wrong between the tables of a `document`."""
+    pair, law, blank = (document.get(title) for title in ("pair", "law", "blank"))
+    if isinstance(law, Mapping) and law.get("type") == "rack":
+        yield from _unmade(blank, _OF_HOLES, "is a rack and has no openings and no hub")
+    elif isinstance(pair, Mapping) and pair.get("type") == "internal":
+        outside = "; the outside of the ring is set in [ring]"
+        yield from _unmade(blank, _OF_SHAFT, "is a ring and has no shaft", outside)
 
 
 def _tooth_breaches(values: Values) -> Iterator[Breach]:
@@ -227,21 +230,35 @@ RULES: Final = (
 """Rules between the tables of a pair."""
 
 
-def _shaft_faults(raw: Any, outcome: Examined) -> Iterator[Fault]:
-    """Yield keys that do not apply to a ring; a single value counts for wheel 1 only."""
+def _unmade(raw: Any, names: Collection[str], why: str, rest: str = "") -> Iterator[Fault]:
+    """Yield the faults of what a blank, as in the file, asks of wheel 2 that this does not have.
+
+    Parameters
+    ----------
+    raw : object
+        The blank.
+    names : collection of str
+        What it does not have. What serves it may have one value for both wheels, but none of its
+        own for wheel 2.
+    why : str
+        What wheel 2 is.
+    rest : str
+        More of what is allowed.
+    """
     if not isinstance(raw, Mapping):
         return
-    known = table_of("blank", Blank).entries.values()
-    for key, name in ((one.key, one.name) for one in known if one.name in _OF_SHAFT):
-        value = raw.get(key)
+    for entry in table_of("blank", Blank).entries.values():
+        value = raw.get(entry.key)
+        own = value if isinstance(value, list) and len(value) == 2 else [value, value]
+        served = entry.name in serving(names) and own[0] != own[1]
+        if not _is_number(own[1]) or not own[1] or not (entry.name in names or served):
+            continue
         if isinstance(value, list):
-            if len(value) > 1 and _is_number(value[1]) and value[1]:
-                message = f"{show(value[1])}: wheel 2 is a ring and has no shaft"
-                rule = "0 for wheel 2; the outside of the ring is set in [ring]"
-                yield Fault(("blank", key, 1), message, value[1], rule)
-        elif value and "blank" in outcome.parts:
-            own = getattr(outcome.parts["blank"], name)[0]
-            outcome.parts["blank"] = replace(outcome.parts["blank"], **{name: (own, 0)})
+            message, rule = f"{show(own[1])}: wheel 2 {why}", f"0 for wheel 2{rest}"
+            yield Fault(("blank", entry.key, 1), message, own[1], rule)
+        else:
+            message = f"{show(value)}: it holds for both wheels, but wheel 2 {why}"
+            yield Fault(("blank", entry.key), message, value, f"[{show(value)}, 0]{rest}")
 
 
 def _is_number(value: Any) -> TypeGuard[float]:

@@ -29,6 +29,7 @@ _HERE: Final = "gearcam.kinds.gear_pair"
 KIND: Final = Kind(
     name=NAME,
     doc="a pair of non-circular gears",
+    also=("gear", "gears", "wheels", "pair", "gearpair"),
     design=GearPairDesign,
     result=deferred(f"{_HERE}.result:GearPairResult"),
     main=Main(

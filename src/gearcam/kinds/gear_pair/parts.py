@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 
@@ -67,12 +66,7 @@ def _part(gears: list[Gear], design: GearPairDesign) -> Part:
     travel = None
     if not lobes.closed and not rack:
         travel = lobes.period if gear.wheel == 1 else lobes.advance
-    blank = design.blank.wheel(gear.wheel)
-    if rack:
-        blank = replace(
-            blank, bore_diameter=0.0, bolts=0, hub_diameter=0.0, lightening_holes=0, stop_pin=0.0
-        )
-    wheel = gear.wheel
+    blank, wheel = design.blank.wheel(gear.wheel), gear.wheel
     work = Workpiece(name=f"wheel {wheel}", rim=RIM * gear.pair.module, travel=travel, wheel=wheel)
     contours = [one.profile.contour for one in gears]
     marker = None if rack else lambda: _mark(gear, design)

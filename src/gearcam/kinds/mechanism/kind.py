@@ -29,6 +29,7 @@ def _problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
 KIND: Final = Kind(
     name=NAME,
     doc="a linkage that a pair, a cam or an even shaft drives",
+    also=("linkage", "linkages", "four-bar", "machine"),
     design=MechanismDesign,
     result=deferred(f"{_HERE}.build:MechanismResult"),
     required=("drive",),

@@ -390,6 +390,7 @@ class DyadSpec(ShortRepr):
         if (self.driven is None) == (self.type == _CYLINDER):
             what = "is missing" if self.driven is None else f"does not apply to {self.type}"
             yield "driven", None, what, "the name of a slide, with type RTRR"
+        yield from self._idle()
         yield from self._missing_lengths()
         if self.first == self.last:
             yield "last", None, "is also where it comes from", "another joint or guide"
@@ -401,6 +402,21 @@ class DyadSpec(ShortRepr):
                     "leaves the slides parallel",
                     "90 for a right angle, not 0 or 180 deg",
                 )
+
+    def _idle(self) -> Iterator[Breach]:
+        """Yield what has no effect in a dyad of this type."""
+        dyad = DYADS[self.formula]
+        if self.beta and not {"member1", "member2"} & {*dyad.slides}:
+            yield "beta", None, f"does not apply to {self.type}", "with type RTR, RTT or TTR"
+        if self.slide_on == 2 and self.type != "RTR":
+            yield "slide_on", None, f"does not apply to {self.type}", "with type RTR"
+        for number, gamma in enumerate(self.gammas):
+            if gamma and not dyad.guides[number]:
+                what = f"{self.members[number]} slides on no guide in {self.type}"
+                yield "gammas", number, what, "0"
+        for name in () if self.branches else ("near", "change"):
+            if getattr(self, name) not in (None, BRANCH):
+                yield name, None, f"{self.type} has one position", "leave it out"
 
     def _missing_lengths(self) -> Iterator[Breach]:
         """Yield lengths that the type asks for, by the names of their members."""

@@ -124,7 +124,7 @@ def _made(raw: dict[str, Any]) -> Phase:
 
 def test_a_cam_that_turns_clockwise_and_a_blank_of_single_values() -> None:
     blank = "[blank]\nbore_diameter_mm = 12\nbolts = 3\nbolt_circle_mm = 30\nbolt_diameter_mm = 4\n"
-    text = changed("[output]", f'rotation = "cw"\n{blank}keyway_angle_deg = 90\n[output]')
+    text = changed("[output]", f'rotation = "cw"\n{blank}bolt_angle_deg = 90\n[output]')
     design = read(text + "theta_deg = 45\ntool_radius_mm = 5\n[limits]\nwall_mm = 2\n")
     assert design.cam.clockwise
     assert design.blank == CamBlank(
@@ -132,7 +132,7 @@ def test_a_cam_that_turns_clockwise_and_a_blank_of_single_values() -> None:
         bolts=3,
         bolt_circle=30.0,
         bolt_diameter=4.0,
-        keyway_angle=math.radians(90),
+        bolt_angle=math.radians(90),
     )
     assert design.output.pose == math.radians(45)
     assert design.output.tool_radius == 5.0

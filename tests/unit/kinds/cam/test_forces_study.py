@@ -116,7 +116,7 @@ def test_what_cannot_be_mixed_is_told() -> None:
 
 def test_a_missing_length_of_a_guide_is_one_fault() -> None:
     with pytest.raises(DesignError) as caught:
-        study(**LOAD, friction={"guide": 0.1, "journal_radius_mm": [10, 3]})
+        study(**LOAD, friction={"guide": 0.1})
     (problem,) = caught.value.problems
     assert problem.key == "friction.guide_length_mm"
 

@@ -95,7 +95,8 @@ def test_the_sheet_shows_the_origin_of_its_bolts() -> None:
     told = sorted(one.value for one in sheet.dimensions if isinstance(one, LinearDimension))
     assert told == pytest.approx([8.0, 12.0, 12.05, 22.5, 60.0, 194.1])
     assert any("X, Y from the cross" in text.text for text in sheet.texts)
-    bare = built(PLATE, ("bolts = 2", "bolts = 0"), ("bolt_spacing_mm = 160\n", ""))
+    bolts = "bolts = 2\nbolt_diameter_mm = 6.6\nbolt_spacing_mm = 160\nbolt_height_mm = 8\n"
+    bare = built(PLATE, (bolts, ""))
     assert len(wheel_sheet(bare.part, {}, "t").dimensions) == 4
 
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from gearcam.base.errors import beyond_limit
 from gearcam.base.facts import Fact
-from gearcam.base.quantities import LENGTH, REQUIRED, TEXT, param, positive_length
+from gearcam.base.quantities import LENGTH, REQUIRED, TEXT, fixed, param, positive_length
 from gearcam.base.rules import Breach, below
 from gearcam.cams.groove import GrooveCam, make_groove
 from gearcam.cams.placing import make_round_follower
@@ -23,6 +23,8 @@ from gearcam.cams.spec import (
 from gearcam.designs.faults import Fault, show
 from gearcam.kinds.cam.forms.base import FORMS, Form
 from gearcam.kinds.cam.forms.disc import STEM, TOOL_PATH, workpiece
+from gearcam.kinds.cam.tables import CamBlank
+from gearcam.parts.blank import OPENING_RULES
 
 if TYPE_CHECKING:
     from gearcam.laws.program import Program
@@ -84,6 +86,31 @@ class GrooveSpec(CamSpec):
     )
 
 
+@dataclass(frozen=True, kw_only=True)
+class GrooveBlank(CamBlank):
+    """The blank of a groove cam: its bores are as they are given.
+
+    Parameters
+    ----------
+    clearance, clearance_bores
+        A groove has the clearance of its roller instead.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.GrooveBlank(bore_diameter=16.0)
+    GrooveBlank(bore_diameter=16)
+    """
+
+    clearance: float = fixed(0.0)
+    clearance_bores: bool = fixed(False)
+
+    without: ClassVar[str] = "the clearance of a groove is cam.roller_clearance_mm"
+    """Why it does not have what other blanks have."""
+
+    rules = OPENING_RULES
+
+
 class Groove(Form[GrooveCam, GrooveSpec, GrooveFollower]):
     """A disc with two walls, those of its groove."""
 
@@ -92,6 +119,7 @@ class Groove(Form[GrooveCam, GrooveSpec, GrooveFollower]):
     tables = Form.tables | {
         "follower": GrooveFollower,
         "cam": GrooveSpec,
+        "blank": GrooveBlank,
     }
     rows = (
         "cam.outer_diameter_mm", "cam.groove.width_mm", "cam.groove.depth_mm",

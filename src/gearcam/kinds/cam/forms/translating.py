@@ -152,12 +152,25 @@ class PlateBlank(ShortRepr):
     density: float | None = _of_wheels("density")
     clearance: float = _of_wheels("clearance")
 
-    rules = (needs("bolts", "bolt_diameter", "bolt_height"),)
+    without: ClassVar[str] = "it slides, and has no other openings than a row of bolts"
+    """Why it does not have what other blanks have."""
+
+    rules = (
+        needs("bolts", "bolt_diameter", "bolt_height"),
+        *(needs(f"bolt_{size}", "bolts") for size in ("diameter", "height", "spacing")),
+    )
 
     def problems(self) -> Iterator[Breach]:
         """Yield contradictions: field, index, message, what is allowed."""
         if self.bolts > 1 and self.bolt_spacing is None:
             yield "bolt_spacing", None, "is missing beside bolts", "bolts with bolt_spacing_mm"
+        if self.bolts == 1 and self.bolt_spacing is not None:
+            yield (
+                "bolt_spacing",
+                None,
+                "a single bolt has no distance to another",
+                "2 bolts or more",
+            )
 
 
 @dataclass(frozen=True, kw_only=True)
