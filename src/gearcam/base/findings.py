@@ -15,7 +15,7 @@ from functools import wraps
 from typing import Any, Final, Literal, NamedTuple
 
 from gearcam.base.display import ShortRepr
-from gearcam.base.numerals import settled, with_unit
+from gearcam.base.numerals import settled, told_apart
 from gearcam.base.quantities import NUMBER, Param
 
 Severity = Literal["note", "warning", "error"]
@@ -63,8 +63,8 @@ class Finding(ShortRepr):
 
     @property
     def text(self) -> str:
-        """The value with its unit, as text."""
-        return with_unit(self.value, self.unit)
+        """The value with its unit, as text: in six digits, or more if the limit has the same."""
+        return told_apart(self.value, self.limit, self.unit)[0]
 
     @property
     def limit_text(self) -> str:
@@ -72,7 +72,7 @@ class Finding(ShortRepr):
         if self.value is None or self.limit is None:
             return ""
         words = "at most" if self.value > self.limit else "at least"
-        return f"{words} {with_unit(self.limit, self.unit)}"
+        return f"{words} {told_apart(self.value, self.limit, self.unit)[1]}"
 
     def as_dict(self) -> dict[str, Any]:
         """Return the finding as a dict for JSON, without empty entries."""
