@@ -41,7 +41,7 @@ Curve = Callable[[Jet, Value, Value, Value, Value], Jet]
 
 
 @dataclass(frozen=True)
-class Arc:
+class Arc(ShortRepr):
     """A shape of arcs.
 
     Parameters
