@@ -45,6 +45,7 @@ def test_the_furnace_door_has_the_printed_lengths(
     made = job(door(second), (29, 29), module=5.0)
     assert isinstance(made.law.lobes, Travel)
     assert math.degrees(made.law.lobes.period) == pytest.approx(travel, abs=1e-11)
+    assert {*made.facts["pair.solved"]} == {"knots_deg[3]", "center_distance_mm"}
     assert made.law.phi2(made.law.lobes.period) == pytest.approx(math.radians(308.3), abs=1e-14)
     unit = made.pair.rolling.tracks[0].length / made.pair.center_distance
     assert unit == pytest.approx(length, abs=1e-12)

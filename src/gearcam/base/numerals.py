@@ -76,10 +76,9 @@ def told_apart(
         )
         return one, two
 
-    counts = range(digits, _EVERY) if value != other else ()
-    return next(
-        (two for two in map(texts, counts) if len({*two}) > 1), texts(_EVERY if counts else digits)
-    )
+    while len({*texts(digits)}) == 1 and value != other and digits < _EVERY:
+        digits += 1
+    return texts(digits)
 
 
 def rounds_to(value: float, written: float, digits: int = 6) -> bool:

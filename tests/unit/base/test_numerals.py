@@ -124,6 +124,7 @@ def test_numbers_that_differ_look_different_and_are_those_numbers(digits: int) -
             )
     assert told_apart(0.1 + 0.2, 0.3) == ("0.30000000000000004", "0.29999999999999999")
     assert told_apart(2.0, 2.0) == ("2", "2")
+    assert told_apart(248.6788032, 248.679) == ("248.6788", "248.679")  # one digit more
     assert told_apart(None, 2.0, "N") == ("", "2 N")
 
 

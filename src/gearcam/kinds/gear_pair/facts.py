@@ -48,10 +48,10 @@ def _pair(result: GearPairResult) -> Tree:
     law = pair.law
     (_, low), (_, high) = law.ratio_range
     size, solved = pair.center_distance, dict(law.solved)
-    if not law.closed and getattr(result.design.law, "driven_travel", None) != law.advance:
-        solved["driven_travel_deg"] = math.degrees(
-            law.advance
-        )  # not a rounded one
+    given = getattr(result.design.law, "driven_travel", None)
+    as_given = isinstance(given, float) and math.isclose(given, law.advance)
+    if not (law.closed or as_given):
+        solved["driven_travel_deg"] = math.degrees(law.advance)
     shown = [*solved]
     size_facts: Tree = {
         "center_distance_mm": Fact(size, "centre distance"),

@@ -196,10 +196,13 @@ class Phases(ShortRepr):
         if self.driven_travel is None:
             knots, ratios = one_lobe(np.array(self.knots, dtype=float), self.ratios, lobes)
             return arcs_law(arc, knots, ratios, lobes, tolerances, places=range(len(self.ratios)))
-        travel, knots, solved = self.driven_travel, np.array(self.knots), {}
-        if travel != "solve":
+        travel, solved = self.driven_travel, {}
+        if travel != "solve" and "solve" in self.knots:
             knots, solved = _solve_knot(arc, self.knots, self.ratios, travel)
-        span = open_span(arc, knots, self.ratios, lobes, travel, tolerances)
+            span = span_of(lobes, float(knots[-1]), travel)
+        else:
+            knots = np.array(self.knots, dtype=float)
+            span = open_span(arc, knots, self.ratios, lobes, travel, tolerances)
         return arcs_law(arc, knots, self.ratios, span, tolerances, solved)
 
 
@@ -419,8 +422,6 @@ def _solve_knot(
     arc: Arc, knots: Sequence[float | Solve], ratios: Sequence[float | Solve], travel: float
 ) -> tuple[np.ndarray, dict[str, float]]:
     """Return the knots of an open pair with the solved one; the driven angle is linear in it."""
-    if "solve" not in knots:
-        return np.array(knots, dtype=float), {}
     index = knots.index("solve")
 
     def filled(place: float) -> np.ndarray:
