@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Final, TextIO
 
 from gearcam.base.errors import DesignError, InfeasibleError, Problem, WriteError
 from gearcam.base.facts import lined_up
-from gearcam.base.numerals import size_of, with_unit
+from gearcam.base.numerals import size_of
 from gearcam.designs.slips import MOST_LISTED
 
 if TYPE_CHECKING:
@@ -130,11 +130,7 @@ def problem_text(problem: Problem) -> str:
 def infeasible_text(error: InfeasibleError) -> str:
     """Return why a design cannot be made, with value and limit, indented."""
     lines = [f"{error.what}, at {error.where}" if error.where else error.what]
-    numbers = (("value", error.value), ("limit", error.limit))
-    texts = [
-        f"{name} {with_unit(number, error.unit)}" for name, number in numbers if number is not None
-    ]
-    lines += [", ".join(texts)] if texts else []
+    lines += filter(None, [error.numbers()])
     lines += error.nearest.split("; ") if error.nearest else []
     return "\n".join(wrapped(line, first="  ", rest="      ") for line in lines)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,9 +15,11 @@ from gearcam.base.tolerances import DEFAULT
 from gearcam.gears.contact import COAST, DRIVE, flank_pairs
 from gearcam.gears.spec import RingSpec
 from gearcam.laws.ratio.centrodes import LogSpiral
+from gearcam.laws.ratio.composite import Multispeed
 from gearcam.laws.ratio.formula import Formula, RackLaw
 from gearcam.laws.ratio.phases import Phases
 from gearcam.laws.ratio.span import ONE_LOBE, Travel
+from gearcam.laws.ratio.table import TableLaw
 from helpers_pairs import job, profile
 
 SPIRAL = LogSpiral(ratios=(0.5, 2.0), driven_travel=math.radians(200))
@@ -42,6 +45,7 @@ def test_the_furnace_door_has_the_printed_lengths(
     made = job(door(second), (29, 29), module=5.0)
     assert isinstance(made.law.lobes, Travel)
     assert math.degrees(made.law.lobes.period) == pytest.approx(travel, abs=1e-11)
+    assert {*made.facts["pair.solved"]} == {"knots_deg[3]", "center_distance_mm"}
     assert made.law.phi2(made.law.lobes.period) == pytest.approx(math.radians(308.3), abs=1e-14)
     unit = made.pair.rolling.tracks[0].length / made.pair.center_distance
     assert unit == pytest.approx(length, abs=1e-12)
@@ -49,6 +53,58 @@ def test_the_furnace_door_has_the_printed_lengths(
     assert made.gear2.toothing.track.convex.radius == pytest.approx(
         made.pair.center_distance / bend, rel=1e-12
     )
+
+
+TRAVELS = {
+    "formula": (
+        Formula(phi2="1.8*phi1 + 0.03*sin(phi1)", driver_travel=2.4),
+        1.8 * 2.4 + 0.03 * math.sin(2.4),
+    ),
+    "phases": (
+        Phases(knots=(0.0, 1.5, 3.5), ratios=(0.8, 1.2, 1.0), driven_travel="solve"),
+        1.5 * 1.0 + 2.0 * 1.1,
+    ),
+    "multispeed": (
+        Multispeed(ratios=(0.8, 1.2), angles=(1.0, 1.0), transition=1.5, driven_travel="solve"),
+        0.8 + 1.5 * 1.0 + 1.2,
+    ),
+    "table": (
+        TableLaw(
+            phi1=tuple(0.5 * k for k in range(7)),
+            phi2=tuple(0.5 * k + 0.01 * k * k for k in range(7)),
+            driven_travel="solve",
+        ),
+        3.36,
+    ),
+}
+"""Laws that give the travel of the driven wheel themselves, rad."""
+
+
+@pytest.mark.parametrize("name", TRAVELS)
+def test_the_travel_that_a_law_gives(name: str) -> None:
+    """Solved, rounded to what is shown, or refused with the value that is accepted as printed."""
+    law, travel = TRAVELS[name]
+    solved = job(law, (24, 24), module=1.0)
+    assert solved.law.advance == pytest.approx(travel, rel=1e-14)
+    assert solved.law.closure_error == pytest.approx(0.0, abs=1e-13)
+    degrees = math.degrees(travel)
+    assert solved.facts["pair.solved.driven_travel_deg"] == pytest.approx(degrees, rel=1e-13)
+    near = math.radians(float(f"{degrees:.6g}"))
+    rounded = job(replace(law, driven_travel=near), (24, 24), module=1.0)
+    assert rounded.law.advance == solved.law.advance
+    assert not [one for one in rounded.checked if one.code == "closure"]
+    with pytest.raises(InfeasibleError, match="driven wheel's travel") as caught:
+        _ = job(replace(law, driven_travel=travel * (1.0 + 1e-5)), (24, 24), module=1.0).law
+    told = caught.value.adjustments[-1].near["law.driven_travel_deg"]
+    again = replace(law, driven_travel=math.radians(float(f"{told:.10g}")))
+    assert job(again, (24, 24), module=1.0).law.advance == solved.law.advance
+
+
+@pytest.mark.parametrize("key", ["ratio", "r1"])
+def test_a_law_at_any_scale_does_not_give_a_travel(key: str) -> None:
+    law = Formula(**{key: "1 + 0.1*phi1"}, driver_travel=2.0, driven_travel="solve")
+    with pytest.raises(InfeasibleError, match="does not give the driven wheel's travel"):
+        _ = job(law, (24, 24), module=1.0).law
 
 
 def test_a_spiral_goes_on_as_a_spiral_beyond_its_ends() -> None:

@@ -6,13 +6,16 @@ needs it, so that whatever is shown depends on no other package.
 
 from __future__ import annotations
 
+import copy
 import dataclasses
 import importlib
 import os
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from functools import cached_property
-from typing import Any, Final
+from typing import Any, Final, Self
+
+from gearcam.base.pickling import pickled
 
 WIDTH: Final = 96
 """Length of the one-line representation, characters."""
@@ -35,13 +38,28 @@ def renderer() -> Any:
 class ShortRepr:
     """Base of dataclasses with a one-line representation: type, and fields without defaults.
 
-    It shows numbers and texts, the shapes of arrays, and the types of other objects.
+    It shows numbers and texts, the shapes of arrays, and the types of other objects. They can be
+    pickled with the local functions that they hold (see `gearcam.base.pickling`).
     """
 
     def __init_subclass__(cls, **options: Any) -> None:
         super().__init_subclass__(**options)
         if "__repr__" not in vars(cls):
             cls.__repr__ = cls.__repr__  # else the dataclass generates its own
+
+    def __getstate__(self) -> Any:
+        return pickled(vars(self))
+
+    def __copy__(self) -> Self:
+        return self._with(vars(self))
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Self:
+        return self._with(copy.deepcopy(vars(self), memo))
+
+    def _with(self, state: Mapping[str, Any]) -> Self:
+        made = object.__new__(type(self))
+        vars(made).update(state)
+        return made
 
     def __repr__(self) -> str:
         fields = dataclasses.fields(self)  # pyright: ignore[reportArgumentType]

@@ -18,7 +18,7 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
-from gearcam.base.numerals import formatted
+from gearcam.base.numerals import SHORT, told_apart
 
 
 class GearcamError(Exception):
@@ -171,13 +171,14 @@ class InfeasibleError(GearcamError, ValueError):
         self.what, self.where, self.nearest, self.unit = what, where, nearest, unit
         self.adjustments, self.more_teeth = tuple(adjustments), more_teeth
         self.value, self.limit = value, limit
-        text = f"{what} ({where})" if where else what
-        numbers = ", ".join(
-            f"{name} {formatted(number, 10)} {unit}".rstrip()
-            for name, number in (("value", value), ("limit", limit))
-            if number is not None
-        )
+        text, numbers = f"{what} ({where})" if where else what, self.numbers(SHORT)
         super().__init__("; ".join(part for part in (text, numbers, nearest) if part))
+
+    def numbers(self, digits: int = 6) -> str:
+        """Return value and limit as text, in more `digits` if they would look the same."""
+        texts = told_apart(self.value, self.limit, self.unit, digits)
+        pairs = zip(("value", "limit"), texts, strict=True)
+        return ", ".join(f"{name} {text}" for name, text in pairs if text)
 
     def __reduce__(self) -> tuple[Any, ...]:
         names = ("where", "value", "limit", "unit", "nearest", "adjustments", "more_teeth")

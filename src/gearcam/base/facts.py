@@ -8,6 +8,7 @@ text, a list, a range ``{"min": ..., "max": ...}`` or ``{"least": ..., "mean": .
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -15,7 +16,7 @@ from functools import cached_property
 from typing import Any, Final
 
 from gearcam.base.display import ShortRepr, line, renderer
-from gearcam.base.numerals import formatted
+from gearcam.base.numerals import formatted, told_apart
 
 _UNITS: Final = {
     "_kg_m3": "kg/m3",
@@ -54,6 +55,9 @@ _METHODS: Final = "accuracy.how."
 
 _LEAVES: Final = (("min", "max"), ("least", "mean"))
 """Keys of mappings that are single values."""
+
+_ROUNDING: Final = 1e-9
+"""Difference from a limit, as a share of it, that is rounding."""
 
 
 @dataclass(frozen=True)
@@ -131,10 +135,24 @@ class NamedFact:
         return f"{self.written or text_of(self.value, self.noise)} {self.unit}".rstrip()
 
 
-def text_of(value: Any, noise: float = 0.0) -> str:
-    """Return a `value` as text, numbers with few digits; smaller than `noise` is 0."""
+def text_of(value: Any, noise: float = 0.0, bound: float = math.inf) -> str:
+    """Return a `value` as text, numbers with few digits; smaller than `noise` is 0.
+
+    Parameters
+    ----------
+    value : object
+        Number, text, list or range.
+    noise : float
+        Smaller numbers are 0.
+    bound : float
+        The limit of the numbers, from which they look different if they differ.
+
+    Returns
+    -------
+    str
+    """
     if isinstance(value, Mapping):
-        low, high = (text_of(end, noise) for end in value.values())
+        low, high = (text_of(end, noise, bound) for end in value.values())
         if low == high:
             return low
         return f"{low} to {high}" if "max" in value else f"{low}, mean {high}"
@@ -142,7 +160,7 @@ def text_of(value: Any, noise: float = 0.0) -> str:
         return " : ".join(map(text_of, value))
     if isinstance(value, bool | str):
         return str(value)
-    return formatted(0.0 if abs(value) < noise else value)
+    return _told(0.0 if abs(value) < noise else value, bound)
 
 
 class Facts(Mapping[str, Any]):
@@ -320,10 +338,20 @@ def _quantity(name: str, leaf: Any) -> NamedFact:
     unit = unit if fact.unit is None else fact.unit
     unit = "" if isinstance(fact.value, str) else unit  # words instead of a number
     meaning = fact.meaning or _label(last.removesuffix(end))
-    limit = "" if fact.at_least is None else f"at least {formatted(fact.at_least)}"
-    limit = limit if fact.at_most is None else f"at most {formatted(fact.at_most)}"
-    place, noise = fact.place, fact.noise
-    return NamedFact(name, _bare(fact), unit, meaning, limit, place, noise, fact.shown, fact.text)
+    value, place, noise = _bare(fact), fact.place, fact.noise
+    text, limit = fact.text, ""
+    for words, bound in (("at least", fact.at_least), ("at most", fact.at_most)):
+        if bound is not None:
+            text = text or text_of(value, noise, bound)
+            ends = value.values() if isinstance(value, Mapping) else [value]
+            limit = f"{words} {max((_told(bound, end) for end in ends), key=len)}"
+    return NamedFact(name, value, unit, meaning, limit, place, noise, fact.shown, text)
+
+
+def _told(value: float, other: float) -> str:
+    """Return a number as text; it looks different from another if more than rounding is between."""
+    same = math.isclose(value, other, rel_tol=_ROUNDING)
+    return formatted(value) if same else told_apart(value, other)[0]
 
 
 def _label(name: str) -> str:

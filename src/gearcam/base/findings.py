@@ -15,7 +15,7 @@ from functools import wraps
 from typing import Any, Final, Literal, NamedTuple
 
 from gearcam.base.display import ShortRepr
-from gearcam.base.numerals import settled, with_unit
+from gearcam.base.numerals import settled, told_apart
 from gearcam.base.quantities import NUMBER, Param
 
 Severity = Literal["note", "warning", "error"]
@@ -69,15 +69,16 @@ class Finding(ShortRepr):
 
     @property
     def text(self) -> str:
-        """The value with its unit, as text."""
-        return with_unit(self.value, self.unit)
+        """The value with its unit, as text: in six digits, or more if the limit has the same."""
+        return told_apart(self.value, self.limit, self.unit)[0]
 
     @property
     def limit_text(self) -> str:
         """The limit as text: ``at most 30 deg``."""
         if self.limit is None:
             return ""
-        return f"{self.relation or ''} {with_unit(self.limit, self.unit)}".lstrip()
+        limit = told_apart(self.value, self.limit, self.unit)[1]
+        return f"{self.relation or ''} {limit}".lstrip()
 
     def as_dict(self) -> dict[str, Any]:
         """Return the finding as a dict for JSON, without empty entries."""

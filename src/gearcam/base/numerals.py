@@ -12,6 +12,7 @@ Depends on nothing.
 from __future__ import annotations
 
 import math
+from decimal import Decimal
 from typing import Any, Final
 
 ULPS: Final = 2
@@ -22,6 +23,9 @@ SHORT: Final = 10
 
 NOISE: Final = 1e-12
 """Rounding noise relative to the scale."""
+
+_EVERY: Final = 17
+"""Significant digits that tell any two doubles apart."""
 
 _WHOLE: Final = 15
 """Length of the shortest text of a double up to which it needs no correction, characters."""
@@ -46,9 +50,52 @@ def formatted(value: float, digits: int = 6, scale: float = 0.0) -> str:
     return f"{settled(float(value), scale) + 0.0:.{digits}g}"
 
 
-def with_unit(value: float | None, unit: str) -> str:
-    """Return a `value` with its `unit` as text; empty for None."""
-    return "" if value is None else f"{formatted(value)} {unit}".rstrip()
+def told_apart(
+    value: float | None, other: float | None, unit: str = "", digits: int = 6
+) -> tuple[str, str]:
+    """Return two numbers with their unit as text, so that numbers that differ look different.
+
+    Parameters
+    ----------
+    value, other : float or None
+        The numbers; the text of None is empty.
+    unit : str
+        Unit of both.
+    digits : int
+        Largest number of significant digits, unless it takes more.
+
+    Returns
+    -------
+    str, str
+    """
+
+    def texts(count: int) -> tuple[str, str]:
+        one, two = (
+            "" if number is None else f"{formatted(number, count)} {unit}".rstrip()
+            for number in (value, other)
+        )
+        return one, two
+
+    while len({*texts(digits)}) == 1 and value != other and digits < _EVERY:
+        digits += 1
+    return texts(digits)
+
+
+def rounds_to(value: float, written: float, digits: int = 6) -> bool:
+    """Return whether a number as somebody wrote it is a `value`, rounded.
+
+    Parameters
+    ----------
+    value : float
+        A computed number.
+    written : float
+        As given; the zeros at its end are not known.
+    digits : int
+        Least number of significant digits in which they must agree.
+    """
+    number = Decimal(repr(exact(written))).normalize()
+    count = max(digits, len(number.as_tuple().digits))
+    return abs(value - written) <= 0.5 * 10.0 ** (number.adjusted() + 1 - count)
 
 
 def size_of(count: int) -> str:

@@ -104,10 +104,11 @@ def closure(subject: CheckedPair, limit: float) -> Iterator[Remark]:
 
     Looks at: the error of the driven angle over one lobe.
     """
-    miss = abs(subject.pair.law.closure_error)
+    law = subject.pair.law
+    miss, over = abs(law.closure_error), "one lobe" if law.closed else "the travel"
     if miss > limit:
         yield Remark(
-            "The law does not close exactly: this is the error of the driven angle over one lobe.",
+            f"The law does not close exactly: this is the error of the driven angle over {over}.",
             "law",
             math.degrees(miss),
         )

@@ -18,6 +18,7 @@ from gearcam.base.display import ShortRepr
 from gearcam.linkages.dyads import rtr_distance
 from gearcam.linkages.elements import BRANCH, REACH, Dyad, Element
 from gearcam.linkages.linkage import Linkage
+from gearcam.linkages.narrow import with_narrow_places
 from gearcam.numeric.arrays import Array, apart, snapped
 from gearcam.numeric.piecewise import extremes_of_each
 from gearcam.numeric.roots import bracketed_root
@@ -57,6 +58,8 @@ class Closing(ShortRepr):
         The driver's angles over which it closes; a range over the end of a turn begins below 0.
     changes : tuple of float, rad
         Change points.
+    knots : (k,) array, rad
+        Those of the linkage, with more of them where the part is nearly singular.
     """
 
     element: Element
@@ -64,6 +67,7 @@ class Closing(ShortRepr):
     place: float
     ranges: tuple[tuple[float, float], ...]
     changes: tuple[float, ...]
+    knots: Array
 
     @property
     def least(self) -> float:
@@ -88,7 +92,7 @@ class NotClosingError(ValueError):
 
 
 def settled(linkage: Linkage) -> Linkage:
-    """Return a linkage with the change points of its dyads.
+    """Return a linkage with the change points of its dyads, and knots where it moves fast.
 
     Parameters
     ----------
@@ -112,6 +116,7 @@ def settled(linkage: Linkage) -> Linkage:
         if not found.least >= -_TOUCHING or stuck:
             nearest = _nearest(element, found.leasts) if isinstance(element, Dyad) else []
             raise NotClosingError(found, tuple(nearest))
+        linkage = replace(linkage, knots=found.knots)
         if found.changes and isinstance(element, Dyad):
             linkage = _passing(linkage, number, element, found.changes)
     return linkage
@@ -172,6 +177,10 @@ def closing(linkage: Linkage, element: Element) -> Closing | None:
         shares = element.room(linkage.at(q, 1, element))
         return np.stack([one.derivatives()[:2] for one in shares], axis=1)
 
+    def left(q: Array) -> Array:
+        found = element.left(linkage.at(q, 2, element))
+        return np.stack([one.derivatives()[:3] for one in found], axis=1)
+
     found = [
         (places, values, _crossings(lambda q, k=k: rooms(q)[0, k], places, values))
         for k, (places, values) in enumerate(extremes_of_each(rooms, linkage.knots))
@@ -188,7 +197,19 @@ def closing(linkage: Linkage, element: Element) -> Closing | None:
         float(lowest[shares.argmin()]),
         _ranges(linkage, element, np.concatenate([one[2] for one in found])),
         _apart(touching, linkage),
+        with_narrow_places(
+            left,
+            [_minima(places, values) for places, values, _ in found],
+            linkage.knots,
+            closed=linkage.closed,
+        ),
     )
+
+
+def _minima(places: Array, values: Array) -> Array:
+    """Return where a share is smallest, but for change points, from its extremes."""
+    beside = np.minimum(np.append(values[1:], np.inf), np.append(np.inf, values[:-1]))
+    return places[(values <= beside) & (values > _TOUCHING)]
 
 
 def _polished(linkage: Linkage, element: Element, number: int, q: float) -> float:

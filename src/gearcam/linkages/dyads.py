@@ -79,15 +79,23 @@ class Solved(NamedTuple):
     slides : dict of str to Jet
         Places along guides, mm: ``guide1`` and ``guide2`` on those given, ``member1`` and
         ``member2`` on its own members.
-    room : tuple of Jet
-        Shares that are 0 or more where it closes, at most about 1 (none: it always does); where one
-        is 0, it is singular.
+    left : tuple of Jet, mm2
+        What is left before it is singular: 0 or more where it closes (none: it always does). Of TRT
+        the square of a sine.
+    scale : Jet or float, mm2
+        Of which this is a share.
     """
 
     joint: Jet
     frames: tuple[Frame, Frame]
     slides: Mapping[str, Jet]
-    room: tuple[Jet, ...]
+    left: tuple[Jet, ...]
+    scale: Length = 1.0
+
+    @property
+    def room(self) -> tuple[Jet, ...]:
+        """Shares that are 0 or more where it closes, at most about 1."""
+        return tuple(one / self.scale for one in self.left)
 
     def exchanged(self) -> Solved:
         """Return the same with the members exchanged."""
@@ -179,7 +187,7 @@ def _rrr(first: Jet, second: Jet, sizes: Lengths, sign: Sign) -> Solved:
     joint = first + way * (along + height * 1j)
     directions = (joint - first) / one, (joint - second) / two
     frames = Frame(first, directions[0]), Frame(second, directions[1])
-    return Solved(joint, frames, {}, (outer / whole, inner / whole))
+    return Solved(joint, frames, {}, (outer, inner), whole)
 
 
 @_OPEN
@@ -195,7 +203,7 @@ def _rrt(first: Jet, guide: Frame, sizes: Lengths, sign: Sign) -> Solved:
     slide = reach - real(place)
     joint = first + direction * rod
     frames = Frame(first, direction), Frame(guide.origin + ahead * slide, ahead * turn)
-    return Solved(joint, frames, {"guide2": slide}, (room / (rod * rod),))
+    return Solved(joint, frames, {"guide2": slide}, (room,), rod * rod)
 
 
 def rtr_distance(across: float, share: float) -> float:
@@ -224,7 +232,7 @@ def _rtr(first: Jet, second: Jet, sizes: Lengths, sign: Sign) -> Solved:
     guide = way / (reach - 1j * across)
     joint = first + guide * slide
     frames = Frame(first, guide), Frame(second, guide * cmath.exp(1j * beta))
-    return Solved(joint, frames, {"member1": slide}, (room / (distance + _NEAR),))
+    return Solved(joint, frames, {"member1": slide}, (room,), distance + _NEAR)
 
 
 def rtr_reach(solved: Solved, sizes: Lengths) -> Jet:

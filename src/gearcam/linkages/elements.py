@@ -94,6 +94,10 @@ class Element(ABC):
         del known
         return ()
 
+    def left(self, known: Known) -> tuple[Jet, ...]:
+        """Return what is left before it is singular, of which these are shares."""
+        return self.room(known)
+
 
 @dataclass(frozen=True)
 class GivenMotion(ShortRepr, Element):
@@ -369,6 +373,10 @@ class Dyad(ShortRepr, Element):
     def room(self, known: Known) -> tuple[Jet, ...]:
         """Return what is 0 or more where it closes (see `Solved`)."""
         return self.solution(known).room
+
+    def left(self, known: Known) -> tuple[Jet, ...]:
+        """Return what is left before it is singular (see `Solved`), mm2."""
+        return self.solution(known).left
 
     def solve(self, known: Known) -> None:
         """Add its joint, its members and the places of its slides."""

@@ -1,68 +1,82 @@
-"""Places where a guide turns fast: knots there, so that searches between knots see all of it.
+"""Where a linkage moves fast: knots about places at which a part of it is nearly singular.
 
-Near the pivot of its guide a pin at the distance ``D^2 = d^2 + (c*h)^2``, h the driver's angle from
-the nearest place, turns the guide by nearly half a turn within a few d/c. Where this is narrow, it
-is less than the step of a search.
+What a part needs to close has a root such as ``sqrt(a^2 + b^2*h^2)``, h the driver's angle from
+where least is left. The motion happens there within a few a/b, which is the distance of the complex
+zero: this may be less than the step of a search.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import replace
+from collections.abc import Callable, Iterator, Sequence
 from typing import Final
 
 import numpy as np
 
-from gearcam.linkages.elements import Dyad
-from gearcam.linkages.linkage import Linkage, in_cycle
-from gearcam.linkages.transmission import guide_distance, guide_distances
-from gearcam.numeric.arrays import apart, away
+from gearcam.linkages.linkage import in_cycle
+from gearcam.numeric.arrays import Array, apart, away, divided
+from gearcam.numeric.piecewise import LEAST_PLACES, places_between
 
-_NARROW: Final = 0.1
-"""Width, rad, from which a search sees it without knots of its own."""
+_STEPS: Final = 3.0
+"""Width, in steps of a search, from which it sees a place without knots of its own."""
 
-_AROUND: Final = np.array([-30.0, -6.0, -1.0, 0.0, 1.0, 6.0, 30.0])
-"""Knots about the nearest place, in widths."""
+_WIDER: Final = 6.0
+"""How far each knot is from the place, in distances of the one before."""
 
 _APART: Final = 1e-9
 """Distance from other knots below which none is added, rad."""
 
 
-def with_narrow_places(linkage: Linkage) -> Linkage:
-    """Return a linkage with knots where its guides turn fast.
+def with_narrow_places(
+    left: Callable[[Array], Array], lows: Sequence[Array], knots: Array, *, closed: bool
+) -> Array:
+    """Return knots between which searches see where a part of a linkage is nearly singular.
 
     Parameters
     ----------
-    linkage : Linkage
-        One that closes over its whole range.
+    left : callable
+        ``left(q)``, (3, m, n): what is left of the part before it is singular (see
+        `gearcam.linkages.dyads.Solved`), with two derivatives by the driver's angle.
+    lows : sequence of m arrays, rad
+        Where each is smallest, but for change points.
+    knots : (k,) array, rad
+        The driver's angles from the first to the last one.
+    closed : bool
+        Whether the motion repeats after the last knot.
 
     Returns
     -------
-    Linkage
+    (n,) array, rad
+        The knots, with more of them if there are such places.
     """
-    found = list(_places(linkage))
+    step = float(np.diff(places_between(knots)).max())
+    found = [
+        place + sign * width * _WIDER**power
+        for number, low in enumerate(lows)
+        for place, width in _zeros(low, left(low)[:, number], _STEPS * step)
+        for power in range(1 + int(np.log(_STEPS * step / width) / np.log(_WIDER)))
+        for sign in (-1.0, 1.0)
+    ]
     if not found:
-        return linkage
-    (low, high), places, knots = linkage.span, np.concatenate(found), linkage.knots
-    if linkage.closed:
-        _, places = in_cycle(places, linkage.span)
+        return knots
+    places, low, high = np.array(found), knots[0], knots[-1]
+    if closed:
+        _, places = in_cycle(places, (low, high))
     inside = apart(np.sort(places[(places > low) & (places < high)]), _APART)
-    return replace(linkage, knots=np.union1d(knots, away(inside, knots, _APART)))
+    # more intervals have fewer points each: none may be wider than the step allows
+    even = divided(knots, np.ceil(np.diff(knots) / (LEAST_PLACES * step)).astype(int))
+    return np.union1d(even, away(inside, even, _APART))
 
 
-def _places(linkage: Linkage) -> Iterator[np.ndarray]:
-    for dyad in linkage.dyads:
-        if dyad.type in ("RTR1", "RTR2"):
-            yield from _passes(linkage, dyad)
+def _zeros(places: Array, left: Array, within: float) -> Iterator[tuple[float, float]]:
+    """Yield the zeros `within` a distance of places, rad: the real part, and how far off it is.
 
-
-def _passes(linkage: Linkage, dyad: Dyad) -> Iterator[np.ndarray]:
-    """Yield the knots about each place at which a pin passes the pivot of its guide closely."""
-    places, squares = guide_distances(linkage, dyad).extremes[0]
-    beside = np.minimum(np.append(squares[1:], np.inf), np.append(np.inf, squares[:-1]))
-    places, squares = places[squares <= beside], squares[squares <= beside]
-    bends = guide_distance(linkage.at(places, 2), dyad).derivatives()[2]
-    for place, square, bend in zip(places, squares, bends, strict=True):
-        width = np.sqrt(max(square, 0.0) / (0.5 * bend)) if bend > 0.0 else np.inf
-        if width < _NARROW:
-            yield place + width * _AROUND
+    The zero of the Taylor polynomial of second order: a complex one next to a minimum, a real one
+    beyond an end of the driver's range.
+    """
+    value, slope, bend = left
+    with np.errstate(invalid="ignore", divide="ignore"):
+        root = np.sqrt(slope * slope - 2.0 * value * bend + 0j)
+        zeros = -2.0 * value / (slope + np.where(slope < 0.0, -root, root))
+    for place, zero in zip(places, zeros, strict=True):
+        if 0.0 < abs(zero) < within:
+            yield (place, abs(zero)) if zero.imag == 0.0 else (place + zero.real, abs(zero.imag))

@@ -29,7 +29,7 @@ _INSET = 1e-12
 
 _ENDS = [0, -1]
 
-_PLACES, _LEAST = 192, 48
+_PLACES, LEAST_PLACES = 192, 48
 """Total number of points in all intervals, and least number in each."""
 
 _PLACES_OF_CELLS, _LEAST_OF_CELL = 9 * FIRST_CUTS, 9
@@ -253,7 +253,7 @@ def places_between(knots: ArrayLike, *, cells: bool = False) -> Array:
     """
     grid = np.asarray(knots, dtype=float)
     width = np.diff(grid)
-    most, least = (_PLACES_OF_CELLS, _LEAST_OF_CELL) if cells else (_PLACES, _LEAST)
+    most, least = (_PLACES_OF_CELLS, _LEAST_OF_CELL) if cells else (_PLACES, LEAST_PLACES)
     steps = np.linspace(_INSET, 1.0 - _INSET, max(most // len(width), least))
     x = grid[:-1, None] + width[:, None] * steps
     # in a narrow interval so small a share may round to the knot, which belongs to another piece

@@ -127,6 +127,13 @@ class Kind(DesignKind):
     public: Mapping[str, type] = field(default_factory=dict)
     cut: bool = True
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _named, (self.name,)
+
+
+def _named(name: str) -> Kind:
+    return KINDS[name]
+
 
 KINDS: Final = cast("Mapping[str, Kind]", reading.KINDS)
 """The kinds by name, each imported when it is used."""

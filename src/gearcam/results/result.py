@@ -24,6 +24,7 @@ from gearcam.base.errors import GearcamError
 from gearcam.base.facts import Fact, Facts
 from gearcam.base.findings import Finding, in_order
 from gearcam.base.numerals import tree
+from gearcam.base.pickling import pickled
 from gearcam.base.registry import deferred
 from gearcam.base.tolerances import DEFAULT, Tolerances
 from gearcam.designs.design import hash_of, summary_of
@@ -722,7 +723,7 @@ class StudyResult(NotebookView):
 
     def __getstate__(self) -> dict[str, Any]:
         # what charts are drawn from need not be picklable
-        return {**vars(self), "charts": self.charts, "drawn": dict}
+        return pickled({**vars(self), "charts": self.charts, "drawn": dict})
 
     @cached_property
     def columns(self) -> Columns:

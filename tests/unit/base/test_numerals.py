@@ -10,8 +10,20 @@ import numpy as np
 import pytest
 
 from arch import rules
+from gearcam.base.errors import InfeasibleError
+from gearcam.base.facts import Fact, Facts
 from gearcam.base.findings import Finding
-from gearcam.base.numerals import decimal, exact, formatted, rounded_down, settled, tree
+from gearcam.base.numerals import (
+    decimal,
+    exact,
+    formatted,
+    rounded_down,
+    rounds_to,
+    settled,
+    told_apart,
+    tree,
+)
+from gearcam.console import infeasible_text
 from gearcam.export.table import table_bytes
 
 
@@ -91,6 +103,65 @@ def test_a_limit_is_never_rounded_up(value: float) -> None:
     for digits in (3, 6):
         told = float(rounded_down(value, digits))
         assert told <= value < told + 1.01 * 10.0 ** (math.floor(math.log10(value)) + 1 - digits)
+
+
+def _near_each_other() -> list[tuple[float, float]]:
+    """Numbers that differ by 1 to 1e-16 of their size."""
+    random = np.random.default_rng(11)
+    values = (random.uniform(0.1, 1.0, 400) * 10.0 ** random.integers(-6, 6, 400)).tolist()
+    off = (10.0 ** random.uniform(-16.0, 0.0, 400) * random.choice([-1.0, 1.0], 400)).tolist()
+    return [(value, value * (1.0 + one)) for value, one in zip(values, off, strict=True)]
+
+
+@pytest.mark.parametrize("digits", [4, 6, 10])
+def test_numbers_that_differ_look_different_and_are_those_numbers(digits: int) -> None:
+    for one, other in _near_each_other():
+        texts = told_apart(one, other, "mm", digits)
+        assert (texts[0] == texts[1]) == (one == other), (one, other)
+        for text, number in zip(texts, (one, other), strict=True):
+            assert float(text.removesuffix(" mm")) == pytest.approx(
+                number, rel=10.0 ** (1 - digits)
+            )
+    assert told_apart(0.1 + 0.2, 0.3) == ("0.30000000000000004", "0.29999999999999999")
+    assert told_apart(2.0, 2.0) == ("2", "2")
+    assert told_apart(248.6788032, 248.679) == ("248.6788", "248.679")  # one digit more
+    assert told_apart(None, 2.0, "N") == ("", "2 N")
+
+
+def test_value_and_limit_of_findings_refusals_and_facts_look_different() -> None:
+    for value, limit in _near_each_other():
+        if value == limit:
+            continue
+        finding = Finding(code="a", severity="note", message="", value=value, limit=limit)
+        assert finding.text != finding.limit_text.split()[-1]
+        refusal = InfeasibleError("too much", value=value, limit=limit)
+        for text in (str(refusal), infeasible_text(refusal)):
+            words = re.split(r"[\s;,]+", text)
+            assert words[words.index("value") + 1] != words[words.index("limit") + 1]
+        if abs(value - limit) > 1e-9 * limit:
+            for shown in (value, {"least": value, "mean": 2.0 * limit}):
+                fact = Facts({"a": Fact(shown, at_least=limit)}).quantity("a")
+                assert fact.text.split(",")[0] != fact.limit.split()[-1]
+
+
+@pytest.mark.parametrize(
+    ("written", "value", "same"),
+    [
+        (248.679, 248.67880320994, True),
+        (248.68, 248.67880320994, False),  # six digits at least
+        (248.679, 248.6796, False),
+        (262.1855, 262.18548705, True),
+        (262.1855, 262.18541, False),
+        (262.18548705, 262.1854870519, True),
+        (180.0, 180.0004, True),
+        (180.0, 180.0006, False),
+    ],
+)
+def test_a_number_is_known_by_the_digits_that_are_written(
+    written: float, value: float, same: bool
+) -> None:
+    assert rounds_to(value, written) == same
+    assert rounds_to(value, math.degrees(math.radians(written))) == same
 
 
 ROOMS = ("parts/", "sheets/", "export/", "drawings", "solids", "quantities", "console", "errors")

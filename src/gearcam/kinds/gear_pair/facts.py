@@ -45,15 +45,21 @@ def facts(result: GearPairResult) -> Facts:
 
 def _pair(result: GearPairResult) -> Tree:
     pair, spec = result.pair, result.design.pair
-    (_, low), (_, high) = pair.law.ratio_range
-    size, solved = pair.center_distance, dict(pair.law.solved)
+    law = pair.law
+    (_, low), (_, high) = law.ratio_range
+    size, solved = pair.center_distance, dict(law.solved)
+    given = getattr(result.design.law, "driven_travel", None)
+    as_given = isinstance(given, float) and math.isclose(given, law.advance)
+    if not (law.closed or as_given):
+        solved["driven_travel_deg"] = math.degrees(law.advance)
+    shown = [*solved]
     size_facts: Tree = {
         "center_distance_mm": Fact(size, "centre distance"),
         "ratio": Fact(extent(low, high), "ratio i21", shown=True),
     }
     if pair.on_rack:
         size_facts = {
-            "travel_per_turn_mm": Fact(size * pair.law.lobes.advance, "rack travel per turn"),
+            "travel_per_turn_mm": Fact(size * law.lobes.advance, "rack travel per turn"),
             "radius_mm": Fact(extent(low, high, size), "pitch radius", shown=True),
         }
         solved["mm_per_unit_of_r1"] = size
@@ -75,8 +81,7 @@ def _pair(result: GearPairResult) -> Tree:
         **size_facts,
         **_timed(result),
         "solved": {
-            name: _solved(name, value, shown=name in pair.law.solved)
-            for name, value in solved.items()
+            name: _solved(name, value, shown=name in shown) for name, value in solved.items()
         },
     }
 
@@ -254,6 +259,7 @@ _SOLVED: Mapping[str, tuple[str, str]] = {
     "mm_per_unit_of_r1": ("unit of r1", "mm"),
     "growth_per_rad": ("growth of the spiral", "1/rad"),
     "driver_travel_deg": ("travel of the driver", "deg"),
+    "driven_travel_deg": ("travel of the driven wheel", "deg"),
     "ratio_factor": ("factor of the given ratio", ""),
     "k1_deg_per_x": ("driver angle per unit of x", "deg"),
     "k2_deg_per_y": ("driven angle per unit of y", "deg"),

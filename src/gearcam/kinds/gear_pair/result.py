@@ -30,7 +30,7 @@ from gearcam.kinds.gear_pair.tables import (
     motion_columns,
 )
 from gearcam.laws.ratio.base import RatioLaw
-from gearcam.laws.ratio.span import angle_text
+from gearcam.laws.ratio.span import angle_text, is_open
 from gearcam.meshing import drive_checks  # noqa: F401  (its checks register themselves)
 from gearcam.meshing.contact import Contacts, contacts
 from gearcam.numeric.arguments import angles, one_of, whole
@@ -107,7 +107,7 @@ class GearPairResult(PartsResult):
         """The ratio law."""
         parameters, pair = self.design.law, self.design.pair
         with self.stage("law"):
-            if getattr(parameters, "driven_travel", None) is None:  # closed
+            if not is_open(parameters):
                 demand_ring(pair)
             law = parameters.build(lobes_of(pair), self.tolerances)
             _demand_reached(self.design.output.pose, law)

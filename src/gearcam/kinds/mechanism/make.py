@@ -34,7 +34,6 @@ from gearcam.linkages.elements import (
 )
 from gearcam.linkages.geneva import GenevaWheel
 from gearcam.linkages.linkage import Linkage, in_order
-from gearcam.linkages.narrow import with_narrow_places
 from gearcam.numeric.arrays import apart
 
 if TYPE_CHECKING:
@@ -78,7 +77,7 @@ def make_linkage(design: MechanismDesign, drives: Sequence[PlacedDrive]) -> Link
             parts[number] = _nearer(linkage, dyad, wanted, min(max(0.0, low), high))
             linkage = Linkage(tuple(parts), knots, closed)
     try:
-        return with_narrow_places(whole_cycle(linkage))
+        return whole_cycle(linkage)
     except NotClosingError as error:
         if isinstance(error.closing.element, HoistChain):
             raise chain_refusal(design, error.closing.element, error, linkage) from None

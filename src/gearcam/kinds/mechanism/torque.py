@@ -190,7 +190,7 @@ def _columns(result: MechanismResult, work: VirtualWork, q: Array) -> dict[str, 
         where = _place(result, float(q[~np.isfinite(total)][0]))
         raise InfeasibleError(f"a load or spring is not finite at {where}", where="load")
     columns = {f"{result.driver[0]}_deg": _DEG * q, "torque_nm": total}
-    return columns | {f"{part}_nm": values for part, values in parts.items() if len(parts) > 1}
+    return columns | {f"{part}_nm": values for part, values in parts.items()}
 
 
 def _place(result: MechanismResult, q: float) -> str:
@@ -440,6 +440,6 @@ def _charts(
     charts = {"torque": chart("Moment of the driver", lines, *limits)}
     own = [name for name in PARTS if f"{name}_nm" in columns]
     parts = [Line(label=name, x=angle, y=columns[f"{name}_nm"]) for name in own]
-    if parts:
+    if len(parts) > 1:
         charts["torque_parts"] = chart("What the driver's moment is made of", parts)
     return charts

@@ -34,6 +34,7 @@ from gearcam.laws.ratio.span import (
     demand_below_one,
     demand_smooth,
     demand_travels,
+    is_open,
 )
 from gearcam.numeric.arrays import Array, Ints
 from gearcam.numeric.chebyshev import Expansion, expand, missed
@@ -229,7 +230,7 @@ def milder(parameters: Any, mean: float) -> Iterator[Adjustment]:
         for name, given in params_of(type(parameters)).items()
         if given.constant_at is not None
     }
-    if far and getattr(parameters, "driven_travel", None) is None:
+    if far and not is_open(parameters):
         yield Adjustment(far=far)
 
 

@@ -28,8 +28,8 @@ from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.formula import derivative
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
-from gearcam.laws.ratio.phases import ARCS, SMOOTH, arcs_law, knot_problems, one_lobe
-from gearcam.laws.ratio.span import NO_DWELL, SAME, Lobes, angle_text, open_travel, span_of
+from gearcam.laws.ratio.phases import ARCS, SMOOTH, arcs_law, knot_problems, one_lobe, open_span
+from gearcam.laws.ratio.span import NO_DWELL, SAME, Lobes, Span, angle_text, open_travel
 from gearcam.numeric.jets import Jet, harmonics, polynomial, primitive
 from gearcam.numeric.piecewise import Piece, piecewise
 
@@ -60,7 +60,7 @@ class Multispeed(ShortRepr):
         doc="driver angle of each transition; a closed law ends with one",
     )
     shape: str = param(TEXT, default="quintic", choices=SMOOTH, doc="shape of the transitions")
-    driven_travel: float | None = open_travel("driven wheel")
+    driven_travel: float | Solve | None = open_travel("driven wheel", "the ratios")
 
     def problems(self) -> Iterator[Breach]:
         """Yield what is wrong by reading: field, index, message, allowed."""
@@ -71,8 +71,12 @@ class Multispeed(ShortRepr):
             if 0.0 < angle < NARROWEST:
                 rule = f"0, or at least {formatted(NARROWEST_DEG)} deg"
                 yield "angles", index, "this phase is too short", rule
-        for index in [k for k, value in enumerate(self.ratios) if value == "solve"][1:2]:
-            yield "ratios", index, 'more than one "solve"', 'one "solve"'
+        places: list[tuple[str, int | None]] = [
+            ("ratios", k) for k, value in enumerate(self.ratios) if value == "solve"
+        ]
+        places += [("driven_travel", None)] if self.driven_travel == "solve" else []
+        for place in places[1:2]:
+            yield *place, 'more than one "solve"', 'one "solve"'
 
     def build(self, lobes: Lobes, tolerances: Tolerances) -> RatioLaw:
         """Return the law for `lobes`, to `tolerances`.
@@ -94,9 +98,11 @@ class Multispeed(ShortRepr):
         knots, places = np.cumsum([width for width, _ in steps]), [place for _, place in steps]
         values: list[float | Solve] = [self.ratios[place] for place in places]
         arc = ARCS[self.shape]
-        span = span_of(lobes, float(knots[-1]), self.driven_travel)
         if self.driven_travel is None:
+            span: Span = lobes
             knots, values = one_lobe(knots, values, lobes, "law.angles_deg with transitions")
+        else:
+            span = open_span(arc, knots, values, lobes, self.driven_travel, tolerances)
         return arcs_law(arc, knots, values, span, tolerances, places=places)
 
 

@@ -11,8 +11,8 @@ import numpy as np
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import InfeasibleError, beyond_limit
 from gearcam.base.numerals import formatted
-from gearcam.base.quantities import TEXT, param
-from gearcam.base.rules import Breach, exactly_one
+from gearcam.base.quantities import TEXT, Solve, param
+from gearcam.base.rules import Breach, exactly_one, needs
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import TYPED, Axis, LawEntry
 from gearcam.laws.formula import (
@@ -27,15 +27,16 @@ from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.driver import demand_positive, law_of_centrode
 from gearcam.laws.ratio.span import (
     NO_DWELL,
-    OPEN,
     PLACES,
     RING,
+    TRAVELS,
     Lobes,
     RackTravel,
     Span,
     angle_text,
     demand_smooth,
     open_travel,
+    own_travel,
     span_of,
 )
 from gearcam.numeric.chebyshev import expand
@@ -53,7 +54,8 @@ class Formula(ShortRepr):
     """Exactly one of three formulas; derivatives are exact, by Taylor arithmetic.
 
     In Python each may be a function of phi1, rad, or a tuple of a function and its first
-    derivatives. With `driver_travel` and `driven_travel` the pair is open.
+    derivatives. With `driver_travel` and `driven_travel` the pair is open; phi2 itself gives the
+    latter, which then may be left out.
     """
 
     phi2: Given | None = param(
@@ -66,9 +68,13 @@ class Formula(ShortRepr):
         TEXT, default=None, function=True, doc="driver's radius over phi1, at any scale"
     )
     driver_travel: float | None = open_travel("driver")
-    driven_travel: float | None = open_travel("driven wheel")
+    driven_travel: float | Solve | None = open_travel("driven wheel", "phi2, also if left out")
 
-    rules = (exactly_one(*_NAMES), *OPEN)
+    rules = (
+        exactly_one(*_NAMES),
+        needs("driver_travel", "driven_travel", "phi2", one=True, allowed=TRAVELS),
+        needs("driven_travel", "driver_travel", allowed=TRAVELS),
+    )
 
     def problems(self) -> Iterator[Breach]:
         """Yield what is wrong by reading: field, index, message, allowed."""
@@ -84,12 +90,17 @@ class Formula(ShortRepr):
         InfeasibleError
             If the formula is not finite, smooth, monotonic or periodic, or does not close.
         """
-        span = span_of(lobes, self.driver_travel, self.driven_travel)
         if self.phi2 is not None:
-            axis = axis_of("phi2", span.period)
+            axis = axis_of("phi2", self.driver_travel or lobes.period)
             phi2 = function_of(self.phi2, axis, tolerances.expansion)
+            travel = self.driven_travel
+            if self.driver_travel is not None:
+                start, end = values_of(phi2)(np.array([0.0, self.driver_travel]))
+                travel = own_travel(travel, float(end - start), tolerances.refusal)
+            span = span_of(lobes, self.driver_travel, travel)
             law = from_phi2(phi2, span, tolerances)
             return replace(law, function_errors=phi2.errors)
+        span = span_of(lobes, self.driver_travel, self.driven_travel)
         name = "ratio" if self.ratio is not None else "r1"
         axis = axis_of(name, span.n1 * span.period)
         function = function_of(getattr(self, name), axis, tolerances.expansion)

@@ -32,7 +32,7 @@ from gearcam.base.rules import Breach
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
-from gearcam.laws.ratio.span import NO_DWELL, SAME, Lobes, Span, open_travel, span_of
+from gearcam.laws.ratio.span import NO_DWELL, SAME, Lobes, Span, open_travel, own_travel, span_of
 from gearcam.numeric.jets import Jet, Value, cos, polynomial, primitive, sin
 from gearcam.numeric.piecewise import Piece
 
@@ -41,7 +41,7 @@ Curve = Callable[[Jet, Value, Value, Value, Value], Jet]
 
 
 @dataclass(frozen=True)
-class Arc:
+class Arc(ShortRepr):
     """A shape of arcs.
 
     Parameters
@@ -125,7 +125,7 @@ class Phases(ShortRepr):
     """Ratios at knots over one turn (or one lobe); closure may give one ratio.
 
     With `driven_travel` the pair is open: first and last ratio may differ, and one ratio or one
-    knot may be solved so that the driven wheel turns by its travel.
+    knot may be solved so that the driven wheel turns by its travel, or the travel itself.
     """
 
     shape: str = param(
@@ -146,7 +146,7 @@ class Phases(ShortRepr):
         constant_at="mean",  # a mixture of two laws that close closes too
         doc='i21 there; one may be "solve" (the first: the last too)',
     )
-    driven_travel: float | None = open_travel("driven wheel")
+    driven_travel: float | Solve | None = open_travel("driven wheel", "the knots and ratios")
 
     def problems(self) -> Iterator[Breach]:
         """Yield what is wrong by reading: field, index, message, allowed."""
@@ -155,12 +155,17 @@ class Phases(ShortRepr):
             yield "ratios", None, message, "one ratio for each knot"
             return
         yield from knot_problems(self.knots)
-        open_places = [("knots", k) for k, value in enumerate(self.knots) if value == "solve"]
+        open_places: list[tuple[str, int | None]] = [
+            ("knots", k) for k, value in enumerate(self.knots) if value == "solve"
+        ]
         open_places += [("ratios", k) for k, value in enumerate(self.ratios) if value == "solve"]
         if self.driven_travel is None:
             yield from self._closed_problems()
-        elif len(open_places) > 1:
-            yield (*open_places[1], 'more than one "solve"', 'one "solve" among knots and ratios')
+            return
+        open_places += [("driven_travel", None)] if self.driven_travel == "solve" else []
+        if len(open_places) > 1:
+            rule = 'one "solve" among knots, ratios and driven_travel_deg'
+            yield (*open_places[1], 'more than one "solve"', rule)
 
     def _closed_problems(self) -> Iterator[Breach]:
         for index, value in enumerate(self.knots):
@@ -192,9 +197,55 @@ class Phases(ShortRepr):
         if self.driven_travel is None:
             knots, ratios = one_lobe(np.array(self.knots, dtype=float), self.ratios, lobes)
             return arcs_law(arc, knots, ratios, lobes, tolerances, places=range(len(self.ratios)))
-        knots, solved = _solve_knot(arc, self.knots, self.ratios, self.driven_travel)
-        span = span_of(lobes, float(knots[-1]), self.driven_travel)
+        travel, solved = self.driven_travel, {}
+        if travel != "solve" and "solve" in self.knots:
+            knots, solved = _solve_knot(arc, self.knots, self.ratios, travel)
+            span = span_of(lobes, float(knots[-1]), travel)
+        else:
+            knots = np.array(self.knots, dtype=float)
+            span = open_span(arc, knots, self.ratios, lobes, travel, tolerances)
         return arcs_law(arc, knots, self.ratios, span, tolerances, solved)
+
+
+def open_span(
+    arc: Arc,
+    knots: np.ndarray,
+    ratios: Sequence[float | Solve],
+    lobes: Lobes,
+    travel: float | Solve,
+    tolerances: Tolerances,
+) -> Span:
+    """Return the travels of an open pair; knots and ratios, if none is solved, give that asked for.
+
+    Parameters
+    ----------
+    arc : Arc
+        Shape between the knots.
+    knots : (n,) array, rad
+        From 0 to the end of the driver's travel.
+    ratios : sequence of n floats or "solve"
+        i21 at the knots.
+    lobes : Lobes
+        Lobes of the tooth counts.
+    travel : float or "solve", rad
+        The driven wheel's, as given.
+    tolerances : Tolerances
+        Accuracy.
+
+    Returns
+    -------
+    Travel
+    """
+    if "solve" not in ratios:
+        own = float(_weights(arc, knots) @ np.array(ratios, dtype=float))
+        travel = own_travel(travel, own, tolerances.refusal)
+    return span_of(lobes, float(knots[-1]), travel)
+
+
+def _weights(arc: Arc, knots: np.ndarray) -> np.ndarray:
+    """Return the driven angle of each ratio 1 with 0 at the other knots, rad."""
+    widths = np.diff(knots)
+    return np.append((1.0 - arc.share) * widths, 0.0) + np.append(0.0, arc.share * widths)
 
 
 def knot_problems(knots: RowOfSome) -> Iterator[Breach]:
@@ -286,8 +337,7 @@ def arcs_law(
     InfeasibleError
         If it does not close, with the closing value of each ratio, or no positive ratio closes it.
     """
-    widths = np.diff(knots)
-    weights = np.append((1.0 - arc.share) * widths, 0.0) + np.append(0.0, arc.share * widths)
+    widths, weights = np.diff(knots), _weights(arc, knots)
     values, closing = _close(weights, ratios, lobes, tolerances, places or range(len(ratios)))
     pieces = [
         arc.piece(values[k], values[k + 1], float(knots[k]), float(widths[k]))
@@ -332,8 +382,11 @@ def _close(
             raise beyond_limit(what, where, closing, 0.0, note, near=least, far=far)
     elif abs(rest) > tolerances.refusal:
         nearest, adjustments = _closing_values(given, weights, rest, places)
-        what = "the phases do not close: they turn the driven wheel by the value, not by the limit"
+        how = "do not close" if lobes.closed else "miss the driven wheel's travel"
+        what = f"the phases {how}: they turn the driven wheel by the value, not by the limit"
         value, limit = math.degrees(lobes.advance - rest), math.degrees(lobes.advance)
+        if not lobes.closed:
+            adjustments.append(Adjustment(near={"law.driven_travel_deg": value}))
         raise beyond_limit(
             what, "law.ratios", value, limit, nearest, adjustments=adjustments, unit="deg"
         )
@@ -370,8 +423,6 @@ def _solve_knot(
     arc: Arc, knots: Sequence[float | Solve], ratios: Sequence[float | Solve], travel: float
 ) -> tuple[np.ndarray, dict[str, float]]:
     """Return the knots of an open pair with the solved one; the driven angle is linear in it."""
-    if "solve" not in knots:
-        return np.array(knots, dtype=float), {}
     index = knots.index("solve")
 
     def filled(place: float) -> np.ndarray:

@@ -18,6 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from gearcam.base.display import ShortRepr
 from gearcam.base.errors import beyond_limit
 from gearcam.laws.formula import derivative
 from gearcam.laws.ratio.span import SAME, angle_text
@@ -37,7 +38,7 @@ there."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Slide:
+class Slide(ShortRepr):
     """The desired motion of a slide over one turn, in crank radii.
 
     Parameters

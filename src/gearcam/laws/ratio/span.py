@@ -16,8 +16,8 @@ from typing import Any, ClassVar, Final
 import numpy as np
 
 from gearcam.base.errors import Adjustment, InfeasibleError, beyond_limit
-from gearcam.base.numerals import formatted
-from gearcam.base.quantities import ANGLE, param
+from gearcam.base.numerals import formatted, rounds_to
+from gearcam.base.quantities import ANGLE, Solve, param
 from gearcam.base.rules import together
 from gearcam.laws.entry import NO_JUMPS
 from gearcam.numeric.arrays import Array
@@ -243,7 +243,35 @@ def demand_below_one(
         raise beyond_limit(what, where, largest, 1.0, nearest, far=far)
 
 
-def span_of(lobes: Lobes, driver_travel: float | None, driven_travel: float | None) -> Span:
+def is_open(parameters: Any) -> bool:
+    """Return whether the parameters of a ratio law are those of an open pair."""
+    travels = (getattr(parameters, f"{name}_travel", None) for name in ("driver", "driven"))
+    return any(one is not None for one in travels)
+
+
+def own_travel(given: float | Solve | None, own: float, within: float) -> float:
+    """Return how far the driven wheel of a law turns that itself gives its travel.
+
+    Parameters
+    ----------
+    given : float or "solve" or None, rad
+        The travel that is asked for.
+    own : float, rad
+        That of the law.
+    within : float, rad
+        Difference of both that is rounding.
+
+    Returns
+    -------
+    float, rad
+        That of the law, unless the given one is another, rather than this one rounded.
+    """
+    if given is None or given == "solve" or abs(own - given) <= within:
+        return own
+    return own if rounds_to(math.degrees(own), math.degrees(given)) else given
+
+
+def span_of(lobes: Lobes, driver_travel: float | None, driven_travel: float | Solve | None) -> Span:
     """Return the travel of an open pair if both travels are given, else the lobes.
 
     Parameters
@@ -251,7 +279,7 @@ def span_of(lobes: Lobes, driver_travel: float | None, driven_travel: float | No
     lobes : Lobes
         Lobes of the tooth counts.
     driver_travel, driven_travel : float or None, rad
-        Travels, both or none.
+        Travels, both or none; "solve" where the law does not give it is refused.
 
     Returns
     -------
@@ -264,17 +292,19 @@ def span_of(lobes: Lobes, driver_travel: float | None, driven_travel: float | No
     """
     if driver_travel is None or driven_travel is None:
         return lobes
+    if driven_travel == "solve":
+        what = "the law does not give the driven wheel's travel"
+        key, note = "law.driven_travel_deg", 'an angle in the place of "solve"'
+        raise InfeasibleError(what, where=key, nearest=note)
     demand_equal(lobes)
     return Travel(driver_travel, driven_travel, lobes.mate)
 
 
-OPEN: Final = tuple(
-    together(
-        "driver_travel", "driven_travel",
-        allowed="driver_travel_deg and driven_travel_deg for an open pair, none for a closed one",
-    )
-)  # fmt: skip
-"""Rules of laws whose travels are given for open pairs."""
+TRAVELS: Final = "driver_travel_deg and driven_travel_deg for an open pair, none for a closed one"
+"""What laws allow whose travels are given for open pairs."""
+
+OPEN: Final = tuple(together("driver_travel", "driven_travel", allowed=TRAVELS))
+"""Their rules."""
 
 
 @contextmanager
@@ -304,9 +334,18 @@ def demand_smooth(name: str) -> Iterator[None]:
         raise InfeasibleError(f"{name} {state}", where=where, nearest=nearest) from error
 
 
-def open_travel(wheel: str) -> Any:
-    """Return the optional parameter of a law for the travel of a `wheel` (see `param`)."""
+def open_travel(wheel: str, own: str = "") -> Any:
+    """Return the optional parameter of a law for the travel of a `wheel` of an open pair.
+
+    Parameters
+    ----------
+    wheel : str
+        Which wheel.
+    own : str
+        What itself gives the travel, so that "solve" may be given.
+    """
     doc = f"how far the {wheel} of an open pair turns"
+    doc += f'; "solve" takes that of {own}' if own else ""
     return param(ANGLE, default=None, gt=0, le=360, example=180, doc=doc)
 
 

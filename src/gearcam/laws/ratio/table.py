@@ -12,14 +12,14 @@ from typing import Final
 import numpy as np
 
 from gearcam.base.errors import InfeasibleError, beyond_limit
-from gearcam.base.quantities import ANGLE, NUMBER, TEXT, Row, param
+from gearcam.base.quantities import ANGLE, NUMBER, TEXT, Row, Solve, param
 from gearcam.base.rules import Breach, exactly_one
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.columns import MOST_ROWS, FromFile, close_angles, demand
 from gearcam.laws.entry import TYPED, LawEntry
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.driver import demand_radii, law_of_centrode
-from gearcam.laws.ratio.span import NO_DWELL, Lobes, Span, open_travel, span_of
+from gearcam.laws.ratio.span import NO_DWELL, Lobes, Span, open_travel, own_travel, span_of
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet, polynomial, primitive, slope
 from gearcam.numeric.piecewise import Piece, integrate
@@ -39,7 +39,7 @@ class TableLaw(FromFile):
 
     The curve through the points is C2 and monotonic wherever they are. A ratio is scaled so that it
     closes, a driven angle must close, and a radius (at any scale) gives the centre distance.
-    With `driven_travel` the pair is open.
+    With `driven_travel` the pair is open; driven angles themselves give it.
     """
 
     file: str | None = param(
@@ -62,7 +62,7 @@ class TableLaw(FromFile):
     r1: Row | None = param(
         NUMBER, default=None, gt=0, min_length=_FEWEST, doc="driver's radii at phi1, at any scale"
     )
-    driven_travel: float | None = open_travel("driven wheel")
+    driven_travel: float | Solve | None = open_travel("driven wheel", "phi2")
 
     rules = (exactly_one("file", "phi1"), exactly_one("file", *_VALUES))
 
@@ -81,9 +81,12 @@ class TableLaw(FromFile):
         """
         demand(self.problems(), "law")
         kind, angles, values, _ = self.points
-        span = self._span(angles, lobes)
-        knots = np.array([0.0, *angles[1:-1], span.period])
         rise = float(values[-1] - values[0])
+        travel = self.driven_travel
+        if kind == "phi2" and travel is not None:
+            travel = own_travel(travel, rise, tolerances.refusal)
+        span = self._span(angles, lobes, travel)
+        knots = np.array([0.0, *angles[1:-1], span.period])
         if kind != "phi2":
             self._demand_ratio(kind, angles, values, span)
             rise = 0.0
@@ -111,14 +114,14 @@ class TableLaw(FromFile):
         factor = math.pi / 180.0 if names[0] == "phi2" else 1.0
         return names[0], np.radians(points[:, 0]), points[:, 1] * factor, lines
 
-    def _span(self, angles: Array, lobes: Lobes) -> Span:
+    def _span(self, angles: Array, lobes: Lobes, travel: float | Solve | None) -> Span:
         if abs(angles[0]) > TYPED:
             raise self._miss("the table does not begin at phi1 = 0", _ANGLE, 0, angles[0], 0.0)
-        if self.driven_travel is None and abs(angles[-1] - lobes.period) > TYPED:
+        if travel is None and abs(angles[-1] - lobes.period) > TYPED:
             what = "the table must span one lobe of the tooth counts"
             note = "the limit is where the last row must be; an open pair needs driven_travel_deg"
             raise self._miss(what, _ANGLE, -1, angles[-1], lobes.period, note)
-        return span_of(lobes, float(angles[-1]), self.driven_travel)
+        return span_of(lobes, float(angles[-1]), travel)
 
     def _demand_ratio(self, kind: str, angles: Array, values: Array, span: Span) -> None:
         """Refuse values that do not repeat or are not positive."""

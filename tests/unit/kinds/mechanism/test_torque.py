@@ -554,7 +554,7 @@ def test_it_is_a_part_of_a_build(tmp_path: Path) -> None:
     with table.open() as file:
         read = list(csv.DictReader(file))
     columns = result.study("torque").columns
-    assert list(read[0]) == list(columns) == ["theta_deg", "torque_nm", "power_w"]
+    assert list(read[0]) == list(columns) == ["theta_deg", "torque_nm", "loads_nm", "power_w"]
     assert float(read[40]["torque_nm"]) == pytest.approx(columns["torque_nm"][40], rel=1e-14)
     (summary,) = tmp_path.rglob("summary.json")
     assert json.loads(summary.read_text())["torque"]["work_j"] == pytest.approx(0.0, abs=1e-9)
@@ -572,6 +572,20 @@ def test_parts_add_up() -> None:
     assert [line.label for line in found.charts["torque_parts"].lines] == [
         "loads", "inertia", "gravity", "springs",
     ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("part", "acts"),
+    [
+        ("loads", {"load": [{"on": "S", "force_n": -80}]}),
+        ("inertia", {"mass": [{"of": "ram", "mass_kg": 3}]}),
+        ("springs", {"spring": [{"on": "S", "stiffness_n_mm": 2}]}),
+    ],
+)
+def test_the_only_part_has_its_column_too(part: str, acts: dict[str, Any]) -> None:
+    found = torque(**acts)
+    agree(found.columns[f"{part}_nm"], found.columns["torque_nm"])
+    assert "torque_parts" not in found.charts  # it would be the same line again
 
 
 def test_a_drive_that_is_too_weak() -> None:
