@@ -20,6 +20,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gearcam.base.display import ShortRepr
 from gearcam.base.numerals import formatted
 from gearcam.numeric.arrays import Array
 
@@ -36,7 +37,7 @@ EXACT: Final = (0.0, 0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Jump:
+class Jump(ShortRepr):
     """A knot where a derivative jumps.
 
     Parameters
