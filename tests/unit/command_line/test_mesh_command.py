@@ -146,7 +146,7 @@ def test_an_impossible_setting_says_what_is_possible(
     assert not folder.exists()
 
 
-def test_the_files_of_a_build_stay_and_a_build_removes_the_rows(design: str) -> None:
+def test_files_of_builds_and_studies_stay_until_the_design_changes(design: str) -> None:
     out = str(Path(design).parent / "out")
     assert main(["build", design, "-o", out]) == 0
     _, folder = run(design)
@@ -156,6 +156,11 @@ def test_the_files_of_a_build_stay_and_a_build_removes_the_rows(design: str) -> 
     assert {"gear1_outline.csv", "meshing.csv"} <= set(listed)
     assert main(["check", design, "-o", out]) == 0
     assert (folder / "meshing.csv").exists()
+    assert main(["build", design, "-o", out]) == 0
+    assert (folder / "meshing.csv").exists()
+    path = Path(design)
+    text = path.read_text("utf-8")
+    path.write_text(text.replace("chord_tolerance_mm = 0.01", "chord_tolerance_mm = 0.02"))
     assert main(["build", design, "-o", out]) == 0
     assert not (folder / "meshing.csv").exists()
 

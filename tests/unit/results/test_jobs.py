@@ -147,7 +147,9 @@ def test_a_summary_holds_what_is_promised(tmp_path: Path) -> None:
     assert {finding["code"] for finding in summary["findings"]} == {"no-backlash"}
     for finding in summary["findings"]:
         assert {"code", "severity", "message"} <= set(finding)
-        assert set(finding) <= {"code", "severity", "message", "value", "limit", "unit", "where"}
+        assert set(finding) <= {
+            *("code", "severity", "message", "value", "limit", "relation", "unit", "where")
+        }
 
 
 def test_a_summary_is_json_without_nan_and_reads_back_the_same() -> None:

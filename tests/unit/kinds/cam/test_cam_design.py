@@ -193,7 +193,7 @@ def test_a_design_made_in_python_meets_the_same_rules() -> None:
     assert design.motion == good["motion"]
     assert isinstance(design.blank, CamBlank)
     assert not design.blank.timing_marks
-    with pytest.raises(DesignError, match="for designs of kind gear-pair"):
+    with pytest.raises(DesignError, match='for designs of kind = "gear-pair"'):
         studied(MESH, design, {"steps": 3})
 
 

@@ -84,7 +84,7 @@ from helpers_files import FLAT, RISE, ROLLER, SWINGING, changed, only, problems,
         ("[output]", "[limits]\nend_gap_deg = 2\n[output]", 32, "limits.end_gap_deg", "unknown"),
         ("[output]", "[rack]\n[output]", 31, "rack", "unknown table.*\n.*kind = .gear-pair"),
         ("[cam]", "[cam]\nlift_mm = 2", 27, "cam.lift_mm", r"under \[\[motion\]\] of type .rise"),
-        ('"cam"', '"cams"', 1, "kind", "mean cam"),
+        ('"cam"', '"cams"', 1, "kind", "mean kind = .cam."),
         ("[follower]", "[folower]", 20, "folower", "mean follower"),
     ],
 )
@@ -247,8 +247,9 @@ def test_phases_that_can_be_read_are_judged_beside_those_that_cannot() -> None:
 def test_a_form_of_another_kind_is_judged_as_such() -> None:
     found = problems(changed('"disc"', '"cylinder"'))
     assert "cam.outer_diameter_mm" in {one.key for one in found}
-    (hint,) = {one.hint for one in found if one.key == "cam.thickness_mm"}
-    assert hint == "this key belongs to another cam.form"
+    (text,) = {str(one) for one in found if one.key == "cam.thickness_mm"}
+    assert "does not apply to a cylinder cam" in text
+    assert 'with cam.form = "disc"' in text
 
 
 def test_keys_of_other_forms_are_reported_in_the_order_in_which_they_are_given() -> None:
