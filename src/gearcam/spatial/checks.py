@@ -126,10 +126,12 @@ def undercut(subject: Subject, limit: float) -> Iterator[Remark]:
         angle = ""
         if isinstance(guide, SwingArm):
             angle = f" ({formatted(math.degrees(loss.way.value), 3)} deg)"
+        gone = "" if loss.gone is None else f" Nothing is left of what it makes {at(loss.gone)}."
         yield Remark(
             f"The roller cuts up to {formatted(loss.depth.value, 3)} mm off the {wall.key} wall at "
-            "other angles. There the follower rests on an edge, and can move by "
-            f"{formatted(lost, 3)} mm{angle} beyond its lift.{smaller_roller(wall)}",
+            "other angles. There it rests on an edge: at this place on the roller, taken "
+            f"alone, the follower can move by {formatted(lost, 3)} mm{angle} beyond its lift."
+            f"{gone}{smaller_roller(wall)}",
             f"{wall.key} wall, {loss.way.place}",
             lost,
             limit=limit if lost > limit else math.inf,
