@@ -9,6 +9,7 @@ import math
 import numpy as np
 import pytest
 
+from gearcam.base.errors import NotFiniteError
 from gearcam.export.table import outline_bytes, table_bytes
 from gearcam.numeric.arrays import as_complex
 
@@ -37,8 +38,9 @@ def test_zero_has_no_sign() -> None:
 
 
 def test_what_is_no_table_is_refused() -> None:
-    with pytest.raises(ValueError, match="column b is not a number in row 1"):
-        table_bytes({"a": [1.0, 2.0], "b": [1.0, math.nan]})
+    for name, value in (("b", math.nan), ("b", math.inf), ("rho_mm", math.nan)):
+        with pytest.raises(NotFiniteError, match=f"column {name} in row 1 .* {value}"):
+            table_bytes({"a": [1.0, 2.0], name: [1.0, value]})
     with pytest.raises(ValueError, match="length"):
         table_bytes({"a": [1.0, 2.0], "b": [1.0]})
     with pytest.raises(ValueError, match="column names"):

@@ -30,7 +30,7 @@ class Mechanism:
     half_angle: float = 0.0
     inner: float = -math.inf
 
-    def height(self, theta: Any, radius: float, azimuth: float, side: int) -> Any:
+    def height(self, theta: Any, radius: Any, azimuth: Any, side: int) -> Any:
         """Highest (lowest) point of the roller above a point of the cam; -side*inf beside it."""
         x, y = radius * np.cos(azimuth + theta), radius * np.sin(azimuth + theta)
         y_a, z_a = self.center(theta)
@@ -52,6 +52,54 @@ class Mechanism:
             low, high = theta[k] - 2.0 * step, theta[k] + 2.0 * step
             count = 41
         return side * best
+
+
+@dataclass(frozen=True)
+class Swept:
+    """One wall of what a roller leaves that has stood at many cam angles."""
+
+    roller: Mechanism
+    side: int
+    aside: float
+    count: int = 1501
+
+    def left(self, theta: float, x: float, y: np.ndarray) -> np.ndarray:
+        """Heights of the wall in the plane across the roller at a cam angle, at places y."""
+        radius, azimuth = np.hypot(x, y), np.arctan2(y, x) - theta
+        wide = self.roller.radius + (radius - self.roller.at) * math.tan(self.roller.half_angle)
+        near = np.arcsin(np.minimum(1.0, (wide + self.aside) / radius))
+        span = np.minimum(near, np.arccos(np.minimum(1.0, self.roller.inner / radius)))
+        share = np.linspace(-1.0, 1.0, self.count) * (1.0 - 1e-10)
+        at = np.clip(span, 1e-6, None)[:, None] * share - azimuth[:, None]
+        heights = self.roller.height(at, radius[:, None], azimuth[:, None], self.side)
+        return self.side * np.max(self.side * heights, axis=1)
+
+    def way(self, theta: float, x: float, moved: Callable[[float], Any], most: float) -> float:
+        """How far a thin slice of the roller goes towards the wall before it rests, up to `most`.
+
+        `moved` gives its middle (y, z) after a way.
+        """
+        radius = self.roller.radius + (x - self.roller.at) * math.tan(self.roller.half_angle)
+        middle, size = moved(0.0)[0], 0.999 * radius
+        y, z = np.empty(0), np.empty(0)
+
+        def room(way: float) -> tuple[float, float]:
+            y_a, z_a = moved(way)
+            square = radius**2 - (y - y_a) ** 2
+            rooms = self.side * (z - z_a) - np.sqrt(np.maximum(square, 0.0))
+            rooms[square < 0.0] = math.inf
+            return float(rooms.min()), float(y[np.argmin(rooms)])
+
+        found = 0.0
+        for number in range(6):
+            more = middle + size * np.linspace(-1.0, 1.0, 41 if number else 161)
+            y, z = np.append(y, more), np.append(z, self.left(theta, x, more))
+            low, high = 0.0, most
+            for _ in range(60):
+                found = 0.5 * (low + high)
+                low, high = (found, high) if room(found)[0] > 0.0 else (low, found)
+            middle, size = room(found)[1], size / (15.0 if number else 60.0)
+        return found
 
 
 def cycloidal(

@@ -8,10 +8,12 @@ All derive from `GearcamError` and from the matching builtin:
   value, the limit it violates, and changes that may help.
 * `MissingExtraError`: an optional library is not installed.
 * `WriteError`: a file cannot be written.
+* `NotFiniteError`: a number of a result is not finite, a bug.
 """
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -296,3 +298,47 @@ class WriteError(GearcamError, OSError):
     ...     print(error)
     cannot write to profiles/ellipse.toml/ellipse: Not a directory
     """
+
+
+class NotFiniteError(GearcamError, ValueError):
+    """A number of a result is not finite, which is a bug: no limit can be held against it.
+
+    Parameters
+    ----------
+    name : str
+        The fact, finding, extreme or cell of a table that it is the value of.
+    value : float
+        The number.
+    """
+
+    def __init__(self, name: str, value: float) -> None:
+        self.name, self.value = name, value
+        super().__init__(f"{name} is not a finite number, but {value}")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self.name, self.value)
+
+
+def demand_finite(name: str, value: object) -> None:
+    """Refuse a number that is not finite, in mappings and lists too.
+
+    Parameters
+    ----------
+    name : str
+        What it is the value of.
+    value : object
+        A value of a result; other things than numbers are let pass.
+
+    Raises
+    ------
+    NotFiniteError
+        With the name of the number, a dotted path.
+    """
+    if isinstance(value, Mapping):
+        for key, item in value.items():
+            demand_finite(f"{name}.{key}", item)
+    elif isinstance(value, list | tuple):
+        for place, item in enumerate(value):
+            demand_finite(f"{name}.{place}", item)
+    elif isinstance(value, float) and not math.isfinite(value):
+        raise NotFiniteError(name, value)

@@ -16,6 +16,7 @@ from functools import cached_property
 from typing import Any, Final
 
 from gearcam.base.display import ShortRepr, line, renderer
+from gearcam.base.errors import demand_finite
 from gearcam.base.numerals import formatted, told_apart
 
 _UNITS: Final = {
@@ -170,7 +171,7 @@ class Facts(Mapping[str, Any]):
     ----------
     tree : mapping
         Groups, lists of groups, facts, and plain values, which are not shown by default. None is
-        left out.
+        left out. A number that is not finite is refused (`NotFiniteError`).
     headline : sequence of str
         Names of the few quantities in the first line.
     title : str
@@ -189,6 +190,10 @@ class Facts(Mapping[str, Any]):
     def __init__(
         self, tree: Mapping[str, Any], headline: Sequence[str] = (), title: str = ""
     ) -> None:
+        for name, leaf in _leaves(tree):
+            fact = leaf if isinstance(leaf, Fact) else Fact(leaf)
+            demand_finite(f"the fact {name}", fact.value)
+            demand_finite(f"the limit of {name}", [fact.at_least, fact.at_most])
         self._tree = tree
         self._headline = tuple(headline)
         self._title = title

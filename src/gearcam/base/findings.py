@@ -15,6 +15,7 @@ from functools import wraps
 from typing import Any, Final, Literal, NamedTuple
 
 from gearcam.base.display import ShortRepr
+from gearcam.base.errors import demand_finite
 from gearcam.base.numerals import settled, told_apart
 from gearcam.base.quantities import NUMBER, Param
 
@@ -64,6 +65,7 @@ class Finding(ShortRepr):
     where: str = ""
 
     def __post_init__(self) -> None:
+        demand_finite(f"the finding {self.code}", {"value": self.value, "limit": self.limit})
         if self.value is not None and self.limit is not None:
             object.__setattr__(self, "value", settled(self.value, self.limit))
 

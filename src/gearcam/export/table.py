@@ -1,10 +1,9 @@
 r"""Tables: columns of numbers, and of texts, as CSV.
 
 Numbers are written as `numerals.exact` gives them, with the fewest digits that read back as the
-same double; an infinite number
-(the radius of a straight part) is ``inf``; what a masked array masks does not exist and is left
-empty; lines end in ``\n``. Refused: not-a-number, columns of different lengths, names that would
-need quotes.
+same double; the radius of a straight part is ``inf``; what a masked array masks does not exist and
+is left empty; lines end in ``\n``. Refused: other numbers that are not finite, columns of different
+lengths, names that would need quotes.
 """
 
 from __future__ import annotations
@@ -17,12 +16,17 @@ from typing import Final
 import numpy as np
 from numpy.typing import ArrayLike
 
+from gearcam.base.errors import NotFiniteError
 from gearcam.base.numerals import SHORT, ULPS, exact
 from gearcam.numeric.arrays import Array, Plane
 
 _NEAR: Final = 8.0 * ULPS * float(np.finfo(float).eps)
 """Relative distance from a short decimal up to which a number is looked at closely: rounding of
 the power of ten included."""
+
+
+_RADII: Final = "rho"
+"""Beginning of the names of columns that are radii of curvature: infinite where straight."""
 
 
 def table_bytes(columns: Mapping[str, ArrayLike]) -> bytes:
@@ -41,9 +45,10 @@ def table_bytes(columns: Mapping[str, ArrayLike]) -> bytes:
 
     Raises
     ------
+    NotFiniteError
+        If a number is not finite, other than the radius of a straight part.
     ValueError
-        If a number is not a number, the columns differ in length, or a name holds a comma, a quote
-        or a line break.
+        If the columns differ in length, or a name holds a comma, a quote or a line break.
     """
     bad = [name for name in columns if not name or set(name) & set(',"\r\n')]
     if bad:
@@ -59,9 +64,10 @@ def table_bytes(columns: Mapping[str, ArrayLike]) -> bytes:
     for name, plain in arrays.items():
         # asked for so, since numpy.ma takes as long to load as a table to write
         missing = np.broadcast_to(np.ravel(getattr(columns[name], "mask", False)), plain.shape)
-        bad_rows = np.flatnonzero(np.isnan(plain) & ~missing)
+        wrong = np.isnan(plain) if name.startswith(_RADII) else ~np.isfinite(plain)
+        bad_rows = np.flatnonzero(wrong & ~missing)
         if bad_rows.size:
-            raise ValueError(f"column {name} is not a number in row {bad_rows[0]}")
+            raise NotFiniteError(f"column {name} in row {bad_rows[0]}", float(plain[bad_rows[0]]))
         # One infinity, one zero: a straight part has no side, and -0.0 says nothing.
         # What is missing may be anything, and adding to it may warn.
         there = _exact(np.where(missing, 0.0, plain) + 0.0)

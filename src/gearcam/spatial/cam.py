@@ -22,7 +22,7 @@ from gearcam.numeric.arrays import Array
 from gearcam.numeric.roots import bracketed_root
 from gearcam.spatial.envelope import RollerAxis, RollerContact, touched
 from gearcam.spatial.extremes import Spot, boxes_between, lowest
-from gearcam.spatial.guides import RollerGuide, carried
+from gearcam.spatial.guides import AcrossGuide, carried
 from gearcam.spatial.walls import ROOT, RollerCam, RollerWall
 
 _WIDEST: Final = 4.0
@@ -35,7 +35,7 @@ class SpatialCam(RollerCam):
 
     Parameters
     ----------
-    guide : RollerGuide
+    guide : AcrossGuide
         What carries the roller.
     inner : float, mm
         Distance of its inner end along its axis: between this and the outside it presses.
@@ -50,7 +50,7 @@ class SpatialCam(RollerCam):
         its side of the rib. 0: one roller makes all walls.
     """
 
-    guide: RollerGuide
+    guide: AcrossGuide
     inner: float
     floor: float
     outer_radius: float

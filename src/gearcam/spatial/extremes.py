@@ -16,6 +16,7 @@ from typing import Final
 
 import numpy as np
 
+from gearcam.base.errors import NotFiniteError
 from gearcam.base.numerals import formatted
 from gearcam.numeric.arrays import Array
 
@@ -48,6 +49,9 @@ OfPlaces = Callable[[Array, Array], Array]
 class Spot:
     """An extreme: its `value`, the cam angle `theta`, rad, and the place `x` on the roller, mm.
 
+    It may be infinite, where nothing is limited. What is not a number is refused: no check would
+    find it beyond a limit.
+
     Parameters
     ----------
     theta, x, value
@@ -60,6 +64,10 @@ class Spot:
     x: float
     value: float
     start: str = "axis"
+
+    def __post_init__(self) -> None:
+        if math.isnan(self.value):
+            raise NotFiniteError(f"an extreme {self.place}", self.value)
 
     @property
     def place(self) -> str:

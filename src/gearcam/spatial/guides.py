@@ -53,8 +53,33 @@ class RollerGuide(ABC, ShortRepr):
         """
 
 
+class AcrossGuide(RollerGuide):
+    """A guide that keeps the roller's axis parallel to x: it moves in planes across the cam."""
+
+    @abstractmethod
+    def way(self, lift: Array, point: tuple[Array, Array], radius: Array, side: int) -> Array:
+        """Return how far the follower goes on until the roller meets points.
+
+        Parameters
+        ----------
+        lift : (n,) array, mm or rad
+            Its lift.
+        point : (y, z), (n,) arrays, mm
+            The points, in the plane across the roller.
+        radius : (n,) array, mm
+            Radius of the roller there.
+        side : {1, -1}
+            Whether it goes upwards, or downwards.
+
+        Returns
+        -------
+        (n,) array, mm or rad
+            Below 0 where it is beyond the point; infinite where it passes beside it.
+        """
+
+
 @dataclass(frozen=True, kw_only=True)
-class Straight(RollerGuide):
+class Straight(AcrossGuide):
     """A follower that moves along the cam.
 
     Parameters
@@ -76,9 +101,16 @@ class Straight(RollerGuide):
         """Return the poses of the roller (see `RollerGuide.pose`)."""
         return SpacePose((1.0, 0.0, 0.0), np.zeros(len(lift)), self.placed(lift)[0][0])
 
+    def way(self, lift: Array, point: tuple[Array, Array], radius: Array, side: int) -> Array:
+        """Return how far it goes until the roller meets points (see `AcrossGuide.way`)."""
+        y, z = point
+        square = radius**2 - y**2
+        way = side * (z - self.height - lift) - np.sqrt(np.maximum(square, 0.0))
+        return np.where(square < 0.0, math.inf, way)
+
 
 @dataclass(frozen=True, kw_only=True)
-class SwingArm(RollerGuide):
+class SwingArm(AcrossGuide):
     """A follower that swings about an axis parallel to that of its roller.
 
     Parameters
@@ -116,6 +148,18 @@ class SwingArm(RollerGuide):
     def pose(self, lift: Array) -> SpacePose:
         """Return the poses of the roller (see `RollerGuide.pose`)."""
         return SpacePose((1.0, 0.0, 0.0), self.start + lift, self.placed(lift)[0][0])
+
+    def way(self, lift: Array, point: tuple[Array, Array], radius: Array, side: int) -> Array:
+        """Return how far it goes until the roller meets points (see `AcrossGuide.way`).
+
+        Pivot, axis of the roller and point are a triangle with known sides.
+        """
+        y, z = point[0] + self.distance, point[1] - self.pivot
+        far = np.hypot(y, z)
+        cosine = (self.length**2 + far**2 - radius**2) / (2.0 * self.length * far)
+        between = np.arccos(np.minimum(cosine, 1.0))
+        way = side * (np.arctan2(z, y) - self.start - lift) - between
+        return np.where(cosine > 1.0, math.inf, way)
 
 
 @dataclass(frozen=True, kw_only=True)

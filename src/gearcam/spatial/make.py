@@ -18,7 +18,7 @@ from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array
 from gearcam.spatial.cam import SpatialCam
 from gearcam.spatial.envelope import Roller
-from gearcam.spatial.guides import RollerGuide, Straight, SwingArm
+from gearcam.spatial.guides import AcrossGuide, Straight, SwingArm
 from gearcam.spatial.spec import WALLS, CylinderSpec, SpatialFollower
 
 _INSIDE: Final = 0.05
@@ -88,7 +88,7 @@ def make_cylinder(
     return made
 
 
-def _guide(program: Program, follower: SpatialFollower, lowest: float) -> RollerGuide:
+def _guide(program: Program, follower: SpatialFollower, lowest: float) -> AcrossGuide:
     if not follower.oscillating:
         return Straight(height=lowest)
     low, high = program.range

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+import math
+import pickle
 import re
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import gearcam
+from gearcam.base.errors import NotFiniteError
 from gearcam.base.facts import Fact, Facts, extent
+from gearcam.base.findings import Finding
 from helpers_pairs import profile
 
 TREE = {
@@ -114,6 +120,35 @@ def test_names_of_files_are_found_with_their_dots(tmp_path: Path) -> None:
     assert [written.facts[f"accuracy.dxf_mm.{name}"] for name in errors] == [*errors.values()]
     assert all(name in written.facts for name in written.facts)
     assert repr(written).startswith("BuildOutput(")
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
+@pytest.mark.parametrize(
+    ("tree", "name"),
+    [
+        (lambda x: {"cam": {"lift_mm": x}}, "the fact cam.lift_mm"),
+        (lambda x: {"cam": {"lift_mm": Fact(x)}}, "the fact cam.lift_mm"),
+        (lambda x: {"ratio": {"min": 1.0, "max": x}}, "the fact ratio.max"),
+        (lambda x: {"gears": [{"size_mm": 1.0}, {"size_mm": [1.0, x]}]}, "gears.1.size_mm.1"),
+        (lambda x: {"lift_mm": Fact(1.0, at_most=x)}, "the limit of lift_mm"),
+    ],
+)
+def test_a_number_that_is_not_finite_is_refused_by_its_name(
+    tree: Callable[[float], Any], name: str, value: float
+) -> None:
+    assert len(Facts(tree(2.0))) >= 1
+    with pytest.raises(NotFiniteError, match=f"{name}.* is not a finite number, but {value}"):
+        Facts(tree(value))
+    with pytest.raises(NotFiniteError, match=re.escape(name)):
+        Facts({"motion": {"unit": "mm"}}).with_groups(tree(value))
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
+def test_a_finding_of_no_finite_value_is_refused(value: float) -> None:
+    with pytest.raises(NotFiniteError, match=f"the finding undercut.value .* {value}"):
+        Finding(code="undercut", severity="warning", message="", value=value)
+    error = pickle.loads(pickle.dumps(NotFiniteError("the fact lift_mm", value)))
+    assert str(error) == f"the fact lift_mm is not a finite number, but {value}"
 
 
 def test_an_extent_is_both_ends_in_another_unit() -> None:
