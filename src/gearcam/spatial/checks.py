@@ -134,11 +134,11 @@ def undercut(subject: Subject, limit: float) -> Iterator[Remark]:
         if lost > 0.0:
             cut = (
                 f"The roller cuts up to {formatted(loss.depth.value, 3)} mm off the {wall.key} "
-                "wall at other angles. There it rests on an edge: at this place on the roller, "
-                f"taken alone, the follower can move by {formatted(lost, 3)} mm{angle} beyond its "
+                "wall at other angles. The roller then rests on an edge: if only this place on it "
+                f"touched, the follower could move by {formatted(lost, 3)} mm{angle} beyond its "
                 "lift."
             )
-        gone = "" if loss.gone is None else f" Nothing is left of what it makes {at(loss.gone)}."
+        gone = "" if loss.gone is None else f" Nothing is left of the wall made {at(loss.gone)}."
         yield Remark(
             f"{cut}{gone}{smaller_roller(wall)}",
             f"{wall.key} wall, {loss.way.place}",

@@ -27,7 +27,11 @@ def smaller_roller(wall: RollerWall) -> str:
     """
     most = wall.allowed_radius
     radius = shortened(most, -1.0) if most > 0.0 else 0.0
-    return f" A roller_radius_mm of up to {formatted(radius)} does not." if radius > 0.0 else ""
+    return (
+        f" A roller_radius_mm of up to {formatted(radius)} cuts nothing off."
+        if radius > 0.0
+        else ""
+    )
 
 
 def thin_rib(least: Spot, limit: float) -> Iterator[Remark]:

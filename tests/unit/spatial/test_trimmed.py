@@ -293,13 +293,13 @@ def test_a_roller_that_is_far_too_large_is_told_in_finite_numbers(
     assert found[0].value == pytest.approx(lost, abs=1e-4)
     gone, edge = lost_lift(wall).gone, wall.edge
     assert gone is not None
-    assert f"Nothing is left of what it makes at {math.degrees(gone):.5g} deg" in found[0].message
+    assert f"Nothing is left of the wall made at {math.degrees(gone):.5g} deg" in found[0].message
     x = np.linspace(wall.cam.inner, edge(np.array([gone]))[0], 33)
     assert TrimmedWall(wall=wall).depth(np.array([gone]), x[None, :]).min() > 0.0
     smaller = shortened(wall.allowed_radius, -1.0)
     allowed = result.design.with_({"follower.roller_radius_mm": smaller})
     assert not gc.build(allowed).cam.undercut  # pyright: ignore
-    assert f"A roller_radius_mm of up to {smaller:g} does not." in found[0].message
+    assert f"A roller_radius_mm of up to {smaller:g} cuts nothing off." in found[0].message
 
 
 @pytest.mark.parametrize("side", [1, -1])
