@@ -81,7 +81,7 @@ def told_apart(
     return texts(digits)
 
 
-def rounds_to(value: float, written: float, digits: int = 6) -> bool:
+def rounds_to(value: float, written: float, digits: int = 5) -> bool:
     """Return whether a number as somebody wrote it is a `value`, rounded.
 
     Parameters
