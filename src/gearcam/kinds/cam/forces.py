@@ -20,6 +20,7 @@ from gearcam.cams.statics import Statics, solve
 from gearcam.kinds.cam.charts import knots_of, places_of
 from gearcam.kinds.cam.hints import enlarged
 from gearcam.mechanics.hertz import half_width, line_pressure
+from gearcam.numeric import narrowing
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.pictures.charts import Chart, Limit, Line
 from gearcam.results.result import StudyResult
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from gearcam.kinds.cam.build import CamResult
-    from gearcam.numeric.arrays import Array, Ints
+    from gearcam.numeric.arrays import Array, Ints, Mask
     from gearcam.results.kind import Study
     from gearcam.results.result import Progress
 
@@ -41,6 +42,18 @@ _MIRRORED: Final = (
 
 _TOLD: Final = 0.1
 """Work over the largest, per step, above which an efficiency is told: near rest it is always 0."""
+
+_NOISE: Final = 1e-9
+"""Share of the largest force that is 0: where another wall begins to carry little is left."""
+
+_CLOSE: Final = 1e-12
+"""Width, over the turn or travel, to which changes of what carries, and extremes, are narrowed."""
+
+_PEAKS: Final = 4
+"""How many of the highest peaks among the samples are narrowed, for each quantity."""
+
+_ROUNDING: Final = 1e-12
+"""Share of a sampled extreme by which a narrowed one is larger, or they are one."""
 
 
 def demand(design: Any) -> None:
@@ -106,27 +119,107 @@ def _no_stiffness(loads: Loads) -> InfeasibleError:
 
 
 def places(result: CamResult) -> Array:
-    """Return the positions of the driver that are studied, on both sides of knots.
+    """Return the positions of the driver that are studied; they rise.
 
-    These are the knots of the lift and of the loads, and where edges of walls are ridden on. The
-    positions rise; a cam that slides comes back through them.
+    Beside even steps these are both sides of knots of the lift and of the loads, and of places
+    where another wall or an edge begins to carry, or the follower begins to lift off or is locked;
+    and where forces and contact pressure are largest and least. A cam that slides comes back
+    through them.
     """
     period, count = result.program.period, result.design.forces.steps
     even = period * np.arange(count + 1.0) / count
     even[-1] = np.nextafter(period, 0.0)
     knots = [result.program.knots, *(one.knots for one in result.design.load)]
     knots += [touch.edges for touch in result.cam.touches]
-    return with_both_sides(even, np.concatenate(knots))
+    x = with_both_sides(even, np.concatenate(knots))
+    loads = loads_of(result)
+    for sought in (_changes, _extremes):  # in this order: extremes may lie beside changes
+        x = np.union1d(x, sought(result, loads, x))
+    return x
 
 
-def _under_load(result: CamResult) -> tuple[Loads, Array, Array, Statics]:
-    """Return the loads of a cam, the positions and ways that are studied, and the forces there."""
-    demand(result.design)
-    design, loads, x = result.design, loads_of(result), places(result)
+def _changes(result: CamResult, loads: Loads, x: Array) -> Array:
+    """Return both sides of where something else carries, between positions `x`."""
+    x, way = _to_and_fro(loads, x)
+
+    def states(x: Array, way: Array) -> Array:
+        statics = _statics(result, loads, x, way)
+        on_edge = np.isinf(_pressure(result, statics))
+        return 4.0 * statics.carrying + 2.0 * statics.locked + on_edge
+
+    at = np.flatnonzero((np.diff(states(x, way)) != 0.0) & (np.diff(way) == 0.0))
+
+    def function(places: Array, rows: Ints) -> Array:
+        return states(*_beside(x, way, places, at[rows]))[len(x) :].reshape(places.shape)
+
+    tolerance = _CLOSE * result.program.period
+    return np.concatenate(narrowing.changes(function, x[at], x[at + 1], tolerance))
+
+
+def _extremes(result: CamResult, loads: Loads, x: Array) -> Array:
+    """Return where the quantities of the facts are largest, or least, near positions `x`."""
+    x, way = _to_and_fro(loads, x)
+
+    def sought(x: Array, way: Array) -> Array:
+        statics = _statics(result, loads, x, way)
+        pressure, force = _pressure(result, statics), statics.force
+        least = (force, statics.torque, statics.reserve, _driving(statics))
+        most = (force, statics.torque, np.where(np.isinf(pressure), np.nan, pressure))
+        found = np.stack([*(-one for one in least), *most])
+        return np.where(np.isnan(found), -np.inf, found)
+
+    found = sought(x, way)
+    which, at = _peaks(found, np.flatnonzero(np.diff(way, prepend=0.0, append=0.0)))
+
+    def function(places: Array, rows: Ints) -> Array:
+        values = sought(*_beside(x, way, places, at[rows]))[:, len(x) :]
+        return values.reshape(-1, *places.shape)[which[rows], np.arange(len(rows))]
+
+    ends = x[np.maximum(at - 1, 0)], x[np.minimum(at + 1, len(x) - 1)]
+    found_at, values = narrowing.peaks(function, *ends, _CLOSE * result.program.period)
+    kept = []
+    for number, sampled in enumerate(found.max(axis=1)):
+        own = np.flatnonzero(which == number)
+        best = own[np.argmax(values[own])] if own.size else 0
+        if own.size and values[best] > sampled + _ROUNDING * abs(sampled):
+            kept.append(found_at[best])
+    return np.array(kept)
+
+
+def _peaks(values: Array, cuts: Ints) -> tuple[Ints, Ints]:
+    """Return rows and columns of the highest peaks in each row of values, (q, n).
+
+    Rows are continuous between `cuts`, the first and the last end included.
+    """
+    apart = np.insert(values, cuts, -np.inf, axis=1)
+    columns = np.insert(np.arange(values.shape[1]), cuts, -1)[1:-1]
+    middle = apart[:, 1:-1]
+    peak = (middle > apart[:, :-2]) & (middle >= apart[:, 2:])
+    heights = np.where(peak, middle, -np.inf)
+    best = np.argsort(-heights, axis=1, kind="stable")[:, :_PEAKS]
+    row, rank = np.nonzero(np.isfinite(np.take_along_axis(heights, best, axis=1)))
+    return row, columns[best[row, rank]]
+
+
+def _to_and_fro(loads: Loads, x: Array) -> tuple[Array, Array]:
+    """Return positions in the order of the motion, and the way of each."""
     way = np.repeat(loads.ways, len(x))
-    x = np.concatenate([x[:: int(one)] for one in loads.ways])
-    motion = loads.motion(x, way)
-    statics = solve(
+    return np.concatenate([x[:: int(one)] for one in loads.ways]), way
+
+
+def _beside(x: Array, way: Array, places: Array, at: Ints) -> tuple[Array, Array]:
+    """Return positions and ways with more `places` (m, k) after them, on the way of those `at`.
+
+    All are needed: what is rounding is told from the largest load.
+    """
+    more = np.repeat(way[at], places.shape[1])
+    return np.concatenate([x, places.ravel()]), np.concatenate([way, more])
+
+
+def _statics(result: CamResult, loads: Loads, x: Array, way: Array) -> Statics:
+    """Return the forces of a cam at positions of the driver, and ways."""
+    design, motion = result.design, loads.motion(x, way)
+    return solve(
         result.cam.touches,
         loads.support,
         x,
@@ -136,7 +229,20 @@ def _under_load(result: CamResult) -> tuple[Loads, Array, Array, Statics]:
         partial(design.follower.dragged, design.friction),
         way,
     )
-    return loads, x, way, statics
+
+
+def _under_load(result: CamResult) -> tuple[Loads, Array, Array, Statics]:
+    """Return the loads of a cam, the positions and ways that are studied, and the forces there."""
+    demand(result.design)
+    loads = loads_of(result)
+    x, way = _to_and_fro(loads, result.places_under_load)
+    return loads, x, way, _statics(result, loads, x, way)
+
+
+def _pressure(result: CamResult, statics: Statics) -> Array:
+    """Return the contact pressure, MPa; infinite where an edge of cam or follower carries."""
+    per_width = statics.force / result.form.contact_width
+    return line_pressure(per_width, statics.curvature, result.design.material)
 
 
 def largest_pressure(result: CamResult) -> float:
@@ -155,9 +261,7 @@ def largest_pressure(result: CamResult) -> float:
         As those of the study.
     """
     *_, statics = _under_load(result)
-    per_width = statics.force / result.form.contact_width
-    pressure = line_pressure(per_width, statics.curvature, result.design.material)
-    return float(np.nanmax(pressure, initial=0.0))
+    return float(np.nanmax(_pressure(result, statics), initial=0.0))
 
 
 def study_forces(result: CamResult, study: Study, progress: Progress | None) -> StudyResult:
@@ -187,8 +291,8 @@ def study_forces(result: CamResult, study: Study, progress: Progress | None) -> 
     design, cam = result.design, result.cam
     with result.stage("forces"):
         loads, x, way, statics = _under_load(result)
+        pressure = _pressure(result, statics)
         per_width = statics.force / result.form.contact_width
-        pressure = line_pressure(per_width, statics.curvature, design.material)
         half = half_width(per_width, statics.curvature, design.material)
         width = np.where(np.isinf(pressure), np.nan, half)
         only_presses = len(cam.touches) == 1
@@ -277,7 +381,8 @@ def _extreme(loaded: Loaded, values: Array, label: str, unit: str) -> Fact | Non
         return None
     ends = extent(float(np.nanmin(values)), float(np.nanmax(values)))
     place = f"largest {loaded.at(int(np.nanargmax(values)))}"
-    return Fact(ends, label, place=place, unit=unit, shown=True)
+    noise = _NOISE * float(np.nanmax(np.abs(values)))
+    return Fact(ends, label, place=place, unit=unit, shown=True, noise=noise)
 
 
 def _facts(
@@ -299,7 +404,7 @@ def _facts(
         ),
         "efficiency": _efficiency(loaded),
         "reserve": _least(loaded, statics.reserve, "share that friction leaves"),
-        **_pressure(loaded),
+        **_largest_pressure(loaded),
         "locked": bool(statics.locked.any()),
         "lifted": bool(statics.lifted.any()),
         "reversals": _reversals(statics),
@@ -334,7 +439,7 @@ def _least(loaded: Loaded, values: Array, label: str) -> Fact | None:
     return Fact(float(values[index]), label, place=loaded.at(index), unit="")
 
 
-def _pressure(loaded: Loaded) -> Tree:
+def _largest_pressure(loaded: Loaded) -> Tree:
     """Return the largest contact pressure; off the edges of a profile, where it has any."""
     values = np.where(loaded.on_edge, np.nan, loaded.pressure)
     if np.isnan(values).all():
@@ -350,17 +455,26 @@ def _pressure(loaded: Loaded) -> Tree:
 def _efficiency(loaded: Loaded) -> Tree | None:
     """Return the overall efficiency, of the work against loads, and the least one."""
     statics = loaded.statics
-    driven = (statics.useful > 0.0) & (statics.torque > 0.0)
+    driven = _driven(statics)
     if not driven.any():
         return None
     got = _integral(loaded.x, np.where(driven, statics.useful, 0.0))
     put = _integral(loaded.x, np.where(driven, statics.torque, 0.0))
-    strong = statics.useful > _TOLD * np.nanmax(np.abs(statics.useful))
-    least = np.where(driven & strong, statics.efficiency, np.nan)
     return {
         "overall": Fact(got / put, "efficiency against the loads", unit="", shown=True),
-        "least": _least(loaded, least, "least efficiency"),
+        "least": _least(loaded, _driving(statics), "least efficiency"),
     }
+
+
+def _driven(statics: Statics) -> Mask:
+    """Return where the cam drives, and moves a load."""
+    return (statics.useful > 0.0) & (statics.torque > 0.0)
+
+
+def _driving(statics: Statics) -> Array:
+    """Return the efficiency where the cam drives, away from rest; else nan."""
+    strong = statics.useful > _TOLD * np.nanmax(np.abs(statics.useful), initial=0.0)
+    return np.where(_driven(statics) & strong, statics.efficiency, np.nan)
 
 
 def _integral(x: Array, y: Array) -> float:
