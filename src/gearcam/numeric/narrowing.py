@@ -70,8 +70,8 @@ def peaks(function: Function, low: Array, high: Array, tolerance: float) -> tupl
         return np.maximum(best - 1, 0), np.minimum(best + 1, _PARTS)
 
     _, _, places, values = _narrowed(function, low, high, tolerance, pick)
-    best = np.argmax(values, axis=1)[:, None]
-    return tuple(np.take_along_axis(one, best, axis=1)[:, 0] for one in (places, values))
+    best = np.arange(len(values)), np.argmax(values, axis=1)
+    return places[best], values[best]
 
 
 def _narrowed(

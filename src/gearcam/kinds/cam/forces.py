@@ -26,7 +26,7 @@ from gearcam.pictures.charts import Chart, Limit, Line
 from gearcam.results.result import StudyResult
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping
 
     from gearcam.kinds.cam.build import CamResult
     from gearcam.numeric.arrays import Array, Ints, Mask
@@ -47,10 +47,16 @@ _NOISE: Final = 1e-9
 """Share of the largest force that is 0: where another wall begins to carry little is left."""
 
 _CLOSE: Final = 1e-12
-"""Width, over the turn or travel, to which changes of what carries, and extremes, are narrowed."""
+"""Distance of both sides of a change of what carries, over the turn or travel."""
+
+_NARROW: Final = 1e-9
+"""Width, over the turn or travel, to which an extreme is narrowed."""
 
 _PEAKS: Final = 4
 """How many of the highest peaks among the samples are narrowed, for each quantity."""
+
+_SCALES: Final = 2
+"""Number of positions that give the scale of what is rounding, before those asked for."""
 
 _ROUNDING: Final = 1e-12
 """Share of a sampled extreme by which a narrowed one is larger, or they are one."""
@@ -142,15 +148,16 @@ def _changes(result: CamResult, loads: Loads, x: Array) -> Array:
     """Return both sides of where something else carries, between positions `x`."""
     x, way = _to_and_fro(loads, x)
 
-    def states(x: Array, way: Array) -> Array:
-        statics = _statics(result, loads, x, way)
+    def states(statics: Statics) -> Array:
         on_edge = np.isinf(_pressure(result, statics))
         return 4.0 * statics.carrying + 2.0 * statics.locked + on_edge
 
-    at = np.flatnonzero((np.diff(states(x, way)) != 0.0) & (np.diff(way) == 0.0))
+    sampled = _statics(result, loads, x, way)
+    at = np.flatnonzero((np.diff(states(sampled)) != 0.0) & (np.diff(way) == 0.0))
+    beside = _beside(result, loads, (x, way, sampled), at)
 
     def function(places: Array, rows: Ints) -> Array:
-        return states(*_beside(x, way, places, at[rows]))[len(x) :].reshape(places.shape)
+        return states(beside(places, rows))[_SCALES:].reshape(places.shape)
 
     tolerance = _CLOSE * result.program.period
     return np.concatenate(narrowing.changes(function, x[at], x[at + 1], tolerance))
@@ -160,30 +167,66 @@ def _extremes(result: CamResult, loads: Loads, x: Array) -> Array:
     """Return where the quantities of the facts are largest, or least, near positions `x`."""
     x, way = _to_and_fro(loads, x)
 
-    def sought(x: Array, way: Array) -> Array:
-        statics = _statics(result, loads, x, way)
+    def sought(statics: Statics) -> Array:
         pressure, force = _pressure(result, statics), statics.force
         least = (force, statics.torque, statics.reserve, _driving(statics))
         most = (force, statics.torque, np.where(np.isinf(pressure), np.nan, pressure))
         found = np.stack([*(-one for one in least), *most])
         return np.where(np.isnan(found), -np.inf, found)
 
-    found = sought(x, way)
+    sampled = _statics(result, loads, x, way)
+    found = sought(sampled)
     which, at = _peaks(found, np.flatnonzero(np.diff(way, prepend=0.0, append=0.0)))
+    beside = _beside(result, loads, (x, way, sampled), at)
 
     def function(places: Array, rows: Ints) -> Array:
-        values = sought(*_beside(x, way, places, at[rows]))[:, len(x) :]
-        return values.reshape(-1, *places.shape)[which[rows], np.arange(len(rows))]
+        values = sought(beside(places, rows))[:, _SCALES:].reshape(-1, *places.shape)
+        return values[which[rows], np.arange(len(rows))]
 
     ends = x[np.maximum(at - 1, 0)], x[np.minimum(at + 1, len(x) - 1)]
-    found_at, values = narrowing.peaks(function, *ends, _CLOSE * result.program.period)
+    found_at, values = narrowing.peaks(function, *ends, _NARROW * result.program.period)
     kept = []
-    for number, sampled in enumerate(found.max(axis=1)):
+    for number, largest in enumerate(found.max(axis=1)):
         own = np.flatnonzero(which == number)
-        best = own[np.argmax(values[own])] if own.size else 0
-        if own.size and values[best] > sampled + _ROUNDING * abs(sampled):
+        best = max(own, key=values.__getitem__, default=None)
+        if best is not None and values[best] > largest + _ROUNDING * abs(largest):
             kept.append(found_at[best])
     return np.array(kept)
+
+
+def _beside(
+    result: CamResult, loads: Loads, known: tuple[Array, Array, Statics], at: Ints
+) -> Callable[[Array, Ints], Statics]:
+    """Return the forces at places in brackets, each on the way of the known position in `at`.
+
+    Before them are those of the largest load, and of the most work: what is rounding, and what is
+    near rest, is told by their share of these.
+
+    Parameters
+    ----------
+    result : CamResult
+        The cam.
+    loads : Loads
+        Its loads.
+    known : tuple
+        Positions, ways, and the forces there.
+    at : (n,) int array
+        A position of each bracket.
+
+    Returns
+    -------
+    callable
+        ``function(places, rows)`` of (m, k) places, in each bracket's row.
+    """
+    x, way, sampled = known
+    scales = [int(np.argmax(np.abs(one))) for one in (sampled.against, sampled.useful)]
+
+    def function(places: Array, rows: Ints) -> Statics:
+        ways = np.repeat(way[at[rows]], places.shape[1])
+        more = np.concatenate([x[scales], places.ravel()])
+        return _statics(result, loads, more, np.concatenate([way[scales], ways]))
+
+    return function
 
 
 def _peaks(values: Array, cuts: Ints) -> tuple[Ints, Ints]:
@@ -205,15 +248,6 @@ def _to_and_fro(loads: Loads, x: Array) -> tuple[Array, Array]:
     """Return positions in the order of the motion, and the way of each."""
     way = np.repeat(loads.ways, len(x))
     return np.concatenate([x[:: int(one)] for one in loads.ways]), way
-
-
-def _beside(x: Array, way: Array, places: Array, at: Ints) -> tuple[Array, Array]:
-    """Return positions and ways with more `places` (m, k) after them, on the way of those `at`.
-
-    All are needed: what is rounding is told from the largest load.
-    """
-    more = np.repeat(way[at], places.shape[1])
-    return np.concatenate([x, places.ravel()]), np.concatenate([way, more])
 
 
 def _statics(result: CamResult, loads: Loads, x: Array, way: Array) -> Statics:
