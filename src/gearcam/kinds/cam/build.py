@@ -300,7 +300,7 @@ class CamResult(PartsResult):
     @cached_property
     def places_under_load(self) -> Array:
         """Positions of the driver that the study of forces looks at, rad or mm."""
-        from gearcam.kinds.cam.forces import places
+        from gearcam.kinds.cam.under_load import places
 
         return places(self)
 

@@ -38,9 +38,9 @@ from gearcam.cams.sizing import (
 )
 from gearcam.cams.spec import FORCES
 from gearcam.kinds.cam.design import CamDesign
-from gearcam.kinds.cam.forces import largest_pressure, loads_of
 from gearcam.kinds.cam.forms.base import CHORD_TOLERANCE, lift_program
 from gearcam.kinds.cam.tables import GOALS
+from gearcam.kinds.cam.under_load import largest_pressure, loads_of
 from gearcam.parts.checks import KIND as PARTS_KIND
 
 if TYPE_CHECKING:
