@@ -26,6 +26,7 @@ from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.base.findings import CHECKS, limit_of
 from gearcam.base.numerals import decimal, formatted, shortened
 from gearcam.cams.checks import KIND, pressure_limits
+from gearcam.cams.force_checks import FORCES
 from gearcam.cams.placing import followers_of
 from gearcam.cams.sizing import (
     SIZES,
@@ -36,7 +37,6 @@ from gearcam.cams.sizing import (
     smallest,
     smallest_from,
 )
-from gearcam.cams.spec import FORCES
 from gearcam.kinds.cam.design import CamDesign
 from gearcam.kinds.cam.forms.base import CHORD_TOLERANCE, lift_program
 from gearcam.kinds.cam.tables import GOALS
