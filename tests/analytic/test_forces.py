@@ -13,7 +13,7 @@ import gearcam as gc
 from gearcam.cams.burdens import Loads
 from gearcam.cams.statics import Statics, solve
 from gearcam.cams.supports import StraightGuide
-from gearcam.kinds.cam.forces import loads_of, places
+from gearcam.kinds.cam.under_load import loads_of, places
 
 CAM = """
 kind = "cam"

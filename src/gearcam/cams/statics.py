@@ -196,6 +196,11 @@ class Statics(ShortRepr):
     curvature: Array
 
     @property
+    def driven(self) -> Mask:
+        """Where the cam drives, and moves a load."""
+        return (self.useful > 0.0) & (self.torque > 0.0)
+
+    @property
     def efficiency(self) -> Array:
         """Work that arrives over work that is put in; nan at rest and where all is lost.
 

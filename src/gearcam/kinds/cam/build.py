@@ -298,6 +298,13 @@ class CamResult(PartsResult):
         )
 
     @cached_property
+    def places_under_load(self) -> Array:
+        """Positions of the driver that the study of forces looks at, rad or mm."""
+        from gearcam.kinds.cam.under_load import places
+
+        return places(self)
+
+    @cached_property
     def drawing(self) -> Drawing:
         """The assembled cam with its follower, at the angle of the design."""
         return self.form.picture()

@@ -40,9 +40,9 @@ def coloured(result: CamResult, theta: Array) -> tuple[ColouredCurve, ...]:
     x, wall, forces = _within(theta, program), np.zeros(0), dict[str, Array]()
     study = result.studies.get("forces")
     if study is not None:
-        from gearcam.kinds.cam.forces import COLOURS, TITLES, places
+        from gearcam.kinds.cam.forces import COLOURS, TITLES
 
-        x, wall = places(result), study.columns["wall"]
+        x, wall = result.places_under_load, study.columns["wall"]
         forces = {TITLES[name][1]: study.columns[name] for name in COLOURS}
     names = [part.name for part in result.parts]
     jumps = np.searchsorted(x, [jump.theta for jump in program.hard])

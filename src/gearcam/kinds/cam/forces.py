@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.base.errors import DesignError, InfeasibleError, Problem, beyond_limit
 from gearcam.base.facts import Fact, extent
 from gearcam.base.findings import limit_of, run_checks
 from gearcam.base.numerals import formatted, shortened
@@ -16,11 +15,11 @@ from gearcam.base.quantities import TORQUE
 from gearcam.cams.burdens import Loads
 from gearcam.cams.force_checks import Loaded, on_way
 from gearcam.cams.spec import FORCES
-from gearcam.cams.statics import Statics, solve
+from gearcam.cams.statics import Statics
 from gearcam.kinds.cam.charts import knots_of, places_of
 from gearcam.kinds.cam.hints import enlarged
-from gearcam.mechanics.hertz import half_width, line_pressure
-from gearcam.numeric.piecewise import with_both_sides
+from gearcam.kinds.cam.under_load import efficiency_away_from_rest, pressure_of, under_load
+from gearcam.mechanics.hertz import half_width
 from gearcam.pictures.charts import Chart, Limit, Line
 from gearcam.results.result import StudyResult
 
@@ -39,125 +38,8 @@ _MIRRORED: Final = (
 )  # fmt: skip
 """Reactions that change their sign in the mirror image, which a cam that turns clockwise is."""
 
-_TOLD: Final = 0.1
-"""Work over the largest, per step, above which an efficiency is told: near rest it is always 0."""
-
-
-def demand(design: Any) -> None:
-    """Refuse a design whose masses or springs need a speed that is missing.
-
-    Raises
-    ------
-    DesignError
-        If it is missing.
-    """
-    if design.drive.speed is not None:
-        return
-    key = "drive." + design.drive.key
-    solved = any(one.solved for one in design.spring)
-    if design.mass and (solved or not design.gravity.given):
-        what = "is missing: a mass acts by its inertia, which depends on the speed"
-        near = "a speed above 0, or [gravity] for the weight alone"
-        if solved:
-            what, near = "is missing: a spring is solved for a speed", "a speed above 0"
-        problem = Problem(what, file=design.source, key=key, allowed=near)
-        raise DesignError([problem])
-
-
-def loads_of(result: CamResult) -> Loads:
-    """Return what acts on the follower of a cam, its `result`, beside the cam.
-
-    Raises
-    ------
-    InfeasibleError
-        If no stiffness of a spring keeps the follower on the cam.
-    """
-    design, motion = result.design, result.cam.motions[0]
-    pull = design.gravity.pull
-    follower, highest = motion.follower, motion.program.range[1]
-    loads = Loads(
-        program=motion.program,
-        follower=follower,
-        support=follower.held(design.friction, highest),
-        speed=design.drive.speed,
-        springs=design.spring,
-        given=design.load,
-        masses=design.mass,
-        pull=-pull.conjugate() if motion.clockwise else pull,
-        friction=design.friction,
-    )
-    if math.isinf(loads.solved.get("stiffness", 0.0)):
-        raise _no_stiffness(loads)
-    return loads
-
-
-def _no_stiffness(loads: Loads) -> InfeasibleError:
-    """Return the error for a spring that has no force where it is needed, at zero lift."""
-    number = next(k for k, one in enumerate(loads.springs) if one.rate == "solve")
-    spring = loads.springs[number]
-    given = spring.force if isinstance(spring.force, float) else 0.0
-    name, unit, scale = "preload_n", "N", 1.0
-    if loads.follower.angular:
-        name, unit, scale = "preload_nm", "N m", 1e-3
-    what = "no stiffness keeps the follower on the cam: at zero lift only a preload does"
-    needed = scale * (given + loads.preload_at_rest)
-    where, rule = f"spring[{number}].{name}", "the limit is the least preload"
-    return beyond_limit(what, where, scale * given, needed, rule, unit=unit)
-
-
-def places(result: CamResult) -> Array:
-    """Return the positions of the driver that are studied, on both sides of knots.
-
-    These are the knots of the lift and of the loads, and where edges of walls are ridden on. The
-    positions rise; a cam that slides comes back through them.
-    """
-    period, count = result.program.period, result.design.forces.steps
-    even = period * np.arange(count + 1.0) / count
-    even[-1] = np.nextafter(period, 0.0)
-    knots = [result.program.knots, *(one.knots for one in result.design.load)]
-    knots += [touch.edges for touch in result.cam.touches]
-    return with_both_sides(even, np.concatenate(knots))
-
-
-def _under_load(result: CamResult) -> tuple[Loads, Array, Array, Statics]:
-    """Return the loads of a cam, the positions and ways that are studied, and the forces there."""
-    demand(result.design)
-    design, loads, x = result.design, loads_of(result), places(result)
-    way = np.repeat(loads.ways, len(x))
-    x = np.concatenate([x[:: int(one)] for one in loads.ways])
-    motion = loads.motion(x, way)
-    statics = solve(
-        result.cam.touches,
-        loads.support,
-        x,
-        motion.ds,
-        loads.burden(motion),
-        design.friction,
-        partial(design.follower.dragged, design.friction),
-        way,
-    )
-    return loads, x, way, statics
-
-
-def largest_pressure(result: CamResult) -> float:
-    """Return the largest contact pressure of a cam, MPa; 0 without any contact under load.
-
-    It is infinite where an edge of the cam or the follower carries.
-
-    Parameters
-    ----------
-    result : CamResult
-        The cam.
-
-    Raises
-    ------
-    DesignError, InfeasibleError
-        As those of the study.
-    """
-    *_, statics = _under_load(result)
-    per_width = statics.force / result.form.contact_width
-    pressure = line_pressure(per_width, statics.curvature, result.design.material)
-    return float(np.nanmax(pressure, initial=0.0))
+_NOISE: Final = 1e-9
+"""Share of the largest force that is 0: where another wall begins to carry little is left."""
 
 
 def study_forces(result: CamResult, study: Study, progress: Progress | None) -> StudyResult:
@@ -186,9 +68,9 @@ def study_forces(result: CamResult, study: Study, progress: Progress | None) -> 
         progress("forces", 0, 1)
     design, cam = result.design, result.cam
     with result.stage("forces"):
-        loads, x, way, statics = _under_load(result)
+        loads, x, way, statics = under_load(result)
+        pressure = pressure_of(result, statics)
         per_width = statics.force / result.form.contact_width
-        pressure = line_pressure(per_width, statics.curvature, design.material)
         half = half_width(per_width, statics.curvature, design.material)
         width = np.where(np.isinf(pressure), np.nan, half)
         only_presses = len(cam.touches) == 1
@@ -277,7 +159,8 @@ def _extreme(loaded: Loaded, values: Array, label: str, unit: str) -> Fact | Non
         return None
     ends = extent(float(np.nanmin(values)), float(np.nanmax(values)))
     place = f"largest {loaded.at(int(np.nanargmax(values)))}"
-    return Fact(ends, label, place=place, unit=unit, shown=True)
+    noise = _NOISE * float(np.nanmax(np.abs(values)))
+    return Fact(ends, label, place=place, unit=unit, shown=True, noise=noise)
 
 
 def _facts(
@@ -299,7 +182,7 @@ def _facts(
         ),
         "efficiency": _efficiency(loaded),
         "reserve": _least(loaded, statics.reserve, "share that friction leaves"),
-        **_pressure(loaded),
+        **_largest_pressure(loaded),
         "locked": bool(statics.locked.any()),
         "lifted": bool(statics.lifted.any()),
         "reversals": _reversals(statics),
@@ -334,7 +217,7 @@ def _least(loaded: Loaded, values: Array, label: str) -> Fact | None:
     return Fact(float(values[index]), label, place=loaded.at(index), unit="")
 
 
-def _pressure(loaded: Loaded) -> Tree:
+def _largest_pressure(loaded: Loaded) -> Tree:
     """Return the largest contact pressure; off the edges of a profile, where it has any."""
     values = np.where(loaded.on_edge, np.nan, loaded.pressure)
     if np.isnan(values).all():
@@ -350,13 +233,12 @@ def _pressure(loaded: Loaded) -> Tree:
 def _efficiency(loaded: Loaded) -> Tree | None:
     """Return the overall efficiency, of the work against loads, and the least one."""
     statics = loaded.statics
-    driven = (statics.useful > 0.0) & (statics.torque > 0.0)
+    driven = statics.driven
     if not driven.any():
         return None
     got = _integral(loaded.x, np.where(driven, statics.useful, 0.0))
     put = _integral(loaded.x, np.where(driven, statics.torque, 0.0))
-    strong = statics.useful > _TOLD * np.nanmax(np.abs(statics.useful))
-    least = np.where(driven & strong, statics.efficiency, np.nan)
+    least = efficiency_away_from_rest(statics)
     return {
         "overall": Fact(got / put, "efficiency against the loads", unit="", shown=True),
         "least": _least(loaded, least, "least efficiency"),

@@ -26,6 +26,7 @@ from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.base.findings import CHECKS, limit_of
 from gearcam.base.numerals import decimal, formatted, shortened
 from gearcam.cams.checks import KIND, pressure_limits
+from gearcam.cams.force_checks import FORCES
 from gearcam.cams.placing import followers_of
 from gearcam.cams.sizing import (
     SIZES,
@@ -36,11 +37,10 @@ from gearcam.cams.sizing import (
     smallest,
     smallest_from,
 )
-from gearcam.cams.spec import FORCES
 from gearcam.kinds.cam.design import CamDesign
-from gearcam.kinds.cam.forces import largest_pressure, loads_of
 from gearcam.kinds.cam.forms.base import CHORD_TOLERANCE, lift_program
 from gearcam.kinds.cam.tables import GOALS
+from gearcam.kinds.cam.under_load import largest_pressure, loads_of
 from gearcam.parts.checks import KIND as PARTS_KIND
 
 if TYPE_CHECKING:

@@ -158,7 +158,7 @@ def _forces(result: CamResult, progress: Progress | None) -> StudyResult:
 
 
 def _demand_speed(design: Any) -> None:
-    from gearcam.kinds.cam.forces import demand
+    from gearcam.kinds.cam.under_load import demand
 
     demand(design)
 

@@ -200,8 +200,8 @@ class ForcesSpec(ShortRepr):
         default=720,
         ge=12,
         le=100000,
-        doc="number of even steps of the turn or travel; both sides of knots of lift and loads are "
-        "added",
+        doc="number of even steps of the turn or travel; both sides of knots of lift and loads, "
+        "and places of extremes, are added",
     )
 
 

@@ -109,6 +109,31 @@ def test_a_follower_that_lifts_off_is_told_with_the_preload_that_holds() -> None
     assert least == pytest.approx(closed.facts["forces.spring.preload_n"], rel=1e-2)
 
 
+@pytest.mark.parametrize("law", ["modified-trapezoid", "3-4-5"])
+def test_the_least_preload_leaves_no_force_somewhere(law: str) -> None:
+    """And the largest force is that of the closed form, of a roller without friction."""
+    motion = [
+        {"type": "rise", "angle_deg": 61.3, "lift_mm": 9, "law": law},
+        {"type": "return", "angle_deg": 58.9, "law": law},
+        {"type": "dwell", "angle_deg": "rest"},
+    ]
+    spring = [{"stiffness_n_mm": 12, "preload_n": "solve"}]
+    fast = {"drive": {"speed_rpm": 1800}}
+    found = study(motion=motion, cam={"prime_radius_mm": 36}, **MASS, spring=spring, **fast,
+                  follower={"type": "roller", "roller_radius_mm": 8})  # fmt: skip
+    theta = np.linspace(0.0, 2.0 * math.pi, 400_001)
+    s, ds, d2s = found.result.program.derivatives(theta, 2)
+    load = 12.0 * s + 0.4e-3 * (1800 * math.pi / 30) ** 2 * d2s
+    load -= load.min()
+    force = load * np.hypot(1.0, ds / (36.0 + s))
+    facts = found.facts
+    assert facts["forces.normal_n.max"] == pytest.approx(force.max(), rel=1e-6)
+    assert facts["forces.normal_n.min"] == pytest.approx(0.0, abs=1e-6 * force.max())
+    torque = 1e-3 * load * ds
+    for end, value in (("min", torque.min()), ("max", torque.max())):
+        assert facts[f"forces.torque_nm.{end}"] == pytest.approx(value, rel=1e-6)
+
+
 def test_what_cannot_be_mixed_is_told() -> None:
     with pytest.raises(DesignError, match="s and theta cannot be mixed"):
         study(load=[{"formula": "50 + 4*s + 30*sin(theta)"}])

@@ -128,8 +128,8 @@ class Groove(Form[GrooveCam, GrooveSpec, GrooveFollower]):
 
     @property
     def contact_width(self) -> float:
-        """Depth of the groove, mm."""
-        return self.given.groove_depth
+        """Depth of the groove, mm, of which each of two rollers has half."""
+        return self.given.groove_depth * (0.5 if self.cam.relief else 1.0)
 
     @classmethod
     def faults(cls, parts: Mapping[str, Any], document: Mapping[str, Any]) -> Iterator[Fault]:
@@ -260,8 +260,8 @@ class Groove(Form[GrooveCam, GrooveSpec, GrooveFollower]):
         other = cam.outer if side > 0 else cam.inner
         width = cam.relief.follower.radius + other.follower.radius
         return (
-            recess(0.0, 0.5 * depth, upper, width),
-            recess(0.5 * depth, depth, (inner, outer), cam.width),
+            recess(0.0, self.contact_width, upper, width),
+            recess(self.contact_width, depth, (inner, outer), cam.width),
         )
 
 

@@ -1,0 +1,304 @@
+"""A cam under its loads: where it is studied, and the forces and the contact pressure there."""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from gearcam.base.errors import DesignError, InfeasibleError, Problem, beyond_limit
+from gearcam.cams.burdens import Loads
+from gearcam.cams.statics import Statics, solve
+from gearcam.mechanics.hertz import line_pressure
+from gearcam.numeric import narrowing
+from gearcam.numeric.piecewise import with_both_sides
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from gearcam.kinds.cam.build import CamResult
+    from gearcam.numeric.arrays import Array, Ints
+
+_TOLD: Final = 0.1
+"""Work over the largest, per step, above which an efficiency is told: near rest it is always 0."""
+
+_CLOSE: Final = 1e-12
+"""Distance of both sides of a change of what carries, over the turn or travel."""
+
+_NARROW: Final = 1e-9
+"""Width, over the turn or travel, to which an extreme is narrowed."""
+
+_PEAKS: Final = 4
+"""How many of the highest peaks among the samples are narrowed, for each quantity."""
+
+_SCALES: Final = 2
+"""Number of positions that give the scale of what is rounding, before those asked for."""
+
+_ROUNDING: Final = 1e-12
+"""Share of a sampled extreme by which a narrowed one is larger, or they are one."""
+
+
+def demand(design: Any) -> None:
+    """Refuse a design whose masses or springs need a speed that is missing.
+
+    Raises
+    ------
+    DesignError
+        If it is missing.
+    """
+    if design.drive.speed is not None:
+        return
+    key = "drive." + design.drive.key
+    solved = any(one.solved for one in design.spring)
+    if design.mass and (solved or not design.gravity.given):
+        what = "is missing: a mass acts by its inertia, which depends on the speed"
+        near = "a speed above 0, or [gravity] for the weight alone"
+        if solved:
+            what, near = "is missing: a spring is solved for a speed", "a speed above 0"
+        problem = Problem(what, file=design.source, key=key, allowed=near)
+        raise DesignError([problem])
+
+
+def loads_of(result: CamResult) -> Loads:
+    """Return what acts on the follower of a cam, its `result`, beside the cam.
+
+    Raises
+    ------
+    InfeasibleError
+        If no stiffness of a spring keeps the follower on the cam.
+    """
+    design, motion = result.design, result.cam.motions[0]
+    pull = design.gravity.pull
+    follower, highest = motion.follower, motion.program.range[1]
+    loads = Loads(
+        program=motion.program,
+        follower=follower,
+        support=follower.held(design.friction, highest),
+        speed=design.drive.speed,
+        springs=design.spring,
+        given=design.load,
+        masses=design.mass,
+        pull=-pull.conjugate() if motion.clockwise else pull,
+        friction=design.friction,
+    )
+    if math.isinf(loads.solved.get("stiffness", 0.0)):
+        raise _no_stiffness(loads)
+    return loads
+
+
+def _no_stiffness(loads: Loads) -> InfeasibleError:
+    """Return the error for a spring that has no force where it is needed, at zero lift."""
+    number = next(k for k, one in enumerate(loads.springs) if one.rate == "solve")
+    spring = loads.springs[number]
+    given = spring.force if isinstance(spring.force, float) else 0.0
+    name, unit, scale = "preload_n", "N", 1.0
+    if loads.follower.angular:
+        name, unit, scale = "preload_nm", "N m", 1e-3
+    what = "no stiffness keeps the follower on the cam: at zero lift only a preload does"
+    needed = scale * (given + loads.preload_at_rest)
+    where, rule = f"spring[{number}].{name}", "the limit is the least preload"
+    return beyond_limit(what, where, scale * given, needed, rule, unit=unit)
+
+
+def places(result: CamResult) -> Array:
+    """Return the positions of the driver that are studied; they rise.
+
+    Beside even steps these are both sides of knots of the lift and of the loads, and of places
+    where another wall or an edge begins to carry, or the follower begins to lift off or is locked;
+    and where forces and contact pressure are largest and least. A cam that slides comes back
+    through them.
+    """
+    period, count = result.program.period, result.design.forces.steps
+    even = period * np.arange(count + 1.0) / count
+    even[-1] = np.nextafter(period, 0.0)
+    knots = [result.program.knots, *(one.knots for one in result.design.load)]
+    knots += [touch.edges for touch in result.cam.touches]
+    x = with_both_sides(even, np.concatenate(knots))
+    loads = loads_of(result)
+    for sought in (_changes, _extremes):  # in this order: extremes may lie beside changes
+        x = np.union1d(x, sought(result, loads, x))
+    return x
+
+
+def _changes(result: CamResult, loads: Loads, x: Array) -> Array:
+    """Return both sides of where something else carries, between positions `x`."""
+    x, way = _to_and_fro(loads, x)
+
+    def states(statics: Statics) -> Array:
+        on_edge = np.isinf(pressure_of(result, statics))
+        return 4.0 * statics.carrying + 2.0 * statics.locked + on_edge
+
+    sampled = _statics(result, loads, x, way)
+    at = np.flatnonzero((np.diff(states(sampled)) != 0.0) & (np.diff(way) == 0.0))
+    beside = _beside(result, loads, (x, way, sampled), at)
+
+    def function(places: Array, rows: Ints) -> Array:
+        return states(beside(places, rows))[_SCALES:].reshape(places.shape)
+
+    tolerance = _CLOSE * result.program.period
+    return np.concatenate(narrowing.changes(function, x[at], x[at + 1], tolerance))
+
+
+def _extremes(result: CamResult, loads: Loads, x: Array) -> Array:
+    """Return where the quantities of the facts are largest, or least, near positions `x`."""
+    x, way = _to_and_fro(loads, x)
+
+    def sought(statics: Statics) -> Array:
+        pressure, force = pressure_of(result, statics), statics.force
+        least = (force, statics.torque, statics.reserve, efficiency_away_from_rest(statics))
+        most = (force, statics.torque, np.where(np.isinf(pressure), np.nan, pressure))
+        found = np.stack([*(-one for one in least), *most])
+        return np.where(np.isnan(found), -np.inf, found)
+
+    sampled = _statics(result, loads, x, way)
+    found = sought(sampled)
+    which, at = _peaks(found, np.flatnonzero(np.diff(way, prepend=0.0, append=0.0)))
+    beside = _beside(result, loads, (x, way, sampled), at)
+
+    def function(places: Array, rows: Ints) -> Array:
+        values = sought(beside(places, rows))[:, _SCALES:].reshape(-1, *places.shape)
+        return values[which[rows], np.arange(len(rows))]
+
+    ends = x[np.maximum(at - 1, 0)], x[np.minimum(at + 1, len(x) - 1)]
+    found_at, values = narrowing.peaks(function, *ends, _NARROW * result.program.period)
+    kept = []
+    for number, largest in enumerate(found.max(axis=1)):
+        own = np.flatnonzero(which == number)
+        best = max(own, key=values.__getitem__, default=None)
+        if best is not None and values[best] > largest + _ROUNDING * abs(largest):
+            kept.append(found_at[best])
+    return np.array(kept)
+
+
+def _beside(
+    result: CamResult, loads: Loads, known: tuple[Array, Array, Statics], at: Ints
+) -> Callable[[Array, Ints], Statics]:
+    """Return the forces at places in brackets, each on the way of the known position in `at`.
+
+    Before them are those of the largest load, and of the most work: what is rounding, and what is
+    near rest, is told by their share of these.
+
+    Parameters
+    ----------
+    result : CamResult
+        The cam.
+    loads : Loads
+        Its loads.
+    known : tuple
+        Positions, ways, and the forces there.
+    at : (n,) int array
+        A position of each bracket.
+
+    Returns
+    -------
+    callable
+        ``function(places, rows)`` of (m, k) places, in each bracket's row.
+    """
+    x, way, sampled = known
+    scales = [int(np.argmax(np.abs(one))) for one in (sampled.against, sampled.useful)]
+
+    def function(places: Array, rows: Ints) -> Statics:
+        ways = np.repeat(way[at[rows]], places.shape[1])
+        more = np.concatenate([x[scales], places.ravel()])
+        return _statics(result, loads, more, np.concatenate([way[scales], ways]))
+
+    return function
+
+
+def _peaks(values: Array, cuts: Ints) -> tuple[Ints, Ints]:
+    """Return rows and columns of the highest peaks in each row of values, (q, n).
+
+    Rows are continuous between `cuts`, the first and the last end included.
+    """
+    apart = np.insert(values, cuts, -np.inf, axis=1)
+    columns = np.insert(np.arange(values.shape[1]), cuts, -1)[1:-1]
+    middle = apart[:, 1:-1]
+    peak = (middle > apart[:, :-2]) & (middle >= apart[:, 2:])
+    heights = np.where(peak, middle, -np.inf)
+    best = np.argsort(-heights, axis=1, kind="stable")[:, :_PEAKS]
+    row, rank = np.nonzero(np.isfinite(np.take_along_axis(heights, best, axis=1)))
+    return row, columns[best[row, rank]]
+
+
+def _to_and_fro(loads: Loads, x: Array) -> tuple[Array, Array]:
+    """Return positions in the order of the motion, and the way of each."""
+    way = np.repeat(loads.ways, len(x))
+    return np.concatenate([x[:: int(one)] for one in loads.ways]), way
+
+
+def _statics(result: CamResult, loads: Loads, x: Array, way: Array) -> Statics:
+    """Return the forces of a cam at positions of the driver, and ways."""
+    design, motion = result.design, loads.motion(x, way)
+    return solve(
+        result.cam.touches,
+        loads.support,
+        x,
+        motion.ds,
+        loads.burden(motion),
+        design.friction,
+        partial(design.follower.dragged, design.friction),
+        way,
+    )
+
+
+def under_load(result: CamResult) -> tuple[Loads, Array, Array, Statics]:
+    """Return the loads of a cam, the positions and ways that are studied, and the forces there."""
+    demand(result.design)
+    loads = loads_of(result)
+    x, way = _to_and_fro(loads, result.places_under_load)
+    return loads, x, way, _statics(result, loads, x, way)
+
+
+def pressure_of(result: CamResult, statics: Statics) -> Array:
+    """Return the contact pressure, MPa; infinite where an edge of cam or follower carries.
+
+    Parameters
+    ----------
+    result : CamResult
+        The cam.
+    statics : Statics
+        Its forces at n positions.
+
+    Returns
+    -------
+    (n,) array, MPa
+    """
+    per_width = statics.force / result.form.contact_width
+    return line_pressure(per_width, statics.curvature, result.design.material)
+
+
+def largest_pressure(result: CamResult) -> float:
+    """Return the largest contact pressure of a cam, MPa; 0 without any contact under load.
+
+    It is infinite where an edge of the cam or the follower carries.
+
+    Parameters
+    ----------
+    result : CamResult
+        The cam.
+
+    Raises
+    ------
+    DesignError, InfeasibleError
+        As those of the study.
+    """
+    *_, statics = under_load(result)
+    return float(np.nanmax(pressure_of(result, statics), initial=0.0))
+
+
+def efficiency_away_from_rest(statics: Statics) -> Array:
+    """Return the efficiency where the cam drives with a tenth of its most work or more; else nan.
+
+    Parameters
+    ----------
+    statics : Statics
+        Forces at n positions, the most work among them.
+
+    Returns
+    -------
+    (n,) array
+    """
+    strong = statics.useful > _TOLD * np.nanmax(np.abs(statics.useful), initial=0.0)
+    return np.where(statics.driven & strong, statics.efficiency, np.nan)
