@@ -171,7 +171,8 @@ def _polished(
     (_, before), (_, after) = at(low), at(high)
     crossed = before * after < 0.0
     # so near to each other they are joined by a straight line: one more step leaves rounding
-    slope = np.where(crossed, (after - before) / (high - low), np.inf)
+    with np.errstate(invalid="ignore", divide="ignore"):  # both are one place next to a knot
+        slope = np.where(crossed, (after - before) / (high - low), np.inf)
     found = np.where(crossed, low - before / slope, places)
     values, rest = at(found)
     return np.clip(found - rest / slope, low, high), values
