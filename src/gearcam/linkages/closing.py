@@ -212,6 +212,8 @@ def _shares(element: Element, known: Known) -> list[Array]:
 
 def _minima(places: Array, values: Array) -> Array:
     """Return where a share is smallest, but for change points, from its extremes."""
+    places, own = np.unique(places, return_index=True)  # a knot is there from both sides
+    values = values[own]
     beside = np.minimum(np.append(values[1:], np.inf), np.append(np.inf, values[:-1]))
     return places[(values <= beside) & (values > 0.0)]
 
@@ -227,9 +229,9 @@ def _polished(
     for _ in range(2):
         _, slope, bend = element.room(linkage.at(q, 2, element))[number].derivatives()[:3]
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-            q = q - slope / bend
-    q = np.clip(np.where(np.abs(q - places) < _SAME, q, places), *linkage.span)
-    q = snapped(q, linkage.knots, _ON_KNOT)
+            step = slope / bend
+        q = np.where(np.abs(q - step - places) < _SAME, q - step, places)
+    q = snapped(np.clip(q, *linkage.span), linkage.knots, _ON_KNOT)
     return q, _shares(element, linkage.at(q, 0, element))[number]
 
 

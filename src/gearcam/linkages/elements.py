@@ -372,7 +372,9 @@ class Dyad(ShortRepr, Element):
         near = np.minimum(before, -behind) <= self.reach
         past = np.where(near, np.where(before <= -behind, before, behind), np.nan)
         if self.keeps == BRANCH:
-            return Passage(np.where(past < -_AT, -self.sign, self.sign), past)
+            # from another turn an angle comes with rounding; in its own both sides are told apart
+            at = np.where(turns == 0.0, 0.0, _AT)
+            return Passage(np.where(past < -at, -self.sign, self.sign), past)
         # next to a change point the sign behind it, also before it, where the root is negative
         count = turns * own.size + passed + (past < 0.0) - np.searchsorted(own, _AT, "right")
         return Passage(np.where(count % 2, -self.sign, self.sign), past)
