@@ -35,6 +35,12 @@ _ON_KNOT: Final = 1e-11
 _SPARE: Final = 1e-3
 """Share by which a length that is offered is off its limit, where the linkage is singular."""
 
+_MEETING: Final = 2
+"""Number of what is left of an RRR dyad before its outer joints meet."""
+
+_WIDER: Final = 1.05
+"""Factor by which what is left is larger than resolved, where a length is offered."""
+
 _MET: Final = 1e-6
 """Least distance of joints, as a share of their largest one, that rods of two lengths can span."""
 
@@ -71,7 +77,15 @@ class Closing(ShortRepr):
     def unresolved(self) -> Narrow | None:
         """Where it moves too fast for double precision, if anywhere."""
         found = [one for one in self.narrow if one.passed and one.width < NARROWEST]
-        return min(found, key=lambda one: one.width, default=None)
+        # folded rods whose ends meet: the latter says it better
+        return min(found, key=lambda one: (one.width, -one.number), default=None)
+
+    @property
+    def meets(self) -> bool:
+        """Whether it is singular, or nearly, because the outer joints of an RRR dyad meet."""
+        if self.unresolved:
+            return self.unresolved.number == _MEETING
+        return self.leasts[_MEETING:] == (0.0,)
 
     @property
     def least(self) -> float:
@@ -88,10 +102,18 @@ class NotClosingError(ValueError):
         Where its first part closes that does not close everywhere.
     nearest : tuple of dict of int to float
         Lengths that would make the part close, by their number, mm; the nearest first.
+    resolved : (float, float), mm, or rad for TRT; optional
+        Of a dyad that is too nearly singular for double precision: how far from that it is, and
+        how far it must be.
     """
 
-    def __init__(self, closing: Closing, nearest: tuple[dict[int, float], ...]) -> None:
-        self.closing, self.nearest = closing, nearest
+    def __init__(
+        self,
+        closing: Closing,
+        nearest: tuple[dict[int, float], ...],
+        resolved: tuple[float, float] | None = None,
+    ) -> None:
+        self.closing, self.nearest, self.resolved = closing, nearest, resolved
         super().__init__(f"{closing.element.gives[0]} does not close over the whole range")
 
 
@@ -117,7 +139,9 @@ def settled(linkage: Linkage) -> Linkage:
         if found is None:
             continue
         stuck = bool(found.changes) and _stuck(found)
-        if not found.least >= 0.0 or stuck or found.unresolved:
+        if isinstance(element, Dyad) and found.least >= 0.0 and found.unresolved:
+            raise NotClosingError(found, (), _resolved(linkage, element, found.unresolved))
+        if not found.least >= 0.0 or stuck:
             nearest = _nearest(element, found.leasts) if isinstance(element, Dyad) else []
             raise NotClosingError(found, tuple(nearest))
         knots = with_narrow_places(found.narrow, linkage.knots, closed=linkage.closed)
@@ -127,13 +151,22 @@ def settled(linkage: Linkage) -> Linkage:
     return linkage
 
 
+def _resolved(linkage: Linkage, dyad: Dyad, narrow: Narrow) -> tuple[float, float]:
+    """Return how far from singular a dyad is, and how far it must be to be resolved."""
+    solved = dyad.solution(linkage.at(np.array([narrow.place]), 0, dyad))
+    left, square = (float(one[narrow.number].c[0][0]) for one in (solved.left, solved.squares))
+    rest, wider = max(square - left, 0.0), _WIDER * (NARROWEST / narrow.width) ** 2
+    own, least = (one / (math.sqrt(rest + one) + math.sqrt(rest)) for one in (left, wider * left))
+    return own, least
+
+
 def _stuck(found: Closing) -> bool:
     """Return whether a part jams or loses its place at one of its change points."""
     element = found.element
     if not isinstance(element, Dyad) or not element.kind.passable:
         return True
     # outer joints in one place: its rods, equally long, may have any direction
-    return element.type == "RRR" and found.leasts[2] <= 0.0
+    return found.meets
 
 
 def _passing(linkage: Linkage, number: int, dyad: Dyad, changes: tuple[float, ...]) -> Linkage:

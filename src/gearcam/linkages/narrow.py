@@ -26,7 +26,7 @@ _APART: Final = 1e-9
 """Distance from other knots below which none is added, rad."""
 
 
-NARROWEST: Final = 1e-8
+NARROWEST: Final = 1e-7
 """Least distance off that the driver's angle resolves well in double precision, rad."""
 
 
