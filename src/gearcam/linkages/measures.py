@@ -206,8 +206,11 @@ class TrackMeasures(ShortRepr):
 
     @cached_property
     def extremes(self) -> tuple[Extremes, ...]:
-        """Extremes of each order (see `extremes_of`)."""
-        return extremes_of(self.track, self.knots, self.highest)
+        """Extremes of each order (see `extremes_of`); of what stands still 0 from order 1 on."""
+        first, *others = extremes_of(self.track, self.knots, self.highest)
+        if np.ptp(first[1]) > STILL:
+            return (first, *others)
+        return (first, *((places, np.zeros_like(values)) for places, values in others))
 
     def least(self, order: int = 0) -> Peak:
         """Return the smallest value of a derivative of given `order`."""
@@ -233,7 +236,12 @@ class TrackMeasures(ShortRepr):
     @cached_property
     def stroke(self) -> float:
         """The largest less the smallest value, mm or rad."""
-        return self.largest().value - self.least().value
+        return 0.0 if self.still else self.largest().value - self.least().value
+
+    @cached_property
+    def still(self) -> bool:
+        """Whether it does not move, but for rounding."""
+        return bool(np.ptp(self.extremes[0][1]) <= STILL)
 
     @cached_property
     def rise(self) -> float:
