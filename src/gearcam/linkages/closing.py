@@ -15,7 +15,7 @@ from typing import Final
 import numpy as np
 
 from gearcam.base.display import ShortRepr
-from gearcam.linkages.dyads import rtr_distance
+from gearcam.linkages.dyads import number_of, rtr_distance
 from gearcam.linkages.elements import BRANCH, REACH, Dyad, Element, Known
 from gearcam.linkages.linkage import Linkage
 from gearcam.linkages.narrow import NARROWEST, Narrow, narrow_places, with_narrow_places
@@ -154,7 +154,7 @@ def settled(linkage: Linkage) -> Linkage:
 def _resolved(linkage: Linkage, dyad: Dyad, narrow: Narrow) -> tuple[float, float]:
     """Return how far from singular a dyad is, and how far it must be to be resolved."""
     solved = dyad.solution(linkage.at(np.array([narrow.place]), 0, dyad))
-    left, square = (float(one[narrow.number].c[0][0]) for one in (solved.left, solved.squares))
+    left, square = (number_of(one[narrow.number]).item() for one in (solved.left, solved.squares))
     rest, wider = max(square - left, 0.0), _WIDER * (NARROWEST / narrow.width) ** 2
     own, least = (one / (math.sqrt(rest + one) + math.sqrt(rest)) for one in (left, wider * left))
     return own, least

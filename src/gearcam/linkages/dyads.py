@@ -106,7 +106,7 @@ class Solved(NamedTuple):
     def rounding(self) -> tuple[Array, ...]:
         """Shares that are none: lengths are equal that differ by rounding of the dyad's size."""
         return tuple(
-            2.0 * _EQUAL * np.sqrt(_value(one) / _value(self.scale)) for one in self.squares
+            2.0 * _EQUAL * np.sqrt(number_of(one) / number_of(self.scale)) for one in self.squares
         )
 
     def exchanged(self) -> Solved:
@@ -148,7 +148,8 @@ _OPEN = np.errstate(invalid="ignore", divide="ignore", over="ignore")
 """Outside of what closes the values are nan, which `Solved.room` tells."""
 
 
-def _value(length: Length) -> Array:
+def number_of(length: Length) -> Array:
+    """Return the value of what may be a jet."""
     return np.asarray(length.c[0] if isinstance(length, Jet) else length, dtype=float)
 
 
