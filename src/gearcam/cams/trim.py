@@ -472,4 +472,7 @@ def lost_lift(curve: CamCurve, corner: Corner) -> Extreme:
             nearest="its arm or its pivot does not allow that position",
         )
     best = int(np.nanargmax(values))
-    return Extreme(theta=float(places[best]) % program.period, value=max(0.0, float(values[best])))
+    theta = float(places[best]) % program.period
+    if program.period - theta <= _ROUNDING * program.period:  # the end of a turn is its beginning
+        theta = 0.0
+    return Extreme(theta=theta, value=max(0.0, float(values[best])))

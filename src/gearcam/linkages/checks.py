@@ -175,7 +175,7 @@ def _told(machine: CheckedMachine, order: int, what: str) -> Iterator[Remark]:
                 f"The {what} of {name} jumps by {formatted(by, 5)} {unit}"
                 f"{jump.small if jump.slight else ''}{more}.",
                 f"{name}, {_at(where)}",
-                abs(by),
+                by,
                 severity="note" if jump.slight else None,
                 unit=unit,
             )

@@ -15,16 +15,13 @@ from typing import Final
 import numpy as np
 
 from gearcam.base.display import ShortRepr
-from gearcam.linkages.dyads import rtr_distance
-from gearcam.linkages.elements import BRANCH, REACH, Dyad, Element
+from gearcam.linkages.dyads import number_of, rtr_distance
+from gearcam.linkages.elements import BRANCH, REACH, Dyad, Element, Known
 from gearcam.linkages.linkage import Linkage
-from gearcam.linkages.narrow import with_narrow_places
+from gearcam.linkages.narrow import NARROWEST, Narrow, narrow_places, with_narrow_places
 from gearcam.numeric.arrays import Array, apart, snapped
 from gearcam.numeric.piecewise import extremes_of_each
 from gearcam.numeric.roots import bracketed_root
-
-_TOUCHING: Final = 1e-12
-"""Largest share of a dyad's size at which its positions count as one."""
 
 _FOUND: Final = 1e-14
 """Accuracy of a limit, rad."""
@@ -38,8 +35,14 @@ _ON_KNOT: Final = 1e-11
 _SPARE: Final = 1e-3
 """Share by which a length that is offered is off its limit, where the linkage is singular."""
 
+_MEETING: Final = 2
+"""Number of what is left of an RRR dyad before its outer joints meet."""
+
+_WIDER: Final = 1.05
+"""Factor by which what is left is larger than resolved, where a length is offered."""
+
 _MET: Final = 1e-6
-"""Distance of joints that are in one place, as a share of the rods: the root of `_TOUCHING`."""
+"""Least distance of joints, as a share of their largest one, that rods of two lengths can span."""
 
 
 @dataclass(frozen=True)
@@ -51,15 +54,16 @@ class Closing(ShortRepr):
     element : Element
         The part.
     leasts : tuple of float
-        The smallest value of each of its shares; negative: it does not close everywhere.
+        The smallest value of each of its shares; negative: it does not close everywhere; 0: it is
+        singular there, but for rounding.
     place : float, rad
         The driver's angle of the smallest of them.
     ranges : tuple of (float, float), rad
         The driver's angles over which it closes; a range over the end of a turn begins below 0.
     changes : tuple of float, rad
         Change points.
-    knots : (k,) array, rad
-        Those of the linkage, with more of them where the part is nearly singular.
+    narrow : tuple of Narrow
+        Where it is nearly singular.
     """
 
     element: Element
@@ -67,7 +71,21 @@ class Closing(ShortRepr):
     place: float
     ranges: tuple[tuple[float, float], ...]
     changes: tuple[float, ...]
-    knots: Array
+    narrow: tuple[Narrow, ...]
+
+    @property
+    def unresolved(self) -> Narrow | None:
+        """Where it moves too fast for double precision, if anywhere."""
+        found = [one for one in self.narrow if one.passed and one.width < NARROWEST]
+        # folded rods whose ends meet: the latter says it better
+        return min(found, key=lambda one: (one.width, -one.number), default=None)
+
+    @property
+    def meets(self) -> bool:
+        """Whether it is singular, or nearly, because the outer joints of an RRR dyad meet."""
+        if self.unresolved:
+            return self.unresolved.number == _MEETING
+        return self.leasts[_MEETING:] == (0.0,)
 
     @property
     def least(self) -> float:
@@ -84,10 +102,18 @@ class NotClosingError(ValueError):
         Where its first part closes that does not close everywhere.
     nearest : tuple of dict of int to float
         Lengths that would make the part close, by their number, mm; the nearest first.
+    resolved : (float, float), mm, or rad for TRT; optional
+        Of a dyad that is too nearly singular for double precision: how far from that it is, and
+        how far it must be.
     """
 
-    def __init__(self, closing: Closing, nearest: tuple[dict[int, float], ...]) -> None:
-        self.closing, self.nearest = closing, nearest
+    def __init__(
+        self,
+        closing: Closing,
+        nearest: tuple[dict[int, float], ...],
+        resolved: tuple[float, float] | None = None,
+    ) -> None:
+        self.closing, self.nearest, self.resolved = closing, nearest, resolved
         super().__init__(f"{closing.element.gives[0]} does not close over the whole range")
 
 
@@ -112,26 +138,35 @@ def settled(linkage: Linkage) -> Linkage:
         found = closing(linkage, element)
         if found is None:
             continue
-        stuck = bool(found.changes) and _stuck(linkage, element, found.changes)
-        if not found.least >= -_TOUCHING or stuck:
+        stuck = bool(found.changes) and _stuck(found)
+        if isinstance(element, Dyad) and found.least >= 0.0 and found.unresolved:
+            raise NotClosingError(found, (), _resolved(linkage, element, found.unresolved))
+        if not found.least >= 0.0 or stuck:
             nearest = _nearest(element, found.leasts) if isinstance(element, Dyad) else []
             raise NotClosingError(found, tuple(nearest))
-        linkage = replace(linkage, knots=found.knots)
+        knots = with_narrow_places(found.narrow, linkage.knots, closed=linkage.closed)
+        linkage = replace(linkage, knots=knots)
         if found.changes and isinstance(element, Dyad):
             linkage = _passing(linkage, number, element, found.changes)
     return linkage
 
 
-def _stuck(linkage: Linkage, element: Element, changes: tuple[float, ...]) -> bool:
+def _resolved(linkage: Linkage, dyad: Dyad, narrow: Narrow) -> tuple[float, float]:
+    """Return how far from singular a dyad is, and how far it must be to be resolved."""
+    solved = dyad.solution(linkage.at(np.array([narrow.place]), 0, dyad))
+    left, square = (number_of(one[narrow.number]).item() for one in (solved.left, solved.squares))
+    rest, wider = max(square - left, 0.0), _WIDER * (NARROWEST / narrow.width) ** 2
+    own, least = (one / (math.sqrt(rest + one) + math.sqrt(rest)) for one in (left, wider * left))
+    return own, least
+
+
+def _stuck(found: Closing) -> bool:
     """Return whether a part jams or loses its place at one of its change points."""
+    element = found.element
     if not isinstance(element, Dyad) or not element.kind.passable:
         return True
-    if element.type != "RRR":
-        return False
-    known = linkage.at(np.array(changes), 0, element)
-    way = known.jet(element.second) - known.jet(element.first)
     # outer joints in one place: its rods, equally long, may have any direction
-    return bool(np.any(np.abs(way.c[0]) <= _MET * element.lengths.second))
+    return found.meets
 
 
 def _passing(linkage: Linkage, number: int, dyad: Dyad, changes: tuple[float, ...]) -> Linkage:
@@ -181,51 +216,61 @@ def closing(linkage: Linkage, element: Element) -> Closing | None:
         found = element.left(linkage.at(q, 2, element))
         return np.stack([one.derivatives()[:3] for one in found], axis=1)
 
+    extremes = [
+        _polished(linkage, element, number, places)
+        for number, (places, _) in enumerate(extremes_of_each(rooms, linkage.knots))
+    ]
     found = [
         (places, values, _crossings(lambda q, k=k: rooms(q)[0, k], places, values))
-        for k, (places, values) in enumerate(extremes_of_each(rooms, linkage.knots))
+        for k, (places, values) in enumerate(extremes)
     ]
     lowest, shares, _ = min(found, key=lambda one: one[1].min())
-    touching = [
-        _polished(linkage, element, number, float(q))
-        for number, (places, values, _) in enumerate(found)
-        for q in places[np.abs(values) <= _TOUCHING]
-    ]
+    touching = np.concatenate([places[values == 0.0] for places, values in extremes])
     return Closing(
         element,
         tuple(float(values.min()) for _, values, _ in found),
         float(lowest[shares.argmin()]),
         _ranges(linkage, element, np.concatenate([one[2] for one in found])),
         _apart(touching, linkage),
-        with_narrow_places(
-            left,
-            [_minima(places, values) for places, values, _ in found],
-            linkage.knots,
-            closed=linkage.closed,
-        ),
+        narrow_places(left, [_minima(*one) for one in extremes], linkage.knots),
     )
+
+
+def _shares(element: Element, known: Known) -> list[Array]:
+    """Return the shares of a part, of which those that are rounding are 0."""
+    pairs = zip(element.room(known), element.rounding(known), strict=True)
+    values = ((np.asarray(share.c[0]), least) for share, least in pairs)
+    return [np.where(np.abs(share) <= least, 0.0, share) for share, least in values]
 
 
 def _minima(places: Array, values: Array) -> Array:
     """Return where a share is smallest, but for change points, from its extremes."""
+    places, own = np.unique(places, return_index=True)  # a knot is there from both sides
+    values = values[own]
     beside = np.minimum(np.append(values[1:], np.inf), np.append(np.inf, values[:-1]))
-    return places[(values <= beside) & (values > _TOUCHING)]
+    return places[(values <= beside) & (values > 0.0)]
 
 
-def _polished(linkage: Linkage, element: Element, number: int, q: float) -> float:
-    """Return a double zero of a share to rounding: a root of its slope, or a knot that is one."""
-    at = np.array([q])
+def _polished(
+    linkage: Linkage, element: Element, number: int, places: Array
+) -> tuple[Array, Array]:
+    """Return places of the extremes of a share to rounding, and the values there.
+
+    A place is a root of its slope, or a knot that is one.
+    """
+    q = places
     for _ in range(2):
-        _, slope, bend = element.room(linkage.at(at, 2, element))[number].derivatives()[:3]
-        with np.errstate(invalid="ignore", divide="ignore"):
-            at = at - slope / bend
-    found = at if abs(at[0] - q) < _SAME else np.array([q])
-    return float(snapped(found, linkage.knots, _ON_KNOT)[0])
+        _, slope, bend = element.room(linkage.at(q, 2, element))[number].derivatives()[:3]
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            step = slope / bend
+        q = np.where(np.abs(q - step - places) < _SAME, q - step, places)
+    q = snapped(np.clip(q, *linkage.span), linkage.knots, _ON_KNOT)
+    return q, _shares(element, linkage.at(q, 0, element))[number]
 
 
 def _crossings(room: Callable[[Array], Array], places: Array, values: Array) -> Array:
     """Return the simple zeros of a function between its extremes."""
-    signs = np.where(np.abs(values) <= _TOUCHING, 0.0, np.sign(values))
+    signs = np.sign(values)
     (cells,) = np.nonzero(signs[:-1] * signs[1:] < 0.0)
     ends = values[cells], values[cells + 1]
     return bracketed_root(room, places[cells], places[cells + 1], _FOUND, ends)
@@ -236,8 +281,8 @@ def _ranges(linkage: Linkage, element: Element, zeros: Array) -> tuple[tuple[flo
     low, high = linkage.span
     edges = np.unique(np.concatenate([[low, high], zeros]))
     middles = 0.5 * (edges[1:] + edges[:-1])
-    shares = element.room(linkage.at(middles, 0, element))
-    open_ = np.all([np.asarray(one.c[0]) >= -_TOUCHING for one in shares], axis=0)
+    known = linkage.at(middles, 0, element)
+    open_ = np.all([share >= 0.0 for share in _shares(element, known)], axis=0)
     ranges: list[tuple[float, float]] = []
     for begin, end in zip(edges[:-1][open_], edges[1:][open_], strict=True):
         if ranges and ranges[-1][1] == begin:
@@ -248,11 +293,11 @@ def _ranges(linkage: Linkage, element: Element, zeros: Array) -> tuple[tuple[flo
     return tuple(ranges)
 
 
-def _apart(touching: list[float], linkage: Linkage) -> tuple[float, ...]:
+def _apart(touching: Array, linkage: Linkage) -> tuple[float, ...]:
     """Return change points without those found twice, at both sides of a knot or of a turn."""
     low, high = linkage.span
     if linkage.closed:
-        touching = [low if high - q < _SAME else q for q in touching]
+        touching = np.where(high - touching < _SAME, low, touching)
     return tuple(apart(np.sort(touching), _SAME).tolist())
 
 
@@ -262,7 +307,7 @@ def _nearest(dyad: Dyad, leasts: Sequence[float]) -> list[dict[int, float]]:
         return []
     sizes = np.array(dyad.lengths[:2], dtype=float)
     if dyad.type == "RRR":
-        outer, inner = leasts
+        outer, inner, _ = leasts
         whole, folded = sizes.sum() ** 2, (sizes[0] - sizes[1]) ** 2
         least, most = max(inner * whole + folded, 0.0), (1.0 - outer) * whole
         return _nearest_rods(sizes, math.sqrt(least), math.sqrt(most))

@@ -33,6 +33,7 @@ import numpy as np
 
 from gearcam.linkages.plane import Frame, conjugate, cross, imaginary, real, square
 from gearcam.numeric import jets
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet
 
 Length = Jet | float
@@ -80,22 +81,33 @@ class Solved(NamedTuple):
         Places along guides, mm: ``guide1`` and ``guide2`` on those given, ``member1`` and
         ``member2`` on its own members.
     left : tuple of Jet, mm2
-        What is left before it is singular: 0 or more where it closes (none: it always does). Of TRT
-        the square of a sine.
+        What is left before it is singular: 0 or more where it closes (none: it always does). Of RRR
+        before its members are in line, outstretched and folded, and before its outer joints meet;
+        of TRT the square of a sine.
+    squares : tuple of Jet or float, mm2
+        Each of these is the difference of two squares of lengths: the larger one.
     scale : Jet or float, mm2
-        Of which this is a share.
+        Of which this is a share: the square of the dyad's size.
     """
 
     joint: Jet
     frames: tuple[Frame, Frame]
     slides: Mapping[str, Jet]
     left: tuple[Jet, ...]
+    squares: tuple[Length, ...] = ()
     scale: Length = 1.0
 
     @property
     def room(self) -> tuple[Jet, ...]:
         """Shares that are 0 or more where it closes, at most about 1."""
         return tuple(one / self.scale for one in self.left)
+
+    @property
+    def rounding(self) -> tuple[Array, ...]:
+        """Shares that are none: lengths are equal that differ by rounding of the dyad's size."""
+        return tuple(
+            2.0 * _EQUAL * np.sqrt(number_of(one) / number_of(self.scale)) for one in self.squares
+        )
 
     def exchanged(self) -> Solved:
         """Return the same with the members exchanged."""
@@ -122,6 +134,9 @@ class Passage(NamedTuple):
 Sign = float | Passage
 """+1 or -1, or where a dyad has change points the way through them."""
 
+_EQUAL: Final = 5e-13
+"""Difference of two lengths by rounding, as a share of a dyad's size."""
+
 _NEAR: Final = 1.0
 """Square of the distance of two joints that is no longer far, mm^2: a slide without an arm has no
 length that this could be a share of, and is singular where its joints meet."""
@@ -131,6 +146,11 @@ _LOST: Final = 1e-15
 
 _OPEN = np.errstate(invalid="ignore", divide="ignore", over="ignore")
 """Outside of what closes the values are nan, which `Solved.room` tells."""
+
+
+def number_of(length: Length) -> Array:
+    """Return the value of what may be a jet."""
+    return np.asarray(length.c[0] if isinstance(length, Jet) else length, dtype=float)
 
 
 def _root(x: Jet, sign: Sign) -> Jet:
@@ -187,7 +207,8 @@ def _rrr(first: Jet, second: Jet, sizes: Lengths, sign: Sign) -> Solved:
     joint = first + way * (along + height * 1j)
     directions = (joint - first) / one, (joint - second) / two
     frames = Frame(first, directions[0]), Frame(second, directions[1])
-    return Solved(joint, frames, {}, (outer, inner), whole)
+    left, squares = (outer, inner, distance), (whole, distance, distance)
+    return Solved(joint, frames, {}, left, squares, whole)
 
 
 @_OPEN
@@ -203,7 +224,7 @@ def _rrt(first: Jet, guide: Frame, sizes: Lengths, sign: Sign) -> Solved:
     slide = reach - real(place)
     joint = first + direction * rod
     frames = Frame(first, direction), Frame(guide.origin + ahead * slide, ahead * turn)
-    return Solved(joint, frames, {"guide2": slide}, (room,), rod * rod)
+    return Solved(joint, frames, {"guide2": slide}, (room,), (rod * rod,), rod * rod)
 
 
 def rtr_distance(across: float, share: float) -> float:
@@ -232,7 +253,7 @@ def _rtr(first: Jet, second: Jet, sizes: Lengths, sign: Sign) -> Solved:
     guide = way / (reach - 1j * across)
     joint = first + guide * slide
     frames = Frame(first, guide), Frame(second, guide * cmath.exp(1j * beta))
-    return Solved(joint, frames, {"member1": slide}, (room,), distance + _NEAR)
+    return Solved(joint, frames, {"member1": slide}, (room,), (distance,), distance + _NEAR)
 
 
 def rtr_reach(solved: Solved, sizes: Lengths) -> Jet:
@@ -263,7 +284,8 @@ def _trt(first: Frame, second: Frame, sizes: Lengths, _: Sign) -> Solved:
     ]
     joint = feet[0] + one * sizes.first
     frames = Frame(feet[0], one), Frame(feet[1], two)
-    return Solved(joint, frames, {"guide1": slides[0], "guide2": slides[1]}, (sine * sine,))
+    places, left = {"guide1": slides[0], "guide2": slides[1]}, (sine * sine,)
+    return Solved(joint, frames, places, left, left)
 
 
 def _rtt(first: Jet, guide: Frame, sizes: Lengths, _: Sign) -> Solved:

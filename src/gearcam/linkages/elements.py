@@ -98,6 +98,10 @@ class Element(ABC):
         """Return what is left before it is singular, of which these are shares."""
         return self.room(known)
 
+    def rounding(self, known: Known) -> tuple[Array, ...]:
+        """Return which of these shares are none but for rounding."""
+        return tuple(np.full(known.q.shape, _ROUNDING) for _ in self.room(known))
+
 
 @dataclass(frozen=True)
 class GivenMotion(ShortRepr, Element):
@@ -269,6 +273,9 @@ class PushedSlide(ShortRepr, Element):
         known.given[self.joint] = place
 
 
+_ROUNDING: Final = 1e-12
+"""Share of what a part needs to close that is rounding, where the part does not tell it."""
+
 REACH: Final = 0.1
 """Largest angle from a change point up to which a dyad may be solved from there, rad."""
 
@@ -365,7 +372,9 @@ class Dyad(ShortRepr, Element):
         near = np.minimum(before, -behind) <= self.reach
         past = np.where(near, np.where(before <= -behind, before, behind), np.nan)
         if self.keeps == BRANCH:
-            return Passage(np.where(past < -_AT, -self.sign, self.sign), past)
+            # from another turn an angle comes with rounding; in its own both sides are told apart
+            at = np.where(turns == 0.0, 0.0, _AT)
+            return Passage(np.where(past < -at, -self.sign, self.sign), past)
         # next to a change point the sign behind it, also before it, where the root is negative
         count = turns * own.size + passed + (past < 0.0) - np.searchsorted(own, _AT, "right")
         return Passage(np.where(count % 2, -self.sign, self.sign), past)
@@ -377,6 +386,10 @@ class Dyad(ShortRepr, Element):
     def left(self, known: Known) -> tuple[Jet, ...]:
         """Return what is left before it is singular (see `Solved`), mm2."""
         return self.solution(known).left
+
+    def rounding(self, known: Known) -> tuple[Array, ...]:
+        """Return which shares are none but for rounding (see `Solved`)."""
+        return self.solution(known).rounding
 
     def solve(self, known: Known) -> None:
         """Add its joint, its members and the places of its slides."""

@@ -171,7 +171,8 @@ def _polished(
     (_, before), (_, after) = at(low), at(high)
     crossed = before * after < 0.0
     # so near to each other they are joined by a straight line: one more step leaves rounding
-    slope = np.where(crossed, (after - before) / (high - low), np.inf)
+    with np.errstate(invalid="ignore", divide="ignore"):  # both are one place next to a knot
+        slope = np.where(crossed, (after - before) / (high - low), np.inf)
     found = np.where(crossed, low - before / slope, places)
     values, rest = at(found)
     return np.clip(found - rest / slope, low, high), values
@@ -205,8 +206,11 @@ class TrackMeasures(ShortRepr):
 
     @cached_property
     def extremes(self) -> tuple[Extremes, ...]:
-        """Extremes of each order (see `extremes_of`)."""
-        return extremes_of(self.track, self.knots, self.highest)
+        """Extremes of each order (see `extremes_of`); of what stands still 0 from order 1 on."""
+        first, *others = extremes_of(self.track, self.knots, self.highest)
+        if np.ptp(first[1]) > STILL:
+            return (first, *others)
+        return (first, *((places, np.zeros_like(values)) for places, values in others))
 
     def least(self, order: int = 0) -> Peak:
         """Return the smallest value of a derivative of given `order`."""
@@ -232,7 +236,12 @@ class TrackMeasures(ShortRepr):
     @cached_property
     def stroke(self) -> float:
         """The largest less the smallest value, mm or rad."""
-        return self.largest().value - self.least().value
+        return 0.0 if self.still else self.largest().value - self.least().value
+
+    @cached_property
+    def still(self) -> bool:
+        """Whether it does not move, but for rounding."""
+        return bool(np.ptp(self.extremes[0][1]) <= STILL)
 
     @cached_property
     def rise(self) -> float:

@@ -8,7 +8,7 @@ zero: this may be less than the step of a search.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -26,10 +26,35 @@ _APART: Final = 1e-9
 """Distance from other knots below which none is added, rad."""
 
 
-def with_narrow_places(
-    left: Callable[[Array], Array], lows: Sequence[Array], knots: Array, *, closed: bool
-) -> Array:
-    """Return knots between which searches see where a part of a linkage is nearly singular.
+NARROWEST: Final = 1e-7
+"""Least distance off that the driver's angle resolves well in double precision, rad."""
+
+
+class Narrow(NamedTuple):
+    """A zero of what is left of a part before it is singular, close to the driver's range.
+
+    Attributes
+    ----------
+    place : float, rad
+        The driver's angle next to it.
+    width : float, rad
+        How far off it is.
+    number : int
+        Of what is left.
+    passed : bool
+        Whether the driver passes it; otherwise it is beyond an end of the range.
+    """
+
+    place: float
+    width: float
+    number: int
+    passed: bool
+
+
+def narrow_places(
+    left: Callable[[Array], Array], lows: Sequence[Array], knots: Array
+) -> tuple[Narrow, ...]:
+    """Return where a part of a linkage is so nearly singular that a search does not see it.
 
     Parameters
     ----------
@@ -40,6 +65,34 @@ def with_narrow_places(
         Where each is smallest, but for change points.
     knots : (k,) array, rad
         The driver's angles from the first to the last one.
+
+    Returns
+    -------
+    tuple of Narrow
+    """
+    within = _seen(knots)
+    return tuple(
+        place
+        for number, low in enumerate(lows)
+        for place in _zeros(low, left(low)[:, number], number)
+        if 0.0 < place.width < within
+    )
+
+
+def _seen(knots: Array) -> float:
+    """Return the width from which a search sees a place without knots of its own, rad."""
+    return _STEPS * float(np.diff(places_between(knots)).max())
+
+
+def with_narrow_places(found: Sequence[Narrow], knots: Array, *, closed: bool) -> Array:
+    """Return knots between which searches see where a part of a linkage is nearly singular.
+
+    Parameters
+    ----------
+    found : sequence of Narrow
+        Where it is.
+    knots : (k,) array, rad
+        The driver's angles from the first to the last one.
     closed : bool
         Whether the motion repeats after the last knot.
 
@@ -48,27 +101,29 @@ def with_narrow_places(
     (n,) array, rad
         The knots, with more of them if there are such places.
     """
-    step = float(np.diff(places_between(knots)).max())
-    found = [
-        place + sign * width * _WIDER**power
-        for number, low in enumerate(lows)
-        for place, width in _zeros(low, left(low)[:, number], _STEPS * step)
-        for power in range(1 + int(np.log(_STEPS * step / width) / np.log(_WIDER)))
-        for sign in (-1.0, 1.0)
-    ]
     if not found:
         return knots
-    places, low, high = np.array(found), knots[0], knots[-1]
+    within = _seen(knots)
+    places = np.array(
+        [
+            one.place + sign * one.width * _WIDER**power
+            for one in found
+            for power in range(1 + int(np.log(within / one.width) / np.log(_WIDER)))
+            for sign in (-1.0, 1.0)
+        ]
+    )
+    low, high = knots[0], knots[-1]
     if closed:
         _, places = in_cycle(places, (low, high))
     inside = apart(np.sort(places[(places > low) & (places < high)]), _APART)
     # more intervals have fewer points each: none may be wider than the step allows
+    step = within / _STEPS
     even = divided(knots, np.ceil(np.diff(knots) / (LEAST_PLACES * step)).astype(int))
     return np.union1d(even, away(inside, even, _APART))
 
 
-def _zeros(places: Array, left: Array, within: float) -> Iterator[tuple[float, float]]:
-    """Yield the zeros `within` a distance of places, rad: the real part, and how far off it is.
+def _zeros(places: Array, left: Array, number: int) -> Iterator[Narrow]:
+    """Yield the zeros next to places: the real part, and how far off it is.
 
     The zero of the Taylor polynomial of second order: a complex one next to a minimum, a real one
     beyond an end of the driver's range.
@@ -78,5 +133,7 @@ def _zeros(places: Array, left: Array, within: float) -> Iterator[tuple[float, f
         root = np.sqrt(slope * slope - 2.0 * value * bend + 0j)
         zeros = -2.0 * value / (slope + np.where(slope < 0.0, -root, root))
     for place, zero in zip(places, zeros, strict=True):
-        if 0.0 < abs(zero) < within:
-            yield (place, abs(zero)) if zero.imag == 0.0 else (place + zero.real, abs(zero.imag))
+        if zero.imag == 0.0:
+            yield Narrow(float(place), abs(zero), number, passed=False)
+        else:
+            yield Narrow(float(place + zero.real), abs(zero.imag), number, passed=True)

@@ -223,6 +223,18 @@ def steep_face() -> Lost:
     return Lost((first, second), (c, d), at, float(loss))
 
 
+@pytest.mark.parametrize("first", [0.0, 40.0])
+def test_undercut_at_a_jump_is_in_one_place(first: float) -> None:
+    """The rise begins downwards; where it begins the turn, its beginning is not the turn's end."""
+    sinks = "(x - 0.16*sin(6.28*x))/(1 - 0.16*sin(6.28))"
+    phases = [rise("formula", 120.0, 10.0, formula=sinks), dwell(60.0), back("cycloidal", 120.0)]
+    before = [dwell(first)] if first else []
+    made = make_cam(program([*before, *phases, dwell(60.0 - first)]), follower_of("roller"))
+    found = [one for one in findings(made, "undercut") if "has a corner" in one.message]
+    assert found[0].where == f"at {first:g} deg"
+    assert f"undercut at {first:g} deg." in found[0].message
+
+
 def test_undercut_names_its_angles_and_its_loss() -> None:
     """On the rise as computed by hand, on the return from 150 to 210 degrees its image."""
     made = cam("flat", "cycloidal", 10.0, STEEP, base_radius=20.0)

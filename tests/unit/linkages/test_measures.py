@@ -217,7 +217,7 @@ def test_an_output_that_turns_and_steps_back(shift: float) -> None:
         assert got == pytest.approx(wanted, abs=1e-13)
 
 
-@pytest.mark.parametrize(("jump", "slight"), [(0.9e-3, True), (1.1e-3, False)])
+@pytest.mark.parametrize(("jump", "slight"), [(0.9e-3, True), (1.1e-3, False), (-1.1e-3, False)])
 def test_a_jump_of_a_thousandth_of_the_largest_velocity_is_too_small_to_matter(
     jump: float, slight: bool
 ) -> None:
@@ -228,5 +228,26 @@ def test_a_jump_of_a_thousandth_of_the_largest_velocity_is_too_small_to_matter(
     machine = SimpleNamespace(outputs={"s": track}, units={"s": "mm"})
     (found,) = CHECKS[KIND, "velocity-jump"].run(machine, math.nan)
     assert found.value == pytest.approx(2.0 * jump)
+    assert f"jumps by {found.value:.5g} mm" in found.message
     assert found.severity == ("note" if slight else "warning")
     assert ("too small to matter" in found.message) == slight
+
+
+@pytest.mark.parametrize("noise", [0.0, 1e-15, 1e-11])
+def test_what_stands_still_but_for_rounding_has_no_velocity(noise: float) -> None:
+    """Its derivatives are 0, also between two sides of a knot; not of one that moves."""
+
+    def trembling(q: Array, order: int) -> Jet:
+        return jets.sin(Jet.variable(q, order) * 7.0) * noise + 50.0
+
+    found = TrackMeasures(trembling, TURN)
+    assert found.still
+    assert [found.stroke, *(found.size(order).value for order in (1, 2, 3))] == [0.0] * 4
+    assert not found.dead_centers
+
+    def moving(q: Array, order: int) -> Jet:
+        return jets.sin(Jet.variable(q, order)) * 1e-6 + 50.0
+
+    moves = TrackMeasures(moving, TURN)
+    assert not moves.still
+    assert moves.size(1).value == pytest.approx(1e-6)

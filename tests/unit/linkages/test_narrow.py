@@ -11,7 +11,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from gearcam.linkages.closing import settled
+from gearcam.linkages.closing import NotClosingError, settled
 from gearcam.linkages.dyads import Lengths
 from gearcam.linkages.elements import Crank, Dyad, GivenMotion, GuideLine, MemberPoint
 from gearcam.linkages.linkage import Linkage
@@ -185,3 +185,86 @@ def test_no_place_has_more_than_the_peaks(
         room = 1e-5 * np.abs(seen[order]).max()
         assert largest == pytest.approx(seen[order].max(), abs=room)
         assert least == pytest.approx(seen[order].min(), abs=room)
+
+
+def _kite(room: float, *, start: float = 0.0, rods: tuple[float, float] = (90.0, 90.0)) -> Linkage:
+    """The crank's pin comes within `room` of the rocker's pivot."""
+    return linkage(
+        MemberPoint("A", 0j),
+        MemberPoint("D", complex(40.0 + room)),
+        Crank("crank", "q", "A", "B", 40.0, start),
+        Dyad("RRR", "B", "D", "C", ("coupler", "rocker"), Lengths(*rods)),
+    )
+
+
+def _rocker(room: float) -> Callable[[Any], Any]:
+    """The rocker's angle from straight up over the crank's angle, with rods of 90 mm."""
+    base = mp.mpf(40.0 + room)
+
+    def angle(q: Any) -> Any:
+        pin = 40 * mp.expj(q)
+        way = base - pin
+        height = mp.sqrt(8100 - abs(way) ** 2 / 4) / abs(way)
+        return mp.arg((pin + way * (0.5 + 1j * height) - base) / 1j)
+
+    return angle
+
+
+@pytest.mark.parametrize("room", [1e-2, 1e-3, 1.5e-4, 1e-4, 5e-5, 1e-5, 4.2e-6])
+@pytest.mark.parametrize("start", [0.0, 1.0])
+def test_a_kite_beside_its_change_point(room: float, start: float) -> None:
+    """Where the pin is nearest the rocker turns by ``-a/room``, and all but half a turn in all."""
+    made = settled(_kite(room, start=start))
+    assert not made.dyads[0].changes
+    found = TrackMeasures(partial(made.real_track, "rocker.angle"), made.knots)
+    with mp.workdps(30):
+        angle = _rocker(room)
+        least = float(mp.mpf(40.0 + room) - 40)
+        assert float(mp.diff(angle, 0)) == pytest.approx(-40.0 / least, rel=1e-12)
+        turn = sum(_largest(lambda h, s=s: angle(s * h), 0, room / 40.0) for s in (-1, 1))
+    fastest = found.track(np.array([-start % TURN[1]]), 1).derivatives()[1][0]
+    assert fastest == pytest.approx(-40.0 / least, rel=1e-8)
+    assert abs(found.size(1).value) == pytest.approx(40.0 / least, rel=1e-6)
+    assert found.stroke == pytest.approx(turn, abs=1e-9)
+
+
+@pytest.mark.parametrize("room", [3.9e-6, 1e-7, 1e-8, 1e-9])
+def test_a_kite_that_double_precision_does_not_resolve(room: float) -> None:
+    with pytest.raises(NotClosingError) as caught:
+        settled(_kite(room))
+    assert caught.value.resolved is not None
+    own, least = caught.value.resolved
+    assert own == pytest.approx(room, rel=1e-6)
+    settled(_kite(least))
+    assert caught.value.closing.meets
+
+
+@pytest.mark.parametrize("more", [1e-2, 1e-5])
+def test_a_change_point_where_the_outer_joints_almost_meet(more: float) -> None:
+    """Rods as different as their ends come near: there it turns by ``-2*a/more`` on one side."""
+    made = settled(_kite(more, start=1.0, rods=(90.0 + more, 90.0)))
+    assert len(made.dyads[0].changes) == 1
+    found = TrackMeasures(partial(made.real_track, "rocker.angle"), made.knots)
+    assert abs(found.size(1).value) == pytest.approx(80.0 / more, rel=2e-4)
+
+
+@pytest.mark.parametrize("room", [10.0**-power for power in range(2, 10)])
+def test_a_four_bar_beside_its_change_point(room: float) -> None:
+    """Folded where the crank is in line: ``distance - (b - c) = room``; peaks by mpmath."""
+    crank, coupler, rocker, base = 40.0, 120.0, 50.0, 110.0 + room
+    made = settled(four_bar(crank, coupler, rocker, base))
+    assert not made.dyads[0].changes
+    found = TrackMeasures(partial(made.real_track, "rocker.angle"), made.knots)
+    with mp.workdps(30):
+
+        def angle(q: Any) -> Any:
+            pin = crank * mp.expj(q)
+            way = base - pin
+            square = abs(way) ** 2
+            along = (mp.mpf(coupler) ** 2 - mp.mpf(rocker) ** 2 + square) / (2 * square)
+            height = mp.sqrt(mp.mpf(coupler) ** 2 / square - along**2)
+            return mp.arg(pin + way * (along + 1j * height) - base)
+
+        wanted = _largest(angle, 1, math.sqrt(room))
+        wanted = max(wanted, _largest(lambda h: angle(-h), 1, math.sqrt(room)))
+    assert abs(found.size(1).value) == pytest.approx(wanted, rel=1e-6 + 1e-14 / room)

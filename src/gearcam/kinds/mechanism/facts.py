@@ -10,6 +10,7 @@ from gearcam.base.numerals import formatted
 from gearcam.kinds.mechanism.outputs import RATES
 from gearcam.linkages.chain import HoistChain, roots_in
 from gearcam.linkages.grashof import FourBarLengths, grashof
+from gearcam.linkages.measures import STILL
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.build import MechanismResult
@@ -23,6 +24,9 @@ if TYPE_CHECKING:
 Tree = dict[str, Any]
 
 _DEG: Final = math.degrees(1.0)
+
+_DIGITS: Final = 10
+"""Decimals of a place in degrees above rounding."""
 
 _SHOWN: Final = 4
 """Outputs, and dyads, of which something is always shown."""
@@ -156,26 +160,39 @@ def _place(peak: Peak) -> str:
     return f"at {formatted(_DEG * peak.place, 6)} deg"
 
 
+def _where(measures: TrackMeasures, peak: Peak) -> tuple[str, float | None]:
+    """Return the place of a peak as text and in degrees; none of what stands still."""
+    return ("", None) if measures.still else (_place(peak), _DEG * peak.place)
+
+
+def _dead_centers(measures: TrackMeasures) -> list[float]:
+    """Return where the motion ends before it reverses, within the range, deg."""
+    low, high = (round(_DEG * end, _DIGITS) for end in measures.span)
+    places = [round(_DEG * one.place, _DIGITS) for one in measures.dead_centers]
+    if measures.closed:
+        places = [low + (one - low) % (high - low) for one in places]
+    return sorted(places)
+
+
 def _output(result: MechanismResult, one: Output, number: int) -> Tree:
     """Return range, stroke, dead centres and peaks of an output, of which one stands first."""
     measures, (scale, unit) = result.measures[one.stem], one.unit
     least, largest = measures.least(), measures.largest()
-    centers = measures.dead_centers
     ratio = measures.time_ratio
-    return {
-        f"least_{unit}": Fact(scale * least.value, f"{one.stem}, least", place=_place(least)),
-        f"largest_{unit}": Fact(
-            scale * largest.value, f"{one.stem}, largest", place=_place(largest)
-        ),
-        "least_at_deg": _DEG * least.place,
-        "largest_at_deg": _DEG * largest.place,
+    tree: Tree = {}
+    for word, peak in (("least", least), ("largest", largest)):
+        place, at = _where(measures, peak)
+        value = scale * peak.value if abs(peak.value) > STILL else 0.0
+        tree[f"{word}_{unit}"] = Fact(value, f"{one.stem}, {word}", place=place)
+        tree[f"{word}_at_deg"] = at
+    return tree | {
         f"stroke_{unit}": Fact(
             scale * measures.stroke,
             f"{'turn' if measures.rise and one.angle else 'stroke'} of {one.stem}",
             shown=number < _SHOWN,
             noise=1e-9,
         ),
-        "dead_centers_deg": [_DEG * center.place for center in centers] or None,
+        "dead_centers_deg": _dead_centers(measures) or None,
         "time_ratio": None
         if ratio is None
         else Fact(
@@ -191,13 +208,14 @@ def _peaks(result: MechanismResult, one: Output, *, shown: bool = False) -> Tree
     speed, tree = result.speed, {}
     for order, word in enumerate(RATES, start=1):
         peak, (per_rad, per_s) = measures.size(order), one.rate_keys(order)
-        seen, label, place = shown and order == 1, f"largest {word} of {one.stem}", _place(peak)
+        seen, label = shown and order == 1, f"largest {word} of {one.stem}"
+        place, at = _where(measures, peak)
         told = seen and speed is None
         tree[f"{word}_{per_rad}"] = Fact(peak.value, label, place=place, shown=told, noise=1e-9)
         if speed is not None:
             value = peak.value * speed**order
             tree[f"{word}_{per_s}"] = Fact(value, label, place=place, shown=seen, noise=1e-9)
-        tree[f"{word}_at_deg"] = _DEG * peak.place
+        tree[f"{word}_at_deg"] = at
     return tree
 
 

@@ -14,7 +14,7 @@ from gearcam.base.errors import Adjustment, InfeasibleError
 from gearcam.base.numerals import formatted
 from gearcam.designs.design import document_of, value_at
 from gearcam.linkages.chain import HoistChain
-from gearcam.linkages.closing import NotClosingError
+from gearcam.linkages.closing import Closing, NotClosingError
 from gearcam.linkages.elements import Dyad, Element
 from gearcam.linkages.linkage import Linkage
 
@@ -38,8 +38,14 @@ def refusal(design: MechanismDesign, error: NotClosingError) -> InfeasibleError:
     what = f"{name} does not close over the whole range: {_ranges(found.ranges)}"
     if found.least > -1e-9:
         at = _in_degrees(found.place)
-        what = f"{name} is singular at {at} deg: {_singular(element)} there"
+        what = f"{name} is singular at {at} deg: {_singular(found)} there"
     where = f"{title}[{number}]"
+    if error.resolved:
+        at = _in_degrees(found.unresolved.place if found.unresolved else found.place)
+        own, least = (_rest(element, one) for one in error.resolved)
+        what = f"{name} is nearly singular at {at} deg: {_singular(found)} there but for {own}"
+        note = f"its motion is resolved from {least} on; 0 is singular"
+        return InfeasibleError(what, where=where, nearest=note)
     if not error.nearest:
         return InfeasibleError(what, where=where)
     keyed = [_keyed(where, one) for one in error.nearest]
@@ -128,14 +134,24 @@ def _angle_within_wider(chain: HoistChain, side: int, linkage: Linkage, q: float
     return None
 
 
-def _singular(element: Element) -> str:
+def _rest(element: Element, left: float) -> str:
+    """Return as text how far a dyad is from where it is singular, mm or rad."""
+    if isinstance(element, Dyad) and element.type == "TRT":
+        return f"{formatted(math.degrees(left), 3)} deg"
+    return f"{formatted(left, 3)} mm"
+
+
+def _singular(found: Closing) -> str:
     """Return how the parts of a dyad stand where it is singular."""
+    element = found.element
     if not isinstance(element, Dyad) or element.type == "TRT":
         return "its guides are parallel"
+    ends = f"{element.first} and {element.second}"
+    if found.meets:
+        return f"{ends} meet"
     if not element.type.startswith("RTR"):
         return "its members are in line"
     arm = element.lengths.second if element.type == "RTR1" else element.lengths.first
-    ends = f"{element.first} and {element.second}"
     if not arm * math.sin(element.lengths.beta):
         return f"{ends} meet"
     return f"the guide is at right angles to the way between {ends}"

@@ -483,3 +483,56 @@ def test_tables_are_changed_by_their_numbers(key: str, allowed: str, hint: str) 
 def test_all_drives_are_named(profile: str, called: str) -> None:
     result = gc.build(gc.load(f"profiles/{profile}.toml"))
     assert result.facts.headline[0] == called
+
+
+def pushed() -> Any:
+    """Return a machine whose slide a cam pushes straight up, with a dwell over the turn's end."""
+    motion = [
+        {"type": "rise", "law": "cycloidal", "angle_deg": 120, "lift_mm": 10},
+        {"type": "return", "law": "cycloidal", "angle_deg": 180},
+        {"type": "dwell", "angle_deg": 60},
+    ]
+    plate = {
+        "kind": "cam", "name": "plate", "motion": motion,
+        "follower": {"type": "roller", "roller_radius_mm": 6},
+        "cam": {"prime_radius_mm": 30, "thickness_mm": 12},
+    }  # fmt: skip
+    return built(
+        {
+            "drive": [{"name": "k", "cam": plate, "speed_rpm": 100}],
+            "slide": [{"name": "st", "on": "k.follower", "joint": "A"}],
+            "output": {"files": ["csv"], "outputs": ["A"]},
+        }
+    )
+
+
+def test_dead_centers_are_within_the_range() -> None:
+    facts = pushed().facts
+    assert facts["outputs.A_y.dead_centers_deg"] == [120.0, 300.0]
+
+
+def test_an_output_that_does_not_move_has_no_places() -> None:
+    facts = pushed().facts
+    still, moves = facts["outputs.A_x"], facts["outputs.A_y"]
+    assert {value for key, value in still.items() if not key.endswith("_deg")} == {0.0}
+    assert not [key for key in still if key.endswith("_deg")]
+    assert {"velocity_at_deg", "least_at_deg"} <= set(moves)
+    (velocity,) = (one for one in facts.shown() if one.meaning == "largest velocity of A_x")
+    assert (velocity.value, velocity.place) == (0.0, "")
+
+
+def test_a_kite_too_near_its_change_point_is_told_what_is_resolved() -> None:
+    def kite(base: float) -> Document:
+        dyad = {
+            "type": "RRR", "from": "B", "to": "D", "joint": "C", "members": ["coupler", "rocker"],
+            "lengths_mm": [90, 90],
+        }  # fmt: skip
+        ground = [{"name": "D", "at_mm": [base, 0]}]
+        return output("rocker.angle") | {"joint": ground, "dyad": [dyad], "point": []}
+
+    error = refused(kite(40.000000001))
+    assert error.what == "C is nearly singular at 0 deg: B and D meet there but for 1e-09 mm"
+    (least,) = re.findall(r"resolved from ([0-9.e-]+) mm on", error.nearest)
+    found = built(kite(40.0 + float(least))).facts["outputs.rocker"]
+    assert found["velocity_rad_per_rad"] == pytest.approx(-40.0 / float(least), rel=1e-6)
+    assert refused(kite(40.0)).what == "C is singular at 0 deg: B and D meet there"
