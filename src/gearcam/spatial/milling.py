@@ -277,11 +277,13 @@ class _Mill:
         cam = self.cam
         if self.spare < _SAME:
             return [[((side, 0.0),)] for side in (cam.sides if cam.apart else cam.sides[:1])]
-        if cam.apart or len(cam.sides) == 1:
-            return [[((side, 1.0),)] for side in cam.sides]
         radius = cam.tool.radius_at(cam.floor) - self.spare
         count = 1 + max(1, math.ceil(self.spare / (_OVERLAP * radius) - _SAME))
-        return [[((1, share), (-1, 1.0 - share)) for share in np.linspace(0.0, 1.0, count)]]
+        # the whole way of each roller is cut, also beside a single wall
+        return [
+            [((side, share), (-side, 1.0 - share)) for share in np.linspace(0.0, 1.0, count)]
+            for side in (cam.sides if cam.apart else cam.sides[:1])
+        ]
 
     def layers(self, most: float, tolerance: float) -> list[_Layer]:
         """Return the passes in depth: none deeper than `most`, rests within the tolerance."""
@@ -359,11 +361,11 @@ class _Mill:
 
     def _finished(self, lane: Lane, layer: _Layer) -> tuple[tuple[int, ...], float]:
         """Return the sides of the walls that become true in a turn, and up to which place."""
+        sides = (lane[0][0],) if self.cam.apart else self.cam.sides
         if self.spare >= _SAME:
-            return tuple(side for side, share in lane if share == 1.0), layer.high
+            return tuple(side for side, share in lane if share == 1.0 and side in sides), layer.high
         if layer.low > round(self.cam.floor, DECIMALS[2]):
             return (), layer.high  # the last pass makes the whole wall
-        sides = (lane[0][0],) if self.cam.apart else self.cam.sides
         return sides, self.cam.outer_radius
 
     def center(self, theta: Array, side: int) -> Array:

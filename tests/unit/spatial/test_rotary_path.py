@@ -216,13 +216,29 @@ def test_a_path_that_is_10_um_off_is_found(name: str, axis: int) -> None:
     assert bool(-found.min() > facts["cut_mm"]) is (axis != 2 or bool(case.half_angle))
 
 
-@pytest.mark.parametrize("diameter", few([4.0, 6.0, 8.0, 11.0], 3))
-def test_the_middle_of_the_groove_is_cut(diameter: float) -> None:
-    result = gc.build(design(tool={"diameter_mm": diameter}, output={"path_tolerance_mm": 0.02}))
-    places = program_of(result).densely(0.5)
+@pytest.mark.parametrize(
+    ("diameter", "cut"),
+    few(
+        [
+            (11.0, {"walls": "lower"}),
+            (4.0, {}),
+            (6.0, {"walls": "upper"}),
+            (11.0, {}),
+            (9.0, {"walls": "rib", "rib_mm": 14.0}),
+            (6.0, {}),
+            (8.0, {}),
+        ],
+        3,
+    ),
+)
+def test_the_whole_way_of_the_roller_is_cut(diameter: float, cut: dict[str, Any]) -> None:
+    more = {"tool": {"diameter_mm": diameter}, "output": {"path_tolerance_mm": 0.02}, "cam": cut}
+    places = program_of(gc.build(design(**more))).densely(0.5)
     theta = np.radians(np.arange(0.0, 360.0, 3.3))
     _, z = straight(theta)
-    for x, across in ((29.0, 0.0), (35.0, 0.0), (35.0, 2.0), (35.0, -2.0), (39.0, 4.0)):
+    # of the rollers of a rib the lower one, which makes the upper wall
+    z = z - 0.5 * (16.0 + cut.get("rib_mm", -16.0))
+    for x, across in ((29.0, 0.0), (35.0, 7.5), (35.0, -7.5), (31.0, -4.0), (39.0, 4.0)):
         up = z + across * math.cos(math.radians(38.0))
         beside = across * math.sin(math.radians(38.0))
         c, s = np.cos(theta), np.sin(theta)

@@ -91,7 +91,8 @@ def _work(result: SpatialCamResult) -> Iterator[str]:
     yield f"Blank: cylinder of {outer} mm, length {length} mm{hollow}."
     if size.walls != "both":
         floor = formatted(2.0 * cam.floor)
-        yield f"Only the walls are cut: turn the rest down to {floor} mm before."
+        yield "Only the way of the roller is cut."
+        yield f"What is beyond it may be turned down to {floor} mm."
 
 
 def _zero(result: SpatialCamResult) -> Iterator[str]:
