@@ -135,12 +135,13 @@ def _cylinder(d: Draw, size: float, depth: float, height: float, radius: float) 
         "length_mm": short(height + 2.2 * (radius + margin)),
         "groove_depth_mm": short(depth),
     }
-    if d.chance(0.5):
-        given["roller_clearance_mm"] = short(radius * d.log(1e-3, 0.05))
+    clearance = short(radius * d.log(1e-3, 0.05)) if d.chance(0.5) else 0.0
     if d.chance(0.5):
         given["floor_clearance_mm"] = short(depth * d.even(0.0, 0.1))
     if d.chance(0.3):
         given["walls"] = d.pick(["upper", "lower", "both"])
+    if clearance and given.get("walls", "both") == "both":
+        given["roller_clearance_mm"] = clearance
     if d.chance(0.3):
         given["rotation"] = d.pick(["cw", "ccw"])
     return given

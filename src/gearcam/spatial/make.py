@@ -79,7 +79,9 @@ def make_cylinder(
         clearance=cam.roller_clearance,
         sides=WALLS[cam.walls],
         clockwise=cam.clockwise,
-        apart=0.0 if cam.rib is None else cam.rib + 2.0 * follower.roller_radius,
+        apart=0.0
+        if cam.rib is None
+        else cam.rib + 2.0 * follower.roller_radius + cam.roller_clearance,
     )
     _demand_cone(made, follower, cam)
     _demand_rib(made, follower)
@@ -162,10 +164,10 @@ def _demand_rib(cam: SpatialCam, follower: SpatialFollower) -> None:
     if follower.oscillating:
         what = "two rollers on an arm do not embrace a rib"
         raise InfeasibleError(what, where="cam.walls", nearest='a translating follower, or "both"')
-    least, rib = cam.least_rib, cam.apart - 2.0 * follower.roller_radius
+    least, rib = cam.least_rib, cam.apart - 2.0 * cam.tool.radius
     if least is not None and least.value <= 0.0:
         width = 2.0 * cam.tool.radius_at(least.x)
-        most = cam.apart * width / (least.value + width) - 2.0 * follower.roller_radius
+        most = cam.apart * width / (least.value + width) - 2.0 * cam.tool.radius
         what = f"the rollers cut through the rib at {formatted(math.degrees(least.theta), 5)} deg"
         raise beyond_limit(what, "cam.rib_mm", rib, most, near=shortened(ABOVE * most, 1.0))
 

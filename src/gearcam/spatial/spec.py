@@ -142,7 +142,7 @@ class CylinderSpec(ShortRepr):
         default=0.0,
         ge=0,
         le=100,
-        doc="width of a groove minus the roller's diameter",
+        doc="width of a groove minus the roller's diameter; of a rib, the play of its two rollers",
     )
     floor_clearance: float = param(
         LENGTH, default=0.0, ge=0, le=100, doc="gap between the floor and the end of the roller"
@@ -167,6 +167,10 @@ class CylinderSpec(ShortRepr):
     rules = (
         only_with(("rib",), "walls", "rib", why="is given, but the walls are {}"),
         needed_with(("rib",), "walls", "rib", why="is missing for a {}"),
+        only_with(
+            ("roller_clearance",), "walls", "both", "rib",
+            why="the follower rests on the {} wall, without clearance",
+        ),
         below(
             "groove_depth", "outer_diameter", why="the groove would cut through the cylinder",
         ),

@@ -54,7 +54,7 @@ def test_the_nearest_value_is_named_and_can_be_built(
         {"cam.roller_clearance_mm": 0.4},
         {"cam.floor_clearance_mm": 3},
         {"follower.roller_length_mm": 9, "cam.floor_clearance_mm": 0},
-        {"cam.walls": "upper"},
+        {"cam.walls": "upper", "cam.roller_clearance_mm": 0},
     ],
     ids=["groove", "wide", "high floor", "short roller", "one wall"],
 )
@@ -94,6 +94,25 @@ def test_the_largest_angle_and_depth_of_a_cone_are_those_of_its_triangle() -> No
         _ = gc.build(DESIGN.with_(touching)).cam
     on_the_axis = gc.build(DESIGN.with_(sizes | {"follower.cone_deg": "apex"})).cam
     assert on_the_axis.roller.radius_at(43.0) == pytest.approx(4 * 43 / 65, rel=1e-12)
+
+
+def test_a_single_wall_has_no_clearance() -> None:
+    """It would stand off the roller; the follower is held on it."""
+    for wall in ("upper", "lower"):
+        with pytest.raises(DesignError, match=f"rests on the {wall} wall, without clearance"):
+            DESIGN.with_({"cam.walls": wall, "cam.roller_clearance_mm": 0.4})
+
+
+@pytest.mark.parametrize("clearance", [0.0, 0.4])
+def test_a_rib_is_as_thick_as_it_is_given(clearance: float) -> None:
+    rib = {"cam.walls": "rib", "cam.rib_mm": 9, "cam.roller_clearance_mm": clearance}
+    cam = gc.build(DESIGN.with_(rib)).cam
+    at_rest = np.array([cam.program.period - 1e-3])
+    # the roller below the rib has its upper wall there
+    (below,), (above,) = (
+        wall.contact(at_rest, np.array([[cam.outer_radius]])).points[0, :, 2] for wall in cam.walls
+    )
+    assert above - below == pytest.approx(9.0, abs=1e-9)
 
 
 def test_a_rib_that_its_rollers_cut_through() -> None:
