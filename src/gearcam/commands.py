@@ -179,7 +179,9 @@ def studied(study: Study, design: Design, options: Options) -> Any:
     """
     kinds = {kind.name: kind for kind in KINDS.values() if study.name in kind.studies}
     if design.kind not in kinds:
+        own = as_written(KINDS[design.kind])
         message = f"this command is for designs of {' or '.join(map(as_written, kinds.values()))}"
+        message += f", not for {own}" if " with " in own else ""
         raise DesignError([Problem(message, file=design.source, key="kind", value=design.kind)])
     settings = {f"{study.table}.{key}": one for key, one in options.items() if one is not None}
     changed = design.with_(settings) if settings else design

@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 
+from arch import rules
 from claims.motion import MOTION_CLAIMS
 from gearcam.base.errors import DesignError
 from gearcam.cams.spec import CamSpec, FollowerSpec
@@ -21,6 +22,7 @@ from gearcam.designs.template import template
 from gearcam.designs.validate import faults_of
 from gearcam.kinds.cam.design import CamDesign, CamOutputSpec
 from gearcam.kinds.cam.motion import phase_table, rise_table, turn_tables
+from gearcam.kinds.cam.studies import FORCES
 from gearcam.kinds.cam.tables import CamBlank
 from gearcam.kinds.gear_pair.studies import MESH
 from gearcam.laws.motion.base import MOTION_LAWS
@@ -195,6 +197,9 @@ def test_a_design_made_in_python_meets_the_same_rules() -> None:
     assert not design.blank.timing_marks
     with pytest.raises(DesignError, match='for designs of kind = "gear-pair"'):
         studied(MESH, design, {"steps": 3})
+    drum = load(rules.ROOT / "profiles" / "cylinder_cam.toml")
+    with pytest.raises(DesignError, match=r'not for kind = "cam" with cam\.form = "cylinder"'):
+        studied(FORCES, drum, {})
 
 
 @pytest.mark.parametrize("kind", list(KINDS))
