@@ -142,7 +142,7 @@ class CylinderSpec(ShortRepr):
         default=0.0,
         ge=0,
         le=100,
-        doc="width of a groove minus the roller's diameter; of a rib, the play of its two rollers",
+        doc="width of a groove minus the roller's diameter; of a rib, of its two rollers together",
     )
     floor_clearance: float = param(
         LENGTH, default=0.0, ge=0, le=100, doc="gap between the floor and the end of the roller"
