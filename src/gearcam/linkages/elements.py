@@ -372,7 +372,7 @@ class Dyad(ShortRepr, Element):
         near = np.minimum(before, -behind) <= self.reach
         past = np.where(near, np.where(before <= -behind, before, behind), np.nan)
         if self.keeps == BRANCH:
-            # from another turn an angle comes with rounding; in its own both sides are told apart
+            # an angle of another turn has rounding; one of this turn is before or behind, exactly
             at = np.where(turns == 0.0, 0.0, _AT)
             return Passage(np.where(past < -at, -self.sign, self.sign), past)
         # next to a change point the sign behind it, also before it, where the root is negative

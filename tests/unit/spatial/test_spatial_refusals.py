@@ -201,7 +201,7 @@ NAMES = ("barrel", "drum", "cylindrical", "barrel-cam", "cylinder-cam", "Barrel"
 @pytest.mark.parametrize("word", NAMES)
 @pytest.mark.parametrize("key", ["form", "kind"])
 def test_other_names_are_answered_and_the_rest_is_read_as_meant(key: str, word: str) -> None:
-    """No key of a cylinder cam is told to be missing, unknown or in the wrong place."""
+    """No key of a cylinder cam is called missing, unknown or in the wrong place."""
     text = (PROFILES / "cylinder_cam.toml").read_text("utf-8")
     old = {"form": 'form = "cylinder"', "kind": 'kind = "cam"'}[key]
     assert old in text

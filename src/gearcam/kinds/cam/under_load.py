@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from gearcam.numeric.arrays import Array, Ints
 
 _TOLD: Final = 0.1
-"""Work over the largest, per step, above which an efficiency is told: near rest it is always 0."""
+"""Least share of the largest power at which the efficiency counts: near rest it is always 0."""
 
 _CLOSE: Final = 1e-12
 """Distance of both sides of a change of what carries, over the turn or travel."""
@@ -177,8 +177,8 @@ def _beside(
 ) -> Callable[[Array, Ints], Statics]:
     """Return the forces at places in brackets, each on the way of the known position in `at`.
 
-    Before them are those of the largest load, and of the most work: what is rounding, and what is
-    near rest, is told by their share of these.
+    The first two are those at the largest load and at the largest power, with which rounding and
+    rest are compared.
 
     Parameters
     ----------

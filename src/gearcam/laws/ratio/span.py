@@ -46,7 +46,7 @@ NO_DWELL: Final = (
     "a pair of wheels cannot stand still while its driver turns: a cam, a Geneva wheel or a "
     "linkage with a dwell can"
 )
-"""What is told of a ratio of 0."""
+"""The message on a ratio of 0."""
 
 LOBES: Final = "lobes of driver and driven wheel; default: tooth counts in lowest terms"
 """Meaning of the key ``lobes``."""

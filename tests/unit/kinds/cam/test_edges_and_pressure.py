@@ -1,4 +1,4 @@
-"""The contact pressure is unbounded where the follower rides on an edge, and is told so."""
+"""The contact pressure is unbounded where the follower rides on an edge, and a finding says so."""
 
 from __future__ import annotations
 
