@@ -24,6 +24,7 @@ from gearcam.cams.spec import FITTED, FOLLOWED, KIND, PRECISION
 from gearcam.cams.wall import PitchMotion, Wall
 from gearcam.laws.displacement import Jump
 from gearcam.laws.motion.base import MOTION_LAWS
+from gearcam.mechanics.clearance import without_clearance
 
 if TYPE_CHECKING:
     from gearcam.cams.follow import Followed
@@ -378,13 +379,8 @@ def no_clearance(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     Looks at: `cam.roller_clearance_mm`; two rollers in steps of a groove each touch one wall and
     need none.
     """
-    if cam.clearance is not None and cam.clearance <= 0.0:
-        yield Remark(
-            "A roller has no clearance between its walls: it touches both, and they turn it in "
-            "opposite directions. cam.roller_clearance_mm gives it some.",
-            "between the walls",
-            0.0,
-        )
+    if cam.clearance is not None:
+        yield from without_clearance(cam.clearance)
 
 
 @check("face-width", kind=KIND, severity="note")

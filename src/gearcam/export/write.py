@@ -26,7 +26,7 @@ import re
 import shutil
 import tempfile
 import time
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from itertools import count
 from pathlib import Path
@@ -275,7 +275,7 @@ def _fill(stage: Path, folder: Path, files: Mapping[str, bytes]) -> None:
             (stage / name).write_bytes(content)
 
 
-def _move(stage: Path, folder: Path, files: Collection[str], outdated: Sequence[str]) -> None:
+def _move(stage: Path, folder: Path, files: Mapping[str, bytes], outdated: Sequence[str]) -> None:
     """Move outdated and old files away and new ones into place, or undo all if that fails."""
     old = stage / ".old"
     moves: list[tuple[Path, Path]] = []
@@ -290,7 +290,7 @@ def _move(stage: Path, folder: Path, files: Collection[str], outdated: Sequence[
         # if case does not matter, a outdated name may be that of a new file: outdated ones go first
         for name in (*outdated, *sorted(files, key=SUMMARY.__eq__)):
             if os.path.lexists(folder / name):
-                kept = aside(folder / name, (stage / name).read_bytes()) if name in files else None
+                kept = aside(folder / name, files[name]) if name in files else None
                 move(folder / name, kept or old / name)
             if name in files:
                 move(stage / name, folder / name)

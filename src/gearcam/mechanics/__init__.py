@@ -4,7 +4,7 @@ Each module has a table of design files, which all kinds of design share: they n
 their tables, and none reads such keys by itself. `drive` has the speed of the driver, `load` given
 forces and torques, `spring` and `mass` (with gravity) what a moving member carries, `friction` the
 coefficients with the sizes of bearings, `material` elasticity and strength; `hertz` is the pressure
-between two bodies.
+between two bodies, `clearance` what is said of a roller without any.
 
 Inside the program speeds are in rad/s (of a driver that slides mm/s), forces in N, torques in N mm,
 masses in kg and stresses in MPa. Units that mix with mm and s are turned where they are used.

@@ -611,20 +611,17 @@ class Result(NotebookView):
         def complete(before: Mapping[str, str]) -> dict[str, bytes]:
             # a build keeps what commands of studies have written for the same design
             studied = studied_files(folder)
-            kept = {
-                one: old
-                for one, old in before.items()
-                if keep or (one in studied and old == version)
-            }
+            current = {one: old for one, old in before.items() if old == version}
+            kept = before if keep else {one: version for one in current if one in studied}
             hashes = {**kept, **dict.fromkeys(contents, version)}
             outdated = {one: old for one, old in hashes.items() if old != version}
+            studied &= kept.keys() - contents.keys()
+            if keep:
+                studied |= contents.keys()
             about: dict[str, Any] = {
-                "files": {one: version for one in hashes if one not in outdated}
+                "files": {one: old for one, old in hashes.items() if old == version}
             }
             about |= {"outdated": outdated} if outdated else {}
-            studied = (studied & kept.keys()) - contents.keys() | (
-                contents.keys() if keep else set()
-            )
             about |= {"studied": sorted(studied)} if studied else {}
             summary.update(self.document(facts, findings, about))
             places = {one: aside(folder / one, content) for one, content in contents.items()}

@@ -12,9 +12,10 @@ from typing import Final
 from gearcam.base.findings import Limits, Remark, check, limit_of
 from gearcam.base.numerals import formatted, shortened
 from gearcam.base.quantities import ANGLE, LENGTH, Param
+from gearcam.mechanics.clearance import without_clearance
 from gearcam.spatial.cam import SpatialCam
 from gearcam.spatial.guides import Straight, SwingArm
-from gearcam.spatial.remarks import at, no_clearance, shocks, smaller_roller, thin_rib
+from gearcam.spatial.remarks import at, shocks, smaller_roller, thin_rib
 from gearcam.spatial.surface import Cylinder
 from gearcam.spatial.trimmed import lost_lift
 
@@ -192,7 +193,7 @@ def clearances(subject: Subject, limit: float) -> Iterator[Remark]:  # noqa: ARG
     """
     cam, _ = subject
     between = cam.clearance if len(cam.sides) > 1 else math.inf
-    yield from no_clearance(between, cam.inner - cam.floor)
+    yield from without_clearance(between, cam.inner - cam.floor)
 
 
 @check(

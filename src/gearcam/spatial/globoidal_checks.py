@@ -12,8 +12,9 @@ from typing import Final
 from gearcam.base.findings import Remark, check
 from gearcam.base.numerals import formatted, shortened
 from gearcam.base.quantities import ANGLE, LENGTH, Param
+from gearcam.mechanics.clearance import without_clearance
 from gearcam.spatial.globoidal import GloboidalCam
-from gearcam.spatial.remarks import no_clearance, shocks, smaller_roller, thin_rib
+from gearcam.spatial.remarks import shocks, smaller_roller, thin_rib
 
 KIND: Final = "globoidal cams"
 """Their group."""
@@ -143,7 +144,7 @@ def clearances(subject: Subject, limit: float) -> Iterator[Remark]:  # noqa: ARG
     """
     cam, _ = subject
     gap = cam.floor - math.hypot(cam.reach, cam.roller.radius)
-    yield from no_clearance(cam.clearance, gap)
+    yield from without_clearance(cam.clearance, gap)
 
 
 @check(
