@@ -12,7 +12,6 @@ Depends on nothing.
 from __future__ import annotations
 
 import math
-from decimal import Decimal
 from typing import Any, Final
 
 ULPS: Final = 2
@@ -93,6 +92,8 @@ def rounds_to(value: float, written: float, digits: int = 5) -> bool:
     digits : int
         Least number of significant digits in which they must agree.
     """
+    from decimal import Decimal
+
     number = Decimal(repr(exact(written))).normalize()
     count = max(digits, len(number.as_tuple().digits))
     return abs(value - written) <= 0.5 * 10.0 ** (number.adjusted() + 1 - count)
