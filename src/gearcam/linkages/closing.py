@@ -29,6 +29,9 @@ _FOUND: Final = 1e-14
 _SAME: Final = 1e-7
 """Change points closer than this are one, rad."""
 
+_NEARLY: Final = 1e-6
+"""Share from which no extreme can be one of 0, however its place is rounded."""
+
 _ON_KNOT: Final = 1e-11
 """Distance of a change point from a knot by rounding, rad."""
 
@@ -218,7 +221,9 @@ def closing(linkage: Linkage, element: Element) -> Closing | None:
 
     extremes = [
         _polished(linkage, element, number, places)
-        for number, (places, _) in enumerate(extremes_of_each(rooms, linkage.knots))
+        if np.abs(values).min() < _NEARLY
+        else (places, values)
+        for number, (places, values) in enumerate(extremes_of_each(rooms, linkage.knots))
     ]
     found = [
         (places, values, _crossings(lambda q, k=k: rooms(q)[0, k], places, values))
