@@ -208,7 +208,7 @@ def closing(linkage: Linkage, element: Element) -> Closing | None:
     -------
     Closing, or None if it always closes
     """
-    if not element.room(linkage.at(linkage.knots[:1], 1, element)):
+    if not element.room(linkage.at(linkage.knots[:1], 0, element)):
         return None
 
     def rooms(q: Array) -> Array:
@@ -225,17 +225,19 @@ def closing(linkage: Linkage, element: Element) -> Closing | None:
         else (places, values)
         for number, (places, values) in enumerate(extremes_of_each(rooms, linkage.knots))
     ]
-    found = [
-        (places, values, _crossings(lambda q, k=k: rooms(q)[0, k], places, values))
-        for k, (places, values) in enumerate(extremes)
-    ]
-    lowest, shares, _ = min(found, key=lambda one: one[1].min())
+    lowest, shares = min(extremes, key=lambda one: one[1].min())
+    ranges = (linkage.span,)
+    if shares.min() < 0.0:
+        crossed = [
+            _crossings(lambda q, k=k: rooms(q)[0, k], *one) for k, one in enumerate(extremes)
+        ]
+        ranges = _ranges(linkage, element, np.concatenate(crossed))
     touching = np.concatenate([places[values == 0.0] for places, values in extremes])
     return Closing(
         element,
-        tuple(float(values.min()) for _, values, _ in found),
+        tuple(float(values.min()) for _, values in extremes),
         float(lowest[shares.argmin()]),
-        _ranges(linkage, element, np.concatenate([one[2] for one in found])),
+        ranges,
         _apart(touching, linkage),
         narrow_places(left, [_minima(*one) for one in extremes], linkage.knots),
     )

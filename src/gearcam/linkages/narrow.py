@@ -13,7 +13,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from gearcam.linkages.linkage import in_cycle
-from gearcam.numeric.arrays import Array, apart, away, divided
+from gearcam.numeric.arrays import Array, Ints, apart, away, divided
 from gearcam.numeric.piecewise import LEAST_PLACES, places_between
 
 _STEPS: Final = 3.0
@@ -70,13 +70,10 @@ def narrow_places(
     -------
     tuple of Narrow
     """
-    within = _seen(knots)
-    return tuple(
-        place
-        for number, low in enumerate(lows)
-        for place in _zeros(low, left(low)[:, number], number)
-        if 0.0 < place.width < within
-    )
+    within, places = _seen(knots), np.concatenate(lows)
+    number = np.repeat(np.arange(len(lows)), [low.size for low in lows])
+    found = left(places)[:, number, np.arange(places.size)]
+    return tuple(one for one in _zeros(places, found, number) if 0.0 < one.width < within)
 
 
 def _seen(knots: Array) -> float:
@@ -122,7 +119,7 @@ def with_narrow_places(found: Sequence[Narrow], knots: Array, *, closed: bool) -
     return np.union1d(even, away(inside, even, _APART))
 
 
-def _zeros(places: Array, left: Array, number: int) -> Iterator[Narrow]:
+def _zeros(places: Array, left: Array, number: Ints) -> Iterator[Narrow]:
     """Yield the zeros next to places: the real part, and how far off it is.
 
     The zero of the Taylor polynomial of second order: a complex one next to a minimum, a real one
@@ -132,8 +129,8 @@ def _zeros(places: Array, left: Array, number: int) -> Iterator[Narrow]:
     with np.errstate(invalid="ignore", divide="ignore"):
         root = np.sqrt(slope * slope - 2.0 * value * bend + 0j)
         zeros = -2.0 * value / (slope + np.where(slope < 0.0, -root, root))
-    for place, zero in zip(places, zeros, strict=True):
+    for place, zero, which in zip(places.tolist(), zeros.tolist(), number.tolist(), strict=True):
         if zero.imag == 0.0:
-            yield Narrow(float(place), abs(zero), number, passed=False)
+            yield Narrow(place, abs(zero), which, passed=False)
         else:
-            yield Narrow(float(place + zero.real), abs(zero.imag), number, passed=True)
+            yield Narrow(place + zero.real, abs(zero.imag), which, passed=True)
