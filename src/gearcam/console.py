@@ -78,18 +78,22 @@ def all_lines(written: BuildOutput) -> Iterator[str]:
 
 
 def written_lines(written: BuildOutput) -> Iterator[str]:
-    """Yield the files written, with their sizes, and those removed or outdated."""
+    """Yield the files written, with their sizes, and those kept, removed or outdated."""
     folder = written.directory
     yield f"written to {folder}"
-    width = max(map(len, (*written.files, *written.former, *written.removed)), default=0)
+    names = (*written.files, *written.former, *written.kept, *written.removed)
+    width = max(map(len, names), default=0)
     for name in written.files:
         yield f"  {name:<{width}}  {_size(folder / name):>9}"
     for name, before in written.former.items():
         yield f"  {name:<{width}}  kept: what {before} was before"
+    for name in written.kept:
+        yield f"  {name:<{width}}  kept: no longer part of this build, but you may have edited it"
     for name in written.removed:
         yield f"  {name:<{width}}  removed: no longer part of this build"
     if outdated := ", ".join(written.summary.get("outdated", ())):
         words = "made from another version of the design; build again to renew or remove them"
+        words += " (what you may have edited is kept)"
         yield wrapped(f"outdated: {outdated}: {words}", first="")
 
 

@@ -96,7 +96,7 @@ def _save(campaign: Campaign, folder: Path) -> None:
 
 def _saved(found: Catch, folder: Path) -> Path:
     """Write a failing design, headed by a comment on its failure, and return its path."""
-    from gearcam.export.write import write_all
+    from gearcam.export.write import writing
 
     first = next(iter(found.files))
     words = visible(" ".join(found.failure.words.split()))  # no control characters in comments
@@ -105,5 +105,6 @@ def _saved(found: Catch, folder: Path) -> Path:
         name: ((head if name == first else "") + text).encode()
         for name, text in found.files.items()
     }
-    write_all(folder, lambda _: contents, keep=True)
+    with writing(folder) as replace:
+        replace(contents)
     return folder / first

@@ -12,7 +12,7 @@ from gearcam.compare.page import PAGE, document
 from gearcam.compare.table import lines
 from gearcam.compare.variants import MOST, Variant, settings_of, variants_of
 from gearcam.console import infeasible_text, say
-from gearcam.export.write import write_all
+from gearcam.export.write import writing
 from gearcam.report.page import page
 
 
@@ -50,7 +50,8 @@ def _compare(variants: Sequence[Variant], options: Options) -> int:
         designs = dict.fromkeys(one.result.design.name for one in variants)
         title = ", ".join(designs) if len(designs) > 1 else f"{next(iter(designs))}, variants"
         content = page(document(variants, title))
-        write_all(options["output"], lambda _: {PAGE: content}, keep=True)
+        with writing(options["output"]) as replace:
+            replace({PAGE: content})
         say(f"written to {Path(options['output']) / PAGE}")
     if refused:
         return IMPOSSIBLE

@@ -2,25 +2,23 @@
 
 The folder is created if it is missing, and locked: a second build waits. All files are first
 written into a temporary folder in it; then old files are moved there and new ones into place, the
-summary last. If a move fails, all are undone; an interruption waits until the end. Files that the
-*previous summary* lists and the new one does not are *outdated* and removed, so that nobody cuts
-one. A design file is its user's, who may have edited it: none is removed, and one with another
-content gets a new name before it is replaced. Temporary folders of writers that were killed are
-removed by the next writer. Files are not forced to the disk (fsync, which would double the time of
-writing, 40 ms for eleven files), so a power failure may lose them.
+summary last. If a move fails, all are undone; an interruption waits until the end. Which old files
+are removed, and which get another name, is decided elsewhere (`gearcam.export.listing`). Temporary
+folders of writers that were killed are removed by the next writer. Files are not forced to the disk
+(fsync, which would double the time of writing, 40 ms for eleven files), so a power failure may lose
+them.
 
 A user's design file is *rewritten* in the same way, and keeps its permissions; links are followed.
 
 Refused: names with a path, impossible names, a folder that is a file or a broken link, a design's
 folder that is a link, waiting too long for another writer, and whatever the system refuses.
 
-Depends on errors, interrupts, numerals and reading only.
+Depends on errors, interrupts and numerals only.
 """
 
 from __future__ import annotations
 
 import errno
-import json
 import os
 import re
 import shutil
@@ -28,23 +26,17 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from itertools import count
+from functools import partial
 from pathlib import Path
-from typing import Any, Final
+from types import MappingProxyType
+from typing import Final
 
 from gearcam.base.errors import WriteError
 from gearcam.base.interrupts import unbroken
 from gearcam.base.numerals import formatted
-from gearcam.base.reading import read
 
 SUMMARY: Final = "summary.json"
 """The file that lists the others; replaced last."""
-
-DESIGN: Final = ".toml"
-"""End of the names of design files."""
-
-_LARGEST: Final = 10_000_000
-"""Largest size of a summary, bytes: a thousand times the usual size."""
 
 _PREFIX: Final = ".gearcam-"
 _SUFFIX: Final = ".tmp"
@@ -59,30 +51,26 @@ _PATIENCE: Final = 30.0
 _PAUSE: Final = 0.05
 """Seconds between two tries to lock the folder."""
 
-Make = Callable[[Mapping[str, str]], Mapping[str, bytes]]
-"""Returns contents by name, given the `previous_files` of the folder."""
+Replace = Callable[..., None]
+"""``replace(files, removed, renamed)`` replaces files of a folder, see `writing`."""
 
 
-def write_all(
-    directory: str | os.PathLike[str], make: Make, *, name: str = "", keep: bool = False
-) -> tuple[str, ...]:
-    """Write files into a folder, all or none, and remove outdated ones.
+@contextmanager
+def writing(directory: str | os.PathLike[str], name: str = "") -> Iterator[Replace]:
+    """Lock a folder, so that its files can be looked at and then replaced, all or none.
 
     Parameters
     ----------
     directory : path
         The folder; created if it does not exist.
-    make : callable
-        Returns plain file names and contents. ``summary.json`` among them lists the others.
     name : str
         Name of a folder in it for the files; it must not be a link.
-    keep : bool
-        Whether outdated files stay, as for a summary without a build.
 
-    Returns
-    -------
-    tuple of str
-        The outdated files that were removed.
+    Yields
+    ------
+    callable
+        ``replace(files, removed=(), renamed={})``: contents by plain name; names of old files that
+        are removed; new names, by those that they have, of old files that are replaced and kept.
 
     Raises
     ------
@@ -99,90 +87,15 @@ def write_all(
         raise WriteError(f"cannot write to {folder}: {words}")
     try:
         with _stage(folder) as stage:
-            before = previous_files(folder)
-            files = make(before)
-            _fill(stage, folder, files)
-            listed = _listed(files.get(SUMMARY, b""))
-            stay = before if keep else {**files, **listed}
-            outdated = [old for old in before if old not in stay]
-            with unbroken():
-                _move(stage, folder, files, outdated)
+            yield partial(_replace, stage, folder)
     except OSError as error:
         place = error.filename or folder
         raise WriteError(f"cannot write to {place}: {error.strerror or error}") from error
-    return tuple(outdated)
 
 
 def is_plain(name: str) -> bool:
     """Return whether a name is one of a file in the folder: no path, not hidden, not empty."""
     return bool(name) and not name.startswith(".") and not set(name) & set("/\\:\0")
-
-
-def previous_files(folder: str | os.PathLike[str]) -> dict[str, str]:
-    """Return the existing files that the summary in a folder lists, current and outdated.
-
-    Parameters
-    ----------
-    folder : path
-        A folder of an earlier build.
-
-    Returns
-    -------
-    dict of str to str
-        By plain name the hash of the design that a file was made from; without the summary itself
-        and design files. Empty where there is no summary that can be read, or it is not one of
-        gearcam's.
-    """
-    place = Path(folder)
-    return {
-        name: made
-        for name, made in _listed(_summary(place)).items()
-        if isinstance(made, str) and is_plain(name) and name != SUMMARY and _is_there(place / name)
-        if not name.lower().endswith(DESIGN)
-    }
-
-
-def studied_files(folder: str | os.PathLike[str]) -> frozenset[str]:
-    """Return the names in a folder's summary of what commands of studies have written."""
-    content = _content(_summary(Path(folder)))
-    names = content.get("studied")
-    given = names if isinstance(names, list) else ()
-    return frozenset(name for name in given if isinstance(name, str))
-
-
-def _summary(folder: Path) -> bytes:
-    """Return the summary in a folder; empty if there is none that can be read."""
-    try:
-        return read(folder / SUMMARY, _LARGEST)
-    except OSError:
-        return b""
-
-
-def _content(summary: bytes) -> dict[str, Any]:
-    """Return the content of a summary; empty if it is not one of gearcam's."""
-    try:
-        content = json.loads(summary)
-    except (ValueError, RecursionError):
-        return {}
-    own = isinstance(content, dict) and isinstance(content.get("format"), int)
-    return content if own else {}
-
-
-def _listed(summary: bytes) -> dict[str, Any]:
-    """Return the files that a summary lists, current and outdated."""
-    content, found = _content(summary), dict[str, Any]()
-    for key in ("files", "outdated"):
-        listed = content.get(key)
-        found |= listed if isinstance(listed, dict) else {}
-    return found
-
-
-def _is_there(place: Path) -> bool:
-    """Return whether a listed name is a file or a link; False for impossible names."""
-    try:
-        return place.is_symlink() or place.is_file()
-    except OSError:
-        return False
 
 
 def _demand_possible(path: str | os.PathLike[str]) -> None:
@@ -262,8 +175,14 @@ def _naming(place: Path) -> Iterator[None]:
         raise OSError(error.errno, error.strerror, str(place)) from error
 
 
-def _fill(stage: Path, folder: Path, files: Mapping[str, bytes]) -> None:
-    """Write all files into the temporary folder."""
+def _replace(
+    stage: Path,
+    folder: Path,
+    files: Mapping[str, bytes],
+    removed: Sequence[str] = (),
+    renamed: Mapping[str, str] = MappingProxyType({}),
+) -> None:
+    """Replace the files of a folder; see `writing`."""
     wrong = [name for name in files if not is_plain(name)]
     if wrong:
         raise ValueError(f"not plain file names: {wrong}")
@@ -273,10 +192,18 @@ def _fill(stage: Path, folder: Path, files: Mapping[str, bytes]) -> None:
             raise IsADirectoryError(errno.EISDIR, "there is a folder of this name", str(target))
         with _naming(target):
             (stage / name).write_bytes(content)
+    with unbroken():
+        _move(stage, folder, sorted(files, key=SUMMARY.__eq__), removed, renamed)
 
 
-def _move(stage: Path, folder: Path, files: Mapping[str, bytes], outdated: Sequence[str]) -> None:
-    """Move outdated and old files away and new ones into place, or undo all if that fails."""
+def _move(
+    stage: Path,
+    folder: Path,
+    files: Sequence[str],
+    removed: Sequence[str],
+    renamed: Mapping[str, str],
+) -> None:
+    """Move old files away and new ones into place, or undo all if that fails."""
     old = stage / ".old"
     moves: list[tuple[Path, Path]] = []
 
@@ -287,11 +214,10 @@ def _move(stage: Path, folder: Path, files: Mapping[str, bytes], outdated: Seque
 
     try:
         old.mkdir()
-        # if case does not matter, a outdated name may be that of a new file: outdated ones go first
-        for name in (*outdated, *sorted(files, key=SUMMARY.__eq__)):
+        # if case does not matter, one that is removed may have the name of a new one: it goes first
+        for name in (*removed, *files):
             if os.path.lexists(folder / name):
-                kept = aside(folder / name, files[name]) if name in files else None
-                move(folder / name, kept or old / name)
+                move(folder / name, folder / renamed[name] if name in renamed else old / name)
             if name in files:
                 move(stage / name, folder / name)
     except BaseException:
@@ -299,27 +225,6 @@ def _move(stage: Path, folder: Path, files: Mapping[str, bytes], outdated: Seque
             with suppress(OSError):
                 target.replace(source)
         raise
-
-
-def aside(path: Path, content: bytes) -> Path | None:
-    """Return where an existing design file must go before it is replaced.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    content : bytes
-        What takes its place.
-
-    Returns
-    -------
-    Path or None
-        None if it is no design file, is not there, or has this content.
-    """
-    if path.suffix.lower() != DESIGN or not path.exists() or path.read_bytes() == content:
-        return None
-    names = (path.with_stem(f"{path.stem}.{number}") for number in count(1))
-    return next(name for name in names if not os.path.lexists(name))
 
 
 def write_new(path: str | os.PathLike[str], text: str) -> None:

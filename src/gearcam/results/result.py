@@ -602,39 +602,22 @@ class Result(NotebookView):
         """
         import json
 
-        from gearcam.export.write import SUMMARY, aside, studied_files, write_all
+        from gearcam.export.listing import planned
+        from gearcam.export.write import SUMMARY, writing
 
-        version, folder = self.design_hash, Path(directory) / self.design.name
-        summary: dict[str, Any] = {}
-        former: dict[str, str] = {}
-
-        def complete(before: Mapping[str, str]) -> dict[str, bytes]:
-            # a build keeps what commands of studies have written for the same design
-            studied = studied_files(folder)
-            current = {one: old for one, old in before.items() if old == version}
-            kept = before if keep else {one: version for one in current if one in studied}
-            hashes = {**kept, **dict.fromkeys(contents, version)}
-            outdated = {one: old for one, old in hashes.items() if old != version}
-            studied &= kept.keys() - contents.keys()
-            if keep:
-                studied |= contents.keys()
-            about: dict[str, Any] = {
-                "files": {one: old for one, old in hashes.items() if old == version}
-            }
-            about |= {"outdated": outdated} if outdated else {}
-            about |= {"studied": sorted(studied)} if studied else {}
-            summary.update(self.document(facts, findings, about))
-            places = {one: aside(folder / one, content) for one, content in contents.items()}
-            former.update({place.name: one for one, place in places.items() if place})
+        folder = Path(directory) / self.design.name
+        with writing(directory, self.design.name) as replace_files:
+            plan = planned(folder, contents, self.design_hash, keep=keep)
+            summary = self.document(facts, findings, plan.about)
             text = json.dumps(summary, indent=2, ensure_ascii=False, allow_nan=False)
-            return {**contents, SUMMARY: (text + "\n").encode()}
-
-        removed = write_all(directory, complete, name=self.design.name, keep=keep)
+            files = {**contents, SUMMARY: (text + "\n").encode()}
+            replace_files(files, plan.removed, plan.renamed)
         return BuildOutput(
             directory=folder,
-            files=(*contents, SUMMARY),
-            removed=removed,
-            former=former,
+            files=tuple(files),
+            removed=plan.removed,
+            kept=plan.kept,
+            former={name: before for before, name in plan.renamed.items()},
             summary=summary,
             facts=facts,
             findings=tuple(findings),

@@ -36,9 +36,12 @@ class BuildOutput(ShortRepr):
         The facts in the summary.
     findings : tuple of Finding
         The findings in the summary.
+    kept : tuple of str
+        Files of the previous build that are no longer produced but were not removed, since the user
+        may have edited them.
     former : dict of str to str
-        Design files that were there with another content and are kept: their names before, by
-        those that they have now.
+        Files of these names that the user may have edited, and that are kept: their names before,
+        by those that they have now.
     interrupted : str
         How much of a study was done when it was interrupted; empty if it is complete.
     table : tuple of str
@@ -51,6 +54,7 @@ class BuildOutput(ShortRepr):
     summary: dict[str, Any]
     facts: Facts
     findings: tuple[Finding, ...]
+    kept: tuple[str, ...] = ()
     former: Mapping[str, str] = field(default_factory=dict)
     interrupted: str = ""
     table: tuple[str, ...] = ()

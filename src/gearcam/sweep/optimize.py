@@ -19,7 +19,7 @@ from gearcam.commands import GOOD, IMPOSSIBLE, INTERRUPTED, Options, add_output,
 from gearcam.console import complain, infeasible_text, say
 from gearcam.designs.design import document_of, path_of, value_at
 from gearcam.designs.writing import least_document, toml_text
-from gearcam.export.write import aside
+from gearcam.export.listing import DESIGN, aside
 from gearcam.kinds.shared import METHODS
 from gearcam.sweep.axes import Varied
 from gearcam.sweep.command import axes_given, engine_arguments, engine_of, told
@@ -198,7 +198,7 @@ def _write(trials: Trials, best: Sequence[Built], folder: Path) -> list[Path]:
     files[folder / f"{_STEM}.html"] = page(base, trials.rows, lines, trials.signs)
     for path, content in files.items():
         try:
-            former = aside(path, content)
+            former = aside(path, content) if path.suffix == DESIGN else None
             if former is not None:
                 path.rename(former)
                 say(f"  {former}: kept, what {path.name} was before")

@@ -42,6 +42,7 @@ class BuildOutput:
     directory: Path
     files: tuple[str, ...] = ()
     removed: tuple[str, ...] = ()
+    kept: tuple[str, ...] = ()
     facts: Facts = field(default_factory=lambda: Facts(TREE, list(TREE)))
     summary: dict[str, Any] = field(default_factory=dict)
     findings: tuple[Finding, ...] = ()

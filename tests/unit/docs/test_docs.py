@@ -37,7 +37,7 @@ from random_designs.laws import parameters, random_law, random_motion_law
 PAGES = [rules.ROOT / "README.md", *sorted((rules.ROOT / "docs").glob("*.md"))]
 FENCE = re.compile(r"^```(\w+)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 SUMMARY = (rules.ROOT / "docs" / "summary.md").read_text("utf-8")
-NAMED = ("design", "files", "how", "solved", "outdated", "timings_s", "versions")
+NAMED = ("design", "files", "how", "solved", "outdated", "contents", "timings_s", "versions")
 """Keys of the summary whose entries are names, not keys."""
 SHOWN = [page for page in PAGES if "\n```console\n" in page.read_text("utf-8")]
 

@@ -10,7 +10,7 @@ import subprocess
 import sys
 import tempfile
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +21,9 @@ from gearcam.base.errors import WriteError
 from gearcam.cli import main
 from gearcam.console import visible
 from gearcam.export import write
-from gearcam.export.write import previous_files, rewrite, write_all, write_new
+from gearcam.export.listing import listing, planned
+from gearcam.export.write import rewrite, write_new, writing
+from helpers_folder import put
 from helpers_interrupts import PAIR, state
 from helpers_processes import ENVIRONMENT
 
@@ -29,10 +31,9 @@ GOOD = PAIR.format(eccentricity=0.2, bore=8, files='["csv"]')
 NAMES = ("one.dxf", "two.dxf", "three.dxf")
 
 
-def files_of(word: str, names: tuple[str, ...] = NAMES) -> Callable[..., dict[str, bytes]]:
-    """Files that all hold a word, and their summary."""
-    listed = json.dumps({"format": 1, "files": dict.fromkeys(names, word)}).encode()
-    return lambda *_: {**{name: word.encode() for name in names}, "summary.json": listed}
+def files_of(word: str, names: tuple[str, ...] = NAMES) -> dict[str, bytes]:
+    """Files that all hold a word."""
+    return {name: word.encode() for name in names}
 
 
 def full(*_: object, **__: object) -> None:
@@ -48,7 +49,7 @@ def test_a_disk_that_is_full_at_any_write(
     """Four files: each whole, or half of it, when the disk has no more room."""
     folder = tmp_path / "out" / "design"
     if existing:
-        write_all(folder, files_of("old", (*NAMES, "stale.dxf")))
+        put(folder, files_of("old", (*NAMES, "stale.dxf")))
     before, real, calls = state(tmp_path), Path.write_bytes, list[Path]()
 
     def write(self: Path, content: bytes) -> int:
@@ -61,25 +62,25 @@ def test_a_disk_that_is_full_at_any_write(
 
     monkeypatch.setattr(Path, "write_bytes", write)
     if after == 4:
-        write_all(folder, files_of("new"))
+        put(folder, files_of("new"))
         assert state(folder).keys() == {*NAMES, "summary.json"}
         return
     with pytest.raises(WriteError, match=r"cannot write to .*/design/.*: No space left on device"):
-        write_all(folder, files_of("new"))
+        put(folder, files_of("new"))
     assert state(tmp_path) == before
     assert (tmp_path / "out").exists() == existing
 
 
 def test_no_folder_is_left_above_one_that_cannot_be(tmp_path: Path) -> None:
     with pytest.raises(WriteError, match="File name too long"):
-        write_all(tmp_path / "new" / "deeper" / ("a" * 300), files_of("new"))
+        put(tmp_path / "new" / "deeper" / ("a" * 300), files_of("new"))
     assert not (tmp_path / "new").exists()
 
 
 @pytest.mark.parametrize("name", ["a\0b", "\udcff\ud800"])
 def test_what_can_be_no_folder(tmp_path: Path, name: str) -> None:
     with pytest.raises(WriteError, match="this is not a possible name"):
-        write_all(tmp_path / name, files_of("new"))
+        put(tmp_path / name, files_of("new"))
     with pytest.raises(WriteError, match="this is not a possible name"):
         write_new(tmp_path / name, "")
     assert list(tmp_path.iterdir()) == []
@@ -111,7 +112,7 @@ def test_what_a_killed_writer_left_is_removed_and_nothing_else(tmp_path: Path) -
     for name in mine:
         (tmp_path / name).mkdir()
     (left / "half.dxf").write_bytes(b"")
-    write_all(tmp_path, files_of("new"))
+    put(tmp_path, files_of("new"))
     assert {path.name for path in tmp_path.iterdir()} == {*mine, *NAMES, "summary.json"}
 
 
@@ -119,32 +120,25 @@ def test_two_builds_write_one_after_the_other(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The second knows what the first has written, however they come."""
-    waits, seen = threading.Event(), list[Mapping[str, object]]()
+    waits, seen = threading.Event(), list[tuple[str, ...]]()
 
     def sleep(_: float) -> None:
         waits.set()
         os.sched_yield()
 
     monkeypatch.setattr(write.time, "sleep", sleep)
-
-    def second() -> None:
-        def make(before: Mapping[str, object]) -> dict[str, bytes]:
-            seen.append(before)
-            return files_of("second", ("other.dxf",))()
-
-        write_all(tmp_path, make)
-
-    thread = threading.Thread(target=second)
-
-    def first(_: object) -> dict[str, bytes]:
+    put(tmp_path, files_of("first", ("old.dxf",)))
+    thread = threading.Thread(
+        target=lambda: seen.append(put(tmp_path, files_of("second", ("other.dxf",))).removed)
+    )
+    with writing(tmp_path) as replace:
         thread.start()
         assert waits.wait(20.0), "the second does not wait"
-        assert state(tmp_path) == {}
-        return files_of("first")()
-
-    write_all(tmp_path, first)
+        plan = planned(tmp_path, files_of("first"), "first", keep=False)
+        summary = json.dumps({"format": 1, **plan.about}).encode()
+        replace({**files_of("first"), "summary.json": summary}, plan.removed)
     thread.join()
-    assert seen == [dict.fromkeys(NAMES, "first")]
+    assert seen == [NAMES]
     assert state(tmp_path).keys() == {"other.dxf", "summary.json"}
 
 
@@ -153,12 +147,10 @@ def test_a_writer_that_does_not_end_is_not_waited_for_for_ever(
 ) -> None:
     monkeypatch.setattr(write, "_PATIENCE", 0.1)
 
-    def second_writes(_: object) -> dict[str, bytes]:
+    with writing(tmp_path) as replace:
         with pytest.raises(WriteError, match="another gearcam has been writing to it for"):
-            write_all(tmp_path, files_of("new"))
-        return files_of("first")()
-
-    write_all(tmp_path, second_writes)
+            put(tmp_path, files_of("new"))
+        replace(files_of("first"))
     assert (tmp_path / NAMES[0]).read_bytes() == b"first"
 
 
@@ -179,7 +171,7 @@ def test_a_disk_that_knows_no_locks(
 
     monkeypatch.setattr(call, none)
     left = Path(tempfile.mkdtemp(".tmp", ".gearcam-", tmp_path))
-    write_all(tmp_path, files_of("new"))
+    put(tmp_path, files_of("new"))
     assert {path.name for path in tmp_path.iterdir()} == {left.name, *NAMES, "summary.json"}
 
 
@@ -225,8 +217,8 @@ def test_what_is_no_folder_to_write_to(
     assert (sorted(desk.rglob("*")), state(desk)) == before
 
 
-def test_links_and_pipes_are_replaced_and_never_written_through(desk: Path) -> None:
-    """A folder that the user names may be a link; what lies in it is replaced."""
+def test_links_and_pipes_are_renamed_and_never_read_or_written_through(desk: Path) -> None:
+    """A folder that the user names may be a link; what lies in it gets new names."""
     (desk / "precious.txt").write_bytes(b"precious")
     place = desk / "elsewhere" / "pair"
     place.mkdir(parents=True)
@@ -238,8 +230,13 @@ def test_links_and_pipes_are_replaced_and_never_written_through(desk: Path) -> N
     (place / "gear2_outline.csv").chmod(0o400)
     assert main(["build", "good.toml", "-o", "out"]) == 0
     found = json.loads((place / "summary.json").read_bytes())
-    assert {path.name for path in place.iterdir()} == {*found["files"], "summary.json"}
-    assert all(path.is_file() and not path.is_symlink() for path in place.iterdir())
+    mine = {"gear1_outline.1.csv", "gear2_outline.1.csv", "centrodes.1.csv"}
+    assert {path.name for path in place.iterdir()} == {*found["files"], *mine, "summary.json"}
+    made = [path for path in place.iterdir() if path.name not in mine]
+    assert all(path.is_file() and not path.is_symlink() for path in made)
+    assert (place / "gear1_outline.1.csv").readlink() == desk / "precious.txt"
+    assert (place / "centrodes.1.csv").is_fifo()
+    assert (place / "gear2_outline.1.csv").read_bytes() == b"old"
     assert (desk / "precious.txt").read_bytes() == b"precious"
 
 
@@ -259,7 +256,7 @@ def test_a_summary_that_is_not_ours_removes_nothing(desk: Path, summary: bytes) 
     place.mkdir(parents=True)
     (place / "mine.dxf").write_bytes(b"mine")
     (place / "summary.json").write_bytes(summary)
-    assert previous_files(place) == {}
+    assert listing(place).made == {}
     assert main(["build", "good.toml"]) == 0
     assert (place / "mine.dxf").read_bytes() == b"mine"
 
@@ -267,7 +264,7 @@ def test_a_summary_that_is_not_ours_removes_nothing(desk: Path, summary: bytes) 
 def test_a_summary_that_is_a_pipe_is_not_waited_for(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "summary.json")
     found: list[object] = []
-    thread = threading.Thread(target=lambda: found.append(previous_files(tmp_path)), daemon=True)
+    thread = threading.Thread(target=lambda: found.append(listing(tmp_path).made), daemon=True)
     thread.start()
     thread.join(20.0)
     assert found == [{}]

@@ -11,7 +11,9 @@ from pathlib import Path
 import pytest
 
 from gearcam.base.errors import WriteError
-from gearcam.export.write import is_plain, previous_files, rewrite, write_all
+from gearcam.export.listing import listing
+from gearcam.export.write import is_plain, rewrite, writing
+from helpers_folder import put
 
 
 def summary(*names: object) -> bytes:
@@ -19,7 +21,7 @@ def summary(*names: object) -> bytes:
 
 
 def build(folder: Path, files: dict[str, bytes]) -> tuple[str, ...]:
-    return write_all(folder, lambda _: {"summary.json": summary(*files), **files})
+    return put(folder, files).removed
 
 
 def state(folder: Path) -> dict[str, bytes]:
@@ -27,12 +29,18 @@ def state(folder: Path) -> dict[str, bytes]:
     return {place.name: place.read_bytes() for place in folder.iterdir() if place.is_file()}
 
 
+def beside(folder: Path) -> dict[str, bytes]:
+    """Every file of a folder but its summary, which is there."""
+    found = state(folder)
+    del found["summary.json"]
+    return found
+
+
 def test_files_are_written_into_a_new_folder(tmp_path: Path) -> None:
     folder = tmp_path / "a" / "b"
     assert build(folder, {"one.dxf": b"1", "two.csv": b"\x00\r\n"}) == ()
-    assert state(folder) == {
-        "one.dxf": b"1", "two.csv": b"\x00\r\n", "summary.json": summary("one.dxf", "two.csv"),
-    }  # fmt: skip
+    assert beside(folder) == {"one.dxf": b"1", "two.csv": b"\x00\r\n"}
+    assert list(listing(folder).made) == ["one.dxf", "two.csv"]
 
 
 def test_files_have_ordinary_permissions(tmp_path: Path) -> None:
@@ -46,9 +54,8 @@ def test_stale_files_are_removed_and_others_left(tmp_path: Path) -> None:
     (tmp_path / "mine.txt").write_bytes(b"keep")
     (tmp_path / "two.dxf").unlink()
     assert build(tmp_path, {"one.dxf": b"new"}) == ("three.stl",)
-    assert state(tmp_path) == {
-        "one.dxf": b"new", "mine.txt": b"keep", "summary.json": summary("one.dxf"),
-    }  # fmt: skip
+    assert beside(tmp_path) == {"one.dxf": b"new", "mine.txt": b"keep"}
+    assert list(listing(tmp_path).made) == ["one.dxf"]
 
 
 ELSEWHERE = ["../mine.txt", "/etc/hosts", "sub/mine.txt", "..", ".", "", ".hidden", 7, None]
@@ -87,29 +94,34 @@ def test_a_strange_summary_removes_nothing(tmp_path: Path, content: bytes) -> No
     assert state(folder).keys() == {"one.dxf", "summary.json", "mine.txt", ".hidden"}
 
 
-def test_stale_links_are_removed_but_not_followed(tmp_path: Path) -> None:
+def test_stale_links_are_left_and_listed_no_more(tmp_path: Path) -> None:
     folder, outside = tmp_path / "out", tmp_path / "outside.txt"
-    outside.write_bytes(b"keep")
-    build(folder, {"one.dxf": b"1"})
-    (folder / "summary.json").write_bytes(summary("one.dxf", "link.dxf", "dangling.dxf", "folder"))
+    outside.write_bytes(b"1")
+    build(folder, {"one.dxf": b"1", "link.dxf": b"1", "dangling.dxf": b"1", "folder": b"1"})
+    for name in ("link.dxf", "dangling.dxf", "folder"):
+        (folder / name).unlink()
     (folder / "link.dxf").symlink_to(outside)
     (folder / "folder").mkdir()
     (folder / "dangling.dxf").symlink_to(tmp_path / "nowhere")
-    assert build(folder, {"one.dxf": b"1"}) == ("link.dxf", "dangling.dxf")
-    assert outside.read_bytes() == b"keep"
+    plan = put(folder, {"one.dxf": b"1"})
+    assert (plan.removed, plan.kept) == ((), ("link.dxf", "dangling.dxf"))
+    assert outside.read_bytes() == b"1"
     assert (folder / "folder").is_dir()
-    assert not (folder / "link.dxf").is_symlink()
+    assert (folder / "link.dxf").is_symlink()
+    assert put(folder, {"one.dxf": b"1"}).kept == ()
 
 
-def test_a_link_in_the_way_is_replaced_but_not_followed(tmp_path: Path) -> None:
+def test_a_link_in_the_way_is_renamed_but_not_followed(tmp_path: Path) -> None:
+    """Whatever it leads to: here the same content."""
     folder, outside = tmp_path / "out", tmp_path / "outside.txt"
-    outside.write_bytes(b"keep")
+    outside.write_bytes(b"1")
     folder.mkdir()
     (folder / "one.dxf").symlink_to(outside)
     build(folder, {"one.dxf": b"1"})
-    assert outside.read_bytes() == b"keep"
+    assert outside.read_bytes() == b"1"
     assert (folder / "one.dxf").read_bytes() == b"1"
     assert not (folder / "one.dxf").is_symlink()
+    assert (folder / "one.1.dxf").readlink() == outside
 
 
 @pytest.mark.parametrize("error", [OSError(28, "No space left on device"), KeyboardInterrupt()])
@@ -122,11 +134,12 @@ def test_a_failure_at_any_move_leaves_everything_as_it_was(
     after: int,
     existing: bool,
 ) -> None:
-    """Four files moved into place, and before that three old ones and a stale one put aside."""
+    """Four files moved into place, before that three old ones and a stale one; one was edited."""
     folder = tmp_path / "out"
     before: dict[str, bytes] = {}
     if existing:
         build(folder, {"one.dxf": b"1", "two.dxf": b"2", "stale.dxf": b"s"})
+        (folder / "two.dxf").write_bytes(b"mine")
         before = state(folder)
     real, calls = os.replace, []
 
@@ -141,7 +154,8 @@ def test_a_failure_at_any_move_leaves_everything_as_it_was(
     moves = 8 if existing else 4
     if after >= moves:
         build(folder, new)
-        assert state(folder).keys() == {*new, "summary.json"}
+        mine = {"two.1.dxf": b"mine"} if existing else {}
+        assert beside(folder) == {**new, **mine}
         return
     with pytest.raises((WriteError, KeyboardInterrupt)):
         build(folder, new)
@@ -250,8 +264,8 @@ def test_a_folder_that_may_not_be_written(tmp_path: Path, monkeypatch: pytest.Mo
 )
 def test_names_that_are_not_plain_are_refused(tmp_path: Path, name: str) -> None:
     assert not is_plain(name)
-    with pytest.raises(ValueError, match="plain"):
-        write_all(tmp_path, lambda _: {name: b""})
+    with pytest.raises(ValueError, match="plain"), writing(tmp_path) as replace:
+        replace({name: b""})
 
 
 def test_previous_files_are_those_that_are_there(tmp_path: Path) -> None:
@@ -264,8 +278,70 @@ def test_previous_files_are_those_that_are_there(tmp_path: Path) -> None:
         (tmp_path / name).write_bytes(b"")
     (tmp_path / "folder").mkdir()
     (tmp_path / "summary.json").write_text(json.dumps(listed), encoding="utf-8")
-    assert previous_files(tmp_path) == {"a.dxf": "1", "b.dxf": "2"}
-    assert previous_files(tmp_path / "none") == {}
+    assert listing(tmp_path).made == {"a.dxf": "1", "b.dxf": "2"}
+    assert listing(tmp_path / "none").made == {}
+
+
+def test_what_is_not_as_it_was_written_is_neither_removed_nor_written_over(tmp_path: Path) -> None:
+    """Edited, edited and of the same size, not listed; and each of them when it is not made."""
+    build(tmp_path, {"cut.dxf": b"12", "same.dxf": b"12", "ours.dxf": b"12", "stale.dxf": b"12"})
+    mine = {"cut.dxf": b"1", "same.dxf": b"21", "other.dxf": b"12", "stale.dxf": b"21"}
+    for name, content in mine.items():
+        (tmp_path / name).write_bytes(content)
+    new = {f"{name}.dxf": b"new" for name in ("cut", "same", "ours", "other")}
+    plan = put(tmp_path, new)
+    renamed = {name: name.replace(".", ".1.") for name in ("cut.dxf", "same.dxf", "other.dxf")}
+    assert (plan.removed, plan.kept, plan.renamed) == ((), ("stale.dxf",), renamed)
+    kept = {renamed.get(name, name): content for name, content in mine.items()}
+    assert beside(tmp_path) == {**new, **kept}
+    assert listing(tmp_path).made.keys() == listing(tmp_path).contents.keys() == new.keys()
+    plan = put(tmp_path, dict.fromkeys(new, b"newer"))
+    assert (plan.removed, plan.kept, plan.renamed) == ((), (), {})
+    (tmp_path / "cut.dxf").write_bytes(b"mine")
+    plan = put(tmp_path, {"cut.dxf": b"newest"})
+    assert plan.removed == ("same.dxf", "ours.dxf", "other.dxf")
+    assert plan.renamed == {"cut.dxf": "cut.2.dxf"}
+    assert beside(tmp_path) == {"cut.dxf": b"newest", "cut.2.dxf": b"mine", **kept}
+
+
+def test_the_same_content_again_moves_nothing(tmp_path: Path) -> None:
+    build(tmp_path, {"one.dxf": b"1"})
+    for name in ("one.dxf", "two.dxf"):
+        (tmp_path / name).write_bytes(b"new")
+    assert put(tmp_path, {"one.dxf": b"new", "two.dxf": b"new"}).renamed == {}
+    assert build(tmp_path, {}) == ("one.dxf", "two.dxf")
+
+
+def test_a_study_in_between_does_not_hide_what_was_edited(tmp_path: Path) -> None:
+    """It leaves the others as they are, and knows of each what gearcam wrote."""
+    build(tmp_path, {"one.dxf": b"1", "two.dxf": b"2", "three.dxf": b"3"})
+    for name in ("one.dxf", "two.dxf"):
+        (tmp_path / name).write_bytes(b"mine")
+    for version in ("of a design", "of another"):
+        assert put(tmp_path, {"forces.csv": b"4"}, version, keep=True).renamed == {}
+    plan = put(tmp_path, {"one.dxf": b"new"}, "of another")
+    assert (plan.removed, plan.kept) == (("three.dxf",), ("two.dxf",))
+    assert plan.renamed == {"one.dxf": "one.1.dxf"}
+    assert beside(tmp_path).keys() == {"one.dxf", "one.1.dxf", "two.dxf", "forces.csv"}
+
+
+def test_what_an_earlier_version_wrote_may_have_been_edited(tmp_path: Path) -> None:
+    """Its summary tells nothing about contents."""
+    for name in ("one.dxf", "two.dxf"):
+        (tmp_path / name).write_bytes(b"1")
+    (tmp_path / "summary.json").write_bytes(summary("one.dxf", "two.dxf"))
+    plan = put(tmp_path, {"one.dxf": b"new"})
+    assert (plan.removed, plan.kept, plan.renamed) == ((), ("two.dxf",), {"one.dxf": "one.1.dxf"})
+    assert build(tmp_path, {}) == ("one.dxf",)
+
+
+def test_a_design_file_that_nobody_edited_is_replaced_but_not_removed(tmp_path: Path) -> None:
+    put(tmp_path, {"fitted.toml": b"1"}, keep=True)
+    assert put(tmp_path, {"one.dxf": b"1"}).kept == ()
+    assert put(tmp_path, {"fitted.toml": b"2"}, keep=True).renamed == {}
+    plan = put(tmp_path, {"one.dxf": b"1"}, "of another")
+    assert (plan.removed, plan.kept) == ((), ("fitted.toml",))
+    assert beside(tmp_path) == {"one.dxf": b"1", "fitted.toml": b"2"}
 
 
 def test_of_a_link_the_file_is_rewritten_with_its_permissions(tmp_path: Path) -> None:

@@ -27,8 +27,8 @@ from helpers_built import fresh
 from helpers_pairs import job, profile
 
 TOP = [
-    "format", "name", "kind", "pair", "mesh", "gears", "accuracy", "hash", "files", "findings",
-    "timings_s", "versions", "design",
+    "format", "name", "kind", "pair", "mesh", "gears", "accuracy", "hash", "files",
+    "contents", "findings", "timings_s", "versions", "design",
 ]  # fmt: skip
 """Keys of every summary; ``solids`` comes with meshes, ``stale`` with old files."""
 

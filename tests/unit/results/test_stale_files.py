@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,7 @@ from gearcam.cli import main
 from gearcam.designs import hash_of, loads
 from gearcam.kinds.gear_pair.design import GearPairDesign
 from helpers_interrupts import CAM
+from helpers_pairs import PROFILES
 
 PAIR = """
 kind = "gear-pair"
@@ -309,3 +311,42 @@ def test_a_design_file_is_neither_removed_nor_written_over(
     run("build")
     assert fitted.read_bytes() == fresh
     assert (folder / "fitted.1.toml").read_bytes() == mine
+
+
+def test_a_file_that_the_user_has_edited_is_neither_removed_nor_written_over(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A program whose head the machinist has edited, and a table of a format that is dropped."""
+    text = (PROFILES / "rotary_axis_cam.toml").read_text("utf-8")
+    given = 'files = ["csv", "stl", "dxf", "svg", "tool-path", "gcode"]'
+    text = changed(text, given, 'files = ["csv", "gcode"]')
+    text = changed(text, "depth_mm = 1.5", "depth_mm = 5")
+    design, out = tmp_path / "cam.toml", tmp_path / "out"
+    folder = out / "cam"
+
+    def run(command: str, *options: str) -> tuple[set[str], str]:
+        design.write_text(text, encoding="utf-8")
+        assert main([command, str(design), *options, "-o", str(out)]) == 0
+        listed = json.loads((folder / "summary.json").read_text("utf-8"))
+        return {*listed["files"], *listed.get("outdated", {})}, capsys.readouterr().out
+
+    first, told = run("build")
+    assert "kept" not in told
+    tables = first - {"cam.nc"}
+    assert len(tables) > 1
+    program, table = folder / "cam.nc", folder / min(tables)
+    head = b"(G54 is set at the tailstock)\n"
+    for place in (program, table):
+        place.write_bytes(head + place.read_bytes())
+    mine, rows = program.read_bytes(), table.read_bytes()
+    text = changed(text, "feed_mm_min = 400", "feed_mm_min = 300")
+    assert run("check")[0] == first
+    listed, told = run("build", "--only", "gcode")
+    assert listed == {"cam.nc"}
+    told = re.sub(" +", " ", told)
+    assert "cam.1.nc kept: what cam.nc was before" in told
+    assert f"{table.name} kept: no longer part of this build, but you may have edited it" in told
+    assert told.count("removed: no longer part of this build") == len(tables) - 1
+    assert (folder / "cam.1.nc").read_bytes() == mine
+    assert table.read_bytes() == rows
+    assert head not in program.read_bytes()
