@@ -220,6 +220,8 @@ class DesignKind:
         Titles of the tables with the settings of studies, by the names of the studies.
     example : mapping
         A design that builds without a warning, by title, in the units of a file.
+    shown : mapping of str to mapping
+        Values that the template shows of optional keys, by title: where each kind has its own.
     notes : mapping of str to str
         Comments on tables of the example.
     processes : mapping of str to mapping
@@ -242,6 +244,7 @@ class DesignKind:
     check_groups: tuple[str, ...] = ()
     study_tables: Mapping[str, str] = field(default_factory=dict)
     example: Mapping[str, Any]
+    shown: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     notes: Mapping[str, str] = field(default_factory=dict)
     processes: Mapping[str, Mapping[str, Mapping[str, Any]]] = field(default_factory=dict)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import Any, Final
 
 from gearcam.base.quantities import REQUIRED
@@ -54,10 +55,22 @@ def _lines(kind: DesignKind, name: str, process: str) -> Iterator[str]:
         yield from kind.main.template(kind.example[title], kind.notes.get(title, ""))
     for title in (*kind.tables, "limits"):
         head = f"[[{title}]]" if title in kind.several else f"[{title}]"
-        table, note, added = kind.table(title), kind.notes.get(title, ""), more.get(title, {})
+        table = _shown(kind.table(title), kind.shown.get(title, {}))
+        note, added = kind.notes.get(title, ""), more.get(title, {})
         examples = kind.example.get(title, {})
         for given in examples if isinstance(examples, list) else [examples]:
             yield from _table(head, table, {**given, **added}, note)
+
+
+def _shown(table: Table, examples: Mapping[str, Any]) -> Table:
+    """Return a table with `examples` of some of its keys."""
+    entries = {
+        key: replace(entry, param=replace(entry.param, example=examples[key]))
+        if key in examples
+        else entry
+        for key, entry in table.entries.items()
+    }
+    return Table(table.title, table.owner, entries)
 
 
 def _table(head: str, table: Table, given: Mapping[str, Any], note: str) -> Iterator[str]:

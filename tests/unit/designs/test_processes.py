@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import gearcam as gc
+from gearcam.base.errors import DesignError
 from gearcam.base.quantities import REQUIRED
 from gearcam.cli import main
 from gearcam.designs import KINDS
@@ -82,11 +83,40 @@ def test_optional_keys_show_their_default_or_say_that_they_show_an_example(
             entry = known.table(title).entries[key]
             if example:
                 assert entry.default in (None, REQUIRED), key
-                assert entry.param.example is not None, key
+                assert (value, entry.param.example) != ("None", None), key
             else:
                 default = entry.inward(tomllib.loads(f"x = {value}")["x"])
                 assert default == pytest.approx(entry.default), key
     assert shown & {"module_mm", "base_radius_mm", "arm_mm", "length_mm"}
+
+
+QUICK = [("cam", ""), ("gear-pair", ""), ("mechanism", ""), ("spatial-cam", "printing")]
+
+
+@pytest.mark.parametrize(("kind", "process"), chosen(PROCESSES, *QUICK))
+def test_the_goals_that_are_shown_are_facts_and_others_are_refused(
+    kind: str, process: str, tmp_path: Path
+) -> None:
+    """Of every kind, as the file shows them: behind # of the optional table ``[goal]``."""
+    before, title, after = template(kind, "mine", process).partition("# [goal]\n")
+    table, end, rest = after.partition("\n\n")
+    text = before + title[2:] + re.sub(r"(?m)^# (?=minimize|maximize)", "", table) + end + rest
+    result = gc.build(gc.loads(text))
+    goal = result.design.goal
+    assert len(goal.signs) == 2
+    numbers = {name for name, value in result.record().items() if isinstance(value, float)}
+    assert goal.signs.keys() <= numbers
+    # a letter too many: the nearest name is the right one
+    (first, *_) = goal.signs
+    wrong = gc.build(result.design.with_({"goal.minimize": f"{first}x"}))
+    for write in (wrong.check, wrong.write):
+        with pytest.raises(DesignError) as caught:
+            write(tmp_path)
+        (problem,) = caught.value.problems
+        assert problem.key == "goal.minimize"
+        assert problem.message == f'"{first}x" is no fact of this design'
+        assert problem.allowed.startswith(f"such as {first}")
+    assert not [*tmp_path.iterdir()]
 
 
 def test_a_cam_is_described_in_words_of_cams() -> None:

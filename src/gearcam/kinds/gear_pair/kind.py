@@ -66,6 +66,12 @@ KIND: Final = Kind(
         "blank": {"bore_diameter_mm": 8},
         "output": {"files": ["dxf", "csv", "report"]},
     },
+    shown={
+        "goal": {
+            "minimize": "pair.center_distance_mm",
+            "maximize": "mesh.contact_ratio.forward.least",
+        }
+    },
     processes={
         "printing": {
             "pair": {"backlash_mm": 0.1, "face_width_mm": 8},
