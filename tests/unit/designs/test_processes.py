@@ -136,6 +136,41 @@ def test_what_a_process_needs() -> None:
     assert "cut-svg" in laser["output"]["files"]
 
 
+@pytest.mark.parametrize(
+    ("word", "hint"),
+    [
+        ("barrel", "spatial-cam"),
+        ("cylinder-cam", "spatial-cam"),
+        ("drum cam", "spatial-cam"),
+        ("globoid", "globoidal-cam"),
+        ("disc", "cam"),
+        ("groove-cam", 'cam, with cam.form = "groove" in the file'),
+        ("rack", 'gear-pair, with law.type = "rack" in the file'),
+        ("gears", "gear-pair"),
+        ("linkage", "mechanism"),
+        ("swinging", 'cam, with follower.motion = "oscillating" in the file'),
+    ],
+)
+def test_other_names_are_answered_with_the_file_that_shows_them(
+    word: str, hint: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["new", word]) == 2
+    assert f"\n    did you mean {hint}?\n" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("word", ["milling", "mill"])
+@pytest.mark.parametrize("kind", ["cam", "globoidal-cam", "mechanism"])
+def test_a_process_of_another_kind_names_it(
+    kind: str, word: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["new", kind, "--for", word]) == 2
+    err = capsys.readouterr().err
+    assert f'--for: "{word}" is not supported for {kind}\n' in err
+    command = "gearcam new spatial-cam --for milling"
+    assert f"milling is for spatial-cam: {command}\n" in err
+    assert main(command.split()[1:]) == 0
+
+
 def test_another_process_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["new", "cam", "--for", "lasre"]) == 2
     err = capsys.readouterr().err

@@ -16,6 +16,7 @@ from gearcam.kinds.gear_pair.design import (
     law_homes,
     law_of,
     law_table,
+    law_words,
     planetary,
     problems,
 )
@@ -41,6 +42,7 @@ KIND: Final = Kind(
         schema=deferred(f"{_HERE}.describe:schema"),
         template=deferred(f"{_HERE}.describe:lines"),
         laws=deferred(f"{_HERE}.describe:laws"),
+        words=law_words,
     ),
     required=("pair",),
     rules=RULES,
