@@ -11,6 +11,7 @@ import os
 import sys
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Final
 
@@ -211,15 +212,15 @@ def _new_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _new(options: Options) -> int:
-    from gearcam.designs.template import template
+    from gearcam.designs.template import process_problem, template, template_hint
     from gearcam.export.write import write_new
 
     kind, file, process = options["kind"], options["file"], options["process"]
     if kind not in KINDS:
-        refuse([unknown_word(kind, "is not a kind of design", KINDS, "KIND")])
-    processes = KINDS[kind].processes
-    if process is not None and process not in processes:
-        refuse([unknown_word(process, "is not supported", processes, "--for")])
+        problem = unknown_word(kind, "is not a kind of design", KINDS, "KIND")
+        refuse([replace(problem, hint=template_hint(kind))])
+    if process is not None and (problem := process_problem(kind, process)):
+        refuse([problem])
     text = template(kind, Path(file or "").stem, process or "")
     if file is None:
         say(text.rstrip("\n"))

@@ -24,14 +24,16 @@ from gearcam.designs.kind import (
     KINDS,
     DesignKind,
     Examined,
+    Variants,
     as_written,
+    kind_meant,
     named_variant,
     nearest_kind,
     variant_of,
 )
 from gearcam.designs.lines import Path, line_at, lines_of
 from gearcam.designs.reader import LARGEST, decoded, document_in, find_tables
-from gearcam.designs.slips import STRONG, SURE, did_you_mean, hinted, key_hint, nearest
+from gearcam.designs.slips import STRONG, SURE, did_you_mean, hinted, key_hint, keyed, nearest
 from gearcam.designs.table import Key, Table
 from gearcam.designs.validate import document_faults, faults_of, parameters_of
 
@@ -89,16 +91,109 @@ def examine(document: Mapping[str, Any], *, stem: str = "", place: Place | None 
         outcome.faults.append(Fault((), TOO_DEEP))
         return outcome
     unknown = list(_kind_faults(document))
-    kind, document = _as_meant(document)
+    kind, meant = _as_meant(document)
     if kind is None:
         outcome.faults += unknown
         return outcome
+    outcome = _examined(kind, meant, stem, place)
+    if not outcome.kind:
+        return outcome
+    if kind.variants and outcome.faults:
+        outcome = _likeliest(kind, kind.variants, meant, outcome, stem, place)
+    elif outcome.faults and document.get("kind") != kind.name:
+        outcome.faults = list(map(partial(_of_family, variant_of(kind)), outcome.faults))
+    outcome.faults = unknown + outcome.faults
+    return outcome
+
+
+def _of_family(found: tuple[DesignKind, str] | None, fault: Fault) -> Fault:
+    """Return a fault of a variant; about the key that names it, with all variants allowed."""
+    variants = found[0].variants if found else None
+    if variants is None or fault.path != (variants.title, variants.key):
+        return fault
+    return replace(fault, allowed=quoted(variants.values))
+
+
+def _likeliest(
+    kind: DesignKind,
+    variants: Variants,
+    document: Mapping[str, Any],
+    outcome: Examined,
+    stem: str,
+    place: Place | None,
+) -> Examined:
+    """Return the outcome of a document without its variant: as the one with the fewest faults.
+
+    Parameters
+    ----------
+    kind : DesignKind
+        Its kind.
+    variants : Variants
+        Those of the kind.
+    document : mapping
+        As read from TOML.
+    outcome : Examined
+        Its outcome as the default.
+    stem, place
+        As for `examine`.
+
+    Returns
+    -------
+    Examined
+        That of the likeliest, with a fault that names it. The given one if the document names a
+        variant, has no key of others, or would not have fewer faults as one of them.
+    """
+    table, at = document.get(variants.title), (variants.title, variants.key)
+    if not isinstance(table, Mapping) or variants.named(document):
+        return outcome
+    known = kind.table_in(document, variants.title).entries
+    foreign = not known.keys() >= table.keys() or any(one not in kind.titles for one in document)
+    read: dict[str, Examined] = {}
+    for value in variants.values if foreign else ():
+        other = {**document, variants.title: {**table, variants.key: value}}
+        read[value] = _examined(kind.meant(other), other, stem, place)
+    counts = {value: len(one.faults) for value, one in read.items() if one.kind}
+    least = min(counts.values(), default=len(outcome.faults))
+    if least + 1 >= len(outcome.faults):
+        return outcome
+    near = [value for value, count in counts.items() if count == least]
+    likeliest = read[near[0]]
+    theirs = KINDS[likeliest.kind]
+    more = [f"[{one}]" for one in theirs.titles if one in document and one not in kind.titles]
+    more += [
+        one for one in theirs.table(variants.title).entries if one in table and one not in known
+    ]
+    default = variants.called.format(variants.default)
+    fault = Fault(at, f"is missing: {default} has no {', '.join(more)}")
+    fault = next((one for one in outcome.faults if one.path == at), fault)
+    hint = f"did you mean {' or '.join(near)}?"
+    likeliest.faults.append(replace(fault, allowed=quoted(variants.values), hint=hint))
+    return likeliest
+
+
+def _examined(
+    kind: DesignKind, document: Mapping[str, Any], stem: str, place: Place | None
+) -> Examined:
+    """Return the outcome of a document of a `kind`; its own ``kind`` is not looked at.
+
+    Parameters
+    ----------
+    kind : DesignKind
+        The kind as which it is read.
+    document, stem, place
+        As for `examine`.
+
+    Returns
+    -------
+    Examined
+        Without a kind if such designs are not supported.
+    """
+    outcome = Examined()
     later = kind.later(document)
     if later is not None:
         outcome.faults.append(later)
         return outcome
     outcome.kind = kind.name
-    outcome.faults += unknown
     outcome.faults += _top_faults(document, kind)
     _examine_name(document, stem, outcome)
     if kind.main:
@@ -149,10 +244,11 @@ def _as_meant(document: Mapping[str, Any]) -> tuple[DesignKind | None, Mapping[s
         return _meant_kind(document), document
     kind, value = found
     variants = kind.variants
-    given = document.get(variants.title) if variants else None
-    if variants and isinstance(given, Mapping):
-        document = {**document, variants.title: {variants.key: value, **given}}
-    return kind.meant(document), document
+    if variants is None:
+        return kind, document
+    given = document.get(variants.title)
+    named = {variants.title: {variants.key: value, **(given if isinstance(given, Mapping) else {})}}
+    return kind.meant(named), {**document, **named} if isinstance(given, Mapping) else document
 
 
 def _meant_kind(document: Mapping[str, Any]) -> DesignKind | None:
@@ -170,8 +266,21 @@ def _meant_kind(document: Mapping[str, Any]) -> DesignKind | None:
     return KINDS[best[0]].meant(document) if len(best) == 1 else None
 
 
-def home_of(kind: DesignKind, key: str) -> str:
-    """Return a hint that says where a misplaced key belongs in this kind; else an empty text."""
+def home_of(kind: DesignKind, key: str, value: Any) -> str:
+    """Return a hint that says where a misplaced key belongs in this kind; else an empty text.
+
+    Parameters
+    ----------
+    kind : DesignKind
+        The kind.
+    key : str
+        The key; empty for a value without one.
+    value : object
+        Its value. What this says comes first: a word such as "swinging", or true for a key that is
+        such a word.
+    """
+    if words := keyed(key if value is True else value, kind.words):
+        return f"did you mean {words}?"
     homes: dict[str, str] = {}
     for title in kind.tables:  # the first of several tables is the likeliest
         for name in kind.table(title).entries:
@@ -241,9 +350,10 @@ def _kind_faults(document: Mapping[str, Any]) -> Iterator[Fault]:
 
 def _meant_words(word: str) -> str:
     """Return the hint that says how the kind that a `word` may mean is written."""
-    found, near = named_variant(word), nearest_kind(word)
-    meant = as_written(*found) if found else as_written(KINDS[near]) if near else ""
-    return f"did you mean {meant}?" if meant else ""
+    kind, values = kind_meant(word) or (None, "")
+    if kind is None:
+        return ""
+    return f"did you mean {as_written(kind)}{values and f' with {values}'}?"
 
 
 def _top_faults(document: Mapping[str, Any], kind: DesignKind) -> Iterator[Fault]:
@@ -251,7 +361,8 @@ def _top_faults(document: Mapping[str, Any], kind: DesignKind) -> Iterator[Fault
     unknown = (key for key in document if key not in titles)
 
     def hint_of(key: str) -> str:
-        hint = home_of(kind, key) or _owners("table", kind, lambda other: key in other.titles)
+        hint = did_you_mean(key, ("kind", "name")) or home_of(kind, key, document[key])
+        hint = hint or _owners("table", kind, lambda other: key in other.titles)
         return hint or key_hint(key, titles) or _near_home(kind, key, STRONG)
 
     for key, hint in hinted(unknown, hint_of):
@@ -318,8 +429,8 @@ def _examine_table(
         )
         return
 
-    def home(key: str) -> str:
-        return home_of(kind, key) or _near_home(kind, key, SURE)
+    def home(key: str, value: Any) -> str:
+        return home_of(kind, key, value) or _near_home(kind, key, SURE)
 
     parts: list[Any] = []
     items: list[tuple[Path, Any]] = [((title,), raw)]
@@ -517,8 +628,9 @@ def chosen(
         return word, True
     near = nearest(word, entries) if isinstance(word, str) else ""
     message = f"{show(word)} is not {what}" if key in raw else "is missing"
-    hint = f"did you mean {near}?" if near else ""
-    if not near and len(raw) > 1:
+    words = near or keyed(word, KINDS[outcome.kind].words)
+    hint = f"did you mean {words}?" if words else ""
+    if not words and len(raw) > 1:
         hint = f"the other keys of this table are checked once its {key} is known"
     value = word if key in raw else MISSING
     outcome.faults.append(Fault((*at, key), message, value, rule, hint))

@@ -11,7 +11,7 @@ import importlib
 import math
 import pkgutil
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
 from inspect import get_annotations
@@ -21,7 +21,7 @@ from typing import Any, Final, Protocol, get_args, get_type_hints
 from gearcam.base.findings import CHECKS
 from gearcam.base.rules import Rule
 from gearcam.designs.faults import Fault
-from gearcam.designs.slips import cam_of, nearest
+from gearcam.designs.slips import cam_of, keyed, nearest
 from gearcam.designs.table import Key, Table, table_of
 
 _HOME: Final = "gearcam.kinds"
@@ -68,6 +68,8 @@ class Main:
         ``template(example, note)`` yields its lines in the template.
     laws : callable
         ``laws()`` returns a heading and the laws for ``gearcam laws``.
+    words : callable
+        ``words()`` returns the entries of its registries, by the dotted keys that choose them.
     """
 
     title: str
@@ -78,6 +80,7 @@ class Main:
     schema: Callable[[], tuple[dict[str, Any], dict[str, Any]]]
     template: Callable[[Any, str], Iterable[str]]
     laws: Callable[[], tuple[str, list[Any]]]
+    words: Callable[[], Mapping[str, Collection[str]]]
 
     def __repr__(self) -> str:
         return f'<{type(self).__name__} "{self.title}">'
@@ -136,6 +139,12 @@ class Variants:
         value = table.get(self.key) if isinstance(table, Mapping) else None
         near = nearest(value, self.entries) if isinstance(value, str) else ""
         return near or self.default
+
+    def named(self, document: Mapping[str, Any]) -> bool:
+        """Return whether a `document` has a value of the key, or a word for one."""
+        table = document.get(self.title)
+        value = table.get(self.key) if isinstance(table, Mapping) else None
+        return isinstance(value, str) and bool(nearest(value, self.values))
 
     def of(self, design: Any) -> str:
         """Return the value of the key in a `design`."""
@@ -220,6 +229,8 @@ class DesignKind:
         Titles of the tables with the settings of studies, by the names of the studies.
     example : mapping
         A design that builds without a warning, by title, in the units of a file.
+    shown : mapping of str to mapping
+        Values that the template shows of optional keys, by title: where each kind has its own.
     notes : mapping of str to str
         Comments on tables of the example.
     processes : mapping of str to mapping
@@ -242,6 +253,7 @@ class DesignKind:
     check_groups: tuple[str, ...] = ()
     study_tables: Mapping[str, str] = field(default_factory=dict)
     example: Mapping[str, Any]
+    shown: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     notes: Mapping[str, str] = field(default_factory=dict)
     processes: Mapping[str, Mapping[str, Mapping[str, Any]]] = field(default_factory=dict)
 
@@ -307,6 +319,17 @@ class DesignKind:
         if self.variants is None or title not in self.variants.titles:
             return self.table(title)
         return self.variants.table(title, self.variants.of(design))
+
+    @property
+    def words(self) -> dict[str, Collection[str]]:
+        """The words that single values of its tables and of main may be, by dotted key."""
+        words: dict[str, Collection[str]] = {}
+        for title in self.tables:
+            words |= self.table(title).words
+        found = variant_of(self)
+        if found and (variants := found[0].variants):
+            words |= found[0].table(variants.title).words
+        return words | dict(self.main.words() if self.main else {})
 
     def tables_in(
         self, document: Mapping[str, Any]
@@ -408,6 +431,33 @@ def named_variant(word: str) -> tuple[DesignKind, str] | None:
         value = nearest(plain, kind.variants.values) if kind.variants else ""
         if value:
             return kind, value
+    return None
+
+
+def kind_meant(word: str) -> tuple[DesignKind, str] | None:
+    """Return the kind that a `word` names, and what it says of its tables; None if there is none.
+
+    Parameters
+    ----------
+    word : str
+        Not the name of a kind: another name of one, a variant, or a word of its tables.
+
+    Returns
+    -------
+    kind : DesignKind
+        The kind; of a variant the one of which it is a variant.
+    values : str
+        Keys and values in words, such as ``cam.form = "groove"``; empty if none is needed.
+    """
+    if found := named_variant(word):
+        kind, value = found
+        variants = kind.variants
+        return kind, f'{variants.title}.{variants.key} = "{value}"' if variants else ""
+    if near := nearest_kind(word):
+        return KINDS[near], ""
+    for kind in KINDS.values():
+        if words := keyed(word, kind.words):
+            return kind, words
     return None
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import difflib
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from functools import lru_cache
 from itertools import islice
 from typing import Any, Final
@@ -70,12 +70,20 @@ _SYNONYMS: Final[Mapping[str, tuple[str, ...]]] = {
     **dict.fromkeys(("pause", "hold", "stay", "rest", "wait"), ("dwell",)),
     **dict.fromkeys(("barrel", "drum", "cylindrical", "axial"), ("cylinder",)),
     **dict.fromkeys(("plate", "radial", "disk"), ("disc",)),
-    **dict.fromkeys(("face", "track"), ("groove",)),
-    **dict.fromkeys(("linear", "wedge"), ("translating",)),
+    **dict.fromkeys(("roller-gear", "indexing", "indexer"), ("globoidal",)),
+    **dict.fromkeys(("face", "track"), ("groove", "flat")),
+    **dict.fromkeys(("linear", "wedge", "reciprocating", "sliding"), ("translating",)),
+    **dict.fromkeys(
+        ("swinging", "swing", "rocking", "rocker", "pivoting", "pivoted", "rotating"),
+        ("oscillating",),
+    ),
+    **dict.fromkeys(("flat-faced", "flat-face"), ("flat",)),
+    **dict.fromkeys(("mushroom", "spherical", "curved"), ("domed",)),
+    **dict.fromkeys(("knife", "edge"), ("knife-edge",)),
     **dict.fromkeys(("nc", "cnc", "ngc", "g-code"), ("gcode",)),
     **dict.fromkeys(("print", "printing", "3d", "3d-print"), ("stl", "3mf")),
 }
-"""Other words that people use: phases of a motion, forms of cams, files."""
+"""Other words that people use: phases of a motion, forms of cams, followers, files."""
 
 _SLIDES: Final = {
     "rrp": "rrt", "prr": "trr", "rpr": "rtr", "prp": "trt", "rpp": "rtt", "ppr": "ttr",
@@ -83,8 +91,11 @@ _SLIDES: Final = {
 }  # fmt: skip
 """Types of dyads with P for a joint that slides, as others write them."""
 
-_OF_CAMS = re.compile(r"(?<=.)[-_ ]?cams?$")
+_OF_CAMS = re.compile(r"(?<=.)[-_ ]?(cam|follower)s?$")
 """The end of a word such as ``barrel-cam``."""
+
+_BETWEEN = re.compile(r"[-_ ]+")
+"""What is between the parts of a word such as ``swinging roller``."""
 
 _FILLERS: Final = frozenset({"number", "num", "no", "n", "of", "the", "size", "value"})
 _SIZES: Final = frozenset({"diameter", "radius", "width", "distance"})
@@ -132,6 +143,41 @@ def did_you_mean(word: Any, known: Iterable[str]) -> str:
     near = _meant(word, known) if isinstance(word, str) else []
     note = " (T is a slide)" if near and near[0].lower() == _SLIDES.get(word.lower()) else ""
     return f"did you mean {' or '.join(near)}?{note}" if near else ""
+
+
+def keyed(word: Any, values: Mapping[str, Collection[str]]) -> str:
+    """Return keys and values that a `word` names, or an empty text.
+
+    Parameters
+    ----------
+    word : object
+        A word at a place that does not have it, such as ``swinging``.
+    values : mapping of str to collection of str
+        The words that keys may have.
+
+    Returns
+    -------
+    str
+        In words: ``follower.motion = "oscillating"``. The parts of a word such as ``swinging
+        roller`` may be values of several keys.
+    """
+    if not isinstance(word, str) or len(word) > _LONGEST:
+        return ""
+    whole = _keyed(word, values)
+    parts = [whole] if whole else [_keyed(one, values) for one in _BETWEEN.split(word)]
+    return " and ".join(dict.fromkeys(filter(None, parts)))
+
+
+def _keyed(word: str, values: Mapping[str, Collection[str]]) -> str:
+    """Return the keys whose values have a word or, if none has, another word for it."""
+    plain = cam_of(word.lower())
+    for names in ((word,), (plain, *_SYNONYMS.get(plain, ()))):
+        found = [
+            f'{key} = "{one}"' for key, known in values.items() for one in names if one in known
+        ]
+        if found:
+            return " or ".join(found)
+    return ""
 
 
 def meant_by(key: str, known: Mapping[str, Key], least: float = _WEAK) -> list[Key]:

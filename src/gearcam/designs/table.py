@@ -114,6 +114,15 @@ class Table:
     owner: type | None
     entries: Mapping[str, Key]
 
+    @property
+    def words(self) -> dict[str, tuple[str, ...]]:
+        """The words that single values may be, by dotted key."""
+        return {
+            f"{self.title}.{key}": entry.param.choices
+            for key, entry in self.entries.items()
+            if entry.param.choices and entry.length is None
+        }
+
     def bound(self, circumstances: Collection[str]) -> Table:
         """Return the table with the keys for some `circumstances` (see `Param.when`)."""
         kept = {}

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import Any, Final
 
+from gearcam.base.errors import Problem
 from gearcam.base.quantities import REQUIRED
 from gearcam.designs.examine import name_fault
 from gearcam.designs.faults import description, short, show
-from gearcam.designs.kind import KINDS, DesignKind
+from gearcam.designs.kind import KINDS, DesignKind, kind_meant, named_variant
+from gearcam.designs.slips import nearest
 from gearcam.designs.table import Key, Table
 
 _COLUMN: Final = 36
@@ -43,6 +46,38 @@ def template(kind: str, name: str = "", process: str = "") -> str:
     return "\n".join(_lines(KINDS[kind], name, process)) + "\n"
 
 
+def template_hint(word: str) -> str:
+    """Return the hint for a `word` that is no kind: which template shows what it names."""
+    found, named = kind_meant(word), named_variant(word)
+    if found is None:
+        return ""
+    kind, values = found
+    variants, value = kind.variants, named[1] if named else ""
+    if variants and value:
+        # some are kinds with templates of their own, and the default needs no word
+        kind = kind.meant({variants.title: {variants.key: value}})
+        values = "" if value in (variants.default, *variants.elsewhere) else values
+    return f"did you mean {kind.name}{values and f', with {values} in the file'}?"
+
+
+def process_problem(kind: str, process: str) -> Problem | None:
+    """Return why there is no template of a `kind` for a `process`; None if there is one."""
+    own = KINDS[kind].processes
+    if process in own:
+        return None
+    every = list(dict.fromkeys(one for other in KINDS.values() for one in other.processes))
+    near = nearest(process, own) or nearest(process, every)
+    having = [name for name, other in KINDS.items() if near in other.processes]
+    if not near:
+        hint = ""
+    elif near in own:
+        hint = f"did you mean {near}?"
+    else:
+        hint = f"{near} is for {', '.join(having)}: gearcam new {having[0]} --for {near}"
+    message = f"{show(process)} is not supported for {kind}"
+    return Problem(message, key="--for", allowed=", ".join(own) or "leave it out", hint=hint)
+
+
 def _lines(kind: DesignKind, name: str, process: str) -> Iterator[str]:
     more = kind.processes[process] if process else {}
     yield _HEADER.format(doc=f"{kind.doc[0].upper()}{kind.doc[1:]}")
@@ -54,10 +89,22 @@ def _lines(kind: DesignKind, name: str, process: str) -> Iterator[str]:
         yield from kind.main.template(kind.example[title], kind.notes.get(title, ""))
     for title in (*kind.tables, "limits"):
         head = f"[[{title}]]" if title in kind.several else f"[{title}]"
-        table, note, added = kind.table(title), kind.notes.get(title, ""), more.get(title, {})
+        table = _shown(kind.table(title), kind.shown.get(title, {}))
+        note, added = kind.notes.get(title, ""), more.get(title, {})
         examples = kind.example.get(title, {})
         for given in examples if isinstance(examples, list) else [examples]:
             yield from _table(head, table, {**given, **added}, note)
+
+
+def _shown(table: Table, examples: Mapping[str, Any]) -> Table:
+    """Return a table with `examples` of some of its keys."""
+    entries = {
+        key: replace(entry, param=replace(entry.param, example=examples[key]))
+        if key in examples
+        else entry
+        for key, entry in table.entries.items()
+    }
+    return Table(table.title, table.owner, entries)
 
 
 def _table(head: str, table: Table, given: Mapping[str, Any], note: str) -> Iterator[str]:

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from gearcam.base.rules import Breach, Rule, Value
 from gearcam.designs.faults import Fault, allowed, list_fault, short, show, value_fault
 from gearcam.designs.lines import Path
-from gearcam.designs.slips import STRONG, hinted, key_hint, misspelt
+from gearcam.designs.slips import STRONG, hinted, key_hint, keyed, misspelt
 from gearcam.designs.table import Key, Table, default_of
 
 
@@ -16,7 +17,7 @@ def faults_of(
     table: Table,
     raw: Any,
     *,
-    home: Callable[[str], str],
+    home: Callable[[str, Any], str],
     far: Callable[[str], str] = lambda _: "",
     at: Path = (),
     listed: Iterable[str] | None = None,
@@ -30,7 +31,8 @@ def faults_of(
     raw : object
         Its content in the file.
     home : callable
-        ``home(key)`` returns a hint that says where a misplaced key belongs.
+        ``home(key, value)`` returns a hint that says where a misplaced key, or its value,
+        belongs.
     far : callable
         The same for other kinds of design; asked last.
     at : tuple
@@ -49,25 +51,34 @@ def faults_of(
     entries = {name: table.entries[name] for name in names if name in table.entries}
     if not isinstance(raw, Mapping):
         rule, many = f"a table [{table.title}] with {keys}", isinstance(raw, list)
-        hint = f"write it once, in single brackets: [{table.title}]" if many else ""
+        hint = f"write it once, in single brackets: [{table.title}]" if many else home("", raw)
         yield Fault(at, f"{show(raw)} is not a table", raw, rule, hint)
         return
     missing = [name for name, key in table.entries.items() if key.required and name not in raw]
     meant = misspelt(raw, entries) if missing else ()
     for name, key in table.entries.items():
         if name in raw:
-            yield from _of_value(key, raw[name], (*at, name))
+            yield from (
+                _with_home(fault, table) for fault in _of_value(key, raw[name], (*at, name))
+            )
         elif name in missing and name not in meant:
             yield Fault((*at, name), "is missing", allowed=allowed(key))
     unknown = (name for name in raw if name not in table.entries)
 
     def hint_of(name: str) -> str:
-        near = key_hint(name, entries, STRONG) or home(name)
+        near = key_hint(name, entries, STRONG) or home(name, raw[name])
         return near or key_hint(name, entries) or far(name)
 
     for name, hint in hinted(unknown, hint_of):
         message = f"unknown key (its value is {show(raw[name])})"
         yield Fault((*at, name), message, raw[name], keys, hint)
+
+
+def _with_home(fault: Fault, table: Table) -> Fault:
+    """Return the fault of a value; if it is a word of another key of its table it says so."""
+    if fault.hint or not (words := keyed(fault.value, table.words)):
+        return fault
+    return replace(fault, hint=f"did you mean {words}?")
 
 
 def _of_value(key: Key, value: Any, path: Path) -> Iterator[Fault]:

@@ -71,7 +71,6 @@ class GoalSpec(ShortRepr):
         default=None,
         min_length=1,
         alone=True,
-        example="cam.profile.radius_mm.max",
         doc="fact that is to be least, by its name in summary.json",
     )
     maximize: tuple[str, ...] | None = param(
@@ -79,7 +78,6 @@ class GoalSpec(ShortRepr):
         default=None,
         min_length=1,
         alone=True,
-        example="cam.curvature.profile_convex_min_mm",
         doc="fact that is to be largest",
     )
     method: str | None = param(

@@ -30,6 +30,7 @@ from gearcam.base.tolerances import DEFAULT, Tolerances
 from gearcam.designs.design import hash_of, summary_of
 from gearcam.numeric.arguments import one_of, refused
 from gearcam.numeric.columns import Columns
+from gearcam.results.goals import demand_facts, goals_of
 from gearcam.results.kind import Kind, Study, kind_of
 from gearcam.results.written import BuildOutput, demand_formats, versions
 
@@ -507,6 +508,7 @@ class Result(NotebookView):
         BuildOutput
             With the summary as its only file.
         """
+        self.demand_goals()
         return self.put(directory, {}, self.facts, self.findings, keep=True)
 
     def write(
@@ -559,6 +561,7 @@ class Result(NotebookView):
             if outcome.interrupted:
                 raise KeyboardInterrupt
             contents |= outcome.files
+        self.demand_goals()
         for name in formats:
             tell(name)
             with self.stage(name):
@@ -568,6 +571,12 @@ class Result(NotebookView):
         tell("writing")
         facts = self.facts.with_groups(measured)
         return self.put(directory, contents, facts, self.findings, keep=False)
+
+    def demand_goals(self) -> None:
+        """Refuse goals of the design that are no numbers among its facts (`DesignError`)."""
+        goals = goals_of(self.design)
+        if goals:
+            demand_facts(goals, self.record())
 
     @property
     def more_files(self) -> dict[str, bytes]:

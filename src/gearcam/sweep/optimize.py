@@ -21,11 +21,12 @@ from gearcam.designs.design import document_of, path_of, value_at
 from gearcam.designs.writing import least_document, toml_text
 from gearcam.export.listing import DESIGN, aside
 from gearcam.kinds.shared import METHODS
+from gearcam.results.goals import demand_facts
 from gearcam.sweep.axes import Varied
 from gearcam.sweep.command import axes_given, engine_arguments, engine_of, told
 from gearcam.sweep.log import Log
 from gearcam.sweep.methods import Quest, Spent, minimized, usual
-from gearcam.sweep.optimum import FRONT, Trials, demand_facts
+from gearcam.sweep.optimum import FRONT, Trials
 from gearcam.sweep.plan import Plan
 from gearcam.sweep.rows import Built, measured
 from gearcam.sweep.run import head_of, write_tables, written_whole
@@ -168,7 +169,7 @@ def _price(plan: Plan, signs: dict[str, float]) -> float:
         values = {axis.key: plan.value(axis, u) for axis, u in pairs}
         row = measured(plan.base, 0, values)
         if row.made:
-            demand_facts(signs, row)
+            demand_facts(signs, row.facts)
             return measured(plan.base, 0, values).time_s
     return 0.0
 

@@ -3,7 +3,7 @@
 A *trial* is a variant that a method asks for. What the log has already is not built again: methods
 ask for the same trials again, so that a search that was ended goes on.
 
-Refused: goals that are no facts of the design, and searches in which no variant can be taken.
+Refused: searches in which no variant can be taken.
 """
 
 from __future__ import annotations
@@ -16,9 +16,7 @@ from typing import Any, Final
 import numpy as np
 
 from gearcam.base.display import ShortRepr
-from gearcam.base.errors import DesignError, InfeasibleError, Problem
-from gearcam.designs.faults import show
-from gearcam.designs.slips import nearest
+from gearcam.base.errors import InfeasibleError
 from gearcam.numeric.arrays import Array
 from gearcam.sweep.engine import Job
 from gearcam.sweep.log import Log
@@ -31,9 +29,6 @@ _REFUSED: Final = 1e6
 
 _NONE: Final = 1e12
 """Goal of variants that cannot be made."""
-
-_LISTED: Final = 3
-"""Largest number of facts that are listed for the beginning of their names."""
 
 FRONT: Final = 20
 """Largest number of designs that are written of several goals."""
@@ -173,41 +168,3 @@ class Trials(ShortRepr):
 def _fact(row: Built, name: str) -> float:
     value = row.facts.get(name, _NONE)
     return float(value) if isinstance(value, int | float) else _NONE
-
-
-def demand_facts(signs: Mapping[str, float], row: Built) -> None:
-    """Refuse goals that are no numbers among the facts of a row.
-
-    Parameters
-    ----------
-    signs : mapping of str to float
-        Goals by names.
-    row : Built
-        Of a variant that can be made.
-
-    Raises
-    ------
-    DesignError
-        With the nearest names.
-    """
-    problems = [
-        _no_goal(name, sign, row) for name, sign in signs.items() if _fact(row, name) == _NONE
-    ]
-    if problems:
-        raise DesignError(problems)
-
-
-def _no_goal(name: str, sign: float, row: Built) -> Problem:
-    """Return why a goal is not a number among the facts of a row."""
-    known = [one for one in row.facts if _fact(row, one) < _NONE]
-    near = nearest(name, known)
-    parts = [one for one in known if one.startswith(f"{name}.")][:_LISTED]
-    message = f"{show(name)} is no fact of this design"
-    if name in row.facts:
-        message, near = f"{show(name)} is not a number: {show(row.facts[name])}", ""
-    allowed = (
-        f"such as {near or ', '.join(parts)}"
-        if near or parts
-        else "a number by its name in summary.json; those of a study with output.studies"
-    )
-    return Problem(message, key=f"goal.{'minimize' if sign > 0 else 'maximize'}", allowed=allowed)

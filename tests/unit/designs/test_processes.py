@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import gearcam as gc
+from gearcam.base.errors import DesignError
 from gearcam.base.quantities import REQUIRED
 from gearcam.cli import main
 from gearcam.designs import KINDS
@@ -82,11 +83,40 @@ def test_optional_keys_show_their_default_or_say_that_they_show_an_example(
             entry = known.table(title).entries[key]
             if example:
                 assert entry.default in (None, REQUIRED), key
-                assert entry.param.example is not None, key
+                assert (value, entry.param.example) != ("None", None), key
             else:
                 default = entry.inward(tomllib.loads(f"x = {value}")["x"])
                 assert default == pytest.approx(entry.default), key
     assert shown & {"module_mm", "base_radius_mm", "arm_mm", "length_mm"}
+
+
+QUICK = [("cam", ""), ("gear-pair", ""), ("mechanism", ""), ("spatial-cam", "printing")]
+
+
+@pytest.mark.parametrize(("kind", "process"), chosen(PROCESSES, *QUICK))
+def test_the_goals_that_are_shown_are_facts_and_others_are_refused(
+    kind: str, process: str, tmp_path: Path
+) -> None:
+    """Of every kind, as the file shows them: behind # of the optional table ``[goal]``."""
+    before, title, after = template(kind, "mine", process).partition("# [goal]\n")
+    table, end, rest = after.partition("\n\n")
+    text = before + title[2:] + re.sub(r"(?m)^# (?=minimize|maximize)", "", table) + end + rest
+    result = gc.build(gc.loads(text))
+    goal = result.design.goal
+    assert len(goal.signs) == 2
+    numbers = {name for name, value in result.record().items() if isinstance(value, float)}
+    assert goal.signs.keys() <= numbers
+    # a letter too many: the nearest name is the right one
+    (first, *_) = goal.signs
+    wrong = gc.build(result.design.with_({"goal.minimize": f"{first}x"}))
+    for write in (wrong.check, wrong.write):
+        with pytest.raises(DesignError) as caught:
+            write(tmp_path)
+        (problem,) = caught.value.problems
+        assert problem.key == "goal.minimize"
+        assert problem.message == f'"{first}x" is no fact of this design'
+        assert problem.allowed.startswith(f"such as {first}")
+    assert not [*tmp_path.iterdir()]
 
 
 def test_a_cam_is_described_in_words_of_cams() -> None:
@@ -104,6 +134,41 @@ def test_what_a_process_needs() -> None:
     assert laser["pair"]["backlash_mm"] > wire["pair"]["backlash_mm"] > 0.0
     assert printed["blank"]["clearance_mm"] > 0.0
     assert "cut-svg" in laser["output"]["files"]
+
+
+@pytest.mark.parametrize(
+    ("word", "hint"),
+    [
+        ("barrel", "spatial-cam"),
+        ("cylinder-cam", "spatial-cam"),
+        ("drum cam", "spatial-cam"),
+        ("globoid", "globoidal-cam"),
+        ("disc", "cam"),
+        ("groove-cam", 'cam, with cam.form = "groove" in the file'),
+        ("rack", 'gear-pair, with law.type = "rack" in the file'),
+        ("gears", "gear-pair"),
+        ("linkage", "mechanism"),
+        ("swinging", 'cam, with follower.motion = "oscillating" in the file'),
+    ],
+)
+def test_other_names_are_answered_with_the_file_that_shows_them(
+    word: str, hint: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["new", word]) == 2
+    assert f"\n    did you mean {hint}?\n" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("word", ["milling", "mill"])
+@pytest.mark.parametrize("kind", ["cam", "globoidal-cam", "mechanism"])
+def test_a_process_of_another_kind_names_it(
+    kind: str, word: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["new", kind, "--for", word]) == 2
+    err = capsys.readouterr().err
+    assert f'--for: "{word}" is not supported for {kind}\n' in err
+    command = "gearcam new spatial-cam --for milling"
+    assert f"milling is for spatial-cam: {command}\n" in err
+    assert main(command.split()[1:]) == 0
 
 
 def test_another_process_is_refused(capsys: pytest.CaptureFixture[str]) -> None:

@@ -220,6 +220,117 @@ def test_a_kind_that_names_the_form_stands_for_it() -> None:
     assert [problem.key for problem in caught.value.problems] == ["kind"]
 
 
+FORMS = {
+    "cylinder_cam": "cylinder",
+    "rotary_axis_cam": "cylinder",
+    "globoidal_indexer": "globoidal",
+    "groove_cam": "groove",
+    "conjugate_cams": "conjugate",
+    "translating_cam": "translating",
+}
+
+
+@pytest.mark.parametrize("line", ["", 'form = "xyz"', "form = 3"])
+@pytest.mark.parametrize("name", [*FORMS])
+def test_without_its_form_a_file_is_read_as_what_its_keys_mean(name: str, line: str) -> None:
+    text = 'name = "mine"\n' + re.sub(
+        r'(?m)^(kind = "globoidal-cam"|name = .*)$',
+        "",
+        (PROFILES / f"{name}.toml").read_text("utf-8"),
+    )
+    text, count = re.subn(r'(?m)^form = ".*?"', line, text)
+    assert count == 1
+    with pytest.raises(DesignError) as caught:
+        gc.loads(text)
+    (problem,) = caught.value.problems
+    assert problem.key == "cam.form"
+    assert problem.hint == f"did you mean {FORMS[name]}?"
+    assert problem.allowed.count('"') == 14, "all forms"
+    if not line:
+        for key in problem.message.partition(" has no ")[2].split(", "):
+            assert key.strip("[]") in text
+
+
+def test_other_faults_of_a_file_without_its_form_are_those_of_the_form_that_is_meant() -> None:
+    text = (PROFILES / "cylinder_cam.toml").read_text("utf-8").replace('form = "cylinder"\n', "")
+    text = text.replace("length_mm = ", "length_mm = -")
+    with pytest.raises(DesignError) as caught:
+        gc.loads('name = "mine"\n' + text)
+    assert [one.key for one in caught.value.problems] == ["cam.form", "cam.length_mm"]
+
+
+@pytest.mark.parametrize("line", ["gap_mm = 2", "groove_depth_mm = 4", "outer_diameter_mm = 90"])
+def test_one_key_of_another_form_makes_no_other_cam(line: str) -> None:
+    text = (PROFILES / "plate_cam_offset_roller.toml").read_text("utf-8")
+    text, count = re.subn(r'(?m)^form = "disc"', line, text)
+    assert count == 1
+    with pytest.raises(DesignError) as caught:
+        gc.loads(text)
+    (problem,) = caught.value.problems
+    assert problem.key == f"cam.{line.split()[0]}"
+    assert "does not apply to a disc cam" in problem.message
+
+
+SWINGS, ROLLS = 'follower.motion = "oscillating"', 'follower.type = "roller"'
+MISPLACED = (
+    ("top", 'motion = "swinging"', "motion", SWINGS),
+    ("[[motion]]", 'motion = "swinging"', "motion[0].motion", SWINGS),
+    ("[[motion]]", 'follower = "rocking"', "motion[0].follower", SWINGS),
+    ("[[motion]]", 'follower = "roller"', "motion[0].follower", ROLLS),
+    ("[cam]", 'follower = "pivoted"', "cam.follower", SWINGS),
+    ("[cam]", 'follower_motion = "oscillating"', "cam.follower_motion", SWINGS),
+    ("[cam]", 'kind = "barrel"', "cam.kind", 'cam.form = "cylinder"'),
+    ("[follower]", 'type = "swinging"', "follower.type", SWINGS),
+    ("[follower]", 'shape = "roller-follower"', "follower.shape", ROLLS),
+    ("[follower]", "swinging = true", "follower.swinging", SWINGS),
+    ("[follower]", 'kind = "rocking roller"', "follower.kind", f"{SWINGS} and {ROLLS}"),
+    ("whole", 'follower = "swinging"', "follower", SWINGS),
+)
+
+
+@pytest.mark.parametrize("profile", ["cylinder_cam", "plate_cam_offset_roller"])
+@pytest.mark.parametrize(("place", "line", "key", "meant"), MISPLACED)
+def test_a_word_in_another_place_is_answered_with_its_key_and_value(
+    profile: str, place: str, line: str, key: str, meant: str
+) -> None:
+    text = (PROFILES / f"{profile}.toml").read_text("utf-8")
+    text = text if "\nname = " in text else f'name = "mine"\n{text}'
+    if place == "whole":
+        text = f"{line}\n" + re.sub(r"(?s)\[follower\].*?(?=\n\[)", "", text)
+    elif place == "top":
+        text = f"{line}\n" + re.sub(r"(?s)\[\[motion\]\].*(?=\n\[follower)", "", text)
+    else:
+        if line.startswith("type"):
+            text = re.sub(r'(?m)(?<=\[follower\]\n)type = ".*?"', "", text)
+        text = text.replace(f"{place}\n", f"{place}\n{line}\n", 1)
+    with pytest.raises(DesignError) as caught:
+        gc.loads(text)
+    hints = {problem.key: problem.hint for problem in caught.value.problems}
+    assert hints[key] == f"did you mean {meant}?"
+
+
+@pytest.mark.parametrize(
+    ("key", "word", "meant"),
+    [
+        ("motion", "swinging", "oscillating"),
+        ("motion", "rotating", "oscillating"),
+        ("motion", "reciprocating", "translating"),
+        ("type", "knife", "knife-edge"),
+        ("type", "flat-faced", "flat"),
+        ("type", "mushroom", "domed"),
+        ("type", "roller-follower", "roller"),
+    ],
+)
+def test_other_words_for_followers(key: str, word: str, meant: str) -> None:
+    text = (PROFILES / "plate_cam_offset_roller.toml").read_text("utf-8")
+    text, count = re.subn(rf'(?m)(?<=^{key} = )"(roller|translating)"', f'"{word}"', text)
+    assert count == 1
+    with pytest.raises(DesignError) as caught:
+        gc.loads(text)
+    hints = {problem.key: problem.hint for problem in caught.value.problems}
+    assert hints[f"follower.{key}"] == f"did you mean {meant}?"
+
+
 @pytest.mark.parametrize(
     ("word", "hint"),
     [

@@ -42,6 +42,12 @@ KIND: Final = Kind(
         "blank": {"bore_diameter_mm": 8},
         "output": {"files": ["dxf", "csv", "report"]},
     },
+    shown={
+        "goal": {
+            "minimize": "cam.profile.radius_mm.max",
+            "maximize": "cam.curvature.profile_convex_min_mm",
+        }
+    },
     processes={
         "printing": {
             "cam": {"thickness_mm": 8},

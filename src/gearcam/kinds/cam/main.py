@@ -6,7 +6,7 @@ from typing import Final
 
 from gearcam.base.registry import deferred
 from gearcam.designs.kind import Main
-from gearcam.kinds.cam.motion import TITLE, examine_motion, homes, motion_document
+from gearcam.kinds.cam.motion import TITLE, examine_motion, homes, motion_document, words
 
 _DESCRIBED: Final = "gearcam.kinds.cam.describe"
 
@@ -19,4 +19,5 @@ MOTION: Final = Main(
     schema=deferred(f"{_DESCRIBED}:schema"),
     template=deferred(f"{_DESCRIBED}:lines"),
     laws=deferred(f"{_DESCRIBED}:laws"),
+    words=words,
 )

@@ -7,7 +7,7 @@ whole turn is given by a formula, ``lift``, or by rows.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import cache, partial
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
@@ -105,7 +105,8 @@ def examine_motion(document: Mapping[str, Any], found: Examined) -> None:
     if TITLE not in document:
         found.faults.append(Fault((TITLE,), "is missing", allowed=rule))
     elif isinstance(raw, Mapping) and "type" in raw:
-        hint = f"write phases with double brackets: [[{TITLE}]]"
+        hint = "" if raw["type"] in (*PHASES,) else _home("", raw["type"])
+        hint = hint or f"write phases with double brackets: [[{TITLE}]]"
         found.faults.append(Fault((TITLE,), "is a single table", raw, rule, hint))
     elif isinstance(raw, Mapping) and "sliding" in given:
         message = "is given over a turn, but the cam slides"
@@ -114,7 +115,7 @@ def examine_motion(document: Mapping[str, Any], found: Examined) -> None:
         _examine_turn(raw, given, found)
     elif not isinstance(raw, list) or not raw:
         message = "the list is empty" if raw == [] else f"{show(raw)} is not a list of tables"
-        found.faults.append(Fault((TITLE,), message, raw, rule))
+        found.faults.append(Fault((TITLE,), message, raw, rule, _home("", raw)))
     else:
         before = len(found.faults)
         phases = [_phase((TITLE, k), item, given, found) for k, item in enumerate(raw)]
@@ -131,8 +132,8 @@ def circumstances(document: Mapping[str, Any]) -> tuple[str, ...]:
     return (*known, _form(document).moves)
 
 
-def _home(key: str) -> str:
-    return home_of(KINDS["cam"], key)
+def _home(key: str, value: Any) -> str:
+    return home_of(KINDS["cam"], key, value)
 
 
 def _form(document: Mapping[str, Any]) -> type[Form[Any, Any, Any]]:
@@ -323,6 +324,11 @@ def phases_wanted(motion: Any) -> Iterator[Wanted]:
         yield f"{TITLE}[{number}]", phase, tuple(PHASES.values())
         if isinstance(phase, RisePhase) and not name_of(MOTION_LAWS, phase.law):
             yield f"{TITLE}[{number}].law", phase.law, tuple(classes_in(MOTION_LAWS).values())
+
+
+def words() -> dict[str, Collection[str]]:
+    """Return the types of phases and the laws, by the keys that choose them."""
+    return {f"{TITLE}.type": PHASES.keys(), f"{TITLE}.law": MOTION_LAWS.keys()}
 
 
 def homes() -> dict[str, str]:

@@ -167,6 +167,11 @@ def law_of(design: GearPairDesign) -> dict[str, Any]:
     return {"type": design.law_type} | law_table(design.law_type).document(design.law)
 
 
+def law_words() -> dict[str, Collection[str]]:
+    """Return the laws, by the key that chooses them."""
+    return {"law.type": LAWS.keys()}
+
+
 def law_homes() -> Mapping[str, str]:
     """Return hints by key that name the laws to which a key belongs."""
     laws: dict[str, list[str]] = {}

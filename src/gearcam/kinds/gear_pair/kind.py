@@ -16,6 +16,7 @@ from gearcam.kinds.gear_pair.design import (
     law_homes,
     law_of,
     law_table,
+    law_words,
     planetary,
     problems,
 )
@@ -41,6 +42,7 @@ KIND: Final = Kind(
         schema=deferred(f"{_HERE}.describe:schema"),
         template=deferred(f"{_HERE}.describe:lines"),
         laws=deferred(f"{_HERE}.describe:laws"),
+        words=law_words,
     ),
     required=("pair",),
     rules=RULES,
@@ -65,6 +67,12 @@ KIND: Final = Kind(
         "pair": {"center_distance_mm": 80, "teeth": [32, 32], "face_width_mm": 10},
         "blank": {"bore_diameter_mm": 8},
         "output": {"files": ["dxf", "csv", "report"]},
+    },
+    shown={
+        "goal": {
+            "minimize": "pair.center_distance_mm",
+            "maximize": "mesh.contact_ratio.forward.least",
+        }
     },
     processes={
         "printing": {

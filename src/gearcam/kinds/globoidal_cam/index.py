@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from functools import partial
 from typing import Any, Final
 
@@ -83,6 +83,11 @@ def index_document(design: Any) -> dict[str, Any]:
 def known(raw: Mapping[str, Any]) -> Table:
     """Return the table as it is in a file."""
     return index_table(raw["law"])
+
+
+def words() -> dict[str, Collection[str]]:
+    """Return the laws, by the key that chooses them."""
+    return {f"{TITLE}.law": MOTION_LAWS.keys()}
 
 
 def homes() -> dict[str, str]:

@@ -18,6 +18,7 @@ from gearcam.kinds.globoidal_cam.index import (
     homes,
     index_document,
     known,
+    words,
 )
 from gearcam.results.kind import Kind
 
@@ -37,6 +38,7 @@ KIND: Final = Kind(
         schema=deferred(f"{_HERE}.describe:schema"),
         template=deferred(f"{_HERE}.describe:lines"),
         laws=deferred(f"{_HERE}.describe:laws"),
+        words=words,
     ),
     required=("turret", "cam"),
     later=not_made,
@@ -51,6 +53,7 @@ KIND: Final = Kind(
         "blank": {"bore_diameter_mm": 20},
         "output": {"files": ["stl", "csv", "report"]},
     },
+    shown={"goal": {"minimize": "cam.pressure_angle_deg.max", "maximize": "cam.least_rib_mm"}},
     processes={
         "printing": {
             "cam": {"roller_clearance_mm": 0.06, "floor_clearance_mm": 0.5},

@@ -55,6 +55,12 @@ KIND: Final = Kind(
         "point": [{"name": "P", "on": "coupler", "at_mm": [49, 34]}],
         "output": {"files": ["csv", "report"]},
     },
+    shown={
+        "goal": {
+            "minimize": "outputs.P_x.acceleration_mm_s2",
+            "maximize": "outputs.P_x.stroke_mm",
+        }
+    },
     facts=deferred(f"{_HERE}.facts:facts"),
     files=DeferredMapping(f"{_HERE}.files:FILES"),
     charts=DeferredMapping(f"{_HERE}.charts:CHARTS"),

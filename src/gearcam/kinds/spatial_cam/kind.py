@@ -44,6 +44,12 @@ KIND: Final = Kind(
         "blank": {"bore_diameter_mm": 20},
         "output": {"files": ["stl", "csv", "report"]},
     },
+    shown={
+        "goal": {
+            "minimize": "cam.pressure_angle_deg.max",
+            "maximize": "cam.largest_roller_mm.in_space",
+        }
+    },
     processes={
         "printing": {
             "cam": {"roller_clearance_mm": 0.08, "floor_clearance_mm": 0.5},
