@@ -332,5 +332,6 @@ def design(d: Draw, index: int) -> dict[str, Any]:
     if made["cam"].get("form", "disc") == "disc" and d.chance(0.06):
         _solved(d, made, size)
     _studies(d, made, size)
-    seek(made, index, *GOALS)
+    disc = made["cam"].get("form", "disc") == "disc"
+    seek(made, index, *(GOALS if disc else ("cam.pressure_angle_deg.max", "motion.peak_jerk")))
     return made
