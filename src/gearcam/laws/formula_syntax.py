@@ -84,8 +84,8 @@ _ALIASES: Final = {
     "\N{GREEK SMALL LETTER PI}": "pi",
 }
 _VARIABLES: Final = frozenset(
-    {"phi1", "phi", "theta", "x", "t", "q", "\N{GREEK SMALL LETTER PHI}"}
-    | {"\N{GREEK SMALL LETTER THETA}"}
+    {"phi1", "phi", "theta", "x", "t", "q", "u"}
+    | {"\N{GREEK SMALL LETTER PHI}", "\N{GREEK SMALL LETTER THETA}"}
 )
 """Names of the variable of some formula, which people write in others."""
 
