@@ -46,6 +46,14 @@ def written(folder: Path, text: str) -> str:
             "# measured\nx ; why ; y\n0;a, b;0\n,25;1.2.3;0,125\n0,75;;8,75e-1\n1;;1\n",
             "read with semicolons and decimal commas",
         ),
+        (POINTS.replace(",", "\t"), "read with tabs between columns"),
+        (POINTS.replace(",", "\t").replace(".", ","), "read with tabs and decimal commas"),
+        ("\ufeff" + POINTS.replace(",", ";"), "read with semicolons between columns"),
+        (
+            "\ufeffsep=;\n" + POINTS.replace(",", ";").replace(".", ","),
+            "read with semicolons and decimal commas",
+        ),
+        ("sep=,\n" + POINTS.replace("x,y", "x,y,a;b"), ""),
         ('x,y,note\n0,0,"a;b"\n0.25,0.125\n0.75,0.875,,\n1,1\n', ""),
     ],
 )
@@ -66,7 +74,9 @@ def test_separators_that_are_clear_are_read_and_told(tmp_path: Path, text: str, 
         ('x,y\n0,0\n"0,5",0.5\n1,1\n', "line 3: '0,5' is not a number; use a decimal point"),
         ("x;y\n0;0\n0,5;0.5\n1;1\n", "line 3: '0,5' is not a number; use a decimal point"),
         ("x;y\n0;0\n1.000,5;0\n1;1\n", "line 3: '1.000,5' is not a number"),
-        ("x;y,z\n0;0,1\n", "line 1: the columns are x;y, z"),
+        ("x;y,z\n0;0,1\n", "line 1: the columns are x;y, z: none is x or y"),
+        ("x y\n0 0\n", "line 1: the columns are x y; commas, semicolons or tabs separate them"),
+        ("sep=|\nx|y\n", "line 1: the columns are sep=|; commas, semicolons or tabs separate them"),
         ("x,y\n0,0\n0.5,1_0\n1,1\n", "line 3: '1_0' is not a number"),
         ("x,y\n0,0\n0.5,\u0661\n1,1\n", "line 3: '\u0661' is not a number"),
     ],
@@ -87,31 +97,87 @@ def test_what_is_not_clear_is_refused(tmp_path: Path, text: str, message: str) -
         ("theta_deg,lift_mil", (1.0, 0.0254)),
         ("theta_deg,lift_ft", (1.0, 304.8)),
         ("theta_deg,lift_m", (1.0, 1e3)),
-        ("theta_deg,lift_in,lift_mm", (1.0, 1.0)),
+        ("theta_radians,lift_thou", (180.0 / math.pi, 0.0254)),
     ],
 )
 def test_a_column_is_in_the_unit_of_its_name(
     tmp_path: Path, head: str, factors: tuple[float, float]
 ) -> None:
-    last = ",3.0" if head.count(",") == 2 else ""
-    rows = read_rows(written(tmp_path, f"{head}\n0.5,3.0{last}\n-2.0,0.25{last}\n"))
+    rows = read_rows(written(tmp_path, f"{head}\n0.5,3.0\n-2.0,0.25\n"))
     found, _ = rows.columns(("theta_deg", "lift_mm"))
-    expected = np.array([[0.5, 3.0], [-2.0, 3.0 if last else 0.25]]) * factors
+    expected = np.array([[0.5, 3.0], [-2.0, 0.25]]) * factors
     np.testing.assert_allclose(found, expected, rtol=1e-15)
 
 
-@pytest.mark.parametrize("head", ["theta_deg,lift_foo", "theta_deg,lift", "theta_deg,lift_deg"])
+@pytest.mark.parametrize("head", ["theta_deg,lift_foo", "theta_deg,lift_deg"])
 def test_a_unit_that_is_not_known_is_refused_by_name(tmp_path: Path, head: str) -> None:
     rows = read_rows(written(tmp_path, f"{head}\n0,1\n"))
     name = head.split(",")[1]
-    with pytest.raises(ColumnsError, match=rf"the columns are .*{name}; .* read: .*_in, .*_mm"):
+    told = rf"the columns are .*{name}: none is lift_mm; .* read: .*_in, .*_mm"
+    with pytest.raises(ColumnsError, match=told):
         rows.columns(("theta_deg", "lift_mm"))
 
 
-def test_two_units_of_one_column_are_not_chosen_from(tmp_path: Path) -> None:
-    rows = read_rows(written(tmp_path, "theta_deg,lift_in,lift_cm\n0,1,2.54\n"))
-    with pytest.raises(ColumnsError, match="the columns are theta_deg, lift_in, lift_cm"):
+@pytest.mark.parametrize(
+    ("head", "words"),
+    [
+        ("theta_deg,lift (mm)", "write theta_deg,lift_mm"),
+        ("theta_deg,lift [in]", "write theta_deg,lift_in"),
+        ("Theta_Deg,Lift_MM,Note", "write theta_deg,lift_mm,Note"),
+        ("theta (\N{DEGREE SIGN});lift/\N{MICRO SIGN}m", "write theta_deg;lift_um"),
+        ("theta deg\tlift mm", "write theta_deg\tlift_mm"),
+        ("THETA,LIFT", "write theta_deg,lift_mm, if THETA is in deg and LIFT is in mm"),
+        ("theta_deg,lift", "write theta_deg,lift_mm, if lift is in mm"),
+    ],
+)
+def test_names_that_are_misspelt_are_answered_with_the_line_to_write(
+    tmp_path: Path, head: str, words: str
+) -> None:
+    rows = read_rows(written(tmp_path, f"{head}\n0{between(head)}1\n"))
+    with pytest.raises(ColumnsError) as caught:
         rows.columns(("theta_deg", "lift_mm"))
+    assert str(caught.value) == f"line 1: the columns are {', '.join(rows.cells[0])}; {words}"
+    header = words.removeprefix("write ").partition(", if ")[0]
+    table = read_rows(written(tmp_path, f"{header}\n0{between(head)}1\n"))
+    found, _ = table.columns(("theta_deg", "lift_mm"))
+    assert found.shape == (1, 2)
+
+
+def between(head: str) -> str:
+    """What separates the cells of a line of names."""
+    return next(one for one in "\t;," if one in head)
+
+
+@pytest.mark.parametrize(
+    ("head", "words"),
+    [
+        ("theta_deg,lift_in,lift_cm", "lift_in and lift_cm are the same quantity"),
+        ("theta_deg,lift_mm,lift_in", "lift_mm and lift_in are the same quantity"),
+        ("theta_deg,lift_mm,Lift (in)", r"lift_mm and Lift \(in\) are the same quantity"),
+        ("theta_rad,theta_deg,lift_mm", "theta_rad and theta_deg are the same quantity"),
+        ("theta_deg,lift_mm,lift_mm", "lift_mm is given 2 times"),
+    ],
+)
+def test_two_columns_of_one_quantity_are_not_chosen_from(
+    tmp_path: Path, head: str, words: str
+) -> None:
+    rows = read_rows(written(tmp_path, f"{head}\n0,1,2.54\n"))
+    with pytest.raises(ColumnsError, match=f"line 1: {words}"):
+        rows.columns(("theta_deg", "lift_mm"))
+
+
+def test_two_kinds_of_values_of_a_law_are_not_chosen_from(tmp_path: Path) -> None:
+    rows = "".join(f"{60 * k},1,{60 * k}\n" for k in range(7))
+    file = written(tmp_path, f"phi1_deg,ratio,phi2_rad\n{rows}")
+    ((_, _, told, _),) = TableLaw(file=file).problems()
+    assert told == "line 1: ratio and phi2_rad: leave one of them"
+
+
+def test_a_file_in_utf_16_is_named(tmp_path: Path) -> None:
+    file = tmp_path / "points.csv"
+    file.write_bytes(POINTS.replace(",", "\t").encode("utf-16"))
+    with pytest.raises(ColumnsError, match="it is in UTF-16: save it in UTF-8"):
+        read_rows(str(file))
 
 
 def test_every_reader_of_columns_takes_other_units(tmp_path: Path) -> None:

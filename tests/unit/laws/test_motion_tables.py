@@ -349,7 +349,7 @@ def test_rows_that_make_no_motion_are_refused(change: str, tmp_path: Path) -> No
     ("text", "message"),
     [
         ("theta_deg,lift_mm\n", "has 0 rows"),
-        ("theta_deg,lift\n0,1\n", "line 1: the columns are theta_deg, lift"),
+        ("theta_deg,lift\n0,1\n", "columns are theta_deg, lift; write theta_deg,lift_mm, if"),
         ("theta_deg,lift_deg\n0,1\n", "line 1: lift_deg is of the wrong kind for a translating"),
         ("theta_deg,lift_mm,lift_deg\n0,1,2\n", "has 1 rows"),
         ("theta_deg,lift_mm\n0,x\n", "line 2: 'x' is not a number"),

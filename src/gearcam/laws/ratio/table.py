@@ -15,7 +15,7 @@ from gearcam.base.errors import InfeasibleError, beyond_limit
 from gearcam.base.quantities import ANGLE, NUMBER, TEXT, Row, Solve, param
 from gearcam.base.rules import Breach, exactly_one
 from gearcam.base.tolerances import Tolerances
-from gearcam.laws.columns import MOST_ROWS, FromFile, close_angles, demand
+from gearcam.laws.columns import MOST_ROWS, ColumnsError, FromFile, close_angles, demand
 from gearcam.laws.entry import TYPED, LawEntry
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.driver import demand_radii, law_of_centrode
@@ -109,7 +109,10 @@ class TableLaw(FromFile):
             kind = next(name for name in _VALUES if getattr(self, name) is not None)
             return kind, np.array(self.phi1), np.array(getattr(self, kind)), []
         names = [name for name, column in _VALUES.items() if self.rows.spelt(column)]
-        columns = [_ANGLE, _VALUES[names[0]]] if len(names) == 1 else []
+        if len(names) > 1:
+            given = " and ".join(self.rows.spelt(_VALUES[name]) for name in names)
+            raise ColumnsError(f"line {self.rows.lines[0]}: {given}: leave one of them")
+        columns = [_ANGLE, _VALUES[names[0]]] if names else []
         points, lines = self.rows.columns(columns)
         factor = math.pi / 180.0 if names[0] == "phi2" else 1.0
         return names[0], np.radians(points[:, 0]), points[:, 1] * factor, lines
