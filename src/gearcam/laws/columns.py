@@ -41,6 +41,12 @@ LARGEST: Final = 16_000_000
 NARROWEST_STEP: Final = 2e-6 * math.pi
 """Smallest step of the angle between rows, rad: a second of arc."""
 
+_LITTLE: Final = 0.1
+"""Largest error of a printed period, in steps of the rows."""
+
+_ROUNDING: Final = 1e-6
+"""Rounding of an angle in units of its last digit of ten."""
+
 
 class ColumnsError(ValueError):
     """A CSV file without the needed columns; the message gives line and reason."""
@@ -299,9 +305,10 @@ def read_rows(file: str) -> CsvRows:
 
     try:
         content = read(file, LARGEST)
-        text = content.decode("utf-8-sig").splitlines()
     except UnreadableError as error:
         raise ColumnsError(f"cannot be read: {error}") from error
+    try:
+        text = content.decode("utf-8-sig").splitlines()
     except UnicodeDecodeError as error:
         wide = content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
         found = "it is in UTF-16: save it in UTF-8" if wide else "it is not a text file in UTF-8"
@@ -345,6 +352,30 @@ def close_angles(angles: Array) -> Iterator[tuple[int, str, str]]:
         before, here = degrees(float(angles[row])), degrees(float(angles[row + 1]))
         state = f"{here} is given twice" if steps[row] == 0.0 else f"{here} follows {before}"
         yield row + 1, state, rule
+
+
+def spans(angles: Array, period: float) -> bool:
+    """Return whether rows end a period behind their first angle, to the last digit as printed.
+
+    The period may be rounded or cut off in rad or in degrees, such as 6.2832 for a turn, if that is
+    little beside the steps of the rows.
+
+    Parameters
+    ----------
+    angles : (n,) array, rad
+        Of the rows, rising.
+    period : float, rad
+        The period.
+    """
+    span = float(angles[-1] - angles[0])
+    missed = abs(span - period)
+    if missed < NARROWEST_STEP or missed > _LITTLE * float(np.diff(angles).min()):
+        return missed < NARROWEST_STEP
+    for scale in (1.0, math.degrees(1.0)):
+        decimals = f"{scale * span:.10g}".partition(".")[2]
+        if scale * missed < 10.0 ** -len(decimals) * (1.0 - _ROUNDING):
+            return True
+    return False
 
 
 def degrees(angle: float) -> str:

@@ -17,6 +17,7 @@ from gearcam.base.tolerances import DEFAULT
 from gearcam.laws.columns import ColumnsError, FromFile, read_rows, tables_in
 from gearcam.laws.motion.points import TableRise
 from gearcam.laws.motion_table import MotionTable
+from gearcam.laws.ratio.base import RatioLaw
 from gearcam.laws.ratio.formula import Formula
 from gearcam.laws.ratio.span import ONE_LOBE
 from gearcam.laws.ratio.table import TableLaw
@@ -294,6 +295,65 @@ def test_angles_of_a_ratio_rise_by_a_second_of_arc(
     file = written(tmp_path, "phi1_deg,ratio\n" + "".join(lines))
     said = [one[2] for one in TableLaw(file=file).problems()]
     assert [message in one for one in said] == [True] * bool(message)
+
+
+def ratio_values(name: str, angles: np.ndarray) -> np.ndarray:
+    wave = np.cos(angles)
+    return {"ratio": 1.0 + 0.2 * wave, "r1": 1.0 + 0.1 * wave}.get(
+        name, angles + 0.2 * np.sin(angles)
+    )
+
+
+@pytest.mark.parametrize("name", ["ratio", "r1", "phi2"])
+@pytest.mark.parametrize("first", [30.0, 10.0, -90.0, 360.0])
+def test_a_table_of_a_closed_pair_may_begin_at_any_angle(name: str, first: float) -> None:
+    """The law is that of the same table from the first angle on, turned by it."""
+    steps = np.radians(np.arange(0.0, 361.0, 5.0))
+    values = ratio_values(name, steps + math.radians(first))
+
+    def law(start: float) -> RatioLaw:
+        given: dict[str, Any] = {"phi1": tuple(steps + start), name: tuple(values)}
+        return TableLaw(**given).build(ONE_LOBE, DEFAULT)
+
+    one, turned = law(0.0), law(math.radians(first))
+    places = np.linspace(0.0, 2.0 * math.pi, 50)
+    back = places - math.radians(first)
+    np.testing.assert_allclose(
+        turned.derivatives(places, 2)[1:], one.derivatives(back, 2)[1:], atol=1e-10
+    )
+    assert float(turned.phi2(0.0)) == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_table_of_an_open_pair_says_what_to_subtract() -> None:
+    steps = np.radians(np.arange(10.0, 111.0, 5.0))
+    law = TableLaw(phi1=tuple(steps), ratio=tuple(1.0 + 0.1 * steps), driven_travel=1.0)
+    with pytest.raises(InfeasibleError, match="subtract 10 deg from all its angles"):
+        law.build(ONE_LOBE, DEFAULT)
+
+
+@pytest.mark.parametrize("last", ["6.2831853", "6.2832", "6.28318"])
+@pytest.mark.parametrize("name", ["ratio", "phi2_rad"])
+def test_a_turn_of_a_law_in_radians_may_be_rounded(tmp_path: Path, name: str, last: str) -> None:
+    steps = np.linspace(0.0, 2.0 * math.pi, 73)
+    values = ratio_values(name, steps).tolist()
+    rows = [f"{a!r},{b!r}\n" for a, b in zip(steps.tolist(), values, strict=True)]
+    end = last if name == "phi2_rad" else repr(values[-1])
+    file = written(tmp_path, "".join([f"phi1_rad,{name}\n", *rows[:-1], f"{last},{end}\n"]))
+    law = TableLaw(file=file).build(ONE_LOBE, DEFAULT)
+    given: dict[str, Any] = {"phi1": tuple(steps), name.removesuffix("_rad"): tuple(values)}
+    exact = TableLaw(**given)
+    places = np.linspace(0.0, 2.0 * math.pi, 50)
+    found, right = law.phi2(places), exact.build(ONE_LOBE, DEFAULT).phi2(places)
+    np.testing.assert_allclose(found, right, atol=2e-5 if name == "phi2_rad" else 1e-11)
+
+
+def test_a_table_that_ends_beside_its_lobe_is_refused(tmp_path: Path) -> None:
+    rows = "".join(f"{10 * k},1\n" for k in range(1, 37))
+    with pytest.raises(InfeasibleError, match="value 360 deg, limit 370 deg"):
+        TableLaw(file=written(tmp_path, f"phi1_deg,ratio\n{rows}")).build(ONE_LOBE, DEFAULT)
+    short = rows.replace("360,1\n", "369.99,1\n")
+    with pytest.raises(InfeasibleError, match=r"value 369\.99 deg, limit 370 deg"):
+        TableLaw(file=written(tmp_path, f"phi1_deg,ratio\n{short}")).build(ONE_LOBE, DEFAULT)
 
 
 @pytest.mark.parametrize("name", ["ratio", "r1"])
