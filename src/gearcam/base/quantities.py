@@ -82,6 +82,15 @@ LENGTH_PER_RAD2: Final = Quantity("_mm_per_rad2", 1.0, "mm/rad2")
 ANGLE_PER_RAD: Final = Quantity("_deg_per_rad", math.pi / 180.0, "deg/rad")
 ANGLE_PER_RAD2: Final = Quantity("_deg_per_rad2", math.pi / 180.0, "deg/rad2")
 
+_SUFFIXES: Final = {
+    one.suffix: one.unit for one in [*globals().values()] if isinstance(one, Quantity)
+}
+
+
+def unit_of(key: str) -> str:
+    """Return the unit with which a key of a file ends; empty without one."""
+    return _SUFFIXES[max((one for one in _SUFFIXES if key.endswith(one)), key=len)]
+
 
 LONGEST: Final = 1e5
 """Largest length of a design, mm."""

@@ -311,10 +311,6 @@ def _list_hint(value: Any, entry: Key) -> str:
 
 def _type_hint(value: Any, entry: Key) -> str:
     if isinstance(value, str) and entry.base in (int, float):
-        try:
-            float(value)
-        except ValueError:
-            unit = entry.param.quantity.unit
-            return measure_hint(value, unit, lambda number: not _objection(short(number), entry))
-        return "write the number without quotes"
+        unit = entry.param.quantity.unit
+        return measure_hint(value, unit, lambda x: not _objection(short(x), entry), entry.key)
     return "write the text in quotes" if entry.base is str and not entry.param.choices else ""

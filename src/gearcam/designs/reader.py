@@ -13,12 +13,12 @@ from pathlib import Path
 from typing import Any, Final
 
 from gearcam.base.errors import DesignError, Problem
-from gearcam.base.quantities import FILE_KEYS
+from gearcam.base.quantities import FILE_KEYS, unit_of
 from gearcam.base.reading import UnreadableError, read
 from gearcam.designs.faults import DEEPEST, TOO_DEEP, Fault, is_deep
 from gearcam.designs.kind import KINDS
 from gearcam.designs.lines import line_at, lines_of
-from gearcam.designs.measures import measure_hint
+from gearcam.designs.measures import TYPESET, measure_hint, typed
 
 LARGEST: Final = 2_000_000
 """Largest size of a design file, bytes: twice that of a motion table of 20 000 rows."""
@@ -34,26 +34,13 @@ _DEEP_KEY = re.compile(
 )
 """A dotted key that is nested too deep; the time of tomllib is quadratic in the number of names."""
 
-_COMMA = re.compile(r"(?<![\w.])([+-]?\d+),(\d+)\s*(#.*)?$")
-"""A number with a decimal comma at the end of a line."""
-
-_MEASURE = re.compile(r"\s*[\w.-]*?_([a-z]+)\s*=\s*([^#\"'\[{]*[^#\s\"'\[{]\"?)\s*(#.*)?$")
-"""A key with a unit, and a value without quotes."""
-
-_UNIT = re.compile(r"=\s*[+-]?\d[\d.]*\s*[^\W\d_]+\s*(#.*)?$")
-"""A number with a unit at the end of a line."""
+_VALUE = re.compile(
+    r"\s*([\w.-]+)\s*=\s*([\"']?)\s*(#\d[\d-]*|[^#\"'\[{\s][^#\[{]*?)\2\s*(?:#.*)?$"
+)
+"""A key and a value that is no list or table, with or without quotes."""
 
 _TEXT = re.compile(r"\"[^\"]*\"|'[^']*'|#.*")
 """A text in quotes, or a comment."""
-
-_TYPED: Final = {
-    **dict.fromkeys("\u201c\u201d\u201e\u201f\u00ab\u00bb\u2033", '"'),
-    **dict.fromkeys("\u2018\u2019\u201a\u201b\u2032\u00b4`", "'"),
-    **dict.fromkeys("\u2010\u2011\u2012\u2013\u2014\u2212", "-"),
-    **dict.fromkeys("\u00a0\u2002\u2003\u2007\u2009\u202f\u3000", "a plain space"),
-    **dict.fromkeys("\u200b\u200c\u200d\u2060\ufeff", ""),
-}
-"""Characters of typesetting, and what is typed in their place."""
 
 _BARE = re.compile(r"\s*([\w.-]+)\s*=\s*([^\W\d][\w.-]*)\s*(#.*)?$")
 """A key and a word without quotes."""
@@ -193,12 +180,8 @@ def _syntax_problem(message: str, text: str, file: str) -> Problem:
         if what == "Cannot overwrite a value" and first:
             what = f"the {'name' if first[1] else 'key'} {first[2]} is given twice"
             hint = _many_hint(first[2])
-        elif comma := _COMMA.search(line):
-            hint = f"use a decimal point: {comma[1]}.{comma[2]}"
-        elif (measure := _MEASURE.match(line)) and (told := measure_hint(measure[2], measure[1])):
+        elif told := _measure_hint(line):
             hint = told
-        elif _UNIT.search(line):
-            hint = "write the number alone, without its unit"
         elif bare := _BARE.match(line):
             word = bare[2].lower()
             value = word if word in ("true", "false") else f'"{bare[2]}"'
@@ -215,16 +198,29 @@ def _syntax_problem(message: str, text: str, file: str) -> Problem:
     return Problem("a number has too many digits", file=file, line=line, allowed=rule)
 
 
+def _measure_hint(line: str) -> str:
+    """Return how to write the measure in a line as a number; empty if there is none."""
+    found = _VALUE.match(typed(line))
+    if found is None:
+        return ""
+    key, value = found[1], found[3]
+    unit = unit_of(key)
+    # without a unit a fraction may be meant as two numbers
+    return "" if "/" in value and not unit else measure_hint(value, unit, key=key)
+
+
 def _typeset(line: str) -> tuple[int, str, str] | None:
     """Return column, message and hint of the first character of typesetting outside of texts."""
     bare = _TEXT.sub(lambda found: " " * len(found[0]), line)
-    place = next((k for k, one in enumerate(bare) if one in _TYPED), None)
+    place = next((k for k, one in enumerate(bare) if one in TYPESET), None)
     if place is None:
         return None
-    one, plain = bare[place], _TYPED[bare[place]]
+    one, plain = bare[place], TYPESET[bare[place]]
     shown = f"{one} is" if one.isprintable() else "here is"
     what = f"{shown} a typographic character, {unicodedata.name(one).lower()} (U+{ord(one):04X})"
-    return place + 1, what, f"write {plain} in its place" if plain else "leave it out"
+    told = _measure_hint(line) if plain in ("'", '"') else ""
+    plain = "a plain space" if plain == " " else plain
+    return place + 1, what, told or (f"write {plain} in its place" if plain else "leave it out")
 
 
 def _many_hint(name: str) -> str:

@@ -15,6 +15,7 @@ from typing import Any, Final
 
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import ANGLE, LENGTH
+from gearcam.base.units import factor, like
 from gearcam.designs.table import Key
 
 MOST_LISTED: Final = 100
@@ -44,13 +45,8 @@ _EQUAL: Final = 1e-9
 _MOST: Final = 4
 """Largest number of keys suggested for one."""
 
-_UNITS: Final = {
-    "mm": ("mm", 1.0), "cm": ("mm", 10.0), "m": ("mm", 1000.0), "um": ("mm", 0.001),
-    "in": ("mm", 25.4), "inch": ("mm", 25.4), "inches": ("mm", 25.4),
-    "deg": ("deg", 1.0), "degrees": ("deg", 1.0),
-    "rad": ("deg", 57.29578), "radians": ("deg", 57.29578),
-}  # fmt: skip
-"""Unit suffixes of keys: the corresponding unit in files, and the factor to it."""
+_UNITS: Final = {unit: wanted for wanted in ("mm", "deg") for unit in like(wanted)}
+"""Unit suffixes of keys: the corresponding unit in files."""
 
 _ENDING: Final = re.compile(f"(.+?)(?:_({'|'.join(_UNITS)})(?:_per_rad2?)?)?", re.DOTALL)
 
@@ -210,7 +206,7 @@ def _likeness(key: str, entry: Key) -> float:
     quantity = entry.param.quantity
     names = {entry.key.removesuffix(quantity.suffix), entry.name}
     score = max(_words_likeness(_words(_NAMES.get(stem, stem)), _words(name)) for name in names)
-    other = unit and not quantity.unit.startswith(_UNITS[unit][0])
+    other = unit and not quantity.unit.startswith(_UNITS[unit])
     return score - _OTHER_UNIT if other else score
 
 
@@ -292,9 +288,9 @@ def _unit_words(key: str, entry: Key) -> str:
     if quantity not in (ANGLE, LENGTH) or key.endswith(quantity.suffix):
         return ""
     what = "angles" if quantity is ANGLE else "lengths"
-    basis, factor = _UNITS.get(unit, ("", 1.0))
-    if basis == quantity.unit and factor != 1.0:
-        return f" ({what} are in {basis}: 1 {unit} = {formatted(factor, 8)} {basis})"
+    size = factor(unit, quantity.unit)
+    if size is not None and size != 1.0:
+        return f" ({what} are in {quantity.unit}: 1 {unit} = {formatted(size, 8)} {quantity.unit})"
     return f" ({what} are in {quantity.unit}, and their keys end in {quantity.suffix})"
 
 

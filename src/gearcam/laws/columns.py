@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import math
 import re
 from collections.abc import Callable, Iterator, Sequence
@@ -24,6 +25,12 @@ MOST_ROWS: Final = 20000
 
 _COMMA_NUMBER: Final = re.compile(r"[+-]?\d*,\d+([eE][+-]?\d+)?")
 _POINT_NUMBER: Final = re.compile(r"[+-]?\d*\.\d*([eE][+-]?\d+)?")
+_BETWEEN: Final = {",": "commas", ";": "semicolons", "\t": "tabs"}
+"""What separates cells; the first one in the line of names does."""
+
+_SEPARATOR: Final = re.compile(r"\"?sep=([,;\t])\"?\s*", re.IGNORECASE)
+"""The line before the names of the columns with which spreadsheets say what separates cells."""
+
 _SHOWN: Final = 40
 _HINT: Final = "; use a decimal point"
 
@@ -33,6 +40,12 @@ LARGEST: Final = 16_000_000
 
 NARROWEST_STEP: Final = 2e-6 * math.pi
 """Smallest step of the angle between rows, rad: a second of arc."""
+
+_LITTLE: Final = 0.1
+"""Largest error of a printed period, in steps of the rows."""
+
+_ROUNDING: Final = 1e-6
+"""Rounding of an angle in units of its last digit of ten."""
 
 
 class ColumnsError(ValueError):
@@ -53,12 +66,15 @@ class CsvRows(ShortRepr):
         Text of each cell without spaces around it; the first row has the names of the columns.
     note : str
         How separators and decimal commas were read, if not as usual; else empty.
+    separator : str
+        What separates the cells.
     """
 
     file: str
     lines: tuple[int, ...]
     cells: tuple[list[str], ...]
     note: str = ""
+    separator: str = ","
 
     def columns(self, names: Sequence[str]) -> tuple[Array, list[int]]:
         """Return columns of numbers by their names.
@@ -79,42 +95,89 @@ class CsvRows(ShortRepr):
         Raises
         ------
         ColumnsError
-            If a column is missing or in an unknown unit, or a row is incomplete or not numeric,
-            with its line.
+            If a column is missing, misspelt, given twice or in an unknown unit, or a row is
+            incomplete or not numeric, with its line.
         """
         head, *rows = self.cells
-        found = [self._found(name) for name in names]
-        wrong = [name for name, _ in found if head.count(name) != 1]
-        if wrong or not names:
-            units = {f"_{unit}" for name in wrong for unit in like(name.rpartition("_")[2])}
-            hint = f"; units that are read: {', '.join(sorted(units))}" if units else ""
-            raise ColumnsError(f"line {self.lines[0]}: the columns are {', '.join(head)}{hint}")
-        places = [head.index(name) for name, _ in found]
+        if wrong := self._header_fault(names):
+            raise ColumnsError(f"line {self.lines[0]}: {wrong}")
+        places = [self._places(name)[0] for name in names]
+        units = [factor(_unit(head[k]), _unit(name)) for k, name in zip(places, names, strict=True)]
         lines = list(self.lines[1:])
         for line, row in zip(lines, rows, strict=True):
             if any(row[len(head) :]):
                 state = f"line {line}: {len(row)} values for {len(head)} columns"
                 raise ColumnsError(state + _HINT)
         numbers = [_numbers(row, places, line) for line, row in zip(lines, rows, strict=True)]
-        units = [unit for _, unit in found]
-        return np.array(numbers).reshape(-1, len(names)) * units, lines
+        scales = [1.0 if unit is None else unit for unit in units]
+        return np.array(numbers).reshape(-1, len(names)) * scales, lines
 
     def spelt(self, name: str) -> str:
         """Return how the file names a column, in the unit of `name` or another; empty if nohow."""
-        found = self._found(name)[0]
-        return found if found in self.cells[0] else ""
+        places = self._places(name)
+        return self.cells[0][places[0]] if places else ""
 
-    def _found(self, name: str) -> tuple[str, float]:
-        """Return the name of a column in the file, and the factor to the unit of its `name`.
+    def _places(self, name: str) -> list[int]:
+        """Return the places of the columns that are a quantity, however they are written."""
+        return [k for k, cell in enumerate(self.cells[0]) if _meant(cell, name)]
 
-        The name itself comes first, then the only one with another unit.
-        """
-        stem, _, unit = name.rpartition("_")
-        units = {f"{stem}_{other}": other for other in like(unit)}
-        there = [cell for cell in self.cells[0] if cell in units]
-        if name in there or len(there) != 1:
-            return name, 1.0
-        return there[0], factor(units[there[0]], unit) or 1.0
+    def _header_fault(self, names: Sequence[str]) -> str:
+        """Return what is wrong with the names of the columns; empty if nothing is."""
+        head, missing, unsaid = self.cells[0], list[str](), list[str]()
+        mended = list(head)
+        for name in names:
+            places = self._places(name)
+            bare = [k for k, cell in enumerate(head) if _letters(cell) == _letters(_stem(name))]
+            if len(places) > 1:
+                return _same([head[k] for k in places])
+            if places:
+                mended[places[0]] = _meant(head[places[0]], name)
+            elif len(bare) == 1:
+                mended[bare[0]] = name
+                unsaid.append(f"{head[bare[0]]} is in {_unit(name)}")
+            else:
+                missing.append(name)
+        if names and mended == head and not missing:
+            return ""
+        fault = f"the columns are {', '.join(head)}"
+        if names and not missing:
+            condition = f", if {' and '.join(unsaid)}" if unsaid else ""
+            return f"{fault}; write {self.separator.join(mended)}{condition}"
+        if len(head) == 1:
+            return f"{fault}; commas, semicolons or tabs separate them"
+        fault = f"{fault}: none is {' or '.join(missing)}" if missing else fault
+        units = {f"_{unit}" for name in missing for unit in like(_unit(name))}
+        return f"{fault}; units that are read: {', '.join(sorted(units))}" if units else fault
+
+
+def _unit(name: str) -> str:
+    """Return the unit with which the name of a column ends."""
+    return name.rpartition("_")[2]
+
+
+def _stem(name: str) -> str:
+    """Return the name of a column without its unit."""
+    return name.rpartition("_")[0] if like(_unit(name)) else name
+
+
+def _letters(cell: str) -> str:
+    """Return letters and digits of a cell, as in the name of a column."""
+    small = cell.lower().replace("\N{DEGREE SIGN}", "deg")
+    return re.sub(r"[^a-z0-9]", "", re.sub("[\u00b5\u03bc]", "u", small))
+
+
+def _meant(cell: str, name: str) -> str:
+    """Return the name of a column that a cell means: `name`, in its unit or another; or empty."""
+    stem = _stem(name)
+    names = [name, *(f"{stem}_{unit}" for unit in like(_unit(name)))]
+    return next((one for one in names if _letters(one) == _letters(cell)), "")
+
+
+def _same(cells: Sequence[str]) -> str:
+    """Return the fault of columns of one quantity."""
+    if len(set(cells)) == 1:
+        return f"{cells[0]} is given {len(cells)} times"
+    return f"{' and '.join(cells)} are the same quantity: leave one of them"
 
 
 class FromFile(ShortRepr):
@@ -218,8 +281,9 @@ def tables_in(part: Any) -> Iterator[CsvRows]:
 def read_rows(file: str) -> CsvRows:
     """Read a CSV file.
 
-    Cells are separated by commas, or by semicolons if the line of names has semicolons and no
-    comma. With semicolons numbers may have decimal commas, unless some have decimal points.
+    Cells are separated by commas, or by semicolons or tabs if the line of names has these and no
+    comma, or by what a line ``sep=;`` before it says. Unless commas separate the cells, numbers may
+    have decimal commas, if none has a decimal point.
 
     Parameters
     ----------
@@ -240,26 +304,33 @@ def read_rows(file: str) -> CsvRows:
     import csv
 
     try:
-        text = read(file, LARGEST).decode("utf-8-sig").splitlines()
+        content = read(file, LARGEST)
     except UnreadableError as error:
         raise ColumnsError(f"cannot be read: {error}") from error
+    try:
+        text = content.decode("utf-8-sig").splitlines()
     except UnicodeDecodeError as error:
-        raise ColumnsError("cannot be read: it is not a text file in UTF-8") from error
+        wide = content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
+        found = "it is in UTF-16: save it in UTF-8" if wide else "it is not a text file in UTF-8"
+        raise ColumnsError(f"cannot be read: {found}") from error
     rows = [(k, row) for k, row in enumerate(text, start=1) if row.strip() and row[0] != "#"]
+    said = _SEPARATOR.fullmatch(rows[0][1]) if rows else None
+    rows = rows[1:] if said else rows
     if not rows:
         raise ColumnsError("is empty")
     if len(rows) > MOST_ROWS + 1:
         raise ColumnsError(f"has {len(rows) - 1} rows; up to {MOST_ROWS} are read")
-    semicolons = ";" in rows[0][1] and "," not in rows[0][1]
+    separator = said[1] if said else next((one for one in _BETWEEN if one in rows[0][1]), ",")
     cells = []
     for line, row in rows:
         try:
-            row_cells = next(csv.reader([row], delimiter=";" if semicolons else ","))
+            row_cells = next(csv.reader([row], delimiter=separator))
         except csv.Error as error:
             raise ColumnsError(f"line {line}: no row of a table: {error}") from error
         cells.append([cell.strip() for cell in row_cells])
-    table = CsvRows(file=file, lines=tuple(line for line, _ in rows), cells=tuple(cells))
-    return _with_points(table) if semicolons else table
+    lines = tuple(line for line, _ in rows)
+    table = CsvRows(file=file, lines=lines, cells=tuple(cells), separator=separator)
+    return table if separator == "," else _with_points(table)
 
 
 def close_angles(angles: Array) -> Iterator[tuple[int, str, str]]:
@@ -283,22 +354,47 @@ def close_angles(angles: Array) -> Iterator[tuple[int, str, str]]:
         yield row + 1, state, rule
 
 
+def spans(angles: Array, period: float) -> bool:
+    """Return whether rows end a period behind their first angle, to the last digit as printed.
+
+    The period may be rounded or cut off in rad or in degrees, such as 6.2832 for a turn, if that is
+    little beside the steps of the rows.
+
+    Parameters
+    ----------
+    angles : (n,) array, rad
+        Of the rows, rising.
+    period : float, rad
+        The period.
+    """
+    span = float(angles[-1] - angles[0])
+    missed = abs(span - period)
+    if missed < NARROWEST_STEP or missed > _LITTLE * float(np.diff(angles).min()):
+        return missed < NARROWEST_STEP
+    for scale in (1.0, math.degrees(1.0)):
+        decimals = f"{scale * span:.10g}".partition(".")[2]
+        if scale * missed < 10.0 ** -len(decimals) * (1.0 - _ROUNDING):
+            return True
+    return False
+
+
 def degrees(angle: float) -> str:
     """Return an angle, rad, as text in degrees."""
     return f"{formatted(math.degrees(angle), 10)} deg"
 
 
 def _with_points(rows: CsvRows) -> CsvRows:
-    """Return the rows of a file with semicolons, decimal commas replaced by points."""
+    """Return the rows of a file without commas between cells, points for decimal commas."""
     cells = [cell for row in rows.cells[1:] for cell in row]
     commas = any(_COMMA_NUMBER.fullmatch(cell) for cell in cells)
     if not commas or any(_POINT_NUMBER.fullmatch(cell) for cell in cells):
-        return replace(rows, note="read with semicolons between columns")
+        return replace(rows, note=f"read with {_BETWEEN[rows.separator]} between columns")
     with_points = tuple(
         [cell.replace(",", ".") if _COMMA_NUMBER.fullmatch(cell) else cell for cell in row]
         for row in rows.cells
     )
-    return replace(rows, cells=with_points, note="read with semicolons and decimal commas")
+    note = f"read with {_BETWEEN[rows.separator]} and decimal commas"
+    return replace(rows, cells=with_points, note=note)
 
 
 def _numbers(cells: Sequence[str], places: Sequence[int], line: int) -> list[float]:

@@ -31,9 +31,7 @@ def formula_problems(name: str, given: Given, variable: str = VARIABLE) -> Itera
         if isinstance(given, str):
             parse(given, variable)
     except FormulaError as error:
-        place = "" if error.column is None else f"column {error.column}: "
-        hint = f" ({error.hint})" if error.hint else ""
-        yield name, None, f"{place}{error.what}{hint}", error.allowed
+        yield error.breach(name)
 
 
 @dataclass(frozen=True, eq=False)

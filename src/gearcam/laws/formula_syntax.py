@@ -27,6 +27,7 @@ import numpy as np
 
 from gearcam.base.errors import GearcamError
 from gearcam.base.numerals import formatted
+from gearcam.base.rules import Breach
 from gearcam.laws.entry import VARIABLE
 from gearcam.numeric.jets import FUNCTIONS
 
@@ -41,8 +42,8 @@ MAX_EXPONENT: Final = 100.0
 
 CONSTANTS: Final = {"pi": math.pi}
 
-ALLOWED: Final = f"{VARIABLE}, pi, numbers, + - * / ** ( ), {', '.join(FUNCTIONS)}"
-"""Allowed elements of a formula, for messages."""
+_PARTS: Final = f"pi, numbers, + - * / ** ( ), {', '.join(FUNCTIONS)}"
+"""Allowed elements of a formula beside its variable, for messages."""
 
 _OPERATORS: Final[dict[type, Callable[..., Any]]] = {
     ast.Add: operator.add,
@@ -75,18 +76,18 @@ _HINTS: Final = {
     "\N{DEGREE SIGN}": "angles in formulas are in radians: multiply by pi/180",
 }
 _ALIASES: Final = {
-    "phi": VARIABLE,
-    "theta": VARIABLE,
-    "x": VARIABLE,
-    "t": VARIABLE,
     "arcsin": "asin",
     "arccos": "acos",
     "arctan": "atan",
     "ln": "log",
     "e": "exp(1)",
     "\N{GREEK SMALL LETTER PI}": "pi",
-    "\N{GREEK SMALL LETTER PHI}": VARIABLE,
 }
+_VARIABLES: Final = frozenset(
+    {"phi1", "phi", "theta", "x", "t", "q", "u"}
+    | {"\N{GREEK SMALL LETTER PHI}", "\N{GREEK SMALL LETTER THETA}"}
+)
+"""Names of the variable of some formula, which people write in others."""
 
 
 class FormulaError(GearcamError, ValueError):
@@ -111,6 +112,12 @@ class FormulaError(GearcamError, ValueError):
         place = f"column {column}: {what}" if column is not None else what
         parts = (place, allowed and f"allowed: {allowed}", hint)
         super().__init__("; ".join(part for part in parts if part))
+
+    def breach(self, name: str) -> Breach:
+        """Return the fault of the field `name` that holds the formula."""
+        place = "" if self.column is None else f"column {self.column}: "
+        hint = f" ({self.hint})" if self.hint else ""
+        return name, None, f"{place}{self.what}{hint}", self.allowed
 
 
 Operand = int | float
@@ -176,7 +183,7 @@ def parse(text: str, variable: str = VARIABLE) -> Expression:
     Parameters
     ----------
     text : str
-        Formula, such as ``phi1 - 0.08*sin(2*phi1)``; see `ALLOWED`.
+        Formula, such as ``phi1 - 0.08*sin(2*phi1)``.
     variable : str
         Name of the variable, an identifier.
 
@@ -192,7 +199,7 @@ def parse(text: str, variable: str = VARIABLE) -> Expression:
         real value.
     """
     if not text.strip():
-        raise FormulaError("the formula is empty", allowed=ALLOWED)
+        raise FormulaError("the formula is empty", allowed=_allowed(variable))
     if len(text) > MAX_LENGTH:
         raise FormulaError(
             f"the formula has {len(text)} characters", allowed=f"at most {MAX_LENGTH} characters"
@@ -204,9 +211,15 @@ def parse(text: str, variable: str = VARIABLE) -> Expression:
     try:
         tree = ast.parse("(" + re.sub(r"\s", " ", text) + ")", mode="eval")
     except (SyntaxError, RecursionError, MemoryError, ValueError) as error:
-        raise FormulaError("this cannot be read as a formula", allowed=ALLOWED) from error
-    steps, result = _steps(tree.body, {variable: 0} | CONSTANTS)
+        what = "this cannot be read as a formula"
+        raise FormulaError(what, allowed=_allowed(variable)) from error
+    steps, result = _steps(tree.body, variable)
     return Expression(text, steps, result)
+
+
+def _allowed(variable: str) -> str:
+    """Return the allowed elements of a formula in a variable, for messages."""
+    return f"{variable}, {_PARTS}"
 
 
 def _check_words(text: str, variable: str) -> None:
@@ -214,7 +227,7 @@ def _check_words(text: str, variable: str) -> None:
     before = "start"
     opened: list[int] = []
     for kind, word, column in _words(text, variable):
-        _check_neighbours(before, kind, word, column)
+        _check_neighbours(before, kind, word, column, variable)
         if kind == "open":
             opened.append(column)
         elif kind == "close":
@@ -241,8 +254,8 @@ def _words(text: str, variable: str) -> Iterator[tuple[str, str, int]]:
         if match is None:
             sign = text[position]
             name = repr(sign) if sign.isprintable() else f"U+{ord(sign):04X}"
-            hint = _HINTS.get(sign, "")
-            raise FormulaError(f"unexpected sign {name}", column=column, allowed=ALLOWED, hint=hint)
+            what, hint = f"unexpected sign {name}", _HINTS.get(sign, "")
+            raise FormulaError(what, column=column, allowed=_allowed(variable), hint=hint)
         kind, word = str(match.lastgroup), match.group()
         position = match.end()
         if kind == "name":
@@ -261,13 +274,14 @@ def _check_name(word: str, column: int, variable: str) -> None:
         return
     import difflib
 
-    alias = _ALIASES.get(word, _ALIASES.get(word.lower()))
-    close = [alias] if alias else difflib.get_close_matches(word.lower(), names, n=1)
+    lower = word.lower()
+    alias = variable if lower in _VARIABLES else _ALIASES.get(lower)
+    close = [alias] if alias else difflib.get_close_matches(lower, names, n=1)
     raise FormulaError(
         f"unknown name {word!r}",
         column=column,
-        allowed=ALLOWED.replace(VARIABLE, variable),
-        hint="".join(f"did you mean {name}?" for name in close).replace(VARIABLE, variable),
+        allowed=_allowed(variable),
+        hint="".join(f"did you mean {name}?" for name in close),
     )
 
 
@@ -281,11 +295,12 @@ def _check_number(word: str, column: int) -> None:
         raise FormulaError(f"the number {word} begins with a zero", column=column, hint=hint)
 
 
-def _check_neighbours(before: str, kind: str, word: str, column: int) -> None:
+def _check_neighbours(before: str, kind: str, word: str, column: int, variable: str) -> None:
     """Refuse two words that cannot follow each other (the signs + and - may start a value)."""
     after_value = before in ("value", "close")
     if before == "function" and kind != "open":
-        raise FormulaError("the argument of a function needs parentheses: sin(phi1)", column=column)
+        what = f"the argument of a function needs parentheses: sin({variable})"
+        raise FormulaError(what, column=column)
     if kind in ("value", "function", "open") and after_value:
         raise FormulaError(
             f"an operator is missing before {word!r}",
@@ -301,11 +316,12 @@ def _check_neighbours(before: str, kind: str, word: str, column: int) -> None:
         raise FormulaError("these parentheses are empty", column=column - 1)
 
 
-def _steps(root: ast.expr, names: Mapping[str, Operand]) -> tuple[tuple[Step, ...], Operand]:
+def _steps(root: ast.expr, variable: str) -> tuple[tuple[Step, ...], Operand]:
     """Return the steps of a syntax tree and its result; equal parts are one step.
 
     Without recursion, since a tree may be as deep as the text is long.
     """
+    names: dict[str, Operand] = {variable: 0, **CONSTANTS}
     steps: dict[tuple[Function, str], tuple[int, Step]] = {}
     values: list[Operand] = []
     todo: list[ast.expr | tuple[Function, ast.expr, Sequence[ast.expr]]] = [root]
@@ -335,7 +351,8 @@ def _steps(root: ast.expr, names: Mapping[str, Operand]) -> tuple[tuple[Step, ..
             case ast.Call(func=ast.Name(id=name), args=[part], keywords=[]) if name in FUNCTIONS:
                 todo += [(name, item, (part,)), part]
             case _:
-                raise FormulaError("this is not allowed", column=item.col_offset, allowed=ALLOWED)
+                what, allowed = "this is not allowed", _allowed(variable)
+                raise FormulaError(what, column=item.col_offset, allowed=allowed)
     return tuple(step for _, step in steps.values()), values[0]
 
 

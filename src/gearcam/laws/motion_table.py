@@ -29,12 +29,12 @@ from gearcam.base.quantities import ANGLE, FINEST, LENGTH, LONGEST, TEXT, Param,
 from gearcam.base.rules import Breach
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.columns import (
-    NARROWEST_STEP,
     ColumnsError,
     FromFile,
     close_angles,
     degrees,
     demand,
+    spans,
 )
 from gearcam.laws.displacement import Deviation
 from gearcam.laws.entry import TYPED
@@ -70,8 +70,8 @@ a derivative jumps; derivatives are compared with a curve that has errors too.""
 class MotionTable(FromFile):
     """The lift over a whole turn as rows in a CSV file or in the design itself.
 
-    Lifts and their tolerance are in mm, or in rad if the follower oscillates. The last row may
-    repeat the first one after a turn, or be left out.
+    Lifts and their tolerance are in mm, or in rad if the follower oscillates. The rows may begin at
+    any angle; the last one may repeat the first after a turn, or be left out.
 
     Examples
     --------
@@ -89,7 +89,12 @@ class MotionTable(FromFile):
         doc="CSV file, up to 3600 rows: theta_deg and lift_mm or lift_deg",
     )
     theta: Row | None = param(
-        ANGLE, default=None, ge=0, le=360, min_length=_FEWEST, doc="cam angles, without a file"
+        ANGLE,
+        default=None,
+        ge=-360,
+        le=720,
+        min_length=_FEWEST,
+        doc="cam angles of a turn, without a file",
     )
     lift: Row | None = param(
         LENGTH,
@@ -176,7 +181,7 @@ class MotionTable(FromFile):
             rule = f"below {text(0.5 * extent)}, half of the total lift"
             yield "smoothing_tolerance", None, "leaves no lift", rule
         jump = float(lift[-1] - lift[0])
-        if _repeats(theta) and abs(jump) > max(tolerance, TYPED * extent):
+        if spans(theta, TURN) and abs(jump) > max(tolerance, TYPED * extent):
             state = f"the lift after the turn is {text(lift[-1])}: it jumps by {text(abs(jump))}"
             yield "lift", len(lift) - 1, state, f"that of the first row, {text(lift[0])}"
 
@@ -202,13 +207,13 @@ class MotionTable(FromFile):
             If the file was changed and is not a valid table any more.
         """
         demand(self.turn_problems(oscillating=oscillating), "motion")
-        (theta, lift, _), spread = self._rows(oscillating), 0.0
-        stray = tuple(self.stray(oscillating=oscillating))
-        if _repeats(theta):
-            spread = 0.5 * abs(float(lift[-1] - lift[0]))
+        theta, lift, _ = self._rows(oscillating)
+        stray, apart = tuple(self.stray(oscillating=oscillating)), np.zeros(len(theta))
+        if spans(theta, TURN):
+            apart[0] = 0.5 * abs(float(lift[-1] - lift[0]))
             lift[0] = 0.5 * (lift[0] + lift[-1])
-            theta, lift = theta[:-1], lift[:-1]
-        program = _program_of_rows(theta, lift, self.smoothing_tolerance or 0.0, spread)
+        theta, lift, apart = rows_of_turn(theta, lift, apart)
+        program = _program_of_rows(theta, lift, apart, self.smoothing_tolerance or 0.0)
         return replace(program, stray=stray)
 
     def stray(self, *, oscillating: bool) -> Iterator[StrayRow]:
@@ -220,13 +225,13 @@ class MotionTable(FromFile):
             Whether lifts are angles.
         """
         theta, lift, lines = self._rows(oscillating)
-        count = len(theta) - 1 if _repeats(theta) else len(theta)
+        count = len(theta) - 1 if spans(theta, TURN) else len(theta)
         rows, suggested = stray_rows(theta[:count], lift[:count], TURN)
         for row, near in zip(rows.tolist(), suggested.tolist(), strict=True):
             yield StrayRow(
                 row=row,
                 where=f"line {lines[row]}" if lines else f"lift[{row}]",
-                theta=float(theta[row]),
+                theta=float(theta[row]) % TURN,
                 lift=float(lift[row]),
                 suggested=near,
             )
@@ -236,33 +241,52 @@ def _columns(oscillating: bool) -> tuple[str, str]:
     return "theta_deg", "lift_deg" if oscillating else "lift_mm"
 
 
-def _repeats(theta: Array) -> bool:
-    """Whether the last row repeats the first one after a turn."""
-    return TURN - float(theta[-1] - theta[0]) < NARROWEST_STEP
+def rows_of_turn(theta: Array, *columns: Array) -> tuple[Array, ...]:
+    """Return the rows of a table from angle 0 on, without a last one that repeats the first.
+
+    Parameters
+    ----------
+    theta : (n,) array, rad
+        Angles of rows over a turn, rising from any angle.
+    *columns : (n,) array
+        Values of the rows.
+
+    Returns
+    -------
+    tuple of (m,) array
+        The angles, from 0 to below a turn, and the columns.
+    """
+    count = len(theta) - 1 if spans(theta, TURN) else len(theta)
+    angles = theta[:count] % TURN
+    angles[angles > TURN - TYPED] = 0.0
+    first = int(np.argmin(angles))
+    return tuple(np.roll(one, -first) for one in (angles, *(one[:count] for one in columns)))
 
 
 def _angle_problems(theta: Array) -> Iterator[Breach]:
     if not _FEWEST <= len(theta) <= _MOST:
         yield "theta", None, f"has {len(theta)} rows", f"{_FEWEST} to {_MOST} rows"
-    for row in np.flatnonzero((theta < 0.0) | (theta > TURN + TYPED)).tolist():
-        yield "theta", row, f"the angle is {degrees(theta[row])}", "0 to 360 deg"
+    for row in np.flatnonzero((theta < -TURN - TYPED) | (theta > 2.0 * TURN + TYPED)).tolist():
+        yield "theta", row, f"the angle is {degrees(theta[row])}", "-360 to 720 deg"
     for row, state, rule in close_angles(theta):
         yield "theta", row, state, rule
-    steps = np.diff(theta)
-    if TURN - float(theta[-1] - theta[0]) > _OPEN * steps.max() + TYPED:
-        state = f"the rows go from {degrees(theta[0])} to {degrees(theta[-1])}"
-        rule = "rows over the whole turn; the last one, at 360 deg, may be left out"
+    left = TURN - float(theta[-1] - theta[0])
+    state = f"the rows go from {degrees(theta[0])} to {degrees(theta[-1])}"
+    end = degrees(theta[0] + TURN)
+    if left < 0.0 and not spans(theta, TURN):
+        yield "theta", len(theta) - 1, state, f"rows over one turn: up to {end}"
+    if left > _OPEN * np.diff(theta).max() + TYPED:
+        rule = f"rows over the whole turn; the last one, at {end}, may be left out"
         yield "theta", None, state, rule
 
 
-def _program_of_rows(theta: Array, lift: Array, tolerance: float, spread: float) -> Program:
+def _program_of_rows(theta: Array, lift: Array, apart: Array, tolerance: float) -> Program:
     """Return the program of rows in a turn, to a tolerance, mm or rad; 0 for a curve through them.
 
-    The `spread` is half the difference of first and last row, whose mean is the lift at the start.
+    Rows that were given twice are `apart` from their mean, the lift, by so much.
     """
     values, cutoff, deviation, step = lift, 0.5 * len(theta), None, 1
     if tolerance:
-        apart = np.append(spread, np.zeros(len(theta) - 1))
         values, cutoff = _smoothed(theta, lift, apart, tolerance)
         step = _step(theta, cutoff)
         off = values - lift

@@ -53,8 +53,7 @@ class WrittenLoad:
         try:
             self.read(text)
         except FormulaError as error:
-            place = "" if error.column is None else f"column {error.column}: "
-            yield "formula", None, f"{place}{error.what}", error.allowed
+            yield error.breach("formula")
 
     def _row_problems(self, name: str, table: Row, place: Row) -> Iterator[Breach]:
         if len(table) != len(place):

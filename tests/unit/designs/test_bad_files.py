@@ -271,7 +271,7 @@ TABLES: dict[str, tuple[bytes, str]] = {
     "empty": (b"", "is empty"),
     "head": (b"phi1_deg,ratio\n", "has 0 rows"),
     "bytes": (bytes(range(256)), "cannot be read: it is not a text file in UTF-8"),
-    "UTF-16": (TABLE.encode("utf-16"), "cannot be read: it is not a text file in UTF-8"),
+    "UTF-16": (TABLE.encode("utf-16"), "cannot be read: it is in UTF-16: save it in UTF-8"),
     "zero byte": (TABLE.replace("60,", "6\0,").encode(), r"line 4: '6\\x00' is not a number"),
     "long cell": ((TABLE + "1" * 200_000 + ",1\n").encode(), "line 15: no row of a table"),
     "digits": (TABLE.replace("60,", "6" * 5000 + ",").encode(), f"'{'6' * 40}...' is not finite"),

@@ -38,8 +38,8 @@ def test_a_slip_of_syntax_is_told_by_line_in_plain_words(text: str, line: int, w
 @pytest.mark.parametrize(
     ("text", "line", "hint"),
     [
-        ("a = 2,5\n", 1, "use a decimal point: 2.5"),
-        ("a = 1\r\nb.c = -0,25  # as at home\r\n", 2, "use a decimal point: -0.25"),
+        ("a = 2,5\n", 1, "write 2.5, with a decimal point"),
+        ("a = 1\r\nb.c = -0,25  # as at home\r\n", 2, "write -0.25, with a decimal point"),
         ("a = 2,5,\n", 1, ""),
         ("a = 1 2\n", 1, ""),
         ("a = 2.5,5\n", 1, ""),

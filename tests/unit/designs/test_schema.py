@@ -334,7 +334,7 @@ ROWS = {"theta_deg": [0, 60, 120, 180, 240, 300], "lift_mm": [0, 2, 4, 6, 4, 2]}
         (ROWS | {"lift_deg": ROWS["lift_mm"]}, False),
         (ROWS | {"lift_mm": ROWS["lift_mm"][:5]}, False),
         (ROWS | {"lift_mm": 3}, False),
-        (ROWS | {"theta_deg": [*ROWS["theta_deg"][:5], 361]}, False),
+        (ROWS | {"theta_deg": [*ROWS["theta_deg"][:5], 721]}, False),
         (ROWS | {"smoothing_tolerance_mm": 0}, False),
         (ROWS | {"smoothing": 1}, False),
         ({"theta_deg": ROWS["theta_deg"]}, False),

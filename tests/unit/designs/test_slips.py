@@ -33,7 +33,7 @@ SLIPS: dict[str, tuple[str, str, str, str, str]] = {
     "comma": (PAIR, "[0, 160,", "[0 160,", "", "column 16: a comma or the closing ]"),
     "unit behind": (PAIR, "180", "180mm", "", "the number alone, without its unit"),
     "unit in quotes": (PAIR, "180", '"180 mm"', "pair.center_distance_mm",
-                       "the number alone, without its unit and without quotes"),
+                       "write 180: the number alone, without its unit"),
     "inches in quotes": (PAIR, "180", '"0.5 in"', "pair.center_distance_mm", "write 12.7: "),
     "a fraction of an inch": (PAIR, "180", "'1/4\"'", "pair.center_distance_mm", "write 6.35: "),
     "a mixed fraction": (PAIR, "180", '"1 1/4in"', "pair.center_distance_mm", "write 31.75: "),
@@ -46,7 +46,7 @@ SLIPS: dict[str, tuple[str, str, str, str, str]] = {
     "beyond the range": (PAIR, "180", '"1000 ft"', "pair.center_distance_mm",
                          "1000 ft is 304800 mm"),
     "no unit of length": (PAIR, "180", '"18 apples"', "pair.center_distance_mm",
-                          "the number alone, in mm"),
+                          "apples is no unit that is known: write the number alone, in mm"),
     "a screw": (PAIR, "[output]", '[blank]\nbore_diameter_mm = "M3"\n[output]',
                 "blank.bore_diameter_mm",
                 "write 3.4, the hole for M3 (ISO 273, medium), or 3, its nominal diameter"),
@@ -60,7 +60,7 @@ SLIPS: dict[str, tuple[str, str, str, str, str]] = {
     "no width": (PAIR, "180", "180\u200b", "", "zero width space (U+200B)  leave it out"),
     "a dash in a key": (PAIR, "center_", "center\u2013", "", "en dash (U+2013)  write -"),
     "a dwell of a pair": (PAIR, "0.4", "0", "law.ratios[1]", "cannot stand still"),
-    "decimal comma": (PAIR, "180", "180,5", "", "use a decimal point: 180.5"),
+    "decimal comma": (PAIR, "180", "180,5", "", "write 180.5, with a decimal point"),
     "slash": (PAIR, '"slip"', '"a/slip"', "name", 'name = "a_slip"'),
     "key and table": (PAIR, "[law]", 'law = "phases"\n[law]', "", "the name law is given twice"),
     "lift": (CAM, "lift_mm", "lift", "motion[0].lift", "mean lift_mm?"),
@@ -91,6 +91,79 @@ SLIPS: dict[str, tuple[str, str, str, str, str]] = {
     "a form": (CAM, '"disc"', '"disk"', "cam.form",
                '"disc", "groove", "conjugate", "yoke", "translating", "cylinder" or "globoidal"'),
 }  # fmt: skip
+
+
+MEASURES = [
+    # key, what is written in or without quotes, the hint
+    ("offset_mm", "36,5", "write 36.5, with a decimal point"),
+    ("offset_mm", ".5", "write 0.5"),
+    ("offset_mm", "1.5 rad", "rad is a unit of angle: write a length in mm"),
+    ("offset_mm", "12 \N{DEGREE SIGN}", "\N{DEGREE SIGN} is a unit of angle: write a length in mm"),
+    ("offset_mm", "2 thou", "write 0.0508: 2 thou is 0.0508 mm"),
+    ("offset_mm", "2 mil", "write 0.0508: 2 mil is 0.0508 mm"),
+    ("offset_mm", "1'", "write 304.8: 1' is 304.8 mm"),
+    ("offset_mm", '3/8"', 'write 9.525: 3/8" is 9.525 mm'),
+    ("offset_mm", "3/8\u2033", 'write 9.525: 3/8" is 9.525 mm'),
+    ("offset_mm", "\N{VULGAR FRACTION ONE HALF}in", "write 12.7: 1/2in is 12.7 mm"),
+    ("offset_mm", "3\N{VULGAR FRACTION THREE EIGHTHS} in", "write 85.725: 3 3/8 in is 85.725 mm"),
+    ("offset_mm", "1 1/2 in", "write 38.1: 1 1/2 in is 38.1 mm"),
+    ("offset_mm", "-1/2", "write -0.5, or -12.7 if it is in inches"),
+    ("offset_mm", "1e3 um", "write 1: 1e3 um is 1 mm"),
+    ("offset_mm", "1/4-20", ("1/4-20: write 6.35, its major diameter in mm (0.25 in; 20 is its "
+     "threads per inch)")),
+    ("offset_mm", "1-1/8-7 UNC", ("1-1/8-7 UNC: write 28.575, its major diameter in mm (1.125 in; "
+     "7 is its threads per inch)")),
+    ("offset_mm", "#8", "#8: write 4.1656, its major diameter in mm (0.060 + 0.013 x 8 in)"),
+    ("roller_radius_mm", "#10-32", ("#10-32: write 2.413, half of its major diameter in mm (0.060 "
+     "+ 0.013 x 10 in; 32 is its threads per inch)")),
+    ("roller_radius_mm", "M6x1", ("M6: write 3.3, half of the hole for M6 (ISO 273, medium), or 3, "
+     "half of its nominal diameter")),
+    ("offset_mm", "6H7", "write 6: the fit H7 has no key"),
+    ("offset_mm", "12 mm js6", ("write 12: the number alone, without its unit; the fit js6 has no "
+     "key")),
+    ("offset_mm", "12\u00b10.1", "write the number alone, in mm"),
+    ("roller_radius_mm", "\u00d850", "write 25: half the diameter"),
+    ("roller_radius_mm", "\u00f850 H7", "write 25: half the diameter; the fit H7 has no key"),
+    ("roller_radius_mm", "\u23001/2 in", "write 6.35: 1/2 in is 12.7 mm; half the diameter"),
+    ("roller_radius_mm", "D50", "write 25: half the diameter"),
+    ("roller_radius_mm", "R12.5", "write 12.5: the radius"),
+    ("offset_mm", "R12.5", "write 12.5, the radius, or 25, the diameter"),
+    ("pressure_angle_deg", "20,5", "write 20.5, with a decimal point"),
+    ("pressure_angle_deg", "0.35 radians", "write 20.05352283: 0.35 radians is 20.05352283 deg"),
+    ("pressure_angle_deg", "5 mm", "mm is a unit of length: write an angle in deg"),
+    ("pressure_angle_deg", "900'", "write 15: 900' is 15 deg"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("quote", ["", "'''", "\u201c"])
+@pytest.mark.parametrize(("key", "written", "hint"), MEASURES)
+def test_a_measure_is_answered_with_the_number_to_write(
+    key: str, written: str, hint: str, quote: str
+) -> None:
+    value = f"{quote}{written}{quote.replace(chr(0x201C), chr(0x201D))}"
+    if key == "pressure_angle_deg":
+        text = PAIR.replace("[output]", f"[rack]\n{key} = {value}\n[output]")
+    else:
+        head = {"offset_mm": "offset_mm = 8", "roller_radius_mm": "roller_radius_mm = 6"}[key]
+        assert head in CAM
+        text = CAM.replace(head, f"{key} = {value}")
+    assert [one.hint for one in problems(text)] == [hint]
+
+
+@pytest.mark.parametrize(
+    ("written", "hint"),
+    [
+        ("36.5", "write 36.5 without quotes"),
+        ("1e3", "write 1000"),
+        ("inf", ""),
+        ("nan", ""),
+        ("1e9", ""),
+        ("10-12", "write the number alone, in mm"),
+        ("-R5", ""),
+    ],
+)
+def test_a_number_in_quotes_is_proposed_only_if_it_can_be_written(written: str, hint: str) -> None:
+    assert [one.hint for one in problems(CAM.replace("= 8", f'= "{written}"'))] == [hint]
 
 
 @pytest.mark.parametrize("name", SLIPS)
@@ -170,10 +243,12 @@ def test_a_likely_mistake_is_answered_with_the_key_that_was_meant(
     assert hint.startswith(f"did you mean {meant}?")
 
 
-def test_a_key_of_another_unit_is_answered_with_the_factor() -> None:
-    text = PAIR.replace("center_distance_mm", "center_distance_in")
+@pytest.mark.parametrize(("unit", "size"), [("in", "25.4"), ("ft", "304.8"), ("thou", "0.0254")])
+def test_a_key_of_another_unit_is_answered_with_the_factor(unit: str, size: str) -> None:
+    text = PAIR.replace("center_distance_mm", f"center_distance_{unit}")
     (problem,) = problems(text)
-    assert problem.hint == ("did you mean center_distance_mm? (lengths are in mm: 1 in = 25.4 mm)")
+    hint = f"did you mean center_distance_mm? (lengths are in mm: 1 {unit} = {size} mm)"
+    assert problem.hint == hint
 
 
 @pytest.mark.parametrize("name", ["British", "other unit", "no unit"])

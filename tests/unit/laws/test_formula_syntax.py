@@ -124,6 +124,37 @@ def test_what_is_wrong_is_told_by_its_column(text: str, column: int, words: str)
     assert str(caught.value).startswith(f"column {column}: ")
 
 
+@pytest.mark.parametrize("variable", ["theta", "q", "u", "phi1"])
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "allowed: {}, pi, numbers"),
+        ("1 + ?", "allowed: {}, pi, numbers"),
+        ("sin(pi)(2)", "operator is missing"),
+        ("(sin)({})", "parentheses: sin({})"),
+        ("sin {}", "parentheses: sin({})"),
+        ("sin(2*omega)", "allowed: {}, pi, numbers"),
+        ("2*phi", "did you mean {}?"),
+        ("2*x", "did you mean {}?"),
+        ("2*Theta1 + \N{GREEK SMALL LETTER PHI}", "allowed: {}, pi, numbers"),
+        ("\N{GREEK SMALL LETTER THETA}", "did you mean {}?"),
+    ],
+)
+def test_messages_name_the_variable_of_the_place(text: str, words: str, variable: str) -> None:
+    with pytest.raises(FormulaError) as caught:
+        parse(text.format(variable), variable)
+    assert words.format(variable) in str(caught.value)
+    for other in {"phi1", "theta"} - {variable}:
+        assert other not in str(caught.value)
+
+
+def test_the_angle_of_pairs_is_answered_with_that_of_cams() -> None:
+    for other, variable in (("phi1", "theta"), ("theta", "phi1"), ("t", "q"), ("q", "x")):
+        with pytest.raises(FormulaError) as caught:
+            parse(f"5*(1 - cos({other}))", variable)
+        assert caught.value.hint == f"did you mean {variable}?"
+
+
 @pytest.mark.parametrize(
     "text",
     [

@@ -141,8 +141,8 @@ def test_typed_digits_of_the_corners_are_overlooked() -> None:
     ("text", "message"),
     [
         ("", "is empty"),
-        ("a,b\n0,0\n", "line 1: the columns are a, b"),
-        ("x,y,x\n0,0,0\n", "line 1: the columns are x, y, x"),
+        ("a,b\n0,0\n", "line 1: the columns are a, b: none is x or y"),
+        ("x,y,x\n0,0,0\n", "line 1: x is given 2 times"),
         ("x,y\n0,0\n0.5,abc\n1,1\n", "line 3: 'abc' is not a number"),
         ("x,y\n0,0\n0.5\n1,1\n", "line 3: '' is not a number"),
         ("x,y\n0,0\n# why\n0.5,inf\n1,1\n", "line 4: 'inf' is not finite"),
@@ -163,7 +163,7 @@ def test_files_that_hold_no_rise_are_told(tmp_path: Path, text: str, message: st
 def test_files_that_cannot_be_read_are_told(tmp_path: Path) -> None:
     with pytest.raises(ColumnsError, match="cannot be read: there is no such file"):
         read_rows(str(tmp_path / "none.csv"))
-    (tmp_path / "picture.csv").write_bytes(b"\xff\xfe\x00\x81")
+    (tmp_path / "picture.csv").write_bytes(b"\xff\xd8\x00\x81")
     with pytest.raises(ColumnsError, match="not a text file in UTF-8"):
         read_rows(str(tmp_path / "picture.csv"))
 

@@ -169,6 +169,67 @@ def test_where_the_rows_begin_changes_nothing() -> None:
         np.testing.assert_allclose(got, expected, atol=1e-7 * scale)
 
 
+@pytest.mark.parametrize(
+    ("first", "last"), [(1, 361), (1, 360), (-90, 270), (-90, 269), (360, 720)]
+)
+@pytest.mark.parametrize("tolerance", [None, 0.01])
+def test_rows_may_begin_at_any_angle(
+    first: int, last: int, tolerance: float | None, tmp_path: Path
+) -> None:
+    """The rows of each degree, in a file and in a list: the motion is that of those from 0 on."""
+
+    def lift(angle: int) -> float:
+        return round(float(lift_of(MOTIONS["uneven"], np.radians([angle % 360.0]))[0]), 5)
+
+    file = tmp_path / "motion.csv"
+    rows = range(first, last + 1)
+    file.write_text("theta_deg,lift_mm\n" + "".join(f"{a},{lift(a)!r}\n" for a in rows))
+    lists = {
+        name: np.array([lift(a) for a in one])
+        for name, one in (("rows", rows), ("turn", range(360)))
+    }
+    expected = made(angles(360), lists["turn"], smoothing_tolerance=tolerance)
+    for given in (
+        MotionTable(file=str(file), smoothing_tolerance=tolerance),
+        table(np.radians([*rows]), lists["rows"], smoothing_tolerance=tolerance),
+    ):
+        found = given.program(DEFAULT)
+        # of a smoothed lift the rounding of angles counts more
+        atol = 1e-7 if tolerance else 1e-9
+        np.testing.assert_allclose(lift_of(found, FINE), lift_of(expected, FINE), atol=atol)
+        np.testing.assert_allclose(found.knots, expected.knots, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("count", "last", "whole"),
+    [
+        (361, "6.2831853", True),
+        (361, "6.2832", True),
+        (361, "6.28318", True),  # cut off
+        (361, "6.283", True),
+        (37, "6.28", True),
+        (361, "6.2834", False),
+        (361, "6.2852", False),
+    ],
+)
+def test_a_turn_in_radians_may_be_rounded(
+    count: int, last: str, whole: bool, tmp_path: Path
+) -> None:
+    theta = np.linspace(0.0, TURN, count)
+    lift = lift_of(MOTIONS["uneven"], theta)
+    lift[-1] = lift[0]
+    rows = [f"{a!r},{b!r}\n" for a, b in zip(theta.tolist(), lift.tolist(), strict=True)]
+    file = tmp_path / "motion.csv"
+    file.write_text("".join(["theta_rad,lift_mm\n", *rows[:-1], f"{last},{float(lift[0])!r}\n"]))
+    given = MotionTable(file=str(file))
+    if not whole:
+        with pytest.raises(InfeasibleError, match=r"the rows go from 0 deg to .* up to 360 deg"):
+            given.program(DEFAULT)
+        return
+    expected = lift_of(made(theta[:-1], lift[:-1]), FINE)
+    np.testing.assert_allclose(lift_of(given.program(DEFAULT), FINE), expected, atol=1e-12)
+
+
 # --- smoothing -----------------------------------------------------------------------------------
 
 
@@ -291,8 +352,10 @@ def moved(row: int, degrees: float) -> Array:
 BAD: dict[str, tuple[Array, Array]] = {
     "few": (THETA[:5], LIFT[:5]),
     "many": (angles(3601), np.cos(angles(3601))),
-    "below": (moved(0, -5.0), LIFT),
-    "above": (moved(11, 361.0), LIFT),
+    "below": (moved(0, -365.0), LIFT),
+    "above": (moved(11, 721.0), LIFT),
+    "more than a turn": (moved(11, 361.0), LIFT),
+    "more than a turn from 30 deg": (moved(11, 391.0) + math.radians(30.0), LIFT),
     "falls": (moved(4, 89.0), LIFT),
     "twice": (np.insert(THETA, 4, THETA[3])[:12], LIFT),
     "close": (moved(4, 90.0003), LIFT),
@@ -306,8 +369,14 @@ BAD: dict[str, tuple[Array, Array]] = {
 REFUSED = {
     "few": (None, "has 5 rows", "6 to 3600 rows"),
     "many": (None, "has 3601 rows", "6 to 3600 rows"),
-    "below": (0, "the angle is -5 deg", "0 to 360 deg"),
-    "above": (11, "the angle is 361 deg", "0 to 360 deg"),
+    "below": (0, "the angle is -365 deg", "-360 to 720 deg"),
+    "above": (11, "the angle is 721 deg", "-360 to 720 deg"),
+    "more than a turn": (11, "the rows go from 0 deg to 361 deg", "one turn: up to 360 deg"),
+    "more than a turn from 30 deg": (
+        11,
+        "the rows go from 30 deg to 421 deg",
+        "one turn: up to 390 deg",
+    ),
     "falls": (4, "89 deg follows 90 deg", "at least 0.00036 deg"),
     "twice": (4, "90 deg is given twice", "above the one before"),
     "close": (4, "90.0003 deg follows 90 deg", "above the one before"),
@@ -349,7 +418,7 @@ def test_rows_that_make_no_motion_are_refused(change: str, tmp_path: Path) -> No
     ("text", "message"),
     [
         ("theta_deg,lift_mm\n", "has 0 rows"),
-        ("theta_deg,lift\n0,1\n", "line 1: the columns are theta_deg, lift"),
+        ("theta_deg,lift\n0,1\n", "columns are theta_deg, lift; write theta_deg,lift_mm, if"),
         ("theta_deg,lift_deg\n0,1\n", "line 1: lift_deg is of the wrong kind for a translating"),
         ("theta_deg,lift_mm,lift_deg\n0,1,2\n", "has 1 rows"),
         ("theta_deg,lift_mm\n0,x\n", "line 2: 'x' is not a number"),

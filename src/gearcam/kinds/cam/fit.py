@@ -25,8 +25,7 @@ from gearcam.laws.columns import ColumnsError, read_rows
 from gearcam.laws.lift_fit import FittedLift, fit_lift
 from gearcam.laws.lift_model import number_of
 from gearcam.laws.motion.base import MOTION_LAWS
-from gearcam.laws.motion_table import MotionTable
-from gearcam.laws.phases_of_lift import TURN
+from gearcam.laws.motion_table import MotionTable, rows_of_turn
 from gearcam.numeric.arrays import Array
 from gearcam.pictures.charts import Chart, Limit, Line, MarkedPlace
 
@@ -96,8 +95,8 @@ def read_lift(file: Any, wall: Wall) -> tuple[Array, Array] | None:
     for one in table.stray(oscillating=wall.follower.angular):
         message = f"line {lines[one.row]}: the {one.text(scale, unit)}"
         raise DesignError([Problem(message, file=name, allowed=needed)])
-    repeated = TURN - float(theta[-1] - theta[0]) < 1e-6
-    return (theta[:-1], lift[:-1]) if repeated else (theta, lift)
+    theta, lift = rows_of_turn(theta, lift)
+    return theta, lift
 
 
 def compared(wall: Wall, theta: Array, lift: Array) -> tuple[dict[str, Array], dict[str, Any]]:

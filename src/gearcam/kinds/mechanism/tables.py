@@ -188,8 +188,7 @@ def _formula_problems(text: str) -> Iterator[Breach]:
     try:
         parse(text, "q")
     except FormulaError as error:
-        place = "" if error.column is None else f"column {error.column}: "
-        yield "slide", None, f"{place}{error.what}", error.allowed
+        yield error.breach("slide")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -15,7 +15,15 @@ from gearcam.base.errors import InfeasibleError, beyond_limit
 from gearcam.base.quantities import ANGLE, NUMBER, TEXT, Row, Solve, param
 from gearcam.base.rules import Breach, exactly_one
 from gearcam.base.tolerances import Tolerances
-from gearcam.laws.columns import MOST_ROWS, FromFile, close_angles, demand
+from gearcam.laws.columns import (
+    MOST_ROWS,
+    ColumnsError,
+    FromFile,
+    close_angles,
+    degrees,
+    demand,
+    spans,
+)
 from gearcam.laws.entry import TYPED, LawEntry
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.driver import demand_radii, law_of_centrode
@@ -46,7 +54,12 @@ class TableLaw(FromFile):
         TEXT, default=None, doc="CSV file, up to 20000 rows: phi1_deg and ratio, phi2_deg or r1"
     )
     phi1: Row | None = param(
-        ANGLE, default=None, ge=0, le=360, min_length=_FEWEST, doc="driver angles, without a file"
+        ANGLE,
+        default=None,
+        ge=-360,
+        le=720,
+        min_length=_FEWEST,
+        doc="driver angles of one lobe, without a file; of an open pair from 0",
     )
     ratio: Row | None = param(
         NUMBER,
@@ -86,17 +99,22 @@ class TableLaw(FromFile):
         if kind == "phi2" and travel is not None:
             travel = own_travel(travel, rise, tolerances.refusal)
         span = self._span(angles, lobes, travel)
-        knots = np.array([0.0, *angles[1:-1], span.period])
+        if kind == "phi2" and span.closed and spans(values, span.advance):
+            values, rise = values * (span.advance / rise), span.advance
         if kind != "phi2":
             self._demand_ratio(kind, angles, values, span)
             rise = 0.0
+        first = 0.0 if abs(angles[0]) <= TYPED else float(angles[0])
+        knots = np.array([first, *angles[1:-1], first + span.period])
         powers = quintics(knots, values, rise if span.closed else None)
+        starts, powers = _from_zero(knots, powers) if span.closed else (knots[:-1], powers)
+        knots = np.array([0.0, *starts[1:], span.period])
         if kind == "r1":
-            return law_of_centrode(_pieces(knots, powers), knots, span, tolerances)
+            return law_of_centrode(_pieces(starts, powers), knots, span, tolerances)
         if kind == "phi2":
-            return make_law(span, knots, _pieces(knots, powers, slope, polynomial), tolerances)
-        factor = span.advance / integrate(knots, _pieces(knots, powers), 0.0).last
-        pieces = _pieces(knots, factor * powers)
+            return make_law(span, knots, _pieces(starts, powers, slope, polynomial), tolerances)
+        factor = span.advance / integrate(knots, _pieces(starts, powers), 0.0).last
+        pieces = _pieces(starts, factor * powers)
         return make_law(span, knots, pieces, tolerances, {"ratio_factor": factor})
 
     @cached_property
@@ -109,18 +127,22 @@ class TableLaw(FromFile):
             kind = next(name for name in _VALUES if getattr(self, name) is not None)
             return kind, np.array(self.phi1), np.array(getattr(self, kind)), []
         names = [name for name, column in _VALUES.items() if self.rows.spelt(column)]
-        columns = [_ANGLE, _VALUES[names[0]]] if len(names) == 1 else []
+        if len(names) > 1:
+            given = " and ".join(self.rows.spelt(_VALUES[name]) for name in names)
+            raise ColumnsError(f"line {self.rows.lines[0]}: {given}: leave one of them")
+        columns = [_ANGLE, _VALUES[names[0]]] if names else []
         points, lines = self.rows.columns(columns)
         factor = math.pi / 180.0 if names[0] == "phi2" else 1.0
         return names[0], np.radians(points[:, 0]), points[:, 1] * factor, lines
 
     def _span(self, angles: Array, lobes: Lobes, travel: float | Solve | None) -> Span:
-        if abs(angles[0]) > TYPED:
-            raise self._miss("the table does not begin at phi1 = 0", _ANGLE, 0, angles[0], 0.0)
-        if travel is None and abs(angles[-1] - lobes.period) > TYPED:
+        if travel is not None and abs(angles[0]) > TYPED:
+            what, off = "the table of an open pair does not begin at phi1 = 0", degrees(angles[0])
+            raise self._miss(what, _ANGLE, 0, angles[0], 0.0, f"subtract {off} from all its angles")
+        if travel is None and not spans(angles, lobes.period):
             what = "the table must span one lobe of the tooth counts"
             note = "the limit is where the last row must be; an open pair needs driven_travel_deg"
-            raise self._miss(what, _ANGLE, -1, angles[-1], lobes.period, note)
+            raise self._miss(what, _ANGLE, -1, angles[-1], angles[0] + lobes.period, note)
         return span_of(lobes, float(angles[-1]), travel)
 
     def _demand_ratio(self, kind: str, angles: Array, values: Array, span: Span) -> None:
@@ -155,14 +177,36 @@ def _problems(_: str, angles: Array, __: Array) -> Iterator[Breach]:
         yield "phi1", row, state, rule
 
 
+def _from_zero(knots: Array, powers: Array) -> tuple[Array, Array]:
+    """Return the pieces of a period from 0 on: where their polynomials begin, and their powers.
+
+    A piece across 0 is there twice: its polynomial begins before 0, and before the period.
+
+    Parameters
+    ----------
+    knots : (n + 1,) array, rad
+        Over a period, from any angle.
+    powers : (n, k) array
+        Of the distances from the knots before.
+    """
+    period = float(knots[-1] - knots[0])
+    starts = knots[:-1] % period
+    starts[starts > period - TYPED] = 0.0
+    first = int(np.argmin(starts))
+    starts, powers = np.roll(starts, -first), np.roll(powers, -first, axis=0)
+    if starts[0] <= TYPED:
+        return starts, powers
+    return np.array([starts[-1] - period, *starts]), np.concatenate([powers[-1:], powers])
+
+
 def _pieces(
-    knots: Array,
+    starts: Array,
     powers: Array,
     function: Callable[..., Jet] = polynomial,
     integral: Callable[..., Jet] = primitive,
 ) -> list[Piece]:
-    """Return pieces of polynomials from rows of `powers` of the distance from the knot before."""
-    rows = np.column_stack([knots[:-1], powers]).tolist()
+    """Return pieces of polynomials from rows of `powers` of the distance from their `starts`."""
+    rows = np.column_stack([starts, powers]).tolist()
     return [Piece(function, integral, tuple(row)) for row in rows]
 
 

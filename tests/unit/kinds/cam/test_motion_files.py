@@ -136,7 +136,7 @@ def test_rows_count_and_not_where_they_lie(tmp_path: Path) -> None:
         (BY_LISTS.replace("20.0", "9.0", 1), "motion.theta_deg[2]", 4, "9 deg follows 10 deg"),
         (BY_LISTS.replace("20.0", "nan", 1), "motion.theta_deg[2]", 4, "not a finite number"),
         (BY_LISTS.replace("[0.0, 10.0, ", "["), "motion.lift_mm", 5, "36 values, but theta has 34"),
-        (BY_LISTS.replace("[0.0, 10.0", "[0.0, 400", 1), "motion.theta_deg[1]", 4, "out of range"),
+        (BY_LISTS.replace("[0.0, 10.0", "[0.0, 800", 1), "motion.theta_deg[1]", 4, "out of range"),
         ('lift = "5*(1 - cos(x))"', "motion.lift", 4, "unknown name 'x'"),
         ("lift = 3", "motion.lift", 4, "is not text"),
         (f"{BY_FORMULA}\n{BY_FILE}", "motion.file", 5, "unknown key"),

@@ -79,6 +79,13 @@ FAULTS: dict[str, tuple[str, dict[str, Any], str, str]] = {
     "a formula of nothing known": (
         "load", {"on": "C", "formula": "2*y"}, "formula", "y",
     ),
+    "a formula of a pair's angle": (
+        "load", {"on": "C", "formula": "2*phi1"}, "formula",
+        "unknown name 'phi1' (did you mean q?)",
+    ),
+    "an empty formula": (
+        "load", {"on": "C", "formula": " "}, "formula", "q or the place x or the velocity v, pi",
+    ),
     "a mass of a joint": ("mass", {"of": "C", "mass_kg": 1}, "of", "is a joint"),
     "no mass": ("mass", {"of": "rod"}, "mass_kg", "missing"),
     "no centre": ("mass", {"of": "rod", "mass_kg": 1}, "", "is not given"),
