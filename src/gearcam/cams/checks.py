@@ -90,24 +90,6 @@ def _at(motion: PitchMotion, place: str) -> str:
     return f"{motion.called}, {place}" if motion.key else place
 
 
-@check("stray-row", kind=KIND, severity="error")
-def stray_row(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
-    """Find a single row of a motion table that is out of line: a slip of the decimal point.
-
-    Looks at: each row's distance from the cubic through two rows before and two behind it, against
-    those of the rows around it. Corners, dwells and jumps of a table are no slips.
-    """
-    lead = cam.motions[0]
-    scale, unit = lead.follower.lift_unit
-    for row in lead.program.stray:
-        yield Remark(
-            f"The {row.text(scale, unit)}. Is its decimal point in place?",
-            f"motion, {row.where}, {lead.carrier.driver.place(row.theta)}",
-            scale * row.lift,
-            unit=unit,
-        )
-
-
 @check(
     "pressure-angle",
     kind=KIND,

@@ -12,6 +12,7 @@ import numpy as np
 
 from gearcam.base.findings import Finding, in_order, run_checks
 from gearcam.kinds.shared import turn_in_steps
+from gearcam.laws.row_checks import row_findings
 from gearcam.numeric.arguments import angles
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
@@ -143,7 +144,9 @@ class GriddedCam(Result):
         poses, meshes = self.in_space(np.array([self.design.output.pose])), self.shown(chords)
         return {name: (meshes[name], pose[0]) for name, pose in poses.items()}
 
-    def findings_of(self, kind: str, solid: str, subject: Any) -> tuple[Finding, ...]:
+    def findings_of(
+        self, kind: str, solid: str, subject: Any, *, oscillating: bool = False
+    ) -> tuple[Finding, ...]:
         """Return the findings of the checks, errors first.
 
         Parameters
@@ -152,10 +155,13 @@ class GriddedCam(Result):
             The groups of checks of the cam, and of its solid where it is carved.
         subject : object
             What the first group looks at.
+        oscillating : bool
+            Whether lifts are angles.
         """
         limits = self.design.limits
         with self.stage("checks"):
             found = [*run_checks(kind, subject, limits)]
+            found += row_findings(self.design, oscillating=oscillating)
             if self.solid_asked and self.carved:
                 found += run_checks(solid, (self.solid_steps, self.chord_error), limits)
             return in_order(found)

@@ -265,7 +265,7 @@ class Result(NotebookView):
     def design_facts(self) -> Facts:
         """The facts without those of studies."""
         columns = sys.modules.get("gearcam.laws.columns")  # loaded only if a design has read a file
-        tables = columns.tables_in(self.design) if columns else ()
+        tables = columns.files_in(self.design) if columns else ()
         notes = [Fact(rows.note, Path(rows.file).name, shown=True) for rows in tables]
         tables = [{"note": note} for note in notes if note.value]
         return self.kind.facts(self).with_groups({"tables": tables})

@@ -27,6 +27,7 @@ from gearcam.laws.lift_model import number_of
 from gearcam.laws.motion.base import MOTION_LAWS
 from gearcam.laws.motion_table import MotionTable
 from gearcam.laws.phases_of_lift import TURN
+from gearcam.laws.row_checks import stray_in
 from gearcam.numeric.arrays import Array
 from gearcam.pictures.charts import Chart, Limit, Line, MarkedPlace
 
@@ -93,8 +94,8 @@ def read_lift(file: Any, wall: Wall) -> tuple[Array, Array] | None:
     for _, row, message, rule in table.turn_problems(oscillating=wall.follower.angular):
         place = f"line {lines[row]}: " if row is not None else ""
         raise DesignError([Problem(f"not a lift: {place}{message}", file=name, allowed=rule)])
-    for one in table.stray(oscillating=wall.follower.angular):
-        message = f"line {lines[one.row]}: the {one.text(scale, unit)}"
+    for one in stray_in(table.given(oscillating=wall.follower.angular)):
+        message = f"line {lines[one.row]}: the {one.text}"
         raise DesignError([Problem(message, file=name, allowed=needed)])
     repeated = TURN - float(theta[-1] - theta[0]) < 1e-6
     return (theta[:-1], lift[:-1]) if repeated else (theta, lift)

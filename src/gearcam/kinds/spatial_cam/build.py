@@ -125,7 +125,8 @@ class SpatialCamResult(GriddedCam):
         """Findings of the checks, errors first."""
         from gearcam.spatial.checks import KIND, SOLID
 
-        return self.findings_of(KIND, SOLID, (self.cam, self.blank))
+        swings = self.design.follower.oscillating
+        return self.findings_of(KIND, SOLID, (self.cam, self.blank), oscillating=swings)
 
     def motion(self, theta: ArrayLike | None = None) -> Columns:
         """Return the motion of the follower and the pressure angles.
