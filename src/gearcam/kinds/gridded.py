@@ -12,7 +12,6 @@ import numpy as np
 
 from gearcam.base.findings import Finding, in_order, run_checks
 from gearcam.kinds.shared import turn_in_steps
-from gearcam.laws.row_checks import row_findings
 from gearcam.numeric.arguments import angles
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
@@ -161,7 +160,7 @@ class GriddedCam(Result):
         limits = self.design.limits
         with self.stage("checks"):
             found = [*run_checks(kind, subject, limits)]
-            found += row_findings(self.design, oscillating=oscillating)
+            found += self.row_findings(oscillating=oscillating)
             if self.solid_asked and self.carved:
                 found += run_checks(solid, (self.solid_steps, self.chord_error), limits)
             return in_order(found)

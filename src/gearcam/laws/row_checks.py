@@ -7,7 +7,6 @@ whose rows need not lie on a curve, such as errors of pitch by tooth or loads, a
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass, fields
 from typing import Any, Final
 
@@ -74,41 +73,27 @@ def row_findings(design: Any, *, oscillating: bool = False) -> tuple[Finding, ..
     oscillating : bool
         Whether lifts are angles.
     """
-    return run_checks(KIND, [*_given_in(design, oscillating)], {})
+    return run_checks(KIND, [*_given_in(design, oscillating=oscillating)], {})
 
 
-@contextmanager
-def naming_rows(design: Any) -> Iterator[None]:
-    """Name a stray row in the place of a refusal, which may follow from it.
+def refused_for_row(design: Any, error: InfeasibleError) -> InfeasibleError | None:
+    """Return the refusal of the first stray row of a design, from which another may follow.
 
     Parameters
     ----------
     design : Design
         As of `row_findings`, without lifts.
-
-    Yields
-    ------
-    None
-
-    Raises
-    ------
-    InfeasibleError
-        If the block raises one: of the first stray row, or the same.
+    error : InfeasibleError
+        The other refusal.
     """
-    try:
-        yield
-    except InfeasibleError as error:
-        for place, given in _given_in(design, False):
-            for row in stray_in(given):
-                raise InfeasibleError(
-                    f"the {row.text}",
-                    where=f"{place}, {row.where}",
-                    nearest=f"as it is, {error.what}",
-                ) from error
-        raise
+    for place, given in _given_in(design, oscillating=False):
+        for row in stray_in(given):
+            where, note = f"{place}, {row.where}", f"as it is, {error.what}"
+            return InfeasibleError(f"the {row.text}", where=where, nearest=note)
+    return None
 
 
-def _given_in(design: Any, oscillating: bool) -> Iterator[tuple[str, Given]]:
+def _given_in(design: Any, *, oscillating: bool) -> Iterator[tuple[str, Given]]:
     """Yield the rows that should lie on curves, with the key of what they belong to."""
     for field in fields(design):
         part = getattr(design, field.name)

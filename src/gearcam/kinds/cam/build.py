@@ -20,7 +20,6 @@ from gearcam.kinds.cam.design import CamDesign
 from gearcam.kinds.cam.forms.base import FORMS, Form
 from gearcam.kinds.shared import solved_file
 from gearcam.laws.program import Program
-from gearcam.laws.row_checks import row_findings
 from gearcam.numeric.arguments import angles, one_of
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
@@ -400,7 +399,7 @@ class CamResult(PartsResult):
         cam = self.cam
         with self.stage("checks"):
             found = run_checks(KIND, cam, self.design.limits)
-            found += row_findings(self.design, oscillating=self.design.follower.oscillating)
+            found += self.row_findings(oscillating=self.design.follower.oscillating)
         if self.ordered:
             subject = self.part_subject
             with self.stage("checks"):

@@ -31,7 +31,6 @@ from gearcam.kinds.gear_pair.tables import (
 )
 from gearcam.laws.ratio.base import RatioLaw
 from gearcam.laws.ratio.span import angle_text, is_open
-from gearcam.laws.row_checks import naming_rows, row_findings
 from gearcam.meshing import drive_checks  # noqa: F401  (its checks register themselves)
 from gearcam.meshing.contact import Contacts, contacts
 from gearcam.numeric.arguments import angles, one_of, whole
@@ -107,7 +106,7 @@ class GearPairResult(PartsResult):
     def law(self) -> RatioLaw:
         """The ratio law."""
         parameters, pair = self.design.law, self.design.pair
-        with self.stage("law"), naming_rows(self.design):
+        with self.stage("law"), self.naming_rows():
             if not is_open(parameters):
                 demand_ring(pair)
             law = parameters.build(lobes_of(pair), self.tolerances)
@@ -118,7 +117,7 @@ class GearPairResult(PartsResult):
     def pair(self) -> GearPair:
         """The centrodes with their cutters."""
         law = self.law
-        with self.stage("centrodes"), naming_rows(self.design):
+        with self.stage("centrodes"), self.naming_rows():
             return make_pair(
                 law,
                 self.design.pair,
@@ -230,7 +229,7 @@ class GearPairResult(PartsResult):
         steps, limits = self.steps, self.design.limits
         parts = self.parts_subject if self.ordered else None
         with self.stage("checks"):
-            findings = [*run_checks(KIND, self.subject, limits), *row_findings(self.design)]
+            findings = [*run_checks(KIND, self.subject, limits), *self.row_findings()]
             for number, gears in enumerate(steps[1:], start=2):
                 findings += (
                     replace(finding, where=f"step {number}, {finding.where}")
