@@ -162,7 +162,7 @@ def _steep(motion: PitchMotion, kinds: tuple[str, ...], largest: float) -> Itera
         angle = math.degrees(abs(worst.value))
         yield Remark(
             f"The pressure angle on the {kind} reaches {formatted(angle)} deg.",
-            _at(motion, f"{kind}, at {motion.carrier.driver.text(worst.theta)}"),
+            _at(motion, f"{kind}, {motion.carrier.driver.place(worst.theta)}"),
             angle,
             limit=math.degrees(largest),
         )
