@@ -51,8 +51,8 @@ def stray_rows(x: Array, y: Array, period: float | None, rise: float = 0.0) -> t
     y : (n,) array
         Values, in the unit in which they are written.
     period : float or None
-        After which the values repeat, in the unit of `x`. None if the table has ends: the two rows
-        at each have too few beside them to be compared.
+        After which the values repeat, in the unit of `x`. None if the table has ends: the three
+        rows at each have too few beside them to be compared.
     rise : float
         What the values rise in a period.
 
@@ -80,14 +80,20 @@ def stray_rows(x: Array, y: Array, period: float | None, rise: float = 0.0) -> t
     low, high = values[:, _REACH - 1], values[:, _REACH + 1]
     chord = low + (high - low) * (here - before) / (behind - before)
     size = np.minimum(np.abs(missed), np.abs(y - chord))
-    # a rise and return within three rows is a motion of its own
-    extent, swing = (
-        np.array([np.ptp(np.roll(one, 1 - row)[3:]) for row in range(count)])
-        for one in (y, y - slope * x)
+    clear = (size > _CLEAR * (rough + _half_unit(y))) & _even(places)
+    level = y - slope * x
+    rows = np.array(
+        [row for row in np.flatnonzero(clear).tolist() if _among(size[row], row, y, level)],
+        dtype=np.int64,
     )
-    clear = (size > _CLEAR * (rough + _half_unit(y))) & (size > _LARGE * swing)
-    rows = np.flatnonzero(clear & (extent > _ALONE * size) & _even(places))
     return rows, values[rows, _REACH]
+
+
+def _among(size: float, row: int, y: Array, level: Array) -> bool:
+    """Return whether a distance is large, and yet of a row among others that move too."""
+    # a rise and return within three rows is a motion of its own
+    extent, swing = (float(np.ptp(np.roll(one, 1 - row)[3:])) for one in (y, level))
+    return size > _LARGE * swing and extent > _ALONE * size
 
 
 def _even(places: Array) -> Mask:
