@@ -35,6 +35,7 @@ GROUPS: Final = {
     "tables of mechanisms": "What is asked for, loads, and chains",
     "torque of a mechanism": "Torque (`gearcam torque`)",
     "globoidal cams": "Walls and hold",
+    "rows of tables": "Tables of laws and motions",
     "solids of globoidal cams": "Solids",
     "solids of cams in space": "Solids",
     "forces": "Forces (`gearcam forces`)",

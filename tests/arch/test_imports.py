@@ -224,7 +224,7 @@ LAWS = {
             "measured_cam",
             "gears",
             {"columns", "displacement", "entry", "program", "phases_of_lift"}
-            | {"motion_table", "motion.pieces", "motion.base"},
+            | {"motion_table", "motion.pieces", "motion.base", "row_checks"},
         ),
     ],
 )

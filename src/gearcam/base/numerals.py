@@ -49,6 +49,26 @@ def formatted(value: float, digits: int = 6, scale: float = 0.0) -> str:
     return f"{settled(float(value), scale) + 0.0:.{digits}g}"
 
 
+def in_range(value: float, low: float, high: float, digits: int = 6, scale: float = 0.0) -> str:
+    """Return a place in a range that repeats as text: what reads as its end is its begin.
+
+    Parameters
+    ----------
+    value : float
+        The place.
+    low, high : float
+        The range.
+    digits, scale
+        As of `formatted`.
+
+    Returns
+    -------
+    str
+    """
+    text = formatted(value, digits, scale)
+    return formatted(low, digits, scale) if text == formatted(high, digits, scale) else text
+
+
 def told_apart(
     value: float | None, other: float | None, unit: str = "", digits: int = 6
 ) -> tuple[str, str]:

@@ -18,7 +18,7 @@ from typing import Any, ClassVar, Final, Protocol
 import numpy as np
 
 from gearcam.base.display import ShortRepr
-from gearcam.base.numerals import formatted
+from gearcam.base.numerals import formatted, in_range
 from gearcam.mechanics.friction import FrictionSpec
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.jets import Jet, cos, sin
@@ -70,8 +70,10 @@ class DriverAxis(ShortRepr):
         return f"{formatted(self.scale * theta, scale=self.whole)} {self.unit}"
 
     def place(self, theta: float) -> str:
-        """Return a position as text."""
-        return f"at {self.text(theta)}"
+        """Return a position as text: of a turn its end is its begin."""
+        if self.unit != "deg":
+            return f"at {self.text(theta)}"
+        return f"at {in_range(self.scale * theta, 0.0, self.whole, scale=self.whole)} deg"
 
 
 class Centred(Protocol):

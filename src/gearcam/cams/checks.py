@@ -90,24 +90,6 @@ def _at(motion: PitchMotion, place: str) -> str:
     return f"{motion.called}, {place}" if motion.key else place
 
 
-@check("stray-row", kind=KIND, severity="error")
-def stray_row(cam: Cam, limit: float) -> Iterator[Remark]:  # noqa: ARG001
-    """Find a single row of a motion table that is out of line: a slip of the decimal point.
-
-    Looks at: each row's distance from the cubic through two rows before and two behind it, against
-    those of the rows around it. Corners, dwells and jumps of a table are no slips.
-    """
-    lead = cam.motions[0]
-    scale, unit = lead.follower.lift_unit
-    for row in lead.program.stray:
-        yield Remark(
-            f"The {row.text(scale, unit)}. Is its decimal point in place?",
-            f"motion, {row.where}, {lead.carrier.driver.place(row.theta)}",
-            scale * row.lift,
-            unit=unit,
-        )
-
-
 @check(
     "pressure-angle",
     kind=KIND,
@@ -180,7 +162,7 @@ def _steep(motion: PitchMotion, kinds: tuple[str, ...], largest: float) -> Itera
         angle = math.degrees(abs(worst.value))
         yield Remark(
             f"The pressure angle on the {kind} reaches {formatted(angle)} deg.",
-            _at(motion, f"{kind}, at {motion.carrier.driver.text(worst.theta)}"),
+            _at(motion, f"{kind}, {motion.carrier.driver.place(worst.theta)}"),
             angle,
             limit=math.degrees(largest),
         )

@@ -518,12 +518,12 @@ def _with_rows(value: Any, design: Design) -> Any:
 
 def _rows(file: Any, design: Design) -> Any:
     """Return the rows of a table's file; of another file what tells its content."""
-    from gearcam.laws.columns import LARGEST, ColumnsError, tables_in
+    from gearcam.laws.columns import LARGEST, ColumnsError, files_in
 
     if file is None:
         return None
     try:
-        for rows in tables_in(design):
+        for rows in files_in(design):
             if rows.file == file:
                 return rows.cells
         return hashlib.sha256(read(file, LARGEST)).hexdigest()

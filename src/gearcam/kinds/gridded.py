@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 from abc import abstractmethod
+from bisect import bisect_right
 from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 import numpy as np
 
+from gearcam.base.errors import ABOVE, InfeasibleError, beyond_limit
 from gearcam.base.findings import Finding, in_order, run_checks
 from gearcam.kinds.shared import turn_in_steps
 from gearcam.numeric.arguments import angles
@@ -60,6 +62,8 @@ class GriddedCam(Result):
     """Files that need the solid."""
     most_carved: ClassVar[int]
     """Largest number of cam angles at which rollers cut a solid: a few seconds."""
+    most_facets: ClassVar[int]
+    """Largest number of triangles that a solid is made from: ten seconds, and a gigabyte."""
 
     program: Any
     cam: Any
@@ -93,6 +97,16 @@ class GriddedCam(Result):
     @abstractmethod
     def solid_of(self, steps: int, places: int) -> Mesh:
         """Return the cam as a mesh, as if it turned counter-clockwise (see `mesh_of`)."""
+
+    @abstractmethod
+    def facets(self, steps: int, places: int) -> int:
+        """Return about how many triangles a solid that is not carved is made from (see `mesh_of`).
+
+        Parameters
+        ----------
+        steps, places : int
+            As of `mesh_of`.
+        """
 
     def mesh_of(self, steps: int, places: int) -> Mesh:
         """Return the cam as a mesh.
@@ -143,7 +157,9 @@ class GriddedCam(Result):
         poses, meshes = self.in_space(np.array([self.design.output.pose])), self.shown(chords)
         return {name: (meshes[name], pose[0]) for name, pose in poses.items()}
 
-    def findings_of(self, kind: str, solid: str, subject: Any) -> tuple[Finding, ...]:
+    def findings_of(
+        self, kind: str, solid: str, subject: Any, *, oscillating: bool = False
+    ) -> tuple[Finding, ...]:
         """Return the findings of the checks, errors first.
 
         Parameters
@@ -152,10 +168,13 @@ class GriddedCam(Result):
             The groups of checks of the cam, and of its solid where it is carved.
         subject : object
             What the first group looks at.
+        oscillating : bool
+            Whether lifts are angles.
         """
         limits = self.design.limits
         with self.stage("checks"):
             found = [*run_checks(kind, subject, limits)]
+            found += self.row_findings(oscillating=oscillating)
             if self.solid_asked and self.carved:
                 found += run_checks(solid, (self.solid_steps, self.chord_error), limits)
             return in_order(found)
@@ -211,8 +230,27 @@ class GriddedCam(Result):
 
     @cached_property
     def mesh(self) -> Mesh:
-        """The cam as a closed mesh, mm."""
-        return self.mesh_of(self.solid_steps, self.design.output.wall_points)
+        """The cam as a closed mesh, mm.
+
+        Raises
+        ------
+        InfeasibleError
+            If it would have too many facets.
+        """
+        steps, places = self.solid_steps, self.design.output.wall_points
+        if not self.carved and self.facets(steps, places) > self.most_facets:
+            raise self._too_fine(places)
+        return self.mesh_of(steps, places)
+
+    def _too_fine(self, places: int) -> InfeasibleError:
+        """Return the refusal of a solid with too many facets, with the least step that has not."""
+        pairs = range(1, self.steps)
+        most = 2 * bisect_right(pairs, self.most_facets, key=lambda k: self.facets(2 * k, places))
+        value, limit = math.degrees(self.design.output.wall_step), 360.0 / max(most, 1)
+        what = f"the solid would have more than {self.most_facets} facets"
+        return beyond_limit(
+            what, "output.wall_step_deg", value, limit, near=ABOVE * limit, unit="deg"
+        )
 
     @cached_property
     def volume(self) -> tuple[float, float]:

@@ -180,10 +180,55 @@ def _same(cells: Sequence[str]) -> str:
     return f"{' and '.join(cells)} are the same quantity: leave one of them"
 
 
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Given(ShortRepr):
+    """The rows of a table as they were given, which should lie on a curve.
+
+    Parameters
+    ----------
+    key, called : str
+        Key of the values in a design, without its unit, and what they are in words.
+    x : (n,) array
+        Places, rising.
+    y : (n,) array
+        Values, in the unit in which they are given.
+    lines : list of n int
+        Their lines in the file; empty without one.
+    place : callable
+        ``place(x)`` returns a place as text.
+    period : float or None
+        After which the values repeat, in the unit of `x`; None if the table has ends.
+    rise : float
+        What the values rise in a period.
+    unit : str
+        Of the values.
+    """
+
+    key: str
+    called: str
+    x: Array
+    y: Array
+    lines: list[int]
+    place: Callable[[float], str]
+    period: float | None = None
+    rise: float = 0.0
+    unit: str = ""
+
+
 class FromFile(ShortRepr):
     """Parameters of a table, in the design itself or in a CSV file, which is read once."""
 
     file: str | None
+
+    def given(self, *, oscillating: bool) -> Given | None:  # noqa: ARG002  (the same for all)
+        """Return the rows, if they should lie on a curve.
+
+        Parameters
+        ----------
+        oscillating : bool
+            Whether lifts are angles.
+        """
+        return None
 
     @cached_property
     def rows(self) -> CsvRows | None:
@@ -257,25 +302,38 @@ def demand(problems: Iterator[Breach], table: str) -> None:
         raise InfeasibleError(message, where=where, nearest=rule)
 
 
-def tables_in(part: Any) -> Iterator[CsvRows]:
-    """Yield the rows of the CSV files that parameters name.
+def tables_in(part: Any) -> Iterator[FromFile]:
+    """Yield the tables of parameters.
 
     Parameters
     ----------
     part : object
         Parameters, or a dataclass or tuple that contains them at any depth.
+    """
+    if isinstance(part, FromFile):
+        yield part
+    elif is_dataclass(part):
+        part = tuple(getattr(part, field.name) for field in fields(part))
+    for item in part if isinstance(part, tuple) else ():
+        yield from tables_in(item)
+
+
+def files_in(part: Any) -> Iterator[CsvRows]:
+    """Yield the rows of all CSV files of parameters.
+
+    Parameters
+    ----------
+    part : object
+        As of `tables_in`.
 
     Raises
     ------
     ColumnsError
         If a file cannot be read.
     """
-    if isinstance(part, FromFile) and part.rows is not None:
-        yield part.rows
-    elif is_dataclass(part):
-        part = tuple(getattr(part, field.name) for field in fields(part))
-    for item in part if isinstance(part, tuple) else ():
-        yield from tables_in(item)
+    for table in tables_in(part):
+        if table.rows is not None:
+            yield table.rows
 
 
 def read_rows(file: str) -> CsvRows:

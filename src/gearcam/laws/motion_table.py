@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import islice
 from typing import Final
 
@@ -31,6 +31,7 @@ from gearcam.base.tolerances import Tolerances
 from gearcam.laws.columns import (
     ColumnsError,
     FromFile,
+    Given,
     close_angles,
     degrees,
     demand,
@@ -40,11 +41,10 @@ from gearcam.laws.displacement import Deviation
 from gearcam.laws.entry import TYPED
 from gearcam.laws.motion.pieces import from_both_ends, spline
 from gearcam.laws.phases_of_lift import TURN
-from gearcam.laws.program import Program, StrayRow, stretches_of
+from gearcam.laws.program import Program, stretches_of
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.least_jerk import coefficients, ring_slopes, smoothed_ring
 from gearcam.numeric.piecewise import Piecewise, piecewise
-from gearcam.numeric.stray import stray_rows
 
 _FEWEST: Final = 6
 _MOST: Final = 3600
@@ -208,33 +208,27 @@ class MotionTable(FromFile):
         """
         demand(self.turn_problems(oscillating=oscillating), "motion")
         theta, lift, _ = self._rows(oscillating)
-        stray, apart = tuple(self.stray(oscillating=oscillating)), np.zeros(len(theta))
+        apart = np.zeros(len(theta))
         if spans(theta, TURN):
             apart[0] = 0.5 * abs(float(lift[-1] - lift[0]))
             lift[0] = 0.5 * (lift[0] + lift[-1])
         theta, lift, apart = rows_of_turn(theta, lift, apart)
-        program = _program_of_rows(theta, lift, apart, self.smoothing_tolerance or 0.0)
-        return replace(program, stray=stray)
+        return _program_of_rows(theta, lift, apart, self.smoothing_tolerance or 0.0)
 
-    def stray(self, *, oscillating: bool) -> Iterator[StrayRow]:
-        """Yield the rows that are out of line with those around them.
-
-        Parameters
-        ----------
-        oscillating : bool
-            Whether lifts are angles.
-        """
+    def given(self, *, oscillating: bool) -> Given:
+        """Return the rows (see `FromFile.given`)."""
         theta, lift, lines = self._rows(oscillating)
         count = len(theta) - 1 if spans(theta, TURN) else len(theta)
-        rows, suggested = stray_rows(theta[:count], lift[:count], TURN)
-        for row, near in zip(rows.tolist(), suggested.tolist(), strict=True):
-            yield StrayRow(
-                row=row,
-                where=f"line {lines[row]}" if lines else f"lift[{row}]",
-                theta=float(theta[row]) % TURN,
-                lift=float(lift[row]),
-                suggested=near,
-            )
+        return Given(
+            key="lift",
+            called="lift",
+            x=theta[:count],
+            y=lift[:count] / (_DEG if oscillating else 1.0),
+            lines=lines,
+            place=lambda angle: f"at {degrees(angle)}",
+            period=TURN,
+            unit="deg" if oscillating else "mm",
+        )
 
 
 def _columns(oscillating: bool) -> tuple[str, str]:

@@ -20,7 +20,6 @@ import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import InfeasibleError
-from gearcam.base.numerals import formatted
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.displacement import EXACT, JUMP, Deviation, Displacement, Jump
 from gearcam.laws.motion.base import MotionFunction
@@ -70,36 +69,6 @@ class Survey(ShortRepr):
     after: Array
 
 
-@dataclass(frozen=True, kw_only=True)
-class StrayRow:
-    """A row of a table that is out of line with those around it.
-
-    Parameters
-    ----------
-    row : int
-        Its number, from 0.
-    where : str
-        Its line in the file, or its key and index.
-    theta : float, rad
-        Its angle.
-    lift : float, mm or rad
-        What it says.
-    suggested : float, mm or rad
-        The lift that the rows around it suggest.
-    """
-
-    row: int
-    where: str
-    theta: float
-    lift: float
-    suggested: float
-
-    def text(self, scale: float, unit: str) -> str:
-        """Return what is wrong with it, in a `unit` that is 1/`scale` mm or rad."""
-        given, near = (formatted(scale * one, 4) for one in (self.lift, self.suggested))
-        return f"lift {given} {unit} is out of line: the rows around it suggest {near} {unit}"
-
-
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Program(ShortRepr, Displacement):
     """The lift of a follower over a turn, repeated, or over a travel.
@@ -122,8 +91,6 @@ class Program(ShortRepr, Displacement):
         Largest distance of a smoothed lift from the rows.
     given : (n, 2) array, optional
         The rows that were smoothed: angle, rad, and lift, mm or rad.
-    stray : tuple of StrayRow
-        Rows that are out of line with those around them.
     open : bool
         Whether it ends with the travel.
     """
@@ -135,7 +102,6 @@ class Program(ShortRepr, Displacement):
     fall: float = 1.0
     deviation: Deviation | None = None
     given: Array | None = None
-    stray: tuple[StrayRow, ...] = ()
     open: bool = False
 
     @property

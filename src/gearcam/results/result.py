@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Final, Self
 from numpy.typing import ArrayLike
 
 from gearcam.base.display import NotebookView, cut, renderer
-from gearcam.base.errors import GearcamError
+from gearcam.base.errors import GearcamError, InfeasibleError
 from gearcam.base.facts import Fact, Facts
 from gearcam.base.findings import Finding, in_order
 from gearcam.base.numerals import tree
@@ -265,11 +265,43 @@ class Result(NotebookView):
     @cached_property
     def design_facts(self) -> Facts:
         """The facts without those of studies."""
-        columns = sys.modules.get("gearcam.laws.columns")  # loaded only if a design has read a file
-        tables = columns.tables_in(self.design) if columns else ()
-        notes = [Fact(rows.note, Path(rows.file).name, shown=True) for rows in tables]
+        files = [table.rows for table in self._tables if table.rows is not None]
+        notes = [Fact(rows.note, Path(rows.file).name, shown=True) for rows in files]
         tables = [{"note": note} for note in notes if note.value]
         return self.kind.facts(self).with_groups({"tables": tables})
+
+    @property
+    def _tables(self) -> Sequence[Any]:
+        """The tables of the design that are, or may be, files."""
+        columns = sys.modules.get("gearcam.laws.columns")  # loaded if a design has a table
+        return [*columns.tables_in(self.design)] if columns else []
+
+    def row_findings(self, *, oscillating: bool = False) -> tuple[Finding, ...]:
+        """Return the findings of the rows of all tables of the design.
+
+        Parameters
+        ----------
+        oscillating : bool
+            Whether lifts are angles.
+        """
+        if all(table.given(oscillating=oscillating) is None for table in self._tables):
+            return ()
+        from gearcam.laws.row_checks import row_findings
+
+        return row_findings(self.design, oscillating=oscillating)
+
+    @contextmanager
+    def naming_rows(self) -> Iterator[None]:
+        """Name a stray row of a table without lifts in the place of a refusal."""
+        try:
+            yield
+        except InfeasibleError as error:
+            from gearcam.laws.row_checks import refused_for_row
+
+            named = refused_for_row(self.design, error)
+            if named is None:
+                raise
+            raise named from error
 
     def standing(
         self,

@@ -17,7 +17,7 @@ from typing import Final
 import numpy as np
 
 from gearcam.base.errors import NotFiniteError
-from gearcam.base.numerals import formatted
+from gearcam.base.numerals import formatted, in_range
 from gearcam.numeric.arrays import Array
 
 NARROW: Final = 1e-9
@@ -72,7 +72,7 @@ class Spot:
     @property
     def place(self) -> str:
         """Where it is, in words."""
-        angle = formatted(round(math.degrees(self.theta), _DECIMALS), 5)
+        angle = in_range(round(math.degrees(self.theta), _DECIMALS), 0.0, 360.0, 5)
         return f"at {angle} deg, {formatted(self.x, 4)} mm from the {self.start}"
 
 

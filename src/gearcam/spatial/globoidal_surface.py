@@ -68,8 +68,7 @@ def rib_surface(cam: GloboidalCam, steps: int, places: int) -> Surface:
         for k, wall in enumerate(cam.walls)
     )
     high[..., 1] = low[..., 1] + np.mod(high[..., 1] - low[..., 1], TURN)
-    step = 2.0 * math.acos(1.0 - _SAG * beyond / cam.floor)
-    share = np.linspace(0.0, 1.0, 1 + math.ceil(cam.pitch / step))[:, None]
+    share = np.linspace(0.0, 1.0, 1 + _strips(cam))[:, None]
 
     def between(rows: slice, columns: slice) -> Array:
         """Return points from the upper wall of one roller to the lower one of the next."""
@@ -86,6 +85,12 @@ def rib_surface(cam: GloboidalCam, steps: int, places: int) -> Surface:
         (between(last, every)[0], False),
     ]
     return welded(*_together(sheets), cam.distance)
+
+
+def _strips(cam: GloboidalCam) -> int:
+    """Return the number of strips of a sheet of the rib from wall to wall."""
+    step = 2.0 * math.acos(1.0 - _SAG * _BEYOND * cam.roller.radius / cam.floor)
+    return math.ceil(cam.pitch / step)
 
 
 def rib_angles(cam: GloboidalCam, steps: int) -> Array:
@@ -205,10 +210,30 @@ def turret_surface(cam: GloboidalCam, hub: float, steps: int) -> Surface:
 def _arc(cam: GloboidalCam, radius: float, half: float, steps: int) -> list[tuple[float, float]]:
     """Return an arc about the turret's axis from the upper to the lower height, as corners."""
     last = math.asin(half / radius)
-    # in proportion to the steps, so that the error of the volume falls with their square
-    parts = math.ceil(2.0 * last * _SECTORS / TURN) * math.ceil(steps / _SECTORS)
-    angle = np.linspace(last, -last, 1 + parts)
+    angle = np.linspace(last, -last, 1 + _chords(2.0 * last, steps))
     return [(cam.distance - radius * math.cos(a), radius * math.sin(a)) for a in angle.tolist()]
+
+
+def _chords(angle: float, steps: int) -> int:
+    """Return the number of chords of an arc about the turret's axis.
+
+    It is in proportion to the steps, so that the error of the volume falls with their square.
+    """
+    return math.ceil(angle * _SECTORS / TURN) * math.ceil(steps / _SECTORS)
+
+
+def facets(cam: GloboidalCam, steps: int, places: int) -> int:
+    """Return about how many triangles the rib, the core and the blank have together.
+
+    Parameters
+    ----------
+    cam, steps, places
+        As of `rib_surface`.
+    """
+    share = (cam.span[1] - cam.span[0]) / TURN
+    rib = 2.0 * steps * share * 2 * (places + _strips(cam))
+    bodies = [2 * steps * _chords(2.0 * math.asin(cam.half_length / cam.top), steps)] * 2
+    return int(rib) + sum(bodies)
 
 
 def polar(cam: GloboidalCam, points: Array, theta: Array) -> Array:

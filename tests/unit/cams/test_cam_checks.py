@@ -400,7 +400,6 @@ def test_every_check_of_cams_is_covered() -> None:
     tried = {name.split()[0] for name in EDGES} | {
         *("sharp-profile", "velocity-jump", "acceleration-jump", "coarse-rows"),
         "lost-motion",  # in test_groove_cams.py
-        "stray-row",  # in test_stray_rows.py
         "face-width",  # in test_yoke_cams.py
         "no-clearance",  # in test_groove_cams.py
     }

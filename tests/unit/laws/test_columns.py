@@ -14,7 +14,7 @@ import pytest
 from gearcam import build, load
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.tolerances import DEFAULT
-from gearcam.laws.columns import ColumnsError, FromFile, read_rows, tables_in
+from gearcam.laws.columns import ColumnsError, FromFile, files_in, read_rows
 from gearcam.laws.motion.points import TableRise
 from gearcam.laws.motion_table import MotionTable
 from gearcam.laws.ratio.base import RatioLaw
@@ -247,7 +247,7 @@ def test_how_a_file_was_read_is_told_with_the_facts(tmp_path: Path, note: str) -
 
 def test_rows_are_found_wherever_their_parameters_stand(tmp_path: Path) -> None:
     law = TableLaw(file=written(tmp_path, RATIOS))
-    (rows,) = tables_in((1, "a", (law, TableLaw(phi1=(0.0,), ratio=(1.0,)))))
+    (rows,) = files_in((1, "a", (law, TableLaw(phi1=(0.0,), ratio=(1.0,)))))
     assert rows is law.rows
     assert rows.cells[0] == ["phi1_deg", "ratio"]
     assert rows.file == law.file

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
 
@@ -14,12 +15,18 @@ import gearcam as gc
 from gearcam.base.errors import DesignError
 from gearcam.base.tolerances import DEFAULT
 from gearcam.laws.motion.base import MOTION_LAWS
+from gearcam.laws.ratio.base import LAWS as RATIO_LAWS
+from gearcam.laws.ratio.span import Lobes
+from gearcam.laws.row_checks import row_findings
 from gearcam.numeric.stray import stray_rows
 from helpers_pairs import PROFILES
+from random_designs.law_draw import LawDraw
+from random_designs.laws import parameters, random_law
 
 Array = NDArray[np.float64]
 
 LAWS = sorted(set(MOTION_LAWS) - {"formula"})
+LAWS_OF_RATIO = sorted(RATIO_LAWS)
 
 
 @cache
@@ -97,6 +104,132 @@ def test_the_line_the_value_and_what_the_rows_around_suggest_are_told(tmp_path: 
 
 def test_no_table_of_the_gallery_has_a_stray_row() -> None:
     for file in PROFILES.glob("*.toml"):
-        program = getattr(gc.load(file), "motion", None)
-        if isinstance(program, gc.MotionTable):
-            assert not [*program.stray(oscillating=False)], file
+        assert not row_findings(gc.load(file)), file
+
+
+@pytest.mark.parametrize("name", ["cycloidal", "modified-sine"])
+@pytest.mark.parametrize(("step", "error"), [(1.0, 0.05), (2.0, 0.1), (5.0, 0.25), (10.0, 2.0)])
+def test_a_small_error_in_a_smooth_lift_is_found(name: str, step: float, error: float) -> None:
+    theta = np.arange(0.0, 360.0, step)
+    true = 2.0 * lift(name, theta, 150.0, 60.0)
+    for row in range(0, len(theta), max(1, len(theta) // 36)):
+        rows = np.round(true, 3)
+        rows[row] += error
+        found, suggested = stray_rows(np.radians(theta), rows, 2 * np.pi)
+        assert found.tolist() == [row]
+        assert suggested[0] == pytest.approx(true[row], abs=error / 10)
+
+
+RATIO = """
+kind = "gear-pair"
+name = "rows"
+law = {{type = "table", {rows}}}
+pair = {{module_mm = 2, teeth = [60, 30]}}
+output = {{files = []}}
+"""
+
+
+def half_turn(values: str) -> tuple[Array, Array]:
+    """Rows of a lobe of 180 degrees on which the driven wheel turns once."""
+    phi = np.arange(0.0, 181.0, 5.0)
+    ratio = 2.0 + 0.4 * np.cos(np.radians(2.0 * phi))
+    rows = {
+        "ratio": ratio,
+        "phi2_deg": 2.0 * phi + 0.2 * np.degrees(np.sin(np.radians(2.0 * phi))),
+        "r1": 100.0 * ratio / (1.0 + ratio),
+    }
+    return phi, np.round(rows[values], 4)
+
+
+@pytest.mark.parametrize(("values", "wrong"), [("ratio", 2.5), ("phi2_deg", 81.2), ("r1", 64.0)])
+def test_a_wrong_row_of_a_ratio_table_is_named(values: str, wrong: float, tmp_path: Path) -> None:
+    phi, rows = half_turn(values)
+    design, table = tmp_path / "pair.toml", tmp_path / "rows.csv"
+    design.write_text(RATIO.format(rows='file = "rows.csv"'), encoding="utf-8")
+    for slip in (False, True):
+        true, rows[7] = rows[7], wrong if slip else rows[7]
+        text = "\n".join(f"{a:g},{y:.4f}" for a, y in zip(phi, rows, strict=True))
+        table.write_text(f"phi1_deg,{values}\n{text}\n", encoding="utf-8")
+        found = row_findings(gc.load(design))
+        listed = f"phi1_deg = {phi.tolist()}, {values} = {rows.tolist()}"
+        listed_found = row_findings(gc.loads(RATIO.format(rows=listed)))
+        assert len(found) == len(listed_found) == slip
+        if slip:
+            assert found[0].where == "law, line 9, phi1 = 35 deg"
+            assert listed_found[0].where == f"law, {values.split('_')[0]}[7], phi1 = 35 deg"
+            assert found[0].value == pytest.approx(wrong, abs=1e-12)
+            assert float(found[0].message.split("suggest ")[1].split()[0].rstrip(".")) == (
+                pytest.approx(true, rel=1e-3)
+            )
+
+
+def test_findings_of_a_pair_and_of_a_cam_in_space_have_the_row() -> None:
+    phi, rows = half_turn("ratio")
+    rows[7] += 0.02
+    listed = f"phi1_deg = {phi.tolist()}, ratio = {rows.tolist()}"
+    pair = gc.build(gc.loads(RATIO.format(rows=listed)))
+    assert [one.where for one in pair.checked if one.code == "stray-row"] == [
+        "law, ratio[7], phi1 = 35 deg"
+    ]
+    rows[7] = 2.5
+    listed = f"phi1_deg = {phi.tolist()}, ratio = {rows.tolist()}"
+    with pytest.raises(gc.InfeasibleError, match=r"ratio 2\.5 is out of line.* suggest 2\.137"):
+        _ = gc.build(gc.loads(RATIO.format(rows=listed))).pair
+    theta = np.arange(0.0, 360.0, 5.0)
+    raised = lift("cycloidal", theta, 120.0, 60.0)
+    raised[15] += 1.0
+    motion = {"theta_deg": theta.tolist(), "lift_mm": raised.tolist()}
+    made = gc.build(gc.load(PROFILES / "cylinder_cam.toml").with_({"motion": motion}))
+    assert "motion, lift[15], at 75 deg" in [
+        one.where for one in made.checked if one.code == "stray-row"
+    ]
+
+
+def test_a_table_with_ends_is_looked_at_between_them() -> None:
+    x = np.linspace(0.0, 1.0, 25)
+    rise = x - np.sin(2.0 * np.pi * x) / (2.0 * np.pi)
+    for row in range(25):
+        rows = np.round(rise, 4)
+        rows[row] += 0.05
+        found, _ = stray_rows(x, rows, None)
+        assert found.tolist() == ([row] if 3 <= row < 22 else [])
+    assert not len(stray_rows(x, np.round(rise, 4), None)[0])
+
+
+def sampled(trials: range) -> Iterator[tuple[str, Array, Array, float | None, float]]:
+    """Yield rows of random ratio laws: ratio, driven angle, radius; in 2 to 5 decimals."""
+    rng = np.random.default_rng(4)
+    for name in LAWS_OF_RATIO:
+        for trial in trials:
+            law, teeth = random_law(LawDraw(f"{name} {trial}"), name)
+            common = math.gcd(*teeth)
+            try:
+                made = parameters(law).build(Lobes(*(z // common for z in teeth)), DEFAULT)
+            except gc.InfeasibleError:
+                continue
+            phi = np.linspace(0.0, made.period, int(rng.choice([13, 24, 36, 72, 180, 360])) + 1)
+            ratio = np.asarray(made.ratio(phi))
+            for values in (ratio, np.degrees(np.asarray(made.driven(phi))), ratio / (1 + ratio)):
+                rows = np.round(values, rng.integers(2, 6))
+                if made.closed:
+                    rise = float(values[-1] - values[0])
+                    yield name, phi[:-1], rows[:-1], made.period, rise
+                else:
+                    yield name, phi, rows, None, 0.0
+
+
+def demand_none_stray(trials: range) -> None:
+    count = 0
+    for name, x, rows, period, rise in sampled(trials):
+        assert not len(stray_rows(x, rows, period, rise)[0]), name
+        count += 1
+    assert count > 30 * len(trials)
+
+
+def test_no_row_of_a_ratio_law_is_stray() -> None:
+    demand_none_stray(range(2))
+
+
+@pytest.mark.slow
+def test_no_row_of_many_ratio_laws_is_stray() -> None:
+    demand_none_stray(range(2, 60))

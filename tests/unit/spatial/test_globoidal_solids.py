@@ -26,6 +26,7 @@ from gearcam.spatial.globoidal_surface import (
 )
 from gearcam.spatial.surface import revolved
 from helpers_globoidal import DESIGN, indexer
+from helpers_pairs import PROFILES
 from helpers_sampling import chosen
 from helpers_spatial import solid
 from witness.roller_of_turret import Wheel
@@ -286,3 +287,37 @@ def test_an_undercut_wall_is_told_with_its_solid() -> None:
     assert ("note", "carved-solid") in codes
     assert found.mesh.watertight
     assert "scallops" in found.facts["accuracy.how.chord_mm"]
+
+
+@pytest.mark.parametrize(
+    ("file", "changes"),
+    [
+        ("globoidal_indexer", {"output.wall_step_deg": 0.033, "output.wall_points": 2}),
+        ("cylinder_cam", {"output.wall_step_deg": 0.01, "output.wall_points": 40}),
+    ],
+)
+def test_a_solid_of_too_many_facets_is_refused_with_the_least_step(
+    file: str, changes: dict[str, float]
+) -> None:
+    design: Any = gc.load(PROFILES / f"{file}.toml").with_(changes)
+    result: Any = gc.build(design)
+    with pytest.raises(gc.InfeasibleError, match="the solid would have more") as one:
+        _ = result.mesh
+    assert one.value.limit is not None
+    places = design.output.wall_points
+    for factor, feasible in ((1.001, True), (0.999, False)):
+        steps = gc.build(design.with_({"output.wall_step_deg": factor * one.value.limit})).steps
+        assert (result.facets(steps, places) <= result.most_facets) == feasible
+
+
+@pytest.mark.parametrize("file", ["globoidal_indexer", "cylinder_cam"])
+def test_the_number_of_facets_is_about_that_of_what_a_solid_is_made_from(file: str) -> None:
+    result: Any = gc.build(gc.load(PROFILES / f"{file}.toml"))
+    for steps, places in ((90, 5), (180, 9)):
+        if file == "cylinder_cam":
+            count = len(result.solid_of(steps, places).triangles)
+        else:
+            made = rib_surface(result.cam, steps, places), core_surface(result.cam, steps)
+            blank = blank_surface(result.cam, 0.0, steps)
+            count = sum(len(one.triangles) for one in (*made, blank))
+        assert result.facets(steps, places) == pytest.approx(count, rel=0.15)

@@ -399,6 +399,7 @@ class CamResult(PartsResult):
         cam = self.cam
         with self.stage("checks"):
             found = run_checks(KIND, cam, self.design.limits)
+            found += self.row_findings(oscillating=self.design.follower.oscillating)
         if self.ordered:
             subject = self.part_subject
             with self.stage("checks"):

@@ -26,6 +26,7 @@ from gearcam.laws.lift_fit import FittedLift, fit_lift
 from gearcam.laws.lift_model import number_of
 from gearcam.laws.motion.base import MOTION_LAWS
 from gearcam.laws.motion_table import MotionTable, rows_of_turn
+from gearcam.laws.row_checks import stray_in
 from gearcam.numeric.arrays import Array
 from gearcam.pictures.charts import Chart, Limit, Line, MarkedPlace
 
@@ -92,8 +93,8 @@ def read_lift(file: Any, wall: Wall) -> tuple[Array, Array] | None:
     for _, row, message, rule in table.turn_problems(oscillating=wall.follower.angular):
         place = f"line {lines[row]}: " if row is not None else ""
         raise DesignError([Problem(f"not a lift: {place}{message}", file=name, allowed=rule)])
-    for one in table.stray(oscillating=wall.follower.angular):
-        message = f"line {lines[one.row]}: the {one.text(scale, unit)}"
+    for one in stray_in(table.given(oscillating=wall.follower.angular)):
+        message = f"line {lines[one.row]}: the {one.text}"
         raise DesignError([Problem(message, file=name, allowed=needed)])
     theta, lift = rows_of_turn(theta, lift)
     return theta, lift

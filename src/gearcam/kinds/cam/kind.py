@@ -27,8 +27,13 @@ KIND: Final = Kind(
     rules=RULES,
     problems=problems,
     formats=CAM_FORMATS,
-    check_modules=("gearcam.cams.checks", "gearcam.cams.force_checks", "gearcam.parts.checks"),
-    check_groups=(CAM, PARTS, FOLLOWED, FITTED, FORCES, PRECISION),
+    check_modules=(
+        "gearcam.cams.checks",
+        "gearcam.laws.row_checks",
+        "gearcam.cams.force_checks",
+        "gearcam.parts.checks",
+    ),
+    check_groups=(CAM, "rows of tables", PARTS, FOLLOWED, FITTED, FORCES, PRECISION),
     study_tables={name: name for name in ("follow", "forces", "precision", "accuracy")},
     example={
         "motion": [

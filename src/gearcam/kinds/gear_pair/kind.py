@@ -51,11 +51,12 @@ KIND: Final = Kind(
     formats=FORMATS,
     check_modules=(
         "gearcam.gears.checks",
+        "gearcam.laws.row_checks",
         "gearcam.meshing.checks",
         "gearcam.meshing.error_checks",
         "gearcam.parts.checks",
     ),
-    check_groups=(TEETH, MESHING, ERRORS, PARTS),
+    check_groups=(TEETH, "rows of tables", MESHING, ERRORS, PARTS),
     study_tables={"mesh": "meshing", "errors": "errors", "accuracy": "accuracy"},
     example={
         "law": {

@@ -106,7 +106,7 @@ class GearPairResult(PartsResult):
     def law(self) -> RatioLaw:
         """The ratio law."""
         parameters, pair = self.design.law, self.design.pair
-        with self.stage("law"):
+        with self.stage("law"), self.naming_rows():
             if not is_open(parameters):
                 demand_ring(pair)
             law = parameters.build(lobes_of(pair), self.tolerances)
@@ -117,7 +117,7 @@ class GearPairResult(PartsResult):
     def pair(self) -> GearPair:
         """The centrodes with their cutters."""
         law = self.law
-        with self.stage("centrodes"):
+        with self.stage("centrodes"), self.naming_rows():
             return make_pair(
                 law,
                 self.design.pair,
@@ -229,7 +229,7 @@ class GearPairResult(PartsResult):
         steps, limits = self.steps, self.design.limits
         parts = self.parts_subject if self.ordered else None
         with self.stage("checks"):
-            findings = [*run_checks(KIND, self.subject, limits)]
+            findings = [*run_checks(KIND, self.subject, limits), *self.row_findings()]
             for number, gears in enumerate(steps[1:], start=2):
                 findings += (
                     replace(finding, where=f"step {number}, {finding.where}")

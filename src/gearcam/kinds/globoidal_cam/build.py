@@ -22,6 +22,7 @@ from gearcam.spatial.globoidal_surface import (
     blank_surface,
     chord_error,
     core_surface,
+    facets,
     rib_surface,
     turret_surface,
 )
@@ -58,6 +59,7 @@ class GloboidalCamResult(GriddedCam):
     design: GloboidalCamDesign
     solid_files = frozenset({"stl", "3mf", "glb", "report"})
     most_carved = 120
+    most_facets = 2_000_000
 
     @cached_property
     def program(self) -> IndexProgram:
@@ -115,6 +117,10 @@ class GloboidalCamResult(GriddedCam):
         """Return the pressure angle of the roller nearest to the middle (see `GriddedCam`)."""
         place = np.full((len(theta), 1), x)
         return self.cam.contact(theta % (2.0 * math.pi), place, 1).pressure[:, 0]
+
+    def facets(self, steps: int, places: int) -> int:
+        """Return how many triangles the solid is made from (see `GriddedCam.facets`)."""
+        return facets(self.cam, steps, places)
 
     def solid_of(self, steps: int, places: int) -> Mesh:
         """Return the cam as a mesh (see `GriddedCam.solid_of`)."""

@@ -43,8 +43,8 @@ KIND: Final = Kind(
     required=("turret", "cam"),
     later=not_made,
     formats=GLOBOIDAL_FORMATS,
-    check_modules=("gearcam.spatial.globoidal_checks",),
-    check_groups=("globoidal cams", "solids of globoidal cams"),
+    check_modules=("gearcam.spatial.globoidal_checks", "gearcam.laws.row_checks"),
+    check_groups=("globoidal cams", "rows of tables", "solids of globoidal cams"),
     study_tables={"accuracy": "accuracy"},
     example={
         "index": {"law": "modified-sine", "angle_deg": 120},

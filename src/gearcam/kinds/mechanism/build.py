@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from gearcam.base.errors import ABOVE, DesignError, InfeasibleError, Problem, beyond_limit
 from gearcam.base.findings import Finding, in_order, run_checks
-from gearcam.base.numerals import formatted
+from gearcam.base.numerals import formatted, in_range
 from gearcam.kinds.mechanism.asked import fits, last_bits
 from gearcam.kinds.mechanism.checks import TABLES, machine_to_check
 from gearcam.kinds.mechanism.design import MechanismDesign
@@ -132,6 +132,12 @@ class MechanismResult(Result):
     def output_names(self) -> OutputNames:
         """What may be asked for, by name."""
         return OutputNames(parts_of(self.design))
+
+    def degrees(self, q: float) -> str:
+        """Return an angle of the master, rad, in degrees as text: a turn's end is its begin."""
+        low, high = (_DEG * end for end in self.linkage.span)
+        place = _DEG * q
+        return in_range(place, low, high) if self.linkage.closed else formatted(place)
 
     @property
     def angles(self) -> Array:
@@ -338,7 +344,7 @@ class MechanismResult(Result):
         """Return what the drives to compare make of each output (see `comparison`)."""
         from gearcam.kinds.mechanism.comparison import comparison
 
-        return comparison(self)
+        return Columns(comparison(self))
 
     def interval_table(self) -> Columns:
         """Return the intervals that the design asks for, behind each drive (see `comparison`)."""

@@ -85,7 +85,7 @@ def _machine(result: MechanismResult) -> Tree:
                 "branch": one.branches[0 if signs[one.joint] > 0.0 else 1]
                 if one.branches
                 else None,
-                **_transmission(worst[one.joint], one.joint, number < _SHOWN),
+                **_transmission(result, worst[one.joint], one.joint, number < _SHOWN),
             }
             for number, one in enumerate(result.design.dyad)
         }
@@ -104,15 +104,15 @@ def _machine(result: MechanismResult) -> Tree:
     }
 
 
-def _transmission(worst: Transmission, joint: str, shown: bool) -> Tree:
+def _transmission(result: MechanismResult, worst: Transmission, joint: str, shown: bool) -> Tree:
     if worst.pressure_angle is not None:
         peak = worst.pressure_angle
         label, value = f"largest pressure angle of {joint}", _DEG * peak.value
-        fact = Fact(value, label, place=_place(peak), shown=shown, noise=1e-9)
+        fact = Fact(value, label, place=_place(result, peak), shown=shown, noise=1e-9)
         return {"pressure_angle_deg": fact, "pressure_angle_at_deg": _DEG * peak.place}
     if worst.distance is not None:
         label = f"least distance of the block of {joint} from the guide's pivot"
-        fact = Fact(worst.distance.value, label, place=_place(worst.distance))
+        fact = Fact(worst.distance.value, label, place=_place(result, worst.distance))
         return {"guide_distance_mm": fact, "guide_distance_at_deg": _DEG * worst.distance.place}
     return {}
 
@@ -156,13 +156,15 @@ def _path(path: PointPath) -> Tree:
     }  # fmt: skip
 
 
-def _place(peak: Peak) -> str:
-    return f"at {formatted(_DEG * peak.place, 6)} deg"
+def _place(result: MechanismResult, peak: Peak) -> str:
+    return f"at {result.degrees(peak.place)} deg"
 
 
-def _where(measures: TrackMeasures, peak: Peak) -> tuple[str, float | None]:
+def _where(
+    result: MechanismResult, measures: TrackMeasures, peak: Peak
+) -> tuple[str, float | None]:
     """Return the place of a peak as text and in degrees; none of what stands still."""
-    return ("", None) if measures.still else (_place(peak), _DEG * peak.place)
+    return ("", None) if measures.still else (_place(result, peak), _DEG * peak.place)
 
 
 def _dead_centers(measures: TrackMeasures) -> list[float]:
@@ -181,7 +183,7 @@ def _output(result: MechanismResult, one: Output, number: int) -> Tree:
     ratio = measures.time_ratio
     tree: Tree = {}
     for word, peak in (("least", least), ("largest", largest)):
-        place, at = _where(measures, peak)
+        place, at = _where(result, measures, peak)
         value = scale * peak.value if abs(peak.value) > STILL else 0.0
         tree[f"{word}_{unit}"] = Fact(value, f"{one.stem}, {word}", place=place)
         tree[f"{word}_at_deg"] = at
@@ -209,7 +211,7 @@ def _peaks(result: MechanismResult, one: Output, *, shown: bool = False) -> Tree
     for order, word in enumerate(RATES, start=1):
         peak, (per_rad, per_s) = measures.size(order), one.rate_keys(order)
         seen, label = shown and order == 1, f"largest {word} of {one.stem}"
-        place, at = _where(measures, peak)
+        place, at = _where(result, measures, peak)
         told = seen and speed is None
         tree[f"{word}_{per_rad}"] = Fact(peak.value, label, place=place, shown=told, noise=1e-9)
         if speed is not None:

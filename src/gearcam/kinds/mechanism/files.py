@@ -28,7 +28,9 @@ def _tables(result: MechanismResult, _: Any) -> Files:
 
     files = {"motion.csv": table_bytes(result.motion())}
     if result.design.compare:
-        files["comparison.csv"] = table_bytes(result.comparison())
+        from gearcam.kinds.mechanism.comparison import comparison
+
+        files["comparison.csv"] = table_bytes(comparison(result))
     if result.design.interval:
         files["intervals.csv"] = table_bytes(result.interval_table())
     return files

@@ -194,7 +194,7 @@ def _columns(result: MechanismResult, work: VirtualWork, q: Array) -> dict[str, 
 
 
 def _place(result: MechanismResult, q: float) -> str:
-    return f"{result.driver[0]} = {formatted(_DEG * q, 6)} deg"
+    return f"{result.driver[0]} = {result.degrees(q)} deg"
 
 
 def _least_and_largest(result: MechanismResult, least: Peak, largest: Peak) -> str:

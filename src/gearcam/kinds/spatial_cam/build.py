@@ -69,6 +69,7 @@ class SpatialCamResult(GriddedCam):
     design: SpatialCamDesign
     solid_files = frozenset({"stl", "3mf", "glb", "step", "report"})
     most_carved = 240
+    most_facets = 4_000_000
 
     @cached_property
     def program(self) -> Program:
@@ -125,7 +126,8 @@ class SpatialCamResult(GriddedCam):
         """Findings of the checks, errors first."""
         from gearcam.spatial.checks import KIND, SOLID
 
-        return self.findings_of(KIND, SOLID, (self.cam, self.blank))
+        swings = self.design.follower.oscillating
+        return self.findings_of(KIND, SOLID, (self.cam, self.blank), oscillating=swings)
 
     def motion(self, theta: ArrayLike | None = None) -> Columns:
         """Return the motion of the follower and the pressure angles.
@@ -168,6 +170,10 @@ class SpatialCamResult(GriddedCam):
     def wall_angles(self) -> Array:
         """The cam angles of solids and of ``walls.csv``, rad."""
         return np.linspace(0.0, _TURN, self.steps, endpoint=False)
+
+    def facets(self, steps: int, places: int) -> int:
+        """Return how many triangles the solid is made from (see `GriddedCam.facets`)."""
+        return 4 * steps * len(self.cam.walls) * places
 
     def solid_of(self, steps: int, places: int) -> Mesh:
         """Return the cam as a mesh (see `GriddedCam.solid_of`)."""

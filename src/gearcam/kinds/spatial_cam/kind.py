@@ -23,8 +23,8 @@ KIND: Final = Kind(
     main=MOTION,
     required=("follower", "cam"),
     formats=SPATIAL_FORMATS,
-    check_modules=("gearcam.spatial.checks",),
-    check_groups=("cams in space", "solids of cams in space"),
+    check_modules=("gearcam.spatial.checks", "gearcam.laws.row_checks"),
+    check_groups=("cams in space", "rows of tables", "solids of cams in space"),
     study_tables={name: name for name in ("developed", "accuracy")},
     example={
         "motion": [

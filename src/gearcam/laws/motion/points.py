@@ -14,7 +14,7 @@ from gearcam.base.numerals import formatted
 from gearcam.base.quantities import COUNT, NUMBER, TEXT, Row, param
 from gearcam.base.rules import Breach, exactly_one
 from gearcam.base.tolerances import Tolerances
-from gearcam.laws.columns import FromFile, demand
+from gearcam.laws.columns import FromFile, Given, demand
 from gearcam.laws.entry import TYPED, LawEntry
 from gearcam.laws.motion.base import MOTION_LAWS, ClosedForm, MotionFunction
 from gearcam.laws.motion.pieces import about, spline
@@ -131,6 +131,14 @@ class TableRise(FromFile):
         if self.rows is not None:
             return self.rows.columns(("x", "y"))
         return np.array([self.x, self.y], dtype=float).T, []
+
+    def given(self, *, oscillating: bool) -> Given:  # noqa: ARG002  (shares of a lift)
+        """Return the rows (see `FromFile.given`)."""
+        points, lines = self.points
+        x, y = points.T
+        return Given(
+            key="y", called="y", x=x, y=y, lines=lines, place=lambda at: f"x = {formatted(at)}"
+        )
 
     def build(self, tolerances: Tolerances) -> MotionFunction:  # noqa: ARG002  (a spline is in closed form)
         """Return the rise.

@@ -19,6 +19,7 @@ from gearcam.laws.columns import (
     MOST_ROWS,
     ColumnsError,
     FromFile,
+    Given,
     close_angles,
     degrees,
     demand,
@@ -27,7 +28,15 @@ from gearcam.laws.columns import (
 from gearcam.laws.entry import TYPED, LawEntry
 from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
 from gearcam.laws.ratio.driver import demand_radii, law_of_centrode
-from gearcam.laws.ratio.span import NO_DWELL, Lobes, Span, open_travel, own_travel, span_of
+from gearcam.laws.ratio.span import (
+    NO_DWELL,
+    Lobes,
+    Span,
+    angle_text,
+    open_travel,
+    own_travel,
+    span_of,
+)
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet, polynomial, primitive, slope
 from gearcam.numeric.piecewise import Piece, integrate
@@ -36,6 +45,8 @@ from gearcam.numeric.shape_keeping import quintics
 _ANGLE: Final = "phi1_deg"
 _VALUES: Final = {"ratio": "ratio", "phi2": "phi2_deg", "r1": "r1"}
 """Kinds of values, with their columns in a file."""
+
+_CALLED: Final = {"ratio": "ratio", "phi2": "driven angle", "r1": "driver's radius"}
 
 _FEWEST: Final = 6
 """Fewest rows of a table."""
@@ -134,6 +145,24 @@ class TableLaw(FromFile):
         points, lines = self.rows.columns(columns)
         factor = math.pi / 180.0 if names[0] == "phi2" else 1.0
         return names[0], np.radians(points[:, 0]), points[:, 1] * factor, lines
+
+    def given(self, *, oscillating: bool) -> Given:  # noqa: ARG002  (lifts only)
+        """Return the rows (see `FromFile.given`)."""
+        kind, angles, values, lines = self.points
+        values = np.degrees(values) if kind == "phi2" else values
+        closed = self.driven_travel is None
+        own = slice(-1 if closed else None)  # the last row is the first of the next lobe
+        return Given(
+            key=kind,
+            called=_CALLED[kind],
+            x=angles[own],
+            y=values[own],
+            lines=lines,
+            place=angle_text,
+            period=float(angles[-1] - angles[0]) if closed else None,
+            rise=float(values[-1] - values[0]) if closed else 0.0,
+            unit="deg" if kind == "phi2" else "",
+        )
 
     def _span(self, angles: Array, lobes: Lobes, travel: float | Solve | None) -> Span:
         if travel is not None and abs(angles[0]) > TYPED:

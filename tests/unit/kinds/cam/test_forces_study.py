@@ -194,7 +194,7 @@ def test_a_table_is_joined_by_straight_lines() -> None:
         ({"load": [{"formula": "3*y"}]}, "unknown name 'y'\n    allowed: theta or the lift s, pi"),
         (
             {"load": [{"formula": "3*s + u"}]},
-            "name 'u'\n    allowed: theta or the lift s",
+            "name 'u' (did you mean s?)\n    allowed: theta or the lift s",
         ),
         ({"load": [{"formula": "3*s +"}]}, "the formula ends too early"),
         ({"spring": [{"stiffness_n_mm": -1}]}, "0 to"),

@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import cmath
+import csv
+import io
 import math
 import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import gearcam as gc
 from gearcam.base.errors import DesignError, InfeasibleError, Problem
+from gearcam.spatial.extremes import Spot
 from helpers_machines import MACHINES, MOTOR, PAIR
 
 Document = dict[str, Any]
@@ -485,7 +489,7 @@ def test_all_drives_are_named(profile: str, called: str) -> None:
     assert result.facts.headline[0] == called
 
 
-def pushed() -> Any:
+def pushed(*compare: Document) -> Any:
     """Return a machine whose slide a cam pushes straight up, with a dwell over the turn's end."""
     motion = [
         {"type": "rise", "law": "cycloidal", "angle_deg": 120, "lift_mm": 10},
@@ -501,6 +505,7 @@ def pushed() -> Any:
         {
             "drive": [{"name": "k", "cam": plate, "speed_rpm": 100}],
             "slide": [{"name": "st", "on": "k.follower", "joint": "A"}],
+            "compare": [{**one, "cam": plate} for one in compare],
             "output": {"files": ["csv"], "outputs": ["A"]},
         }
     )
@@ -519,6 +524,29 @@ def test_an_output_that_does_not_move_has_no_places() -> None:
     assert {"velocity_at_deg", "least_at_deg"} <= set(moves)
     (velocity,) = (one for one in facts.shown() if one.meaning == "largest velocity of A_x")
     assert (velocity.value, velocity.place) == (0.0, "")
+
+
+def test_a_comparison_has_no_places_of_what_stands_still() -> None:
+    result = pushed({"name": "again"})
+    head, *rows = csv.reader(io.StringIO(result.files("csv")["comparison.csv"].decode()))
+    places = [number for number, name in enumerate(head) if name.endswith("_at_deg")]
+    assert len(places) == 3
+    for row in rows:
+        still = row[head.index("output")] == "A_x"
+        assert [not row[number] for number in places] == [still] * 3
+    table = result.comparison()
+    assert np.isnan(table["velocity_at_deg"]).tolist() == [one == "A_x" for one in table["output"]]
+
+
+@pytest.mark.parametrize(("before", "text"), [(1e-9, "0"), (3e-6, "0"), (1e-4, "359.994")])
+def test_a_place_just_before_the_end_of_a_turn_is_said_in_one_way(before: float, text: str) -> None:
+    result, place = pushed(), math.tau - before
+    assert result.degrees(place) == text
+    plate = result.drives[0].result
+    assert plate.driver.place(place) == f"at {text} deg"
+    assert plate.driver.text(math.tau) == "360 deg"
+    spot = Spot(theta=place, x=1.0, value=1.0)
+    assert spot.place.startswith(f"at {float(text):.5g} deg")
 
 
 def test_a_kite_too_near_its_change_point_is_told_what_is_resolved() -> None:
