@@ -161,7 +161,7 @@ def test_numbers_are_compared_as_they_are_written_or_by_default(
 )
 def test_what_is_wrong_or_misspelt_breaks_no_rule(raw: dict[str, Any]) -> None:
     known = table_of("sample", Sample)
-    faults = list(faults_of(known, raw, home=lambda _: ""))
+    faults = list(faults_of(known, raw, home=lambda *_: ""))
     assert faults
     assert not list(rule_faults(known, raw, faults, ("sample",)))
 

@@ -46,7 +46,7 @@ def only(parameters: Any) -> tuple[str, int | None, str, str]:
 )
 def test_numbers_out_of_range_are_told(law: str, key: str, value: float, allowed: str) -> None:
     known = table_of("motion", MOTION_LAWS[law].parameters)
-    faults = [f for f in faults_of(known, {key: value}, home=lambda _: "") if f.path[-1] == key]
+    faults = [f for f in faults_of(known, {key: value}, home=lambda *_: "") if f.path[-1] == key]
     assert [fault.message for fault in faults] == [f"{value} is out of range"]
     assert faults[0].allowed == allowed
 
@@ -56,7 +56,7 @@ def test_every_rise_can_be_read_from_a_file() -> None:
         known = table_of("motion", entry.parameters)
         for claim in MOTION_CLAIMS[entry.name].values:
             written = known.outward(vars(claim.parameters))
-            assert list(faults_of(known, written, home=lambda _: "")) == []
+            assert list(faults_of(known, written, home=lambda *_: "")) == []
             again = entry.parameters(**known.inward(written))
             assert again == claim.parameters
             assert told(again) == [] if hasattr(again, "problems") else True
