@@ -19,7 +19,7 @@ from gearcam.linkages.dyads import number_of, rtr_distance
 from gearcam.linkages.elements import BRANCH, REACH, Dyad, Element, Known
 from gearcam.linkages.linkage import Linkage
 from gearcam.linkages.narrow import NARROWEST, Narrow, narrow_places, with_narrow_places
-from gearcam.numeric.arrays import Array, apart, snapped
+from gearcam.numeric.arrays import Array, apart, opposite, snapped
 from gearcam.numeric.piecewise import extremes_of_each
 from gearcam.numeric.roots import bracketed_root
 
@@ -277,8 +277,7 @@ def _polished(
 
 def _crossings(room: Callable[[Array], Array], places: Array, values: Array) -> Array:
     """Return the simple zeros of a function between its extremes."""
-    signs = np.sign(values)
-    (cells,) = np.nonzero(signs[:-1] * signs[1:] < 0.0)
+    (cells,) = np.nonzero(opposite(values[:-1], values[1:]))
     ends = values[cells], values[cells + 1]
     return bracketed_root(room, places[cells], places[cells + 1], _FOUND, ends)
 

@@ -17,7 +17,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from gearcam.linkages.measures import TrackMeasures
-from gearcam.numeric.arrays import Array, Ints
+from gearcam.numeric.arrays import Array, Ints, opposite
 from gearcam.numeric.roots import bracketed_root
 
 _TOUCHING: Final = 1e-9
@@ -231,7 +231,7 @@ def _passages(measures: TrackMeasures, amount: float) -> list[tuple[float, float
     apart = unequal(tried.ravel(), every).reshape(tried.shape)
     # a symmetric motion has its root at one of the values
     apart[apart == 0.0] = np.finfo(float).tiny
-    own, cell = np.nonzero(apart[:, :-1] * apart[:, 1:] < 0.0)
+    own, cell = np.nonzero(opposite(apart[:, :-1], apart[:, 1:]))
     if not own.size:
         return []
     known = apart[own, cell], apart[own, cell + 1]

@@ -17,7 +17,7 @@ import numpy as np
 from gearcam.base.display import ShortRepr
 from gearcam.linkages.elements import Law
 from gearcam.linkages.linkage import in_cycle
-from gearcam.numeric.arrays import Array, Ints, snapped
+from gearcam.numeric.arrays import Array, Ints, opposite, snapped
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.piecewise import extremes_of_each
 from gearcam.numeric.roots import bracketed_root
@@ -169,7 +169,7 @@ def _polished(
         return found[order, own], found[order + 1, own]
 
     (_, before), (_, after) = at(low), at(high)
-    crossed = before * after < 0.0
+    crossed = opposite(before, after)
     # so near to each other they are joined by a straight line: one more step leaves rounding
     with np.errstate(invalid="ignore", divide="ignore"):  # both are one place next to a knot
         slope = np.where(crossed, (after - before) / (high - low), np.inf)
@@ -300,7 +300,7 @@ class TrackMeasures(ShortRepr):
         """
         places, values = self.extremes[0]
         off = values - value
-        cells = np.flatnonzero(off[:-1] * off[1:] < 0.0)
+        cells = np.flatnonzero(opposite(off[:-1], off[1:]))
         roots = self.root_of(
             np.full(cells.size, value),
             (places[cells], places[cells + 1]),

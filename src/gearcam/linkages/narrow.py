@@ -7,7 +7,9 @@ zero: this may be less than the step of a search.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
+from itertools import pairwise
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -21,6 +23,9 @@ _STEPS: Final = 3.0
 
 _WIDER: Final = 6.0
 """How far each knot is from the place, in distances of the one before."""
+
+_CELL: Final = 8.0
+"""Steps of a search in which it sees all that a law does in a cell."""
 
 _APART: Final = 1e-9
 """Distance from other knots below which none is added, rad."""
@@ -113,10 +118,55 @@ def with_narrow_places(found: Sequence[Narrow], knots: Array, *, closed: bool) -
     if closed:
         _, places = in_cycle(places, (low, high))
     inside = apart(np.sort(places[(places > low) & (places < high)]), _APART)
-    # more intervals have fewer points each: none may be wider than the step allows
-    step = within / _STEPS
+    return _with(inside, knots, within / _STEPS)
+
+
+def _with(places: Array, knots: Array, step: float) -> Array:
+    """Return knots with more places, between which a search has no wider step."""
+    # more intervals have fewer points each
     even = divided(knots, np.ceil(np.diff(knots) / (LEAST_PLACES * step)).astype(int))
-    return np.union1d(even, away(inside, even, _APART))
+    return np.union1d(even, away(places, even, _APART))
+
+
+def with_cells(cells: Sequence[Array], knots: Array) -> Array:
+    """Return knots between which searches see all that the laws of drives do.
+
+    Parameters
+    ----------
+    cells : sequence of (n,) array, rad
+        Of each law the ends of the cells in which its expansion resolves it, rising.
+    knots : (k,) array, rad
+        The driver's angles from the first to the last one.
+
+    Returns
+    -------
+    (m,) array, rad
+        The knots, with more of them where cells are narrower than a search sees.
+    """
+    step = float(np.diff(places_between(knots)).max())
+    found = [end for ends in cells for end in _around(ends, step)]
+    return _with(np.unique(found), knots, step) if found else knots
+
+
+def _around(ends: Array, step: float) -> Iterator[float]:
+    """Yield the ends of runs of cells that are too narrow for a step of a search.
+
+    A run is so short that the least number of places between its ends shows each of its cells.
+    """
+    begin, least = math.nan, math.nan
+    for low, high in pairwise(ends.tolist()):
+        width = high - low
+        if width >= _CELL * step:
+            if not math.isnan(begin):
+                yield low
+            begin = math.nan
+        elif not high - begin <= LEAST_PLACES / _CELL * min(least, width):
+            yield low
+            begin, least = low, width
+        else:
+            least = min(least, width)
+    if not math.isnan(begin):
+        yield float(ends[-1])
 
 
 def _zeros(places: Array, left: Array, number: Ints) -> Iterator[Narrow]:

@@ -57,6 +57,11 @@ def snapped(values: Array, marks: Array, within: ArrayLike) -> Array:
     return np.where(np.abs(values - nearest) <= within, nearest, values)
 
 
+def opposite(one: Array, other: Array) -> Mask:
+    """Return where numbers have opposite signs, neither 0; products of small ones would be 0."""
+    return np.sign(one) * np.sign(other) < 0.0
+
+
 def divided(values: ArrayOrPlane, counts: Ints) -> ArrayOrPlane:
     """Return values with even steps between them.
 

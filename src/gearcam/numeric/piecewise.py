@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.base.display import ShortRepr
-from gearcam.numeric.arrays import Array, Ints
+from gearcam.numeric.arrays import Array, Ints, opposite
 from gearcam.numeric.chebyshev import FIRST_CUTS, Expansion, expand
 from gearcam.numeric.jets import Jet
 from gearcam.numeric.roots import bracketed_root
@@ -339,8 +339,8 @@ def _extremes_among(
 ) -> list[tuple[Array, Array]]:
     before, after, flat = slopes[..., :-1], slopes[..., 1:], slopes == 0.0
     # after a slope of 0 at a knot the function may rise and then fall steeply
-    hidden = np.diff(flat) & (np.diff(values) * (before + after) < 0.0)
-    which, piece, cell = turns = np.nonzero((before * after < 0.0) | hidden)
+    hidden = np.diff(flat) & opposite(np.diff(values), before + after)
+    which, piece, cell = turns = np.nonzero(opposite(before, after) | hidden)
     before, after = before[turns], after[turns]
     known = np.where(before == 0.0, -after, before), np.where(after == 0.0, -before, after)
     number = np.arange(which.size)

@@ -19,6 +19,7 @@ from gearcam.linkages.closing import settled
 from gearcam.linkages.elements import MOTION
 from gearcam.linkages.geneva import GenevaWheel
 from gearcam.linkages.linkage import Linkage
+from gearcam.numeric.arrays import Array
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.design import MechanismDesign
@@ -30,9 +31,6 @@ _CYCLES: Final = 100
 
 _WHOLE: Final = 1e-7
 """How far from whole turns a shaft may be after a cycle, rad: the error of its law."""
-
-_PLACES: Final = 9
-"""Places at which a slide is compared with itself after a cycle."""
 
 _FORMULA: Final = 721
 """Places at which the formula of a slide must be finite."""
@@ -88,7 +86,7 @@ def cycle_of(drives: Sequence[PlacedDrive], least: int) -> tuple[tuple[float, fl
     InfeasibleError
         If a drive turns beyond its ends, does not return, or has no place somewhere.
     """
-    _demand_finite(drives)
+    _demand_smooth(drives)
     master = drives[0]
     if not master.closed or master.spec.span is not None:
         part = _part_of(master)
@@ -177,20 +175,30 @@ def demand_part(design: MechanismDesign, linkage: Linkage) -> None:
 def _back(drive: PlacedDrive, turns: int) -> bool:
     """Return whether a drive is where it was after some turns of the master."""
     if drive.spec.slide is not None:  # a formula in the master's angle may repeat later
-        q = np.linspace(0.0, _TURN, _PLACES)
-        moved = [one.law(np.stack([q, q + turns * _TURN]), 0).c[0] for one in drive.moved.values()]
-        places = np.asarray(moved)
-        return bool(np.ptp(places, axis=1).max() <= _WHOLE * turns * (1.0 + np.abs(places).max()))
+        end = turns * _TURN
+        # first where it moves in a turn, then in all turns and the next ones
+        return _repeats(drive, drive.places, end) and _repeats(
+            drive, drive.places_in(0.0, 2.0 * end) % end, end
+        )
     ends = np.array([0.0, drive.spec.ratio * turns * _TURN])
     shafts = [one.law for one in drive.moved.values() if not one.along]
     found = [float(np.diff(np.asarray(law(ends, 0).c[0]))[0]) for law in shafts]
     return all(abs(math.remainder(end, _TURN)) < _WHOLE * turns for end in found)
 
 
-def _demand_finite(drives: Sequence[PlacedDrive]) -> None:
-    """Refuse slides whose formulas have no place somewhere in the master's range."""
+def _repeats(drive: PlacedDrive, q: Array, period: float) -> bool:
+    """Return whether a slide is at the same places a period later."""
+    both = np.stack([q, q + period])
+    places = np.asarray([one.law(both, 0).c[0] for one in drive.moved.values()])
+    allowed = _WHOLE * (period / _TURN) * (1.0 + np.abs(places).max())
+    return bool(np.ptp(places, axis=1).max() <= allowed)
+
+
+def _demand_smooth(drives: Sequence[PlacedDrive]) -> None:
+    """Refuse slides whose formulas have no place in the master's range, or jump there."""
     whole = drives[0].closed and drives[0].spec.span is None
-    q = np.linspace(*((0.0, _TURN) if whole else _part_of(drives[0])), _FORMULA)
+    ends = (0.0, _TURN) if whole else _part_of(drives[0])
+    q = np.linspace(*ends, _FORMULA)
     for number, drive in enumerate(drives):
         if drive.spec.slide is None:
             continue
@@ -204,3 +212,8 @@ def _demand_finite(drives: Sequence[PlacedDrive]) -> None:
                 f"the place or its derivatives are not finite at {at} deg",
                 where=f"drive[{number}].slide",
             )
+        try:
+            drive.cells_in(*ends)
+        except InfeasibleError as error:
+            what, where = f"{error.what} at {error.where}", f"drive[{number}].slide"
+            raise InfeasibleError(what, where=where, nearest=error.nearest) from error

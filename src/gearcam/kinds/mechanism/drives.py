@@ -11,11 +11,14 @@ import cmath
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
 from gearcam.base.display import ShortRepr
+from gearcam.base.numerals import formatted
+from gearcam.base.tolerances import DEFAULT
 from gearcam.linkages.elements import GivenMotion, GuideLine, Law, MemberPoint
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.jets import Jet
@@ -32,6 +35,12 @@ _SIDE: Final = 4.0 * float(np.finfo(float).eps)
 
 _ROUNDED: Final = 1e-12
 """How far from a knot rounding may leave an angle, rad."""
+
+_CELLS: Final = 16
+"""Cells of a turn of an even shaft: what turns with it has few harmonics."""
+
+_NAMES: Final = ("the place", "its velocity", "its acceleration", "its jerk")
+"""What a formula of a slide gives, for messages."""
 
 _CENTER, _WAY = "center", "way"
 """Behind the name of a shaft the joint in which it turns, of a slide the guide it goes along."""
@@ -166,6 +175,23 @@ def _formula(text: str) -> Law:
     return law
 
 
+def _formula_cells(text: str, low: float, high: float) -> Array:
+    """Return the cells in which an expansion of the jerk of a slide resolves it."""
+    from gearcam.laws.entry import Axis
+    from gearcam.laws.formula import AxisFunction
+    from gearcam.laws.formula_syntax import parse
+
+    axis = Axis(
+        name="the place",
+        low=low,
+        high=high,
+        place=lambda q: f"{formatted(math.degrees(q), 6)} deg",
+        variable="q",
+    )
+    function = AxisFunction(axis, parse(text, "q").evaluate, DEFAULT.expansion)
+    return function.demand_smooth(_NAMES)
+
+
 @dataclass(frozen=True)
 class PlacedDrive(ShortRepr):
     """A drive in the machine.
@@ -178,6 +204,9 @@ class PlacedDrive(ShortRepr):
         What it moves.
     knots : (k,) array, rad
         Places at which its laws are not smooth, over its own angle.
+    cells : (n,) array, rad
+        Ends of the cells in which expansions resolve its laws, over its own angle; those of a
+        formula of a slide depend on the range (see `cells_in`).
     period : float, rad
         After which they repeat; of an open one the end of its range.
     closed : bool
@@ -189,6 +218,7 @@ class PlacedDrive(ShortRepr):
     spec: MachineDrive
     moved: dict[str, Moved]
     knots: Array
+    cells: Array
     period: float
     closed: bool
     result: Any = None
@@ -219,7 +249,8 @@ class PlacedDrive(ShortRepr):
         if self.result is not None:
             return replace(self, spec=other.spec, moved=moved)
         high = other.period if _steady(other) else _furthest(other)
-        return PlacedDrive(other.spec, moved, np.array([0.0, high]), high, other.closed)
+        ends = np.array([0.0, high])
+        return PlacedDrive(other.spec, moved, ends, _even_cells(high), high, other.closed)
 
     def elements(self, master: bool) -> Iterator[Element]:
         """Yield its shafts, where they stand, and the guides of its slides.
@@ -288,9 +319,45 @@ class PlacedDrive(ShortRepr):
         (k,) array, rad
             The master's angles.
         """
+        return self._within(self.knots, low, high)
+
+    def cells_in(self, low: float, high: float) -> Array:
+        """Return the ends of the cells in which expansions resolve its laws.
+
+        Parameters
+        ----------
+        low, high : float, rad
+            The master's angles between which they are looked for.
+
+        Returns
+        -------
+        (k,) array, rad
+            The master's angles, `low` and `high` among them.
+
+        Raises
+        ------
+        InfeasibleError
+            If a formula is not smooth, or not finite, between them.
+        """
+        if self.spec.slide is not None:
+            return _formula_cells(self.spec.slide, low, high)
+        return np.concatenate([[low], self._within(self.cells, low, high), [high]])
+
+    @cached_property
+    def places(self) -> Array:
+        """The master's angles in a turn that show all that its laws do."""
+        return self.places_in(0.0, _TURN)
+
+    def places_in(self, low: float, high: float) -> Array:
+        """Return the same in a range (see `cells_in`)."""
+        ends = self.cells_in(low, high)
+        return np.union1d(ends, 0.5 * (ends[1:] + ends[:-1]))
+
+    def _within(self, places: Array, low: float, high: float) -> Array:
+        """Return where places of its own angle are in a range of the master's."""
         ends = sorted(self.own(np.array([low, high])))
         turns = range(math.floor(ends[0] / self.period), math.ceil(ends[1] / self.period) + 1)
-        every = [self.knots + k * self.period for k in turns] if self.closed else [self.knots]
+        every = [places + k * self.period for k in turns] if self.closed else [places]
         found = (np.concatenate(every) - self.spec.phase) / self.spec.ratio
         return np.unique(found[(found > low) & (found < high)])
 
@@ -318,22 +385,24 @@ def placed(spec: MachineDrive, build: Callable[[Any], Any]) -> PlacedDrive:
     if nested is None:
         low, high = spec.span or (0.0, _TURN)
         ends = np.array([low, high])
-        return PlacedDrive(spec, moved_by(spec, None), ends, high - low, spec.span is None)
+        cells = _even_cells(high - low) + low
+        return PlacedDrive(spec, moved_by(spec, None), ends, cells, high - low, spec.span is None)
     result = build(nested)
     by = result.pair.law if spec.pair is not None else result.program
-    knots = np.asarray(by.knots, dtype=float)
-    inside = knots[(knots >= 0.0) & (knots <= by.period)]
-    if spec.pair is not None and result.pair.on_rack:
-        return _along_rack(spec, result, inside)
-    return PlacedDrive(spec, moved_by(spec, result), inside, float(by.period), by.closed, result)
+    cells = np.union1d(by.knots, by.driven.knots if spec.pair is not None else by.cuts)
+    knots, cells = (one[(one >= 0.0) & (one <= by.period)] for one in (by.knots, cells))
+    moved, end, closed = moved_by(spec, result), float(by.period), by.closed
+    if spec.pair is not None and result.pair.on_rack:  # the wheel turns as far as it has teeth
+        end, closed = float(result.centrode_angles(2)[-1]), False
+        turns = by.period * np.arange(math.ceil(end / by.period))
+        every = (np.add.outer(turns, one).ravel() for one in (knots, cells))
+        knots, cells = (np.union1d(one[one < end], [0.0, end]) for one in every)
+    return PlacedDrive(spec, moved, knots, cells, end, closed, result)
 
 
-def _along_rack(spec: MachineDrive, result: Any, knots: Array) -> PlacedDrive:
-    """Return the drive of a rack: the wheel turns as far as the rack has teeth."""
-    end, turn = float(result.centrode_angles(2)[-1]), float(result.pair.law.period)
-    every = np.concatenate([knots + k * turn for k in range(math.ceil(end / turn))])
-    inside = np.union1d(every[every < end], [0.0, end])
-    return PlacedDrive(spec, moved_by(spec, result), inside, end, False, result)
+def _even_cells(period: float) -> Array:
+    """Return cells in which searches see all that follows from a law that is even."""
+    return np.linspace(0.0, period, 1 + math.ceil(_CELLS * period / _TURN))
 
 
 def _steady(drive: PlacedDrive) -> bool:

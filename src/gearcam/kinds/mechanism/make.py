@@ -34,6 +34,7 @@ from gearcam.linkages.elements import (
 )
 from gearcam.linkages.geneva import GenevaWheel
 from gearcam.linkages.linkage import Linkage, in_order
+from gearcam.linkages.narrow import with_cells
 from gearcam.numeric.arrays import apart
 
 if TYPE_CHECKING:
@@ -67,6 +68,7 @@ def make_linkage(design: MechanismDesign, drives: Sequence[PlacedDrive]) -> Link
     inner = [one.knots_in(low, high) for one in drives]
     knots = apart(np.unique(np.concatenate([[low, high], *inner])), _SAME)
     knots[-1] = high  # rather than one that differs by rounding
+    knots = with_cells([one.cells_in(low, high) for one in drives], knots)
     parts = list(in_order(_elements(design, drives)))
     linkage = with_rests(Linkage(parts, knots, closed))
     demand_part(design, linkage)
