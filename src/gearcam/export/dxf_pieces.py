@@ -232,15 +232,15 @@ def _spline(entity: Any, within: float) -> DrawnPiece:
 
 def _arcs(curve: Any, within: float) -> DrawnPiece:
     """Return arcs through points of a spline, by ezdxf's own evaluation."""
-    breaks, count = np.unique(np.array(curve.knots())), _ON_CUBIC
+    # a periodic spline has knots beyond both ends of its domain
+    domain = np.array(curve.knots())[curve.degree : curve.count + 1]
+    breaks, count = np.unique(domain), _ON_CUBIC
     fine = math.isfinite(within)  # points between are evaluated too
     while True:
         steps = np.linspace(0.0, 1.0, (4 if fine else 2) * count, endpoint=False)
         places = (breaks[:-1, None] + np.diff(breaks)[:, None] * steps).ravel()
         places = np.append(places, breaks[-1])
         points = np.array([complex(point.x, point.y) for point in curve.points(places.tolist())])
-        ends = [curve.control_points[k] for k in (0, -1)]
-        points[[0, -1]] = [complex(end.x, end.y) for end in ends]
         used = points[::2] if fine else points
         chord = np.diff(used)
         # the turn at an inner point of an arc is half the arc's angle

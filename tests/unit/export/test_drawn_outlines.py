@@ -14,7 +14,7 @@ import pytest
 from ezdxf.math import Matrix44
 
 from gearcam.export.dxf_read import DxfError, read_outline
-from gearcam.numeric.bulges import flatten_bulges
+from gearcam.numeric.bulges import farthest, flatten_bulges
 
 RADIUS, HALF = 12.0, 20.0
 """A slot's shape, mm: two half circles, whose centres are 40 mm apart, and two lines."""
@@ -185,3 +185,35 @@ def crossing(space: Any) -> None:
 def test_what_is_no_single_outline_is_listed(draw: Draw, unit: int, words: str) -> None:
     with pytest.raises(DxfError, match=words):
         read_outline(drawing(draw, unit))
+
+
+@pytest.mark.parametrize(
+    ("degree", "knots", "weights"),
+    [
+        (3, np.arange(-3.0, 16.0), None),
+        (3, np.arange(19.0), None),  # as set_closed of ezdxf has them
+        (2, np.r_[-3.0, -1.3, 0.0, 1.5, np.arange(2.0, 11.0), 11.7, 13.0, 14.5, 15.0], None),
+        (3, np.arange(19.0), np.tile([1.0, 2.0, 0.5], 4)),
+    ],
+)
+def test_a_periodic_spline_is_run_over_its_domain(
+    degree: int, knots: np.ndarray, weights: np.ndarray | None
+) -> None:
+    from scipy.interpolate import BSpline
+
+    u = np.arange(12 + degree) * math.pi / 6
+    x, y = 30 * np.cos(u), 30 * np.sin(u) - 10
+    heavy = np.ones(len(u)) if weights is None else np.resize(weights, len(u))
+
+    def draw(space: Any) -> None:
+        made = space.add_spline()
+        made.control_points = np.column_stack([x, y, 0 * x])
+        made.knots = knots
+        made.weights = [] if weights is None else heavy
+        made.dxf.degree, made.dxf.flags = degree, 11
+
+    points, bulges = read_outline(drawing(draw))
+    places = np.linspace(knots[degree], knots[12 + degree], 2000)
+    true = BSpline(knots, np.column_stack([x * heavy, y * heavy, heavy]), degree)(places)
+    assert true[0] == pytest.approx(true[-1], abs=1e-12)  # it is periodic
+    assert farthest((true[:, 0] + 1j * true[:, 1]) / true[:, 2], points, bulges) < 1.1e-5
