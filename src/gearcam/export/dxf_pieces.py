@@ -16,8 +16,8 @@ from typing import Any, Final
 import numpy as np
 
 from gearcam.base.errors import GearcamError
-from gearcam.numeric.arrays import Array, Plane, as_complex
-from gearcam.numeric.bulges import bulge_pieces, off_circle
+from gearcam.numeric.arrays import Array, Plane, as_complex, bounds
+from gearcam.numeric.bulges import bulge_pieces, extremes, off_circle
 
 JOINED: Final = 0.005
 """Largest gap between ends that are joined, mm: coordinates with three decimals in mm, or with four
@@ -64,9 +64,15 @@ class DrawnPiece:
         return DrawnPiece(self.points[::-1], -self.bulges[::-1], self.closed)
 
     @property
+    def box(self) -> tuple[complex, complex]:
+        """The lower left and the upper right corner of its bounding box, mm."""
+        return bounds(extremes(self.points, self.bulges, self.closed))
+
+    @property
     def size(self) -> tuple[float, float]:
-        """Width and height of its points, mm."""
-        return float(np.ptp(self.points.real)), float(np.ptp(self.points.imag))
+        """Width and height, mm."""
+        low, high = self.box
+        return high.real - low.real, high.imag - low.imag
 
 
 def entities_of(space: Iterable[Any], layer: str = "") -> Iterator[tuple[str, Any]]:

@@ -170,6 +170,13 @@ def crossing(space: Any) -> None:
     space.add_line((-HALF, RADIUS), (HALF, -RADIUS))
 
 
+def two_bulged(space: Any) -> None:
+    """A segment of a circle, clockwise, and three quarters of one, cut off straight."""
+    space.add_lwpolyline([(0, 0, -0.5), (10, 0, 0)], format="xyb", close=True)
+    bulge = math.tan(3 * math.pi / 8)
+    space.add_lwpolyline([(4, 0, bulge), (0, -4, 0)], format="xyb", close=True)
+
+
 @pytest.mark.parametrize(
     ("draw", "unit", "words"),
     [
@@ -179,6 +186,7 @@ def crossing(space: Any) -> None:
         (slot, 77, r"an unknown unit, \$INSUNITS = 77"),
         (lambda space: space.add_text("slot"), 4, "holds 1 TEXT"),
         (lambda _: None, 4, r"\(it holds nothing\)"),
+        (two_bulged, 4, r"holds 2: layer 0, 10 x 2\.5 mm; layer 0, 8 x 8 mm\. Put"),
         (lambda space: [space.add_circle((0, 0), r) for r in (3, 9)], 4, "holds 2: layer 0, 6 x 6"),
     ],
 )
