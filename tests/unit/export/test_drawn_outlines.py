@@ -225,3 +225,60 @@ def test_a_periodic_spline_is_run_over_its_domain(
     true = BSpline(knots, np.column_stack([x * heavy, y * heavy, heavy]), degree)(places)
     assert true[0] == pytest.approx(true[-1], abs=1e-12)  # it is periodic
     assert farthest((true[:, 0] + 1j * true[:, 1]) / true[:, 2], points, bulges) < 1.1e-5
+
+
+TILTED = {"extrusion": (0, 1, 1)}
+
+
+def tilted_block(space: Any) -> None:
+    space.doc.blocks.new("ROUND").add_lwpolyline([(0, 0), (9, 0), (0, 8)], close=True)
+    space.add_blockref("ROUND", (0, 0), dxfattribs={**TILTED, "layer": "PROFILE"})
+
+
+def rising_spline(space: Any) -> None:
+    space.add_open_spline([(0, 0, 0), (9, 0, 0), (9, 9, 0), (0, 9, 0.02)])
+
+
+@pytest.mark.parametrize(
+    ("draw", "words"),
+    [
+        (lambda space: space.add_circle((0, -10), 30, dxfattribs=TILTED), r"CIRCLE.* is 0, 1, 1\)"),
+        (
+            lambda space: space.add_arc(
+                (0, 0), 9, 0, 180, dxfattribs={"extrusion": (0, -1, 0), "layer": "FRONT"}
+            ),
+            r"the ARC on layer FRONT does not lie in .* xy \(its extrusion is 0, -1, 0\)",
+        ),
+        (
+            lambda space: space.add_lwpolyline([(0, 0), (9, 0), (0, 8)], dxfattribs=TILTED),
+            r"LWPOLYLINE.* is 0, 1, 1\)",
+        ),
+        (
+            lambda space: space.add_polyline2d([(0, 0), (9, 0), (0, 8)], dxfattribs=TILTED),
+            r"POLYLINE.* is 0, 1, 1\)",
+        ),
+        (tilted_block, r"the LWPOLYLINE on layer PROFILE .* is 0, 0\.707, 0\.707\)"),
+        (
+            lambda space: space.add_ellipse((0, 0), (9, 0), 0.5, dxfattribs=TILTED),
+            r"ELLIPSE.* is 0, 1, 1\)",
+        ),
+        (rising_spline, r"the SPLINE on layer 0 .* \(it rises by 0\.02 mm\)"),
+        (lambda space: space.add_line((0, 0, 0), (9, 0, -0.3)), r"LINE.* rises by 0\.3 mm"),
+        (lambda space: space.add_polyline3d([(0, 0, 0), (9, 0, 3)]), r"POLYLINE.* rises by 3 mm"),
+    ],
+)
+def test_what_is_tilted_is_refused_by_name(draw: Draw, words: str) -> None:
+    with pytest.raises(DxfError, match=words):
+        read_outline(drawing(draw))
+
+
+def test_what_is_level_is_read_at_any_height() -> None:
+    """A line's extrusion does not tilt it, and one that points down may hold rounding."""
+
+    def draw(space: Any) -> None:
+        for a, b in (((-3, -6), (-3, 6)), ((-3, 6), (-9, 6)), ((-9, -6), (-3, -6))):
+            space.add_line((*a, 7), (*b, 7.001), dxfattribs=TILTED)
+        down = {"extrusion": (1e-7, 0, -1)}
+        space.add_arc((9, 0), 6, 270, 90, dxfattribs=down)
+
+    assert area(drawing(draw)) == pytest.approx(18 * math.pi + 72, abs=1e-4)
