@@ -177,6 +177,27 @@ def two_bulged(space: Any) -> None:
     space.add_lwpolyline([(4, 0, bulge), (0, -4, 0)], format="xyb", close=True)
 
 
+def cam_in_stock(space: Any) -> None:
+    space.add_circle((0, -10), 30, dxfattribs={"layer": "CAM"})
+    space.add_ellipse((0, 0), (45, 0), 0.9, dxfattribs={"layer": "STOCK"})
+
+
+def two_profiles(space: Any) -> None:
+    on = {"layer": "PROFILE"}
+    space.add_circle((0, -10), 30, dxfattribs=on)
+    space.add_lwpolyline([(4, 0, 1), (-4, 0, 1)], format="xyb", close=True, dxfattribs=on)
+
+
+def bore_beside_layers(space: Any) -> None:
+    slot(space, layers=("LINES", "ARCS"))
+    space.add_circle((0, 0), 3, dxfattribs={"layer": "HOLES"})
+
+
+def bore_beside_a_gap(space: Any) -> None:
+    space.add_lwpolyline([(0, 0), (30, 0), (30, 20), (0, 20), (0, 0.1)])
+    space.add_circle((10, 10), 2, dxfattribs={"layer": "HOLES"})
+
+
 @pytest.mark.parametrize(
     ("draw", "unit", "words"),
     [
@@ -187,12 +208,40 @@ def two_bulged(space: Any) -> None:
         (lambda space: space.add_text("slot"), 4, "holds 1 TEXT"),
         (lambda _: None, 4, r"\(it holds nothing\)"),
         (two_bulged, 4, r"holds 2: layer 0, 10 x 2\.5 mm; layer 0, 8 x 8 mm\. Put"),
+        (cam_in_stock, 4, "holds 2: layer CAM, 60 x 60 mm; layer STOCK, 90 x 81 mm"),
+        (two_profiles, 4, "holds 2: layer PROFILE, 60 x 60 mm; layer PROFILE, 8 x 8 mm"),
+        (bore_beside_layers, 4, "holds 2: layer HOLES, 6 x 6 mm; 64 x 24 mm"),
+        (bore_beside_a_gap, 4, r"holds 1 LWPOLYLINE, 1 CIRCLE\): .* 0\.1 mm from the next end"),
         (lambda space: [space.add_circle((0, 0), r) for r in (3, 9)], 4, "holds 2: layer 0, 6 x 6"),
     ],
 )
 def test_what_is_no_single_outline_is_listed(draw: Draw, unit: int, words: str) -> None:
     with pytest.raises(DxfError, match=words):
         read_outline(drawing(draw, unit))
+
+
+def hidden(space: Any, left: bool = True) -> None:
+    """A circle beside outlines on layers that are off or frozen."""
+    space.doc.layers.add("OFF").off()
+    space.doc.layers.add("Frozen").freeze()
+    if left:
+        space.add_circle((4, 0), 25)
+        space.add_lwpolyline([(0, 0), (99, 0), (0, 99)], close=True, dxfattribs={"layer": "off"})
+    slot(space, layers=("Frozen", "Frozen"))
+
+
+def test_layers_off_or_frozen_are_left_out_if_there_are_others() -> None:
+    assert area(drawing(hidden)) == pytest.approx(math.pi * 25**2, abs=1e-4)
+    assert area(drawing(lambda space: hidden(space, left=False))) == pytest.approx(AREA, abs=1e-4)
+
+
+def test_a_circle_beside_what_is_no_edge_is_the_outline() -> None:
+    def noted(space: Any) -> None:
+        space.add_circle((4, 0), 25)
+        space.add_point((4, 0))
+        space.add_text("D50 h6")
+
+    assert area(drawing(noted)) == pytest.approx(math.pi * 25**2, abs=1e-4)
 
 
 @pytest.mark.parametrize(
