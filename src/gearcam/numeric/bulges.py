@@ -124,7 +124,15 @@ def on_arcs(chord: Plane, bends: Array, share: Array) -> tuple[Plane, Plane]:
 def extremes(points: Plane, bulges: Array, closed: bool = True) -> Plane:
     """Return the points of a bulge polyline, and where its arcs run along an axis, complex, mm.
 
-    Their bounding box is that of the polyline (see `flatten_bulges` for the parameters).
+    Parameters
+    ----------
+    points, bulges, closed
+        Of the polyline (see `flatten_bulges`).
+
+    Returns
+    -------
+    (n,) complex array, mm
+        Their bounding box is that of the polyline.
     """
     start, chord, bends = bulge_pieces(points, bulges, closed)
     bent = bends != 0
