@@ -1,7 +1,7 @@
 """Outlines in the entities of a DXF file: what meets is joined.
 
 Lines, arcs, circles, ellipses, splines and polylines are taken, also those in blocks; what else a
-drawing holds (texts, dimensions, hatches) is no edge.
+drawing holds (texts, dimensions, hatches) is no edge. Each must lie in a plane parallel to xy.
 
 Depends on numeric; ezdxf only inside the functions.
 """
@@ -16,8 +16,9 @@ from typing import Any, Final
 import numpy as np
 
 from gearcam.base.errors import GearcamError
-from gearcam.numeric.arrays import Array, Plane, as_complex
-from gearcam.numeric.bulges import bulge_pieces, off_circle
+from gearcam.base.numerals import formatted
+from gearcam.numeric.arrays import Array, Plane, as_complex, bounds
+from gearcam.numeric.bulges import bulge_pieces, extremes, off_circle
 
 JOINED: Final = 0.005
 """Largest gap between ends that are joined, mm: coordinates with three decimals in mm, or with four
@@ -25,6 +26,12 @@ in inches, meet within it."""
 
 _SAME: Final = 1e-6
 """Distance of ends that are one point, mm: these are joined first."""
+
+_TILTED: Final = 1e-4
+"""Largest tilt of a plane that is taken as parallel to xy, rad: it shortens by 5e-9."""
+
+_RISE: Final = 0.005
+"""Largest difference of heights that is taken as none, mm."""
 
 _ON_CUBIC: Final = 16
 """Arcs that replace each cubic of a spline, each through three of its points: of gearcam's own
@@ -64,9 +71,15 @@ class DrawnPiece:
         return DrawnPiece(self.points[::-1], -self.bulges[::-1], self.closed)
 
     @property
+    def box(self) -> tuple[complex, complex]:
+        """The lower left and the upper right corner of its bounding box, mm."""
+        return bounds(extremes(self.points, self.bulges, self.closed))
+
+    @property
     def size(self) -> tuple[float, float]:
-        """Width and height of its points, mm."""
-        return float(np.ptp(self.points.real)), float(np.ptp(self.points.imag))
+        """Width and height, mm."""
+        low, high = self.box
+        return high.real - low.real, high.imag - low.imag
 
 
 def entities_of(space: Iterable[Any], layer: str = "") -> Iterator[tuple[str, Any]]:
@@ -82,7 +95,8 @@ def entities_of(space: Iterable[Any], layer: str = "") -> Iterator[tuple[str, An
     for entity in space:
         # an entity that ezdxf does not know has no layer
         own = entity.dxf.layer if entity.dxf.is_supported("layer") else ""
-        own = layer if layer and own == "0" else own
+        if layer and own == "0":
+            own = entity.dxf.layer = layer  # of the block as it is placed, a copy
         if entity.dxftype() == "INSERT":
             for one in entity.multi_insert() if entity.mcount > 1 else (entity,):
                 yield from entities_of(one.virtual_entities(), own)
@@ -108,19 +122,56 @@ def pieces_of(
     Raises
     ------
     DxfError
-        If a coordinate is not finite.
+        If a coordinate is not finite, or an entity does not lie in a plane parallel to xy.
     """
-    from ezdxf.upright import upright
-
     missed = math.inf if within is None else within / scale
     for entity in entities:
-        upright(entity)  # mirrored by its own axis
         shape = _SHAPES.get(entity.dxftype())
-        found = None if shape is None else shape(entity, missed)
+        if shape is None:
+            continue
+        _lay_flat(entity, scale)
+        found = shape(entity, missed)
         if found is not None and len(found.points) > 1:
             if not all(np.isfinite(values).all() for values in (found.points, found.bulges)):
                 raise DxfError("the outline has coordinates that are not finite")
             yield DrawnPiece(scale * found.points, found.bulges, found.closed, found.whole_circle)
+
+
+def _lay_flat(entity: Any, scale: float) -> None:
+    """Refuse an entity that is tilted; turn one that is mirrored by its own axis."""
+    kind, fault = entity.dxftype(), ""
+    rise = scale * float(np.ptp(_heights(entity)))
+    if rise > _RISE:
+        fault = f"it rises by {formatted(rise, 3)} mm"
+    if kind not in _DRAWN_IN_SPACE and not (kind == "POLYLINE" and entity.is_3d_polyline):
+        from ezdxf.upright import upright
+
+        x, y, z = entity.dxf.extrusion.normalize()
+        if not math.hypot(x, y) <= _TILTED:
+            drawn = ", ".join(formatted(value, 3) for value in entity.dxf.extrusion)
+            fault = f"its extrusion is {drawn}"
+        elif z < 0.0:
+            entity.dxf.extrusion = (0.0, 0.0, -1.0)  # upright takes no other
+            upright(entity)
+    if fault:
+        raise DxfError(
+            f"the {kind} on layer {entity.dxf.layer} does not lie in a plane parallel to xy "
+            f"({fault}): draw the outline in the xy-plane"
+        )
+
+
+def _heights(entity: Any) -> Array:
+    """Return the heights z of an entity that need not be plane."""
+    match entity.dxftype():
+        case "LINE":
+            points = [entity.dxf.start, entity.dxf.end]
+        case "SPLINE":
+            points = entity.control_points if len(entity.control_points) else entity.fit_points
+        case "POLYLINE" if entity.is_3d_polyline:
+            points = [vertex.dxf.location for vertex in entity.vertices]
+        case _:
+            points = []
+    return np.array([point[2] for point in points] or [0.0])
 
 
 def joined(pieces: Sequence[DrawnPiece], gap: float = JOINED) -> list[DrawnPiece]:
@@ -232,15 +283,15 @@ def _spline(entity: Any, within: float) -> DrawnPiece:
 
 def _arcs(curve: Any, within: float) -> DrawnPiece:
     """Return arcs through points of a spline, by ezdxf's own evaluation."""
-    breaks, count = np.unique(np.array(curve.knots())), _ON_CUBIC
+    # a periodic spline has knots beyond both ends of its domain
+    domain = np.array(curve.knots())[curve.degree : curve.count + 1]
+    breaks, count = np.unique(domain), _ON_CUBIC
     fine = math.isfinite(within)  # points between are evaluated too
     while True:
         steps = np.linspace(0.0, 1.0, (4 if fine else 2) * count, endpoint=False)
         places = (breaks[:-1, None] + np.diff(breaks)[:, None] * steps).ravel()
         places = np.append(places, breaks[-1])
         points = np.array([complex(point.x, point.y) for point in curve.points(places.tolist())])
-        ends = [curve.control_points[k] for k in (0, -1)]
-        points[[0, -1]] = [complex(end.x, end.y) for end in ends]
         used = points[::2] if fine else points
         chord = np.diff(used)
         # the turn at an inner point of an arc is half the arc's angle
@@ -260,6 +311,9 @@ def _missed(piece: DrawnPiece, points: Plane) -> float:
     between = [(points[k::4] - start) / along for k in (1, 3)]
     return float(max(off_circle(local, bend).max() for local in between))
 
+
+_DRAWN_IN_SPACE: Final = ("LINE", "SPLINE")
+"""Types whose coordinates do not depend on their extrusion."""
 
 _SHAPES: Final = {
     "LINE": _line,

@@ -20,7 +20,7 @@ from gearcam.base.numerals import formatted
 from gearcam.base.units import factor
 from gearcam.export.dxf import MILLIMETRES
 from gearcam.export.dxf_pieces import JOINED, DrawnPiece, DxfError, entities_of, joined, pieces_of
-from gearcam.numeric.arrays import Array, Plane
+from gearcam.numeric.arrays import Array, Plane, bounds
 from gearcam.numeric.bulges import deviation
 from gearcam.numeric.contour import Contour
 from gearcam.pictures.drawings import CLOSED, INNER, KERF, OUTER_WALL, OUTLINE, PROFILE
@@ -118,8 +118,10 @@ def read_outline(data: bytes, *, outer: bool = False) -> tuple[Plane, Array]:
     ----------
     data : bytes
         The file, in the unit of its $INSUNITS; without one in mm. If it holds several outlines, the
-        one on layer PROFILE, OUTLINE or INNER is taken. Lines, arcs, splines and open polylines
-        are joined where two of them meet. A circle is the outline if there is nothing but circles.
+        one on layer PROFILE, OUTLINE or INNER is taken. Layers that are off or frozen are left
+        out, unless there are no others. Lines, arcs, splines and open polylines are joined where
+        two of them meet. A circle within the box around the other edges on its layer is a bore,
+        and so is each circle if only circles close and there are other edges.
     outer : bool
         Whether to take the wall of a groove on layer OUTER.
 
@@ -134,13 +136,11 @@ def read_outline(data: bytes, *, outer: bool = False) -> tuple[Plane, Array]:
     ------
     DxfError
         If the file is damaged, is in a unit that nobody cuts in, holds paths of a cutter, or does
-        not hold one closed outline of finite numbers.
+        not hold one closed outline of finite numbers, in a plane parallel to xy.
     """
     document = read_dxf(data)
     scale = _unit(document)
-    by_layer: dict[str, list[Any]] = {}
-    for layer, entity in entities_of(document.modelspace()):
-        by_layer.setdefault(layer, []).append(entity)
+    by_layer = _by_layer(document)
     paths = [layer for layer in by_layer if layer.upper().endswith(KERF)]
     if paths:
         raise DxfError(
@@ -155,17 +155,41 @@ def read_outline(data: bytes, *, outer: bool = False) -> tuple[Plane, Array]:
 
     for wanted in (PROFILE, OUTLINE, OUTER_WALL if outer else INNER, ""):
         layers = [layer for layer in by_layer if layer.upper().endswith(wanted)]
-        closed = [(layer, one) for layer in layers for one in outlines(layer) if one.closed]
-        if not closed:  # some draw lines and arcs on layers of their own
-            closed = [("", one) for one in outlines(*layers) if one.closed]
-        types = Counter(one.dxftype() for layer in layers for one in by_layer[layer])
-        if types.keys() != {"CIRCLE"}:  # beside other edges they are bores, rims and bolt circles
-            closed = [(layer, one) for layer, one in closed if not one.whole_circle]
+        closed = [(layer, one) for layer in layers for one in _closed(outlines(layer))]
+        if all(one.whole_circle for _, one in closed):
+            edges = [one for one in outlines(*layers) if not one.whole_circle]
+            # some draw lines and arcs on layers of their own
+            across = [("", one) for one in edges if one.closed]
+            # edges that do not close may be the outline whose bores the circles are
+            closed = [] if edges and not across else closed + across
         if len(closed) == 1:
             return closed[0][1].points, closed[0][1].bulges
     if closed:
         raise DxfError(_several(closed))
+    types = Counter(one.dxftype() for layer in by_layer.values() for one in layer)
     raise DxfError(_open(types, [one for one in outlines(*by_layer) if not one.closed]))
+
+
+def _by_layer(document: Document) -> dict[str, list[Any]]:
+    """Return the entities of a drawing by layer: of those that are shown, if there are any."""
+    by_layer: dict[str, list[Any]] = {}
+    for layer, entity in entities_of(document.modelspace()):
+        by_layer.setdefault(layer, []).append(entity)
+    hidden = {one.dxf.name.lower() for one in document.layers if one.is_off() or one.is_frozen()}
+    return {name: by_layer[name] for name in by_layer if name.lower() not in hidden} or by_layer
+
+
+def _closed(pieces: Sequence[DrawnPiece]) -> list[DrawnPiece]:
+    """Return the closed outlines of a layer, without circles in the box around its other edges."""
+    corners = [corner for one in pieces if not one.whole_circle for corner in one.box]
+    if not corners:
+        return list(pieces)  # nothing but circles
+    box = bounds(np.array(corners))
+
+    def bore(one: DrawnPiece) -> bool:
+        return one.whole_circle and bounds(np.array([*box, *one.box])) == box
+
+    return [one for one in pieces if one.closed and not bore(one)]
 
 
 def _unit(document: Document) -> float:

@@ -121,6 +121,31 @@ def on_arcs(chord: Plane, bends: Array, share: Array) -> tuple[Plane, Plane]:
     return way, chord / np.sinc(half / np.pi) * np.exp(1j * half * (2 * share - 1))
 
 
+def extremes(points: Plane, bulges: Array, closed: bool = True) -> Plane:
+    """Return the points of a bulge polyline, and where its arcs run along an axis, complex, mm.
+
+    Parameters
+    ----------
+    points, bulges, closed
+        Of the polyline (see `flatten_bulges`).
+
+    Returns
+    -------
+    (n,) complex array, mm
+        Their bounding box is that of the polyline.
+    """
+    start, chord, bends = bulge_pieces(points, bulges, closed)
+    bent = bends != 0
+    start, chord, bends = start[bent], chord[bent], bends[bent]
+    turn = 4 * np.arctan(bends)
+    first = np.angle(chord) - 0.5 * turn
+    axes = 0.5 * np.pi * np.arange(4)
+    share = np.sign(turn)[:, None] * (axes - first[:, None]) % (2 * np.pi) / np.abs(turn)[:, None]
+    piece, axis = np.nonzero(share < 1.0)
+    found = start[piece] + on_arcs(chord[piece], bends[piece], share[piece, axis])[0]
+    return np.concatenate([points, found])
+
+
 def arc_centers(start: Plane, chord: Plane, bends: Array) -> Plane:
     """Return the centres of arcs, complex, mm (see `bulge_pieces`); no piece may be straight."""
     return start + 0.5 * chord * (1 + 0.5j * (1 / bends - bends))

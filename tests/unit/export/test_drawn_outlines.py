@@ -14,7 +14,7 @@ import pytest
 from ezdxf.math import Matrix44
 
 from gearcam.export.dxf_read import DxfError, read_outline
-from gearcam.numeric.bulges import flatten_bulges
+from gearcam.numeric.bulges import farthest, flatten_bulges
 
 RADIUS, HALF = 12.0, 20.0
 """A slot's shape, mm: two half circles, whose centres are 40 mm apart, and two lines."""
@@ -170,6 +170,34 @@ def crossing(space: Any) -> None:
     space.add_line((-HALF, RADIUS), (HALF, -RADIUS))
 
 
+def two_bulged(space: Any) -> None:
+    """A segment of a circle, clockwise, and three quarters of one, cut off straight."""
+    space.add_lwpolyline([(0, 0, -0.5), (10, 0, 0)], format="xyb", close=True)
+    bulge = math.tan(3 * math.pi / 8)
+    space.add_lwpolyline([(4, 0, bulge), (0, -4, 0)], format="xyb", close=True)
+
+
+def cam_in_stock(space: Any) -> None:
+    space.add_circle((0, -10), 30, dxfattribs={"layer": "CAM"})
+    space.add_ellipse((0, 0), (45, 0), 0.9, dxfattribs={"layer": "STOCK"})
+
+
+def two_profiles(space: Any) -> None:
+    on = {"layer": "PROFILE"}
+    space.add_circle((0, -10), 30, dxfattribs=on)
+    space.add_lwpolyline([(4, 0, 1), (-4, 0, 1)], format="xyb", close=True, dxfattribs=on)
+
+
+def bore_beside_layers(space: Any) -> None:
+    slot(space, layers=("LINES", "ARCS"))
+    space.add_circle((0, 0), 3, dxfattribs={"layer": "HOLES"})
+
+
+def bore_beside_a_gap(space: Any) -> None:
+    space.add_lwpolyline([(0, 0), (30, 0), (30, 20), (0, 20), (0, 0.1)])
+    space.add_circle((10, 10), 2, dxfattribs={"layer": "HOLES"})
+
+
 @pytest.mark.parametrize(
     ("draw", "unit", "words"),
     [
@@ -179,9 +207,127 @@ def crossing(space: Any) -> None:
         (slot, 77, r"an unknown unit, \$INSUNITS = 77"),
         (lambda space: space.add_text("slot"), 4, "holds 1 TEXT"),
         (lambda _: None, 4, r"\(it holds nothing\)"),
+        (two_bulged, 4, r"holds 2: layer 0, 10 x 2\.5 mm; layer 0, 8 x 8 mm\. Put"),
+        (cam_in_stock, 4, "holds 2: layer CAM, 60 x 60 mm; layer STOCK, 90 x 81 mm"),
+        (two_profiles, 4, "holds 2: layer PROFILE, 60 x 60 mm; layer PROFILE, 8 x 8 mm"),
+        (bore_beside_layers, 4, "holds 2: layer HOLES, 6 x 6 mm; 64 x 24 mm"),
+        (bore_beside_a_gap, 4, r"holds 1 LWPOLYLINE, 1 CIRCLE\): .* 0\.1 mm from the next end"),
         (lambda space: [space.add_circle((0, 0), r) for r in (3, 9)], 4, "holds 2: layer 0, 6 x 6"),
     ],
 )
 def test_what_is_no_single_outline_is_listed(draw: Draw, unit: int, words: str) -> None:
     with pytest.raises(DxfError, match=words):
         read_outline(drawing(draw, unit))
+
+
+def hidden(space: Any, left: bool = True) -> None:
+    """A circle beside outlines on layers that are off or frozen."""
+    space.doc.layers.add("OFF").off()
+    space.doc.layers.add("Frozen").freeze()
+    if left:
+        space.add_circle((4, 0), 25)
+        space.add_lwpolyline([(0, 0), (99, 0), (0, 99)], close=True, dxfattribs={"layer": "off"})
+    slot(space, layers=("Frozen", "Frozen"))
+
+
+def test_layers_off_or_frozen_are_left_out_if_there_are_others() -> None:
+    assert area(drawing(hidden)) == pytest.approx(math.pi * 25**2, abs=1e-4)
+    assert area(drawing(lambda space: hidden(space, left=False))) == pytest.approx(AREA, abs=1e-4)
+
+
+def test_a_circle_beside_what_is_no_edge_is_the_outline() -> None:
+    def noted(space: Any) -> None:
+        space.add_circle((4, 0), 25)
+        space.add_point((4, 0))
+        space.add_text("D50 h6")
+
+    assert area(drawing(noted)) == pytest.approx(math.pi * 25**2, abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("degree", "knots", "weights"),
+    [
+        (3, np.arange(-3.0, 16.0), None),
+        (3, np.arange(19.0), None),  # as set_closed of ezdxf has them
+        (2, np.r_[-3.0, -1.3, 0.0, 1.5, np.arange(2.0, 11.0), 11.7, 13.0, 14.5, 15.0], None),
+        (3, np.arange(19.0), np.tile([1.0, 2.0, 0.5], 4)),
+    ],
+)
+def test_a_periodic_spline_is_run_over_its_domain(
+    degree: int, knots: np.ndarray, weights: np.ndarray | None
+) -> None:
+    from scipy.interpolate import BSpline
+
+    u = np.arange(12 + degree) * math.pi / 6
+    x, y = 30 * np.cos(u), 30 * np.sin(u) - 10
+    heavy = np.ones(len(u)) if weights is None else np.resize(weights, len(u))
+
+    def draw(space: Any) -> None:
+        made = space.add_spline()
+        made.control_points = np.column_stack([x, y, 0 * x])
+        made.knots = knots
+        made.weights = [] if weights is None else heavy
+        made.dxf.degree, made.dxf.flags = degree, 11
+
+    points, bulges = read_outline(drawing(draw))
+    places = np.linspace(knots[degree], knots[12 + degree], 2000)
+    true = BSpline(knots, np.column_stack([x * heavy, y * heavy, heavy]), degree)(places)
+    assert true[0] == pytest.approx(true[-1], abs=1e-12)  # it is periodic
+    assert farthest((true[:, 0] + 1j * true[:, 1]) / true[:, 2], points, bulges) < 1.1e-5
+
+
+TILTED = {"extrusion": (0, 1, 1)}
+
+
+def tilted_block(space: Any) -> None:
+    space.doc.blocks.new("ROUND").add_lwpolyline([(0, 0), (9, 0), (0, 8)], close=True)
+    space.add_blockref("ROUND", (0, 0), dxfattribs={**TILTED, "layer": "PROFILE"})
+
+
+def rising_spline(space: Any) -> None:
+    space.add_open_spline([(0, 0, 0), (9, 0, 0), (9, 9, 0), (0, 9, 0.02)])
+
+
+@pytest.mark.parametrize(
+    ("draw", "words"),
+    [
+        (lambda space: space.add_circle((0, -10), 30, dxfattribs=TILTED), r"CIRCLE.* is 0, 1, 1\)"),
+        (
+            lambda space: space.add_arc(
+                (0, 0), 9, 0, 180, dxfattribs={"extrusion": (0, -1, 0), "layer": "FRONT"}
+            ),
+            r"the ARC on layer FRONT does not lie in .* xy \(its extrusion is 0, -1, 0\)",
+        ),
+        (
+            lambda space: space.add_lwpolyline([(0, 0), (9, 0), (0, 8)], dxfattribs=TILTED),
+            r"LWPOLYLINE.* is 0, 1, 1\)",
+        ),
+        (
+            lambda space: space.add_polyline2d([(0, 0), (9, 0), (0, 8)], dxfattribs=TILTED),
+            r"POLYLINE.* is 0, 1, 1\)",
+        ),
+        (tilted_block, r"the LWPOLYLINE on layer PROFILE .* is 0, 0\.707, 0\.707\)"),
+        (
+            lambda space: space.add_ellipse((0, 0), (9, 0), 0.5, dxfattribs=TILTED),
+            r"ELLIPSE.* is 0, 1, 1\)",
+        ),
+        (rising_spline, r"the SPLINE on layer 0 .* \(it rises by 0\.02 mm\)"),
+        (lambda space: space.add_line((0, 0, 0), (9, 0, -0.3)), r"LINE.* rises by 0\.3 mm"),
+        (lambda space: space.add_polyline3d([(0, 0, 0), (9, 0, 3)]), r"POLYLINE.* rises by 3 mm"),
+    ],
+)
+def test_what_is_tilted_is_refused_by_name(draw: Draw, words: str) -> None:
+    with pytest.raises(DxfError, match=words):
+        read_outline(drawing(draw))
+
+
+def test_what_is_level_is_read_at_any_height() -> None:
+    """A line's extrusion does not tilt it, and one that points down may hold rounding."""
+
+    def draw(space: Any) -> None:
+        for a, b in (((-3, -6), (-3, 6)), ((-3, 6), (-9, 6)), ((-9, -6), (-3, -6))):
+            space.add_line((*a, 7), (*b, 7.001), dxfattribs=TILTED)
+        down = {"extrusion": (1e-7, 0, -1)}
+        space.add_arc((9, 0), 6, 270, 90, dxfattribs=down)
+
+    assert area(drawing(draw)) == pytest.approx(18 * math.pi + 72, abs=1e-4)
