@@ -6,7 +6,6 @@ import math
 from abc import abstractmethod
 from bisect import bisect_right
 from functools import cached_property
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 import numpy as np
@@ -55,7 +54,7 @@ class GriddedCam(Result):
     """
 
     design: Any
-    stages = MappingProxyType({"program": "program", "cam": "cam", "checks": "checked"})
+    stages: ClassVar[Mapping[str, str]] = {"program": "program", "cam": "cam", "checks": "checked"}
     before_studies = ("program", "cam")
 
     solid_files: ClassVar[frozenset[str]]
@@ -157,9 +156,7 @@ class GriddedCam(Result):
         poses, meshes = self.in_space(np.array([self.design.output.pose])), self.shown(chords)
         return {name: (meshes[name], pose[0]) for name, pose in poses.items()}
 
-    def findings_of(
-        self, kind: str, solid: str, subject: Any, *, oscillating: bool = False
-    ) -> tuple[Finding, ...]:
+    def findings_of(self, kind: str, solid: str, subject: Any) -> tuple[Finding, ...]:
         """Return the findings of the checks, errors first.
 
         Parameters
@@ -168,13 +165,10 @@ class GriddedCam(Result):
             The groups of checks of the cam, and of its solid where it is carved.
         subject : object
             What the first group looks at.
-        oscillating : bool
-            Whether lifts are angles.
         """
         limits = self.design.limits
         with self.stage("checks"):
-            found = [*run_checks(kind, subject, limits)]
-            found += self.row_findings(oscillating=oscillating)
+            found = [*run_checks(kind, subject, limits), *self.row_findings]
             if self.solid_asked and self.carved:
                 found += run_checks(solid, (self.solid_steps, self.chord_error), limits)
             return in_order(found)

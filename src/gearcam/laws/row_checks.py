@@ -76,17 +76,19 @@ def row_findings(design: Any, *, oscillating: bool = False) -> tuple[Finding, ..
     return run_checks(KIND, [*_given_in(design, oscillating=oscillating)], {})
 
 
-def refused_for_row(design: Any, error: InfeasibleError) -> InfeasibleError | None:
+def refused_for_row(
+    design: Any, error: InfeasibleError, *, oscillating: bool
+) -> InfeasibleError | None:
     """Return the refusal of the first stray row of a design, from which another may follow.
 
     Parameters
     ----------
-    design : Design
-        As of `row_findings`, without lifts.
+    design, oscillating
+        As of `row_findings`.
     error : InfeasibleError
         The other refusal.
     """
-    for place, given in _given_in(design, oscillating=False):
+    for place, given in _given_in(design, oscillating=oscillating):
         for row in stray_in(given):
             where, note = f"{place}, {row.where}", f"as it is, {error.what}"
             return InfeasibleError(f"the {row.text}", where=where, nearest=note)

@@ -20,6 +20,9 @@ from gearcam.linkages.measures import TrackMeasures
 from gearcam.numeric.arrays import Array, Ints, opposite
 from gearcam.numeric.roots import bracketed_root
 
+WHOLE: Final = 1.0 + 1e-9
+"""Factor on a travel up to which a longer one is the same: as it is printed."""
+
 _TOUCHING: Final = 1e-9
 """Share of the amount by which an extreme may exceed it: rounding of equal extremes."""
 
@@ -133,7 +136,7 @@ def last_travels(
     measures : TrackMeasures
         Of the output.
     travel : float, mm or rad
-        Above 0, less than all of its travel.
+        Above 0, up to all of its travel.
     outer : bool
         Before the largest value; otherwise before the smallest one.
 
@@ -149,8 +152,9 @@ def last_travels(
     ShortRangeError
         If the driver's range begins within each of them.
     """
-    if not 0.0 < travel < measures.stroke:
+    if not 0.0 < travel <= measures.stroke * WHOLE:
         raise ValueError(f"travel {travel:g}: must be between 0 and {measures.stroke:g}")
+    travel = min(travel, measures.stroke / WHOLE)
     top = measures.largest() if outer else measures.least()
     places, values = measures.nodes
     level = top.value - travel if outer else top.value + travel
@@ -159,7 +163,7 @@ def last_travels(
     nodes, found = [node for node in _own(measures) if there[node]], dict[float, DriverRange]()
     for node in nodes:
         begin = _leaves(measures, node, -1, band)
-        if begin == places[0] and values[0] != level:
+        if begin == places[0] and abs(values[0] - level) > (WHOLE - 1.0) * measures.stroke:
             continue
         one = _in_turn(measures, begin, float(places[node]))
         # where it rests, and at both ends of a turn, it has arrived before

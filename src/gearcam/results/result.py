@@ -276,29 +276,29 @@ class Result(NotebookView):
         columns = sys.modules.get("gearcam.laws.columns")  # loaded if a design has a table
         return [*columns.tables_in(self.design)] if columns else []
 
-    def row_findings(self, *, oscillating: bool = False) -> tuple[Finding, ...]:
-        """Return the findings of the rows of all tables of the design.
+    @property
+    def angular(self) -> bool:
+        """Whether lifts are angles."""
+        return False
 
-        Parameters
-        ----------
-        oscillating : bool
-            Whether lifts are angles.
-        """
-        if all(table.given(oscillating=oscillating) is None for table in self._tables):
+    @property
+    def row_findings(self) -> tuple[Finding, ...]:
+        """The findings of the rows of all tables of the design."""
+        if all(table.given(oscillating=self.angular) is None for table in self._tables):
             return ()
         from gearcam.laws.row_checks import row_findings
 
-        return row_findings(self.design, oscillating=oscillating)
+        return row_findings(self.design, oscillating=self.angular)
 
     @contextmanager
     def naming_rows(self) -> Iterator[None]:
-        """Name a stray row of a table without lifts in the place of a refusal."""
+        """Name a stray row of a table in the place of a refusal."""
         try:
             yield
         except InfeasibleError as error:
             from gearcam.laws.row_checks import refused_for_row
 
-            named = refused_for_row(self.design, error)
+            named = refused_for_row(self.design, error, oscillating=self.angular)
             if named is None:
                 raise
             raise named from error
@@ -424,7 +424,8 @@ class Result(NotebookView):
             If the design cannot be made.
         """
         demand_formats(self.design, (name,))
-        return self.kind.files[name](self, {} if measured is None else measured)
+        with self.naming_rows():
+            return self.kind.files[name](self, {} if measured is None else measured)
 
     @property
     def charts(self) -> tuple[str, ...]:

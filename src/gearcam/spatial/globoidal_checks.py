@@ -59,7 +59,7 @@ def pressure_angle(subject: Subject, limit: float) -> Iterator[Remark]:
     )
 
 
-@check("undercut", kind=KIND, severity="error", unit="mm")
+@check("undercut", kind=KIND, severity="error", unit="mm", relation="at least")
 def undercut(subject: Subject, limit: float) -> Iterator[Remark]:  # noqa: ARG001
     """Report a wall that the rollers cut away at another cam angle.
 
@@ -70,10 +70,12 @@ def undercut(subject: Subject, limit: float) -> Iterator[Remark]:  # noqa: ARG00
         if not wall.undercut:
             continue
         yield Remark(
-            f"The rollers cut away a part of the {wall.key} wall at other angles."
+            f"The rollers cut away a part of the {wall.key} wall at other angles: its spread is "
+            f"below 0."
             f"{smaller_roller(wall)}",
             f"{wall.key} wall, {wall.spread.place}",
             wall.spread.value,
+            limit=0.0,
         )
 
 

@@ -199,9 +199,17 @@ class CylinderSpec(ShortRepr):
     def problems(self) -> Iterator[Breach]:
         """Yield contradictions: field, index, message, what is allowed."""
         if not self.asks and self.floor <= 0.0:
-            most = self.outer_radius - self.floor_clearance
-            rule = f"below {formatted(most)} mm, with the floor's clearance the cylinder's radius"
-            yield "groove_depth", None, "the groove reaches the cam's axis", rule
+            name, other = "groove_depth", self.floor_clearance
+            if other >= self.outer_radius:
+                name, other = "floor_clearance", self.groove_depth
+            rule = f"below {formatted(self.outer_radius - other)} mm"
+            if other >= self.outer_radius:
+                name, rule = (
+                    "outer_diameter",
+                    f"above {formatted(2.0 * (other + self.floor_clearance))} mm",
+                )
+            rule += ": depth and clearance of the floor are less than the cylinder's radius"
+            yield name, None, "the groove reaches the cam's axis", rule
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -183,6 +184,25 @@ def test_findings_of_a_pair_and_of_a_cam_in_space_have_the_row() -> None:
     assert "motion, lift[15], at 75 deg" in [
         one.where for one in made.checked if one.code == "stray-row"
     ]
+
+
+@pytest.mark.parametrize(
+    ("name", "sizes"),
+    [
+        ("cylinder_cam", {"cam.length_mm": 80}),  # the groove leaves a face
+        ("cylinder_cam", {"cam.length_mm": 200, "cam.lowest_mm": 50, "output.files": ["gcode"]}),
+        ("groove_cam", {}),  # the groove opens the edge
+    ],
+)
+def test_a_cam_that_is_refused_for_a_row_names_the_row(name: str, sizes: dict[str, Any]) -> None:
+    theta = np.arange(0.0, 360.0, 5.0)
+    raised = lift("cycloidal", theta, 120.0, 60.0) * 0.3
+    raised[15] += 60.0
+    motion = {"theta_deg": theta.tolist(), "lift_mm": raised.tolist()}
+    design = gc.load(PROFILES / f"{name}.toml").with_({"motion": motion, **sizes})
+    with pytest.raises(gc.InfeasibleError, match=r"is out of line.* suggest") as caught:
+        _ = [gc.build(design).files(one) for one in design.output.files]
+    assert caught.value.where == "motion, lift[15], at 75 deg"
 
 
 def test_a_table_with_ends_is_looked_at_between_them() -> None:

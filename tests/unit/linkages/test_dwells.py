@@ -161,6 +161,16 @@ def test_a_travel_before_the_inner_dead_center_reaches_over_the_turn() -> None:
     assert 0.0 < found.begin < found.end
 
 
+@pytest.mark.parametrize("travel", [1.0 - 1e-13, 1.0, 1.0 + 4e-11])
+def test_the_whole_travel_as_it_is_printed_is_the_last_travel(travel: float) -> None:
+    twice = np.array([0.0, 1.0])
+    wave = TrackMeasures(_waves(twice * 0.0, twice), TURN)
+    for found in last_travels(wave, wave.stroke * travel):
+        assert found.length == pytest.approx(0.5 * np.pi, abs=1e-4)
+    with pytest.raises(ValueError, match="travel"):
+        last_travels(wave, wave.stroke * (1.0 + 1e-8))
+
+
 def test_each_arrival_at_a_dead_center_has_its_last_travel() -> None:
     twice = np.array([0.0, 1.0])
     sine, cosine = _waves(twice * 0.0, twice), _waves(twice, twice * 0.0)

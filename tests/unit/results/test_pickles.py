@@ -36,6 +36,7 @@ def handed_out(result: Any) -> Iterator[tuple[str, Any]]:
         yield f"chart {name}", result.chart(name)
     yield "scene", result.scene(4)
     yield "record", result.record()
+    yield "stages", result.stages
 
 
 def held(value: Any) -> list[Any]:

@@ -144,6 +144,25 @@ def test_what_cannot_be_is_refused(changes: dict[str, Any], words: str) -> None:
         _ = gc.build(DESIGN.with_(changes)).cam
 
 
+@pytest.mark.parametrize(
+    ("depth", "clearance", "key", "rule"),
+    [
+        (30, 0.3, "groove_depth_mm", "below 29.7 mm"),
+        (8, 53, "floor_clearance_mm", "below 22 mm"),
+        (40, 53, "outer_diameter_mm", "above 186 mm"),
+    ],
+)
+def test_a_groove_as_deep_as_the_cylinder_names_what_is_too_large(
+    depth: float, clearance: float, key: str, rule: str
+) -> None:
+    sizes = {"groove_depth_mm": depth, "floor_clearance_mm": clearance, "outer_diameter_mm": 60}
+    design = gc.load(PROFILES / "cylinder_cam.toml")
+    with pytest.raises(gc.DesignError) as caught:
+        design.with_({f"cam.{name}": value for name, value in sizes.items()})
+    assert f"cam.{key}" in str(caught.value)
+    assert rule in str(caught.value)
+
+
 def test_a_bore_that_leaves_no_room_for_a_groove_is_named() -> None:
     wide = {"blank.bore_diameter_mm": 900.0}
     with pytest.raises(InfeasibleError, match="inside the bore") as caught:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
 from functools import cached_property
 from pathlib import Path
-from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -68,9 +67,12 @@ class CamResult(PartsResult):
 
     design: CamDesign
     before_output = ("program",)
-    stages = MappingProxyType(
-        {"program": "program", "cam": "cam", "profile": "profile", "checks": "checked"}
-    )
+    stages: ClassVar[Mapping[str, str]] = {
+        "program": "program",
+        "cam": "cam",
+        "profile": "profile",
+        "checks": "checked",
+    }
 
     @cached_property
     def program(self) -> Program:
@@ -107,8 +109,13 @@ class CamResult(PartsResult):
     def cam(self) -> Cam:
         """The cam; its curves and measures are computed on demand."""
         program = self.program
-        with self.stage("cam"):
+        with self.stage("cam"), self.naming_rows():
             return self.form.make(program)
+
+    @property
+    def angular(self) -> bool:
+        """Whether lifts are angles."""
+        return self.design.follower.oscillating
 
     @property
     def follower(self) -> Follower:
@@ -399,7 +406,7 @@ class CamResult(PartsResult):
         cam = self.cam
         with self.stage("checks"):
             found = run_checks(KIND, cam, self.design.limits)
-            found += self.row_findings(oscillating=self.design.follower.oscillating)
+            found += self.row_findings
         if self.ordered:
             subject = self.part_subject
             with self.stage("checks"):

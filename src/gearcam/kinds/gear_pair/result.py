@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
-from types import MappingProxyType
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import TYPE_CHECKING, ClassVar, Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -92,15 +91,13 @@ class GearPairResult(PartsResult):
     design: GearPairDesign
     before_output = ("law", "pair")
     before_studies = ("steps",)
-    stages = MappingProxyType(
-        {
-            "law": "law",
-            "centrodes": "pair",
-            "gear 1": "gear1",
-            "gear 2": "gear2",
-            "checks": "checked",
-        }
-    )
+    stages: ClassVar[Mapping[str, str]] = {
+        "law": "law",
+        "centrodes": "pair",
+        "gear 1": "gear1",
+        "gear 2": "gear2",
+        "checks": "checked",
+    }
 
     @cached_property
     def law(self) -> RatioLaw:
@@ -229,7 +226,7 @@ class GearPairResult(PartsResult):
         steps, limits = self.steps, self.design.limits
         parts = self.parts_subject if self.ordered else None
         with self.stage("checks"):
-            findings = [*run_checks(KIND, self.subject, limits), *self.row_findings()]
+            findings = [*run_checks(KIND, self.subject, limits), *self.row_findings]
             for number, gears in enumerate(steps[1:], start=2):
                 findings += (
                     replace(finding, where=f"step {number}, {finding.where}")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 from gearcam.base.errors import ABOVE, DesignError, InfeasibleError, Problem, beyond_limit
 from gearcam.base.numerals import formatted
-from gearcam.linkages.dwells import DriverRange, ShortRangeError, last_travels
+from gearcam.linkages.dwells import WHOLE, DriverRange, ShortRangeError, last_travels
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.build import MechanismResult
@@ -44,7 +44,7 @@ def _last_bit(result: MechanismResult, number: int) -> DriverRange:
         raise InfeasibleError(
             f"{one.on} turns on and has no dead centre", where=f"interval[{number}].on"
         )
-    if travel < most:
+    if travel <= most * WHOLE:
         try:
             return last_travels(measures, travel, outer=one.before == "outer")[0]
         except ShortRangeError as error:

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property, partial
 from itertools import chain
-from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -87,7 +86,11 @@ class MechanismResult(Result):
     """
 
     design: MechanismDesign
-    stages = MappingProxyType({"drives": "drives", "linkage": "linkage", "checks": "checked"})
+    stages: ClassVar[Mapping[str, str]] = {
+        "drives": "drives",
+        "linkage": "linkage",
+        "checks": "checked",
+    }
     before_studies = ("drives", "linkage")
 
     _given: tuple[PlacedDrive, ...] = ()

@@ -27,7 +27,7 @@ from gearcam.linkages.coordinates import (
     WorkCoordinate,
     WorkState,
 )
-from gearcam.linkages.dwells import ShortRangeError, last_travels
+from gearcam.linkages.dwells import WHOLE, ShortRangeError, last_travels
 from gearcam.linkages.efforts import (
     GRAVITY,
     SPRINGS,
@@ -181,7 +181,7 @@ class _Efforts:
     ) -> tuple[tuple[float, float], ...]:
         measures = self._measures(self._way(load.on))
         where = f"load[{number}].travel_mm"
-        if travel >= measures.stroke:
+        if travel > measures.stroke * WHOLE:
             what = f"{load.on} has not so much travel"
             raise beyond_limit(what, where, travel, measures.stroke, unit="mm")
         try:

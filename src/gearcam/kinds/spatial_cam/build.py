@@ -108,7 +108,7 @@ class SpatialCamResult(GriddedCam):
     def cam(self) -> SpatialCam:
         """The cam; its walls and measures are computed on demand."""
         program, design = self.program, self.solved
-        with self.stage("cam"):
+        with self.stage("cam"), self.naming_rows():
             return make_cylinder(program, design.follower, design.cam, design.blank.bore)
 
     @property
@@ -119,15 +119,19 @@ class SpatialCamResult(GriddedCam):
     @property
     def lift_unit(self) -> tuple[float, str]:
         """Factor and unit of the lift in output."""
-        return (math.degrees(1.0), "deg") if self.design.follower.oscillating else (1.0, "mm")
+        return (math.degrees(1.0), "deg") if self.angular else (1.0, "mm")
+
+    @property
+    def angular(self) -> bool:
+        """Whether lifts are angles."""
+        return self.design.follower.oscillating
 
     @cached_property
     def checked(self) -> tuple[Finding, ...]:
         """Findings of the checks, errors first."""
         from gearcam.spatial.checks import KIND, SOLID
 
-        swings = self.design.follower.oscillating
-        return self.findings_of(KIND, SOLID, (self.cam, self.blank), oscillating=swings)
+        return self.findings_of(KIND, SOLID, (self.cam, self.blank))
 
     def motion(self, theta: ArrayLike | None = None) -> Columns:
         """Return the motion of the follower and the pressure angles.
