@@ -63,8 +63,38 @@ def stray_in(given: Given) -> Iterator[StrayRow]:
         )
 
 
-def row_findings(design: Any, *, oscillating: bool = False) -> tuple[Finding, ...]:
-    """Return the findings of the rows of all tables of a design.
+def row_findings(tables: list[tuple[str, Given]]) -> tuple[Finding, ...]:
+    """Return the findings of the rows of tables.
+
+    Parameters
+    ----------
+    tables : list of (str, Given)
+        As of `given_in`.
+    """
+    return run_checks(KIND, tables, {})
+
+
+def refused_for_row(
+    tables: list[tuple[str, Given]], error: InfeasibleError
+) -> InfeasibleError | None:
+    """Return the refusal of the first stray row of tables, from which another may follow.
+
+    Parameters
+    ----------
+    tables : list of (str, Given)
+        As of `given_in`.
+    error : InfeasibleError
+        The other refusal.
+    """
+    for place, given in tables:
+        for row in stray_in(given):
+            where, note = f"{place}, {row.where}", f"as it is, {error.what}"
+            return InfeasibleError(f"the {row.text}", where=where, nearest=note)
+    return None
+
+
+def given_in(design: Any, *, oscillating: bool) -> Iterator[tuple[str, Given]]:
+    """Yield the rows of a design that should lie on curves, with the key of what they belong to.
 
     Parameters
     ----------
@@ -73,30 +103,6 @@ def row_findings(design: Any, *, oscillating: bool = False) -> tuple[Finding, ..
     oscillating : bool
         Whether lifts are angles.
     """
-    return run_checks(KIND, [*_given_in(design, oscillating=oscillating)], {})
-
-
-def refused_for_row(
-    design: Any, error: InfeasibleError, *, oscillating: bool
-) -> InfeasibleError | None:
-    """Return the refusal of the first stray row of a design, from which another may follow.
-
-    Parameters
-    ----------
-    design, oscillating
-        As of `row_findings`.
-    error : InfeasibleError
-        The other refusal.
-    """
-    for place, given in _given_in(design, oscillating=oscillating):
-        for row in stray_in(given):
-            where, note = f"{place}, {row.where}", f"as it is, {error.what}"
-            return InfeasibleError(f"the {row.text}", where=where, nearest=note)
-    return None
-
-
-def _given_in(design: Any, *, oscillating: bool) -> Iterator[tuple[str, Given]]:
-    """Yield the rows that should lie on curves, with the key of what they belong to."""
     for field in fields(design):
         part = getattr(design, field.name)
         several = isinstance(part, tuple)

@@ -58,7 +58,7 @@ def snapped(values: Array, marks: Array, within: ArrayLike) -> Array:
 
 
 def opposite(one: Array, other: Array) -> Mask:
-    """Return where numbers have opposite signs, neither 0; products of small ones would be 0."""
+    """Return where `one` and `other` have opposite signs; their products may underflow to 0."""
     return np.sign(one) * np.sign(other) < 0.0
 
 

@@ -37,6 +37,7 @@ from gearcam.results.written import BuildOutput, demand_formats, versions
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from gearcam.laws.columns import Given
     from gearcam.numeric.pose import SpacePose
     from gearcam.parts.solids import Mesh
     from gearcam.pictures.charts import Chart
@@ -276,19 +277,27 @@ class Result(NotebookView):
         columns = sys.modules.get("gearcam.laws.columns")  # loaded if a design has a table
         return [*columns.tables_in(self.design)] if columns else []
 
-    @property
-    def angular(self) -> bool:
-        """Whether lifts are angles."""
-        return False
+    @cached_property
+    def given_rows(self) -> list[tuple[str, Given]]:
+        """The rows of tables that should lie on curves, with the keys of what they belong to."""
+        return self._given_rows(oscillating=False)
+
+    def _given_rows(self, *, oscillating: bool) -> list[tuple[str, Given]]:
+        """Return the same where lifts are angles, or mm."""
+        if all(table.given(oscillating=oscillating) is None for table in self._tables):
+            return []
+        from gearcam.laws.row_checks import given_in
+
+        return [*given_in(self.design, oscillating=oscillating)]
 
     @property
     def row_findings(self) -> tuple[Finding, ...]:
         """The findings of the rows of all tables of the design."""
-        if all(table.given(oscillating=self.angular) is None for table in self._tables):
+        if not self.given_rows:
             return ()
         from gearcam.laws.row_checks import row_findings
 
-        return row_findings(self.design, oscillating=self.angular)
+        return row_findings(self.given_rows)
 
     @contextmanager
     def naming_rows(self) -> Iterator[None]:
@@ -298,7 +307,7 @@ class Result(NotebookView):
         except InfeasibleError as error:
             from gearcam.laws.row_checks import refused_for_row
 
-            named = refused_for_row(self.design, error, oscillating=self.angular)
+            named = refused_for_row(self.given_rows, error)
             if named is None:
                 raise
             raise named from error

@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from gearcam.cams.followers import Follower
     from gearcam.cams.wall import PitchMotion, Wall
     from gearcam.kinds.cam.solve import Solution
+    from gearcam.laws.columns import Given
     from gearcam.parts.body import Part
     from gearcam.parts.checks import CheckedParts
     from gearcam.pictures.drawings import Drawing
@@ -112,10 +113,10 @@ class CamResult(PartsResult):
         with self.stage("cam"), self.naming_rows():
             return self.form.make(program)
 
-    @property
-    def angular(self) -> bool:
-        """Whether lifts are angles."""
-        return self.design.follower.oscillating
+    @cached_property
+    def given_rows(self) -> list[tuple[str, Given]]:
+        """The rows of tables that should lie on curves (see `Result`)."""
+        return self._given_rows(oscillating=self.design.follower.oscillating)
 
     @property
     def follower(self) -> Follower:

@@ -34,6 +34,7 @@ from gearcam.spatial.surface import (
 )
 
 if TYPE_CHECKING:
+    from gearcam.laws.columns import Given
     from gearcam.numeric.pose import SpacePose
     from gearcam.parts.bands import BandedBody
     from gearcam.spatial.milling import RotaryPath
@@ -119,12 +120,12 @@ class SpatialCamResult(GriddedCam):
     @property
     def lift_unit(self) -> tuple[float, str]:
         """Factor and unit of the lift in output."""
-        return (math.degrees(1.0), "deg") if self.angular else (1.0, "mm")
+        return (math.degrees(1.0), "deg") if self.design.follower.oscillating else (1.0, "mm")
 
-    @property
-    def angular(self) -> bool:
-        """Whether lifts are angles."""
-        return self.design.follower.oscillating
+    @cached_property
+    def given_rows(self) -> list[tuple[str, Given]]:
+        """The rows of tables that should lie on curves (see `Result`)."""
+        return self._given_rows(oscillating=self.design.follower.oscillating)
 
     @cached_property
     def checked(self) -> tuple[Finding, ...]:
