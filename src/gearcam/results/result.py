@@ -277,7 +277,7 @@ class Result(NotebookView):
         columns = sys.modules.get("gearcam.laws.columns")  # loaded if a design has a table
         return [*columns.tables_in(self.design)] if columns else []
 
-    @cached_property
+    @property
     def given_rows(self) -> list[tuple[str, Given]]:
         """The rows of tables that should lie on curves, with the keys of what they belong to."""
         return self._given_rows(oscillating=False)
@@ -293,11 +293,11 @@ class Result(NotebookView):
     @property
     def row_findings(self) -> tuple[Finding, ...]:
         """The findings of the rows of all tables of the design."""
-        if not self.given_rows:
+        if not (tables := self.given_rows):
             return ()
         from gearcam.laws.row_checks import row_findings
 
-        return row_findings(self.given_rows)
+        return row_findings(tables)
 
     @contextmanager
     def naming_rows(self) -> Iterator[None]:

@@ -113,7 +113,7 @@ class CamResult(PartsResult):
         with self.stage("cam"), self.naming_rows():
             return self.form.make(program)
 
-    @cached_property
+    @property
     def given_rows(self) -> list[tuple[str, Given]]:
         """The rows of tables that should lie on curves (see `Result`)."""
         return self._given_rows(oscillating=self.design.follower.oscillating)

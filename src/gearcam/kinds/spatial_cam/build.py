@@ -122,7 +122,7 @@ class SpatialCamResult(GriddedCam):
         """Factor and unit of the lift in output."""
         return (math.degrees(1.0), "deg") if self.design.follower.oscillating else (1.0, "mm")
 
-    @cached_property
+    @property
     def given_rows(self) -> list[tuple[str, Given]]:
         """The rows of tables that should lie on curves (see `Result`)."""
         return self._given_rows(oscillating=self.design.follower.oscillating)
