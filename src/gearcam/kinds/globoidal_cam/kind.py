@@ -49,7 +49,12 @@ KIND: Final = Kind(
     example={
         "index": {"law": "modified-sine", "angle_deg": 120},
         "turret": {"stops": 8, "roller_radius_mm": 6, "roller_length_mm": 11, "reach_mm": 47},
-        "cam": {"form": "globoidal", "center_distance_mm": 84},
+        "cam": {
+            "form": "globoidal",
+            "center_distance_mm": 84,
+            "roller_clearance_mm": 0.05,
+            "floor_clearance_mm": 0.5,
+        },
         "blank": {"bore_diameter_mm": 20},
         "output": {"files": ["stl", "csv", "report"]},
     },

@@ -40,6 +40,8 @@ KIND: Final = Kind(
             "length_mm": 60,
             "lowest_mm": 17,
             "groove_depth_mm": 12,
+            "roller_clearance_mm": 0.05,
+            "floor_clearance_mm": 0.5,
         },
         "blank": {"bore_diameter_mm": 20},
         "output": {"files": ["stl", "csv", "report"]},
