@@ -39,6 +39,7 @@ WITHOUT_KEYS = {
     "unknown-law": "at most",
     "wide-kerf": "at most",
     "contact-ratio": "at least",
+    "undercut": "at least",  # of globoidal cams: the spread
 }
 """Relations of checks whose limits have no key."""
 
