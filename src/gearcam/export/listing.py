@@ -148,7 +148,8 @@ def aside(path: Path, content: bytes, written: str = "") -> Path | None:
     Returns
     -------
     Path or None
-        A free name; None if there is no file, or it has one of these contents.
+        A free name. None if there is no file, or if its content is the new one or what gearcam
+        wrote last.
 
     Raises
     ------

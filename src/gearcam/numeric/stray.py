@@ -21,7 +21,7 @@ _REACH: Final = 8
 cubics are compared."""
 
 _FEWEST: Final = 13
-"""Fewest rows of a table in which one is told."""
+"""Fewest rows of a table in which a stray one can be found."""
 
 _CLEAR: Final = 15.0
 """Least ratio of the distances: twice that of any row of the laws, however coarse or noisy."""

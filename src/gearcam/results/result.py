@@ -308,7 +308,7 @@ class Result(NotebookView):
             from gearcam.laws.row_checks import refused_for_row
 
             named = refused_for_row(self.given_rows, error)
-            if named is None:
+            if named is None or named.where == error.where:  # which names it already
                 raise
             raise named from error
 

@@ -204,6 +204,7 @@ def test_a_cam_that_is_refused_for_a_row_names_the_row(name: str, sizes: dict[st
     with pytest.raises(gc.InfeasibleError, match=r"is out of line.* suggest") as caught:
         _ = [gc.build(design).files(one) for one in design.output.files]
     assert caught.value.where == "motion, lift[15], at 75 deg"
+    assert "out of line" not in caught.value.nearest  # but why it is refused
 
 
 def test_a_table_with_ends_is_looked_at_between_them() -> None:
