@@ -44,6 +44,14 @@ def text(browser: Chrome, place: str) -> str:
     return browser.find_element(By.ID, place).text
 
 
+def front(browser: Chrome) -> list[str]:
+    """Return the first column of the front, read at once: the page may draw it anew meanwhile."""
+    return browser.execute_script(
+        "return [...document.querySelectorAll('#front tr td:first-child')]"
+        ".map((cell) => cell.textContent)"
+    )
+
+
 def drawn(browser: Chrome, place: str) -> int:
     """Return how many pixels of a canvas are not empty."""
     return browser.execute_script(
@@ -164,11 +172,9 @@ def test_a_range_is_moved_and_all_are_kept_again(opened: Chrome) -> None:
 def test_the_front_is_that_of_the_variants_that_are_kept(opened: Chrome, rows: list[Built]) -> None:
     unfold(opened)
     Select(opened.find_element(By.NAME, "pair.ratio.min")).select_by_value("-1")
-    place = "#front tr td:first-child"
-    best = until(lambda: opened.find_elements(By.CSS_SELECTOR, place))
-    assert [one.text for one in best] == ["0"]
+    until(lambda: front(opened) == ["0"])
     opened.execute_script("ranges.set('law.eccentricity', [0.22, 1]); draw()")
-    until(lambda: [one.text for one in opened.find_elements(By.CSS_SELECTOR, place)] == ["4"])
+    until(lambda: front(opened) == ["4"])
     ratios = [float(row.facts["pair.ratio.min"]) for row in rows[4:10]]
     assert max(ratios) == ratios[0]
 
@@ -268,7 +274,7 @@ def test_the_front_is_that_of_all_pairs(browser: Chrome, tmp_path: Path) -> None
     file.write_bytes(page(BASE, made, [], {"a": 1.0, "b": -1.0}))
     open_page(browser, file)
     good = [k for k in range(300) if k % 7]
-    front = {
+    best = {
         k
         for k in good
         if not any(
@@ -278,14 +284,12 @@ def test_the_front_is_that_of_all_pairs(browser: Chrome, tmp_path: Path) -> None
             for j in good
         )
     }
-    rows = browser.find_elements(By.CSS_SELECTOR, "#front tr td:first-child")
-    assert {int(one.text) for one in rows} == front
+    assert {int(one) for one in front(browser)} == best
     unfold(browser)
     Select(browser.find_element(By.NAME, "b")).select_by_value("")
     settle(browser)
-    rows = browser.find_elements(By.CSS_SELECTOR, "#front tr td:first-child")
     least = min(values[k, 0] for k in good)
-    assert {int(one.text) for one in rows} == {k for k in good if values[k, 0] == least}
+    assert {int(one) for one in front(browser)} == {k for k in good if values[k, 0] == least}
 
 
 def test_it_is_read_on_a_phone_and_in_the_dark(
