@@ -12,7 +12,7 @@ import numpy as np
 
 import gearcam
 from gearcam.kinds.gridded import mesh_from
-from gearcam.kinds.spatial_cam.build import SpatialCamResult
+from gearcam.kinds.spatial_cam.result import SpatialCamResult
 from gearcam.parts.solids import carved
 from gearcam.spatial import globoidal_carving, globoidal_surface
 from gearcam.spatial.surface import chord_error, surface

@@ -11,8 +11,8 @@ import pytest
 from gearcam.base.errors import DesignError, Problem
 from gearcam.cams.sliding import SlidingCam
 from gearcam.designs import loads
-from gearcam.kinds.cam.build import CamResult
 from gearcam.kinds.cam.design import CamDesign
+from gearcam.kinds.cam.result import CamResult
 from helpers_built import built as shared
 from helpers_pairs import PROFILES
 

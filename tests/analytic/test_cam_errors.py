@@ -19,7 +19,7 @@ import pytest
 
 import gearcam
 from gearcam.designs.writing import toml_text
-from gearcam.kinds.cam.accuracy import error_rows
+from gearcam.kinds.cam.result import error_rows
 from helpers_cam_truth import faults, judged, rows
 from random_designs.cam import design as cam
 from random_designs.draw import Draw

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import gearcam
-from gearcam.kinds.cam.build import CamResult
+from gearcam.kinds.cam.result import CamResult
 from gearcam.kinds.gear_pair.result import GearPairResult, Side
 from gearcam.laws.ratio.constant import Constant
 from gearcam.laws.ratio.ellipse import Ellipse

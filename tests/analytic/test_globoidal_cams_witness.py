@@ -12,7 +12,7 @@ import pytest
 import fuzz.cross_checks_globoidal as checks
 import gearcam as gc
 from gearcam.base.errors import GearcamError
-from gearcam.kinds.globoidal_cam.build import GloboidalCamResult
+from gearcam.kinds.globoidal_cam.result import GloboidalCamResult
 from random_designs.designs import design
 from witness.roller_of_turret import Wheel
 

@@ -18,7 +18,7 @@ import pytest
 import fuzz.cross_checks_spatial as checks
 import gearcam as gc
 from gearcam.base.errors import GearcamError
-from gearcam.kinds.spatial_cam.build import SpatialCamResult
+from gearcam.kinds.spatial_cam.result import SpatialCamResult
 from gearcam.spatial.cam import SpatialWall
 from gearcam.spatial.guides import SwingArm
 from gearcam.spatial.trimmed import LostLift, TrimmedWall, lost_lift

@@ -25,7 +25,7 @@ from gearcam.report.file import framed, report_files
 
 TOY = Path(__file__).parents[1] / "toy_kinds"
 HOME = rules.SOURCE / "kinds"
-NAMES = sorted(folder.name for folder in HOME.iterdir() if (folder / "kind.py").exists())
+NAMES = sorted(folder.name for folder in HOME.iterdir() if (folder / "design.py").exists())
 NAMED = re.compile(
     rf"""["'](?:{"|".join({*NAMES, *(name.replace("_", "-") for name in NAMES)})})["']"""
     rf"""|\bkinds\.(?:{"|".join(NAMES)})\b|\b(?:GearPair|Cam)(?:Design|Result)\b"""
@@ -85,7 +85,7 @@ def in_circles(used: Mapping[str, set[str]]) -> set[str]:
 
 def test_kinds_use_the_public_parts_of_others_in_one_direction() -> None:
     homes = {name: HOME / name for name in NAMES}
-    homes |= {folder.name: folder for folder in TOY.iterdir() if (folder / "kind.py").exists()}
+    homes |= {folder.name: folder for folder in TOY.iterdir() if (folder / "design.py").exists()}
     found = {name: uses(home, homes.keys() - {name}) for name, home in homes.items()}
     assert {name: wrong for name, (_, wrong) in found.items() if wrong} == {}
     assert in_circles({name: used for name, (used, _) in found.items()}) == set()
@@ -96,9 +96,9 @@ def test_kinds_use_the_public_parts_of_others_in_one_direction() -> None:
     ("line", "used", "wrong"),
     [
         ("from gearcam.kinds.cam.public import CamDesign", {"cam"}, 0),
-        ("from gearcam.kinds.cam.build import CamResult", {"cam"}, 1),
+        ("from gearcam.kinds.cam.result import CamResult", {"cam"}, 1),
         ("from gearcam.kinds.cam import forms", {"cam"}, 1),
-        ("import gearcam.kinds.cam.facts", {"cam"}, 1),
+        ("import gearcam.kinds.cam.shown", {"cam"}, 1),
         ("from gearcam.kinds.shared import AccuracySpec", set(), 0),
         ('x = quantities.nested("cam", doc="a cam")', {"cam"}, 0),
     ],
@@ -106,7 +106,7 @@ def test_kinds_use_the_public_parts_of_others_in_one_direction() -> None:
 def test_the_use_of_another_kind_is_seen(
     tmp_path: Path, line: str, used: set[str], wrong: int
 ) -> None:
-    (tmp_path / "kind.py").write_text(line + "\n")
+    (tmp_path / "design.py").write_text(line + "\n")
     found = uses(tmp_path, NAMES)
     assert (found[0], len(found[1])) == (used, wrong)
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from gearcam.cams.precision import sensitivities
 from gearcam.cams.wall import Wall
-from gearcam.kinds.cam.build import CamResult
 from gearcam.kinds.cam.follow import followed
+from gearcam.kinds.cam.result import CamResult
 from gearcam.numeric.arrays import Array
 
 _ANGLES: Final = 120

@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from gearcam.kinds.globoidal_cam.build import GloboidalCamResult
+from gearcam.kinds.globoidal_cam.result import GloboidalCamResult
 from witness.roller_of_turret import Wheel
 
 _ANGLES: Final = 9

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from gearcam.kinds.spatial_cam.build import SpatialCamResult
+from gearcam.kinds.spatial_cam.result import SpatialCamResult
 from gearcam.spatial.cam import SpatialWall
 from gearcam.spatial.trimmed import TrimmedWall
 from witness.roller_in_space import TURN, Mechanism

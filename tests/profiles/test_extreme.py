@@ -12,7 +12,7 @@ import pytest
 import shapely
 
 import gearcam
-from gearcam.kinds.cam.build import CamResult
+from gearcam.kinds.cam.result import CamResult
 from gearcam.kinds.gear_pair.result import GearPairResult
 from helpers_extreme import EXTREME, misses, must_of, outcome, whole, with_nearest
 from helpers_pairs import Assembly, explained

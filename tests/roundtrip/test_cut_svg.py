@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from gearcam.export.cut_svg import cut_svg
 from gearcam.export.laser_sheet import GAP, labelled, nested, strokes, text_width
-from gearcam.kinds.cam.build import CamResult
+from gearcam.kinds.cam.result import CamResult
 from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.numeric.arrays import as_pairs, bounds
 from gearcam.numeric.contour import Contour

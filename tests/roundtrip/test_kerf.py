@@ -20,7 +20,7 @@ from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.base.quantities import LEAST_ALLOWANCE
 from gearcam.designs import load, loads
 from gearcam.export.dxf_read import DxfError, read_dxf, read_outline
-from gearcam.kinds.cam.build import CamResult
+from gearcam.kinds.cam.result import CamResult
 from gearcam.kinds.gear_pair.design import PairOutputSpec
 from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.parts.blank import Blank, WheelBlank

@@ -19,8 +19,8 @@ from ezdxf import path as ezpath
 from gearcam.export.step import step_bytes
 from gearcam.gears.spec import RingSpec, StepsSpec
 from gearcam.kinds.gear_pair.design import PairOutputSpec
-from gearcam.kinds.gear_pair.files import FILES
 from gearcam.kinds.gear_pair.result import GearPairResult
+from gearcam.kinds.gear_pair.shown import FILES
 from gearcam.numeric.arrays import as_pairs
 from gearcam.numeric.pose import UNMOVED
 from gearcam.parts.blank import Blank

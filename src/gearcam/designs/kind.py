@@ -1,6 +1,6 @@
 """The kinds of design: how a design of each kind is read, and the outcome of validating one.
 
-Each kind is a folder of the package `gearcam.kinds`, found by its name; its module `kind` has its
+Each kind is a folder of the package `gearcam.kinds`, found by its name; its module `design` has its
 ``KIND``. No other code names a kind, and only the kind of the design at hand is imported. What a
 kind does beside reading (results, files, charts, studies) is in `gearcam.results.kind.Kind`.
 """
@@ -379,7 +379,7 @@ class _Kinds(Mapping[str, DesignKind]):
     def __getitem__(self, name: str) -> DesignKind:
         if name not in _names():
             raise KeyError(name)
-        return importlib.import_module(f"{_package(name)}.kind").KIND
+        return importlib.import_module(f"{_package(name)}.design").KIND
 
 
 KINDS: Final[Mapping[str, DesignKind]] = _Kinds()

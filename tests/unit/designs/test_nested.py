@@ -305,10 +305,10 @@ def train(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     place = folder / "kinds" / "train"
     place.mkdir(parents=True)
     (place / "__init__.py").touch()
-    (place / "kind.py").write_text(TRAIN)
+    (place / "design.py").write_text(TRAIN)
     monkeypatch.setattr(kinds, "__path__", [*kinds.__path__, str(folder / "kinds")])
     monkeypatch.delitem(sys.modules, "gearcam.kinds.train", raising=False)
-    monkeypatch.delitem(sys.modules, "gearcam.kinds.train.kind", raising=False)
+    monkeypatch.delitem(sys.modules, "gearcam.kinds.train.design", raising=False)
     return folder
 
 

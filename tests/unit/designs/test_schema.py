@@ -23,7 +23,7 @@ from gearcam.designs.schema import schema
 from gearcam.designs.template import template
 from gearcam.kinds.cam.motion import WITH_LAW, phase_table, rise_table, turn_tables
 from gearcam.kinds.gear_pair.design import law_table
-from gearcam.kinds.globoidal_cam.index import index_table
+from gearcam.kinds.globoidal_cam.design import index_table
 from gearcam.laws.motion.base import MOTION_LAWS
 from gearcam.laws.phases_of_lift import PHASES
 from gearcam.laws.ratio.base import LAWS

@@ -16,7 +16,7 @@ import pytest
 import gearcam as gc
 from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.kinds.gear_pair.parts import make_parts
-from gearcam.kinds.gridded_facts import solid_facts
+from gearcam.kinds.gridded_shown import solid_facts
 from helpers_pairs import PROFILES
 from helpers_sampling import chosen
 

@@ -15,7 +15,7 @@ import pytest
 
 import gearcam
 from gearcam.base.errors import DesignError, InfeasibleError
-from gearcam.kinds.cam.build import CamResult
+from gearcam.kinds.cam.result import CamResult
 from gearcam.kinds.gear_pair.result import GearPairResult
 from gearcam.laws.ratio.ellipse import Ellipse
 from gearcam.numeric.columns import Columns

@@ -9,16 +9,28 @@ from typing import TYPE_CHECKING, Any, Final, get_args
 
 from gearcam.base.numerals import formatted, shortened
 from gearcam.base.quantities import Solve
+from gearcam.base.registry import DeferredMapping, deferred
 from gearcam.base.rules import Rule, only_with
-from gearcam.cams.spec import FOLLOWERS, POINTED, CamSpec, FollowerSpec
+from gearcam.cams.spec import (
+    FITTED,
+    FOLLOWED,
+    FOLLOWERS,
+    FORCES,
+    POINTED,
+    PRECISION,
+    CamSpec,
+    FollowerSpec,
+)
+from gearcam.cams.spec import KIND as CAM
 from gearcam.designs.design import Design, Wanted, document_of
 from gearcam.designs.faults import Fault, show
 from gearcam.designs.kind import Examined
 from gearcam.designs.table import table_of
 from gearcam.designs.validate import placed_faults
 from gearcam.kinds.cam.forms.base import FORMS, VARIANTS
-from gearcam.kinds.cam.motion import phases_wanted
+from gearcam.kinds.cam.motion import MOTION, phases_wanted
 from gearcam.kinds.cam.tables import (
+    CAM_FORMATS,
     GOALS,
     BoundsSpec,
     CamBlank,
@@ -34,11 +46,13 @@ from gearcam.mechanics.load import LoadSpec
 from gearcam.mechanics.mass import GravitySpec, MassSpec
 from gearcam.mechanics.material import MaterialSpec
 from gearcam.mechanics.spring import SpringSpec
+from gearcam.parts.blank import KIND as PARTS
+from gearcam.results.kind import Kind
 
 if TYPE_CHECKING:
-    from gearcam.kinds.cam.build import CamResult
     from gearcam.kinds.cam.forms.translating import PlateBlank
     from gearcam.kinds.cam.motion import Motion
+    from gearcam.kinds.cam.result import CamResult
     from gearcam.parts.blank import WheelBlank
 
 NAME: Final = "cam"
@@ -303,3 +317,75 @@ def _tool_faults(output: Any, follower: Any) -> Iterator[Fault]:
     if asked and kind in ("flat", *POINTED) and "tool_radius_mm" not in output:
         message = f"is missing: a {kind} follower has no radius that a cutter could have"
         yield Fault(("output", "tool_radius_mm"), message, allowed="a radius above 0")
+
+
+_HERE: Final = "gearcam.kinds.cam"
+
+KIND: Final = Kind(
+    name=NAME,
+    doc="a cam with its follower",
+    design=CamDesign,
+    result=deferred(f"{_HERE}.result:CamResult"),
+    main=MOTION,
+    variants=VARIANTS,
+    required=("follower", "cam"),
+    rules=RULES,
+    problems=problems,
+    formats=CAM_FORMATS,
+    check_modules=(
+        "gearcam.cams.checks",
+        "gearcam.laws.row_checks",
+        "gearcam.cams.force_checks",
+        "gearcam.parts.checks",
+    ),
+    check_groups=(CAM, "rows of tables", PARTS, FOLLOWED, FITTED, FORCES, PRECISION),
+    study_tables={name: name for name in ("follow", "forces", "precision", "accuracy")},
+    example={
+        "motion": [
+            {"type": "rise", "angle_deg": 120, "law": "cycloidal", "lift_mm": 10},
+            {"type": "dwell", "angle_deg": 60},
+            {"type": "return", "angle_deg": 120, "law": "cycloidal"},
+            {"type": "dwell", "angle_deg": "rest"},
+        ],
+        "follower": {"type": "roller", "motion": "translating", "roller_radius_mm": 8},
+        "cam": {"prime_radius_mm": 42, "thickness_mm": 10},
+        "blank": {"bore_diameter_mm": 8},
+        "output": {"files": ["dxf", "csv", "report"]},
+    },
+    shown={
+        "goal": {
+            "minimize": "cam.profile.radius_mm.max",
+            "maximize": "cam.curvature.profile_convex_min_mm",
+        }
+    },
+    processes={
+        "printing": {
+            "cam": {"thickness_mm": 8},
+            "blank": {"clearance_mm": 0.05, "clearance_bores": True},
+            "output": {"files": ["stl", "report"], "chord_tolerance_mm": 0.01},
+        },
+        "laser": {
+            "cam": {"thickness_mm": 4},
+            "output": {
+                "files": ["dxf", "cut-svg", "report"],
+                "kerf_mm": 0.15,
+                "chord_tolerance_mm": 0.02,
+            },
+        },
+        "wire": {
+            "output": {"files": ["dxf", "report"], "kerf_mm": 0.3, "chord_tolerance_mm": 0.002}
+        },
+    },
+    notes={
+        "motion": "Phases of the motion, one after the other, 360 deg in all.",
+        "cam": "give prime_radius_mm or base_radius_mm; with a flat follower base_radius_mm",
+    },
+    facts=deferred(f"{_HERE}.shown:facts"),
+    files=DeferredMapping(f"{_HERE}.shown:FILES"),
+    charts=DeferredMapping(f"{_HERE}.drawn:CHARTS"),
+    scene=deferred(f"{_HERE}.drawn:scene"),
+    advice=deferred(f"{_HERE}.hints:CamAdvice"),
+    studies=DeferredMapping(f"{_HERE}.studies:STUDIES"),
+    ladders=DeferredMapping(f"{_HERE}.studies:LADDERS"),
+    public=DeferredMapping(f"{_HERE}.public:PUBLIC"),
+)

@@ -32,8 +32,8 @@ from gearcam.pictures.charts import Chart, Limit, Line, MarkedPlace
 
 if TYPE_CHECKING:
     from gearcam.cams.wall import Wall
-    from gearcam.kinds.cam.build import CamResult
     from gearcam.kinds.cam.design import CamDesign
+    from gearcam.kinds.cam.result import CamResult
     from gearcam.results.result import StudyResult
 
 _FORMS: Final = ("disc", "groove", "conjugate")

@@ -16,7 +16,7 @@ from gearcam.cams.burdens import Loads
 from gearcam.cams.force_checks import Loaded, on_way
 from gearcam.cams.spec import FORCES
 from gearcam.cams.statics import Statics
-from gearcam.kinds.cam.charts import knots_of, places_of
+from gearcam.kinds.cam.drawn import knots_of, places_of
 from gearcam.kinds.cam.hints import enlarged
 from gearcam.kinds.cam.under_load import efficiency_away_from_rest, pressure_of, under_load
 from gearcam.mechanics.hertz import half_width
@@ -26,7 +26,7 @@ from gearcam.results.result import StudyResult
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from gearcam.kinds.cam.build import CamResult
+    from gearcam.kinds.cam.result import CamResult
     from gearcam.numeric.arrays import Array, Ints
     from gearcam.results.kind import Study
     from gearcam.results.result import Progress

@@ -3,6 +3,8 @@
 Each phase has the keys of its type and of its law. A rise and a return have a ``law`` of the
 registry `gearcam.laws.motion.base.MOTION_LAWS`, whose parameters are further keys of the phase. The
 whole turn is given by a formula, ``lift``, or by rows.
+
+`MOTION` is what all kinds take whose designs have a motion.
 """
 
 from __future__ import annotations
@@ -12,11 +14,11 @@ from functools import cache, partial
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from gearcam.base.quantities import OPPOSITES
-from gearcam.base.registry import classes_in, name_of
+from gearcam.base.registry import classes_in, deferred, name_of
 from gearcam.designs.design import Wanted
 from gearcam.designs.examine import chosen, home_of
 from gearcam.designs.faults import Fault, quoted, show
-from gearcam.designs.kind import KINDS, Examined
+from gearcam.designs.kind import KINDS, Examined, Main
 from gearcam.designs.lines import Path
 from gearcam.designs.slips import misspelt
 from gearcam.designs.table import Table, table_of
@@ -346,3 +348,18 @@ def homes() -> dict[str, str]:
     homes = {key: f"this key belongs under [[{TITLE}]] {words}" for key, words in found.items()}
     turns = (key for known in turn_tables() for key in known.entries)
     return dict.fromkeys(turns, f"this key belongs under [{TITLE}]") | homes
+
+
+_DESCRIBED: Final = "gearcam.kinds.cam.describe"
+
+MOTION: Final = Main(
+    title=TITLE,
+    examine=examine_motion,
+    document=motion_document,
+    table=deferred(f"{_DESCRIBED}:known"),
+    homes=homes,
+    schema=deferred(f"{_DESCRIBED}:schema"),
+    template=deferred(f"{_DESCRIBED}:lines"),
+    laws=deferred(f"{_DESCRIBED}:laws"),
+    words=words,
+)

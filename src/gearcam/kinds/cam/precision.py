@@ -28,7 +28,7 @@ from gearcam.results.result import StudyResult
 
 if TYPE_CHECKING:
     from gearcam.cams.cam import Cam
-    from gearcam.kinds.cam.build import CamResult
+    from gearcam.kinds.cam.result import CamResult
     from gearcam.numeric.arrays import Array
     from gearcam.results.kind import Study
     from gearcam.results.result import Progress

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from gearcam.cams.spec import CamSpec, FollowerSpec, PlateFollower
-from gearcam.kinds.cam.build import CamResult
 from gearcam.kinds.cam.design import CamDesign
 from gearcam.kinds.cam.forms.base import lift_program as lift_program
 from gearcam.kinds.cam.forms.conjugate import ConjugateFollower, ConjugateSpec
 from gearcam.kinds.cam.forms.groove import GrooveBlank, GrooveFollower, GrooveSpec
 from gearcam.kinds.cam.forms.translating import PlateBlank, PlateOutput, PlateSpec
 from gearcam.kinds.cam.forms.yoke import YokeFollower, YokeSpec
-from gearcam.kinds.cam.main import MOTION as MOTION
+from gearcam.kinds.cam.motion import MOTION as MOTION
 from gearcam.kinds.cam.motion import Motion as Motion
 from gearcam.kinds.cam.motion import phases_wanted as phases_wanted
+from gearcam.kinds.cam.result import CamResult
 from gearcam.kinds.cam.tables import (
     BoundsSpec,
     CamBlank,

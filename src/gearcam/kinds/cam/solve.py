@@ -44,7 +44,7 @@ from gearcam.kinds.cam.under_load import largest_pressure, loads_of
 from gearcam.parts.checks import KIND as PARTS_KIND
 
 if TYPE_CHECKING:
-    from gearcam.kinds.cam.build import CamResult
+    from gearcam.kinds.cam.result import CamResult
     from gearcam.numeric.arrays import Array
     from gearcam.pictures.charts import Chart
 

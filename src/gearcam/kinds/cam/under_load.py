@@ -18,7 +18,7 @@ from gearcam.numeric.piecewise import with_both_sides
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from gearcam.kinds.cam.build import CamResult
+    from gearcam.kinds.cam.result import CamResult
     from gearcam.numeric.arrays import Array, Ints
 
 _TOLD: Final = 0.1

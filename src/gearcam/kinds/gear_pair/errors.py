@@ -331,7 +331,7 @@ def _columns(
 
 def _charts(lines: Mapping[str, Running], trials: Array, unit: str) -> dict[str, Chart]:
     """Return transmission errors with and without errors, and the histogram of the trials."""
-    from gearcam.kinds.gear_pair.charts import DRIVER
+    from gearcam.kinds.gear_pair.drawn import DRIVER
 
     charts = {
         "transmission_error": Chart(

@@ -312,7 +312,7 @@ class GearPairResult(PartsResult):
     @cached_property
     def centrode_paths(self) -> tuple[Path, Path]:
         """Both centrodes as chains, each in its wheel's own frame, driver first."""
-        from gearcam.kinds.gear_pair.drawings import centrode_path
+        from gearcam.kinds.gear_pair.drawn import centrode_path
 
         lobes = self.law.lobes
         end = self.centrode_angles(2)[-1] if self.pair.on_rack else lobes.n2 * lobes.period
@@ -324,14 +324,14 @@ class GearPairResult(PartsResult):
     @cached_property
     def drawing(self) -> Drawing:
         """The assembled pair, with its centrodes."""
-        from gearcam.kinds.gear_pair.drawings import pair_drawing
+        from gearcam.kinds.gear_pair.drawn import pair_drawing
 
         return pair_drawing(self.parts, self.pair.shift, self.centrode_paths, poses=self.poses)
 
     @cached_property
     def sheets(self) -> tuple[Sheet, ...]:
         """The workshop drawings of both wheels and of the pair."""
-        from gearcam.kinds.gear_pair.sheet import PAIR_ROWS, pair_sheet
+        from gearcam.kinds.gear_pair.drawn import PAIR_ROWS, pair_sheet
         from gearcam.sheets.paper import sheet_rows
 
         design, pose = self.design, self.design.output.pose
@@ -343,7 +343,7 @@ class GearPairResult(PartsResult):
 
     def rows_of(self, number: int) -> Sequence[str]:
         """Return the names of the facts in the table of a wheel's drawing, by its `number`."""
-        from gearcam.kinds.gear_pair.sheet import wheel_rows
+        from gearcam.kinds.gear_pair.drawn import wheel_rows
 
         return wheel_rows(number)
 
@@ -509,7 +509,7 @@ class GearPairResult(PartsResult):
     @cached_property
     def error_rows(self) -> Estimates:
         """Error estimates and their methods by name, without those of chords and files."""
-        from gearcam.kinds.gear_pair.accuracy import error_rows
+        from gearcam.kinds.gear_pair.parts import error_rows
 
         return error_rows(self)
 

@@ -8,7 +8,7 @@ from typing import Any
 from gearcam.designs.listing import Listed
 from gearcam.designs.schema import chosen, table_schema, with_meanings
 from gearcam.designs.template import beside, entry_lines, key_line, law_comment
-from gearcam.kinds.globoidal_cam.index import TITLE, index_table, law_table
+from gearcam.kinds.globoidal_cam.design import TITLE, index_table, law_table
 from gearcam.laws.motion.base import MOTION_LAWS
 
 

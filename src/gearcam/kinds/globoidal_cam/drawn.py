@@ -1,30 +1,77 @@
-"""What is drawn of a globoidal cam: the globoid through the middle of its rollers, unrolled.
+"""What is drawn of a globoidal cam: charts over the cam angle, its sheet, its scene.
 
-The sheet is seen from outside. From left to right the azimuth in the cam's frame rises from 0 to
-360 deg, as lengths on the least circle of this globoid; upwards is the direction from the turret's
-axis, as lengths on the circle about it. Of a cam that turns counter-clockwise the cam angle
-therefore runs from right to left.
+The sheet is the globoid through the middle of the rollers, unrolled, seen from outside. From left
+to right the azimuth in the cam's frame rises from 0 to 360 deg, as lengths on the least circle of
+this globoid; upwards is the direction from the turret's axis, as lengths on the circle about it. Of
+a cam that turns counter-clockwise the cam angle therefore runs from right to left. In the scene the
+sheet is at rest and the rollers run along it; the solids move in space: the cam turns, and the
+turret with it.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from gearcam.kinds.gridded_scene import filled
+from gearcam.base.findings import limit_of
+from gearcam.kinds.globoidal_cam.result import TURRET
+from gearcam.kinds.gridded_drawn import (
+    filled,
+    motion_chart,
+    pressure_chart,
+    spread_chart,
+    unrolled_scene,
+)
 from gearcam.laws.phases_of_lift import TURN
 from gearcam.numeric.pose import Pose
 from gearcam.parts.shapes import Circle
+from gearcam.pictures.charts import Chart, Charts
 from gearcam.pictures.drawings import BLANK, FOLLOWER, GROOVE, PITCH, Drawing, Feature, Path, place
+from gearcam.pictures.scenes import PLACES, MovingBody, Scene
+from gearcam.spatial.globoidal_checks import KIND
 from gearcam.spatial.globoidal_surface import polar
 
 if TYPE_CHECKING:
-    from gearcam.kinds.globoidal_cam.build import GloboidalCamResult
+    from gearcam.kinds.globoidal_cam.result import GloboidalCamResult
     from gearcam.numeric.arrays import Array, Plane
     from gearcam.spatial.globoidal import GloboidalCam, GloboidalWall
+
+
+def _angle(result: GloboidalCamResult) -> Chart:
+    return motion_chart(result, "turret", "Angle of the turret", "angle")
+
+
+def _of_turret(name: str, result: GloboidalCamResult) -> Chart:
+    return motion_chart(result, name, f"{name.capitalize()} of the turret")
+
+
+def _pressure(result: GloboidalCamResult) -> Chart:
+    labels = {"top": "at the tops of the ribs", "mean": "in the middle", "end": "at its end"}
+    limit = limit_of(KIND, "pressure-angle", result.design.limits)
+    title = "Pressure angle of the roller nearest to the middle"
+    return pressure_chart(result, title, labels, limit)
+
+
+def _spread(result: GloboidalCamResult) -> Chart:
+    places = {"end of the roller": result.cam.reach, "top of the rib": result.cam.top}
+    title = "Spread of the walls at the roller nearest to the middle: undercut below 0"
+    return spread_chart(result, title, places)
+
+
+CHARTS: Final[Charts] = {
+    "turret": _angle,
+    "pressure_angle": _pressure,
+    "spread": _spread,
+    "velocity": partial(_of_turret, "velocity"),
+    "acceleration": partial(_of_turret, "acceleration"),
+    "jerk": partial(_of_turret, "jerk"),
+}
+"""Charts by name; the report leads with the first three."""
+
 
 _STEPS: Final = 1440
 """Cam angles of a turn at which curves are drawn."""
@@ -129,3 +176,29 @@ def _windings(cam: GloboidalCam, wall: GloboidalWall) -> Iterator[tuple[int, Pla
 
 def _clipped(line: Plane, half: float) -> Plane:
     return line.real + 1j * np.clip(line.imag, -half, half)
+
+
+_EYE: Final = (0.45, -1.0, 0.55)
+"""Cam and turret are beside each other then, and rollers between the ribs are seen."""
+
+
+def scene(result: GloboidalCamResult, places: int = PLACES) -> Scene:
+    """Return the unrolled cam at rest and the rollers along it.
+
+    Parameters
+    ----------
+    result : GloboidalCamResult
+        The cam.
+    places : int
+        Steps of the cam angle.
+
+    Returns
+    -------
+    Scene
+    """
+    theta, cam = np.linspace(0.0, TURN, places + 1), result.cam
+    sheet_of = (sheet(cam), *grooves(cam), *paths(cam))
+    # the end of the turn, at which the next roller is where this one began
+    moving = Pose(np.zeros(len(theta)), center(cam, theta))
+    turret = MovingBody(name=TURRET, called="rollers", features=rollers(cam), pose=moving)
+    return unrolled_scene(result, theta, sheet_of, turret, _EYE)

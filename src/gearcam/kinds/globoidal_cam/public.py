@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from gearcam.kinds.globoidal_cam.build import GloboidalCamResult
 from gearcam.kinds.globoidal_cam.design import GloboidalCamDesign, GloboidalOutput
+from gearcam.kinds.globoidal_cam.result import GloboidalCamResult
 from gearcam.spatial.globoidal_spec import GloboidalSpec, IndexSpec, TurretSpec
 
 __all__ = [

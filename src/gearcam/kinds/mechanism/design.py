@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
+from gearcam.base.registry import DeferredMapping, deferred
 from gearcam.designs.design import Design
-from gearcam.kinds.mechanism.load_tables import (
-    MachineLoad,
-    MachineSpring,
-    MemberMass,
-    TorqueSpec,
-)
+from gearcam.kinds.mechanism import load_names, names, outputs, unfit_drives
+from gearcam.kinds.mechanism.keys import NAME
+from gearcam.kinds.mechanism.load_tables import MachineLoad, MachineSpring, MemberMass, TorqueSpec
 from gearcam.kinds.mechanism.tables import (
+    FORMATS,
+    STUDIES,
     ChainSpec,
     CompareSpec,
     CrankSpec,
@@ -29,14 +30,15 @@ from gearcam.kinds.mechanism.tables import (
     SlideSpec,
     StretchSpec,
 )
+from gearcam.kinds.mechanism.torque_checks import TORQUE
 from gearcam.kinds.shared import AccuracySpec, GoalSpec
 from gearcam.mechanics.mass import GravitySpec
+from gearcam.results.kind import Kind
 
 if TYPE_CHECKING:
+    from gearcam.designs.faults import Fault
+    from gearcam.designs.kind import Examined
     from gearcam.kinds.mechanism.build import MechanismResult
-
-NAME: Final = "mechanism"
-"""As in a file."""
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -130,3 +132,59 @@ class MechanismDesign(Design):
     output: MechanismOutput = field(default_factory=MechanismOutput)
     accuracy: AccuracySpec = field(default_factory=AccuracySpec)
     goal: GoalSpec = field(default_factory=GoalSpec)
+
+
+_HERE: Final = "gearcam.kinds.mechanism"
+
+
+def _problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
+    faults = [*unfit_drives.problems(found), *names.problems(document, found)]
+    faults += outputs.problems(document, found)
+    yield from faults
+    yield from load_names.problems(found, faults)
+
+
+KIND: Final = Kind(
+    name=NAME,
+    doc="a linkage that a pair, a cam or an even shaft drives",
+    also=("linkage", "linkages", "four-bar", "machine"),
+    design=MechanismDesign,
+    result=deferred(f"{_HERE}.build:MechanismResult"),
+    required=("drive",),
+    problems=_problems,
+    formats=FORMATS,
+    check_modules=("gearcam.linkages.checks", f"{_HERE}.checks", f"{_HERE}.torque_checks"),
+    check_groups=("mechanisms", "tables of mechanisms", TORQUE),
+    study_tables={name: name for name in STUDIES},
+    example={
+        "drive": [{"name": "motor", "even": True, "speed_rpm": 60}],
+        "joint": [{"name": "D", "at_mm": [110, 0]}],
+        "crank": [{"name": "crank", "on": "motor", "joint": "B", "length_mm": 30}],
+        "dyad": [
+            {
+                "type": "RRR",
+                "from": "B",
+                "to": "D",
+                "joint": "C",
+                "members": ["coupler", "rocker"],
+                "lengths_mm": [100, 90],
+            }
+        ],
+        "point": [{"name": "P", "on": "coupler", "at_mm": [49, 34]}],
+        "output": {"files": ["csv", "report"]},
+    },
+    shown={
+        "goal": {
+            "minimize": "outputs.P_x.acceleration_mm_s2",
+            "maximize": "outputs.P_x.stroke_mm",
+        }
+    },
+    facts=deferred(f"{_HERE}.facts:facts"),
+    files=DeferredMapping(f"{_HERE}.files:FILES"),
+    charts=DeferredMapping(f"{_HERE}.charts:CHARTS"),
+    scene=deferred(f"{_HERE}.scene:scene"),
+    studies=DeferredMapping(f"{_HERE}.studies:STUDIES"),
+    ladders=DeferredMapping(f"{_HERE}.ladder:LADDERS"),
+    public=DeferredMapping(f"{_HERE}.public:PUBLIC"),
+    cut=False,
+)

@@ -8,6 +8,9 @@ from typing import Any, Final
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import ANGLE, LENGTH, LONGEST, param
 
+NAME: Final = "mechanism"
+"""The kind, as in a file."""
+
 _TURN_DEG: Final = 36000.0
 """Largest angle."""
 

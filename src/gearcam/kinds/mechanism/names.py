@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 from gearcam.designs.faults import Fault, dotted, show
 from gearcam.designs.kind import KINDS
 from gearcam.designs.slips import did_you_mean
-from gearcam.kinds.mechanism.design import NAME
+from gearcam.kinds.mechanism.keys import NAME
 from gearcam.kinds.mechanism.name_keys import (
     ANY,
     GIVES,

@@ -8,18 +8,19 @@ from typing import TYPE_CHECKING, Final
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.quantities import COUNT, LENGTH, param
+from gearcam.base.registry import DeferredMapping, deferred
 from gearcam.designs.design import Design, Wanted
 from gearcam.designs.outputs import files_param, studies_param
-from gearcam.kinds.cam.public import phases_wanted
-from gearcam.kinds.gridded_output import GriddedOutput
-from gearcam.kinds.shared import AccuracySpec, GoalSpec
+from gearcam.kinds.cam.public import MOTION, phases_wanted
+from gearcam.kinds.shared import AccuracySpec, GoalSpec, GriddedOutput
 from gearcam.mechanics.drive import DriveSpec
+from gearcam.results.kind import Kind
 from gearcam.spatial.spec import CylinderBlank, CylinderSpec, SpatialFollower
 from gearcam.spatial.tool import MillSpec
 
 if TYPE_CHECKING:
     from gearcam.kinds.cam.public import Motion
-    from gearcam.kinds.spatial_cam.build import SpatialCamResult
+    from gearcam.kinds.spatial_cam.result import SpatialCamResult
 
 NAME: Final = "spatial-cam"
 """As in a file."""
@@ -131,3 +132,64 @@ class SpatialCamDesign(Design):
 
     def _wanted(self) -> Iterator[Wanted]:
         return phases_wanted(self.motion)
+
+
+_HERE: Final = "gearcam.kinds.spatial_cam"
+
+KIND: Final = Kind(
+    name=NAME,
+    doc="a cam in space with its roller",
+    design=SpatialCamDesign,
+    result=deferred(f"{_HERE}.result:SpatialCamResult"),
+    main=MOTION,
+    required=("follower", "cam"),
+    formats=SPATIAL_FORMATS,
+    check_modules=("gearcam.spatial.checks", "gearcam.laws.row_checks"),
+    check_groups=("cams in space", "rows of tables", "solids of cams in space"),
+    study_tables={name: name for name in ("developed", "accuracy")},
+    example={
+        "motion": [
+            {"type": "rise", "angle_deg": 150, "law": "cycloidal", "lift_mm": 25},
+            {"type": "dwell", "angle_deg": 30},
+            {"type": "return", "angle_deg": 150, "law": "cycloidal"},
+            {"type": "dwell", "angle_deg": "rest"},
+        ],
+        "follower": {"motion": "translating", "roller_radius_mm": 8},
+        "cam": {
+            "form": "cylinder",
+            "outer_diameter_mm": 100,
+            "length_mm": 60,
+            "lowest_mm": 17,
+            "groove_depth_mm": 12,
+            "roller_clearance_mm": 0.05,
+            "floor_clearance_mm": 0.5,
+        },
+        "blank": {"bore_diameter_mm": 20},
+        "output": {"files": ["stl", "csv", "report"]},
+    },
+    shown={
+        "goal": {
+            "minimize": "cam.pressure_angle_deg.max",
+            "maximize": "cam.largest_roller_mm.in_space",
+        }
+    },
+    processes={
+        "printing": {
+            "cam": {"roller_clearance_mm": 0.08, "floor_clearance_mm": 0.5},
+            "output": {"files": ["stl", "report"], "wall_step_deg": 1},
+        },
+        "milling": {
+            "cam": {"roller_clearance_mm": 0.05, "floor_clearance_mm": 0.5},
+            "tool": {"diameter_mm": 10},
+            "output": {"files": ["gcode", "tool-path", "report"]},
+        },
+    },
+    notes={"motion": "Phases of the motion, one after the other, 360 deg in all."},
+    facts=deferred(f"{_HERE}.shown:facts"),
+    files=DeferredMapping(f"{_HERE}.shown:FILES"),
+    charts=DeferredMapping(f"{_HERE}.drawn:CHARTS"),
+    scene=deferred(f"{_HERE}.drawn:scene"),
+    studies=DeferredMapping(f"{_HERE}.studies:STUDIES"),
+    ladders=DeferredMapping(f"{_HERE}.studies:LADDERS"),
+    public=DeferredMapping(f"{_HERE}.public:PUBLIC"),
+)

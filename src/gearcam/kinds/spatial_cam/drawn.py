@@ -1,26 +1,65 @@
-"""What is drawn of a cam in space: its outside, unrolled.
+"""What is drawn of a cam in space: charts over the cam angle, its sheet, its scene.
 
-The sheet is seen from outside and wraps round the cylinder as it is: from left to right the azimuth
-in the cam's frame rises from 0 to 360 deg. Of a cam that turns counter-clockwise the cam angle
-therefore runs from right to left.
+The sheet is the outside of the cam, unrolled, seen from outside, and wraps round the cylinder as it
+is: from left to right the azimuth in the cam's frame rises from 0 to 360 deg. Of a cam that turns
+counter-clockwise the cam angle therefore runs from right to left. In the scene the sheet is at rest
+and the roller runs along it; the solids move in space: the cam turns, the roller is lifted.
 """
 
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from gearcam.kinds.gridded_scene import filled
+from gearcam.kinds.gridded_drawn import (
+    filled,
+    motion_chart,
+    pressure_chart,
+    spread_chart,
+    unrolled_scene,
+)
+from gearcam.kinds.spatial_cam.result import ROLLER
 from gearcam.numeric.pose import Pose
 from gearcam.parts.shapes import Circle
+from gearcam.pictures.charts import Chart, Charts
 from gearcam.pictures.drawings import BLANK, FOLLOWER, GROOVE, PITCH, Drawing, Feature, Path, place
+from gearcam.pictures.scenes import PLACES, MovingBody, Scene
+from gearcam.spatial import checks
 
 if TYPE_CHECKING:
-    from gearcam.kinds.spatial_cam.build import SpatialCamResult
+    from gearcam.kinds.spatial_cam.result import SpatialCamResult
     from gearcam.numeric.arrays import Array, Plane
     from gearcam.spatial.cam import SpatialWall
+
+
+def _of_lift(name: str, result: SpatialCamResult) -> Chart:
+    return motion_chart(result, name, f"{name.capitalize()} of the follower")
+
+
+def _pressure(result: SpatialCamResult) -> Chart:
+    labels = {"inner": "at the roller's inner end", "mean": "in the middle", "outer": "outside"}
+    limit = checks.allowed_pressure(result.cam, result.design.limits)
+    return pressure_chart(result, "Pressure angle", labels, limit)
+
+
+def _spread(result: SpatialCamResult) -> Chart:
+    places = {"floor": result.cam.floor, "outside": result.cam.outer_radius}
+    return spread_chart(result, "Spread of the walls: undercut below 0", places)
+
+
+CHARTS: Final[Charts] = {
+    "lift": partial(_of_lift, "lift"),
+    "pressure_angle": _pressure,
+    "spread": _spread,
+    "velocity": partial(_of_lift, "velocity"),
+    "acceleration": partial(_of_lift, "acceleration"),
+    "jerk": partial(_of_lift, "jerk"),
+}
+"""Charts by name; the report leads with the first three."""
+
 
 _STEPS: Final = 3600
 """Cam angles of drawn curves."""
@@ -122,3 +161,28 @@ def picture(result: SpatialCamResult) -> Drawing:
     shown = place(rollers(result), pose)
     sheet = filled(BLANK, _corners(result))
     return Drawing(name="cam", features=(sheet, *cut_away(result), _path(result), *shown))
+
+
+_EYE: Final = (1.0, -0.8, 0.6)
+"""The roller, at the azimuth 0, is in front then."""
+
+
+def scene(result: SpatialCamResult, places: int = PLACES) -> Scene:
+    """Return the unrolled cam at rest and the roller along it.
+
+    Parameters
+    ----------
+    result : SpatialCamResult
+        The cam.
+    places : int
+        Steps of the cam angle.
+
+    Returns
+    -------
+    Scene
+    """
+    theta = np.linspace(0.0, 2.0 * math.pi, places + 1)
+    sheet = (one for one in picture(result).features if one.kind != FOLLOWER)
+    moving = Pose(np.zeros(len(theta)), centers(result, theta))
+    follower = MovingBody(name="follower", called=ROLLER, features=rollers(result), pose=moving)
+    return unrolled_scene(result, theta, sheet, follower, _EYE)

@@ -14,7 +14,7 @@ from gearcam.numeric.arrays import Array
 from gearcam.spatial.milling import DECIMALS, PLUNGE
 
 if TYPE_CHECKING:
-    from gearcam.kinds.spatial_cam.build import SpatialCamResult
+    from gearcam.kinds.spatial_cam.result import SpatialCamResult
 
 _MINUTE: Final = 60.0
 

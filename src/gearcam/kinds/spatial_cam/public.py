@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from gearcam.kinds.spatial_cam.build import SpatialCamResult
 from gearcam.kinds.spatial_cam.design import DevelopedSpec, SpatialCamDesign, SpatialOutput
+from gearcam.kinds.spatial_cam.result import SpatialCamResult
 from gearcam.spatial.spec import CylinderBlank, CylinderSpec, SpatialFollower
 from gearcam.spatial.tool import MillSpec
 

@@ -1,4 +1,4 @@
-"""The study of walls that are constructed in the developed plane."""
+"""The study of walls that are constructed in the developed plane, and the solid at rising resolution."""
 
 from __future__ import annotations
 
@@ -13,12 +13,13 @@ from gearcam.base.numerals import formatted
 from gearcam.kinds.shared import accuracy_study
 from gearcam.pictures.charts import Chart, Line
 from gearcam.results.kind import Study
+from gearcam.results.ladders import Ladder, Ladders, grid_ladder
 from gearcam.results.result import StudyResult
 from gearcam.spatial.developed import developed
 from gearcam.spatial.extremes import Spot
 
 if TYPE_CHECKING:
-    from gearcam.kinds.spatial_cam.build import SpatialCamResult
+    from gearcam.kinds.spatial_cam.result import SpatialCamResult
     from gearcam.spatial.developed import Developed
 
 
@@ -102,3 +103,16 @@ DEVELOPED: Final = Study(
 
 STUDIES: Final = {one.name: one for one in (DEVELOPED, accuracy_study())}
 """Studies of cams in space."""
+
+
+_LEAST: Final = 24
+"""Least number of cam angles of a level."""
+
+
+def _solid(result: SpatialCamResult) -> Ladder:
+    """Return the error of the volume; a carved solid, which takes long, is not made finer."""
+    return grid_ladder(result, _LEAST, finer=not result.carved)
+
+
+LADDERS: Final[Ladders] = {"solid": _solid}
+"""What `gearcam accuracy` can measure."""

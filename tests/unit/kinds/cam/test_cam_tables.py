@@ -11,7 +11,7 @@ import pytest
 
 import gearcam
 from gearcam.base.errors import InfeasibleError
-from gearcam.kinds.cam.build import CamResult
+from gearcam.kinds.cam.result import CamResult
 from helpers_files import FLAT, ROLLER, read, table
 from helpers_pairs import PROFILES
 

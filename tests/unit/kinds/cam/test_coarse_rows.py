@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import gearcam
-from gearcam.kinds.cam.build import CamResult
+from gearcam.kinds.cam.result import CamResult
 from helpers_sampling import chosen
 
 NAMED = re.compile(r"With ([\w.]+) = ([\d.e-]+) ")

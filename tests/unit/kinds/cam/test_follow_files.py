@@ -10,7 +10,7 @@ import pytest
 
 import gearcam
 from gearcam.base.errors import DesignError
-from gearcam.kinds.cam.build import CamResult
+from gearcam.kinds.cam.result import CamResult
 from helpers_files import table
 from helpers_pairs import PROFILES
 

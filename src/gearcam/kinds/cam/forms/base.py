@@ -29,7 +29,7 @@ from gearcam.mechanics.load import LoadSpec
 
 if TYPE_CHECKING:
     from gearcam.base.tolerances import Tolerances
-    from gearcam.kinds.cam.build import CamResult
+    from gearcam.kinds.cam.result import CamResult
     from gearcam.numeric.contour import Contour
     from gearcam.parts.body import Part
     from gearcam.pictures.drawings import Drawing, Path

@@ -222,7 +222,7 @@ class Conjugate(Plates[ConjugateCam, ConjugateSpec, ConjugateFollower]):
 
     def facts(self) -> dict[str, Any]:
         """Return the place of the second roller, and both cams."""
-        from gearcam.kinds.cam.facts import curvature, pressure, size, start_angle, trimming
+        from gearcam.kinds.cam.shown import curvature, pressure, size, start_angle, trimming
 
         cam = self.cam
         second = cam.second.follower

@@ -109,7 +109,7 @@ class Plates(Form[C, S, F]):
 
     def facts(self) -> dict[str, Any]:
         """Return curvature, undercut and size of the profile."""
-        from gearcam.kinds.cam.facts import curvature, ends_of, size, start_angle, trimming
+        from gearcam.kinds.cam.shown import curvature, ends_of, size, start_angle, trimming
 
         (wall,), (finished,) = self.cam.walls, self.result.contours
         place = wall.contact_place

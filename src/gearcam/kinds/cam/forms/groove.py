@@ -209,7 +209,7 @@ class Groove(Form[GrooveCam, GrooveSpec, GrooveFollower]):
 
     def facts(self) -> dict[str, Any]:
         """Return sizes of the groove, its lost motion, and both walls."""
-        from gearcam.kinds.cam.facts import curvature, size, start_angle, trimming
+        from gearcam.kinds.cam.shown import curvature, size, start_angle, trimming
 
         walls = zip(self.cam.walls, self.result.profiles, strict=True)
         return {

@@ -382,7 +382,7 @@ class Translating(Form[SlidingCam, PlateSpec, PlateFollower]):
 
     def facts(self) -> dict[str, Any]:
         """Return curvature, undercut and length of the walls, and the lost motion in a groove."""
-        from gearcam.kinds.cam.facts import curvature, start_angle, trimming
+        from gearcam.kinds.cam.shown import curvature, start_angle, trimming
 
         cam, given = self.cam, self.given
         walls = {

@@ -1,8 +1,9 @@
-"""Facts of a cam: what the console, the report and ``summary.json`` show."""
+"""What is shown of a cam: its facts, and its files, one function a format."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -13,12 +14,15 @@ from gearcam.base.numerals import formatted
 from gearcam.cams.checks import KIND, pressure_limits
 from gearcam.kinds.shared import peak_of
 from gearcam.parts.mass import part_facts
+from gearcam.report.file import report_files
+from gearcam.results.parts import MESHES, Files, Measured, dxf_files, part_files
 
 if TYPE_CHECKING:
     from gearcam.cams.measures import Range
     from gearcam.cams.wall import PitchMotion, Wall
-    from gearcam.kinds.cam.build import CamResult
+    from gearcam.kinds.cam.result import CamResult
     from gearcam.laws.program import Program
+    from gearcam.numeric.arrays import Array
     from gearcam.numeric.contour import Contour
 
 Tree = dict[str, Any]
@@ -265,3 +269,165 @@ def trimming(wall: Wall) -> Tree:
         "lost_lift_deg": math.degrees(wall.shortfall) if corners and swings else None,
         "lost_lift_mm": wall.shortfall if corners and not swings else None,
     }
+
+
+_SHORT: Final = {"lift": "s", "velocity": "ds", "acceleration": "d2s", "jerk": "d3s"}
+"""What the file calls the lift and its derivatives, by the first words of their columns."""
+
+_STUDY: Final = (90, 180, 360, 720, 1440, 2880, 5760)
+"""Points of a turn whose three-point curvature is held against the exact one."""
+
+
+def _tables(result: CamResult, _: Measured) -> Files:
+    """Return the profile and the motion as tables.
+
+    Files: profile.csv; of a groove profile_inner.csv, profile_outer.csv; of a translating groove
+    profile_lower.csv, profile_upper.csv; of conjugate cams profile_1.csv, profile_2.csv;
+    motion.csv.
+
+    Vertices of the profile; lift, velocity, acceleration, jerk, pressure angle and radii of
+    curvature over the cam angle or travel.
+    """
+    from gearcam.export.table import outline_bytes, table_bytes
+
+    columns = {_short(name): values for name, values in result.motion().items()}
+    walls = zip(result.cam.walls, result.contours, strict=True)
+    return {
+        **{_named("profile", wall): outline_bytes(made.points) for wall, made in walls},
+        "motion.csv": table_bytes(columns),
+    }
+
+
+def _short(name: str) -> str:
+    """Return the name in the file of a column of the motion; those by time keep theirs."""
+    what, _, unit = name.partition("_")
+    by_time = unit.partition("_")[2].startswith("s")
+    return name if by_time else _SHORT.get(what, name)
+
+
+def _named(stem: str, wall: Wall) -> str:
+    """Return the name of a table of a wall."""
+    return f"{stem}_{wall.key}.csv" if wall.key else f"{stem}.csv"
+
+
+def _inspection(result: CamResult, _: Measured) -> Files:
+    """Return the points for inspection.
+
+    Files: inspection.csv; of a groove inspection_inner.csv, inspection_outer.csv; of a translating
+    groove inspection_lower.csv, inspection_upper.csv; of conjugate cams inspection_1.csv,
+    inspection_2.csv.
+
+    Points of the profile at even cam angles with their outward normals, where trimming has left
+    them.
+    """
+    from gearcam.export.table import table_bytes
+
+    count = result.design.output.inspection_points
+    walls = zip(result.cam.walls, result.profiles, strict=True)
+    return {
+        _named("inspection", wall): table_bytes(_inspected(result, wall, profile, count))
+        for wall, profile in walls
+    }
+
+
+def _inspected(result: CamResult, wall: Wall, profile: Contour, count: int) -> dict[str, Array]:
+    theta, points, normals = wall.places(count)
+    driver = wall.carrier.driver
+    clearance = result.design.blank.clearance
+    if clearance:
+        from gearcam.parts.parallel import touches
+
+        kept = touches(profile, points, normals, -clearance)
+        theta, points, normals = theta[kept], points[kept], normals[kept]
+        points = points - clearance * normals
+    return {
+        driver.column: driver.scale * theta,
+        "x_mm": points.real,
+        "y_mm": points.imag,
+        "nx": normals.real,
+        "ny": normals.imag,
+    }
+
+
+def _tool_path(result: CamResult, measured: Measured) -> Files:
+    """Return the paths of a cutter.
+
+    Files: tool_path.csv; of a groove tool_path_inner.csv, tool_path_outer.csv; of a translating
+    groove tool_path_lower.csv, tool_path_upper.csv; of conjugate cams tool_path_1.csv,
+    tool_path_2.csv; tool_path_relief.csv; the same names with .dxf.
+
+    The path of the centre of a cutter of `tool_radius_mm`; in a groove along the pitch curve for a
+    cutter as wide as the groove, else along each wall, and for two rollers along the relief.
+    """
+    from gearcam.export.table import outline_bytes
+    from gearcam.pictures.drawings import TOOL, Drawing, Feature, reach
+
+    paths = result.form.paths(result.design.output.tool_radius)
+    tables = {f"{name}.csv": outline_bytes(reach(path)) for name, path in paths.items()}
+    drawings = [
+        Drawing(name=name, features=(Feature(layer=TOOL, shape=path),))
+        for name, path in paths.items()
+    ]
+    return tables | dxf_files(result, drawings, measured)
+
+
+def _curvature(result: CamResult, measured: Measured) -> Files:
+    """Return the error of curvatures that are measured.
+
+    Files: curvature.csv.
+
+    The error of the curvature from three neighbouring points over their spacing; of conjugate cams
+    of the first.
+    """
+    from gearcam.export.table import table_bytes
+    from gearcam.kinds.cam.curvature import curvature_columns
+
+    columns, measured["curvature"] = curvature_columns(result.cam.motions[0], _STUDY)
+    return {"curvature.csv": table_bytes(columns)}
+
+
+_SOLIDS: Final = """
+    Files: cam.{format}; of conjugate cams cam1.{format}, cam2.{format}, cams.{format}.
+
+    Closed solids in mm, of conjugate cams also both as they stand on the shaft."""
+
+_SHEETS: Final = """
+    Files: cam_drawing.{format}; of conjugate cams cam1_drawing.{format}, cam2_drawing.{format}.
+
+    Workshop drawings with dimensions and a table of data."""
+
+_OF_PARTS: Final = {
+    "dxf": """
+    Files: cam.dxf; of conjugate cams cam1.dxf, cam2.dxf; with `kerf_mm` also cam_reference.dxf, or
+    cam1_reference.dxf, cam2_reference.dxf.
+
+    Outlines in mm in the cam's frame: layers PROFILE, PITCH, PRIME, BORE, HOLE and CENTER; of a
+    groove BLANK, OUTER and INNER, or GROOVE, instead of PROFILE. With `kerf_mm` cutting paths only,
+    on layers that end in _KERF, and the part with its curves as the reference.""",
+    "cut-svg": """
+    Files: cam_cut.svg; of conjugate cams cam1_cut.svg, cam2_cut.svg; cut.svg.
+
+    For laser programs, 1:1 in mm: inner edges, then outlines in red; one file for each part, and
+    cut.svg with all parts side by side and labelled.""",
+    "svg": """
+    Files: cam.svg; of conjugate cams cams.svg.
+
+    A picture of the cam below its follower, not for cutting.""",
+    **dict.fromkeys(MESHES, _SOLIDS),
+    "step": """
+    Files: cam.step; of conjugate cams cam1.step, cam2.step, cams.step.
+
+    Exact solids for CAD. Needs `pip install "gearcam[step]"`.""",
+    "drawing-dxf": _SHEETS,
+    "drawing-svg": _SHEETS,
+}
+
+FILES: Final[Mapping[str, Callable[..., Files]]] = {
+    "csv": _tables,
+    **part_files(_OF_PARTS),
+    "inspection": _inspection,
+    "report": report_files,
+    "tool-path": _tool_path,
+    "curvature": _curvature,
+}
+"""What makes the files of each format: contents by name; what is measured on them is recorded."""

@@ -1,17 +1,23 @@
-"""The charts that cams in space have alike, over the cam angle."""
+"""The charts that cams in space have alike, and their scene: the unrolled cam and what runs along it."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from gearcam.kinds.gridded import STEM
+from gearcam.numeric.contour import Contour
+from gearcam.numeric.pose import Pose
 from gearcam.pictures.charts import Chart, Limit, Line, knot_marks
+from gearcam.pictures.drawings import Feature
+from gearcam.pictures.scenes import MovingBody, Scene
 
 if TYPE_CHECKING:
     from gearcam.kinds.gridded import GriddedCam
+    from gearcam.numeric.arrays import Array, Plane
     from gearcam.pictures.charts import MarkedPlace
 
 DRIVER: Final = "cam angle theta, deg"
@@ -103,4 +109,63 @@ def spread_chart(result: GriddedCam, title: str, places: Mapping[str, float]) ->
         lines=tuple(lines),
         limits=(Limit(label="undercut", value=0.0),),
         marks=_knots(result),
+    )
+
+
+_TOLERANCE: Final = 1e-3
+"""Chord tolerance that the points of drawn curves stand for, mm."""
+
+
+def filled(layer: str, points: Plane) -> Feature:
+    """Return an area on the sheet.
+
+    Parameters
+    ----------
+    layer : str
+        Its layer.
+    points : (n,) complex array, mm
+        Its outline.
+    """
+    shape = Contour(dense=tuple, points=points, tolerance=_TOLERANCE, chord_error=0.0)
+    return Feature(layer=layer, shape=shape)
+
+
+def unrolled_scene(
+    result: GriddedCam,
+    theta: Array,
+    sheet: Iterable[Feature],
+    follower: MovingBody,
+    eye: tuple[float, float, float],
+) -> Scene:
+    """Return the unrolled cam at rest and what runs along it.
+
+    Parameters
+    ----------
+    result : GriddedCam
+        The cam.
+    theta : (n,) array, rad
+        Cam angles of a turn with both ends.
+    sheet : iterable of Feature
+        The unrolled cam.
+    follower : MovingBody
+        What runs along it.
+    eye : (float, float, float)
+        Where the solids are seen from.
+
+    Returns
+    -------
+    Scene
+    """
+    still = Pose(np.zeros(len(theta)), np.zeros(len(theta), dtype=np.complex128))
+    cam = MovingBody(name=STEM, called="cam, unrolled", features=tuple(sheet), pose=still)
+    return Scene(
+        title=result.design.name,
+        driver=DRIVER,
+        places=np.degrees(theta),
+        closed=True,
+        start=math.degrees(result.design.output.pose % (2.0 * math.pi)),
+        bodies=(cam, follower),
+        in_space=result.in_space(theta),
+        eye=eye,
+        up=(0.0, 0.0, 1.0),
     )

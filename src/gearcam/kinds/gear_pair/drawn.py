@@ -1,0 +1,520 @@
+"""What is drawn of a gear pair: charts, centrodes, the assembled pair, its scene, workshop drawings.
+
+The sheet of both wheels assembled shows the pair, its centrodes and the pitch point at the driver
+angle of the drawing from which it is made. The *pitch point* is where the driver's centrode crosses
+the line of centres.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Final, get_args
+
+import numpy as np
+
+from gearcam.base.findings import limit_of
+from gearcam.base.numerals import formatted
+from gearcam.gears.checks import undercut_curvatures
+from gearcam.gears.contact import COAST, DRIVE, FlankPairs
+from gearcam.gears.pair import Gear
+from gearcam.gears.subject import KIND
+from gearcam.kinds.gear_pair.result import CENTRODE_POINTS, Side
+from gearcam.meshing.contact import contacts
+from gearcam.meshing.edges import first_touch, known_to
+from gearcam.meshing.patches import closed_area
+from gearcam.numeric.arrays import Array, Plane, bounds
+from gearcam.numeric.columns import Columns
+from gearcam.numeric.contour import Contour
+from gearcam.numeric.pose import Pose
+from gearcam.parts.body import Part
+from gearcam.parts.shapes import extremes, true_points
+from gearcam.pictures.charts import Chart, Charts, Limit, Line, MarkedPlace, knot_marks
+from gearcam.pictures.drawings import (
+    CENTER,
+    CENTRODE,
+    CROSS_SIZE,
+    OUTLINE,
+    Circle,
+    Cross,
+    Drawing,
+    Feature,
+    Path,
+    part_features,
+    place,
+    reach,
+)
+from gearcam.pictures.scenes import PLACES, ContactPoints, MovingBody, Scene, still
+from gearcam.sheets.board import FIRST_LEVEL, LEVEL, OVERHANG, Board
+from gearcam.sheets.paper import begin, finish
+from gearcam.sheets.sheet import CENTERLINE, Sheet, fine
+
+if TYPE_CHECKING:
+    from gearcam.kinds.gear_pair.result import GearPairResult
+
+DRIVER: Final = "driver angle phi1, deg"
+"""Axis label of charts and scenes."""
+
+_APART: Final = 1.5
+"""Steps between points of contact above which a pair is not in contact between them."""
+
+_SIDES: Final = {"drive": "driving flanks", "coast": "coast flanks"}
+
+
+_NOISE: Final = 1e-12
+"""Share of a turn by which a knot may lie before its end: rounding."""
+
+
+def _knots(result: GearPairResult) -> tuple[MarkedPlace, ...]:
+    """Return the knots of the law within the driver's turn, or its travel."""
+    end = float(result.phases[-1]) * (1.0 - _NOISE)
+    return knot_marks(np.degrees(result.knots), 0.0, math.degrees(end))
+
+
+def _chart(
+    result: GearPairResult,
+    title: str,
+    y: str,
+    phi1: Array,
+    lines: Mapping[str, Array],
+    limits: Sequence[Limit] = (),
+) -> Chart:
+    """Return a chart over driver angles, degrees, with the lines by label and the knots."""
+    return Chart(
+        title=title,
+        x=DRIVER,
+        y=y,
+        lines=tuple(Line(label=label, x=phi1, y=values) for label, values in lines.items()),
+        limits=tuple(limits),
+        marks=_knots(result),
+    )
+
+
+def _position(result: GearPairResult) -> Chart:
+    table = result.motion(result.phases)
+    phi1 = table["phi1_deg"]
+    if result.pair.on_rack:
+        line = {"rack": table["travel_mm"]}
+        return _chart(result, "Position of the rack", "travel, mm", phi1, line)
+    line = {"driven wheel": table["phi2_deg"]}
+    return _chart(result, "Position of the driven wheel", "driven angle phi2, deg", phi1, line)
+
+
+def _ratio(result: GearPairResult) -> Chart:
+    if result.pair.on_rack:
+        table = result.motion(result.phases)
+        line = {"rack": table["velocity_mm_per_rad"]}
+        return _chart(result, "Velocity of the rack", "velocity, mm/rad", table["phi1_deg"], line)
+    table = result.centrodes_of_phases
+    line = {"ratio i21": table["ratio"]}
+    return _chart(result, "Transmission ratio", "ratio i21", table["phi1_deg"], line)
+
+
+def _radii(result: GearPairResult) -> Chart:
+    table = result.centrodes_of_phases
+    lines = {"driver": table["r1_mm"]}
+    if not result.pair.on_rack:
+        lines["driven"] = table["r2_mm"]
+    return _chart(result, "Radii of the centrodes", "radius, mm", table["phi1_deg"], lines)
+
+
+def _curvature(result: GearPairResult) -> Chart:
+    table = result.centrodes_of_phases
+    with np.errstate(divide="ignore"):
+        lines = {"driver": 1.0 / table["rho1_mm"], "driven": 1.0 / table["rho2_mm"]}
+    limits: dict[float, Limit] = {}
+    for gear in result.gears:
+        convex, concave = undercut_curvatures(gear)
+        for value, side in ((convex, "convex"), (-concave, "concave")):
+            limits.setdefault(value, Limit(label=f"limit of undercut, {side}", value=value))
+    title = "Curvature of the centrodes (positive: convex towards the tips)"
+    phi1 = table["phi1_deg"]
+    return _chart(result, title, "curvature, 1/mm", phi1, lines, [*limits.values()])
+
+
+def _pressure_angle(result: GearPairResult) -> Chart:
+    phi1, pair = result.phases, result.pair
+    r, slope = pair.rolling.radii(phi1 % result.law.period if result.law.lobes.closed else phi1, 1)
+    angles = result.subject.pressure_at(np.arctan(slope / r))
+    lines = {f"driving {direction}": np.degrees(angle) for direction, angle in angles.items()}
+    limit = math.degrees(limit_of(KIND, "pressure-angle", result.design.limits))
+    limits = [Limit(label="limit", value=limit)]
+    title, y = "Pressure angle at the pitch point", "pressure angle, deg"
+    return _chart(result, title, y, np.degrees(phi1), lines, limits)
+
+
+def _contact_ratio(result: GearPairResult) -> Chart:
+    table = result.contact_ratios
+    limit = limit_of(KIND, "contact-ratio", result.design.limits)
+    lines = []
+    for side, label in zip((DRIVE, COAST), _SIDES.values(), strict=True):
+        rows = table["side"] == side
+        x, y = (table[name][rows].astype(float) for name in ("tooth1", "contact_ratio"))
+        lines.append(Line(label=label, x=x, y=y, dots=True))
+    return Chart(
+        title="Contact ratio of each pair of teeth, as designed",
+        x="tooth of the driver",
+        y="contact ratio",
+        lines=tuple(lines),
+        limits=(Limit(label="limit", value=limit),),
+    )
+
+
+def _by_pair(result: GearPairResult, table: Columns, y: Array, label: str) -> Line:
+    """Return one line for each pair of teeth from values at points of contact."""
+    apart = _APART * math.degrees(np.diff(result.phases).max())
+    x, tooth = table["phi1_deg"], table["tooth1"]
+    order = np.lexsort([x, tooth])
+    x, y, tooth = x[order], y[order], tooth[order]
+    # a pair in contact at 0 deg appears at both ends
+    cuts = np.flatnonzero((np.diff(tooth) != 0) | (np.diff(x) > apart)) + 1
+    return Line(label=label, x=np.insert(x, cuts, np.nan), y=np.insert(y, cuts, np.nan))
+
+
+def _sliding(result: GearPairResult) -> Chart:
+    tables = result.paths_of_contact.items()
+    return Chart(
+        title="Sliding on the driver's flank, as designed (positive: towards the tip)",
+        x=DRIVER,
+        y="sliding per driver angle, mm/rad",
+        lines=tuple(
+            _by_pair(result, table, table["sliding_mm_per_rad"], _SIDES[side])
+            for side, table in tables
+        ),
+    )
+
+
+def _contact_patch(result: GearPairResult) -> Chart:
+    """Return the areas of contact patches in closed form: 003, figs. 2.34 to 2.38."""
+    ahead = result.design.meshing.overclosure
+    table = result.paths_of_contact["drive" if ahead > 0.0 else "coast"]
+    lever = np.abs(table["x_mm"] * table["force_y"] - table["y_mm"] * table["force_x"])
+    area = closed_area(abs(ahead) * lever, table["relative_curvature_per_mm"])
+    x, phase = np.unique(table["phi1_deg"], return_inverse=True)
+    # their sum; the mean of both sides of a knot, which may be one number in degrees
+    total = np.bincount(phase, area * table["pairs"]) / np.bincount(phase)
+    together = Line(label="all pairs of teeth", x=x, y=total)
+    return Chart(
+        title=f"Contact patches, driver advanced by {formatted(math.degrees(ahead))} deg",
+        x=DRIVER,
+        y="area of overlap, mm2",
+        lines=(_by_pair(result, table, area, "each pair of teeth"), together),
+    )
+
+
+def _transmission_error(result: GearPairResult) -> Chart:
+    leads = []
+    for side, points in result.touching.items():
+        pairs = result.flanks_of(side)
+        leads.append((pairs, first_touch(pairs, result.phases, points)[0]))
+    return transmission_chart(result, "as designed", result.phases, leads)
+
+
+def transmission_chart(
+    result: GearPairResult,
+    how: str,
+    phi1: Array,
+    leads: Sequence[tuple[FlankPairs, Array]],
+) -> Chart:
+    """Return the chart of the lag of the driven element, minus its mean.
+
+    Parameters
+    ----------
+    result : GearPairResult
+        The pair.
+    how : str
+        How it is mounted, in words.
+    phi1 : (n,) array, rad
+        Driver angles.
+    leads : sequence of (FlankPairs, (n,) array)
+        Sides as mounted, with leads of the driven element at first contact, rad or mm; infinite
+        without contact.
+
+    Returns
+    -------
+    Chart
+    """
+    lines: dict[str, Array] = {}
+    for pairs, lead in leads:
+        lag = np.where(np.isfinite(lead), -lead, np.nan)
+        error = lag - float(np.nanmean(lag))
+        error[np.abs(error) <= known_to(pairs, phi1)] = 0.0
+        lines[_SIDES["drive" if pairs.side == DRIVE else "coast"]] = error
+    driven, unit = "rack" if result.pair.on_rack else "driven wheel", result.pair.rolling.guide.unit
+    title = f"Transmission error, {how} (lag minus its mean)"
+    return _chart(result, title, f"lag of the {driven}, {unit}", np.degrees(phi1), lines)
+
+
+CHARTS: Final[Charts] = {
+    "ratio": _ratio,
+    "pressure_angle": _pressure_angle,
+    "contact_ratio": _contact_ratio,
+    "position": _position,
+    "radii": _radii,
+    "curvature": _curvature,
+    "sliding": _sliding,
+    "contact_patch": _contact_patch,
+    "transmission_error": _transmission_error,
+}
+"""Functions that return the charts by name; the report leads with the first three."""
+
+
+_POINTS: Final = 720
+"""Intervals of a centrode that is drawn."""
+
+
+def centrode_path(gear: Gear, end: float) -> Path:
+    """Return the centrode of a `gear` as a chain in its own frame, to the driver angle `end`."""
+    closed = gear.toothing.closed
+    phi1 = np.linspace(0.0, end, _POINTS + 1)[: -1 if closed else None]
+    return Path(points=gear.toothing.frames(phi1).p, closed=closed)
+
+
+def pair_drawing(
+    parts: Sequence[Part],
+    center_distance: float,
+    centrodes: Sequence[Path] = (),
+    *,
+    poses: tuple[Pose, Pose] | None = None,
+) -> Drawing:
+    """Return the drawing of the assembled pair.
+
+    By default phi1 = 0: wheel 1 in its own frame, wheel 2 shifted by the centre distance.
+
+    Parameters
+    ----------
+    parts : two Part
+        Driver first.
+    center_distance : float, mm
+        Position of the second shaft on x, negative for a ring; 0 for a rack, which has none.
+    centrodes : sequence of Path
+        In the wheels' own frames, driver first; may be empty.
+    poses : two Pose, optional
+        Where the wheels are.
+
+    Returns
+    -------
+    Drawing
+
+    Raises
+    ------
+    ValueError
+        If there are not two parts, or centrodes for another number of wheels.
+    """
+    if len(parts) != 2 or len(centrodes) not in (0, 2):
+        raise ValueError("a pair takes two parts, and two centrodes or none")
+    poses = poses or (Pose(), Pose(shift=center_distance))
+    features: list[Feature] = []
+    numbered = enumerate(zip(parts, poses, strict=True), start=1)
+    # drawn later means on top: a wheel in its ring
+    for number, (part, pose) in sorted(numbered, key=lambda one: not one[1][0].inner):
+        features += place(part_features(part), pose, prefix=f"GEAR{number}_")
+    for path, pose in zip(centrodes, poses, strict=False):
+        features += place([Feature(layer=CENTRODE, shape=path)], pose)
+    size = CROSS_SIZE * (abs(center_distance) or float(np.ptp(parts[0].contour.vertices)))
+    for shaft in (0.0, center_distance) if center_distance else (0.0,):
+        cross = Cross(center=shaft, size=size)
+        features.append(Feature(layer=CENTER, shape=cross))
+    return Drawing(name="pair", features=tuple(features))
+
+
+def scene(result: GearPairResult, places: int = PLACES) -> Scene:
+    """Return both wheels with their centrodes, points of contact, and the pitch point.
+
+    Parameters
+    ----------
+    result : GearPairResult
+        The pair; of stepped wheels the lowest step is on top, with its points of contact.
+    places : int
+        Steps of the driver.
+
+    Returns
+    -------
+    Scene
+        As designed: finished teeth in contact, the driven element behind by the lag of `contact`.
+    """
+    guide, pose = result.pair.rolling.guide, result.design.output.pose
+    phi1 = result.turn(places)
+    end = float(phi1[-1])
+    names = ("driver", "rack" if result.pair.on_rack else "driven wheel")
+    poses = result.pair.rolling.poses(phi1)
+    wheels = zip(result.gears, result.parts, names, result.centrode_paths, poses, strict=True)
+    bodies = [_stepped(*wheel) for wheel in wheels]
+    size = CROSS_SIZE * (abs(result.pair.shift) or float(np.ptp(result.gear1.outline)))
+    shafts = (0.0, result.pair.shift) if guide.turns else (0.0,)
+    crosses = tuple(Feature(layer=CENTER, shape=Cross(center=x, size=size)) for x in shafts)
+    lowest = [steps[0] for steps in bodies]
+    behind = [step for steps in bodies for step in steps[:0:-1]]
+    radius = result.pair.rolling.tracks[0].frames(phi1).p
+    return Scene(
+        title=result.design.name,
+        driver=DRIVER,
+        places=np.degrees(phi1),
+        closed=result.pair.closed,
+        start=float(np.degrees(pose % end if result.pair.closed else min(max(pose, 0.0), end))),
+        bodies=(*behind, *(lowest[::-1] if result.pair.internal else lowest), still(crosses, phi1)),
+        contacts={side: _contacts(result, phi1, side) for side in get_args(Side)},
+        pitch=radius * np.exp(-1j * phi1),
+    )
+
+
+def _stepped(gear: Gear, part: Part, called: str, path: Path, pose: Pose) -> list[MovingBody]:
+    """Return the steps of a wheel as bodies that move together, the lowest with its teeth."""
+    # the toothed edge first: for a ring the inner one
+    lowest = sorted(part_features(part), key=lambda one: one.shape is not part.contour)
+    first = MovingBody(
+        name=part.name,
+        called=called,
+        features=(*lowest, Feature(layer=CENTRODE, shape=path)),
+        pose=pose,
+        teeth=gear.profile.teeth[1],
+    )
+    others = [
+        MovingBody(
+            name=part.name,
+            called=f"{called}, step {step + 1}",
+            features=part_features(part, step),
+            pose=pose,
+        )
+        for step in range(1, len(part.contours))
+    ]
+    return [first, *others]
+
+
+def _contacts(result: GearPairResult, phi1: Array, side: Side) -> ContactPoints:
+    """Return points of contact on one side of the driver's teeth, from charts if computed."""
+    pairs, at = result.flanks_of(side), np.arange(len(phi1))
+    if len(phi1) == CENTRODE_POINTS + 1:
+        touching, at = result.touching[side], np.searchsorted(result.phases, phi1)
+    else:
+        touching = contacts(pairs, phi1)
+    chosen = np.isin(touching.step, at)
+    j, first = touching.pair[chosen], [gear.profile.teeth[0][0] for gear in result.gears]
+    return ContactPoints(
+        start=np.searchsorted(touching.step[chosen], np.append(at, at[-1] + 1)),
+        point=touching.point[chosen],
+        force=touching.force[chosen],
+        teeth=np.column_stack([pairs.tooth(1, j), pairs.tooth(2, j)]) - first + 1,
+    )
+
+
+LEFT: Final = 24.0
+RIGHT: Final = 20.0
+ABOVE: Final = 14.0
+"""Space for dimensions beside and above the wheels, mm of paper."""
+
+POINT: Final = 2.0
+"""Diameter of the ring around the pitch point, mm of paper."""
+
+LEVELS: Final = 3
+"""Linear dimensions below the wheels."""
+
+_RACK_ROWS: Final = (
+    "pair.rack.pressure_angle_deg", "pair.rack.addendum", "pair.rack.dedendum",
+    "pair.backlash_mm", "pair.face_width_mm", "steps.count",
+)  # fmt: skip
+PAIR_ROWS: Final = (
+    "pair.module_mm", "pair.teeth", "pair.ratio", "pair.travel_per_turn_mm", *_RACK_ROWS,
+)  # fmt: skip
+_GEAR_ROWS: Final = (
+    "profile_shift", "centrode.length_mm", "cutter", "clearance_mm", "tip_rounding_mm",
+    "density_kg_m3", "mass.mass_kg", "mass.centroid_mm", "mass.unbalance_g_mm",
+)  # fmt: skip
+"""Facts in the tables of drawings."""
+
+
+def wheel_rows(number: int) -> tuple[str, ...]:
+    """Return the names of the facts in the table of a wheel's drawing, by its `number`."""
+    rows = [f"gears.{number}.{name}" for name in _GEAR_ROWS]
+    return (f"gears.{number}.teeth", "pair.module_mm", *_RACK_ROWS, *rows)
+
+
+def pair_sheet(
+    drawing: Drawing,
+    center_distance: float,
+    facts: Mapping[str, str],
+    title: str,
+    *,
+    pitch_radius: float,
+) -> Sheet:
+    """Return the sheet of the assembled pair.
+
+    Parameters
+    ----------
+    drawing : Drawing
+        The pair with its centrodes (see `gearcam.kinds.gear_pair.drawn.pair_drawing`).
+    center_distance : float, mm
+        Position of the second shaft on x, with the first at 0: negative for a ring; 0 for a rack.
+    facts : mapping of str to str
+        Rows of the parameter table.
+    title : str
+        First line of the title block.
+    pitch_radius : float, mm
+        Distance of the pitch point from the driver's axis.
+
+    Returns
+    -------
+    Sheet
+        With the name of the drawing.
+
+    Raises
+    ------
+    ValueError
+        If the drawing has no outline, or is too large for the smallest scale.
+    """
+    if not drawing.contours:
+        raise ValueError(f"{drawing.name}: nothing to draw")
+    outlines = _outlines(drawing)
+    points = true_points(outlines)
+    shafts = (0.0, center_distance) if center_distance else (0.0,)
+    # the shaft of an open ring lies beside its outline
+    low, high = bounds(np.append(points, shafts))
+    below = FIRST_LEVEL + LEVEL * LEVELS
+    room = complex(LEFT, below), complex(RIGHT, ABOVE)
+    board = begin(high - low, room, low, len(facts) + 2)
+    _views(board, drawing, shafts)
+    _sizes(board, points, center_distance, pitch_radius, low.real)
+    board.draw(CENTERLINE, Circle(center=pitch_radius, diameter=POINT * board.unit))
+    board.label(pitch_radius, "pitch point")
+    for number, shaft in enumerate(shafts, start=1):
+        board.label(shaft, f"gear{number}")
+    tolerance = max(contour.tolerance for contour in drawing.contours)
+    notes = [
+        f"Chord tolerance of the outlines: {fine(tolerance)} mm.",
+        "Dashed: centrodes; they touch at the pitch point.",
+        "Make each wheel from its own drawing and file.",
+    ]
+    return finish(board, name=drawing.name, title=title, facts=facts, notes=notes)
+
+
+def _outlines(drawing: Drawing) -> list[Contour | Circle]:
+    """Return the outlines of both wheels, the driver's first."""
+    ones = sorted((f for f in drawing.features if f.kind == OUTLINE), key=lambda one: one.layer)
+    return [one.shape for one in ones if isinstance(one.shape, Contour | Circle)]
+
+
+def _views(board: Board, drawing: Drawing, shafts: tuple[float, ...]) -> None:
+    for feature in drawing.features:
+        if feature.kind != CENTER:
+            board.draw(feature.layer, feature.shape)
+    over, reached = OVERHANG * board.unit, [reach(one) for one in _outlines(drawing)]
+    for shaft, points in zip(shafts, reached, strict=False):
+        low, high = bounds(points)
+        start, end = complex(shaft, low.imag - over), complex(shaft, high.imag + over)
+        board.line(CENTERLINE, start, end)
+    low, high = bounds(np.append(np.concatenate(reached), shafts))
+    board.line(CENTERLINE, low.real - over, high.real + over)
+
+
+def _sizes(
+    board: Board, points: Plane, center_distance: float, pitch_radius: float, beside: float
+) -> None:
+    """Draw the linear dimensions: pitch radius, centre distance, overall sizes left of `beside`."""
+    unit = board.unit
+    left, low, right, high = extremes(points)
+    levels = [low.imag - (FIRST_LEVEL + LEVEL * level) * unit for level in range(LEVELS)]
+    board.linear(0.0, pitch_radius, levels.pop(0))
+    if center_distance:
+        board.linear(0.0, center_distance, levels.pop(0))
+    board.linear(left, right, levels.pop(0))
+    board.linear(low, high, beside - FIRST_LEVEL * unit, vertical=True)
