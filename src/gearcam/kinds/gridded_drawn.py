@@ -1,4 +1,4 @@
-"""The charts that cams in space have alike, and their scene: the unrolled cam and what runs along it."""
+"""What is drawn of cams in space alike: charts, the unrolled cam and what runs along it."""
 
 from __future__ import annotations
 

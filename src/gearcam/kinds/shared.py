@@ -1,6 +1,4 @@
-"""What several kinds of design have alike: tables over a turn, output of cams in space, the study
-of accuracy, goals.
-"""
+"""What several kinds have alike: tables over a turn, output in space, accuracy, goals."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Studies of cams: the motion on a given profile, errors of tolerances, stages at rising resolution."""
+"""Studies of cams: motion on a given profile, errors of tolerances, stages at rising resolution."""
 
 from __future__ import annotations
 

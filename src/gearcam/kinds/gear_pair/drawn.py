@@ -1,9 +1,4 @@
-"""What is drawn of a gear pair: charts, centrodes, the assembled pair, its scene, workshop drawings.
-
-The sheet of both wheels assembled shows the pair, its centrodes and the pitch point at the driver
-angle of the drawing from which it is made. The *pitch point* is where the driver's centrode crosses
-the line of centres.
-"""
+"""What is drawn of a gear pair: charts, its centrodes, the assembled pair, its scene."""
 
 from __future__ import annotations
 
@@ -23,31 +18,23 @@ from gearcam.kinds.gear_pair.result import CENTRODE_POINTS, Side
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.edges import first_touch, known_to
 from gearcam.meshing.patches import closed_area
-from gearcam.numeric.arrays import Array, Plane, bounds
+from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
-from gearcam.numeric.contour import Contour
 from gearcam.numeric.pose import Pose
 from gearcam.parts.body import Part
-from gearcam.parts.shapes import extremes, true_points
 from gearcam.pictures.charts import Chart, Charts, Limit, Line, MarkedPlace, knot_marks
 from gearcam.pictures.drawings import (
     CENTER,
     CENTRODE,
     CROSS_SIZE,
-    OUTLINE,
-    Circle,
     Cross,
     Drawing,
     Feature,
     Path,
     part_features,
     place,
-    reach,
 )
 from gearcam.pictures.scenes import PLACES, ContactPoints, MovingBody, Scene, still
-from gearcam.sheets.board import FIRST_LEVEL, LEVEL, OVERHANG, Board
-from gearcam.sheets.paper import begin, finish
-from gearcam.sheets.sheet import CENTERLINE, Sheet, fine
 
 if TYPE_CHECKING:
     from gearcam.kinds.gear_pair.result import GearPairResult
@@ -396,125 +383,3 @@ def _contacts(result: GearPairResult, phi1: Array, side: Side) -> ContactPoints:
         force=touching.force[chosen],
         teeth=np.column_stack([pairs.tooth(1, j), pairs.tooth(2, j)]) - first + 1,
     )
-
-
-LEFT: Final = 24.0
-RIGHT: Final = 20.0
-ABOVE: Final = 14.0
-"""Space for dimensions beside and above the wheels, mm of paper."""
-
-POINT: Final = 2.0
-"""Diameter of the ring around the pitch point, mm of paper."""
-
-LEVELS: Final = 3
-"""Linear dimensions below the wheels."""
-
-_RACK_ROWS: Final = (
-    "pair.rack.pressure_angle_deg", "pair.rack.addendum", "pair.rack.dedendum",
-    "pair.backlash_mm", "pair.face_width_mm", "steps.count",
-)  # fmt: skip
-PAIR_ROWS: Final = (
-    "pair.module_mm", "pair.teeth", "pair.ratio", "pair.travel_per_turn_mm", *_RACK_ROWS,
-)  # fmt: skip
-_GEAR_ROWS: Final = (
-    "profile_shift", "centrode.length_mm", "cutter", "clearance_mm", "tip_rounding_mm",
-    "density_kg_m3", "mass.mass_kg", "mass.centroid_mm", "mass.unbalance_g_mm",
-)  # fmt: skip
-"""Facts in the tables of drawings."""
-
-
-def wheel_rows(number: int) -> tuple[str, ...]:
-    """Return the names of the facts in the table of a wheel's drawing, by its `number`."""
-    rows = [f"gears.{number}.{name}" for name in _GEAR_ROWS]
-    return (f"gears.{number}.teeth", "pair.module_mm", *_RACK_ROWS, *rows)
-
-
-def pair_sheet(
-    drawing: Drawing,
-    center_distance: float,
-    facts: Mapping[str, str],
-    title: str,
-    *,
-    pitch_radius: float,
-) -> Sheet:
-    """Return the sheet of the assembled pair.
-
-    Parameters
-    ----------
-    drawing : Drawing
-        The pair with its centrodes (see `gearcam.kinds.gear_pair.drawn.pair_drawing`).
-    center_distance : float, mm
-        Position of the second shaft on x, with the first at 0: negative for a ring; 0 for a rack.
-    facts : mapping of str to str
-        Rows of the parameter table.
-    title : str
-        First line of the title block.
-    pitch_radius : float, mm
-        Distance of the pitch point from the driver's axis.
-
-    Returns
-    -------
-    Sheet
-        With the name of the drawing.
-
-    Raises
-    ------
-    ValueError
-        If the drawing has no outline, or is too large for the smallest scale.
-    """
-    if not drawing.contours:
-        raise ValueError(f"{drawing.name}: nothing to draw")
-    outlines = _outlines(drawing)
-    points = true_points(outlines)
-    shafts = (0.0, center_distance) if center_distance else (0.0,)
-    # the shaft of an open ring lies beside its outline
-    low, high = bounds(np.append(points, shafts))
-    below = FIRST_LEVEL + LEVEL * LEVELS
-    room = complex(LEFT, below), complex(RIGHT, ABOVE)
-    board = begin(high - low, room, low, len(facts) + 2)
-    _views(board, drawing, shafts)
-    _sizes(board, points, center_distance, pitch_radius, low.real)
-    board.draw(CENTERLINE, Circle(center=pitch_radius, diameter=POINT * board.unit))
-    board.label(pitch_radius, "pitch point")
-    for number, shaft in enumerate(shafts, start=1):
-        board.label(shaft, f"gear{number}")
-    tolerance = max(contour.tolerance for contour in drawing.contours)
-    notes = [
-        f"Chord tolerance of the outlines: {fine(tolerance)} mm.",
-        "Dashed: centrodes; they touch at the pitch point.",
-        "Make each wheel from its own drawing and file.",
-    ]
-    return finish(board, name=drawing.name, title=title, facts=facts, notes=notes)
-
-
-def _outlines(drawing: Drawing) -> list[Contour | Circle]:
-    """Return the outlines of both wheels, the driver's first."""
-    ones = sorted((f for f in drawing.features if f.kind == OUTLINE), key=lambda one: one.layer)
-    return [one.shape for one in ones if isinstance(one.shape, Contour | Circle)]
-
-
-def _views(board: Board, drawing: Drawing, shafts: tuple[float, ...]) -> None:
-    for feature in drawing.features:
-        if feature.kind != CENTER:
-            board.draw(feature.layer, feature.shape)
-    over, reached = OVERHANG * board.unit, [reach(one) for one in _outlines(drawing)]
-    for shaft, points in zip(shafts, reached, strict=False):
-        low, high = bounds(points)
-        start, end = complex(shaft, low.imag - over), complex(shaft, high.imag + over)
-        board.line(CENTERLINE, start, end)
-    low, high = bounds(np.append(np.concatenate(reached), shafts))
-    board.line(CENTERLINE, low.real - over, high.real + over)
-
-
-def _sizes(
-    board: Board, points: Plane, center_distance: float, pitch_radius: float, beside: float
-) -> None:
-    """Draw the linear dimensions: pitch radius, centre distance, overall sizes left of `beside`."""
-    unit = board.unit
-    left, low, right, high = extremes(points)
-    levels = [low.imag - (FIRST_LEVEL + LEVEL * level) * unit for level in range(LEVELS)]
-    board.linear(0.0, pitch_radius, levels.pop(0))
-    if center_distance:
-        board.linear(0.0, center_distance, levels.pop(0))
-    board.linear(left, right, levels.pop(0))
-    board.linear(low, high, beside - FIRST_LEVEL * unit, vertical=True)

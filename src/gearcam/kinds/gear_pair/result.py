@@ -331,7 +331,7 @@ class GearPairResult(PartsResult):
     @cached_property
     def sheets(self) -> tuple[Sheet, ...]:
         """The workshop drawings of both wheels and of the pair."""
-        from gearcam.kinds.gear_pair.drawn import PAIR_ROWS, pair_sheet
+        from gearcam.kinds.gear_pair.sheet import PAIR_ROWS, pair_sheet
         from gearcam.sheets.paper import sheet_rows
 
         design, pose = self.design, self.design.output.pose
@@ -343,7 +343,7 @@ class GearPairResult(PartsResult):
 
     def rows_of(self, number: int) -> Sequence[str]:
         """Return the names of the facts in the table of a wheel's drawing, by its `number`."""
-        from gearcam.kinds.gear_pair.drawn import wheel_rows
+        from gearcam.kinds.gear_pair.sheet import wheel_rows
 
         return wheel_rows(number)
 

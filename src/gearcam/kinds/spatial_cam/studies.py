@@ -1,4 +1,4 @@
-"""The study of walls that are constructed in the developed plane, and the solid at rising resolution."""
+"""The study of walls made in the developed plane, and the solid at rising resolution."""
 
 from __future__ import annotations
 
