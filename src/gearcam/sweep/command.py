@@ -16,8 +16,7 @@ from gearcam.console import complain, progress_bar, say
 from gearcam.designs.design import Design, load
 from gearcam.designs.family import family_of
 from gearcam.sweep.axes import FORM, Varied, axes_of, settings_of
-from gearcam.sweep.child import MEMORY, SECONDS
-from gearcam.sweep.engine import Engine
+from gearcam.sweep.engine import MEMORY, SECONDS, Engine
 from gearcam.sweep.log import Log
 from gearcam.sweep.plan import MANY, Plan, flattened
 from gearcam.sweep.pool import Processes, default_jobs
