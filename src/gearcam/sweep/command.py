@@ -9,7 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final
 
-from gearcam.base.errors import DesignError, Problem, WriteError
+from gearcam.base.errors import DesignError, Problem
 from gearcam.base.numerals import formatted
 from gearcam.commands import GOOD, IMPOSSIBLE, INTERRUPTED, Options, add_output, each
 from gearcam.console import complain, progress_bar, say
@@ -135,11 +135,8 @@ def _page(plan: Plan, log: Log, folder: Path, tally: Tally) -> list[Path]:
         *(f"{axis.key} = {axis.text}" for axis in plan.axes),
         f"{how}; {tally.rows} of {plan.count} built; {_counts(tally)}",
     ]
-    try:
-        content = page(plan.base, log.rows(), lines)
-        written_whole(folder / PAGE, lambda path: path.write_bytes(content))
-    except OSError as error:
-        raise WriteError(f"{folder / PAGE}: {error.strerror or error}") from error
+    content = page(plan.base, log.rows(), lines)
+    written_whole(folder / PAGE, lambda path: path.write_bytes(content))
     return [folder / PAGE]
 
 
