@@ -16,7 +16,7 @@ import time
 import uuid
 import warnings
 from collections import Counter, deque
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sized
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sized
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
@@ -30,7 +30,7 @@ from gearcam.base.errors import DesignError, MissingExtraError, Problem
 from gearcam.base.interrupts import unbroken
 from gearcam.designs.design import Design, design, document_of
 from gearcam.designs.reader import find_tables
-from gearcam.sweep.engine import MEMORY, SECONDS, Engine, Job
+from gearcam.sweep.engine import MEMORY, SECONDS, Build, Engine, Job
 from gearcam.sweep.pool import Crew
 from gearcam.sweep.rows import Built, Measure, measured
 
@@ -100,8 +100,8 @@ class Cluster(Engine):
         return f"dask at {self.address}"
 
     @contextmanager
-    def session(self, base: Design) -> Iterator[Callable[[Iterable[Job]], Iterator[Built]]]:
-        """Yield a function that yields the rows of variants (see `Engine.session`)."""
+    def session(self, base: Design) -> Iterator[Build]:
+        """Yield what builds variants (see `Engine.session`)."""
         order = Order(
             token=uuid.uuid4().hex,
             task=pickle.dumps((_from_root(base), self.measure)),

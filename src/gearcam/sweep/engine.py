@@ -14,6 +14,12 @@ from gearcam.sweep.rows import Built
 Job = tuple[int, dict[str, Any]]
 """Number and values of a variant."""
 
+Build = Callable[[Iterable[Job]], Iterator[Built]]
+"""``build(jobs)`` yields the rows of a lot of variants in any order, each exactly once.
+
+Jobs are read as they are needed.
+"""
+
 SECONDS: Final = 300.0
 """Default limit of a variant's time, s."""
 
@@ -30,13 +36,8 @@ class Engine(ABC, ShortRepr):
         """In words, for messages."""
 
     @abstractmethod
-    def session(
-        self, base: Design
-    ) -> AbstractContextManager[Callable[[Iterable[Job]], Iterator[Built]]]:
-        """Return a context with a function that yields the rows of variants, lot by lot.
-
-        Rows come in any order, each exactly once. The function gets numbers and values of
-        variants, which are read as they are needed; the same processes build all lots.
+    def session(self, base: Design) -> AbstractContextManager[Build]:
+        """Return a context with what builds variants, lot by lot, by the same processes.
 
         Parameters
         ----------

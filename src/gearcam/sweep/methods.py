@@ -34,7 +34,7 @@ from gearcam.sweep.plan import latin_hypercube
 GENERATION: Final = 24
 """Variants that are asked for at once."""
 
-_NONE: Final = 1e12
+NONE: Final = 1e12
 """Goal of variants that cannot be made."""
 
 _EVOLVED: Final = 0.4
@@ -166,7 +166,7 @@ def _optuna(method: str, search: Quest, evaluate: Evaluate) -> None:
         points = np.array([[_suggested(one, axis) for axis in search.axes] for one in trials])
         for trial, goals, broken in zip(trials, *evaluate(points), strict=True):
             trial.set_constraint("broken", float(broken))
-            study.tell(trial, [float(one) for one in np.minimum(goals, _NONE)])
+            study.tell(trial, [float(one) for one in np.minimum(goals, NONE)])
 
 
 def _suggested(trial: Any, axis: Varied) -> float:
@@ -192,8 +192,8 @@ def _scipy(method: str, search: Quest, evaluate: Evaluate) -> None:
         nonlocal best, least, largest
         goals, broken = evaluate(points)
         goal = goals[:, 0]
-        largest = max(largest, *np.abs(goal[goal < _NONE]), 0.0)
-        found = np.where(broken > 0.0, 2.0 * largest + 1.0 + np.minimum(broken, _NONE), goal)
+        largest = max(largest, *np.abs(goal[goal < NONE]), 0.0)
+        found = np.where(broken > 0.0, 2.0 * largest + 1.0 + np.minimum(broken, NONE), goal)
         if found.min() < least:
             best, least = points[np.argmin(found)], float(found.min())
         return found

@@ -11,7 +11,7 @@ import pickle
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from multiprocessing import get_context
@@ -20,7 +20,7 @@ from typing import Any, Final
 
 from gearcam.base.interrupts import unbroken
 from gearcam.designs.design import Design
-from gearcam.sweep.engine import MEMORY, SECONDS, Engine, Job
+from gearcam.sweep.engine import MEMORY, SECONDS, Build, Engine, Job
 from gearcam.sweep.rows import Built, Measure, measured
 from gearcam.sweep.worker import READY, main
 
@@ -65,8 +65,8 @@ class Processes(Engine):
         return f"{self.jobs} process{'es' if self.jobs > 1 else ''}"
 
     @contextmanager
-    def session(self, base: Design) -> Iterator[Callable[[Iterable[Job]], Iterator[Built]]]:
-        """Yield a function that yields the rows of variants (see `Engine.session`)."""
+    def session(self, base: Design) -> Iterator[Build]:
+        """Yield what builds variants (see `Engine.session`)."""
         task = pickle.dumps((base, self.measure))
         crew = Crew(task, self.seconds, self.memory, min(self.jobs, _MOST))
         try:
