@@ -5,6 +5,8 @@ from __future__ import annotations
 import importlib
 import os
 import signal
+import subprocess
+import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -15,6 +17,7 @@ import pytest
 import gearcam as gc
 from gearcam.sweep.pool import Processes
 from gearcam.sweep.rows import Built
+from helpers_processes import ENVIRONMENT
 from helpers_sweep import BASE, Loads, odd
 
 
@@ -85,6 +88,30 @@ def test_no_process_is_left_when_the_rows_are_not_wanted_any_more() -> None:
     assert set(children()) > before
     running.close()  # type: ignore[attr-defined]
     assert set(children()) == before
+
+
+PARENT = """
+from gearcam.sweep.pool import Processes
+from helpers_sweep import BASE, odd
+
+jobs = [(number, {"deed": deed}) for number, deed in enumerate(("work", "hang"))]
+for row in Processes(jobs=1, measure=odd).run(BASE, jobs):
+    print(row.number, flush=True)
+"""
+
+
+def test_a_process_that_hangs_ends_with_a_parent_that_is_killed() -> None:
+    paths = os.pathsep.join(sys.path)
+    running = subprocess.Popen(
+        [sys.executable, "-c", PARENT],
+        env=ENVIRONMENT | {"PYTHONPATH": paths},
+        stdout=-1,
+        stderr=-1,
+    )
+    assert running.stdout
+    assert running.stdout.readline() == b"0\n"  # the next one has begun
+    running.kill()
+    assert running.communicate(timeout=20) == (b"", b"")  # nobody has these streams any more
 
 
 def test_jobs_are_read_as_they_are_needed() -> None:
