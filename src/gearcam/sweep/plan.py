@@ -158,7 +158,17 @@ class Plan(ShortRepr):
 
 
 def latin_hypercube(count: int, axes: int, seed: int) -> Array:
-    """Return points (count, axes) of the unit cube: one in each of `count` parts of each axis."""
+    """Return points (count, axes) of the unit cube: one in each of equal parts of each axis.
+
+    Parameters
+    ----------
+    count : int
+        Number of points.
+    axes : int
+        Number of axes.
+    seed : int
+        Of the generator.
+    """
     random = np.random.default_rng(seed)
     places = np.array([random.permutation(count) for _ in range(axes)]).T
     return (places + random.random(places.shape)) / count
