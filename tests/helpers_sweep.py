@@ -5,7 +5,8 @@ from __future__ import annotations
 import os
 import signal
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -41,6 +42,20 @@ def odd(base: gc.Design, number: int, values: Mapping[str, Any]) -> Built:  # no
     if deed == "print":
         print("a library says something")
     return Built(number=number, values=values, facts={"pid": float(os.getpid())})
+
+
+@dataclass(frozen=True)
+class Loads:
+    """What another process that loads it does instead."""
+
+    deed: Callable[[Any], Any]
+    word: Any
+
+    def __reduce__(self) -> tuple[Any, tuple[Any]]:
+        return self.deed, (self.word,)
+
+    def __call__(self, *_: Any) -> Any:
+        raise AssertionError("it was loaded")
 
 
 def wavy(phi: Any) -> Any:

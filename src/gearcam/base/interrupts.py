@@ -9,6 +9,7 @@ Depends on nothing.
 
 from __future__ import annotations
 
+import os
 import signal
 import threading
 from collections.abc import Iterator
@@ -91,6 +92,25 @@ def unbroken() -> Iterator[None]:
             signal.signal(number, handler)
         for number in came:
             signal.raise_signal(number)
+
+
+def follow_parent() -> None:
+    """Make a process that was started by `multiprocessing` end with its parent.
+
+    It ignores the signals that end the program: its parent, which gets them too, ends it.
+    """
+    from multiprocessing import connection, parent_process
+
+    for number in SIGNALS:
+        signal.signal(number, signal.SIG_IGN)
+    parent = parent_process()
+
+    def end(sentinel: int) -> None:
+        connection.wait([sentinel])
+        os._exit(0)
+
+    if parent is not None:
+        threading.Thread(target=end, args=(parent.sentinel,), daemon=True).start()
 
 
 @contextmanager

@@ -9,7 +9,7 @@ come; a sweep that was ended goes on from its log.
 `axes`       what is written for a key: values, a range, a distribution
 `plan`       which variants there are: a grid or samples
 `rows`       one variant built and measured
-`pool`       engines: processes of this machine, each with limits of time and memory
+`pool`       the engine of this machine: processes, each with limits of time and memory
 `cluster`    the engine of dask.distributed
 `log`        the rows that are there
 `run`        what is missing in the log, built by an engine

@@ -1,7 +1,7 @@
 """The engine of a cluster: the workers of a scheduler of dask.distributed.
 
-A chunk of variants is one task. A worker builds it by a child process for each of its threads, so
-that limits of time and memory hold there too. Chunks of a worker that ends are built by others.
+A chunk of variants is one task. A worker builds it by a process for each of its threads, so that
+limits of time and memory hold there too. Chunks of a worker that ends are built by others.
 """
 
 from __future__ import annotations
@@ -16,11 +16,12 @@ import time
 import uuid
 import warnings
 from collections import Counter, deque
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sized
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
 from itertools import islice
+from multiprocessing import current_process
 from pathlib import Path
 from socket import gethostname
 from typing import Any, Final
@@ -29,12 +30,18 @@ from gearcam.base.errors import DesignError, MissingExtraError, Problem
 from gearcam.base.interrupts import unbroken
 from gearcam.designs.design import Design, design, document_of
 from gearcam.designs.reader import find_tables
-from gearcam.sweep.child import MEMORY, SECONDS, Child
-from gearcam.sweep.engine import MOST, Engine, Job, Pace
+from gearcam.sweep.engine import MEMORY, SECONDS, Build, Engine, Job
+from gearcam.sweep.pool import Crew
 from gearcam.sweep.rows import Built, Measure, measured
 
 _CHUNK_S: Final = 1.0
 """Time that a chunk should take, s: a task costs the scheduler about a millisecond."""
+
+_MOST: Final = 256
+"""Largest number of variants in a chunk."""
+
+_LATELY: Final = 100
+"""Number of variants whose mean time decides how many are a chunk."""
 
 _AHEAD: Final = 2
 """Chunks that wait or are built, for each thread of a worker."""
@@ -92,20 +99,9 @@ class Cluster(Engine):
         """In words."""
         return f"dask at {self.address}"
 
-    def run(self, base: Design, jobs: Iterable[Job]) -> Iterator[Built]:
-        """Yield the rows of variants (see `Engine.run`)."""
-        with self._chunks(base) as chunks:
-            yield from chunks.rows(iter(jobs))
-
     @contextmanager
-    def session(self, base: Design) -> Iterator[Callable[[Sequence[Job]], Iterator[Built]]]:
-        """Yield a function for several lots, built by the same processes (see `Engine`)."""
-        with self._chunks(base) as chunks:
-            yield chunks.lot
-
-    @contextmanager
-    def _chunks(self, base: Design) -> Iterator[_Chunks]:
-        """Yield what builds variants of a design by the workers; end it then."""
+    def session(self, base: Design) -> Iterator[Build]:
+        """Yield what builds variants (see `Engine.session`)."""
         order = Order(
             token=uuid.uuid4().hex,
             task=pickle.dumps((_from_root(base), self.measure)),
@@ -116,7 +112,7 @@ class Cluster(Engine):
         with _connected(self.address) as client:
             chunks = _Chunks(client, self.address, order)
             try:
-                yield chunks
+                yield chunks.rows
             finally:
                 with unbroken():
                     chunks.end()
@@ -159,7 +155,7 @@ def identical(order: Order) -> Order:
     return order
 
 
-_children: Final[dict[tuple[str, int], Child]] = {}
+_crews: Final[dict[tuple[str, int], Crew]] = {}
 """Processes of this worker by sweep and thread."""
 
 _lock: Final = threading.Lock()
@@ -177,19 +173,35 @@ def build_chunk(order: Order, chunk: bytes) -> bytes:
     """
     key = order.token, threading.get_ident()
     with _lock:
-        if key not in _children:
+        if key not in _crews:
             _demand_same(order.versions, {f"the worker at {gethostname()}": _versions()})
-            _children[key] = Child(order.task, order.seconds, order.memory)
-        child = _children[key]
-    return pickle.dumps(list(child.rows(pickle.loads(chunk))))
+            # dask makes its workers daemons, which may have no processes; ours end with theirs
+            current_process().daemon = False
+            _crews[key] = Crew(order.task, order.seconds, order.memory)
+        crew = _crews[key]
+    return pickle.dumps(list(crew.rows(pickle.loads(chunk))))
 
 
 def dismiss(token: str) -> None:
     """End the processes of a sweep on this worker."""
     with _lock:
-        ended = [_children.pop(key) for key in list(_children) if key[0] == token]
-    for child in ended:
-        child.stop()
+        ended = [_crews.pop(key) for key in list(_crews) if key[0] == token]
+    for crew in ended:
+        crew.stop()
+
+
+def chunk_size(times: Collection[float], most: int) -> int:
+    """Return the number of variants of a chunk: one while nobody knows how long they take.
+
+    Parameters
+    ----------
+    times : collection of float, s
+        Of variants, of late.
+    most : int
+        Largest number.
+    """
+    taken = sum(times)
+    return max(1, int(min(most, _CHUNK_S * len(times) / taken))) if taken > 0.0 else 1
 
 
 class _Chunks:
@@ -200,34 +212,30 @@ class _Chunks:
 
         self._client, self._address = client, address
         self._token, self._jobs = order.token, iter(list[Job]())
+        self._times = deque[float](maxlen=_LATELY)
         self._order = client.submit(identical, order, pure=False)
         self._waiting: dict[Any, list[Job]] = {}
         self._done = as_completed(with_results=True, raise_errors=False, loop=client.loop)
-        self._pace = Pace()
-        self._largest, self._threads, self._look = MOST, 1, 0.0
+        self._largest, self._threads, self._look = _MOST, 1, 0.0
         self._suspects: deque[Job] = deque()
         self._alone: Any = None
         self._killed: Counter[int] = Counter()
 
-    def lot(self, jobs: Sequence[Job]) -> Iterator[Built]:
-        """Yield a row for each job of a lot, of which all workers build a part."""
+    def rows(self, jobs: Iterable[Job]) -> Iterator[Built]:
+        """Yield a row for each job; all workers build a part of a lot whose size is known."""
         self._count()
-        self._largest = math.ceil(len(jobs) / self._threads)
-        return self.rows(iter(jobs))
-
-    def rows(self, jobs: Iterator[Job]) -> Iterator[Built]:
-        """Yield a row for each job."""
-        self._jobs = jobs
+        if isinstance(jobs, Sized):
+            self._largest = min(_MOST, math.ceil(len(jobs) / self._threads))
+        self._jobs = iter(jobs)
         self._fill()
         while self._waiting:
             future, result = next(self._done)
             chunk, alone = self._waiting.pop(future), future is self._alone
             if alone:
                 self._alone = None
-            if future.status == "finished":
+            if isinstance(result, bytes):  # its status may be another one since
                 rows = pickle.loads(result)
-                for row in rows:
-                    self._pace.add(row.time_s)
+                self._times.extend(row.time_s for row in rows)
             else:
                 error = result[1] if isinstance(result, tuple) else result
                 rows = self._failed(chunk, error, alone=alone)
@@ -254,8 +262,7 @@ class _Chunks:
         if self._suspects or self._alone is not None:
             return
         while len(self._waiting) < self._threads * _AHEAD:
-            size = min(self._pace.chunk(_CHUNK_S), self._largest)
-            chunk = list(islice(self._jobs, size))
+            chunk = list(islice(self._jobs, chunk_size(self._times, self._largest)))
             if not chunk:
                 break
             self._submit(chunk)

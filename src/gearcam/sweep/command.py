@@ -9,15 +9,14 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, Final
 
-from gearcam.base.errors import DesignError, Problem, WriteError
+from gearcam.base.errors import DesignError, Problem
 from gearcam.base.numerals import formatted
 from gearcam.commands import GOOD, IMPOSSIBLE, INTERRUPTED, Options, add_output, each
 from gearcam.console import complain, progress_bar, say
 from gearcam.designs.design import Design, load
 from gearcam.designs.family import family_of
 from gearcam.sweep.axes import FORM, Varied, axes_of, settings_of
-from gearcam.sweep.child import MEMORY, SECONDS
-from gearcam.sweep.engine import Engine
+from gearcam.sweep.engine import MEMORY, SECONDS, Engine
 from gearcam.sweep.log import Log
 from gearcam.sweep.plan import MANY, Plan, flattened
 from gearcam.sweep.pool import Processes, default_jobs
@@ -136,11 +135,8 @@ def _page(plan: Plan, log: Log, folder: Path, tally: Tally) -> list[Path]:
         *(f"{axis.key} = {axis.text}" for axis in plan.axes),
         f"{how}; {tally.rows} of {plan.count} built; {_counts(tally)}",
     ]
-    try:
-        content = page(plan.base, log.rows(), lines)
-        written_whole(folder / PAGE, lambda path: path.write_bytes(content))
-    except OSError as error:
-        raise WriteError(f"{folder / PAGE}: {error.strerror or error}") from error
+    content = page(plan.base, log.rows(), lines)
+    written_whole(folder / PAGE, lambda path: path.write_bytes(content))
     return [folder / PAGE]
 
 

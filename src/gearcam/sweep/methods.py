@@ -29,11 +29,12 @@ import numpy as np
 from gearcam.base.errors import MissingExtraError
 from gearcam.numeric.arrays import Array
 from gearcam.sweep.axes import Varied
+from gearcam.sweep.plan import latin_hypercube
 
 GENERATION: Final = 24
 """Variants that are asked for at once."""
 
-_NONE: Final = 1e12
+NONE: Final = 1e12
 """Goal of variants that cannot be made."""
 
 _EVOLVED: Final = 0.4
@@ -140,9 +141,7 @@ def minimized(method: str, search: Quest, evaluate: Evaluate) -> None:
 
 
 def _random(_: str, search: Quest, evaluate: Evaluate) -> None:
-    random = np.random.default_rng(search.seed)
-    places = np.array([random.permutation(search.trials) for _ in search.axes]).T
-    points = (places + random.random(places.shape)) / search.trials
+    points = latin_hypercube(search.trials, len(search.axes), search.seed)
     for first in range(0, search.trials, GENERATION):
         evaluate(points[first : first + GENERATION])
     raise Spent
@@ -167,7 +166,7 @@ def _optuna(method: str, search: Quest, evaluate: Evaluate) -> None:
         points = np.array([[_suggested(one, axis) for axis in search.axes] for one in trials])
         for trial, goals, broken in zip(trials, *evaluate(points), strict=True):
             trial.set_constraint("broken", float(broken))
-            study.tell(trial, [float(one) for one in np.minimum(goals, _NONE)])
+            study.tell(trial, [float(one) for one in np.minimum(goals, NONE)])
 
 
 def _suggested(trial: Any, axis: Varied) -> float:
@@ -193,8 +192,8 @@ def _scipy(method: str, search: Quest, evaluate: Evaluate) -> None:
         nonlocal best, least, largest
         goals, broken = evaluate(points)
         goal = goals[:, 0]
-        largest = max(largest, *np.abs(goal[goal < _NONE]), 0.0)
-        found = np.where(broken > 0.0, 2.0 * largest + 1.0 + np.minimum(broken, _NONE), goal)
+        largest = max(largest, *np.abs(goal[goal < NONE]), 0.0)
+        found = np.where(broken > 0.0, 2.0 * largest + 1.0 + np.minimum(broken, NONE), goal)
         if found.min() < least:
             best, least = points[np.argmin(found)], float(found.min())
         return found
@@ -206,7 +205,7 @@ def _scipy(method: str, search: Quest, evaluate: Evaluate) -> None:
         [(0.0, 1.0)] * len(best),
         rng=search.seed,
         popsize=several,
-        init=_first(search, several),
+        init=latin_hypercube(several, len(best), search.seed),
         maxiter=max(1, int(evolved / several) - 1),
         vectorized=True,
         updating="deferred",
@@ -223,13 +222,6 @@ def _scipy(method: str, search: Quest, evaluate: Evaluate) -> None:
             options={"initial_simplex": corners, "xatol": 1e-7, "fatol": 0.0, "maxfev": 10**9},
         )
         size = -0.5 * size
-
-
-def _first(search: Quest, count: int) -> Array:
-    """Return a first generation: a Latin hypercube."""
-    random = np.random.default_rng(search.seed)
-    places = np.array([random.permutation(count) for _ in search.axes]).T
-    return (places + random.random(places.shape)) / count
 
 
 _METHODS: Final[dict[str, Callable[[str, Quest, Evaluate], None]]] = {

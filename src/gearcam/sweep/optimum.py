@@ -9,7 +9,7 @@ Refused: searches in which no variant can be taken.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final
 
@@ -18,17 +18,14 @@ import numpy as np
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import InfeasibleError
 from gearcam.numeric.arrays import Array
-from gearcam.sweep.engine import Job
+from gearcam.sweep.engine import Build
 from gearcam.sweep.log import Log
-from gearcam.sweep.methods import Spent
+from gearcam.sweep.methods import NONE, Spent
 from gearcam.sweep.plan import Plan
 from gearcam.sweep.rows import Built
 
 _REFUSED: Final = 1e6
 """Violation of variants that cannot be made: above that of any finding."""
-
-_NONE: Final = 1e12
-"""Goal of variants that cannot be made."""
 
 FRONT: Final = 20
 """Largest number of designs that are written of several goals."""
@@ -63,7 +60,7 @@ class Trials(ShortRepr):
     warnings: bool
     most: int
     log: Log
-    build: Callable[[Sequence[Job]], Iterator[Built]]
+    build: Build
     progress: Callable[[int, int], Any] | None = None
     rows: list[Built] = field(default_factory=list)
 
@@ -78,12 +75,11 @@ class Trials(ShortRepr):
         if len(self.rows) >= self.most:
             raise Spent
         new = self._rows_of(points[: self.most - len(self.rows)])
-        goals = np.full((len(points), len(self.signs)), _NONE)
+        goals = np.full((len(points), len(self.signs)), NONE)
         broken = np.full(len(points), _REFUSED)
         for place, row in enumerate(new):
             if row.made:
-                goals[place] = [sign * _fact(row, name) for name, sign in self.signs.items()]
-                broken[place] = self.broken(row)
+                goals[place], broken[place] = self.goals(row), self.broken(row)
         return goals, broken
 
     def _rows_of(self, points: Array) -> list[Built]:
@@ -123,7 +119,7 @@ class Trials(ShortRepr):
         return [
             row
             for row in self.rows
-            if self.broken(row) == 0.0 and all(_fact(row, name) < _NONE for name in self.signs)
+            if self.broken(row) == 0.0 and all(_fact(row, name) < NONE for name in self.signs)
         ]
 
     def goals(self, row: Built) -> tuple[float, ...]:
@@ -166,5 +162,5 @@ class Trials(ShortRepr):
 
 
 def _fact(row: Built, name: str) -> float:
-    value = row.facts.get(name, _NONE)
-    return float(value) if isinstance(value, int | float) else _NONE
+    value = row.facts.get(name, NONE)
+    return float(value) if isinstance(value, int | float) else NONE

@@ -141,12 +141,9 @@ class Plan(ShortRepr):
 
     @cached_property
     def _shares(self) -> Array:
-        random = np.random.default_rng(self.seed)
-        shape = (self.samples, len(self.axes))
-        if self.sampling == "random":
-            return random.random(shape)
-        places = np.array([random.permutation(self.samples) for _ in self.axes]).T
-        return (places.reshape(shape) + random.random(shape)) / self.samples
+        if self.sampling == "latin":
+            return latin_hypercube(self.samples, len(self.axes), self.seed)
+        return np.random.default_rng(self.seed).random((self.samples, len(self.axes)))
 
     @cached_property
     def mark(self) -> str:
@@ -158,6 +155,23 @@ class Plan(ShortRepr):
         }
         text = json.dumps(content, sort_keys=True, default=lambda one: getattr(one, "__name__", ""))
         return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def latin_hypercube(count: int, axes: int, seed: int) -> Array:
+    """Return points (count, axes) of the unit cube: one in each of equal parts of each axis.
+
+    Parameters
+    ----------
+    count : int
+        Number of points.
+    axes : int
+        Number of axes.
+    seed : int
+        Of the generator.
+    """
+    random = np.random.default_rng(seed)
+    places = np.array([random.permutation(count) for _ in range(axes)]).T
+    return (places + random.random(places.shape)) / count
 
 
 def flattened(table: Mapping[str, Any]) -> dict[str, Any]:

@@ -1,30 +1,41 @@
-"""The engine of this machine: processes of the standard library.
+"""The engine of this machine: processes that build variants within limits of time and memory.
 
-Each process is led by a thread, which waits for its rows.
+A process that ends is replaced, and the variant that it had is built once more; a variant with
+which it ends twice is refused. So is one that takes longer than its limit.
 """
 
 from __future__ import annotations
 
 import os
 import pickle
-import queue
+import sys
 import threading
-from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Sequence
+import time
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from multiprocessing import get_context
+from multiprocessing.connection import wait
 from typing import Any, Final
 
+from gearcam.base.interrupts import unbroken
 from gearcam.designs.design import Design
-from gearcam.sweep.child import MEMORY, SECONDS, Child
-from gearcam.sweep.engine import CHUNK_S, Engine, Job, Pace
+from gearcam.sweep.engine import MEMORY, SECONDS, Build, Engine, Job
 from gearcam.sweep.rows import Built, Measure, measured
+from gearcam.sweep.worker import READY, main
 
-_LOT: Final = 4
-"""Jobs of a lot that one process takes at once: others wait for the end of the lot."""
+_SPAWN: Final = get_context("spawn")  # threads of this process do not survive a fork
+
+_BEGINNING: Final = 60.0
+"""Least limit of the time in which a process begins, s."""
 
 _LOOK: Final = 0.5
 """Seconds after which a wait for rows looks for interruptions."""
+
+_MOST: Final = 60 if sys.platform == "win32" else sys.maxsize
+"""Largest number of processes: Windows waits for 63 things at a time."""
+
+_TWICE: Final = "its process ended twice while it was built"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,125 +64,148 @@ class Processes(Engine):
         """In words."""
         return f"{self.jobs} process{'es' if self.jobs > 1 else ''}"
 
-    def run(self, base: Design, jobs: Iterable[Job]) -> Iterator[Built]:
-        """Yield the rows of variants (see `Engine.run`)."""
-        task = pickle.dumps((base, self.measure))
-        source = jobs if isinstance(jobs, _Lots) else _Source(iter(jobs))
-        found: queue.SimpleQueue[Built | BaseException | None] = queue.SimpleQueue()
-        leaders = [
-            _Leader(source, found, Child(task, self.seconds, self.memory)) for _ in range(self.jobs)
-        ]
-        for one in leaders:
-            one.thread.start()
-        running = len(leaders)
-        try:
-            while running:
-                with suppress(queue.Empty):
-                    item = found.get(timeout=_LOOK)
-                    if isinstance(item, BaseException):
-                        raise item
-                    if item is None:
-                        running -= 1
-                    else:
-                        yield item
-        finally:
-            source.end()
-            for one in leaders:
-                one.stop()
-            for one in leaders:
-                one.thread.join()
-
     @contextmanager
-    def session(self, base: Design) -> Iterator[Callable[[Sequence[Job]], Iterator[Built]]]:
-        """Yield a function for several lots, built by the same processes (see `Engine`)."""
-        lots = _Lots()
-        rows = self.run(base, lots)
-
-        def built(jobs: Sequence[Job]) -> Iterator[Built]:
-            lots.put(jobs)
-            for _ in jobs:
-                yield next(rows)
-
+    def session(self, base: Design) -> Iterator[Build]:
+        """Yield what builds variants (see `Engine.session`)."""
+        task = pickle.dumps((base, self.measure))
+        crew = Crew(task, self.seconds, self.memory, min(self.jobs, _MOST))
         try:
-            yield built
+            yield crew.rows
         finally:
-            lots.end()
-            rows.close()  # pyright: ignore
+            crew.stop()
 
 
-class _Lots(Iterable[Job]):
-    """Jobs that come in lots; it is empty between them, and at its end."""
+class Crew:
+    """Processes that build variants; they live from lot to lot.
 
-    def __init__(self) -> None:
-        self._jobs: deque[Job] = deque()
-        self._more, self._ended = threading.Condition(), False
+    Parameters
+    ----------
+    task : bytes
+        The design, and the function that makes the row of a variant, pickled.
+    seconds : float, s
+        Largest time of a variant.
+    memory : int
+        Largest memory of a process, bytes.
+    count : int
+        Number of processes.
+    """
 
-    def __iter__(self) -> Iterator[Job]:
-        while chunk := self.take(1):
-            yield from chunk
+    def __init__(self, task: bytes, seconds: float, memory: int, count: int = 1) -> None:
+        self._members = [_Member(task, seconds, memory) for _ in range(count)]
 
-    def put(self, jobs: Sequence[Job]) -> None:
-        """Give jobs."""
-        with self._more:
-            self._jobs.extend(jobs)
-            self._more.notify_all()
+    def rows(self, jobs: Iterable[Job]) -> Iterator[Built]:
+        """Yield a row for each job as it comes; not of those that are stopped.
 
-    def end(self) -> None:
-        """Let nobody wait for more jobs."""
-        with self._more:
-            self._ended = True
-            self._more.notify_all()
+        Parameters
+        ----------
+        jobs : iterable of (int, dict)
+            Numbers and values of variants; read as they are needed.
 
-    def take(self, count: int) -> list[Job]:
-        with self._more:
-            self._more.wait_for(lambda: self._jobs or self._ended)
-            return [self._jobs.popleft() for _ in range(min(count, _LOT, len(self._jobs)))]
-
-
-class _Source:
-    """Jobs for several threads."""
-
-    def __init__(self, jobs: Iterator[Job]) -> None:
-        self._jobs, self._lock = jobs, threading.Lock()
-
-    def take(self, count: int) -> list[Job]:
-        with self._lock:
-            return [job for _, job in zip(range(count), self._jobs, strict=False)]
-
-    def end(self) -> None:
-        """Nobody waits for jobs."""
-
-
-class _Leader:
-    """A thread that leads a process."""
-
-    def __init__(
-        self,
-        source: _Source | _Lots,
-        found: queue.SimpleQueue[Built | BaseException | None],
-        child: Child,
-    ) -> None:
-        self.thread = threading.Thread(target=self._lead, daemon=True)
-        self._source, self._found, self._child = source, found, child
-
-    def _lead(self) -> None:
-        """Build variants until there are no more."""
-        pace, child = Pace(), self._child
-        try:
-            while not child.stopped and (chunk := self._source.take(pace.chunk(CHUNK_S))):
-                for row in child.rows(chunk):
-                    pace.add(row.time_s)
-                    self._found.put(row)
-        except BaseException as error:
-            if not child.stopped:
-                self._found.put(error)
-        finally:
-            child.stop()
-            self._found.put(None)
+        Raises
+        ------
+        RuntimeError
+            If a process cannot begin.
+        """
+        source, found = iter(jobs), list[Built | None]()
+        while True:
+            for one in self._members:
+                if one.job is None and (job := next(source, None)) is not None:
+                    one.build(job)
+            yield from filter(None, found)  # while the next ones are built
+            busy: dict[Any, _Member] = {one.link: one for one in self._members if one.job}
+            if not busy:
+                return
+            due = min(one.due for one in busy.values())
+            ready = wait(busy, max(0.0, min(_LOOK, due - time.monotonic())))
+            found = [busy[link].answer() for link in ready]
+            now = time.monotonic()
+            found += [one.lost(late=True) for one in busy.values() if one.job and one.due <= now]
 
     def stop(self) -> None:
-        """End the process at once."""
-        self._child.stop()
+        """End the processes at once and for good; any thread may."""
+        for one in self._members:
+            one.stop()
+
+
+class _Member:
+    """A process and the variant that it has; it begins with the first one."""
+
+    def __init__(self, task: bytes, seconds: float, memory: int) -> None:
+        self.link: Any = None
+        self.job: Job | None = None
+        self.due = 0.0
+        self._given, self._seconds = (task, memory), seconds
+        self._process: Any = None
+        self._begun = self._again = self._stopped = False
+        self._lock = threading.Lock()
+
+    def build(self, job: Job, *, again: bool = False) -> None:
+        """Let the process build a variant; nothing once it is stopped."""
+        if self._process is not None and not self._process.is_alive():
+            self._end()  # it had nothing to do for long
+        if self._process is None:
+            self._begin()
+        if not self._stopped:
+            self.job, self._again = job, again
+            self.due = time.monotonic() + max(self._seconds, 0.0 if self._begun else _BEGINNING)
+            with suppress(OSError):  # it has ended, which is its answer
+                self.link.send(job)
+
+    def answer(self) -> Built | None:
+        """Return the row of its variant; None if it has begun, or begins again."""
+        try:
+            said = self.link.recv()
+        except (EOFError, OSError, pickle.UnpicklingError):
+            return self.lost()
+        if self._begun:
+            self.job = None
+            return said
+        if said != READY:
+            return self.lost(f": {said}")
+        self._begun, self.due = True, time.monotonic() + self._seconds
+        return None
+
+    def lost(self, why: str = "", *, late: bool = False) -> Built | None:
+        """End the process; return the row of its variant, or None if that is built once more."""
+        job, self.job = self.job, None
+        self._end()
+        if self._stopped or job is None:
+            return None
+        if not self._begun:
+            raise RuntimeError(f"a process of the sweep cannot begin{why}")
+        if not late and not self._again:
+            self.build(job, again=True)
+            return None
+        number, values = job
+        if late:
+            why, taken = f"it takes longer than {self._seconds:g} s", self._seconds
+        else:
+            why, taken = _TWICE, 0.0
+        return Built(number=number, values=values, refusal=why, time_s=taken)
+
+    def stop(self) -> None:
+        """End the process for good."""
+        with self._lock:
+            self._stopped = True
+            if self._process is not None:
+                self._process.kill()
+                self._process.join()
+
+    def _begin(self) -> None:
+        self.link, there = _SPAWN.Pipe()
+        process = _SPAWN.Process(target=main, args=(there, *self._given), daemon=True)
+        with self._lock, unbroken():
+            if not self._stopped:
+                self._begun = False
+                process.start()
+                self._process = process
+        there.close()
+
+    def _end(self) -> None:
+        self._process.kill()
+        self._process.join()
+        self._process = None
+        self.link.close()
 
 
 def default_jobs() -> int:

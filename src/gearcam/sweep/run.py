@@ -126,22 +126,13 @@ def write_tables(log: Log, folder: Path, stem: str = "sweep") -> tuple[Tally, li
     first = next(log.rows())
     keys, facts = list(first.values), list(tally.facts)
     table, more = folder / f"{stem}.csv", folder / f"{stem}.parquet"
-    written = [table]
-    try:
-        written_whole(table, lambda path: write_csv(path, records(log.rows(), keys, facts)))
-        if can_write_parquet():
-            texts = tally.texts | {name for name, text in tally.facts.items() if text}
-            texts |= {"findings", "refusal"}
-            written_whole(
-                more,
-                lambda path: write_parquet(
-                    path, records(log.rows(), keys, facts), frozenset(texts)
-                ),
-            )
-            written.append(more)
-    except OSError as error:
-        raise WriteError(f"{error.filename or folder}: {error.strerror or error}") from error
-    return tally, written
+    written_whole(table, lambda path: write_csv(path, records(log.rows(), keys, facts)))
+    if not can_write_parquet():
+        return tally, [table]
+    texts = {name for name, text in tally.facts.items() if text} | {"findings", "refusal"}
+    texts = frozenset(texts | tally.texts)
+    written_whole(more, lambda path: write_parquet(path, records(log.rows(), keys, facts), texts))
+    return tally, [table, more]
 
 
 def written_whole(path: Path, write: Callable[[Path], Any]) -> None:
@@ -156,12 +147,15 @@ def written_whole(path: Path, write: Callable[[Path], Any]) -> None:
 
     Raises
     ------
-    OSError
+    WriteError
         If it cannot be written.
     """
     part = path.with_suffix(f"{path.suffix}.part")
     try:
-        write(part)
-        part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)
+        try:
+            write(part)
+            part.replace(path)
+        finally:
+            part.unlink(missing_ok=True)
+    except OSError as error:
+        raise WriteError(f"{path}: {error.strerror or error}") from error

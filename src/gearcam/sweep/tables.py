@@ -20,14 +20,6 @@ _BATCH: Final = 5000
 """Rows of Parquet that are in memory at once."""
 
 
-def fact_names(rows: Iterable[Built]) -> list[str]:
-    """Return the names of the facts of rows, in the order in which they first appear."""
-    names: dict[str, None] = {}
-    for row in rows:
-        names |= dict.fromkeys(row.facts)
-    return list(names)
-
-
 def records(
     rows: Iterable[Built], keys: Sequence[str], facts: Sequence[str]
 ) -> Iterator[dict[str, Any]]:

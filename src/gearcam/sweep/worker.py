@@ -1,95 +1,60 @@
-"""A process that builds variants: it reads jobs from its input and writes rows to its output.
+"""A process that builds variants: it answers each job by a row.
 
-Both are pickled. The first input is a `Briefing`, answered by `READY`; each further one is a list
-of jobs, answered by a row each. What a library prints goes to the error stream. The process ends
-with its input, whatever it does then, and when it has had no jobs for a while.
+Its first answer is `READY`, or the reason why it cannot begin. What a library prints goes to the
+error stream. It ends with its parent, and when it has had no jobs for a while.
 """
 
 from __future__ import annotations
 
 import os
 import pickle
-import queue
 import signal
 import sys
-import threading
 from contextlib import suppress
-from dataclasses import dataclass
-from typing import Any, BinaryIO, Final
+from multiprocessing.connection import Connection
+from typing import Final
 
-from gearcam.base.interrupts import SIGNALS
+from gearcam.base.interrupts import follow_parent
 
-READY = "ready"
-"""First output: jobs may come. Otherwise it is the reason why they may not."""
+READY: Final = "ready"
 
 _IDLE: Final = 60.0
 """Time without jobs after which the process ends, s."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Briefing:
-    """What a worker needs before its first job.
+def main(link: Connection, task: bytes, memory: int) -> None:
+    """Build variants until nobody wants any more.
 
     Parameters
     ----------
-    path : list of str
-        Folders of modules, which a design's functions may come from.
-    memory : int
-        Largest memory of the process, bytes.
+    link : Connection
+        Jobs come by it, rows go by it.
     task : bytes
         The design, and the function that makes the row of a variant, pickled.
+    memory : int
+        Largest memory of the process, bytes.
     """
-
-    path: list[str]
-    memory: int
-    task: bytes
-
-
-def main() -> None:
-    """Build variants until the input ends."""
-    for number in SIGNALS:  # the sweep ends its workers
-        signal.signal(number, signal.SIG_IGN)
-    answers = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
+    follow_parent()
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)  # how a parent that exits ends its processes
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGTERM])
+    os.environ["OPENBLAS_NUM_THREADS"] = "1"  # read when numpy is imported
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
-    with suppress(BrokenPipeError, queue.Empty):
-        _serve(sys.stdin.buffer, answers)
-    os._exit(0)  # nothing is left to write
-
-
-def _serve(jobs: BinaryIO, answers: BinaryIO) -> None:
-    setup: Briefing = pickle.load(jobs)
-    sys.path[:] = setup.path
     from gearcam.console import quieten
     from gearcam.numeric.arrays import keep_freed_memory
 
     quieten()
     keep_freed_memory()
-    _limit(setup.memory)
-
-    def answer(content: Any) -> None:
-        pickle.dump(content, answers)
-        answers.flush()
-
+    _limit(memory)
     try:
-        base, measure = pickle.loads(setup.task)
+        base, measure = pickle.loads(task)
     except Exception as error:  # such as a module that is not there
-        answer(f"{type(error).__name__}: {error}")
+        link.send(f"{type(error).__name__}: {error}")
         return
-    answer(READY)
-    chunks: queue.SimpleQueue[Any] = queue.SimpleQueue()
-    threading.Thread(target=_feed, args=(jobs, chunks), daemon=True).start()
-    while True:
-        for number, values in chunks.get(timeout=_IDLE):
-            answer(measure(base, number, values))
-
-
-def _feed(jobs: BinaryIO, chunks: queue.SimpleQueue[Any]) -> None:
-    """Read chunks; end the process with its input, also while it builds a variant."""
-    try:
-        while True:
-            chunks.put(pickle.load(jobs))
-    finally:
-        os._exit(0)
+    link.send(READY)
+    with suppress(EOFError, OSError):
+        while link.poll(_IDLE):
+            link.send(measure(base, *link.recv()))
 
 
 def _limit(memory: int) -> None:

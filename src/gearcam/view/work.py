@@ -7,16 +7,12 @@ pickled. A *reply* contains a ``document``, or an ``error`` in words.
 from __future__ import annotations
 
 import json
-import os
-import signal
-import threading
 from collections.abc import Callable, Mapping
-from multiprocessing import connection, parent_process
 from typing import Any, Final
 
 from gearcam import build, remedies
 from gearcam.base.errors import DesignError, GearcamError, InfeasibleError
-from gearcam.base.interrupts import SIGNALS
+from gearcam.base.interrupts import follow_parent
 from gearcam.console import fault_text, quieten, refusal_text, remedy_lines
 from gearcam.designs.design import Design, loads
 from gearcam.designs.reader import content_of, decoded
@@ -37,18 +33,9 @@ _DONE: Final = "updated"
 
 def begin() -> None:
     """Prepare a worker: it ends with the server and ignores interrupts."""
-    for number in SIGNALS:
-        signal.signal(number, signal.SIG_IGN)
+    follow_parent()
     quieten()
     keep_freed_memory()
-    parent = parent_process()
-    if parent is not None:
-        threading.Thread(target=_end_with, args=(parent.sentinel,), daemon=True).start()
-
-
-def _end_with(sentinel: int) -> None:
-    connection.wait([sentinel])
-    os._exit(0)
 
 
 def show(content: bytes | None, file: str) -> Reply:

@@ -13,7 +13,7 @@ import pytest
 import gearcam as gc
 from gearcam.base.errors import DesignError
 from gearcam.sweep import cluster
-from gearcam.sweep.cluster import Cluster
+from gearcam.sweep.cluster import Cluster, chunk_size
 from gearcam.sweep.pool import Processes
 from gearcam.sweep.rows import Built, measured
 from helpers_pairs import PROFILES
@@ -29,11 +29,16 @@ Jobs = Sequence[tuple[int, dict[str, Any]]]
 def local() -> Iterator[Any]:
     """Two workers of one thread, as on two cores of other machines.
 
-    What a killed worker had is asked for as long as dask tries to connect: 30 s by default.
+    What a killed worker had is asked for as long as dask tries to connect: 30 s by default. A
+    worker that begins again just 15 s after it was lost would be given up.
     """
+    settings = {
+        "distributed.comm.timeouts.connect": "2s",
+        "distributed.deploy.lost-worker-timeout": "300s",
+    }
     with (
         cluster._silent(),
-        dask.config.set({"distributed.comm.timeouts.connect": "2s"}),
+        dask.config.set(settings),
         distributed.LocalCluster(
             n_workers=2, threads_per_worker=1, dashboard_address=None, host="127.0.0.1"
         ) as made,
@@ -104,6 +109,14 @@ def test_a_variant_with_which_workers_end_costs_only_itself(local: Any) -> None:
     found = rows(local, deeds("work", "end-worker", "work", "work"))
     assert [row.made for _, row in sorted(found.items())] == [True, False, True, True]
     assert "ended twice" in found[1].refusal
+
+
+def test_chunks_take_about_a_second_and_leave_a_part_to_others() -> None:
+    assert chunk_size([], 256) == 1
+    assert chunk_size([0.02] * 9, 256) == 50
+    assert chunk_size([0.01, 0.03], 4) == 4
+    assert chunk_size([1e-320], 256) == 256
+    assert chunk_size([3.0], 256) == chunk_size([0.0], 256) == 1
 
 
 def test_an_address_at_which_nothing_answers_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+import importlib
 import os
 import signal
+import subprocess
 import sys
-import threading
-import time
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -15,10 +15,10 @@ from typing import Any
 import pytest
 
 import gearcam as gc
-from gearcam.sweep.engine import chunk_size
 from gearcam.sweep.pool import Processes
 from gearcam.sweep.rows import Built
-from helpers_sweep import BASE, odd
+from helpers_processes import ENVIRONMENT
+from helpers_sweep import BASE, Loads, odd
 
 
 def deeds(*words: str) -> list[tuple[int, dict[str, Any]]]:
@@ -77,8 +77,10 @@ def test_a_process_that_is_killed_from_outside_costs_nothing() -> None:
 
 
 def children() -> list[str]:
+    """Processes of this one, without that which tracks what processes share."""
     threads = Path("/proc/self/task").glob("*/children")
-    return [word for one in threads for word in one.read_text().split()]
+    found = [Path("/proc", word) for one in threads for word in one.read_text().split()]
+    return [one.name for one in found if b"resource_tracker" not in (one / "cmdline").read_bytes()]
 
 
 def test_no_process_is_left_when_the_rows_are_not_wanted_any_more() -> None:
@@ -88,6 +90,30 @@ def test_no_process_is_left_when_the_rows_are_not_wanted_any_more() -> None:
     assert set(children()) > before
     running.close()  # type: ignore[attr-defined]
     assert set(children()) == before
+
+
+PARENT = """
+from gearcam.sweep.pool import Processes
+from helpers_sweep import BASE, odd
+
+jobs = [(number, {"deed": deed}) for number, deed in enumerate(("work", "hang"))]
+for row in Processes(jobs=1, measure=odd).run(BASE, jobs):
+    print(row.number, flush=True)
+"""
+
+
+def test_a_process_that_hangs_ends_with_a_parent_that_is_killed() -> None:
+    paths = os.pathsep.join(sys.path)
+    running = subprocess.Popen(
+        [sys.executable, "-c", PARENT],
+        env=ENVIRONMENT | {"PYTHONPATH": paths},
+        stdout=-1,
+        stderr=-1,
+    )
+    assert running.stdout
+    assert running.stdout.readline() == b"0\n"  # the next one has begun
+    running.kill()
+    assert running.communicate(timeout=20) == (b"", b"")  # nobody has these streams any more
 
 
 def test_jobs_are_read_as_they_are_needed() -> None:
@@ -127,46 +153,19 @@ def test_rows_do_not_depend_on_the_number_of_processes() -> None:
     assert "law.eccentricity" in one[8].refusal
 
 
-def test_chunks_take_about_a_quarter_of_a_second() -> None:
-    assert chunk_size(0.0) == 1
-    assert chunk_size(0.02) == 12
-    assert chunk_size(1e-5) == 256
-    assert chunk_size(3.0) == 1
-
-
-def test_threads_end_with_the_rows() -> None:
-    before = threading.active_count()
-    list(Processes(jobs=2, measure=odd).run(BASE, iter(deeds("work", "work"))))
-    time.sleep(0.05)
-    assert threading.active_count() == before
-
-
-def test_a_process_that_cannot_begin_is_a_fault_and_not_a_refusal(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr(sys, "executable", "/bin/false")
-    with pytest.raises(RuntimeError, match="cannot begin"):
-        list(Processes(jobs=2, measure=odd).run(BASE, iter(deeds("work", "work"))))
-
-
-def test_an_error_ends_a_session_in_which_another_process_waits_for_jobs(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr(sys, "executable", "/bin/false")
-    errors: list[str] = []
-
-    def search() -> None:
-        with Processes(jobs=2, measure=odd).session(BASE) as build:
-            try:
-                list(build(deeds("work")))
-            except RuntimeError as error:
-                errors.append(str(error))
-
-    thread = threading.Thread(target=search, daemon=True)
-    thread.start()
-    thread.join(20.0)
-    assert not thread.is_alive()
-    assert len(errors) == 1
+@pytest.mark.parametrize(
+    ("loads", "why"),
+    [
+        (Loads(importlib.import_module, "gearcam_gone"), "begin: ModuleNotFoundError: .*gone"),
+        (Loads(os._exit, 1), "begin$"),
+    ],
+)
+def test_a_process_that_cannot_begin_is_a_fault_and_not_a_refusal(loads: Loads, why: str) -> None:
+    with (
+        Processes(jobs=2, measure=loads).session(BASE) as build,
+        pytest.raises(RuntimeError, match=why),
+    ):
+        list(build(deeds("work")))
 
 
 def test_lots_of_a_session_are_built_by_the_same_processes() -> None:
