@@ -74,7 +74,9 @@ def _fit(
         facts: dict[str, Any] = dict(study.group)
         scale = chosen.follower.lift_unit[0]
         theta, lift = np.radians(columns["theta_deg"]), columns["s"] / scale
-        error = float(np.sqrt(np.mean(columns["error"] ** 2))) / scale
+        chords = float(np.sqrt(np.mean(columns["error"] ** 2))) / scale
+        # arcs and splines are as far from the true curve as their tolerance allows
+        error = max(chords, chosen.tolerance / chosen.follower.lever)
     else:
         (theta, lift), found, error = rows, (), None
         columns, facts = fitting.compared(chosen, theta, lift)
