@@ -10,7 +10,7 @@ import numpy as np
 from gearcam.cams.precision import sensitivities
 from gearcam.cams.wall import Wall
 from gearcam.kinds.cam.build import CamResult
-from gearcam.kinds.cam.follow import followed
+from gearcam.kinds.cam.given_profile import followed
 from gearcam.numeric.arrays import Array
 
 _ANGLES: Final = 120

@@ -10,7 +10,7 @@ import numpy as np
 
 from gearcam.cams.three_points import three_point_curvature
 from gearcam.kinds.cam.curvature import curvature_at, pitch_points
-from gearcam.kinds.cam.follow import followed
+from gearcam.kinds.cam.given_profile import followed
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.sampling import Sampler
 from gearcam.results.ladders import (

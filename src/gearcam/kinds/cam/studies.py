@@ -33,7 +33,7 @@ def follow(
     fit: bool = False,
 ) -> StudyResult:
     """Return the motion of a cam's follower on a given profile (see `CamResult.follow`)."""
-    from gearcam.kinds.cam.follow import followed, read_profile
+    from gearcam.kinds.cam.given_profile import followed, read_profile
 
     if fit:
         return _fit(result, profile, wall, progress)
