@@ -64,6 +64,7 @@ def _fit(
 ) -> StudyResult:
     """Return the same with the design that has this motion."""
     from gearcam.kinds.cam import fit as fitting
+    from gearcam.kinds.cam.given_profile import compared
 
     fitting.demand_fit(result.design)
     chosen = result.wall(wall)
@@ -79,7 +80,7 @@ def _fit(
         error = max(chords, chosen.tolerance / chosen.follower.lever)
     else:
         (theta, lift), found, error = rows, (), None
-        columns, facts = fitting.compared(chosen, theta, lift)
+        columns, facts = compared(chosen, theta, lift)
     if progress is not None:
         progress("fit", 0, 1)
     with result.stage("fit"):
