@@ -82,3 +82,14 @@ def test_a_cam_is_found_in_its_own_drawing(law: str, curves: str, tmp_path: Path
 def test_other_followers_and_tolerances(case: str, tmp_path: Path) -> None:
     design, wall, lift = OTHERS[case]
     demand_found(design, tmp_path, lift, wall)
+
+
+def test_a_coarser_drawing_than_the_design_says_is_told(tmp_path: Path) -> None:
+    """Its waves are no moves; no law fits within the design's own tolerance."""
+    design = GROOVE.with_({"output.files": ["dxf"]})
+    coarse = design.with_({"output.chord_tolerance_mm": 0.05})
+    file = Path(gearcam.build(coarse).write(tmp_path).directory) / "cam.dxf"
+    study = gearcam.build(design).follow(file, wall="inner", fit=True)
+    assert "unknown-law" in {one.code for one in study.findings}
+    found = gearcam.loads(study.files["fitted.toml"].decode()).to_dict()["motion"]
+    assert [one["type"] for one in found] == ["rise", "dwell", "return", "dwell"]
