@@ -6,8 +6,8 @@ the first is the true one, where d is what the second misses of it, with the dev
 ``2*d*sqrt(v)``. The true law then loses by ``S_a - S_b > T`` with a chance that is largest for
 ``d^2 = T``: that of ``sqrt(T/v)`` standard deviations. So laws whose sums differ by less than
 ``16*v``, four deviations, *cannot be distinguished*. Of these one without a number to choose is
-taken, and one that misses more by less than ``5*v`` for each dwell that it does not have, and for
-each law that it has in more than one move. By the first rule dwells are left out, too.
+taken, one without a dwell by the same rule, and one that misses more by less than ``2*v`` for each
+law that it has in more than one move.
 
 The variance is that of what the best model misses, or of the noise in the rows if that is larger,
 times the number of neighbouring rows whose errors are alike (the sum of the autocorrelation). An
@@ -57,9 +57,8 @@ _APART: Final = 16.0
 _ROUNDED: Final = 9.0
 """Largest growth of the sum of squares by rounding a size, in variances."""
 
-_SIMPLER: Final = 5.0
-"""What a dwell, or a law that no other move has, must take off the sum of squares, in variances:
-twice the logarithm of the number of laws."""
+_SIMPLER: Final = 2.0
+"""What a law that no other move has must take off the sum of squares, in variances."""
 
 _NEAR: Final = 2.0
 """Standard deviations within which sizes are rounded, and which their errors are."""
@@ -418,9 +417,9 @@ class _Trials:
         good = [one for one, squares in self.squares.items() if squares <= most]
 
         def order(laws: tuple[Choice, ...]) -> tuple[int, float]:
-            model, more = self.models[laws], _SIMPLER * variance
-            size = len(model.parameters) + len(set(laws))
-            return len(model.free), self.squares[laws] + more * size
+            model = self.models[laws]
+            more = _APART * len(model.parameters) + _SIMPLER * len(set(laws))
+            return len(model.free), self.squares[laws] + more * variance
 
         return [self.models[one] for one in sorted(good, key=order)]
 
