@@ -279,6 +279,15 @@ class LiftModel:
         """Return the model with another law of a move, which crosses the same two lifts as before.
 
         At most half of a dwell is taken.
+
+        Parameters
+        ----------
+        k : int
+            The move.
+        law : object
+            Parameters of a motion law.
+        free : bool
+            Whether its number is fitted.
         """
         starts, ends, falling = self.starts.copy(), self.ends.copy(), self.falling(k)
         old, new = (crossed(one, falling=falling) for one in (self.laws[k], law))
