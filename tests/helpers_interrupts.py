@@ -87,7 +87,7 @@ CASES: dict[str, tuple[tuple[str, ...], str, int, str]] = {
     "mesh, writing": (MESH, WRITE, 2, BEFORE),
     "compare": (COMPARE, "gearcam.compare.variants._built", 2, BEFORE),
     "compare, writing": (COMPARE, WRITE, 1, BEFORE),
-    "follow": (FOLLOW, "gearcam.kinds.cam.follow.follow", 1, BEFORE),
+    "follow": (FOLLOW, "gearcam.kinds.cam.given_profile.follow", 1, BEFORE),
     "follow, writing": (FOLLOW, WRITE, 1, BEFORE),
     "accuracy": (ACCURACY, "gearcam.results.accuracy._first_round", 1, BEFORE),
     "accuracy, writing": (ACCURACY, WRITE, 2, BEFORE),

@@ -189,6 +189,12 @@ def test_three_levels_and_two_rises_in_a_row() -> None:
     demand_found(fitted, moves)
 
 
+@pytest.mark.parametrize(("law", "other"), [("3-4-5", "3-4-5"), ("harmonic", "4-5-6-7")])
+def test_a_dwell_of_few_rows_is_seen(law: str, other: str) -> None:
+    moves = [Move(law, 322, 451.3, 20, 6), Move(other, 127.8, 247.4, 6, 20)]
+    demand_found(fit_lift(*rows(moves, 1e-3, 36), (1.0, "mm")), moves)
+
+
 def test_equal_levels_are_equal() -> None:
     moves = [
         Move("cycloidal", 10, 70, 0, 5),

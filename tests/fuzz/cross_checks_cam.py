@@ -9,7 +9,7 @@ import numpy as np
 
 from gearcam.cams.precision import sensitivities
 from gearcam.cams.wall import Wall
-from gearcam.kinds.cam.follow import followed
+from gearcam.kinds.cam.given_profile import followed
 from gearcam.kinds.cam.result import CamResult
 from gearcam.numeric.arrays import Array
 

@@ -5,8 +5,9 @@ For normal noise of variance v the sums of squares S_a, S_b of two laws differ b
 the first is the true one, where d is what the second misses of it, with the deviation
 ``2*d*sqrt(v)``. The true law then loses by ``S_a - S_b > T`` with a chance that is largest for
 ``d^2 = T``: that of ``sqrt(T/v)`` standard deviations. So laws whose sums differ by less than
-``16*v``, four deviations, *cannot be distinguished*; of these the simplest is taken, then the one
-that misses least. By the same rule dwells are left out, and moves of one direction are joined.
+``16*v``, four deviations, *cannot be distinguished*. Of these one without a number to choose is
+taken, one without a dwell by the same rule, and one that misses more by less than ``2*v`` for each
+law that it has in more than one move.
 
 The variance is that of what the best model misses, or of the noise in the rows if that is larger,
 times the number of neighbouring rows whose errors are alike (the sum of the autocorrelation). An
@@ -22,25 +23,33 @@ Source: derived anew; least squares as in `gearcam.laws.lift_model`.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterable, Iterator, Sequence
-from dataclasses import dataclass, fields, replace
-from functools import cached_property
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field, fields, replace
+from functools import cache, cached_property
 from itertools import product
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from gearcam.laws.lift_model import LiftModel, LiftRows, Name, improved, misfit, number_of, place_of
-from gearcam.laws.lift_phases import first_model, noise_of
+from gearcam.base.errors import beyond_limit
+from gearcam.base.numerals import formatted
+from gearcam.laws.lift_model import SPAN, LiftModel, Name, crossed, improved, number_of
+from gearcam.laws.lift_rows import LAG, LiftRows, noise_of, runs_of
 from gearcam.laws.motion.base import MOTION_LAWS
-from gearcam.laws.phases_of_lift import (
-    TURN,
-    DwellPhase,
-    Phase,
-    ReturnPhase,
-    RisePhase,
-)
-from gearcam.numeric.arrays import Array, Mask
+from gearcam.laws.phases_of_lift import TURN, DwellPhase, Phase, ReturnPhase, RisePhase
+from gearcam.numeric.arrays import Array, Ints, Mask
+
+FEWEST: Final = 36
+"""Fewest rows of a turn."""
+
+FEWEST_OF_MOVE: Final = 3
+"""Fewest rows on a rise or return, without its flat ends: the law and its boundaries need them."""
+
+_LOUD: Final = 25.0
+"""Total lift over the noise below which no law could be found."""
+
+_FLAT: Final = 0.02
+"""Share of a move that belongs to its flat ends."""
 
 _APART: Final = 16.0
 """Least difference of sums of squares, in variances, that tells two models apart."""
@@ -48,35 +57,22 @@ _APART: Final = 16.0
 _ROUNDED: Final = 9.0
 """Largest growth of the sum of squares by rounding a size, in variances."""
 
+_SIMPLER: Final = 2.0
+"""What a law that no other move has must take off the sum of squares, in variances."""
+
 _NEAR: Final = 2.0
 """Standard deviations within which sizes are rounded, and which their errors are."""
 
-_SWEEPS: Final = 3
+_SWEEPS: Final = 4
 
-_ROUGH: Final = 1e-2
-"""How well laws are fitted first: fall of the sum of squares in a step, over the sum."""
+_PAIRED: Final = 12
+"""Pairs of laws of touching moves that are tried beside the others: those that suit them best."""
 
-_TWICE: Final = 2.0
-"""Sum of squares of laws that are fitted to the end, over the least one."""
-
-_MORE: Final = 1.15
-"""Mean square of what laws leave, over that of the noise, above which laws with numbers are tried
-from the start."""
+_ROUGH: Final = 0.02
+"""How well they are fitted by themselves: fall of the sum of squares in a step, over the sum."""
 
 _INSET: Final = 0.08
 """Share of a move next to a boundary without a dwell that belongs to another move perhaps."""
-
-_PAIRED: Final = 6
-"""Laws that are tried in pairs: those that suit a move best."""
-
-
-_EXPLAINED: Final = 4.0
-"""Mean square of what laws leave, over that of the noise, from which on none of them explains the
-rows, and pairs of them need not be compared."""
-
-_SPAN: Final = (0.2, 0.8)
-_LAG: Final = 20
-"""Largest distance of rows, as a part of all, over which errors are correlated."""
 
 _GRIDS: Final = (5.0, 1.0, 0.5, *(part * 10.0**-k for k in range(1, 8) for part in (1.0, 0.5)))
 """Roundest numbers first."""
@@ -86,21 +82,15 @@ _DIGITS: Final = 9
 _LEAST: Final = math.radians(0.01)
 """Least angle of a phase."""
 
+_BESIDE: Final = 0.4
+"""Share of the dwells beside a move that is looked at with it."""
+
 _EDGE: Final = 0.02
 """Share of a range next to its ends, where the law is another one."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class AlikeLaw:
-    """A law that a move may as well have.
-
-    Parameters
-    ----------
-    law : object
-        Its parameters.
-    start, end : float, rad
-        Where the move would be.
-    """
+class AlikeLaw(NamedTuple):
+    """A law that a move may as well have, and where the move would be, rad."""
 
     law: Any
     start: float
@@ -117,8 +107,8 @@ class FittedLift:
         With rounded sizes.
     rows : LiftRows
         The rows.
-    variance : float
-        Of the noise, times the number of rows whose errors are alike, mm2 or rad2.
+    scale : float
+        Factor from lifts to their unit in output.
     alike : tuple of k tuples of AlikeLaw
         Other laws that cannot be distinguished from that of each move.
     deviations : mapping of Name to float
@@ -127,24 +117,19 @@ class FittedLift:
 
     model: LiftModel
     rows: LiftRows
-    variance: float
+    scale: float
     alike: tuple[tuple[AlikeLaw, ...], ...]
     deviations: dict[Name, float]
 
     @cached_property
-    def lift(self) -> Array:
-        """The lift of the program at the rows, mm or rad."""
-        return self.model.lift(self.rows.theta)
-
-    @cached_property
     def missed(self) -> Array:
         """The rows less the lift of the program, mm or rad."""
-        return self.rows.lift - self.lift
+        return self.rows.lift - self.model.lift(self.rows.theta)
 
     def on(self, k: int) -> Mask:
         """Return whether each row is on a move."""
-        move, over = self.model.move_at(self.rows.theta)
-        return (move == k) & ~over
+        move, since = self.model.move_at(self.rows.theta)
+        return (move == k) & (since < self.model.gaps[0][k])
 
     def error(self, name: Name) -> float:
         """Return the error of a boundary, rad: two deviations, and what other laws make of it."""
@@ -152,8 +137,8 @@ class FittedLift:
         if name not in self.deviations:  # tied: the end of the move before
             return self.error(("end", k - 1 if k else len(self.model.laws) - 1))
         own = self.model.value(name)
-        other = (getattr(one, kind) for one in self.alike[k]) if kind in ("start", "end") else ()
-        return _NEAR * self.deviations[name] + max((abs(one - own) for one in other), default=0.0)
+        other = (abs(getattr(one, kind) - own) for one in self.alike[k])
+        return _NEAR * self.deviations[name] + max(other, default=0.0)
 
     @cached_property
     def begin(self) -> tuple[int, float]:
@@ -161,39 +146,33 @@ class FittedLift:
 
         That is 0 if the lift is lowest there.
         """
-        model = self.model
-        first, low = model.lowest, float(model.levels[model.lowest])
-        near = low + 1e-9 * float(np.ptp(model.levels))
-        lowest = [k for k in range(len(model.laws)) if model.levels[k] <= near]
-        for k in lowest:
-            dwell = model.ends[k - 1] - (TURN if k == 0 else 0.0)
-            turns = TURN * math.ceil((dwell - _tiny(self)) / TURN)
-            if dwell - _tiny(self) <= turns <= model.starts[k] + _tiny(self):
+        model, tiny = self.model, 1e-9 * self.rows.step
+        lowest = model.levels[model.lowest] + 1e-9 * np.ptp(model.levels)
+        for k in np.flatnonzero(model.levels <= lowest).tolist():
+            start = float(model.starts[k])
+            dwell = start - float(model.gaps[1][k - 1])
+            zero = TURN * math.ceil((dwell - tiny) / TURN)
+            if zero <= start + tiny:
                 # a dwell that a design cannot have is left out
-                short = float(model.starts[k]) - turns < _LEAST
-                return k, float(model.starts[k]) if short else turns
-        return first, float(model.starts[first])
+                return k, start if start - zero < _LEAST else zero
+        return model.lowest, float(model.starts[model.lowest])
 
     def phases(self) -> tuple[Phase, ...]:
         """Return the phases of a design, from zero lift on."""
         model, (first, zero) = self.model, self.begin
-        count = len(model.laws)
-        found: list[Phase] = list(_dwell(float(model.starts[first]) - zero))
-        for number in range(count):
-            k = (first + number) % count
-            width, dwell = (float(gaps[k]) for gaps in model.gaps())
-            rise, last = float(model.after[k] - model.levels[k]), number == count - 1
+        before, count = float(model.starts[first]) - zero, len(model.laws)
+        widths, dwells = model.gaps
+        dwells = dwells.copy()
+        dwells[first - 1] -= before
+        found: list[Phase] = list(_dwell(before))
+        for k in (*range(first, count), *range(first)):
+            rise = self.scale * float(model.after[k] - model.levels[k])
+            last = (k + 1) % count == first
             make = ReturnPhase if rise < 0.0 else RisePhase
-            lift = None if last else _plain(abs(rise))
-            found.append(make(angle=_angle(width), law=model.laws[k], lift=lift))
-            if last:
-                dwell -= float(model.starts[first]) - zero
-            found += _dwell(dwell)
+            lift = None if last else float(f"{abs(rise):.12g}") / self.scale
+            found.append(make(angle=_angle(widths[k]), law=model.laws[k], lift=lift))
+            found += _dwell(float(dwells[k]))
         return (*found[:-1], replace(found[-1], angle="rest"))
-
-
-def _tiny(fitted: FittedLift) -> float:
-    return 1e-9 * fitted.rows.step
 
 
 def _dwell(width: float) -> Iterator[Phase]:
@@ -203,10 +182,6 @@ def _dwell(width: float) -> Iterator[Phase]:
 
 def _angle(width: float) -> float:
     return math.radians(round(math.degrees(width), _DIGITS))
-
-
-def _plain(lift: float) -> float:
-    return float(f"{lift:.12g}")
 
 
 def fit_lift(theta: Array, lift: Array, unit: tuple[float, str], error: float = 0.0) -> FittedLift:
@@ -230,84 +205,253 @@ def fit_lift(theta: Array, lift: Array, unit: tuple[float, str], error: float = 
     Raises
     ------
     InfeasibleError
-        If no phases can be found (see `gearcam.laws.lift_phases.first_model`).
+        If there are too few rows, the lift is lost in noise, or a move takes too few rows.
     """
-    noise = math.hypot(noise_of(theta, lift, 1.0 if error else unit[0]), error)
-    rows = LiftRows(theta=theta, lift=lift, noise=noise, error=error)
-    model = _chosen(first_model(rows, unit), rows)
-    simple = _untied(_simplified(model, rows), rows)
-    if len(simple.laws) != len(model.laws) or simple.tied != model.tied:
-        model = _chosen(simple, rows)
-    model, tried = _settled(model, rows)
-    good = model.squares(rows) <= _EXPLAINED * len(theta) * rows.noise**2
-    for k in (k for k, tied in enumerate(model.tied) if tied and good):
-        pairs = [improved(one, rows) for one in _in_pairs(model, model, k, rows)]
-        for one in (k, (k + 1) % len(model.laws)):
-            tried[one] += pairs
-    variance = variance_of(model, rows)
-    most = model.squares(rows) + _APART * variance
-    alike = tuple(
-        tuple(_alike([one for one in row if one.squares(rows) <= most], model, k, rows))
-        for k, row in enumerate(tried)
-    )
-    deviations = _deviations(model, variance, rows)
+    if len(theta) < FEWEST:
+        raise beyond_limit("the lift has too few rows", "", len(theta), FEWEST, unit="rows")
+    rows = LiftRows(theta=theta, lift=lift, noise=0.0, error=error)
+    scale, name = unit
+    rows = replace(rows, noise=math.hypot(noise_of(rows, scale), error))
+    if rows.total < _LOUD * rows.noise:
+        what = f"the lift is lost in its noise, {formatted(scale * rows.noise, 3)} {name}"
+        rule = f"a total lift of at least {_LOUD:g} times the noise; measure again, or average"
+        raise beyond_limit(
+            what, "", scale * rows.total, scale * _LOUD * rows.noise, rule, unit=name
+        )
+    trials = _Trials(first_model(rows), rows)
+    model = trials.best()
+    simple = _simplified(model, rows)
+    if simple.tied != model.tied:
+        trials = _Trials(simple, rows)
+        model = trials.best()
+    variance = _variance(model, rows)
+    model = trials.near(min(trials.squares.values()), variance)[0]
+    near = trials.near(model.squares(rows), variance)
     return FittedLift(
-        model=_rounded(model, rows, variance, unit[0]),
+        model=_rounded(model, rows, variance, scale),
         rows=rows,
-        variance=variance,
-        alike=alike,
-        deviations=deviations,
+        scale=scale,
+        alike=tuple(tuple(_alike(near, k)) for k in range(len(model.laws))),
+        deviations=_deviations(model, variance, rows),
     )
+
+
+def _alike(models: Sequence[LiftModel], k: int) -> Iterator[AlikeLaw]:
+    """Yield other laws of a move than in the first of models, each name once."""
+    seen = {type(models[0].laws[k])}
+    for one in models:
+        law = one.laws[k]
+        if type(law) not in seen:
+            seen.add(type(law))
+            yield AlikeLaw(law, float(one.starts[k]), float(one.ends[k]))
+
+
+def _variance(model: LiftModel, rows: LiftRows) -> float:
+    """Return the variance of the noise, times the number of rows whose errors are alike."""
+    off, count = rows.lift - model.lift(rows.theta), len(rows.theta)
+    square = float(off @ off)
+    alike = 1.0
+    for lag in range(1, count // LAG):
+        together = float(off @ np.roll(off, lag)) / square if square else 0.0
+        if together <= 2.0 / math.sqrt(count):
+            break
+        alike += 2.0 * together
+    left = max(1, count - len(model.parameters))
+    return max(rows.noise**2, square / left) * alike + rows.variance - rows.noise**2
+
+
+# --- where moves are ---------------------------------------------------------------------------
+
+
+def first_model(rows: LiftRows) -> LiftModel:
+    """Return a model of the moves that rows show, all with the law 3-4-5.
+
+    Parameters
+    ----------
+    rows : LiftRows
+        The rows.
+
+    Returns
+    -------
+    LiftModel
+
+    Raises
+    ------
+    InfeasibleError
+        If a move takes too few rows.
+    """
+    runs, law = runs_of(rows), MOTION_LAWS["3-4-5"].example
+    signs, zero = [sign for sign, _ in runs], rows.theta[runs[0][1][0]]
+    angles = [zero + (rows.theta[run] - zero) % TURN for _, run in runs]
+    before = np.array([angles[k - 1][-1] for k in range(len(runs))])
+    before[0] -= TURN
+    edges = 0.5 * (before + np.array([one[0] for one in angles]))
+    edges = np.append(edges, edges[0] + TURN)
+    # half of a dwell is left
+    latest, earliest = (edges[:-1] + part * np.diff(edges) for part in (0.25, 0.75))
+    starts, ends, levels = [], [], []
+    for j, (sign, run) in enumerate(runs):
+        if not sign:
+            continue
+        after = (j + 1) % len(runs)
+        low, high = (
+            float(rows.lift[run[end]] if signs[k] else rows.lift[runs[k][1]].mean())
+            for k, end in ((j - 1, 0), (after, -1))
+        )
+        done = (rows.lift[run] - low) / (high - low)
+        _demand_rows(rows, run, done)
+        places = np.interp(SPAN, np.maximum.accumulate(done), angles[j])
+        shares = crossed(law, falling=high < low)
+        width = np.ptp(places) / np.ptp(shares)
+        start = places[0] - width * shares[0]
+        first = edges[j] if signs[j - 1] else max(start, earliest[j - 1] - TURN * (j == 0))
+        last = min(start + width, latest[after] + TURN * (after == 0))
+        starts.append(first)
+        ends.append(edges[j + 1] if signs[after] else last)
+        levels.append(low)
+    return LiftModel(
+        laws=(law,) * len(starts),
+        starts=np.array(starts),
+        ends=np.array(ends),
+        levels=np.array(levels),
+        tied=(False,) * len(starts),
+    )
+
+
+def _demand_rows(rows: LiftRows, run: Ints, done: Array) -> None:
+    """Refuse a move of too few rows, of which shares are done."""
+    inside = int(((done > _FLAT) & (done < 1.0 - _FLAT)).sum())
+    if inside < FEWEST_OF_MOVE:
+        word = "rise" if rows.lift[run[-1]] > rows.lift[run[0]] else "return"
+        where = " to ".join(f"{math.degrees(float(rows.theta[one])):.6g}" for one in run[[0, -1]])
+        note = f"at {where} deg; measure at smaller steps there; a jump has no law"
+        what, least = f"a {word} takes too few rows", FEWEST_OF_MOVE
+        raise beyond_limit(what, "", inside, least, note, unit="rows")
 
 
 # --- laws --------------------------------------------------------------------------------------
 
+Choice = tuple[Any, bool]
+"""A motion law, and whether its number is fitted."""
 
-def _candidates(*, numbers: bool) -> Iterator[tuple[Any, bool]]:
-    """Yield the laws without numbers to choose, and those with one: at its default, then free."""
+
+@cache
+def _choices() -> tuple[Choice, ...]:
+    """Return the laws without numbers to choose, and those with one: at its default, then free."""
+    found = []
     for entry in MOTION_LAWS.values():
         law, known = entry.parameters, fields(entry.parameters)
         if not known:
-            yield law(), False
+            found.append((law(), False))
         elif len(known) == 1 and isinstance(known[0].default, float):
-            yield law(), False
-            if numbers:
-                yield law(), True
+            found += [(law(), False), (law(), True)]
+    return tuple(found)
 
 
-def _with(model: LiftModel, k: int, law: Any, *, free: bool) -> LiftModel:
-    """Return the model with another law of a move, which crosses the same two lifts as before."""
-    start, width = float(model.starts[k]), float(model.ends[k] - model.starts[k])
-    starts, ends, falling = model.starts.copy(), model.ends.copy(), model.falling(k)
-    old, new = (
-        [place_of(one, part, falling=falling) for part in _SPAN] for one in (model.laws[k], law)
+@dataclass(frozen=True, eq=False)
+class _Trials:
+    """The laws that were tried, all from the boundaries that rows show.
+
+    Beside a wrong law another one may close a dwell.
+    """
+
+    start: LiftModel
+    rows: LiftRows
+    models: dict[tuple[Choice, ...], LiftModel] = field(default_factory=dict)
+    squares: dict[tuple[Choice, ...], float] = field(default_factory=dict)
+
+    def cost(self, choices: tuple[Choice, ...]) -> float:
+        """Return the sum of squares that laws leave, and more for each number that is chosen."""
+        if choices not in self.models:
+            model = self.start
+            for k, (law, free) in enumerate(choices):
+                model = model.with_law(k, law, free=free)
+            model = improved(model, self.rows)
+            ended = any(_at_end(model.laws[k]) for k in model.free)
+            self.models[choices] = model
+            self.squares[choices] = math.inf if ended else model.squares(self.rows)
+        numbers = sum(free for _, free in choices)
+        return self.squares[choices] + _APART * self.rows.variance * numbers
+
+    def best(self) -> LiftModel:
+        """Return the model with the best laws.
+
+        Laws are tried move by move beside the others, from one law in all moves, as in most cams.
+        Moves without a dwell between them are tried in pairs too.
+        """
+        plain = [one for one in _choices() if not one[1]]
+        count = len(self.start.laws)
+        found = self.swept(min(((one,) * count for one in plain), key=self.cost), plain)
+        for k, tied in enumerate(self.models[found].tied):
+            if tied:
+                found = min(self.in_pairs(found, k, plain), key=self.cost)
+        return self.models[self.swept(found, _choices())]
+
+    def swept(self, found: tuple[Choice, ...], choices: Iterable[Choice]) -> tuple[Choice, ...]:
+        """Return the best laws, tried move by move."""
+        for _ in range(_SWEEPS):
+            before = found
+            for k in range(len(found)):
+                found = min((_changed(found, {k: one}) for one in choices), key=self.cost)
+            if found == before:
+                break
+        return found
+
+    def in_pairs(
+        self, found: tuple[Choice, ...], k: int, choices: Iterable[Choice]
+    ) -> Iterator[tuple[Choice, ...]]:
+        """Yield the laws with those that suit a move and the next best, in all pairs."""
+        pair = (k, (k + 1) % len(found))
+        part, rows = _alone(self.models[found], k, 2, self.rows)
+
+        def squares(laws: tuple[Choice, ...]) -> float:
+            one = part.with_law(0, laws[0][0]).with_law(1, laws[1][0])
+            return improved(one, rows, _ROUGH).squares(rows)
+
+        for laws in sorted(product(choices, repeat=2), key=squares)[:_PAIRED]:
+            yield _changed(found, dict(zip(pair, laws, strict=True)))
+
+    def near(self, squares: float, variance: float) -> list[LiftModel]:
+        """Return the models that cannot be distinguished from one, the simplest and best first."""
+        most = squares + _APART * variance
+        good = [one for one, squares in self.squares.items() if squares <= most]
+
+        def order(laws: tuple[Choice, ...]) -> tuple[int, float]:
+            model = self.models[laws]
+            more = _APART * len(model.parameters) + _SIMPLER * len(set(laws))
+            return len(model.free), self.squares[laws] + more * variance
+
+        return [self.models[one] for one in sorted(good, key=order)]
+
+
+def _alone(model: LiftModel, k: int, count: int, rows: LiftRows) -> tuple[LiftModel, LiftRows]:
+    """Return a move and those after it as a model of their own, and their rows.
+
+    Where another move touches some rows are left out. A move where there are no rows closes the
+    ring.
+    """
+    numbers = [(k + one) % len(model.laws) for one in range(count)]
+    last, after = numbers[-1], (numbers[-1] + 1) % len(model.laws)
+    widths, dwells = model.gaps
+    starts = model.starts[k] + (model.starts[numbers] - model.starts[k]) % TURN
+    ends = starts + widths[numbers]
+    low = starts[0] - _BESIDE * dwells[k - 1] + _INSET * widths[k] * model.tied[k - 1]
+    high = ends[-1] + _BESIDE * dwells[last] - _INSET * widths[last] * model.tied[last]
+    inside = (rows.theta - low) % TURN <= high - low
+    third = (TURN - (high - low)) / 3.0
+    alone = LiftModel(
+        laws=(*(model.laws[one] for one in numbers), model.laws[k]),
+        starts=np.append(starts, high + third),
+        ends=np.append(ends, high + 2.0 * third),
+        levels=model.levels[[*numbers, after]],
+        tied=(*(model.tied[one] for one in numbers[:-1]), False, False),
+        fixed=frozenset({("start", count), ("end", count)}),
     )
-    places = [start + width * one for one in old]
-    width = (places[1] - places[0]) / (new[1] - new[0])
-    start = places[0] - width * new[0]
-    dwells = model.gaps()[1]
-    if not model.tied[k - 1]:
-        starts[k] = max(start, float(starts[k] - 0.5 * dwells[k - 1]))
-    if not model.tied[k]:
-        ends[k] = min(start + width, float(ends[k] + 0.5 * dwells[k]))
-    laws = tuple(law if number == k else one for number, one in enumerate(model.laws))
-    numbers = model.free | {k} if free else model.free - {k}
-    return replace(model, laws=laws, starts=starts, ends=ends, free=numbers)
+    return alone, replace(rows, theta=rows.theta[inside], lift=rows.lift[inside])
 
 
-def _tried(model: LiftModel, k: int, rows: LiftRows, *, numbers: bool) -> list[LiftModel]:
-    """Return the model with every law of a move, fitted, and roughly those that are far off."""
-    found = []
-    for law, free in _candidates(numbers=numbers):
-        one = improved(_with(model, k, law, free=free), rows, _ROUGH)
-        if not (free and _at_end(one.laws[k])):
-            found.append(one)
-    squares = [one.squares(rows) for one in found]
-    near = _TWICE * min(squares)
-    return [
-        improved(one, rows) if value <= near else one
-        for one, value in zip(found, squares, strict=True)
-    ]
+def _changed(laws: tuple[Choice, ...], new: dict[int, Choice]) -> tuple[Choice, ...]:
+    return tuple(new.get(k, one) for k, one in enumerate(laws))
 
 
 def _at_end(law: Any) -> bool:
@@ -317,225 +461,13 @@ def _at_end(law: Any) -> bool:
     return not low + edge < getattr(law, name) < high - edge
 
 
-def _simplest(models: Sequence[LiftModel], k: int, rows: LiftRows, variance: float) -> LiftModel:
-    """Return the simplest model that cannot be distinguished from the best; of such the best."""
-    squares = [one.squares(rows) for one in models]
-    least = min(squares)
-    good = [
-        (k in one.free, value, number)
-        for number, (one, value) in enumerate(zip(models, squares, strict=True))
-        if value <= least + _APART * variance
-    ]
-    return models[min(good)[2]]
-
-
-def _best(models: Iterable[LiftModel], rows: LiftRows) -> LiftModel:
-    """Return the model that misses least of rows."""
-    return min(models, key=lambda one: one.squares(rows))
-
-
-def _chosen(model: LiftModel, rows: LiftRows) -> LiftModel:
-    """Return the model with the best laws.
-
-    Laws are tried move by move beside the others, from one law in all moves, as in most cams, or
-    from the laws that suit each move alone. Moves without a dwell between them are tried in pairs
-    too. Laws with free numbers are tried if more than noise is left.
-    """
-    laws = [law for law, _ in _candidates(numbers=False)]
-    every = [_every(model, [law] * len(model.laws)) for law in laws]
-    every.append(_every(model, [_alone(model, k, rows, laws)[0] for k in range(len(model.laws))]))
-    found = _best((improved(one, rows, _ROUGH) for one in every), rows)
-    found = _by_moves(model, found, rows, numbers=False)
-    for k, tied in enumerate(found.tied):
-        if tied:
-            found = _best([found, *_in_pairs(model, found, k, rows)], rows)
-    if found.squares(rows) > _MORE * len(rows.theta) * rows.noise**2:
-        found = _by_moves(model, found, rows, numbers=True)
-    return improved(found, rows)
-
-
-def _by_moves(model: LiftModel, found: LiftModel, rows: LiftRows, *, numbers: bool) -> LiftModel:
-    """Return a model with the best law of each move beside the others.
-
-    Every trial begins with the boundaries of the first model, which are those that rows show:
-    beside a wrong law another one may close a dwell.
-    """
-    for _ in range(_SWEEPS):
-        before = found
-        for k in range(len(model.laws)):
-            start = _every(model, found.laws, found.free)
-            found = _best([found, *_tried(start, k, rows, numbers=numbers)], rows)
-        if all(_same(found, before, k) for k in range(len(model.laws))):
-            break
-    return found
-
-
-def _in_pairs(model: LiftModel, found: LiftModel, k: int, rows: LiftRows) -> list[LiftModel]:
-    """Return the model with the laws that suit a move and the next best, in all pairs."""
-    laws = [law for law, _ in _candidates(numbers=False)]
-    following = (k + 1) % len(found.laws)
-    both = [_alone(model, one, rows, laws)[:_PAIRED] for one in (k, following)]
-    every = ({k: one, following: other} for one, other in product(*both))
-    free = found.free - {k, following}
-    return [
-        improved(
-            _every(model, [pair.get(n, law) for n, law in enumerate(found.laws)], free),
-            rows,
-            _ROUGH,
-        )
-        for pair in every
-    ]
-
-
-def _alone(model: LiftModel, k: int, rows: LiftRows, laws: Iterable[Any]) -> list[Any]:
-    """Return laws in the order of what they miss of a move, without what is beside it."""
-    start, end = float(model.starts[k]), float(model.ends[k])
-    before, after = (float(model.gaps()[1][one]) for one in (k - 1, k))
-    inset = _INSET * (end - start)
-    low = start + (inset if model.tied[k - 1] else -0.5 * before)
-    high = end - (inset if model.tied[k] else -0.5 * after)
-    x = low + (rows.theta - low) % TURN
-    inside = np.flatnonzero(x <= high)
-    inside = inside[np.argsort(x[inside])]
-    theta, lift = x[inside], rows.lift[inside]
-    return sorted(laws, key=lambda law: misfit(law, theta, lift, start, end))
-
-
-def _every(model: LiftModel, laws: Sequence[Any], free: Collection[int] = ()) -> LiftModel:
-    """Return the model with other laws in all moves."""
-    for k, law in enumerate(laws):
-        model = _with(model, k, law, free=k in free)
-    return model
-
-
-def _settled(model: LiftModel, rows: LiftRows) -> tuple[LiftModel, list[list[LiftModel]]]:
-    """Return the model with the simplest laws, and for each move the models with every law."""
-    tried = []
-    for _ in range(_SWEEPS):
-        before, tried = model, []
-        for k in range(len(model.laws)):
-            tried.append(_tried(model, k, rows, numbers=True))
-            best = min(tried[k], key=lambda one: one.squares(rows))
-            model = _simplest(tried[k], k, rows, variance_of(best, rows))
-        if all(_same(before, model, k) for k in range(len(model.laws))):
-            break
-    return model, tried
-
-
-def _same(one: LiftModel, model: LiftModel, k: int) -> bool:
-    """Whether two models have a law of one name in a move."""
-    return type(one.laws[k]) is type(model.laws[k]) and (k in one.free) == (k in model.free)
-
-
-def _alike(
-    models: Sequence[LiftModel], model: LiftModel, k: int, rows: LiftRows
-) -> Iterator[AlikeLaw]:
-    """Yield other laws of a move in the order of what they miss, each name once."""
-    seen = {type(model.laws[k])}
-    for one in sorted(models, key=lambda one: (k in one.free, one.squares(rows))):
-        law = one.laws[k]
-        if type(law) not in seen:
-            seen.add(type(law))
-            yield AlikeLaw(law=law, start=float(one.starts[k]), end=float(one.ends[k]))
-
-
-# --- noise -------------------------------------------------------------------------------------
-
-
-def variance_of(model: LiftModel, rows: LiftRows) -> float:
-    """Return the variance of the noise, times the number of rows whose errors are alike.
-
-    Parameters
-    ----------
-    model : LiftModel
-        The best one.
-    rows : LiftRows
-        The rows.
-
-    Returns
-    -------
-    float, mm2 or rad2
-    """
-    off, count = rows.lift - model.lift(rows.theta), len(rows.theta)
-    left = max(1, count - len(list(model.names())))
-    square = float((off**2).sum())
-    alike = 1.0
-    for lag in range(1, count // _LAG):
-        together = float((off * np.roll(off, lag)).sum()) / square if square else 0.0
-        if together <= 2.0 / math.sqrt(count):
-            break
-        alike += 2.0 * together
-    return max(rows.noise**2, square / left) * alike + rows.error**2 * count / _LAG
-
-
-# --- structure ---------------------------------------------------------------------------------
-
-
 def _simplified(model: LiftModel, rows: LiftRows) -> LiftModel:
-    """Return the model without dwells, and with moves joined, that noise does not show."""
-    allowed = _APART * rows.noise**2  # what a wrong model leaves is no noise
-    found = True
-    while found:
-        found = False
-        for one in _simpler(model, rows):
-            if one.squares(rows) <= model.squares(rows) + allowed:
-                model, found = one, True
-                break
-    return model
-
-
-def _simpler(model: LiftModel, rows: LiftRows) -> Iterator[LiftModel]:
-    """Yield models with a dwell less, narrow ones first, or a move less."""
-    dwells = model.gaps()[1]
-    for k in np.argsort(dwells).tolist():
-        following = (k + 1) % len(model.laws)
-        if not model.tied[k]:
-            yield improved(model.tie(k), rows)
-        elif len(model.laws) > 2 and model.falling(k) == model.falling(following):
-            joined = _joined(model, k)
-            number = min(k, len(joined.laws) - 1)
-            yield min(
-                _tried(joined, number, rows, numbers=False), key=lambda one: one.squares(rows)
-            )
-
-
-def _joined(model: LiftModel, k: int) -> LiftModel:
-    """Return the model with a move and the next as one."""
-    count = len(model.laws)
-    if k == count - 1:  # over the end of the turn: the first comes last
-        first = [np.append(one[1:], one[0] + TURN) for one in (model.starts, model.ends)]
-        model = replace(
-            model,
-            laws=(*model.laws[1:], model.laws[0]),
-            starts=first[0],
-            ends=first[1],
-            levels=np.roll(model.levels, -1),
-            tied=(*model.tied[1:], model.tied[0]),
-        )
-        k -= 1
-    keep = [number for number in range(count) if number != k + 1]
-    return replace(
-        model,
-        laws=tuple(model.laws[number] for number in keep),
-        starts=model.starts[keep],
-        ends=np.delete(model.ends, k),
-        levels=model.levels[keep],
-        tied=tuple(one for number, one in enumerate(model.tied) if number != k),
-        free=frozenset(),
-    )
-
-
-def _untied(model: LiftModel, rows: LiftRows) -> LiftModel:
-    """Return the model with dwells where rows show that there is one."""
-    for k in range(len(model.laws)):
-        if model.tied[k]:
-            ends, starts = model.ends.copy(), model.starts.copy()
-            ends[k] -= rows.step
-            starts[(k + 1) % len(starts)] += rows.step
-            tied = tuple(one and number != k for number, one in enumerate(model.tied))
-            one = improved(replace(model, starts=starts, ends=ends, tied=tied), rows)
-            if one.squares(rows) < model.squares(rows) - _APART * variance_of(one, rows):
-                model = one
+    """Return the model without dwells that noise does not show, narrow ones first."""
+    for k in np.argsort(model.gaps[1]).tolist():
+        one = model if model.tied[k] else improved(model.tie(k), rows)
+        # what a wrong model leaves is no noise
+        if one.squares(rows) <= model.squares(rows) + _APART * rows.variance:
+            model = one
     return model
 
 
@@ -544,26 +476,30 @@ def _untied(model: LiftModel, rows: LiftRows) -> LiftModel:
 
 def _deviations(model: LiftModel, variance: float, rows: LiftRows) -> dict[Name, float]:
     """Return the standard deviations of the parameters that are fitted."""
-    _, columns = model.jacobian(rows.theta)
+    columns = model.missed(rows)[1]
     inverse = np.linalg.pinv(columns.T @ columns, rcond=1e-14, hermitian=True)
     sizes = np.sqrt(np.maximum(np.diag(inverse), 0.0) * variance)
-    return dict(zip(model.names(), sizes.tolist(), strict=True))
+    return dict(zip(model.parameters, sizes.tolist(), strict=True))
 
 
 def _rounded(model: LiftModel, rows: LiftRows, variance: float, scale: float) -> LiftModel:
     """Return the model with all sizes rounded (see the module docstring)."""
     places = ("start", "end")
-    names = sorted(model.names(), key=lambda one: (one[0] not in places, one[1], one[0] == "end"))
+    names = sorted(
+        model.parameters, key=lambda one: (one[0] not in places, one[1], one[0] == "end")
+    )
+    up = np.sign(model.after - model.levels)  # no move may be rounded to nothing
     model = replace(model, ground=model.lowest)  # another level may be rounded to the same
     for name in names:
         deviation = _deviations(model, variance, rows).get(name)
         if deviation is None:  # its dwell was closed
             continue
-        squares, one = model.squares(rows), model
+        most, one = model.squares(rows) + _ROUNDED * variance, model
         for target in _round_values(model, name, deviation, scale):
             moved = model.moved({name: target - model.value(name)})
             one = improved(replace(moved, fixed=model.fixed | {name}), rows)
-            if one.squares(rows) <= squares + _ROUNDED * variance:
+            level = np.any(np.sign(one.after - one.levels) != up)
+            if one.squares(rows) <= most and not level:
                 break
         model = one
     return model

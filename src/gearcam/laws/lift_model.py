@@ -7,14 +7,14 @@ lowest level, the heights of the other levels above it, and of laws with one num
 
 Least squares by Gauss and Newton: the Jacobian is in closed form (that of a law's number by a
 central difference), a step leaves every move at least a part of its width, and is halved until the
-sum of squares falls. Laws are interpolated by cubics from a fine table, to 1e-10 of the lift.
+sum of squares falls.
 
 Source: classical; Gauss-Newton with a line search.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from functools import cached_property, lru_cache
 from typing import Any, Final
@@ -22,14 +22,19 @@ from typing import Any, Final
 import numpy as np
 
 from gearcam.base.tolerances import Tolerances
+from gearcam.laws.lift_rows import LiftRows
+from gearcam.laws.motion.base import MotionFunction
 from gearcam.laws.phases_of_lift import TURN
-from gearcam.numeric.arrays import Array, Ints, Mask
+from gearcam.numeric.arrays import Array, Ints
 
-_CELLS: Final = 512
-"""Cells of the table of a law: the error of cubics is below 1e-10."""
+_CELLS: Final = 1 << 16
+"""Cells of the table of a law: S between two places is linear to 1e-9."""
+
+SPAN: Final = (0.2, 0.8)
+"""Shares of the lift that a move crosses at the same places whatever its law."""
 
 _KEPT: Final = 0.3
-"""Share of the width of a move that a step leaves at least."""
+"""Share of the width of a move or dwell that a step leaves at least."""
 
 _NARROW: Final = 4.0
 """Width of a dwell, in steps of the rows, below which a step may close it."""
@@ -38,47 +43,16 @@ _ROUNDING: Final = 1e-12
 """Rounding of widths, rad: that of the dwell at a tied boundary is 0."""
 
 _STEPS: Final = 40
-_FEW: Final = 12
 _HALVINGS: Final = 12
 
 _OFF: Final = 1e-4
 """Step of the difference by the number of a law."""
 
-_RELATIVE: Final = 1e-5
-"""The same over the sum of squares: what is left of a wrong law need not be found to the end."""
-
-_IMPROVED: Final = 1e-3
-"""Fall of the sum of squares, over the variance of the noise, at which steps end."""
+_FALL: Final = 1e-3
+"""Fall of the sum of squares in a step, over the sum, at which steps end."""
 
 Name = tuple[str, int]
 """A parameter: start, end, level or number, of a move; the lowest level is ``("low", 0)``."""
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class LiftRows:
-    """A lift in rows.
-
-    Parameters
-    ----------
-    theta : (n,) array, rad
-        Cam angles, rising, within a turn.
-    lift : (n,) array, mm or rad
-        Lifts.
-    noise : float, mm or rad
-        Standard deviation of their noise, above 0.
-    error : float, mm or rad
-        The part of it that neighbouring rows share.
-    """
-
-    theta: Array
-    lift: Array
-    noise: float
-    error: float = 0.0
-
-    @cached_property
-    def step(self) -> float:
-        """Mean step of the angle, rad."""
-        return TURN / len(self.theta)
 
 
 def number_of(law: Any) -> tuple[str, float, float] | None:
@@ -90,14 +64,23 @@ def number_of(law: Any) -> tuple[str, float, float] | None:
     return known[0].name, float(given.ge), float(given.le)
 
 
+def _with_number(law: Any, number: float) -> Any:
+    """Return a law with another number, or one at the end of its range."""
+    name, least, most = number_of(law) or ("", 0.0, 0.0)
+    return replace(law, **{name: min(max(number, least), most)})
+
+
 @lru_cache(maxsize=256)
-def _table(law: Any) -> tuple[Array, Array, Array, bool]:
-    """Return places, S and S' of a law there, and whether its return is the rise run backwards."""
-    rise = law.build(Tolerances())
-    places = np.union1d(np.linspace(0.0, 1.0, _CELLS + 1), rise.function.knots)
-    value, slope = rise.function.derivatives(places, 1)
-    slope[-1] = rise.function.side(len(rise.function.pieces), -1, 1)[1]  # from within
-    return places, value, slope, rise.mirrored
+def _rise(law: Any) -> MotionFunction:
+    return law.build(Tolerances())
+
+
+@lru_cache(maxsize=64)
+def _table(law: Any) -> tuple[Array, Array, Array]:
+    """Return places, S and S' there."""
+    places = np.linspace(0.0, 1.0, _CELLS + 1)
+    value, slope = _rise(law).function.derivatives(places, 1)
+    return places, value, slope
 
 
 def share(law: Any, x: Array, *, falling: bool = False) -> tuple[Array, Array]:
@@ -112,71 +95,22 @@ def share(law: Any, x: Array, *, falling: bool = False) -> tuple[Array, Array]:
     falling : bool
         Whether it is a return.
     """
-    places, value, slope, mirrored = _table(law)
-    if mirrored and falling:
-        back, rate = share(law, 1.0 - x)
-        return 1.0 - back, rate
-    cell = np.searchsorted(places[1:-1], x, side="right")
-    width = places[cell + 1] - places[cell]
-    t = (x - places[cell]) / width
-    low, rise = value[cell], value[cell + 1] - value[cell]
-    first, last = width * slope[cell] - rise, rise - width * slope[cell + 1]
-    bend = t * (1.0 - t)
-    inside = first * (1.0 - t) + last * t
-    done = low + rise * t + bend * inside
-    rate = (rise + (1.0 - 2.0 * t) * inside + bend * (last - first)) / width
-    return done, rate
+    rise = _rise(law)
+    back = falling and rise.mirrored
+    x = 1.0 - x if back else x
+    if law == type(law)():
+        places, value, slope = _table(law)
+        done, rate = np.interp(x, places, value), np.interp(x, places, slope)
+    else:  # a number that is being fitted
+        done, rate = rise.function.derivatives(x, 1)
+    return 1.0 - done if back else done, rate
 
 
-def exact_share(law: Any, x: Array, *, falling: bool) -> Array:
-    """Return the share of a move that a `law` has done at `x`, up or `falling`, without a table."""
-    rise = law.build(Tolerances())
-    if falling and rise.mirrored:
-        return 1.0 - rise.function(1.0 - x)
-    return rise.function(x)
-
-
-def place_of(law: Any, done: float, *, falling: bool) -> float:
-    """Return at what share of the angle a `law` has `done` a share of a move, up or `falling`."""
-    places = _table(law)[0]
-    values = share(law, places, falling=falling)[0]
-    return float(np.interp(done, np.maximum.accumulate(values), places))
-
-
-def misfit(law: Any, theta: Array, lift: Array, start: float, end: float) -> float:
-    """Return the least sum of squares of what a law misses of the rows of one move.
-
-    Both ends and both levels are free, so that nothing beside the move counts.
-
-    Parameters
-    ----------
-    law : object
-        Parameters of a motion law.
-    theta : (n,) array, rad
-        Rising cam angles; beyond the ends the lift is constant.
-    lift : (n,) array, mm or rad
-        Lifts.
-    start, end : float, rad
-        Where to begin; the law crosses the same lifts as 3-4-5 would.
-    """
-    falling, squares = bool(lift[-1] < lift[0]), np.inf
-    middle, half = 0.5 * (start + end), 0.5 * (end - start)
-    for _ in range(_STEPS):
-        at = (theta - (middle - half)) / (2.0 * half)
-        done, rate = share(law, np.clip(at, 0.0, 1.0), falling=falling)
-        rate = np.where((at > 0.0) & (at < 1.0), rate, 0.0)
-        linear = np.column_stack([np.ones(len(theta)), done])
-        base, rise = np.linalg.lstsq(linear, lift, rcond=None)[0]
-        off, before = lift - base - rise * done, squares
-        squares = min(squares, float(off @ off))
-        if not before - squares > 1e-2 * squares:
-            break
-        slopes = rise * rate / (2.0 * half)
-        columns = np.column_stack([linear, -slopes, -slopes * (2.0 * at - 1.0)])
-        *_, shift, wider = np.linalg.lstsq(columns, off, rcond=1e-10)[0]
-        middle += min(max(shift, -0.3 * half), 0.3 * half)
-        half += min(max(wider, -0.3 * half), 0.3 * half)
-    return squares
+@lru_cache(maxsize=256)
+def crossed(law: Any, *, falling: bool) -> Array:
+    """Return at which shares of the angle a law, up or `falling`, crosses those of `SPAN`."""
+    x = np.linspace(0.0, 1.0, 513)
+    return np.interp(SPAN, share(law, x, falling=falling)[0], x)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -193,12 +127,12 @@ class LiftModel:
         Lift before each move.
     tied : tuple of k bool
         Whether no dwell follows a move.
+    free : frozenset of int
+        Moves of whose laws the number is fitted.
     fixed : frozenset of Name
         Parameters that are not fitted.
     ground : int or None
         The move whose level the others are above; by default the lowest.
-    free : frozenset of int
-        Moves of whose laws the number is fitted.
     """
 
     laws: tuple[Any, ...]
@@ -206,33 +140,47 @@ class LiftModel:
     ends: Array
     levels: Array
     tied: tuple[bool, ...]
+    free: frozenset[int] = frozenset()
     fixed: frozenset[Name] = frozenset()
     ground: int | None = None
-    free: frozenset[int] = frozenset()
 
     @property
     def after(self) -> Array:
         """Lift after each move."""
         return np.roll(self.levels, -1)
 
-    @property
-    def following(self) -> Array:
-        """Start of the move after each, rad."""
-        return np.append(self.starts[1:], self.starts[0] + TURN)
-
-    @property
+    @cached_property
     def lowest(self) -> int:
         """The move before which the lift is lowest; of several the one that was chosen."""
         return int(np.argmin(self.levels)) if self.ground is None else self.ground
 
-    def names(self) -> Iterator[Name]:
-        """Yield the parameters that are fitted."""
-        count = range(len(self.laws))
-        every: list[Name] = [("start", k) for k in count if not self.tied[k - 1]]
-        every += [("end", k) for k in count]
-        every += [("low", 0), *(("level", k) for k in count if k != self.lowest)]
-        every += [("number", k) for k in sorted(self.free)]
-        yield from (name for name in every if name not in self.fixed)
+    def falling(self, k: int) -> bool:
+        """Whether a move is a return."""
+        return bool(self.levels[(k + 1) % len(self.levels)] < self.levels[k])
+
+    @cached_property
+    def gaps(self) -> tuple[Array, Array]:
+        """The widths of moves and of the dwells after them, rad."""
+        following = np.append(self.starts[1:], self.starts[0] + TURN)
+        return self.ends - self.starts, following - self.ends
+
+    @cached_property
+    def parameters(self) -> dict[Name, list[Name]]:
+        """What is fitted, and which starts, ends, levels and numbers change with it."""
+        count = len(self.laws)
+        moves = range(count)
+        found: dict[Name, list[Name]] = {}
+        for k in moves:
+            if not self.tied[k - 1]:
+                found["start", k] = [("start", k)]
+            found["end", k] = [("end", k)]
+            if self.tied[k]:
+                found["end", k].append(("start", (k + 1) % count))
+            if k != self.lowest:
+                found["level", k] = [("level", k)]
+        found["low", 0] = [("level", k) for k in moves]
+        found |= {("number", k): [("number", k)] for k in self.free}
+        return {name: found[name] for name in found if name not in self.fixed}
 
     def value(self, name: Name) -> float:
         """Return the value of a parameter: rad, mm or rad, or a number."""
@@ -248,119 +196,117 @@ class LiftModel:
             case _:
                 return float(getattr(self.laws[k], fields(self.laws[k])[0].name))
 
-    def moved(self, changes: dict[Name, float]) -> LiftModel:
+    def moved(self, changes: Mapping[Name, float]) -> LiftModel:
         """Return the model with parameters changed by so much."""
-        starts, ends, levels = self.starts.copy(), self.ends.copy(), self.levels.copy()
-        laws, count = list(self.laws), len(self.laws)
-        for (kind, k), change in changes.items():
-            if kind == "start":
-                starts[k] += change
-            elif kind == "end":
-                ends[k] += change
-                starts[(k + 1) % count] += change if self.tied[k] else 0.0
-            elif kind == "low":
-                levels += change
-            elif kind == "level":
-                levels[k] += change
-            else:
-                name, least, most = number_of(laws[k]) or ("", 0.0, 0.0)
-                number = min(max(getattr(laws[k], name) + change, least), most)
-                laws[k] = replace(laws[k], **{name: number})
+        columns = {
+            "start": self.starts.copy(),
+            "end": self.ends.copy(),
+            "level": self.levels.copy(),
+        }
+        laws, parts = list(self.laws), self.parameters
+        for name, change in changes.items():
+            for kind, k in parts[name]:
+                if kind == "number":
+                    laws[k] = _with_number(laws[k], self.value(name) + change)
+                else:
+                    columns[kind][k] += change
+        starts, ends, levels = columns.values()
         return replace(self, laws=tuple(laws), starts=starts, ends=ends, levels=levels)
 
-    def falling(self, k: int) -> bool:
-        """Whether a move is a return."""
-        return bool(self.levels[(k + 1) % len(self.levels)] < self.levels[k])
-
-    def move_at(self, theta: Array) -> tuple[Ints, Mask]:
-        """Return for cam angles the move at them or before them, and whether it is over."""
-        x = self.starts[0] + (theta - self.starts[0]) % TURN
-        move = np.searchsorted(self.starts, x, side="right") - 1
-        return move, x >= self.ends[move]
-
-    def _shares(self, theta: Array) -> Iterator[tuple[int, Mask, Mask, Array, Array]]:
-        """Yield of each move its number, the rows on it and after it, and shares of angle and lift.
-
-        The derivative of the share of the lift comes last.
-        """
-        move, over = self.move_at(theta)
-        x = self.starts[0] + (theta - self.starts[0]) % TURN
-        widths = self.ends - self.starts
-        for k, law in enumerate(self.laws):
-            here = move == k
-            on = here & ~over
-            at = (x[on] - self.starts[k]) / widths[k]
-            done, rate = share(law, at, falling=self.falling(k))
-            yield k, on, here & over, at, np.array([done, rate])
+    def move_at(self, theta: Array) -> tuple[Ints, Array]:
+        """Return for cam angles the move at them or before them, and the angle since its start."""
+        x = (theta - self.starts[0]) % TURN
+        move = np.searchsorted(self.starts - self.starts[0], x, side="right") - 1
+        return move, x - (self.starts - self.starts[0])[move]
 
     def lift(self, theta: Array) -> Array:
         """Return the lift, mm or rad, at cam angles (n,), rad."""
-        lift, after = np.empty(len(theta)), self.after
-        for k, on, over, _, (done, _) in self._shares(theta):
-            lift[on] = self.levels[k] + (after[k] - self.levels[k]) * done
-            lift[over] = after[k]
-        return lift
+        return self.slopes(theta)[0]
 
-    def _slopes(self, theta: Array) -> tuple[Array, dict[Name, Array]]:
+    def slopes(self, theta: Array) -> tuple[Array, dict[Name, Array]]:
         """Return the lift, and its derivatives by every start, end, level and number."""
-        count = len(self.laws)
-        lift, after, widths = np.empty(len(theta)), self.after, self.ends - self.starts
-        kinds = ("start", "end", "level", "number")
-        slopes = {(kind, k): np.zeros(len(theta)) for kind in kinds for k in range(count)}
-        for k, on, over, at, (done, rate) in self._shares(theta):
-            rise, following = after[k] - self.levels[k], (k + 1) % count
-            lift[on], lift[over] = self.levels[k] + rise * done, after[k]
-            slopes["start", k][on] = rise / widths[k] * rate * (at - 1.0)
-            slopes["end", k][on] = -rise / widths[k] * rate * at
-            slopes["level", k][on] += 1.0 - done
-            slopes["level", following][on] += done
-            slopes["level", following][over] += 1.0
+        count, after, widths = len(self.laws), self.after, self.ends - self.starts
+        move, since = self.move_at(theta)
+        lift = after[move]
+        found = {
+            (kind, k): np.zeros(len(theta))
+            for kind in ("start", "end", "level", "number")
+            for k in range(count)
+        }
+        for k, law in enumerate(self.laws):
+            following, rise = (k + 1) % count, after[k] - self.levels[k]
+            found["level", following][move == k] = 1.0
+            on = (move == k) & (since < widths[k])
+            x = since[on] / widths[k]
+            done, rate = share(law, x, falling=self.falling(k))
+            lift[on] = self.levels[k] + rise * done
+            found["start", k][on] = rise / widths[k] * rate * (x - 1.0)
+            found["end", k][on] = -rise / widths[k] * rate * x
+            found["level", k][on] += 1.0 - done
+            found["level", following][on] = done
             if k in self.free:
-                slopes["number", k][on] = rise * self._by_number(k, at)
-        return lift, slopes
+                found["number", k][on] = rise * self._by_number(k, x)
+        return lift, found
 
-    def _by_number(self, k: int, at: Array) -> Array:
+    def _by_number(self, k: int, x: Array) -> Array:
         """Return the derivative of a move's share by the number of its law, at shares of angle."""
-        name, least, most = number_of(self.laws[k]) or ("", 0.0, 0.0)
-        number, falling = getattr(self.laws[k], name), self.falling(k)
-        low, high = max(number - _OFF, least), min(number + _OFF, most)
-        laws = (replace(self.laws[k], **{name: one}) for one in (low, high))
-        below, above = (exact_share(law, at, falling=falling) for law in laws)
+        number = self.value(("number", k))
+        laws = [_with_number(self.laws[k], number + off) for off in (-_OFF, _OFF)]
+        below, above = (share(law, x, falling=self.falling(k))[0] for law in laws)
+        low, high = (getattr(law, fields(law)[0].name) for law in laws)
         return (above - below) / (high - low)
 
-    def jacobian(self, theta: Array) -> tuple[Array, Array]:
-        """Return the lift (n,) and its derivatives (n, p) by the parameters of `names`."""
-        lift, slopes = self._slopes(theta)
-        columns = []
-        for kind, k in self.names():
-            column = np.ones(len(theta)) if kind == "low" else slopes[kind, k]
-            if kind == "end" and self.tied[k]:
-                column = column + slopes["start", (k + 1) % len(self.laws)]
-            columns.append(column)
-        return lift, np.array(columns).reshape(-1, len(theta)).T
+    def missed(self, rows: LiftRows) -> tuple[Array, Array]:
+        """Return by what rows are above it, (n,), and its derivatives by `parameters`, (n, p)."""
+        lift, slopes = self.slopes(rows.theta)
+        columns = [sum(slopes[one] for one in parts) for parts in self.parameters.values()]
+        return rows.lift - lift, np.array(columns).reshape(-1, len(lift)).T
 
     def squares(self, rows: LiftRows) -> float:
         """Return the sum of squares of what it misses of rows."""
-        return float(((self.lift(rows.theta) - rows.lift) ** 2).sum())
-
-    def gaps(self) -> tuple[Array, Array]:
-        """Return the widths of moves and of the dwells after them, rad."""
-        return self.ends - self.starts, self.following - self.ends
+        return float(((rows.lift - self.lift(rows.theta)) ** 2).sum())
 
     def tie(self, k: int) -> LiftModel:
         """Return the model without the dwell after a move: its middle is the boundary."""
-        middle = 0.5 * (float(self.ends[k]) + float(self.following[k]))
         starts, ends, following = self.starts.copy(), self.ends.copy(), (k + 1) % len(self.laws)
-        ends[k] = middle
-        starts[following] = middle - (TURN if following == 0 else 0.0)
+        half = 0.5 * float(self.gaps[1][k])
+        ends[k] += half
+        starts[following] -= half
         tied = tuple(one or number == k for number, one in enumerate(self.tied))
         return replace(self, starts=starts, ends=ends, tied=tied)
 
+    def with_law(self, k: int, law: Any, *, free: bool = False) -> LiftModel:
+        """Return the model with another law of a move, which crosses the same two lifts as before.
 
-def improved(model: LiftModel, rows: LiftRows, rough: float = 0.0) -> LiftModel:
+        At most half of a dwell is taken.
+
+        Parameters
+        ----------
+        k : int
+            The move.
+        law : object
+            Parameters of a motion law.
+        free : bool
+            Whether its number is fitted.
+        """
+        starts, ends, falling = self.starts.copy(), self.ends.copy(), self.falling(k)
+        old, new = (crossed(one, falling=falling) for one in (self.laws[k], law))
+        places = starts[k] + (ends[k] - starts[k]) * old
+        width = np.ptp(places) / np.ptp(new)
+        start, dwells = places[0] - width * new[0], self.gaps[1]
+        if not self.tied[k - 1]:
+            starts[k] = max(start, starts[k] - 0.5 * dwells[k - 1])
+        if not self.tied[k]:
+            ends[k] = min(start + width, ends[k] + 0.5 * dwells[k])
+        laws = (*self.laws[:k], law, *self.laws[k + 1 :])
+        numbers = self.free | {k} if free else self.free - {k}
+        return replace(self, laws=laws, starts=starts, ends=ends, free=numbers)
+
+
+def improved(model: LiftModel, rows: LiftRows, fall: float = _FALL) -> LiftModel:
     """Return the model with the least sum of squares of what it misses of rows.
 
-    A dwell that the steps would make narrower than nothing is left out.
+    A narrow dwell that a step would close is left out.
 
     Parameters
     ----------
@@ -368,54 +314,35 @@ def improved(model: LiftModel, rows: LiftRows, rough: float = 0.0) -> LiftModel:
         Where to begin.
     rows : LiftRows
         The rows.
-    rough : float
-        Fall of the sum of squares in a step, over the sum, at which steps end at the latest.
+    fall : float
+        Fall of the sum of squares in a step, over the sum, at which steps end.
 
     Returns
     -------
     LiftModel
     """
-    squares = model.squares(rows)
-    for _ in range(_FEW if rough else _STEPS):
-        lift, columns = model.jacobian(rows.theta)
-        if not columns.shape[1]:
-            break
-        step = np.linalg.lstsq(columns, rows.lift - lift, rcond=1e-10)[0]
-        changes = dict(zip(model.names(), step.tolist(), strict=True))
-        lost = _lost_dwell(model, changes, rows)
-        if lost is not None:
-            model = model.tie(lost)
-            squares = model.squares(rows)
+    off, columns = model.missed(rows)
+    for _ in range(_STEPS if columns.shape[1] else 0):
+        step = np.linalg.lstsq(columns, off, rcond=1e-10)[0]
+        changes = dict(zip(model.parameters, step.tolist(), strict=True))
+        widths, dwells = model.gaps[1], model.moved(changes).gaps[1]
+        closed = np.flatnonzero(
+            (dwells <= 0.0) & (widths < _NARROW * rows.step) & ~np.array(model.tied)
+        )
+        if len(closed):
+            model = model.tie(int(closed[np.argmin(widths[closed])]))
+            off, columns = model.missed(rows)
             continue
-        before = squares
-        model, squares = _shortened(model, changes, squares, rows)
-        if before - squares <= max(_IMPROVED * rows.noise**2, max(rough, _RELATIVE) * squares):
+        before = float(off @ off)
+        least = _KEPT * np.array(model.gaps) - _ROUNDING
+        for part in 0.5 ** np.arange(_HALVINGS):
+            moved = model.moved({name: part * change for name, change in changes.items()})
+            if np.all(np.array(moved.gaps) >= least):
+                found = moved.missed(rows)
+                if found[0] @ found[0] <= before:
+                    model, (off, columns) = moved, found
+                    break
+        squares = float(off @ off)
+        if before - squares <= fall * squares:
             break
     return model
-
-
-def _lost_dwell(model: LiftModel, changes: dict[Name, float], rows: LiftRows) -> int | None:
-    """Return the narrow dwell that a step closes, None if there is none."""
-    widths, dwells = model.gaps()[1], model.moved(changes).gaps()[1]
-    narrow = _NARROW * rows.step
-    closed = [
-        k
-        for k, tied in enumerate(model.tied)
-        if not tied and dwells[k] <= 0.0 and widths[k] < narrow
-    ]
-    return min(closed, key=lambda k: float(widths[k]), default=None)
-
-
-def _shortened(
-    model: LiftModel, changes: dict[Name, float], squares: float, rows: LiftRows
-) -> tuple[LiftModel, float]:
-    """Return the model after as much of a step as keeps widths positive and squares falling."""
-    least, part = _KEPT * np.array(model.gaps()), 1.0
-    for _ in range(_HALVINGS):
-        moved = model.moved({name: part * change for name, change in changes.items()})
-        if np.all(np.array(moved.gaps()) >= least - _ROUNDING):
-            found = moved.squares(rows)
-            if found <= squares:
-                return moved, found
-        part *= 0.5
-    return model, squares

@@ -15,7 +15,7 @@ from gearcam.cams.follow import follow
 from gearcam.cams.placing import make_follower
 from gearcam.cams.spec import CamSpec, FollowerSpec
 from gearcam.cams.wall import OVERSAMPLING
-from gearcam.kinds.cam.follow import followed
+from gearcam.kinds.cam.given_profile import followed
 from gearcam.kinds.cam.result import error_rows
 from gearcam.numeric.moments import curve_moments
 from gearcam.parts.body import Part

@@ -100,44 +100,6 @@ def read_lift(file: Any, wall: Wall) -> tuple[Array, Array] | None:
     return theta, lift
 
 
-def compared(wall: Wall, theta: Array, lift: Array) -> tuple[dict[str, Array], dict[str, Any]]:
-    """Return the columns and the facts of a given lift beside that of the design.
-
-    Parameters
-    ----------
-    wall : Wall
-        The wall of the follower.
-    theta : (n,) array, rad
-        Cam angles.
-    lift : (n,) array, mm or rad
-        Lifts.
-    """
-    (scale, unit), driver = wall.follower.lift_unit, wall.carrier.driver
-    asked = wall.program.derivatives(theta, 0)[0]
-    difference = scale * (lift - asked)
-    worst = int(np.abs(difference).argmax())
-    columns = {
-        driver.column: driver.scale * theta,
-        "s": scale * lift,
-        "s_asked": scale * asked,
-        "difference": difference,
-    }
-    facts = {
-        "points": len(theta),
-        "unit": unit,
-        "largest_difference": Fact(
-            float(difference[worst]),
-            "largest difference from the lift of the design",
-            place=driver.place(float(theta[worst])),
-            unit=unit,
-            shown=True,
-        ),
-        f"at_{driver.unit}": driver.scale * float(theta[worst]),
-        "rms_difference": float(np.sqrt(np.mean(difference**2))),
-    }
-    return columns, facts
-
-
 def of_turn(study: StudyResult) -> dict[str, Array]:
     """Return the columns of a followed profile without the last row if it repeats the first."""
     columns = {name: np.asarray(values) for name, values in study.table.items()}

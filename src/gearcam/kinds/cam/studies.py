@@ -12,7 +12,7 @@ from gearcam.base.errors import DesignError, Problem
 from gearcam.base.facts import Fact
 from gearcam.cams.three_points import three_point_curvature
 from gearcam.kinds.cam.curvature import curvature_at, pitch_points
-from gearcam.kinds.cam.follow import followed
+from gearcam.kinds.cam.given_profile import followed
 from gearcam.kinds.shared import accuracy_study
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.sampling import Sampler
@@ -48,7 +48,7 @@ def follow(
     fit: bool = False,
 ) -> StudyResult:
     """Return the motion of a cam's follower on a given profile (see `CamResult.follow`)."""
-    from gearcam.kinds.cam.follow import followed, read_profile
+    from gearcam.kinds.cam.given_profile import followed, read_profile
 
     if fit:
         return _fit(result, profile, wall, progress)
@@ -79,6 +79,7 @@ def _fit(
 ) -> StudyResult:
     """Return the same with the design that has this motion."""
     from gearcam.kinds.cam import fit as fitting
+    from gearcam.kinds.cam.given_profile import compared
 
     fitting.demand_fit(result.design)
     chosen = result.wall(wall)
@@ -89,10 +90,12 @@ def _fit(
         facts: dict[str, Any] = dict(study.group)
         scale = chosen.follower.lift_unit[0]
         theta, lift = np.radians(columns["theta_deg"]), columns["s"] / scale
-        error = float(np.sqrt(np.mean(columns["error"] ** 2))) / scale
+        chords = float(np.sqrt(np.mean(columns["error"] ** 2))) / scale
+        # arcs and splines are as far from the true curve as their tolerance allows
+        error = max(chords, chosen.tolerance / chosen.follower.lever)
     else:
         (theta, lift), found, error = rows, (), None
-        columns, facts = fitting.compared(chosen, theta, lift)
+        columns, facts = compared(chosen, theta, lift)
     if progress is not None:
         progress("fit", 0, 1)
     with result.stage("fit"):

@@ -85,7 +85,7 @@ def followed(
         If the follower cannot rest on the profile.
     """
     outline = flatten_bulges(outline, bulges, _SAGITTA * wall.tolerance)
-    carrier, driver = wall.carrier, wall.carrier.driver
+    carrier = wall.carrier
     # output of a cam that slides is the mirror image, which `follow` expects
     mirrored = wall.clockwise and carrier.around
     found = follow(
@@ -97,20 +97,43 @@ def followed(
         missed=wall.tolerance,
     )
     scale, unit = wall.follower.lift_unit
-    asked = wall.program.derivatives(theta, 0)[0]
-    difference = scale * (found.lift - asked)
-    columns = {
-        driver.column: driver.scale * theta,
-        "s": scale * found.lift,
-        "s_asked": scale * asked,
-        "difference": difference,
+    columns, facts = compared(wall, theta, found.lift)
+    columns |= {
         "error": scale * found.error,
         "contact_x_mm": -found.contact.real if mirrored else found.contact.real,
         "contact_y_mm": found.contact.imag,
     }
+    error = Fact(
+        float(scale * found.error.max()), "error of the profile's chords", unit=unit, shown=True
+    )
+    facts |= {"points": len(outline), "error": error}
+    return columns, facts, run_checks(FOLLOWED, (wall, found), limits)
+
+
+def compared(wall: Wall, theta: Array, lift: Array) -> tuple[dict[str, Array], dict[str, Any]]:
+    """Return the columns and the facts of a given lift beside that of the design.
+
+    Parameters
+    ----------
+    wall : Wall
+        The wall of the follower.
+    theta : (n,) array, rad
+        Cam angles.
+    lift : (n,) array, mm or rad
+        Lifts.
+    """
+    (scale, unit), driver = wall.follower.lift_unit, wall.carrier.driver
+    asked = wall.program.derivatives(theta, 0)[0]
+    difference = scale * (lift - asked)
     worst = int(np.abs(difference).argmax())
+    columns = {
+        driver.column: driver.scale * theta,
+        "s": scale * lift,
+        "s_asked": scale * asked,
+        "difference": difference,
+    }
     facts = {
-        "points": len(outline),
+        "points": len(theta),
         "unit": unit,
         "largest_difference": Fact(
             float(difference[worst]),
@@ -121,8 +144,5 @@ def followed(
         ),
         f"at_{driver.unit}": driver.scale * float(theta[worst]),
         "rms_difference": float(np.sqrt(np.mean(difference**2))),
-        "error": Fact(
-            float(scale * found.error.max()), "error of the profile's chords", unit=unit, shown=True
-        ),
     }
-    return columns, facts, run_checks(FOLLOWED, (wall, found), limits)
+    return columns, facts
