@@ -28,6 +28,7 @@ from gearcam.designs.examine import examine, examine_file
 from gearcam.designs.faults import dotted, functions_of, is_deep
 from gearcam.designs.kind import KINDS
 from gearcam.designs.lines import Path
+from gearcam.designs.nodes import Wanted, wanted, written
 from gearcam.designs.outputs import OutputSpec
 from gearcam.designs.reader import content_of, decoded, document_in, problems_of
 from gearcam.designs.table import settled, table_of
@@ -40,9 +41,6 @@ HASH_DIGITS: Final = 16
 """Hexadecimal digits of the hash of a design: 64 bits."""
 
 Function = Callable[..., Any]
-
-Wanted = tuple[str, Any, tuple[type, ...]]
-"""Key of a part, the part, and its allowed types."""
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -217,10 +215,6 @@ class Design:
     def _settle(self) -> None:
         """Convert alternative forms of input into one form."""
 
-    def _wanted(self) -> Iterable[Wanted]:
-        """Return the allowed types of fields whose types depend on a registry."""
-        return ()
-
 
 def _numbered(place: Any, step: str | int) -> tuple[str, str]:
     """Return the numbers of a list, and that of the table with a name that was written instead."""
@@ -260,13 +254,15 @@ def _demand_types(design: Design) -> None:
     """Raise `DesignError` if a table, or what is nested in one, is not of its type."""
     kind = KINDS[design.kind]
     owners = ((title, kind.table_of(design, title).owner) for title in kind.tables)
-    tables = [
+    tables: list[Wanted] = [
         (at, part, (owner,))
         for title, owner in owners
         if owner
         for at, part in _parts(design, title)
     ]
-    _demand_instances(design, (("limits", design.limits, (Mapping,)), *tables, *design._wanted()))
+    for title, node in kind.nodes.items():
+        tables += wanted(node, getattr(design, title), title)
+    _demand_instances(design, (("limits", design.limits, (Mapping,)), *tables))
     inner = ((dotted(at), one, (Design,)) for at, one in nested_designs(design))
     _demand_instances(design, inner)
 
@@ -320,11 +316,14 @@ def document_of(design: Design) -> dict[str, Any]:
     """
     kind = KINDS[design.kind]
     document: dict[str, Any] = {"kind": kind.name, "name": design.name}
-    if kind.main:
-        document[kind.main.title] = kind.main.document(design)
+    for title in kind.tree:
+        document[title] = {}  # in this order
     for title in kind.tables:
         tables = [table_of(title, type(one)).document(one) for _, one in _parts(design, title)]
         document[title] = tables if title in kind.several else tables[0]
+    given = kind.circumstances(document)
+    for title, node in kind.nodes.items():
+        document[title] = written(node, getattr(design, title), given)
     if design.limits:
         limits = {entry.name: entry for entry in kind.table("limits").entries.values()}
         document["limits"] = {

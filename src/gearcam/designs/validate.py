@@ -248,11 +248,13 @@ def parameters_of(
     if any(len(path) == 1 and path[0] in table.entries for path in here):
         return None, broken
     here += [fault.path[depth:] for fault in broken if fault.path != at]
-    wrong = {path[0] for path in here} | misspelt(raw if faults else {}, table.entries)
+    wrong = {path[0] for path in here}
     readable = {key: value for key, value in raw.items() if key in table.entries}
     try:
         parameters = make(**table.inward(readable))
-        problems = getattr(parameters, "problems", tuple)()
+        # what is computed without a misspelt key may be untrue
+        unsure = misspelt(raw if faults else {}, table.entries)
+        problems = () if unsure else getattr(parameters, "problems", tuple)()
         found = [p for p in placed_faults(problems, table, raw, at) if p.path[depth] not in wrong]
     except (TypeError, ValueError, AttributeError, IndexError, KeyError):
         if not faults and not broken:

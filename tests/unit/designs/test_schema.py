@@ -21,13 +21,11 @@ from gearcam.designs.examine import examine
 from gearcam.designs.kind import KINDS
 from gearcam.designs.schema import schema
 from gearcam.designs.template import template
-from gearcam.kinds.cam.motion import WITH_LAW, phase_table, rise_table, turn_tables
-from gearcam.kinds.gear_pair.design import law_table
-from gearcam.kinds.globoidal_cam.design import index_table
 from gearcam.laws.motion.base import MOTION_LAWS
 from gearcam.laws.phases_of_lift import PHASES
 from gearcam.laws.ratio.base import LAWS
 from helpers_pairs import PROFILES
+from helpers_tables import WITH_LAW, index_table, law_table, phase_table, rise_table, turn_tables
 
 FILES = sorted(PROFILES.glob("*.toml"))
 GOOD: dict[str, Any] = {
