@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from gearcam.designs.table import Table, table_of
-from gearcam.kinds.cam.motion import PHASE, whole_turns
+from gearcam.kinds.cam.motion import PHASE, by_formula, by_rows
 from gearcam.kinds.gear_pair.design import LAW
 from gearcam.kinds.globoidal_cam.design import INDEX
 from gearcam.laws.motion.base import MOTION_LAWS
@@ -37,4 +37,4 @@ def index_table(law: str) -> Table:
 
 def turn_tables() -> tuple[Table, ...]:
     """Return the keys of motions of the whole turn: by rows, and by a formula."""
-    return tuple(one.table for one in whole_turns())
+    return by_rows().table, by_formula().table

@@ -24,7 +24,7 @@ from gearcam.designs.nodes import Choice
 from gearcam.designs.table import Table, table_of
 from gearcam.designs.validate import parameters_of
 from gearcam.kinds.cam.forms.base import FORMS, VARIANTS
-from gearcam.kinds.cam.motion import PHASE, whole_turns
+from gearcam.kinds.cam.motion import PHASE, by_formula, by_rows
 from gearcam.kinds.gear_pair.design import LAW
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.motion.base import MOTION_LAWS
@@ -266,7 +266,7 @@ def motion_section() -> Iterator[str]:
         law = " It has a `law`." if name in PHASE.below else ""
         yield f'`type = "{name}"`: {PHASE.about(name)}.{law}'
         yield keys_of(table_of(PHASE.title, owner))
-    rows, formula = (one.table for one in whole_turns())
+    rows, formula = by_rows().table, by_formula().table
     yield "### Cams: `[motion]`"
     yield "Instead of phases: the lift over a whole turn, as rows of angle and lift,"
     yield keys_of(rows)

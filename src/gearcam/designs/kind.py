@@ -286,9 +286,15 @@ class DesignKind:
         """Return what stands under a title, with the keys that it may have in a `document`."""
         if title in self.nodes:
             return self.nodes[title]
-        found = self.table(title) if document is None else self.table_in(document, title)
-        keys = Keys(table=found)
-        return Many(item=keys) if title in self.several else keys
+        return self._with(self.table(title) if document is None else self.table_in(document, title))
+
+    def node_of(self, design: Any, title: str) -> Node:
+        """Return what stands under a title, with the keys that it may have in a `design`."""
+        return self.nodes.get(title) or self._with(self.table_of(design, title))
+
+    def _with(self, table: Table) -> Node:
+        keys = Keys(table=table)
+        return Many(item=keys) if table.title in self.several else keys
 
     @property
     def words(self) -> dict[str, Collection[str]]:

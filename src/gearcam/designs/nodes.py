@@ -142,12 +142,15 @@ class Many:
     ----------
     item : Keys or Choice
         Each of them.
+    least : int
+        Least number of them.
     among : callable
         ``among(made, raw, circumstances, document)`` yields what is wrong among them; what cannot
         be read is None in ``made``.
     """
 
     item: Keys | Choice
+    least: int = 0
     among: Callable[
         [Sequence[Any], Sequence[Any], Circumstances, Mapping[str, Any]], Iterable[Item]
     ] = lambda *_: ()
@@ -160,6 +163,8 @@ class Case(NamedTuple):
     ----------
     node : callable
         ``node()`` returns it: its class is imported when it is needed.
+    makes : str
+        Name of the class of which a part of a design is then an instance.
     taken : callable
         ``taken(raw)``: whether it is meant.
     schema : mapping
@@ -167,6 +172,7 @@ class Case(NamedTuple):
     """
 
     node: Callable[[], Keys | Choice | Many]
+    makes: str
     taken: Callable[[Any], bool]
     schema: Mapping[str, Any]
 
@@ -202,41 +208,46 @@ class Either:
 
     def made(self, part: Any) -> Keys | Choice | Many:
         """Return the node of a part of a design."""
-        nodes = [case.node() for case in self.cases]
-        return next(
-            (one for one in nodes if isinstance(one, Keys) and one.table.owner is type(part)),
-            nodes[0],
-        )
+        name = type(part).__name__  # so that no class is imported to compare with
+        return next((case for case in self.cases if case.makes == name), self.cases[0]).node()
 
 
 Node: TypeAlias = Keys | Choice | Many | Either
 
 
-class Layer(NamedTuple):
+class Level(NamedTuple):
     """Keys of one class in a table, and the field that takes what those below make."""
 
     table: Table
     into: str
 
 
-def layers_of(node: Keys | Choice, raw: Mapping[str, Any]) -> Iterator[Layer]:
-    """Yield the classes whose keys a table has as it is written, as far as its words are known."""
+def levels_of(node: Keys | Choice, raw: Mapping[str, Any]) -> Iterator[Level]:
+    """Yield the classes whose keys a table has as it is written, as far as its words are known.
+
+    Parameters
+    ----------
+    node : Keys or Choice
+        What the table is.
+    raw : mapping
+        The table in the file.
+    """
     while isinstance(node, Choice):
         if node.own:
-            yield Layer(node.own, node.into)
+            yield Level(node.own, node.into)
         word = raw.get(node.tag)
         if not isinstance(word, str) or word not in node.entries:
             return
         node = node.node(word)
-    yield Layer(node.table, "")
+    yield Level(node.table, "")
 
 
-def joined(layers: Sequence[Layer], title: str) -> Table:
-    """Return the keys of all `layers` as one table with a `title`."""
-    if len(layers) == 1:
-        return layers[0].table
+def joined(levels: Sequence[Level], title: str) -> Table:
+    """Return the keys of all `levels` as one table with a `title`."""
+    if len(levels) == 1:
+        return levels[0].table
     return Table(
-        title, None, {key: one for layer in layers for key, one in layer.table.entries.items()}
+        title, None, {key: one for level in levels for key, one in level.table.entries.items()}
     )
 
 
@@ -255,12 +266,12 @@ def tables_in(node: Node, raw: Any, at: Path) -> Iterator[tuple[Path, Table, Any
     if isinstance(node, Either):
         node = node.meant(raw)
     if isinstance(node, Many):
-        for number, one in enumerate(raw if isinstance(raw, list) else ()):
+        for number, one in enumerate(raw if isinstance(raw, list | tuple) else ()):
             yield from tables_in(node.item, one, (*at, number))
     elif isinstance(node, Keys):
         yield at, node.table, raw
     elif isinstance(raw, Mapping):
-        yield at, joined([*layers_of(node, raw)], node.title), raw
+        yield at, joined([*levels_of(node, raw)], node.title), raw
 
 
 def written(node: Node, part: Any, given: Circumstances) -> Any:
@@ -303,17 +314,16 @@ def wanted(node: Node, part: Any, at: str) -> Iterator[Wanted]:
         Its dotted key.
     """
     if isinstance(node, Either):
-        nodes = [case.node() for case in node.cases]
-        classes = [one.table.owner for one in nodes if isinstance(one, Keys) and one.table.owner]
-        if not isinstance(part, Sequence) or isinstance(part, str):
-            yield at, part, (tuple, *classes)
+        if (found := node.made(part)) is node.cases[0].node() and not isinstance(part, tuple):
+            nodes = (case.node() for case in node.cases)
+            owners = [one.table.owner for one in nodes if isinstance(one, Keys)]
+            yield at, part, (tuple, *filter(None, owners))
             return
-        node = nodes[0]
+        node = found
     if isinstance(node, Many):
-        many = part if isinstance(part, tuple) else ()
         if not isinstance(part, tuple):
-            yield at, part, (tuple,)
-        for number, one in enumerate(many):
+            yield from wanted(node.item, part, at)
+        for number, one in enumerate(part if isinstance(part, tuple) else ()):
             yield from wanted(node.item, one, f"{at}[{number}]")
     elif isinstance(node, Keys):
         yield at, part, (node.table.owner,) if node.table.owner else ()

@@ -15,11 +15,11 @@ from gearcam.designs.nodes import (
     Circumstances,
     Either,
     Keys,
-    Layer,
+    Level,
     Many,
     Node,
     joined,
-    layers_of,
+    levels_of,
 )
 from gearcam.designs.slips import keyed, misspelt, nearest
 from gearcam.designs.table import Table
@@ -102,7 +102,7 @@ class Reading:
     def _among(self, item: Keys | Choice, wrong: tuple[str, str, str], raw: Any, at: Path) -> None:
         """Add what is wrong with one of several tables: field, message, what is allowed."""
         name, message, rule = wrong
-        known = joined([*layers_of(item, raw)], str(at[0])).bound(self.given)
+        known = joined([*levels_of(item, raw)], str(at[0])).bound(self.given)
         meant = misspelt(raw, known.entries)  # the unknown key is reported instead
         faults = placed_faults([(name, None, message, rule)], known, raw, at)
         self.faults.extend(one for one in faults if one.path[len(at)] not in meant)
@@ -113,15 +113,14 @@ class Reading:
             return Made(None, False)
         chosen = self._chosen(node, raw, at) if isinstance(node, Choice) else None
         meant, tags, sure = chosen or (raw, [], True)
-        layers = [*layers_of(node, meant if isinstance(meant, Mapping) else {})]
-        if not layers:
+        levels = [*levels_of(node, meant if isinstance(meant, Mapping) else {})]
+        if not levels:
             return Made(None, False)
-        known = joined(layers, str(at[0]))
-        content, faults = self.filled(known, meant, at)
-        if isinstance(content, Mapping):
-            content = {key: one for key, one in content.items() if key not in tags}
-            if tags and not sure:
-                content = _without_asked(node, meant, content, known)
+        known = joined(levels, str(at[0]))
+        content = {key: one for key, one in meant.items() if key not in tags} if tags else meant
+        if not sure:
+            content = _without_asked(node, meant, content, known)
+        content, faults = self.filled(known, content, at)
         wrong = [*_wrong_units(known, content, at, self.given)]
         content = _without(content, wrong)
         bound = known.bound(self.given)
@@ -135,7 +134,7 @@ class Reading:
         ]
         part, problems = None, list[Fault]()
         if isinstance(content, Mapping) and not wrong:
-            part, problems = self._made(layers, content, faults, at)
+            part, problems = self._made(levels, content, faults, at)
             if not (faults or problems) and sure and isinstance(node, Keys):
                 problems = [*placed_faults(node.also(part, self.given), bound, content, at)]
         if isinstance(node, Choice) and raw.get(node.tag) != meant.get(node.tag):
@@ -183,17 +182,17 @@ class Reading:
         return Fault((*at, node.tag), message, word, quoted(node.entries), hint)
 
     def _made(
-        self, layers: Sequence[Layer], raw: Mapping[str, Any], faults: list[Fault], at: Path
+        self, levels: Sequence[Level], raw: Mapping[str, Any], faults: list[Fault], at: Path
     ) -> tuple[Any, list[Fault]]:
         """Return what the classes of a table make, from the innermost outwards, and its faults."""
-        known = {key for layer in layers for key in layer.table.entries}
+        known = {key for level in levels for key in level.table.entries}
         part, problems = None, list[Fault]()
-        for layer in reversed(layers):
-            make: Any = layer.table.owner or dict
-            make = partial(make, **{layer.into: part}) if layer.into else make
-            own = layer.table.entries.keys() | (raw.keys() - known)
+        for level in reversed(levels):
+            make: Any = level.table.owner or dict
+            make = partial(make, **{level.into: part}) if level.into else make
+            own = level.table.entries.keys() | (raw.keys() - known)
             written = {key: value for key, value in raw.items() if key in own}
-            table = layer.table.bound(self.given)
+            table = level.table.bound(self.given)
             part, more = parameters_of(table, make, written, faults, at)
             problems += more
         return part, problems
@@ -221,8 +220,8 @@ def _without_asked(
     asked = {
         key
         for word in node.entries
-        for layer in layers_of(node.node(word), {})
-        for key in layer.table.entries
+        for level in levels_of(node.node(word), {})
+        for key in level.table.entries
     }
     return {key: one for key, one in content.items() if key in known.entries or key not in asked}
 

@@ -90,7 +90,8 @@ def _node(node: Node, home: str) -> tuple[Schema, Schema]:
         return _either(node, home)
     if isinstance(node, Many):
         made, own = _node(node.item, home)
-        return {"type": "array", "items": made}, own
+        many: Schema = {"minItems": node.least} if node.least else {}
+        return {"type": "array", "items": made} | many, own
     if isinstance(node, Choice):
         return _choice(node, home, {}, {})
     return _keys(node, node.table, ()), {}

@@ -13,7 +13,7 @@ from gearcam.base.quantities import REQUIRED
 from gearcam.designs.examine import name_fault
 from gearcam.designs.faults import description, short, show
 from gearcam.designs.kind import KINDS, DesignKind, kind_meant, named_variant
-from gearcam.designs.nodes import Choice, Either, Keys, Many, Node, joined, layers_of
+from gearcam.designs.nodes import Choice, Either, Keys, Many, Node, joined, levels_of
 from gearcam.designs.slips import nearest
 from gearcam.designs.table import Key, Table, table_of
 
@@ -121,7 +121,7 @@ def _node(node: Node, title: str, example: Any, note: str) -> Iterator[str]:
 
 def _chosen(node: Keys | Choice, given: Mapping[str, Any], mark: str = "") -> Iterator[str]:
     """Yield the lines of a table, as comments if `mark` is ``# ``; words without a value end it."""
-    known = joined([*layers_of(node, given)], "")
+    known = joined([*levels_of(node, given)], "")
     while isinstance(node, Choice) and node.tag in given:
         word = given[node.tag]
         yield key_line(node.tag, word, node.about(word), mark)

@@ -108,29 +108,33 @@ def _program_problems(
     )
 
 
+_PHASES: Final = Many(item=PHASE, least=1, among=_program_problems)
+
+
 @cache
-def whole_turns() -> tuple[Keys, Keys]:
-    """Return the nodes of motions that are given for the whole turn: by rows, and by a formula."""
-    from gearcam.laws.motion_formula import MotionFormula  # only where there is one
-    from gearcam.laws.motion_table import MotionTable
+def by_rows() -> Keys:
+    """Return the keys of a motion of the whole turn that is given by rows."""
+    from gearcam.laws.motion_table import MotionTable  # only where there is one
 
     rows = table_of(TITLE, MotionTable)
     lifts = [key for key, entry in rows.entries.items() if entry.name == "lift"]
     inline = [{"required": ["theta_deg", key]} for key in lifts]
-    return (
-        Keys(
-            table=rows,
-            doc="rows of cam angle and lift over the turn",
-            also=_turn_problems,
-            rule={"oneOf": [{"required": ["file"]}, *inline]},
-            examples=("file", "smoothing_tolerance_mm"),
-        ),
-        Keys(
-            table=table_of(TITLE, MotionFormula),
-            doc="the lift over the turn as a formula",
-            also=_turn_problems,
-        ),
+    return Keys(
+        table=rows,
+        doc="rows of cam angle and lift over the turn",
+        also=_turn_problems,
+        rule={"oneOf": [{"required": ["file"]}, *inline]},
+        examples=("file", "smoothing_tolerance_mm"),
     )
+
+
+@cache
+def by_formula() -> Keys:
+    """Return the keys of a motion of the whole turn that is given by a formula."""
+    from gearcam.laws.motion_formula import MotionFormula  # only where there is one
+
+    table = table_of(TITLE, MotionFormula)
+    return Keys(table=table, doc="the lift over the turn as a formula", also=_turn_problems)
 
 
 def _turn_problems(made: Any, given: Circumstances) -> Iterator[Breach]:
@@ -161,12 +165,13 @@ def _refused(raw: Any, given: Circumstances, home: Callable[[str, Any], str]) ->
 MOTION: Final = Either(
     cases=(
         Case(
-            lambda: Many(item=PHASE, among=_program_problems),
+            lambda: _PHASES,
+            "tuple",
             lambda raw: not isinstance(raw, Mapping),
             {"type": "array"},
         ),
-        Case(lambda: whole_turns()[1], lambda raw: "lift" in raw, {"required": ["lift"]}),
-        Case(lambda: whole_turns()[0], lambda _: True, {}),
+        Case(by_formula, "MotionFormula", lambda raw: "lift" in raw, {"required": ["lift"]}),
+        Case(by_rows, "MotionTable", lambda _: True, {}),
     ),
     refused=_refused,
     rule=_rule,
