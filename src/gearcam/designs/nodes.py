@@ -168,7 +168,7 @@ class Case(NamedTuple):
     taken : callable
         ``taken(raw)``: whether it is meant.
     schema : mapping
-        The same for a schema; empty for what is left.
+        The same for a schema; empty for a list, and for what is left.
     """
 
     node: Callable[[], Keys | Choice | Many]

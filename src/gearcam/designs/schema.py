@@ -131,7 +131,11 @@ def _either(node: Either, home: str) -> tuple[Schema, Schema]:
         own |= more
         if isinstance(case.node(), Keys):
             own[f"{home}-{number}"], one = one, {"$ref": f"#/$defs/{home}-{number}"}
-        made = {"if": dict(case.schema), "then": one, "else": made} if case.schema else one
+        if isinstance(case.node(), Many):
+            rest = {"if": {"type": one.pop("type")}, "else": made}
+            made = one | rest  # what is said of items holds for lists only
+        else:
+            made = {"if": dict(case.schema), "then": one, "else": made} if case.schema else one
     return {"description": node.doc, **made}, own
 
 

@@ -168,7 +168,7 @@ MOTION: Final = Either(
             lambda: _PHASES,
             "tuple",
             lambda raw: not isinstance(raw, Mapping),
-            {"type": "array"},
+            {},
         ),
         Case(by_formula, "MotionFormula", lambda raw: "lift" in raw, {"required": ["lift"]}),
         Case(by_rows, "MotionTable", lambda _: True, {}),
