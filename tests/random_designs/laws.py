@@ -19,11 +19,10 @@ from gearcam.base.errors import InfeasibleError
 from gearcam.base.quantities import REQUIRED, Param, params_of
 from gearcam.base.tolerances import DEFAULT
 from gearcam.designs.table import Table
-from gearcam.kinds.cam.motion import rise_table
-from gearcam.kinds.gear_pair.design import law_table
 from gearcam.laws.motion.base import MOTION_LAWS
 from gearcam.laws.ratio.base import LAWS
 from gearcam.laws.ratio.span import Lobes
+from helpers_tables import law_table, rise_table
 from random_designs.draw import Draw, short
 from random_designs.law_draw import LOBES, Counts, Law, LawDraw
 

@@ -28,9 +28,10 @@ from gearcam.designs.examine import examine, examine_file
 from gearcam.designs.faults import dotted, functions_of, is_deep
 from gearcam.designs.kind import KINDS
 from gearcam.designs.lines import Path
+from gearcam.designs.nodes import Wanted, tables_in, wanted, written
 from gearcam.designs.outputs import OutputSpec
 from gearcam.designs.reader import content_of, decoded, document_in, problems_of
-from gearcam.designs.table import settled, table_of
+from gearcam.designs.table import settled
 from gearcam.numeric.arguments import instance
 
 _PLACE: Final = re.compile("[0-9]{1,9}")
@@ -40,9 +41,6 @@ HASH_DIGITS: Final = 16
 """Hexadecimal digits of the hash of a design: 64 bits."""
 
 Function = Callable[..., Any]
-
-Wanted = tuple[str, Any, tuple[type, ...]]
-"""Key of a part, the part, and its allowed types."""
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -217,10 +215,6 @@ class Design:
     def _settle(self) -> None:
         """Convert alternative forms of input into one form."""
 
-    def _wanted(self) -> Iterable[Wanted]:
-        """Return the allowed types of fields whose types depend on a registry."""
-        return ()
-
 
 def _numbered(place: Any, step: str | int) -> tuple[str, str]:
     """Return the numbers of a list, and that of the table with a name that was written instead."""
@@ -259,14 +253,12 @@ def _suiting(design: Design, title: str) -> Any:
 def _demand_types(design: Design) -> None:
     """Raise `DesignError` if a table, or what is nested in one, is not of its type."""
     kind = KINDS[design.kind]
-    owners = ((title, kind.table_of(design, title).owner) for title in kind.tables)
-    tables = [
-        (at, part, (owner,))
-        for title, owner in owners
-        if owner
-        for at, part in _parts(design, title)
-    ]
-    _demand_instances(design, (("limits", design.limits, (Mapping,)), *tables, *design._wanted()))
+    parts = (
+        one
+        for title in kind.tree
+        for one in wanted(kind.node_of(design, title), getattr(design, title), title)
+    )
+    _demand_instances(design, (("limits", design.limits, (Mapping,)), *parts))
     inner = ((dotted(at), one, (Design,)) for at, one in nested_designs(design))
     _demand_instances(design, inner)
 
@@ -286,23 +278,15 @@ def _demand_instances(design: Design, wanted: Iterable[Wanted]) -> None:
         raise DesignError(problems)
 
 
-def _parts(design: Design, title: str) -> Iterator[tuple[str, Any]]:
-    """Yield the keys and the contents of the tables of a `title`."""
-    part = getattr(design, title)
-    if title in KINDS[design.kind].several and isinstance(part, tuple):
-        yield from ((f"{title}[{number}]", one) for number, one in enumerate(part))
-    else:
-        yield title, part
-
-
 def nested_designs(design: Design) -> Iterator[tuple[Path, Design]]:
     """Yield the path and the design of each design nested in a `design`."""
     kind = KINDS[design.kind]
     for title in kind.tables:
-        for at, part in _parts(design, title):
-            for key, entry in kind.table_of(design, title).entries.items():
+        node = kind.node_of(design, title)
+        for at, table, part in tables_in(node, getattr(design, title), (title,)):
+            for key, entry in table.entries.items():
                 if entry.param.nested and (inner := getattr(part, entry.name)) is not None:
-                    yield (*path_of(at), key), inner
+                    yield (*at, key), inner
 
 
 def document_of(design: Design) -> dict[str, Any]:
@@ -320,11 +304,11 @@ def document_of(design: Design) -> dict[str, Any]:
     """
     kind = KINDS[design.kind]
     document: dict[str, Any] = {"kind": kind.name, "name": design.name}
-    if kind.main:
-        document[kind.main.title] = kind.main.document(design)
-    for title in kind.tables:
-        tables = [table_of(title, type(one)).document(one) for _, one in _parts(design, title)]
-        document[title] = tables if title in kind.several else tables[0]
+    plain = {one: written(kind.node(one, {}), getattr(design, one), {}) for one in kind.tables}
+    given = kind.circumstances(plain)
+    for title in kind.tree:
+        node = kind.nodes.get(title)
+        document[title] = written(node, getattr(design, title), given) if node else plain[title]
     if design.limits:
         limits = {entry.name: entry for entry in kind.table("limits").entries.values()}
         document["limits"] = {

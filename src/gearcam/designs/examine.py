@@ -32,10 +32,12 @@ from gearcam.designs.kind import (
     variant_of,
 )
 from gearcam.designs.lines import Path, line_at, lines_of
+from gearcam.designs.nodes import Choice, Either, Many, Node, homes_of
+from gearcam.designs.parts import Reading
 from gearcam.designs.reader import LARGEST, decoded, document_in, find_tables
-from gearcam.designs.slips import STRONG, SURE, did_you_mean, hinted, key_hint, keyed, nearest
+from gearcam.designs.slips import STRONG, SURE, did_you_mean, hinted, key_hint, keyed
 from gearcam.designs.table import Key, Table
-from gearcam.designs.validate import document_faults, faults_of, parameters_of
+from gearcam.designs.validate import document_faults
 
 _NAME = re.compile(r"\w[\w.-]*")
 _NAME_RULE: Final = (
@@ -196,13 +198,11 @@ def _examined(
     outcome.kind = kind.name
     outcome.faults += _top_faults(document, kind)
     _examine_name(document, stem, outcome)
-    if kind.main:
-        kind.main.examine(document, outcome)
-    for title in kind.tables:
-        _examine_table(document, kind, title, outcome, place or Place())
+    reading = _reading(kind, document, outcome, place or Place())
     outcome.parts["limits"] = {}
-    if "limits" in document:  # the table loads the checks
-        _examine_table(document, kind, "limits", outcome, place or Place())
+    # the table of limits loads the checks
+    for title in (*kind.tree, *(("limits",) if "limits" in document else ())):
+        _examine_title(document, kind, title, reading, outcome)
     if kind.rules:
         tables = {title: kind.table_in(document, title) for title in kind.tables}
         outcome.faults += list(document_faults(tables, kind.rules, document, outcome.faults))
@@ -282,13 +282,13 @@ def home_of(kind: DesignKind, key: str, value: Any) -> str:
     if words := keyed(key if value is True else value, kind.words):
         return f"did you mean {words}?"
     homes: dict[str, str] = {}
-    for title in kind.tables:  # the first of several tables is the likeliest
-        for name in kind.table(title).entries:
-            homes.setdefault(name, f"this key belongs under [{title}]")
+    # the first of several tables is the likeliest, one whose keys a word chooses the least likely
+    for title in (*kind.tables, *kind.nodes):
+        homes = {**homes_of(kind.node(title), title), **homes}
     homes |= dict.fromkeys(
         ("kind", "name"), "this key belongs at the top of the file, above all tables"
     )
-    return homes.get(key) or (kind.main.homes().get(key, "") if kind.main else "")
+    return homes.get(key, "")
 
 
 def _owners(what: str, kind: DesignKind, has: Callable[[DesignKind], bool]) -> str:
@@ -412,56 +412,65 @@ def name_fault(name: Any) -> str:
     return "is reserved on some systems" if _RESERVED.fullmatch(name) else ""
 
 
-def _examine_table(
-    document: Mapping[str, Any], kind: DesignKind, title: str, outcome: Examined, place: Place
-) -> None:
-    table, several = kind.table_in(document, title), title in kind.several
-    if title not in document and title in kind.required:
-        brackets = f"[[{title}]]" if several else f"[{title}]"
-        message, rule = f"the table {brackets} is missing", ", ".join(table.entries)
-        outcome.faults.append(Fault((title,), message, allowed=rule))
-        return
-    raw = document.get(title, [] if several else {})
-    if several and not isinstance(raw, list):
-        hint = f"write it in double brackets, once for each: [[{title}]]"
-        outcome.faults.append(
-            Fault((title,), f"{show(raw)} is not a list of tables", raw, "", hint)
-        )
-        return
-
+def _reading(
+    kind: DesignKind, document: Mapping[str, Any], outcome: Examined, place: Place
+) -> Reading:
     def home(key: str, value: Any) -> str:
         return home_of(kind, key, value) or _near_home(kind, key, SURE)
 
-    parts: list[Any] = []
-    items: list[tuple[Path, Any]] = [((title,), raw)]
-    if several:
-        items = [((title, number), item) for number, item in enumerate(raw)]
-    for at, given in items:
-        content, foreign = _without_foreign(kind, document, title, given)
+    def filled(table: Table, raw: Any, at: Path) -> tuple[Any, list[Fault]]:
+        content, foreign = _without_foreign(kind, document, table, raw)
         content, below = _with_designs(table, content, at, place)
-        far = partial(_other_home, kind)
-        faults = [*below, *faults_of(table, content, home=home, far=far, at=at)]
-        part, problems = None, list[Fault]()
-        if isinstance(content, Mapping):
-            part, problems = parameters_of(table, table.owner or dict, content, faults, at)
-        outcome.faults += [*foreign, *faults, *problems]
-        if part is not None and not faults:
-            parts.append(part)
-    if several and len(parts) == len(raw):
-        outcome.parts[title] = tuple(parts)
-    elif not several and parts:
-        outcome.parts[title] = parts[0]
+        return content, [*foreign, *below]
+
+    return Reading(
+        document=document,
+        given=kind.circumstances(document),
+        words=lambda: kind.words,
+        home=home,
+        far=partial(_other_home, kind),
+        filled=filled,
+        faults=outcome.faults,
+    )
+
+
+def _examine_title(
+    document: Mapping[str, Any], kind: DesignKind, title: str, reading: Reading, outcome: Examined
+) -> None:
+    """Examine what is written under a title of a document."""
+    node = kind.node(title, document)
+    if title not in document and title in kind.required:
+        outcome.faults.append(_missing(node, title))
+        return
+    empty: Any = [] if isinstance(node, Many) else {}
+    made = reading.read(node, document.get(title, empty), (title,))
+    if made.clean:
+        outcome.parts[title] = made.part
+
+
+def _missing(node: Node, title: str) -> Fault:
+    """Return the fault of a part that a document must have."""
+    if isinstance(node, Either):
+        return Fault((title,), "is missing", allowed=node.rule())
+    item = node.item if isinstance(node, Many) else node
+    if isinstance(item, Choice):
+        own = item.own.entries if item.own else ()
+        rule = ", ".join((f"{item.tag} = {quoted(item.entries)}", *own))
+    else:
+        rule = ", ".join(item.table.entries)
+    brackets = f"[[{title}]]" if isinstance(node, Many) else f"[{title}]"
+    return Fault((title,), f"the table {brackets} is missing", allowed=rule)
 
 
 def _without_foreign(
-    kind: DesignKind, document: Mapping[str, Any], title: str, raw: Any
+    kind: DesignKind, document: Mapping[str, Any], table: Table, raw: Any
 ) -> tuple[Any, list[Fault]]:
     """Return a table without keys that other variants have, and the faults of those keys.
 
     Where such a key has its default value it changes nothing: it is no fault. The class of the
     table may say in ``without`` why it does not have them.
     """
-    table, faults = kind.table_in(document, title), list[Fault]()
+    title, faults = table.title, list[Fault]()
     unknown = [key for key in raw if key not in table.entries] if isinstance(raw, Mapping) else []
     family, value = (variant_of(kind) if unknown else None) or (kind, "")
     variants = family.variants
@@ -589,49 +598,3 @@ def nested_in(document: Mapping[str, Any]) -> Iterator[tuple[Path, Key, Any]]:
         for name, key in table.entries.items():
             if key.param.nested and isinstance(raw, Mapping) and name in raw:
                 yield (*at, name), key, raw[name]
-
-
-def chosen(
-    at: Path,
-    raw: Mapping[str, Any],
-    key: str,
-    what: str,
-    entries: Mapping[str, Any],
-    outcome: Examined,
-) -> tuple[str, bool]:
-    """Return the value of a key that selects an entry of a registry.
-
-    Parameters
-    ----------
-    at : tuple
-        Path of the table.
-    raw : mapping
-        The table.
-    key : str
-        The key, such as ``type``.
-    what : str
-        Word for an entry, with its article.
-    entries : mapping
-        The registry.
-    outcome : Examined
-        Receives a fault if there is no such entry.
-
-    Returns
-    -------
-    word : str
-        The name of the entry; for a misspelt one the nearest, to check its keys; else empty.
-    right : bool
-        Whether the value is correct.
-    """
-    word, rule = raw.get(key), quoted(entries)
-    if isinstance(word, str) and word in entries:
-        return word, True
-    near = nearest(word, entries) if isinstance(word, str) else ""
-    message = f"{show(word)} is not {what}" if key in raw else "is missing"
-    words = near or keyed(word, KINDS[outcome.kind].words)
-    hint = f"did you mean {words}?" if words else ""
-    if not words and len(raw) > 1:
-        hint = f"the other keys of this table are checked once its {key} is known"
-    value = word if key in raw else MISSING
-    outcome.faults.append(Fault((*at, key), message, value, rule, hint))
-    return near, False

@@ -21,6 +21,8 @@ from typing import Any, Final, Protocol, get_args, get_type_hints
 from gearcam.base.findings import CHECKS
 from gearcam.base.rules import Rule
 from gearcam.designs.faults import Fault
+from gearcam.designs.lines import Path
+from gearcam.designs.nodes import Circumstances, Keys, Many, Node, choices_in, tables_in
 from gearcam.designs.slips import cam_of, keyed, nearest
 from gearcam.designs.table import Key, Table, table_of
 
@@ -44,46 +46,6 @@ class Examined:
     faults: list[Fault] = field(default_factory=list)
     parts: dict[str, Any] = field(default_factory=dict)
     kind: str = ""
-
-
-@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class Main:
-    """The part of a design whose keys depend on a registry.
-
-    Parameters
-    ----------
-    title : str
-        Its title in a file.
-    examine : callable
-        ``examine(document, found)`` validates it.
-    document : callable
-        ``document(design)`` returns it as in a design file.
-    table : callable
-        ``table(raw)`` returns its table, or that of one of its items, as in a file.
-    homes : callable
-        ``homes()`` returns hints by key that say where a key of it belongs.
-    schema : callable
-        ``schema()`` returns its JSON schema and the definitions in it.
-    template : callable
-        ``template(example, note)`` yields its lines in the template.
-    laws : callable
-        ``laws()`` returns a heading and the laws for ``gearcam laws``.
-    words : callable
-        ``words()`` returns the entries of its registries, by the dotted keys that choose them.
-    """
-
-    title: str
-    examine: Callable[[Mapping[str, Any], Examined], None]
-    document: Callable[[Any], Any]
-    table: Callable[[Mapping[str, Any]], Table]
-    homes: Callable[[], Mapping[str, str]]
-    schema: Callable[[], tuple[dict[str, Any], dict[str, Any]]]
-    template: Callable[[Any, str], Iterable[str]]
-    laws: Callable[[], tuple[str, list[Any]]]
-    words: Callable[[], Mapping[str, Collection[str]]]
-
-    def __repr__(self) -> str:
-        return f'<{type(self).__name__} "{self.title}">'
 
 
 class WithTables(Protocol):
@@ -189,9 +151,6 @@ FAMILY: Final = {"sweep": "what `gearcam sweep` gives to keys: values, ranges, d
 class DesignKind:
     """How designs of one kind are read and described.
 
-    A design has tables with fixed keys and may have a *main* part whose keys depend on a registry,
-    such as ``[law]``.
-
     Parameters
     ----------
     name : str
@@ -201,13 +160,15 @@ class DesignKind:
     also : tuple of str
         Other names that people use for it.
     design : type
-        Class of its designs: a frozen dataclass with ``name``, ``source``, ``limits``, the result
-        of the main part's ``examine`` and a field for each table, whose type is the class of the
-        table, or a tuple of any number of them if a file may give it several times.
+        Class of its designs: a frozen dataclass with ``name``, ``source``, ``limits`` and a field
+        for each table, whose type is the class of the table, or a tuple of any number of them if a
+        file may give it several times, unless `nodes` has its title.
     result : callable
         ``result(design, tolerances)`` returns its `gearcam.results.result.Result`.
-    main : Main, optional
-        The main part.
+    nodes : mapping of str to Node
+        What stands under titles where it is not the keys of a class, such as ``[law]``.
+    circumstances : callable
+        ``circumstances(document)`` returns what the units of its keys depend on.
     variants : Variants, optional
         What decides on the keys of some tables.
     required : tuple of str
@@ -242,7 +203,8 @@ class DesignKind:
     also: tuple[str, ...] = ()
     design: type
     result: Callable[..., Any]
-    main: Main | None = None
+    nodes: Mapping[str, Node] = field(default_factory=dict)
+    circumstances: Callable[[Mapping[str, Any]], Circumstances] = lambda _: {}
     variants: Variants | None = None
     required: tuple[str, ...]
     rules: tuple[Rule, ...] = ()
@@ -261,34 +223,34 @@ class DesignKind:
         return f'<{type(self).__name__} "{self.name}">'
 
     @cached_property
-    def _fields(self) -> dict[str, Any]:
-        """The types of the fields of tables, as they are written in the class of designs."""
-        main = self.main.title if self.main else ""
-        return {key: hint for key, hint in get_annotations(self.design).items() if key != main}
+    def tree(self) -> Mapping[str, Any]:
+        """The titles of a file with the types of their fields, as the class of designs has them."""
+        return get_annotations(self.design)
 
     @cached_property
     def several(self) -> tuple[str, ...]:
         """Titles of tables that a file gives once or more, in double brackets."""
-        return tuple(key for key, hint in self._fields.items() if str(hint).startswith("tuple["))
+        given = ((key, hint) for key, hint in self.tree.items() if key not in self.nodes)
+        return tuple(key for key, hint in given if str(hint).startswith("tuple["))
 
     @cached_property
     def tables(self) -> Mapping[str, type]:
-        """The classes of the tables, by title; of those that depend on a key the default ones."""
+        """The classes of the tables with their keys, by title; of variants those of the default."""
         usual = self.variants.entries[self.variants.default].tables if self.variants else {}
+        fields = {title: hint for title, hint in self.tree.items() if title not in self.nodes}
         # without those of variants: what they may be is not imported where the design is defined
-        rest = {title: hint for title, hint in self._fields.items() if title not in usual}
+        rest = {title: hint for title, hint in fields.items() if title not in usual}
         scope = vars(sys.modules[self.design.__module__])
         found = get_type_hints(SimpleNamespace(__annotations__=rest), scope)
         own = {
             key: get_args(hint)[0] if key in self.several else hint for key, hint in found.items()
         }
-        return {title: usual.get(title) or own[title] for title in self._fields}
+        return {title: usual.get(title) or own[title] for title in fields}
 
     @property
     def titles(self) -> tuple[str, ...]:
         """The top-level keys and tables of a file of this kind."""
-        main = (self.main.title,) if self.main else ()
-        return ("kind", "name", *main, *self.tables, "limits", *FAMILY)
+        return ("kind", "name", *self.tree, "limits", *FAMILY)
 
     def meant(self, document: Mapping[str, Any]) -> DesignKind:
         """Return the kind that a `document` of this kind is of: another one for some variants."""
@@ -320,28 +282,37 @@ class DesignKind:
             return self.table(title)
         return self.variants.table(title, self.variants.of(design))
 
+    def node(self, title: str, document: Mapping[str, Any] | None = None) -> Node:
+        """Return what stands under a title, with the keys that it may have in a `document`."""
+        if title in self.nodes:
+            return self.nodes[title]
+        return self._with(self.table(title) if document is None else self.table_in(document, title))
+
+    def node_of(self, design: Any, title: str) -> Node:
+        """Return what stands under a title, with the keys that it may have in a `design`."""
+        return self.nodes.get(title) or self._with(self.table_of(design, title))
+
+    def _with(self, table: Table) -> Node:
+        keys = Keys(table=table)
+        return Many(item=keys) if table.title in self.several else keys
+
     @property
     def words(self) -> dict[str, Collection[str]]:
-        """The words that single values of its tables and of main may be, by dotted key."""
+        """The words that single values of its tables may be, by dotted key."""
         words: dict[str, Collection[str]] = {}
         for title in self.tables:
             words |= self.table(title).words
         found = variant_of(self)
         if found and (variants := found[0].variants):
             words |= found[0].table(variants.title).words
-        return words | dict(self.main.words() if self.main else {})
+        choices = [one for node in self.nodes.values() for one in choices_in(node)]
+        return words | {f"{one.title}.{one.tag}": one.entries.keys() for one in choices}
 
-    def tables_in(
-        self, document: Mapping[str, Any]
-    ) -> Iterator[tuple[tuple[str | int, ...], Table, Any]]:
-        """Yield the path, the keys and the content of each table in a `document`, without main."""
-        for title in (*self.tables, "limits"):
+    def tables_in(self, document: Mapping[str, Any]) -> Iterator[tuple[Path, Table, Any]]:
+        """Yield the path, the keys and the content of each table in a `document`."""
+        for title in (*self.tree, "limits"):
             if title in document:
-                raw, table = document[title], self.table_in(document, title)
-                if title in self.several and isinstance(raw, list):
-                    yield from (((title, number), table, one) for number, one in enumerate(raw))
-                else:
-                    yield (title,), table, raw
+                yield from tables_in(self.node(title, document), document[title], (title,))
 
     def load_checks(self) -> None:
         """Import the modules that register checks."""

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from gearcam.designs.faults import description
 from gearcam.designs.kind import KINDS
+from gearcam.designs.nodes import Choice, Either, Keys, choices_in
 from gearcam.designs.table import Table
 from gearcam.laws.entry import SOURCES
 
@@ -34,7 +35,24 @@ class Listed:
 
 def law_groups() -> Iterator[tuple[str, list[Listed]]]:
     """Yield a heading and the laws of each kind of design; those of several kinds once."""
-    yield from dict(kind.main.laws() for kind in KINDS.values() if kind.main).items()
+    found: dict[str, list[Listed]] = {}
+    seen: list[Mapping[str, Any]] = []
+    for kind in KINDS.values():
+        for title, node in kind.nodes.items():
+            for one in choices_in(node):
+                if one.listing and one.listing not in found:
+                    again = any(one.entries is other for other in seen)
+                    key = one.tag if isinstance(node, Either) else f"{title}.{one.tag}"
+                    found[one.listing] = [] if again else [*_listed(one, key)]
+                    seen.append(one.entries)
+    yield from found.items()
+
+
+def _listed(choice: Choice, key: str) -> Iterator[Listed]:
+    for name, entry in choice.entries.items():
+        node = choice.node(name)
+        if isinstance(node, Keys):
+            yield listed(entry, f'{key} = "{name}"', node.table)
 
 
 def sources_of(groups: Iterable[tuple[str, list[Listed]]]) -> dict[str, str]:

@@ -7,13 +7,14 @@ Other rules, such as increasing knots and valid formulas, are checked only when 
 from __future__ import annotations
 
 from collections import ChainMap
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import Any, Final
 
 from gearcam.base.quantities import REQUIRED
 from gearcam.base.rules import Field, Fields, Rule
 from gearcam.designs.faults import description
 from gearcam.designs.kind import FAMILY, KINDS, DesignKind, Variants, variant_of
+from gearcam.designs.nodes import Choice, Either, Keys, Many, Node
 from gearcam.designs.table import Key, Table, default_of
 
 DIALECT: Final = "https://json-schema.org/draft/2020-12/schema"
@@ -39,11 +40,17 @@ def schema() -> Schema:
     """
     definitions: Schema = {}
     for kind in KINDS.values():
-        main, own = kind.main.schema() if kind.main else ({}, {})
-        definitions[kind.name] = _branch(kind, main)
-        for title in (*kind.tables, "limits"):
-            definitions[f"{kind.name}-{title}"] = _titled(kind, title)
-        definitions |= own
+        parts: Schema = {}
+        for title in (*kind.tree, "limits"):
+            home = title if title in kind.nodes else f"{kind.name}-{title}"
+            made, own = _node(kind.node(title), home)
+            definitions |= own
+            if title in kind.nodes:
+                parts[title] = made
+            else:
+                definitions[home] = made
+                parts[title] = {"$ref": f"#/$defs/{home}"}
+        definitions[kind.name] = _branch(kind, parts)
     return {
         "$schema": DIALECT,
         "title": "gearcam design file",
@@ -77,35 +84,75 @@ def _when(key: str, value: str, then: Schema) -> Schema:
     return {"if": {"properties": {key: {"const": value}}, "required": [key]}, "then": then}
 
 
-def chosen(key: str, names: Iterable[str], words: str, home: Callable[[str], str]) -> Schema:
-    """Return the schema of a table whose keys depend on the value of one key.
+def _node(node: Node, home: str) -> tuple[Schema, Schema]:
+    """Return the schema of a node, and the definitions in it, whose names begin with `home`."""
+    if isinstance(node, Either):
+        return _either(node, home)
+    if isinstance(node, Many):
+        made, own = _node(node.item, home)
+        many: Schema = {"minItems": node.least} if node.least else {}
+        return {"type": "array", "items": made} | many, own
+    if isinstance(node, Choice):
+        return _choice(node, home, {}, {})
+    return _keys(node, node.table, ()), {}
 
-    Parameters
-    ----------
-    key : str
-        The key, such as ``type``.
-    names : iterable of str
-        Its allowed values.
-    words : str
-        Its description.
-    home : callable
-        Returns the name of the definition for a value.
 
-    Returns
-    -------
-    dict
-    """
-    values = list(names)
-    return {
-        "required": [key],
-        "properties": {key: {"enum": values, "description": words}},
-        "allOf": [_when(key, name, {"$ref": f"#/$defs/{home(name)}"}) for name in values],
+def _choice(
+    node: Choice, home: str, above: Mapping[str, str], keys: Mapping[str, Key]
+) -> tuple[Schema, Schema]:
+    """Return the schema of a choice, below the words `above` of tables with further `keys`."""
+    own: Schema = {}
+    keys = {**keys, **(node.own.entries if node.own else {})}
+    for word in node.entries:
+        below, name, words = node.node(word), f"{home}-{word}", {**above, node.tag: word}
+        if isinstance(below, Choice):
+            made, more = _choice(below, name, words, keys)
+            own |= {name: made, **more}
+        else:
+            known = Table(node.title, None, {**keys, **below.table.entries})
+            own[name] = _keys(below, known, node.needed, **words)
+    meanings = "; ".join(f"{word}: {node.about(word)}" for word in node.entries)
+    chosen = {
+        "required": [node.tag],
+        "properties": {node.tag: {"enum": list(node.entries), "description": meanings}},
+        "allOf": [
+            _when(node.tag, word, {"$ref": f"#/$defs/{home}-{word}"}) for word in node.entries
+        ],
     }
+    return {"type": "object", **({"description": node.doc} if node.doc else {}), **chosen}, own
 
 
-def with_meanings(names: Iterable[tuple[str, str]]) -> str:
-    """Return `names` with their descriptions in one line."""
-    return "; ".join(f"{name}: {doc}" for name, doc in names)
+def _either(node: Either, home: str) -> tuple[Schema, Schema]:
+    """Return the schema of one of several nodes, in the order of their cases."""
+    made: Schema = {}
+    own: Schema = {}
+    for number, case in reversed([*enumerate(node.cases)]):
+        one, more = _node(case.node(), home)
+        own |= more
+        if isinstance(case.node(), Keys):
+            own[f"{home}-{number}"], one = one, {"$ref": f"#/$defs/{home}-{number}"}
+        if isinstance(case.node(), Many):
+            rest = {"if": {"type": one.pop("type")}, "else": made}
+            made = one | rest  # what is said of items holds for lists only
+        else:
+            made = {"if": dict(case.schema), "then": one, "else": made} if case.schema else one
+    return {"description": node.doc, **made}, own
+
+
+def _keys(node: Keys, known: Table, needed: Collection[str], **words: str) -> Schema:
+    """Return the schema of a table with the keys that are `known`, and fixed `words`."""
+    either: dict[str, list[Key]] = {}  # of each field the keys in opposite circumstances
+    for entry in known.entries.values():
+        if entry.param.when:
+            either.setdefault(entry.name, []).append(entry)
+    rules = [
+        {"oneOf": [{"required": [one.key]} for one in keys]}
+        if name in needed or keys[0].default is REQUIRED
+        else {"not": {"required": [one.key for one in keys]}}
+        for name, keys in either.items()
+    ]
+    made = table_schema(known, node.doc, **words) | dict(node.rule)
+    return made | _all_of([*made.get("allOf", []), *rules])
 
 
 def table_schema(table: Table, doc: str = "", **words: str) -> Schema:
@@ -137,14 +184,14 @@ def table_schema(table: Table, doc: str = "", **words: str) -> Schema:
     }
 
 
-def _branch(kind: DesignKind, main: Schema) -> Schema:
+def _branch(kind: DesignKind, parts: Schema) -> Schema:
     fields = [_fields(kind.table(title), title) for title in kind.tables]
     return {
         "type": "object",
         "description": kind.doc,
         "additionalProperties": False,
         # the schema of all designs requires the kind; where one is nested its key says it
-        "required": [*([kind.main.title] if kind.main else []), *kind.required],
+        "required": list(kind.required),
         "properties": {
             "kind": {"enum": _names(kind), "description": kind.doc},
             "name": {
@@ -153,9 +200,8 @@ def _branch(kind: DesignKind, main: Schema) -> Schema:
                 "maxLength": 100,
                 "description": "names the output folder; default: the name of the design file",
             },
-            **({kind.main.title: main} if kind.main else {}),
+            **parts,
         }
-        | {title: {"$ref": f"#/$defs/{kind.name}-{title}"} for title in (*kind.tables, "limits")}
         | {title: {"type": "object", "description": doc} for title, doc in FAMILY.items()},
         **_all_of(
             [*_rules(kind.rules, ChainMap(*fields)), *_variants(kind.variants, kind.several)]
@@ -182,11 +228,6 @@ def _variants(variants: Variants | None, several: Sequence[str]) -> Iterator[Sch
             "if": {"properties": {variants.title: chosen}, "required": [variants.title]},
             "then": {"properties": tables, "required": required},
         }
-
-
-def _titled(kind: DesignKind, title: str) -> Schema:
-    schema = table_schema(kind.table(title))
-    return {"type": "array", "items": schema} if title in kind.several else schema
 
 
 def _fields(table: Table, title: str = "") -> dict[str, Field]:

@@ -200,6 +200,12 @@ def meant_by(key: str, known: Mapping[str, Key], least: float = _WEAK) -> list[K
     return likely[:_MOST] if best >= least else []
 
 
+def same_unit(key: str, entry: Key) -> bool:
+    """Return whether a key as written has the unit of an entry, or none."""
+    unit = _split(key)[1]
+    return not unit or f"_{unit}" == entry.param.quantity.suffix
+
+
 def _likeness(key: str, entry: Key) -> float:
     """Return the similarity of a written `key` to an entry, 0 to 1."""
     stem, unit = _split(key)

@@ -125,6 +125,8 @@ class Table:
 
     def bound(self, circumstances: Collection[str]) -> Table:
         """Return the table with the keys for some `circumstances` (see `Param.when`)."""
+        if not any(entry.param.when for entry in self.entries.values()):
+            return self
         kept = {}
         for key, entry in self.entries.items():
             if not any(OPPOSITES[word] in circumstances for word in entry.param.when):

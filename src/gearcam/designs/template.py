@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from itertools import islice
 from typing import Any, Final
 
 from gearcam.base.errors import Problem
@@ -12,8 +13,9 @@ from gearcam.base.quantities import REQUIRED
 from gearcam.designs.examine import name_fault
 from gearcam.designs.faults import description, short, show
 from gearcam.designs.kind import KINDS, DesignKind, kind_meant, named_variant
+from gearcam.designs.nodes import Choice, Either, Keys, Many, Node, joined, levels_of
 from gearcam.designs.slips import nearest
-from gearcam.designs.table import Key, Table
+from gearcam.designs.table import Key, Table, table_of
 
 _COLUMN: Final = 36
 _WIDTH: Final = 96
@@ -83,17 +85,66 @@ def _lines(kind: DesignKind, name: str, process: str) -> Iterator[str]:
     yield _HEADER.format(doc=f"{kind.doc[0].upper()}{kind.doc[1:]}")
     yield f'kind = "{kind.name}"'
     yield key_line("name", name, "name of the output folder")
-    yield ""
-    if kind.main:
-        title = kind.main.title
-        yield from kind.main.template(kind.example[title], kind.notes.get(title, ""))
-    for title in (*kind.tables, "limits"):
+    for title in (*kind.tree, "limits"):
+        note, given = kind.notes.get(title, ""), kind.example.get(title, {})
+        if title in kind.nodes:
+            yield from _node(kind.nodes[title], title, given, note)
+            continue
         head = f"[[{title}]]" if title in kind.several else f"[{title}]"
         table = _shown(kind.table(title), kind.shown.get(title, {}))
-        note, added = kind.notes.get(title, ""), more.get(title, {})
-        examples = kind.example.get(title, {})
-        for given in examples if isinstance(examples, list) else [examples]:
-            yield from _table(head, table, {**given, **added}, note)
+        for one in given if isinstance(given, list) else [given]:
+            yield from _table(head, table, {**one, **more.get(title, {})}, note)
+
+
+def _node(node: Node, title: str, example: Any, note: str) -> Iterator[str]:
+    """Yield the lines of a node: those of an `example`, then others as comments."""
+    if isinstance(node, Either):
+        first, *rest = (case.node() for case in node.cases)
+        yield ""
+        yield f"# {note}"
+        yield from islice(_node(first, title, example, ""), 1, None)
+        yield from ("", node.others, "#", f"# [{title}]")
+        for one in rest:
+            for key, entry in one.table.entries.items() if isinstance(one, Keys) else ():
+                shown = isinstance(one, Keys) and key in one.examples
+                yield comment_line(entry) if shown else f"#   or {key}: {entry.param.doc}"
+    elif isinstance(node, Many):
+        for one in example:
+            yield from ("", f"[[{title}]]")
+            yield from _chosen(node.item, one)
+        yield from _others(node.item, example, f"[[{title}]]")
+    else:
+        yield from ("", beside(f"[{title}]", note))
+        yield from _chosen(node, example)
+        yield from _others(node, [example], "")
+
+
+def _chosen(node: Keys | Choice, given: Mapping[str, Any], mark: str = "") -> Iterator[str]:
+    """Yield the lines of a table, as comments if `mark` is ``# ``; words without a value end it."""
+    known = joined([*levels_of(node, given)], "")
+    while isinstance(node, Choice) and node.tag in given:
+        word = given[node.tag]
+        yield key_line(node.tag, word, node.about(word), mark)
+        node = node.node(word)
+    yield from entry_lines(known, given)
+
+
+def _others(node: Keys | Choice, examples: Sequence[Mapping[str, Any]], head: str) -> Iterator[str]:
+    """Yield comments on what else could be chosen; a table that may stand again has a `head`."""
+    if not isinstance(node, Choice):
+        return
+    used = {one.get(node.tag) for one in examples}
+    if node.others:
+        yield from ("", node.others)
+        for word, entry in node.entries.items():
+            if word not in used and hasattr(entry, "example"):
+                known = table_of(node.title, node.class_of(word))
+                yield from law_comment(node.tag, word, entry, known)
+            elif word not in used:
+                yield from ("#", f"# {head}")
+                yield from _chosen(node, {node.tag: word}, "# ")
+    for below in {one.others: one for one in node.below.values()}.values():
+        yield from _others(below, examples, head)
 
 
 def _shown(table: Table, examples: Mapping[str, Any]) -> Table:

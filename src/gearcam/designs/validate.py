@@ -4,12 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from itertools import islice
 from typing import Any
 
 from gearcam.base.rules import Breach, Rule, Value
 from gearcam.designs.faults import Fault, allowed, list_fault, short, show, value_fault
 from gearcam.designs.lines import Path
-from gearcam.designs.slips import STRONG, hinted, key_hint, keyed, misspelt
+from gearcam.designs.slips import (
+    MOST_LISTED,
+    STRONG,
+    hinted,
+    key_hint,
+    keyed,
+    meant_by,
+    misspelt,
+    same_unit,
+)
 from gearcam.designs.table import Key, Table, default_of
 
 
@@ -211,6 +221,19 @@ def placed_faults(
             yield Fault(path, text, value, rule)
 
 
+def _as_meant(table: Table, raw: Mapping[str, Any], at: Path) -> tuple[dict[str, Any], bool]:
+    """Return a table with misspelt keys as they are meant, and whether the meaning is sure."""
+    found, sure = dict(raw), True
+    for key in islice((key for key in raw if key not in table.entries), MOST_LISTED):
+        meant = [one for one in meant_by(key, table.entries) if one.key not in raw]
+        sound = len(meant) == 1 and same_unit(key, meant[0])
+        if sound and not any(_of_value(meant[0], raw[key], at)):
+            found[meant[0].key] = raw[key]
+        elif meant:
+            sure = False
+    return found, sure
+
+
 def parameters_of(
     table: Table,
     make: Callable[..., Any],
@@ -248,11 +271,13 @@ def parameters_of(
     if any(len(path) == 1 and path[0] in table.entries for path in here):
         return None, broken
     here += [fault.path[depth:] for fault in broken if fault.path != at]
-    wrong = {path[0] for path in here} | misspelt(raw if faults else {}, table.entries)
-    readable = {key: value for key, value in raw.items() if key in table.entries}
+    wrong = {path[0] for path in here}
+    readable, sure = _as_meant(table, raw, at) if faults else (raw, True)
+    readable = {key: value for key, value in readable.items() if key in table.entries}
     try:
         parameters = make(**table.inward(readable))
-        problems = getattr(parameters, "problems", tuple)()
+        # what is computed without a misspelt key may be untrue
+        problems = getattr(parameters, "problems", tuple)() if sure else ()
         found = [p for p in placed_faults(problems, table, raw, at) if p.path[depth] not in wrong]
     except (TypeError, ValueError, AttributeError, IndexError, KeyError):
         if not faults and not broken:

@@ -33,9 +33,10 @@ from gearcam.base.changes import (
 )
 from gearcam.base.display import ShortRepr
 from gearcam.base.errors import Adjustment, DesignError, InfeasibleError
-from gearcam.designs.design import Design, document_of, value_at
+from gearcam.designs.design import Design, document_of, nested_designs, value_at
+from gearcam.designs.faults import dotted
 from gearcam.results.kind import kind_of
-from gearcam.results.nested import keyed, nested_designs
+from gearcam.results.nested import keyed
 
 if TYPE_CHECKING:
     from gearcam.base.findings import Finding
@@ -278,7 +279,8 @@ class Search:
 
     def seek(self) -> None:
         """Search as the advice of the kind knows; first, so for each nested design at fault."""
-        for key, design in nested_designs(self.result.design):
+        for path, design in nested_designs(self.result.design):
+            key = dotted(path)
             result: Result = kind_of(design).result(design, self.result.tolerances)
             refusal, errors = _examined(result)
             if refusal is not None or errors:

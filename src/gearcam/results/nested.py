@@ -11,13 +11,9 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
-from typing import Any
 
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.findings import Finding
-from gearcam.base.quantities import params_of
-from gearcam.designs.design import Design
-from gearcam.results.kind import kind_of
 
 
 @contextmanager
@@ -80,16 +76,3 @@ def _placed(key: str, where: str) -> str:
 def keyed(key: str, changes: Mapping[str, object]) -> dict[str, object]:
     """Return `changes` of the design at a `key` as changes of the design around it."""
     return {f"{key}.{name}": value for name, value in changes.items()}
-
-
-def nested_designs(design: Design) -> Iterator[tuple[str, Design]]:
-    """Yield the dotted key and the value of each design nested in a `design`."""
-    kind = kind_of(design)
-    for title in kind.tables:
-        part: Any = getattr(design, title)
-        parts = enumerate(part) if title in kind.several else [("", part)]
-        for number, owner in parts:
-            place = f"{title}[{number}]" if title in kind.several else title
-            for name, param in params_of(type(owner)).items():
-                if param.nested and isinstance(value := getattr(owner, name), Design):
-                    yield f"{place}.{param.key(name)}", value

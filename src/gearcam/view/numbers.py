@@ -191,18 +191,11 @@ def _entry(document: Mapping[str, Any], path: Path) -> Key | None:
     for at, key, inner in nested_in(document):
         if path[: len(at)] == at and isinstance(inner, Mapping):
             return _entry({"kind": key.param.nested[0], **inner}, path[len(at) :])
-    kind, (title, *rest) = KINDS[document["kind"]].meant(document), path
-    if kind.main and title == kind.main.title:
-        raw = document[kind.main.title]
-        if rest and isinstance(rest[0], int):
-            raw, rest = raw[rest[0]], rest[1:]
-        table = kind.main.table(raw)
-    elif title in (*kind.tables, "limits"):
-        table = kind.table(str(title))
-        rest = rest[1:] if title in kind.several else rest
-    else:
-        return None
-    return table.entries.get(str(rest[0])) if rest else None
+    kind = KINDS[document["kind"]].meant(document)
+    for at, table, _ in kind.tables_in(document):
+        if path[: len(at)] == at:
+            return table.entries.get(str(path[len(at)])) if path[len(at) :] else None
+    return None
 
 
 def _within(

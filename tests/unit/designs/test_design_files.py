@@ -147,7 +147,7 @@ def test_a_problem_carries_file_line_key_value_rule_and_hint() -> None:
         ('type = "phases"', 'type = "phase"', "law.type", "phases"),
         ('["csv"]', '["cvs"]', "output.files[0]", "csv"),
         ("[output]", "[ouput]", "ouput", "output"),
-        ("ratios =", "eccentricity = 1\nratios =", "law.eccentricity", 'type "ellipse" or'),
+        ("ratios =", "eccentricity = 1\nratios =", "law.eccentricity", 'type "ellipse",'),
         ("ratios =", "teeth = 1\nratios =", "law.teeth", "belongs under [pair]"),
         ("[law]", "center_distance_mm = 180\n[law]", "center_distance_mm", "under [pair]"),
         (
@@ -364,7 +364,7 @@ def test_the_template_reads_and_shows_every_key() -> None:
 def test_what_a_law_finds_is_told_beside_faults_of_single_values() -> None:
     text = changed(
         "knots_deg = [0, 160, 360]\nratios = [1.6, 0.4, 1.6]",
-        "knots_deg = [0, 160, 150, 360]\nratios = [1.6, 0.4, -1, 1.6]\nshap = 1",
+        "knots_deg = [0, 160, 150, 360]\nratios = [1.6, 0.4, -1, 1.6]\nshap = 'cosine'",
     )
     keys = {problem.key for problem in problems(text)}
     assert keys == {"law.knots_deg[2]", "law.ratios[2]", "law.shap"}

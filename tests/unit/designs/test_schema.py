@@ -21,13 +21,11 @@ from gearcam.designs.examine import examine
 from gearcam.designs.kind import KINDS
 from gearcam.designs.schema import schema
 from gearcam.designs.template import template
-from gearcam.kinds.cam.motion import WITH_LAW, phase_table, rise_table, turn_tables
-from gearcam.kinds.gear_pair.design import law_table
-from gearcam.kinds.globoidal_cam.design import index_table
 from gearcam.laws.motion.base import MOTION_LAWS
 from gearcam.laws.phases_of_lift import PHASES
 from gearcam.laws.ratio.base import LAWS
 from helpers_pairs import PROFILES
+from helpers_tables import WITH_LAW, index_table, law_table, phase_table, rise_table, turn_tables
 
 FILES = sorted(PROFILES.glob("*.toml"))
 GOOD: dict[str, Any] = {
@@ -88,16 +86,18 @@ def test_every_key_is_described_and_no_other_is_allowed(
             expected[f"{name}-{title}"] = set(kind.table(title).entries)
     expected |= {f"law-{name}": {"type", *law_table(name).entries} for name in LAWS}
     expected |= {f"index-{law}": {"law", *index_table(law).entries} for law in MOTION_LAWS}
-    for title, known in zip(("motion-table", "motion-formula"), turn_tables(), strict=True):
+    for title, known in zip(("motion-2", "motion-1"), turn_tables(), strict=True):
         expected[title] = set(known.entries)
     for name in PHASES:
         if name not in WITH_LAW:
-            expected[name] = {"type", *phase_table(name).entries}
+            expected[f"motion-{name}"] = {"type", *phase_table(name).entries}
             continue
-        assert set(definitions.pop(name)["properties"]) == {"law"}  # what chooses among these:
+        assert set(definitions.pop(f"motion-{name}")["properties"]) == {
+            "law"
+        }  # what chooses among these:
         for law in MOTION_LAWS:
             keys = {"type", "law", *phase_table(name).entries, *rise_table(law).entries}
-            expected[f"{name}-{law}"] = keys
+            expected[f"motion-{name}-{law}"] = keys
     assert {name: set(made["properties"]) for name, made in definitions.items()} == expected
     for name, made in definitions.items():
         assert made["additionalProperties"] is False

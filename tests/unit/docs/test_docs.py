@@ -26,11 +26,10 @@ from claims.motion import MOTION_CLAIMS
 from gearcam.base.tolerances import DEFAULT
 from gearcam.cli import main
 from gearcam.designs import KINDS
-from gearcam.kinds.cam.motion import phase_table, rise_table, turn_tables
-from gearcam.kinds.gear_pair.design import law_table
 from gearcam.laws.motion.base import MOTION_LAWS
 from gearcam.laws.ratio.base import LAWS
 from gearcam.laws.ratio.span import Lobes
+from helpers_tables import law_table, phase_table, rise_table, turn_tables
 from random_designs.law_draw import LawDraw
 from random_designs.laws import parameters, random_law, random_motion_law
 

@@ -13,13 +13,12 @@ import gearcam
 import reference
 from gearcam.base.findings import CHECKS
 from gearcam.base.quantities import REQUIRED
-from gearcam.kinds.cam.motion import rise_table
-from gearcam.kinds.gear_pair.design import law_table
 from gearcam.laws.motion.base import MOTION_LAWS
 from gearcam.laws.ratio.base import LAWS
 from gearcam.results.kind import KINDS
 from helpers_pairs import PROFILES
 from helpers_sampling import chosen, few
+from helpers_tables import law_table, rise_table
 
 PAGES = reference.pages()
 DESIGNS = (

@@ -22,13 +22,13 @@ from gearcam.cams.spec import (
     FollowerSpec,
 )
 from gearcam.cams.spec import KIND as CAM
-from gearcam.designs.design import Design, Wanted, document_of
+from gearcam.designs.design import Design, document_of
 from gearcam.designs.faults import Fault, show
 from gearcam.designs.kind import Examined
 from gearcam.designs.table import table_of
 from gearcam.designs.validate import placed_faults
 from gearcam.kinds.cam.forms.base import FORMS, VARIANTS
-from gearcam.kinds.cam.motion import MOTION, phases_wanted
+from gearcam.kinds.cam.motion import MOTION, circumstances
 from gearcam.kinds.cam.tables import (
     CAM_FORMATS,
     GOALS,
@@ -150,9 +150,6 @@ class CamDesign(Design):
     def form(self) -> str:
         """The name of its form."""
         return VARIANTS.of(self)
-
-    def _wanted(self) -> Iterator[Wanted]:
-        return phases_wanted(self.motion)
 
 
 def _toleranced(sizes: str, key: str, *words: str) -> Rule:
@@ -326,9 +323,10 @@ KIND: Final = Kind(
     doc="a cam with its follower",
     design=CamDesign,
     result=deferred(f"{_HERE}.result:CamResult"),
-    main=MOTION,
+    nodes={"motion": MOTION},
+    circumstances=circumstances,
     variants=VARIANTS,
-    required=("follower", "cam"),
+    required=("motion", "follower", "cam"),
     rules=RULES,
     problems=problems,
     formats=CAM_FORMATS,

@@ -17,7 +17,7 @@ from gearcam.base.findings import CHECKS, Finding, limit_of
 from gearcam.base.numerals import DIGITS, formatted, shortened
 from gearcam.cams.checks import KIND, driven
 from gearcam.designs.design import document_of, value_at
-from gearcam.kinds.cam.motion import turn_tables
+from gearcam.kinds.cam.motion import by_rows
 from gearcam.kinds.cam.tables import CAM_FORMATS
 from gearcam.laws.motion_table import MotionTable
 from gearcam.parts.checks import KIND as PARTS_KIND
@@ -314,7 +314,7 @@ def _smoother(result: CamResult, finding: Finding) -> Iterator[str]:
     table, lead, error = result.design.motion, result.cam.motions[0], finding.value or 0.0
     if isinstance(table, MotionTable) and lead.program.fall < _SCATTERED:
         oscillating, lever = lead.follower.angular, lead.follower.lever
-        entries = turn_tables()[0].bound([result.solved.follower.motion]).entries.values()
+        entries = by_rows().table.bound([result.solved.follower.motion]).entries.values()
         entry = next(one for one in entries if one.name == "smoothing_tolerance")
         given = 2.0 * (table.smoothing_tolerance or 0.0)
         asked = (entry.outward(max(share * error / lever, given)) for share in _SHARES)

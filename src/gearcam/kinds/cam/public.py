@@ -11,7 +11,7 @@ from gearcam.kinds.cam.forms.translating import PlateBlank, PlateOutput, PlateSp
 from gearcam.kinds.cam.forms.yoke import YokeFollower, YokeSpec
 from gearcam.kinds.cam.motion import MOTION as MOTION
 from gearcam.kinds.cam.motion import Motion as Motion
-from gearcam.kinds.cam.motion import phases_wanted as phases_wanted
+from gearcam.kinds.cam.motion import circumstances as circumstances
 from gearcam.kinds.cam.result import CamResult
 from gearcam.kinds.cam.tables import (
     BoundsSpec,

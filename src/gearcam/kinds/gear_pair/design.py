@@ -4,19 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field, fields
-from functools import partial
 from typing import TYPE_CHECKING, Any, Final, TypeGuard
 
 from gearcam.base.quantities import COUNT, param
-from gearcam.base.registry import DeferredMapping, classes_in, deferred, name_of
+from gearcam.base.registry import DeferredMapping, deferred, name_of
 from gearcam.base.rules import Breach, Rule, Values, at_most, only_with
-from gearcam.designs.design import Design, Wanted
-from gearcam.designs.examine import chosen, home_of
-from gearcam.designs.faults import Fault, quoted, show
-from gearcam.designs.kind import KINDS, Examined, Main
+from gearcam.designs.design import Design
+from gearcam.designs.faults import Fault, show
+from gearcam.designs.kind import Examined
+from gearcam.designs.nodes import Choice
 from gearcam.designs.outputs import FORMATS, OutputSpec, pose_param, studies_param
-from gearcam.designs.table import Table, table_of
-from gearcam.designs.validate import faults_of, parameters_of
+from gearcam.designs.table import table_of
 from gearcam.gears.spec import PairSpec, Rack, RingSpec, StepsSpec
 from gearcam.gears.subject import KIND as TEETH
 from gearcam.kinds.shared import AccuracySpec, GoalSpec
@@ -131,62 +129,17 @@ class GearPairDesign(Design):
         """Name of the law in the registry; empty if it is not a law."""
         return name_of(LAWS, self.law)
 
-    def _wanted(self) -> list[Wanted]:
-        return [] if self.law_type else [("law", self.law, tuple(classes_in(LAWS).values()))]
 
-
-def law_table(law_type: str) -> Table:
-    """Return the table of a law's parameters, without the key ``type``."""
-    return table_of("law", LAWS[law_type].parameters)
-
-
-def examine_law(document: Mapping[str, Any], outcome: Examined) -> None:
-    """Validate the law of a `document`; add its faults and the law to `outcome`."""
-    raw = document.get("law")
-    if not isinstance(raw, Mapping):
-        rule = f"type = {quoted(LAWS)}"
-        if "law" in document:
-            wanted = f"a table [law] with {rule}"
-            outcome.faults.append(Fault(("law",), f"{show(raw)} is not a table", raw, wanted))
-        else:
-            outcome.faults.append(Fault(("law",), "the table [law] is missing", allowed=rule))
-        return
-    law_type, right = chosen(("law",), raw, "type", "a law", LAWS, outcome)
-    if not law_type:
-        return
-    known = law_table(law_type)
-    rest = {key: value for key, value in raw.items() if key != "type"}
-    faults = list(faults_of(known, rest, home=partial(home_of, KINDS[NAME])))
-    if not right:  # what is missing is reported once the law is known
-        outcome.faults += [fault for fault in faults if fault.path[1] in rest]
-        return
-    law, problems = parameters_of(known, LAWS[law_type].parameters, rest, faults, ("law",))
-    outcome.faults += [*faults, *problems]
-    if law is not None and not faults and not problems:
-        outcome.parts["law"] = law
-
-
-def law_of(design: GearPairDesign) -> dict[str, Any]:
-    """Return the table ``[law]`` of a `design`."""
-    return {"type": design.law_type} | law_table(design.law_type).document(design.law)
-
-
-def law_words() -> dict[str, Collection[str]]:
-    """Return the laws, by the key that chooses them."""
-    return {"law.type": LAWS.keys()}
-
-
-def law_homes() -> Mapping[str, str]:
-    """Return hints by key that name the laws to which a key belongs."""
-    laws: dict[str, list[str]] = {}
-    for law_type in LAWS:
-        for key in law_table(law_type).entries:
-            laws.setdefault(key, []).append(f'"{law_type}"')
-    homes = {
-        key: f"this key belongs under [law] of type {' or '.join(types)}"
-        for key, types in laws.items()
-    }
-    return homes | {"type": "this key belongs under [law]"}
+LAW: Final = Choice(
+    title="law",
+    tag="type",
+    what="a law",
+    entries=LAWS,
+    doc="the ratio of the pair",
+    others="# Other laws that can replace the table above, with example values:",
+    listing="Laws of gear pairs: the ratio, in the table [law]; all but rack work with a ring too",
+)
+"""The table ``[law]``."""
 
 
 def planetary(document: Mapping[str, Any]) -> Fault | None:
@@ -282,18 +235,8 @@ KIND: Final = Kind(
     also=("gear", "gears", "wheels", "pair", "gearpair"),
     design=GearPairDesign,
     result=deferred(f"{_HERE}.result:GearPairResult"),
-    main=Main(
-        title="law",
-        examine=examine_law,
-        document=law_of,
-        table=lambda raw: law_table(raw["type"]),
-        homes=law_homes,
-        schema=deferred(f"{_HERE}.describe:schema"),
-        template=deferred(f"{_HERE}.describe:lines"),
-        laws=deferred(f"{_HERE}.describe:laws"),
-        words=law_words,
-    ),
-    required=("pair",),
+    nodes={"law": LAW},
+    required=("law", "pair"),
     rules=RULES,
     problems=problems,
     later=planetary,

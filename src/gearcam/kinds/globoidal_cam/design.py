@@ -1,20 +1,17 @@
-"""The kind ``globoidal-cam``: its design, its tables, and how ``[index]`` is read with its law."""
+"""The kind ``globoidal-cam``: its design, and its tables."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import partial
 from typing import TYPE_CHECKING, Any, Final
 
-from gearcam.base.registry import DeferredMapping, classes_in, deferred, name_of
-from gearcam.designs.design import Design, Wanted
-from gearcam.designs.examine import chosen, home_of
-from gearcam.designs.faults import MISSING, Fault, quoted, show
-from gearcam.designs.kind import KINDS, Examined, Main
+from gearcam.base.registry import DeferredMapping, deferred
+from gearcam.designs.design import Design
+from gearcam.designs.faults import Fault
+from gearcam.designs.nodes import Choice
 from gearcam.designs.outputs import files_param, studies_param
-from gearcam.designs.table import Table, table_of
-from gearcam.designs.validate import faults_of, parameters_of
+from gearcam.designs.table import table_of
 from gearcam.kinds.shared import AccuracySpec, GoalSpec, GriddedOutput
 from gearcam.laws.motion.base import MOTION_LAWS
 from gearcam.mechanics.drive import DriveSpec
@@ -25,94 +22,22 @@ from gearcam.spatial.spec import CylinderBlank
 if TYPE_CHECKING:
     from gearcam.kinds.globoidal_cam.result import GloboidalCamResult
 
-TITLE: Final = "index"
 NAME: Final = "globoidal-cam"
 """Name of the kind, as in a file."""
 
 
-def law_table(law: str) -> Table:
-    """Return the table of a law's parameters."""
-    return table_of(TITLE, MOTION_LAWS[law].parameters)
-
-
-def index_table(law: str) -> Table:
-    """Return the table for a law, without the key ``law``."""
-    own = table_of(TITLE, IndexSpec)
-    return Table(TITLE, None, {**own.entries, **law_table(law).entries})
-
-
-def examine_index(document: Mapping[str, Any], found: Examined) -> None:
-    """Examine the index of a document.
-
-    Parameters
-    ----------
-    document : mapping
-        As read from TOML.
-    found : Examined
-        Gets the faults, or ``index``.
-    """
-    raw = document.get(TITLE, MISSING)
-    if not isinstance(raw, Mapping):
-        lacks = raw is MISSING
-        message = f"the table [{TITLE}] is missing" if lacks else f"{show(raw)} is not a table"
-        rule = f"[{TITLE}] with angle_deg and law = {quoted(MOTION_LAWS)}"
-        found.faults.append(Fault((TITLE,), message, raw, rule))
-        return
-    law, right = chosen((TITLE,), raw, "law", "a motion law", MOTION_LAWS, found)
-    if not law:
-        return
-    known, own, shape = index_table(law), table_of(TITLE, IndexSpec), law_table(law)
-    rest = {key: value for key, value in raw.items() if key != "law"}
-    faults = list(
-        faults_of(known, rest, home=partial(home_of, KINDS[NAME]), listed=["law", *known.entries])
-    )
-    if not right:  # what is missing is reported once the law is known
-        found.faults += [fault for fault in faults if fault.path[1] in rest]
-        return
-    parameters, problems = parameters_of(
-        shape, MOTION_LAWS[law].parameters, _only(rest, shape), faults, (TITLE,)
-    )
-    make = partial(IndexSpec, law=parameters)
-    made, more = parameters_of(own, make, _only(rest, own), faults, (TITLE,))
-    found.faults += [*faults, *problems, *more]
-    if made is not None and not (faults or problems or more):
-        found.parts[TITLE] = made
-
-
-def _only(raw: Mapping[str, Any], table: Table) -> dict[str, Any]:
-    return {key: value for key, value in raw.items() if key in table.entries}
-
-
-def index_document(design: Any) -> dict[str, Any]:
-    """Return the table of a `design` as in a file."""
-    given, law = design.index, name_of(MOTION_LAWS, design.index.law)
-    own = table_of(TITLE, IndexSpec).document(given)
-    return {"law": law, **own, **law_table(law).document(given.law)}
-
-
-def known(raw: Mapping[str, Any]) -> Table:
-    """Return the table as it is in a file."""
-    return index_table(raw["law"])
-
-
-def words() -> dict[str, Collection[str]]:
-    """Return the laws, by the key that chooses them."""
-    return {f"{TITLE}.law": MOTION_LAWS.keys()}
-
-
-def homes() -> dict[str, str]:
-    """Return hints by key that say which laws have it."""
-    laws: dict[str, list[str]] = {}
-    for law in MOTION_LAWS:
-        for key in law_table(law).entries:
-            laws.setdefault(key, []).append(law)
-    found = {
-        key: f"this key belongs under [{TITLE}] with law = {quoted(names)}"
-        for key, names in laws.items()
-    }
-    own = ("law", *table_of(TITLE, IndexSpec).entries)
-    return found | dict.fromkeys(own, f"this key belongs under [{TITLE}]")
-
+INDEX: Final = Choice(
+    title="index",
+    tag="law",
+    what="a motion law",
+    entries=MOTION_LAWS,
+    own=table_of("index", IndexSpec),
+    into="law",
+    doc="the motion of the turret",
+    others="# Other laws of the index, with example values:",
+    listing="Globoidal indexing cams have the motion laws of cams, in the table [index]",
+)
+"""The table ``[index]``."""
 
 GLOBOIDAL_FORMATS: Final = ("svg", "stl", "3mf", "glb", "csv", "report")
 """What ``output.files`` may list."""
@@ -206,12 +131,6 @@ class GloboidalCamDesign(Design):
     accuracy: AccuracySpec = field(default_factory=AccuracySpec)
     goal: GoalSpec = field(default_factory=GoalSpec)
 
-    def _wanted(self) -> Iterator[Wanted]:
-        yield TITLE, self.index, (IndexSpec,)
-        if isinstance(self.index, IndexSpec):
-            laws = tuple(classes_in(MOTION_LAWS).values())
-            yield f"{TITLE}.law", self.index.law, laws
-
 
 _HERE: Final = "gearcam.kinds.globoidal_cam"
 
@@ -220,18 +139,8 @@ KIND: Final = Kind(
     doc="a globoidal indexing cam with its turret",
     design=GloboidalCamDesign,
     result=deferred(f"{_HERE}.result:GloboidalCamResult"),
-    main=Main(
-        title=TITLE,
-        examine=examine_index,
-        document=index_document,
-        table=known,
-        homes=homes,
-        schema=deferred(f"{_HERE}.describe:schema"),
-        template=deferred(f"{_HERE}.describe:lines"),
-        laws=deferred(f"{_HERE}.describe:laws"),
-        words=words,
-    ),
-    required=("turret", "cam"),
+    nodes={"index": INDEX},
+    required=("index", "turret", "cam"),
     later=not_made,
     formats=GLOBOIDAL_FORMATS,
     check_modules=("gearcam.spatial.globoidal_checks", "gearcam.laws.row_checks"),

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.quantities import COUNT, LENGTH, param
 from gearcam.base.registry import DeferredMapping, deferred
-from gearcam.designs.design import Design, Wanted
+from gearcam.designs.design import Design
 from gearcam.designs.outputs import files_param, studies_param
-from gearcam.kinds.cam.public import MOTION, phases_wanted
+from gearcam.kinds.cam.public import MOTION, circumstances
 from gearcam.kinds.shared import AccuracySpec, GoalSpec, GriddedOutput
 from gearcam.mechanics.drive import DriveSpec
 from gearcam.results.kind import Kind
@@ -130,9 +130,6 @@ class SpatialCamDesign(Design):
         if isinstance(self.motion, Sequence) and not isinstance(self.motion, str):
             object.__setattr__(self, "motion", tuple(self.motion))
 
-    def _wanted(self) -> Iterator[Wanted]:
-        return phases_wanted(self.motion)
-
 
 _HERE: Final = "gearcam.kinds.spatial_cam"
 
@@ -141,8 +138,9 @@ KIND: Final = Kind(
     doc="a cam in space with its roller",
     design=SpatialCamDesign,
     result=deferred(f"{_HERE}.result:SpatialCamResult"),
-    main=MOTION,
-    required=("follower", "cam"),
+    nodes={"motion": MOTION},
+    circumstances=circumstances,
+    required=("motion", "follower", "cam"),
     formats=SPATIAL_FORMATS,
     check_modules=("gearcam.spatial.checks", "gearcam.laws.row_checks"),
     check_groups=("cams in space", "rows of tables", "solids of cams in space"),

@@ -21,7 +21,6 @@ from gearcam.designs.kind import KINDS
 from gearcam.designs.template import template
 from gearcam.designs.validate import faults_of
 from gearcam.kinds.cam.design import CamDesign, CamOutputSpec
-from gearcam.kinds.cam.motion import phase_table, rise_table, turn_tables
 from gearcam.kinds.cam.studies import FORCES
 from gearcam.kinds.cam.tables import CamBlank
 from gearcam.kinds.gear_pair.studies import MESH
@@ -36,6 +35,7 @@ from gearcam.laws.phases_of_lift import (
 )
 from gearcam.parts.blank import WheelBlank
 from helpers_files import FLAT, ROLLER, SWINGING, changed, read
+from helpers_tables import phase_table, rise_table, turn_tables
 
 
 def phases_of(design: CamDesign) -> tuple[Phase, ...]:

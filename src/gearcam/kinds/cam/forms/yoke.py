@@ -14,6 +14,7 @@ from gearcam.base.quantities import fixed
 from gearcam.base.rules import excluded
 from gearcam.cams.disc import YokeCam, make_yoke
 from gearcam.cams.spec import FACE_RULES, GUIDE_RULES, CamSpec, FollowerSpec, form_param
+from gearcam.designs.nodes import written
 from gearcam.kinds.cam.forms.base import FORMS, Form
 from gearcam.kinds.cam.forms.disc import Plates
 from gearcam.laws.half_turns import agreeing, completed, miss
@@ -136,9 +137,9 @@ def _demand_opposite(program: Program, motion: Motion) -> None:
     adjustments: tuple[Adjustment, ...] = ()
     half = agreeing(motion) if isinstance(motion, Sequence) else ()
     if half:
-        from gearcam.kinds.cam.motion import motion_of
+        from gearcam.kinds.cam.motion import MOTION
 
-        phases: Any = motion_of(half, ("translating", "turning"))
+        phases: Any = written(MOTION, half, dict.fromkeys(("translating", "turning"), ""))
         fitting = ", ".join(f"{one['type']} {formatted(one['angle_deg'])} deg" for one in phases)
         rule += f", and these agree best with the first half: {fitting}"
         adjustments = (Adjustment(near={"motion": phases}),)
