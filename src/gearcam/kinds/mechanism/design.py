@@ -1,42 +1,129 @@
-"""The kind ``mechanism``: its design and its tables."""
+"""The kind ``mechanism``: its design and its tables.
+
+Directions and angles are counter-clockwise from the x axis of the machine, which points to the
+right; a point of a member is given in the member's frame, with the origin in its first joint and x
+towards its second one.
+"""
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
+from gearcam.base.display import ShortRepr
+from gearcam.base.quantities import ANGLE, COUNT, LENGTH, TEXT, fixed, param
+from gearcam.base.rules import distinct
 from gearcam.designs.design import Design
-from gearcam.kinds.mechanism.load_tables import (
-    MachineLoad,
-    MachineSpring,
-    MemberMass,
-    TorqueSpec,
-)
-from gearcam.kinds.mechanism.tables import (
+from gearcam.designs.outputs import OutputSpec, files_param, pose_param, studies_param
+from gearcam.kinds.mechanism.asked import DwellSpec, IntervalSpec, StretchSpec
+from gearcam.kinds.mechanism.drives import CompareSpec, MachineDrive
+from gearcam.kinds.mechanism.parts import (
     ChainSpec,
-    CompareSpec,
     CrankSpec,
-    DwellSpec,
     DyadSpec,
     GenevaSpec,
     GuideSpec,
     HoistSpec,
-    IntervalSpec,
     JointSpec,
-    MachineDrive,
-    MechanismOutput,
+    MachineLoad,
+    MachineSpring,
+    MemberMass,
     PointSpec,
     SlideSpec,
-    StretchSpec,
 )
 from gearcam.kinds.shared import AccuracySpec, GoalSpec
 from gearcam.mechanics.mass import GravitySpec
 
 if TYPE_CHECKING:
-    from gearcam.kinds.mechanism.build import MechanismResult
+    from gearcam.kinds.mechanism.result import MechanismResult
 
 NAME: Final = "mechanism"
 """As in a file."""
+
+FORMATS: Final = ("csv", "dxf", "svg", "report")
+"""What ``output.files`` may list."""
+
+STUDIES: Final = ("torque", "accuracy")
+"""Its studies, and the titles of the tables of their settings."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class TorqueSpec(ShortRepr):
+    """Places at which the study ``torque`` computes moments.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.TorqueSpec(steps=360)
+    TorqueSpec(steps=360)
+    """
+
+    steps: int = param(
+        COUNT,
+        default=720,
+        ge=12,
+        le=100000,
+        doc="number of even steps of the master's range; both sides of knots and of the ends of "
+        "loads are added",
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class MechanismOutput(OutputSpec):
+    """Which files of a mechanism are written, and what is in them (see `OutputSpec`).
+
+    Parameters
+    ----------
+    pose : float, rad
+        The master's angle in the picture.
+    studies : tuple of str
+        Its studies.
+    kerf, dxf_curves, dxf_version
+        Nothing is cut out.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.MechanismOutput(files=("csv", "svg"), outputs=("slide", "rod.angle"))
+    MechanismOutput(files=('csv', 'svg'), outputs=('slide', 'rod.angle'))
+    """
+
+    files: tuple[str, ...] = files_param(FORMATS)
+    studies: tuple[str, ...] = studies_param(STUDIES)
+    outputs: tuple[str, ...] | None = param(
+        TEXT,
+        default=None,
+        min_length=1,
+        example=["slide", "rod.angle"],
+        doc="joints that slide, points or one coordinate as P.x, and directions as member.angle; "
+        "if left out every slide and point, or without any the direction of the last member",
+    )
+    step: float = param(
+        ANGLE,
+        default=math.radians(1.0),
+        gt=0,
+        le=90,
+        doc="step of the master's angle in motion.csv",
+    )
+    pose: float = pose_param("q", "the master's angle in the picture")
+    chord_tolerance: float | None = param(
+        LENGTH,
+        default=None,
+        ge=1e-6,
+        example=0.01,
+        doc="largest distance of a drawn path from the true one; 0.01 mm if left out",
+    )
+
+    kerf: float = fixed(0.0)
+    dxf_curves: str = fixed("lines")
+    dxf_version: str | None = fixed(None)
+
+    rules = (
+        distinct("files", "format"),
+        distinct("studies", "study"),
+        distinct("outputs", "output"),
+    )
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)

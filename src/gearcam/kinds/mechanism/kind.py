@@ -6,10 +6,9 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.base.registry import DeferredMapping, deferred
-from gearcam.kinds.mechanism import load_names, names, outputs, unfit_drives
-from gearcam.kinds.mechanism.design import NAME, MechanismDesign
-from gearcam.kinds.mechanism.tables import FORMATS, STUDIES
-from gearcam.kinds.mechanism.torque_checks import TORQUE
+from gearcam.kinds.mechanism import drives, names, outputs
+from gearcam.kinds.mechanism.design import FORMATS, NAME, STUDIES, MechanismDesign
+from gearcam.kinds.mechanism.keys import TABLES
 from gearcam.results.kind import Kind
 
 if TYPE_CHECKING:
@@ -20,10 +19,10 @@ _HERE: Final = "gearcam.kinds.mechanism"
 
 
 def _problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
-    faults = [*unfit_drives.problems(found), *names.problems(document, found)]
+    faults = [*drives.problems(found), *names.problems(document, found)]
     faults += outputs.problems(document, found)
     yield from faults
-    yield from load_names.problems(found, faults)
+    yield from names.unfit(found, faults)
 
 
 KIND: Final = Kind(
@@ -31,12 +30,12 @@ KIND: Final = Kind(
     doc="a linkage that a pair, a cam or an even shaft drives",
     also=("linkage", "linkages", "four-bar", "machine"),
     design=MechanismDesign,
-    result=deferred(f"{_HERE}.build:MechanismResult"),
+    result=deferred(f"{_HERE}.result:MechanismResult"),
     required=("drive",),
     problems=_problems,
     formats=FORMATS,
-    check_modules=("gearcam.linkages.checks", f"{_HERE}.checks", f"{_HERE}.torque_checks"),
-    check_groups=("mechanisms", "tables of mechanisms", TORQUE),
+    check_modules=("gearcam.linkages.checks", f"{_HERE}.torque"),
+    check_groups=("mechanisms", TABLES, "torque of a mechanism"),
     study_tables={name: name for name in STUDIES},
     example={
         "drive": [{"name": "motor", "even": True, "speed_rpm": 60}],
@@ -61,12 +60,12 @@ KIND: Final = Kind(
             "maximize": "outputs.P_x.stroke_mm",
         }
     },
-    facts=deferred(f"{_HERE}.facts:facts"),
-    files=DeferredMapping(f"{_HERE}.files:FILES"),
-    charts=DeferredMapping(f"{_HERE}.charts:CHARTS"),
-    scene=deferred(f"{_HERE}.scene:scene"),
-    studies=DeferredMapping(f"{_HERE}.studies:STUDIES"),
-    ladders=DeferredMapping(f"{_HERE}.ladder:LADDERS"),
+    facts=deferred(f"{_HERE}.shown:facts"),
+    files=DeferredMapping(f"{_HERE}.shown:FILES"),
+    charts=DeferredMapping(f"{_HERE}.shown:CHARTS"),
+    scene=deferred(f"{_HERE}.drawn:scene"),
+    studies=DeferredMapping(f"{_HERE}.torque:STUDIES"),
+    ladders=DeferredMapping(f"{_HERE}.traces:LADDERS"),
     public=DeferredMapping(f"{_HERE}.public:PUBLIC"),
     cut=False,
 )

@@ -7,133 +7,75 @@ before: then nothing here is wrong.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import fields
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import fields, replace
 from functools import cache
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.designs.faults import Fault, dotted, show
 from gearcam.designs.kind import KINDS
 from gearcam.designs.slips import did_you_mean
-from gearcam.kinds.mechanism.design import NAME
-from gearcam.kinds.mechanism.name_keys import (
+from gearcam.kinds.mechanism.drives import is_read
+from gearcam.kinds.mechanism.keys import (
     ANY,
     GIVES,
-    GUIDE,
-    JOINT,
     MEMBER,
-    NEEDS,
     SHAFT,
     STANDING,
+    WAY,
     NameKey,
+    NameUse,
+    WithNames,
     name_keys,
+    placed,
 )
-from gearcam.linkages.dyads import DYADS
+from gearcam.kinds.mechanism.parts import PARTS
+from gearcam.kinds.mechanism.parts.action import Acted, MachineAction
+from gearcam.kinds.mechanism.parts.part import MachinePart
 from gearcam.linkages.elements import GROUND
 
 if TYPE_CHECKING:
     from gearcam.designs.kind import Examined
     from gearcam.designs.lines import Path
-    from gearcam.kinds.mechanism.tables import DyadSpec, MachineDrive
 
-Parts = Mapping[str, Any]
+Tables = Mapping[str, Any]
 """The tables of a mechanism by title."""
 
 
-class NameUse(NamedTuple):
-    """A name that a table gives or needs.
-
-    Attributes
-    ----------
-    name : str
-        The name.
-    sort : str
-        What it is, or must be: one of several, with "or" between.
-    path : tuple
-        Where it stands in the design.
-    """
-
-    name: str
-    sort: str
-    path: Path
-
-
-def parts_of(design: Any) -> dict[str, Any]:
+def tables_of(design: Any) -> dict[str, Any]:
     """Return the tables of a mechanism's `design` by title."""
     return {one.name: getattr(design, one.name) for one in fields(design)}
 
 
-def given(parts: Parts) -> Iterator[NameUse]:
-    """Yield the names that the tables of a mechanism give.
-
-    Parameters
-    ----------
-    parts : mapping of str to tables
-        By title.
-    """
-    for title, number, one in _several(parts):
-        yield from _shafts(one, number) if title == "drive" else _uses(one, GIVES, (title, number))
+def several(tables: Tables) -> Iterator[tuple[str, int, WithNames]]:
+    """Yield those of the `tables` that may be given several times, with title and number."""
+    for title, found in tables.items():
+        if isinstance(found, tuple):
+            yield from ((title, number, one) for number, one in enumerate(found))
 
 
-def needed(parts: Parts) -> Iterator[NameUse]:
-    """Yield the names that the tables of a mechanism need (see `given`)."""
-    for title, number, one in _several(parts):
-        yield from _uses(one, NEEDS, (title, number))
-        if title == "dyad":
-            yield from _ends(one, number)
+def parts_of(tables: Tables) -> Iterator[tuple[str, MachinePart]]:
+    """Yield the parts of a mechanism with their places, in the order of the file."""
+    for title, number, one in several(tables):
+        if isinstance(one, MachinePart):
+            yield f"{title}[{number}]", one
 
 
-def _several(parts: Parts) -> Iterator[tuple[str, int, Any]]:
-    """Yield the tables that may be given several times, with title and number."""
-    for title, tables in parts.items():
-        if isinstance(tables, tuple):
-            yield from ((title, number, one) for number, one in enumerate(tables))
+def told_parts(tables: Tables) -> Iterator[tuple[str, MachinePart]]:
+    """Yield the parts in the order in which a mechanism tells of them (see `parts_of`)."""
+    yield from parts_of({title: tables[title] for title in PARTS if title in tables})
 
 
-def _uses(table: Any, use: str, at: Path) -> Iterator[NameUse]:
-    """Yield the names that the keys of a table give or need."""
-    for field, key, sort in name_keys(type(table), use):
-        for place, name in _placed(getattr(table, field), (*at, key)):
-            if name is not None:
-                yield NameUse(name, sort, place)
+def given(tables: Tables) -> Iterator[NameUse]:
+    """Yield the names that the `tables` of a mechanism give."""
+    for title, number, one in several(tables):
+        yield from (use.at(title, number) for use in one.given())
 
 
-def _placed(value: Any, at: Path) -> list[tuple[Path, Any]]:
-    """Return a value, or those of a list, with their places."""
-    if isinstance(value, list | tuple):
-        return [((*at, k), one) for k, one in enumerate(value)]
-    return [(at, value)]
-
-
-def _shafts(drive: MachineDrive, number: int) -> Iterator[NameUse]:
-    path = ("drive", number, "name")
-    for word, sort in drive.shafts.items():
-        yield NameUse(f"{drive.name}.{word}", sort, path)
-        if drive.even or drive.slide is not None:
-            yield NameUse(drive.name, sort, path)
-
-
-def _ends(dyad: DyadSpec, number: int) -> Iterator[NameUse]:
-    guides = DYADS[dyad.formula].guides
-    for name, key, guided in zip((dyad.first, dyad.last), ("from", "to"), guides, strict=True):
-        yield NameUse(name, GUIDE if guided else JOINT, ("dyad", number, key))
-
-
-def moves(dyad: DyadSpec) -> str:
-    """Return the name of the place of a dyad's joint on a guide, if it slides on one that is given.
-
-    Parameters
-    ----------
-    dyad : DyadSpec
-        The table.
-
-    Returns
-    -------
-    str
-        Of the quantity; empty if it does not.
-    """
-    slides = [one for one in DYADS[dyad.formula].slides if one.startswith("guide")]
-    return f"{dyad.joint}.{slides[0]}" if len(slides) == 1 else ""
+def needed(tables: Tables) -> Iterator[NameUse]:
+    """Yield the names that the `tables` of a mechanism need (see `given`)."""
+    for title, number, one in several(tables):
+        yield from (use.at(title, number) for use in one.needed())
 
 
 def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
@@ -146,7 +88,7 @@ def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
     found : Examined
         The valid tables.
     """
-    parts = {title: tables for title, tables in found.parts.items() if is_read(title, found)}
+    tables = {title: one for title, one in found.parts.items() if is_read(title, found)}
     faulty = list(_of_faulty(document, found))
     compared = [
         NameUse(one.name, ANY, ("compare", number, "name"))
@@ -154,14 +96,14 @@ def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
     ]
     names: dict[str, NameUse] = {GROUND: NameUse(GROUND, MEMBER, ())}
     faults = [*_misspelt(found, compared), *_twice(compared, {})]
-    faults += _twice([*given(parts), *faulty], names)
+    faults += _twice([*given(tables), *faulty], names)
     whole = not _unread(found) and all(one.name for one in faulty)
-    for one in needed(parts):
+    for one in needed(tables):
         if one.name in names or (whole and _told_of(one.name, names)):
             faults += _unsuitable(one, names)
     yield from faults
     if not (faults or found.faults):
-        yield from _unreached(parts)
+        yield from _unreached(tables)
 
 
 def complete(found: Examined) -> bool:
@@ -172,22 +114,7 @@ def complete(found: Examined) -> bool:
     found : Examined
         The valid tables.
     """
-    return not _unread(found) and all(is_read(title, found) for title in _giving())
-
-
-def is_read(title: str, found: Examined) -> bool:
-    """Return whether the names in the tables of a title are known from the valid tables.
-
-    Parameters
-    ----------
-    title : str
-        The title.
-    found : Examined
-        The valid tables.
-    """
-    told = (one.path[0] for one in found.faults if one.path)
-    # what a drive moves depends on several keys, which may contradict each other
-    return title in found.parts and not (title == "drive" and title in told)
+    return not _unread(found) and all(is_read(title, found) for title in _giving(found.kind))
 
 
 def _unread(found: Examined) -> bool:
@@ -197,21 +124,21 @@ def _unread(found: Examined) -> bool:
 
 
 @cache
-def _giving() -> dict[str, tuple[NameKey, ...]]:
+def _giving(kind: str) -> dict[str, tuple[NameKey, ...]]:
     """Return the keys with names that tables give, by title."""
-    found = {title: name_keys(owner, GIVES) for title, owner in KINDS[NAME].tables.items()}
+    found = {title: name_keys(owner, GIVES) for title, owner in KINDS[kind].tables.items()}
     return {title: keys for title, keys in found.items() if keys}
 
 
 def _of_faulty(document: Mapping[str, Any], found: Examined) -> Iterator[NameUse]:
     """Yield the names that tables with faults give, "" for one that cannot be read."""
-    for title, keys in _giving().items():
+    for title, keys in _giving(found.kind).items():
         rows = () if is_read(title, found) else document.get(title)
         for number, row in enumerate(rows if isinstance(rows, list) else ()):
-            for _, key, sort in keys:
+            for _, key, sort, still in keys:
                 value = row.get(key) if isinstance(row, Mapping) else None
-                for place, name in _placed(value, (title, number, key)):
-                    yield NameUse(name if isinstance(name, str) else "", sort, place)
+                for place, name in placed(value, (title, number, key)):
+                    yield NameUse(name if isinstance(name, str) else "", sort, place, still)
 
 
 def _told_of(name: str, names: Mapping[str, NameUse]) -> bool:
@@ -225,8 +152,11 @@ _NAME: Final = re.compile(r"[A-Za-z_][\w-]*", re.ASCII)
 
 def _misspelt(found: Examined, compared: Sequence[NameUse]) -> Iterator[Fault]:
     """Yield names that cannot be parts of the names of columns and facts."""
-    tables = _several(found.parts)
-    uses = (use for title, k, one in tables for use in _uses(one, GIVES, (title, k)))
+    uses = [
+        use.at(title, number)
+        for title, number, table in several(found.parts)
+        for use in table.written(GIVES)
+    ]
     for one in (*uses, *compared):
         if not _NAME.fullmatch(one.name):
             allowed = "letters, digits, _ and -, the first a letter"
@@ -250,7 +180,7 @@ def _twice(uses: Sequence[NameUse], names: dict[str, NameUse]) -> Iterator[Fault
 def _suits(one: NameUse, sort: str) -> bool:
     """Return whether what is given has a sort that is needed."""
     if sort == STANDING:
-        return one.sort == SHAFT or one.path[:1] == ("joint",)
+        return one.sort == SHAFT or one.still
     return one.sort in sort.split(" or ")
 
 
@@ -269,18 +199,18 @@ def _unsuitable(one: NameUse, names: Mapping[str, NameUse]) -> Iterator[Fault]:
     yield Fault(one.path, f"{show(one.name)}{what}", one.name, allowed, hint)
 
 
-def waits(parts: Parts) -> dict[Path, tuple[str, ...]]:
+def waits(tables: Tables) -> dict[Path, tuple[str, ...]]:
     """Return the paths of tables that wait for each other, and the names they wait for.
 
     Parameters
     ----------
-    parts : mapping of str to tables
+    tables : mapping
         By title; all names exist.
     """
     known, left = {GROUND}, {}
-    for one in given(parts):
+    for one in given(tables):
         left.setdefault(one.path[:2], ([], []))[0].append(one.name)
-    for one in needed(parts):
+    for one in needed(tables):
         if one.path[:2] in left:  # loads, masses and springs give no names
             left[one.path[:2]][1].append(one.name)
     while ready := [path for path, (_, wanted) in left.items() if known.issuperset(wanted)]:
@@ -292,8 +222,63 @@ def waits(parts: Parts) -> dict[Path, tuple[str, ...]]:
     }
 
 
-def _unreached(parts: Parts) -> Iterator[Fault]:
+def _unreached(tables: Tables) -> Iterator[Fault]:
     """Yield parts that cannot be solved in any order: the mobility is not 1."""
-    for path, names in waits(parts).items():
+    for path, names in waits(tables).items():
         what = f"waits for {', '.join(names)}, which waits for it: no order solves both"
         yield Fault(path, what, allowed="a chain of dyads, each from what is known before it")
+
+
+# --- what loads act on ---------------------------------------------------------------------------
+
+
+def acted_on(tables: Tables) -> Acted:
+    """Return what loads may act on in the `tables` of a mechanism."""
+    uses = list(given(tables))
+    ways, unturned = {}, {}
+    for _, part in parts_of(tables):
+        ways |= part.ways
+        unturned |= part.unturned
+    return Acted(
+        sorts={GROUND: MEMBER} | {one.name: one.sort for one in uses} | dict.fromkeys(ways, WAY),
+        ways=ways,
+        driven=frozenset(one.name for one in uses if one.sort == WAY),
+        unturned=unturned,
+        still=frozenset({GROUND, *(one.name for one in uses if one.still)}),
+    )
+
+
+def unfit(found: Examined, told: Iterable[Fault]) -> Iterator[Fault]:
+    """Yield keys of loads, masses and springs that do not suit what they act on.
+
+    Parameters
+    ----------
+    found : Examined
+        The valid tables.
+    told : iterable of Fault
+        Of names: nothing more is said of their tables.
+    """
+    acted, every = acted_on(found.parts), list(acting(found.parts))
+    vain = [fault for path, one in every for fault in _in_vain(path, one, acted)]
+    yield from vain
+    wrong = {one.path[:2] for one in (*found.faults, *told, *vain)}
+    wrong |= {one.path[:2] for one in needed(found.parts) if one.name not in acted.sorts}
+    for path, one in every:
+        if path not in wrong:
+            for fault in one.unfit(acted):
+                yield replace(fault, path=(*path, *fault.path))
+
+
+def acting(tables: Tables) -> Iterator[tuple[tuple[str, int], MachineAction]]:
+    """Yield what acts on a mechanism, by its `tables`, with title and number."""
+    for title, number, one in several(tables):
+        if isinstance(one, MachineAction):
+            yield (title, number), one
+
+
+def _in_vain(path: tuple[str, int], one: MachineAction, acted: Acted) -> Iterator[Fault]:
+    """Yield that what acts on something that stands still does no work."""
+    name = getattr(one, one.moved) if one.moved else None
+    if name in acted.still:
+        what = f"{show(name)} stands still: what acts on it does no work"
+        yield Fault((*path, one.moved), what, name, "the name of what moves")

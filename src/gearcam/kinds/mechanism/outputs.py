@@ -2,65 +2,19 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from gearcam.designs.faults import Fault, show
 from gearcam.designs.slips import did_you_mean, nearest
 from gearcam.kinds.mechanism import names
-from gearcam.kinds.mechanism.name_keys import JOINT, SHAFT
-from gearcam.kinds.mechanism.names import moves
+from gearcam.kinds.mechanism.asked import Amount, Output, coordinates
+from gearcam.kinds.mechanism.keys import JOINT, SHAFT
 
 if TYPE_CHECKING:
     from gearcam.designs.kind import Examined
     from gearcam.designs.lines import Path
-
-_DEG: Final = math.degrees(1.0)
-
-AMOUNTS: Final = {"interval": "travel", "dwell": "within"}
-"""The amount that a table about one output gives."""
-
-RATES: Final = ("velocity", "acceleration", "jerk")
-"""Names of the derivatives, those in tables."""
-
-
-class Output(NamedTuple):
-    """A quantity whose motion is asked for.
-
-    Attributes
-    ----------
-    name : str
-        As in ``output.outputs``.
-    stem : str
-        Beginning of its columns.
-    quantity : str
-        Its name in the linkage (see `Linkage.track`).
-    angle : bool
-        Whether it is an angle; else a length.
-    """
-
-    name: str
-    stem: str
-    quantity: str
-    angle: bool
-
-    @property
-    def unit(self) -> tuple[float, str]:
-        """Factor to its unit in output, and that unit."""
-        return (_DEG, "deg") if self.angle else (1.0, "mm")
-
-    @property
-    def rate_unit(self) -> str:
-        """Unit of its velocity but for the time."""
-        return "rad" if self.angle else "mm"
-
-    def rate_keys(self, order: int) -> tuple[str, str]:
-        """Return the units of a derivative as in keys: by the master's angle, and by time."""
-        power = order if order > 1 else ""
-        return f"{self.rate_unit}_per_rad{power}", f"{self.rate_unit}_s{power}"
-
 
 Known = dict[str, tuple[Output, ...]]
 
@@ -70,22 +24,20 @@ class OutputNames:
 
     Parameters
     ----------
-    parts : mapping of str to tables
+    tables : mapping of str to tables
         By title.
     """
 
-    def __init__(self, parts: names.Parts) -> None:
-        self.parts = parts
-
-    def _tables(self, *titles: str) -> list[Any]:
-        return [one for title in titles for one in self.parts.get(title, ())]
+    def __init__(self, tables: names.Tables) -> None:
+        self.tables = tables
+        self.parts = [part for _, part in names.told_parts(tables)]
 
     @cached_property
     def known(self) -> Known:
         """All that may be asked for: a point has two coordinates, each of which has two names."""
         found = dict(self.whole)
         for joint in self.joints:
-            for one in _coordinates(joint):
+            for one in coordinates(joint):
                 alone = (one._replace(name=one.quantity),)
                 found.setdefault(one.quantity, alone)
                 found.setdefault(one.stem, alone)
@@ -95,22 +47,14 @@ class OutputNames:
     def whole(self) -> Known:
         """What may be asked for, but for single coordinates."""
         found: Known = {}
-        for dyad in self._tables("dyad"):
-            place = Output(dyad.joint, dyad.joint, moves(dyad), False)
-            found[dyad.joint] = (place,) if moves(dyad) else _coordinates(dyad.joint)
-        for slide in self._tables("slide"):
-            found[slide.name] = (Output(slide.name, slide.name, slide.on, False),)
-        for hoist in self._tables("hoist"):
-            found[hoist.name] = (Output(hoist.name, hoist.name, f"{hoist.name}.way", False),)
-        for wheel in self._tables("geneva"):
-            name = f"{wheel.name}.turn"
-            found[name] = (Output(name, wheel.name, name, True),)
+        for part in self.parts:
+            found |= part.outputs()
         for joint in self.joints:
-            found.setdefault(joint, _coordinates(joint))
-        for member in self._turning:
+            found.setdefault(joint, coordinates(joint))
+        for member in (name for part in self.parts for name in part.turning):
             name = f"{member}.angle"
             found[name] = (Output(name, member, name, True),)
-        for drive in self._tables("drive"):
+        for drive in self.tables.get("drive", ()):
             for word, sort in drive.shafts.items():
                 name = f"{drive.name}.{word}"
                 found[name] = (Output(name, name.replace(".", "_"), name, sort == SHAFT),)
@@ -119,31 +63,19 @@ class OutputNames:
     @cached_property
     def joints(self) -> list[str]:
         """The joints that move."""
-        uses = names.given(self.parts)
-        return [one.name for one in uses if one.sort == JOINT and one.path[0] != "joint"]
-
-    @property
-    def _turning(self) -> list[str]:
-        """The members that have a direction of their own."""
-        members = [name for one in self._tables("dyad") for name in one.members]
-        members += [one.name for one in self._tables("crank")]
-        return members + [one.lever for one in self._tables("chain")]
+        uses = names.given(self.tables)
+        return [one.name for one in uses if one.sort == JOINT and not one.still]
 
     @property
     def usual(self) -> list[str]:
         """What is given where a design does not say: slides and points, else a direction."""
-        dyads, chains = self._tables("dyad"), self._tables("chain")
-        found = [one.joint for one in dyads if moves(one)]
-        found += [one.name for one in self._tables("slide", "hoist", "point")]
-        found += [f"{one.name}.turn" for one in self._tables("geneva")]
-        last = [one.members[1] for one in dyads[-1:]] + [one.lever for one in chains]
-        last = last or [one.name for one in self._tables("crank")[-1:]]
-        drives = self._tables("drive")[:1]
-        return (
-            found
-            or [f"{name}.angle" for name in last]
-            or [f"{one.name}.{word}" for one in drives for word in [*one.shafts][-1:]]
-        )
+        last = {type(part): part for part in self.parts}
+        found = [one for part in self.parts for one in part.usual(last=part is last[type(part)])]
+        first = min((rank for rank, _ in found), default=0)
+        master = self.tables.get("drive", ())[:1]
+        return [name for rank, name in found if rank == first] or [
+            f"{one.name}.{word}" for one in master for word in [*one.shafts][-1:]
+        ]
 
     def asked(self, asked: Sequence[str] | None) -> tuple[Output, ...]:
         """Return what is asked for, each once.
@@ -185,17 +117,13 @@ class OutputNames:
                 "its place on its guide" if len(self.whole[owner]) == 1 else "its two coordinates"
             )
             return f"{owner} is a joint, which has no direction: write {owner}, for {gives}"
-        if name in (one.name for one in self._tables("joint")):
+        if any(name in part.standing for part in self.parts):
             return f"{name} stands still"
         owners = [one.rpartition(".")[0] for one in self.whole if "." in one]
         hint = "" if name in owners else did_you_mean(name, self.whole)
         meant = nearest(name, owners)
         below = [one for one in self.whole if one.startswith(f"{meant}.") and meant]
         return hint or (f"did you mean {' or '.join(below)}?" if below else "")
-
-
-def _coordinates(name: str) -> tuple[Output, ...]:
-    return tuple(Output(name, f"{name}_{part}", f"{name}.{part}", False) for part in "xy")
 
 
 def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
@@ -211,13 +139,11 @@ def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
     if not names.complete(found):
         return
     outputs = OutputNames(found.parts)
-    for title, word in AMOUNTS.items():
-        for number, one in enumerate(found.parts.get(title, ())):
-            path = (title, number)
-            if one.on in outputs.known:
-                yield from _of_amount(one, word, outputs.known[one.on], path, document)
-            else:
-                yield outputs.unknown((*path, "on"), one.on)
+    for title, number, one in names.several(found.parts):
+        if isinstance(one, Amount) and one.on not in outputs.known:
+            yield outputs.unknown((title, number, "on"), one.on)
+        elif isinstance(one, Amount):
+            yield from _of_amount(one, outputs.known[one.on], (title, number), document)
     if "output" not in found.parts:
         return
     asked = found.parts["output"].outputs
@@ -230,23 +156,23 @@ def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
 
 
 def _of_amount(
-    one: Any, word: str, known: Sequence[Output], path: tuple[str, int], document: Mapping[str, Any]
+    one: Amount, known: Sequence[Output], path: tuple[str, int], document: Mapping[str, Any]
 ) -> Iterator[Fault]:
     """Yield what is wrong in a table about one output, which gives an amount of it."""
     if len(known) > 1:
         what = f"{show(one.on)} is a point, with two coordinates"
         yield Fault((*path, "on"), what, one.on, " or ".join(one.quantity for one in known))
-    elif (getattr(one, word) is None) != known[0].angle:
+    elif (getattr(one, one.word) is None) != known[0].angle:
         wrong, right = ("mm", "deg") if known[0].angle else ("deg", "mm")
         what = f"{one.on} is {'an angle' if known[0].angle else 'a length'}"
-        key = f"{word}_{wrong}"
-        yield Fault((*path, key), what, document[path[0]][path[1]].get(key), f"{word}_{right}")
+        key = f"{one.word}_{wrong}"
+        yield Fault((*path, key), what, document[path[0]][path[1]].get(key), f"{one.word}_{right}")
 
 
 def _of_stretches(outputs: OutputNames, asked: Sequence[str] | None) -> Iterator[Fault]:
     """Yield stretches of what is no point that is asked for."""
     points = paths_asked(outputs.asked(asked))
-    for number, one in enumerate(outputs.parts.get("stretch", ())):
+    for number, one in enumerate(outputs.tables.get("stretch", ())):
         if one.on not in points:
             allowed = f"a point of the outputs: {', '.join(points)}"
             hint = "add it to output.outputs" if one.on in outputs.joints else ""

@@ -4,32 +4,36 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from functools import partial
 from itertools import product
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
+from gearcam.base.display import ShortRepr
 from gearcam.base.errors import DesignError, InfeasibleError, Problem
 from gearcam.base.facts import Fact, extent
-from gearcam.base.findings import limit_of, run_checks
+from gearcam.base.findings import Remark, check, limit_of, run_checks
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import TORQUE as NEWTON_METRES
-from gearcam.kinds.mechanism.loaded import work_of
-from gearcam.kinds.mechanism.torque_checks import TORQUE, DriverEffort, Pull
-from gearcam.kinds.mechanism.wheel_masses import BODY
+from gearcam.base.quantities import Param
+from gearcam.kinds.mechanism.loaded import BODY, work_of
+from gearcam.kinds.mechanism.names import tables_of
+from gearcam.kinds.mechanism.parts import ACTIONS
+from gearcam.kinds.shared import accuracy_study
 from gearcam.linkages.efforts import GRAVITY, PARTS, SPRINGS, InertiaForce
 from gearcam.linkages.measures import Peak
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.pictures.charts import Chart, Limit, Line
+from gearcam.results.kind import Study
 from gearcam.results.result import StudyResult
 
 if TYPE_CHECKING:
-    from gearcam.kinds.mechanism.build import MechanismResult
-    from gearcam.kinds.mechanism.drives import PlacedDrive
+    from gearcam.kinds.mechanism.placed import PlacedDrive
+    from gearcam.kinds.mechanism.result import MechanismResult
     from gearcam.linkages.work import VirtualWork
     from gearcam.numeric.arrays import Array
-    from gearcam.results.kind import Study
     from gearcam.results.result import Progress
 
 Tree = dict[str, Any]
@@ -54,6 +58,12 @@ _BESIDE: Final = np.linspace(-1.0, 1.0, 33)
 _ROUNDS: Final = 4
 """How often, each time more closely."""
 
+CHECKS: Final = "torque of a mechanism"
+"""Name of the subject of its checks."""
+
+_LESS: Final = 0.99
+"""Share of the driver's moment that is less than it."""
+
 ONE_WALL: Final = "disc"
 """Form of the cams with one wall."""
 
@@ -61,7 +71,7 @@ EVEN: Final = "even_shaft"
 """What a mechanism behind a pair is compared with if the design does not say."""
 
 
-def demand(design: Any) -> None:
+def _demand(design: Any) -> None:
     """Refuse a design on which nothing acts, or in which a speed is missing.
 
     Raises
@@ -69,23 +79,19 @@ def demand(design: Any) -> None:
     DesignError
         If it is so.
     """
-    if not (design.load or design.spring or design.mass):
+    tables = tables_of(design)
+    every = [one for title in ACTIONS for one in tables[title]]
+    if not every:
+        *words, last = (f"[[{title}]]" for title in tables if title in ACTIONS)
         problem = Problem(
             "nothing acts on the mechanism", file=design.source, key="load",
-            allowed="a table [[load]], [[mass]] or [[spring]]",
+            allowed=f"a table {', '.join(words)} or {last}",
         )  # fmt: skip
         raise DesignError([problem])
-    if design.drive[0].speed is not None:
-        return
-    what = ""
-    if design.mass and not design.gravity.given:
-        what = "is missing: a mass acts by its inertia, which depends on the speed"
-    if any(one.damped for one in design.spring):
-        what = "is missing: a damper depends on the speed"
-    if any(one.of_velocity for one in design.load):
-        what = "is missing: a load depends on the velocity"
-    if what:
-        near = "a speed above 0"
+    reasons = (one.needs_speed(design.gravity) for one in every)
+    why = next((one for one in reasons if one), "")
+    if why and design.drive[0].speed is None:
+        what, near = f"is missing: {why}", "a speed above 0"
         problem = Problem(what, file=design.source, key="drive[0].speed_rpm", allowed=near)
         raise DesignError([problem])
 
@@ -115,15 +121,110 @@ class ShaftLoad(NamedTuple):
         return self._replace(column=f"{drive}_{self.column}", meaning=f"{drive}: {self.meaning}")
 
 
-def study_torque(result: MechanismResult, study: Study, progress: Progress | None) -> StudyResult:
+class Pull(NamedTuple):
+    """The most with which a mechanism pulls a follower off a cam that does not hold it.
+
+    Attributes
+    ----------
+    cam : str
+        Where the cam is in the design.
+    size : float
+        Of the pull, above 0.
+    unit : str
+        N, or N m of an oscillating follower.
+    place : str
+        Where it is, in words.
+    """
+
+    cam: str
+    size: float
+    unit: str
+    place: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class DriverEffort(ShortRepr):
+    """The largest moment that the driver of a mechanism exerts, and those behind other drives.
+
+    Parameters
+    ----------
+    peak : float, N m
+        The largest size of the moment.
+    place : str
+        Where it is, in words.
+    others : mapping of str to float, N m
+        The same behind other drives, by their names.
+    gain : str
+        How a pair multiplies the moment there, as a sentence; empty without one.
+    pulls : tuple of Pull
+        Of followers that the mechanism pulls off their cams.
+    """
+
+    peak: float
+    place: str
+    others: Mapping[str, float]
+    gain: str = ""
+    pulls: tuple[Pull, ...] = ()
+
+
+_LIMIT: Final = (
+    "drive_torque",
+    Param(NEWTON_METRES, ge=0, le=1e9, doc="largest torque of the mechanism's drive; 0: no limit"),
+    0.0,
+)
+
+
+@check(
+    "drive-torque",
+    kind=CHECKS,
+    limit=_LIMIT,
+    relation="at most",
+    severity=("note", "warning"),
+    unit="N m",
+)
+def drive_torque(effort: DriverEffort, limit: float) -> Iterator[Remark]:
+    """Warn if the mechanism needs more torque than its drive has; tell if another drive needs less.
+
+    Looks at: the largest moment of the driver, and of each drive that is compared; behind a pair
+    that of an even shaft, if none is.
+    """
+    if limit and effort.peak > limit / NEWTON_METRES.factor:
+        what = "The mechanism needs more torque than its drive has."
+        yield Remark(what, effort.place, effort.peak, "warning")
+    for name, other in effort.others.items():
+        if other < _LESS * effort.peak:
+            times = formatted(effort.peak / other, 3) if other > 0.0 else "many"
+            message = (
+                f"The driver exerts up to {formatted(effort.peak, 5)} N m, {times} times the "
+                f"{formatted(other, 5)} N m of the same mechanism behind {name!r}."
+                f"{effort.gain}"
+            )
+            yield Remark(message, effort.place, effort.peak, limit=math.inf)
+
+
+@check("lift-off", kind=CHECKS, severity="note")
+def lift_off(effort: DriverEffort, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Tell where a mechanism pulls a follower off its cam, which must be held there.
+
+    Looks at: what each follower exerts in its lift, of cams with one wall, without the springs and
+    loads of the cam's own design.
+    """
+    for pull in effort.pulls:
+        message = (
+            f"The machine pulls the follower off its cam, with up to {formatted(pull.size, 5)} "
+            f"{pull.unit}. A spring in the cam's own design must hold it, or a groove or conjugate "
+            "cams."
+        )
+        yield Remark(message, f"{pull.cam}, {pull.place}", pull.size, unit=pull.unit)
+
+
+def study_torque(result: MechanismResult, progress: Progress | None) -> StudyResult:
     """Return the study of the driver's moment (see `gearcam.linkages.work`).
 
     Parameters
     ----------
     result : MechanismResult
         The mechanism.
-    study : Study
-        The entry of the study.
     progress : callable, optional
         Called with what is computed, the number done and their total.
 
@@ -137,7 +238,7 @@ def study_torque(result: MechanismResult, study: Study, progress: Progress | Non
     InfeasibleError
         If the mechanism does not close, or a load is not finite.
     """
-    demand(result.design)
+    _demand(result.design)
     others = _compared(result)
     if progress is not None:
         progress("torque", 0, 1 + len(others))
@@ -153,13 +254,13 @@ def study_torque(result: MechanismResult, study: Study, progress: Progress | Non
         columns |= {one.column: one.values for one in shafts}
         ends = _ends(result, work, shafts, q)
         effort = _effort(result, work, beside, tuple(_pulls(result, shafts, ends)))
-        found = run_checks(TORQUE, effort, result.design.limits)
+        found = run_checks(CHECKS, effort, result.design.limits)
     speed = result.speed
     if speed is not None:
         columns["power_w"] = columns["torque_nm"] * speed
     return StudyResult(
         result=result,
-        study=study,
+        study=TORQUE,
         file="torque.csv",
         table=columns,
         group=_facts(result, work, beside, shafts, ends),
@@ -435,7 +536,7 @@ def _charts(
     for name, work in beside.items():
         q = _places(result, work)
         lines.append(Line(label=name, x=_DEG * q, y=_NM * np.asarray(work.moment(q).c[0])))
-    most = limit_of(TORQUE, "drive-torque", design.limits) / NEWTON_METRES.factor
+    most = limit_of(CHECKS, "drive-torque", design.limits) / NEWTON_METRES.factor
     limits = [Limit(label="limit", value=most)] if most else []
     charts = {"torque": chart("Moment of the driver", lines, *limits)}
     own = [name for name in PARTS if f"{name}_nm" in columns]
@@ -443,3 +544,18 @@ def _charts(
     if len(parts) > 1:
         charts["torque_parts"] = chart("What the driver's moment is made of", parts)
     return charts
+
+
+TORQUE: Final = Study(
+    name="torque",
+    key="torque",
+    doc="Compute the driver's moment under loads, masses and springs; write DIR/NAME/torque.csv.",
+    done="computed",
+    table="torque",
+    compute=study_torque,
+    demand=_demand,
+    repeats=("loads-unused",),  # it uses them
+)
+
+STUDIES: Final[dict[str, Study]] = {one.name: one for one in (TORQUE, accuracy_study())}
+"""The studies by name."""

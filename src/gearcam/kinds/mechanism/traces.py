@@ -1,4 +1,4 @@
-"""The paths of points as chains of chords within a tolerance.
+"""The paths of points as chains of chords within a tolerance, and at rising resolution.
 
 The distance of a path from its chord is measured at three angles inside the chord. It falls with
 the square of the step: this gives the number of chords that one is divided into.
@@ -7,12 +7,26 @@ the square of the step: this gives the number of chords that one is divided into
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from gearcam.base.errors import InfeasibleError
 from gearcam.numeric.arrays import Array, Plane, divided
+from gearcam.results.ladders import (
+    CHORD_ORDER,
+    ROUNDING,
+    SHARES,
+    Ladder,
+    Ladders,
+    tolerances_around,
+)
+
+if TYPE_CHECKING:
+    from gearcam.kinds.mechanism.result import MechanismResult
+
+CHORDS: Final = 0.01
+"""Chord tolerance of paths if the design has none, mm."""
 
 _BETWEEN: Final = 12
 """Chords between knots at first."""
@@ -89,3 +103,42 @@ def distances(points: Plane, start: Plane, end: Plane) -> Array:
     square = np.abs(chord) ** 2
     share = ((points - start) * chord.conj()).real / np.where(square > 0.0, square, 1.0)
     return np.abs(points - start - np.clip(share, 0.0, 1.0) * chord)
+
+
+def _path(result: MechanismResult) -> Ladder:
+    """Return the distance of the path of the first point from its chords, over their tolerance."""
+    path = next(iter(result.paths.values()), None)
+    if path is None:
+        raise InfeasibleError(
+            "no point is asked for: there is no path",
+            where="output.outputs",
+            nearest="ask for a joint or a point that draws one",
+        )
+
+    def place(q: Array) -> Plane:
+        return np.asarray(path.track(q, 0).c[0], dtype=np.complex128)
+
+    def make(tolerance: float) -> tuple[Array, Plane]:
+        return path_within(place, path.knots, tolerance)
+
+    def measure(made: tuple[Array, Plane]) -> tuple[float, int]:
+        q, points = made
+        inner = place((q[:-1] + np.outer(SHARES, np.diff(q))).ravel()).reshape(len(SHARES), -1)
+        return float(distances(inner, points[:-1], points[1:]).max()), len(q)
+
+    own = result.design.output.chord_tolerance or CHORDS
+    return Ladder(
+        refined="chord tolerance, mm",
+        measured="chords of the path",
+        unit="mm",
+        levels=tolerances_around(own),
+        own=own,
+        order=CHORD_ORDER,
+        rounding=ROUNDING * path.length.value,
+        make=make,
+        measure=measure,
+    )
+
+
+LADDERS: Final[Ladders] = {"path": _path}
+"""What `gearcam accuracy` can measure."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import replace
@@ -16,21 +15,15 @@ from numpy.typing import ArrayLike
 from gearcam.base.errors import ABOVE, DesignError, InfeasibleError, Problem, beyond_limit
 from gearcam.base.findings import Finding, in_order, run_checks
 from gearcam.base.numerals import formatted, in_range
-from gearcam.kinds.mechanism.asked import fits, last_bits
-from gearcam.kinds.mechanism.checks import TABLES, machine_to_check
+from gearcam.kinds.mechanism.asked import DEG, RATES, Amount, Output
 from gearcam.kinds.mechanism.design import MechanismDesign
-from gearcam.kinds.mechanism.drives import PlacedDrive, placed
-from gearcam.kinds.mechanism.make import make_linkage
-from gearcam.kinds.mechanism.names import parts_of
-from gearcam.kinds.mechanism.outputs import (
-    AMOUNTS,
-    RATES,
-    Output,
-    OutputNames,
-    paths_asked,
-)
-from gearcam.linkages.checks import KIND
-from gearcam.linkages.dwells import DriverRange, longest_dwell
+from gearcam.kinds.mechanism.keys import TABLES
+from gearcam.kinds.mechanism.linkage import make_linkage
+from gearcam.kinds.mechanism.names import tables_of
+from gearcam.kinds.mechanism.outputs import OutputNames, paths_asked
+from gearcam.kinds.mechanism.placed import PlacedDrive, placed
+from gearcam.linkages.checks import KIND, CheckedMachine
+from gearcam.linkages.dwells import DriverRange
 from gearcam.linkages.linkage import Linkage
 from gearcam.linkages.measures import HIGHEST, TrackMeasures
 from gearcam.linkages.paths import PointPath
@@ -63,8 +56,6 @@ _DRIVERS: Final = {
     "even": ("theta", "crank angle theta"),
 }
 """Symbol and name of the master's angle, by the key of the drive."""
-
-_DEG: Final = math.degrees(1.0)
 
 
 class MechanismResult(Result):
@@ -119,7 +110,7 @@ class MechanismResult(Result):
         """The linkage over a cycle of the master."""
         drives = self.drives
         with self.stage("linkage"):
-            return make_linkage(self.design, drives)
+            return make_linkage(tables_of(self.design), drives)
 
     @property
     def driver(self) -> tuple[str, str]:
@@ -134,12 +125,12 @@ class MechanismResult(Result):
     @cached_property
     def output_names(self) -> OutputNames:
         """What may be asked for, by name."""
-        return OutputNames(parts_of(self.design))
+        return OutputNames(tables_of(self.design))
 
     def degrees(self, q: float) -> str:
         """Return an angle of the master, rad, in degrees as text: a turn's end is its begin."""
-        low, high = (_DEG * end for end in self.linkage.span)
-        place = _DEG * q
+        low, high = (DEG * end for end in self.linkage.span)
+        place = DEG * q
         return in_range(place, low, high) if self.linkage.closed else formatted(place)
 
     @property
@@ -149,7 +140,7 @@ class MechanismResult(Result):
         least = (high - low) / _MOST_STEPS
         if step < least:
             what = f"the table would have more than {_MOST_STEPS:.0f} rows"
-            value, limit = _DEG * step, _DEG * least
+            value, limit = DEG * step, DEG * least
             raise beyond_limit(
                 what, "output.step_deg", value, limit, near=ABOVE * limit, unit="deg"
             )
@@ -207,7 +198,7 @@ class MechanismResult(Result):
 
     def _motion_of(self, outputs: Iterable[Output], q: ArrayLike | None) -> Columns:
         where = self.angles if q is None else self._within_range(q)
-        columns = {f"{self.driver[0]}_deg": _DEG * where}
+        columns = {f"{self.driver[0]}_deg": DEG * where}
         for one in outputs:
             columns |= self._columns(one, where)
         return Columns(columns)
@@ -247,7 +238,7 @@ class MechanismResult(Result):
     @property
     def charts(self) -> tuple[str, ...]:
         """Names that `chart` accepts, first those of what is asked for first."""
-        from gearcam.kinds.mechanism.charts import TURNING
+        from gearcam.kinds.mechanism.shown import TURNING
 
         first = TURNING if self.outputs[0].angle else ()
         return tuple(sorted(super().charts, key=lambda name: name not in first))
@@ -264,7 +255,16 @@ class MechanismResult(Result):
                 with within(key):
                     below += findings_of(key, drive.result.checked, own)
         _ = self.compared
-        machine = machine_to_check(self)
+        even = self.without_pair if self.linkage.closed else None
+        # of one that is not compared only the accelerations are looked at
+        beside = {} if even is None else even.measures if self.design.compare else even.measured(2)
+        machine = CheckedMachine(
+            self.linkage,
+            self.measures,
+            {one.stem: one.rate_unit for one in self.outputs},
+            self.transmissions,
+            beside,
+        )
         with self.stage("checks"):
             subjects = {KIND: machine, TABLES: self}
             own = [run_checks(kind, one, self.design.limits) for kind, one in subjects.items()]
@@ -332,26 +332,29 @@ class MechanismResult(Result):
         InfeasibleError
             If an output does not travel as far.
         """
-        return tuple(last_bits(self))
+        return tuple(
+            one.last_bit(output, self.measures_of(output), f"interval[{number}]")
+            for number, one in enumerate(self.design.interval)
+            for output in [self.output_of(one)]
+        )
 
     @cached_property
     def interval_velocities(self) -> tuple[float, ...]:
         """Velocities at the beginning of the `intervals`, mm/rad or rad/rad."""
         return tuple(
-            float(self.track(output)(np.array([found.begin]), 1).derivatives()[1][0])
-            for number, found in enumerate(self.intervals)
-            for output in [self.asked("interval", number)[0]]
+            float(self.track(self.output_of(one))(np.array([found.begin]), 1).derivatives()[1][0])
+            for one, found in zip(self.design.interval, self.intervals, strict=True)
         )
 
     def comparison(self) -> Columns:
         """Return what the drives to compare make of each output (see `comparison`)."""
-        from gearcam.kinds.mechanism.comparison import comparison
+        from gearcam.kinds.mechanism.shown import comparison
 
         return Columns(comparison(self))
 
     def interval_table(self) -> Columns:
         """Return the intervals that the design asks for, behind each drive (see `comparison`)."""
-        from gearcam.kinds.mechanism.comparison import interval_table
+        from gearcam.kinds.mechanism.shown import interval_table
 
         return interval_table(self)
 
@@ -366,7 +369,13 @@ class MechanismResult(Result):
         InfeasibleError
             If it is straight and a circle is asked for.
         """
-        return tuple(fits(self))
+        found: list[LineFit | CircleFit] = []
+        for number, one in enumerate(self.design.stretch):
+            where = f"stretch[{number}]"
+            if not self.linkage.closed:
+                one.demand_within(self.linkage.span, self.design.source, where)
+            found.append(one.fit(self.paths[one.on], where))
+        return tuple(found)
 
     def _within_range(self, q: ArrayLike) -> Array:
         """Return angles of the master; DesignError for one beyond an open range."""
@@ -381,29 +390,17 @@ class MechanismResult(Result):
     @cached_property
     def dwells(self) -> tuple[DriverRange, ...]:
         """The longest ranges in which outputs stay within what the design asks for."""
-        asked = [self.asked("dwell", number) for number in range(len(self.design.dwell))]
-        return tuple(longest_dwell(self.measures_of(one), amount) for one, amount in asked)
+        return tuple(
+            one.longest(output, self.measures_of(output))
+            for one in self.design.dwell
+            for output in [self.output_of(one)]
+        )
 
     def measures_of(self, one: Output) -> TrackMeasures:
         """Return the extremes and the like of any output."""
         return self.measures.get(one.stem) or self._measures(one, HIGHEST)
 
-    def asked(self, title: str, number: int) -> tuple[Output, float]:
-        """Return the one output that a table is about, and the amount that it gives.
-
-        Parameters
-        ----------
-        title : str
-            ``interval`` or ``dwell``.
-        number : int
-            Of the table, from 0.
-
-        Returns
-        -------
-        Output, float
-            The amount in mm or rad.
-        """
-        table: Any = getattr(self.design, title)[number]
-        (found,) = self.output_names.known[table.on]
-        word = AMOUNTS[title]
-        return found, getattr(table, f"{word}_angle" if found.angle else word)
+    def output_of(self, asked: Amount) -> Output:
+        """Return the one output that a table is about, `asked` for."""
+        (found,) = self.output_names.known[asked.on]
+        return found

@@ -1,0 +1,259 @@
+"""What is asked of every part of a mechanism, and what a part may ask of the others.
+
+A part is a table of the file, such as ``[[crank]]``, and one class: its keys, what it adds to the
+linkage, what may be asked of it, how it is drawn, and how its refusals read.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+
+from gearcam.base.errors import InfeasibleError
+from gearcam.base.numerals import formatted
+from gearcam.kinds.mechanism.asked import Output
+from gearcam.kinds.mechanism.keys import WithNames
+from gearcam.linkages.coordinates import PointWay
+
+if TYPE_CHECKING:
+    from gearcam.kinds.mechanism.parts.picture import Picture
+    from gearcam.kinds.mechanism.placed import Moved, PlacedDrive
+    from gearcam.linkages.closing import NotClosingError
+    from gearcam.linkages.elements import Element
+    from gearcam.linkages.linkage import Linkage
+    from gearcam.linkages.measures import Peak
+
+Tree = dict[str, Any]
+
+
+class Mover(NamedTuple):
+    """A shaft or a slide of a drive: the `drive`, and the `word` behind its name."""
+
+    drive: PlacedDrive
+    word: str
+
+    @property
+    def moved(self) -> Moved:
+        """What is moved."""
+        return self.drive.moved[self.word]
+
+    @property
+    def drawn(self) -> bool:
+        """Whether it is a wheel, a rack, a cam or its follower, which the drive draws."""
+        return self.drive.result is not None
+
+    @property
+    def place(self) -> complex:
+        """Where the shaft stands, or the zero of the slide's places, in the machine, mm."""
+        return self.drive.machine(self.moved.at)
+
+
+class Setting:
+    """What a part finds in its machine: what drives move, and the joints that stand still.
+
+    Parameters
+    ----------
+    parts : iterable of MachinePart
+        All parts of the mechanism.
+    drives : sequence of PlacedDrive
+        Its drives.
+    """
+
+    def __init__(self, parts: Iterable[MachinePart], drives: Sequence[PlacedDrive]) -> None:
+        self.movers = {
+            name: Mover(drive, word)
+            for drive in drives
+            for word in drive.moved
+            for name in drive.spec.names_of(word)
+        }
+        self.standing: dict[str, complex] = {}
+        for one in parts:
+            self.standing |= one.standing
+
+    def place(self, name: str) -> complex:
+        """Return where a joint that stands still, or a shaft of a drive, is, mm."""
+        return self.standing[name] if name in self.standing else self.movers[name].place
+
+
+class MachinePart(WithNames):
+    """A part of a mechanism: the table of its file is the part.
+
+    Its fields are its keys; those made by `gearcam.kinds.mechanism.keys.named` say what it gives
+    and needs. All parts are asked by these methods, each of which has an answer for parts that it
+    does not concern; `where` is the place of the table in the design, such as ``crank[0]``.
+    """
+
+    groups: ClassVar[tuple[str, ...]] = ()
+    """Groups of facts about the machine to which such parts add (see `facts`)."""
+
+    # --- the linkage -----------------------------------------------------------------------------
+
+    def elements(self, setting: Setting, where: str) -> Iterator[Element]:
+        """Yield what it adds to the linkage.
+
+        Parameters
+        ----------
+        setting : Setting
+            What it stands on.
+        where : str
+            Place of its table.
+
+        Raises
+        ------
+        InfeasibleError
+            If it does not suit what it stands on.
+        """
+        raise NotImplementedError
+
+    @property
+    def standing(self) -> Mapping[str, complex]:
+        """Joints of it that stand still, by name, and where, mm."""
+        return {}
+
+    @property
+    def period(self) -> int:
+        """Turns of its shaft after which it is where it was, if others move with it."""
+        return 1
+
+    def demand(self, linkage: Linkage, where: str) -> None:
+        """Refuse what it cannot do.
+
+        Parameters
+        ----------
+        linkage : Linkage
+            The whole, whose positions are not known yet.
+        where : str
+            Place of its table.
+
+        Raises
+        ------
+        InfeasibleError
+            If it cannot.
+        """
+
+    def chosen(self, element: Element, linkage: Linkage, q: float) -> Element:
+        """Return one of its elements in the position that is asked for.
+
+        Parameters
+        ----------
+        element : Element
+            As `elements` made it.
+        linkage : Linkage
+            The whole.
+        q : float, rad
+            The master's angle there.
+        """
+        return element
+
+    def refusal(self, error: NotClosingError, linkage: Linkage, where: str) -> InfeasibleError:
+        """Return why one of its elements does not close over the master's whole range.
+
+        Parameters
+        ----------
+        error : NotClosingError
+            What the linkage tells.
+        linkage : Linkage
+            The whole.
+        where : str
+            Place of its table.
+        """
+        return InfeasibleError(not_closing(error), where=where)
+
+    # --- what may be asked -----------------------------------------------------------------------
+
+    def outputs(self) -> Mapping[str, tuple[Output, ...]]:
+        """Return the quantities that its names stand for, but for joints and directions."""
+        return {}
+
+    @property
+    def turning(self) -> tuple[str, ...]:
+        """Names of members that have a direction of their own."""
+        return ()
+
+    def usual(self, *, last: bool) -> Iterator[tuple[int, str]]:
+        """Yield what is given where a design does not say, with a rank: only the first is given.
+
+        Parameters
+        ----------
+        last : bool
+            Whether it is the last part of its sort.
+
+        Yields
+        ------
+        int, str
+            0: a slide or a point; 1: a direction; 2: another direction. The name of the output.
+        """
+        return iter(())
+
+    def facts(self, result: Any, number: int) -> Iterator[tuple[str, str, Tree]]:
+        """Yield facts about a machine: the group, of `groups`, a name in it, and the facts.
+
+        Parameters
+        ----------
+        result : MechanismResult
+            The mechanism.
+        number : int
+            Of the table, from 0.
+        """
+        return iter(())
+
+    @property
+    def called(self) -> str:
+        """What it is in the headline; empty if that does not name it."""
+        return ""
+
+    # --- what acts on it -------------------------------------------------------------------------
+
+    @property
+    def ways(self) -> Mapping[str, PointWay]:
+        """Names that have a way along a guide, as loads see them."""
+        return {}
+
+    @property
+    def unturned(self) -> Mapping[str, str]:
+        """Members that keep their direction on a guide, each with a joint that has its way."""
+        return {}
+
+    # --- pictures --------------------------------------------------------------------------------
+
+    @property
+    def sizes(self) -> tuple[float, ...]:
+        """Lengths of links, above 0, mm, which the widths of links suit."""
+        return ()
+
+    @property
+    def traced(self) -> tuple[str, ...]:
+        """Points whose paths are drawn, whether they are asked for or not."""
+        return ()
+
+    def on_guide(self, guide: str) -> Iterator[str]:
+        """Yield the quantities that are places of it on a guide, by the guide's name."""
+        return iter(())
+
+    def draw(self, picture: Picture) -> None:
+        """Draw what moves."""
+
+    def stand(self, picture: Picture) -> None:
+        """Draw what stands still: its guides and pivots."""
+
+
+def not_closing(error: NotClosingError) -> str:
+    """Return what does not close, and where it does, in words."""
+    found = error.closing
+    ranges = [[in_degrees(end) for end in one] for one in found.ranges]
+    where = "it does from " + ", and from ".join(f"{a} to {b} deg" for a, b in ranges)
+    if not ranges:
+        where = "at no angle of the master"
+    return f"{found.element.gives[0]} does not close over the whole range: {where}"
+
+
+def in_degrees(angle: float) -> str:
+    """Return an angle as text in degrees; what is left of 0 by rounding is 0."""
+    found = math.degrees(angle)
+    return formatted(0.0 if abs(found) < 1e-6 else found, 8)
+
+
+def at_peak(result: Any, peak: Peak) -> str:
+    """Return the place of a `peak` in words, in a `result`."""
+    return f"at {result.degrees(peak.place)} deg"
