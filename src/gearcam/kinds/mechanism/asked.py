@@ -13,7 +13,6 @@ from gearcam.base.numerals import formatted
 from gearcam.base.quantities import TEXT, param, positive_length
 from gearcam.base.rules import Breach, exactly_one
 from gearcam.kinds.mechanism.keys import (
-    TABLES,
     WithNames,
     angle_param,
     later,
@@ -39,6 +38,9 @@ DEG: Final = math.degrees(1.0)
 
 RATES: Final = ("velocity", "acceleration", "jerk")
 """Names of the derivatives, those in tables."""
+
+TABLES: Final = "tables of mechanisms"
+"""The group of the checks of what the tables of a mechanism ask for, and of its chains."""
 
 _ROUNDED: Final = 1e-9
 """Stroke of what stands still but for rounding, mm or rad."""

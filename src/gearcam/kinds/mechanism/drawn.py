@@ -90,11 +90,11 @@ def bodies(result: MechanismResult, q: Array, before: int = 0) -> tuple[MovingBo
         that of its drive before it; what stands still is named ``frame``.
     """
     tables = tables_of(result.design)
-    parts = [part for _, part in parts_of(tables)]
+    parts = [part for _, _, part in parts_of(tables)]
     picture = Picture(parts, Setting(parts, result.drives), q, result.linkage.at(q, 0))
     for part in parts:
         part.draw(picture)
-    for _, part in told_parts(tables):
+    for _, _, part in told_parts(tables):
         part.stand(picture)
     driven = [one for number in range(len(result.drives)) for one in _driven(result, number, q)]
     fixed = [tuple(picture.grounds()), tuple(_paths(result, picture, before))]
@@ -137,7 +137,7 @@ def pins_of(body: MovingBody) -> Plane:
 def traced(result: MechanismResult) -> tuple[str, ...]:
     """Return the names of the points whose paths are drawn: all, and joints that are asked for."""
     parts = parts_of(tables_of(result.design))
-    points = [name for _, part in parts for name in part.traced]
+    points = [name for _, _, part in parts for name in part.traced]
     asked = [one.name for one in result.outputs if one.quantity == f"{one.name}.x"]
     return tuple(dict.fromkeys([*points, *asked]))
 

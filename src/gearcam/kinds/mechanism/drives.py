@@ -10,16 +10,7 @@ from gearcam.base.quantities import COUNT, RPM, TEXT, nested, param
 from gearcam.base.rules import Breach, exactly_one
 from gearcam.designs.design import Design
 from gearcam.designs.faults import Fault, show
-from gearcam.kinds.mechanism.keys import (
-    ANY,
-    SHAFT,
-    WAY,
-    NameUse,
-    WithNames,
-    angle_param,
-    named,
-    point_param,
-)
+from gearcam.kinds.mechanism.keys import NameUse, Sort, WithNames, angle_param, named, point_param
 
 if TYPE_CHECKING:
     from gearcam.designs.kind import Examined
@@ -84,7 +75,7 @@ class MachineDrive(WrittenDrive):
     """
 
     name: str = named(
-        gives=ANY, doc="its name; cranks and slides name a shaft of it", example="pair"
+        gives=Sort.ANY, doc="its name; cranks and slides name a shaft of it", example="pair"
     )
     pair: Design | None = nested(
         "gear-pair", default=None, example="pair.toml", doc="the pair: its wheels or its rack move"
@@ -136,16 +127,16 @@ class MachineDrive(WrittenDrive):
             yield from _formula_problems(self.slide)
 
     @property
-    def shafts(self) -> dict[str, str]:
+    def shafts(self) -> dict[str, Sort]:
         """What it moves, a shaft or a slide, by the words behind the name of the drive."""
         if self.pair is not None:
             rack = _moves_a_rack(self.pair)
-            return {"wheel1": SHAFT} | ({"rack": WAY} if rack else {"wheel2": SHAFT})
+            return {"wheel1": Sort.SHAFT} | ({"rack": Sort.WAY} if rack else {"wheel2": Sort.SHAFT})
         if self.cam is not None:
             follower = getattr(self.cam, "follower", None)
             swings = getattr(follower, "motion", "") == "oscillating"
-            return {"shaft": SHAFT, "follower": SHAFT if swings else WAY}
-        return {"shaft": SHAFT} if self.even else {"slide": WAY}
+            return {"shaft": Sort.SHAFT, "follower": Sort.SHAFT if swings else Sort.WAY}
+        return {"shaft": Sort.SHAFT} if self.even else {"slide": Sort.WAY}
 
     def names_of(self, word: str) -> Iterator[str]:
         """Yield the names of what it moves, by its `word`: the only thing has that of the drive."""

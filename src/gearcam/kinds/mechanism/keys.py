@@ -8,6 +8,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Iterator
+from enum import StrEnum
 from functools import cache
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
@@ -76,18 +77,23 @@ def later(start: float, end: float) -> str:
     return f"a later angle: {place} is the same place of the next turn"
 
 
-TABLES: Final = "tables of mechanisms"
-"""The group of the checks of what the tables of a mechanism ask for, and of its chains."""
-
-
 # --- names ---------------------------------------------------------------------------------------
 
-SHAFT, WAY, JOINT, MEMBER, GUIDE = "shaft", "slide", "joint", "member", "guide"
-STANDING: Final = "joint that stands still, or shaft"
-"""What a name can be, or must be."""
 
-ANY: Final = ""
-"""What the name of a drive is before its other keys are known: it may turn or slide."""
+class Sort(StrEnum):
+    """What a name is."""
+
+    SHAFT = "shaft"
+    WAY = "slide"
+    JOINT = "joint"
+    MEMBER = "member"
+    GUIDE = "guide"
+    ANY = ""
+    """That of a drive before its other keys are known: it may turn or slide."""
+
+
+STANDING: Final = "joint that stands still, or shaft"
+"""What a name must be that stands for a place."""
 
 GIVES, NEEDS = "gives", "needs"
 """What a table does with a name."""
@@ -96,9 +102,10 @@ GIVES, NEEDS = "gives", "needs"
 def named(
     *,
     doc: str,
-    gives: str | None = None,
+    gives: Sort | None = None,
     needs: str | None = None,
     still: bool = False,
+    turns: bool = False,
     **rest: Any,
 ) -> Any:
     """Return a dataclass field of a name, or of several.
@@ -107,55 +114,18 @@ def named(
     ----------
     doc : str
         Its meaning.
-    gives : str, optional
+    gives : Sort, optional
         What the name is, if the table gives it to something.
     needs : str, optional
         What it must be, if something else gives it: one of several, with "or" between.
-    still : bool
-        Whether what the table gives it to stands still.
+    still, turns : bool
+        Whether what the table gives it to stands still, or has a direction that changes.
     rest
         As for `gearcam.base.quantities.param`.
     """
     made = param(TEXT, min_length=1, doc=doc, **rest)
-    said = {GIVES: gives, NEEDS: needs, "still": still}
+    said = {GIVES: gives, NEEDS: needs, "how": (still, turns)}
     return dataclasses.field(default=made.default, metadata={**made.metadata, **said})
-
-
-class NameKey(NamedTuple):
-    """A key with a name, or with several.
-
-    Attributes
-    ----------
-    field, key : str
-        In the class of its table, and in a file.
-    sort : str
-        What its name is, or must be.
-    still : bool
-        Whether what has the name stands still.
-    """
-
-    field: str
-    key: str
-    sort: str
-    still: bool
-
-
-@cache
-def name_keys(owner: type, use: str) -> tuple[NameKey, ...]:
-    """Return the keys of a table with names.
-
-    Parameters
-    ----------
-    owner : type
-        The class of the table.
-    use : str
-        `GIVES` or `NEEDS`.
-    """
-    return tuple(
-        NameKey(one.name, one.metadata["param"].key(one.name), sort, one.metadata["still"])
-        for one in dataclasses.fields(owner)
-        if (sort := one.metadata.get(use)) is not None
-    )
 
 
 class NameUse(NamedTuple):
@@ -169,18 +139,53 @@ class NameUse(NamedTuple):
         What it is, or must be: one of several, with "or" between.
     path : tuple
         Where it stands: in its table, or in the design.
-    still : bool
-        Whether what has the name stands still.
+    still, turns : bool
+        Whether what has the name stands still, or has a direction that changes.
     """
 
     name: str
     sort: str
     path: Path
     still: bool = False
+    turns: bool = False
 
     def at(self, title: str, number: int) -> NameUse:
         """Return the same with its path in the design, from that in a table."""
         return self._replace(path=(title, number, *self.path))
+
+
+class NameKey(NamedTuple):
+    """A key with a name, or with several.
+
+    Attributes
+    ----------
+    field : str
+        In the class of its table.
+    use : NameUse
+        What its name is, or must be, and the key; without a name.
+    """
+
+    field: str
+    use: NameUse
+
+
+@cache
+def name_keys(owner: type, use: str) -> tuple[NameKey, ...]:
+    """Return the keys of a table with names.
+
+    Parameters
+    ----------
+    owner : type
+        The class of the table.
+    use : str
+        `GIVES` or `NEEDS`.
+    """
+    found = ((one.name, one.metadata) for one in dataclasses.fields(owner))
+    return tuple(
+        NameKey(name, NameUse("", said[use], (said["param"].key(name),), *said["how"]))
+        for name, said in found
+        if said.get(use) is not None
+    )
 
 
 def placed(value: Any, at: Path) -> list[tuple[Path, Any]]:
@@ -211,10 +216,10 @@ class WithNames(ShortRepr):
 
     def written(self, use: str) -> Iterator[NameUse]:
         """Yield the names in its keys of one use: `GIVES` or `NEEDS`."""
-        for field, key, sort, still in name_keys(type(self), use):
-            for place, name in placed(getattr(self, field), (key,)):
+        for field, key in name_keys(type(self), use):
+            for place, name in placed(getattr(self, field), key.path):
                 if name is not None:
-                    yield NameUse(name, sort, place, still)
+                    yield key._replace(name=name, path=place)
 
 
 def center_of(shaft: str) -> str:

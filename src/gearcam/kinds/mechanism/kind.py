@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.base.registry import DeferredMapping, deferred
 from gearcam.kinds.mechanism import drives, names, outputs
+from gearcam.kinds.mechanism.asked import TABLES
 from gearcam.kinds.mechanism.design import FORMATS, NAME, STUDIES, MechanismDesign
-from gearcam.kinds.mechanism.keys import TABLES
 from gearcam.results.kind import Kind
 
 if TYPE_CHECKING:

@@ -58,7 +58,7 @@ def make_linkage(tables: Tables, drives: Sequence[PlacedDrive]) -> Linkage:
     InfeasibleError
         If it does not close over the master's whole range.
     """
-    parts = dict(parts_of(tables))
+    parts = {f"{title}[{number}]": part for title, number, part in parts_of(tables)}
     (low, high), closed = _cycle_of(drives, _period(tables))
     inner = [one.knots_in(low, high) for one in drives]
     knots = apart(np.unique(np.concatenate([[low, high], *inner])), _SAME)
@@ -74,8 +74,8 @@ def make_linkage(tables: Tables, drives: Sequence[PlacedDrive]) -> Linkage:
     linkage = Linkage(in_order(found), knots, closed)
     for one in linkage.elements:
         linkage = replace(linkage, knots=one.knots_with(linkage.track, linkage.knots))
-    for where, part in told_parts(tables):
-        part.demand(linkage, where)
+    for title, number, part in told_parts(tables):
+        part.demand(linkage, f"{title}[{number}]")
     for number, one in enumerate(linkage.elements):
         if one.gives[0] in owners:
             part = parts[owners[one.gives[0]]]
@@ -93,7 +93,11 @@ def _period(tables: Tables) -> int:
     """Return after how many turns of their shafts all parts that move others are back."""
     used = {one.name for one in needed(tables)}
     return math.lcm(
-        *(part.period for _, part in parts_of(tables) if used & {one.name for one in part.given()})
+        *(
+            part.period
+            for _, _, part in parts_of(tables)
+            if used & {one.name for one in part.given()}
+        )
     )
 
 

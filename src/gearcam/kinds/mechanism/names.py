@@ -17,14 +17,11 @@ from gearcam.designs.kind import KINDS
 from gearcam.designs.slips import did_you_mean
 from gearcam.kinds.mechanism.drives import is_read
 from gearcam.kinds.mechanism.keys import (
-    ANY,
     GIVES,
-    MEMBER,
-    SHAFT,
     STANDING,
-    WAY,
     NameKey,
     NameUse,
+    Sort,
     WithNames,
     name_keys,
     placed,
@@ -54,14 +51,14 @@ def several(tables: Tables) -> Iterator[tuple[str, int, WithNames]]:
             yield from ((title, number, one) for number, one in enumerate(found))
 
 
-def parts_of(tables: Tables) -> Iterator[tuple[str, MachinePart]]:
-    """Yield the parts of a mechanism with their places, in the order of the file."""
+def parts_of(tables: Tables) -> Iterator[tuple[str, int, MachinePart]]:
+    """Yield the parts of a mechanism with title and number, in the order of the file."""
     for title, number, one in several(tables):
         if isinstance(one, MachinePart):
-            yield f"{title}[{number}]", one
+            yield title, number, one
 
 
-def told_parts(tables: Tables) -> Iterator[tuple[str, MachinePart]]:
+def told_parts(tables: Tables) -> Iterator[tuple[str, int, MachinePart]]:
     """Yield the parts in the order in which a mechanism tells of them (see `parts_of`)."""
     yield from parts_of({title: tables[title] for title in PARTS if title in tables})
 
@@ -91,10 +88,10 @@ def problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
     tables = {title: one for title, one in found.parts.items() if is_read(title, found)}
     faulty = list(_of_faulty(document, found))
     compared = [
-        NameUse(one.name, ANY, ("compare", number, "name"))
+        NameUse(one.name, Sort.ANY, ("compare", number, "name"))
         for number, one in enumerate(found.parts.get("compare", ()))
     ]
-    names: dict[str, NameUse] = {GROUND: NameUse(GROUND, MEMBER, ())}
+    names: dict[str, NameUse] = {GROUND: NameUse(GROUND, Sort.MEMBER, ())}
     faults = [*_misspelt(found, compared), *_twice(compared, {})]
     faults += _twice([*given(tables), *faulty], names)
     whole = not _unread(found) and all(one.name for one in faulty)
@@ -135,16 +132,17 @@ def _of_faulty(document: Mapping[str, Any], found: Examined) -> Iterator[NameUse
     for title, keys in _giving(found.kind).items():
         rows = () if is_read(title, found) else document.get(title)
         for number, row in enumerate(rows if isinstance(rows, list) else ()):
-            for _, key, sort, still in keys:
-                value = row.get(key) if isinstance(row, Mapping) else None
-                for place, name in placed(value, (title, number, key)):
-                    yield NameUse(name if isinstance(name, str) else "", sort, place, still)
+            for _, use in keys:
+                value = row.get(use.path[0]) if isinstance(row, Mapping) else None
+                for place, name in placed(value, (title, number, *use.path)):
+                    known = name if isinstance(name, str) else ""
+                    yield use._replace(name=known, path=place)
 
 
 def _told_of(name: str, names: Mapping[str, NameUse]) -> bool:
     """Return whether a missing name is to be told: not if a drive with faults may give it."""
     owner = names.get(name.rpartition(".")[0])
-    return owner is None or owner.sort != ANY
+    return owner is None or owner.sort != Sort.ANY
 
 
 _NAME: Final = re.compile(r"[A-Za-z_][\w-]*", re.ASCII)
@@ -180,14 +178,14 @@ def _twice(uses: Sequence[NameUse], names: dict[str, NameUse]) -> Iterator[Fault
 def _suits(one: NameUse, sort: str) -> bool:
     """Return whether what is given has a sort that is needed."""
     if sort == STANDING:
-        return one.sort == SHAFT or one.still
+        return one.sort == Sort.SHAFT or one.still
     return one.sort in sort.split(" or ")
 
 
 def _unsuitable(one: NameUse, names: Mapping[str, NameUse]) -> Iterator[Fault]:
     """Yield that nothing has a name that is needed, or something of another sort."""
     other = names.get(one.name)
-    if other is not None and (other.sort == ANY or _suits(other, one.sort)):
+    if other is not None and (other.sort == Sort.ANY or _suits(other, one.sort)):
         return
     others = (item for item in names.items() if item[1].path[:2] != one.path[:2])
     fits = sorted(name for name, use in others if _suits(use, one.sort))
@@ -236,13 +234,15 @@ def acted_on(tables: Tables) -> Acted:
     """Return what loads may act on in the `tables` of a mechanism."""
     uses = list(given(tables))
     ways, unturned = {}, {}
-    for _, part in parts_of(tables):
+    for _, _, part in parts_of(tables):
         ways |= part.ways
         unturned |= part.unturned
     return Acted(
-        sorts={GROUND: MEMBER} | {one.name: one.sort for one in uses} | dict.fromkeys(ways, WAY),
+        sorts={GROUND: Sort.MEMBER}
+        | {one.name: one.sort for one in uses}
+        | dict.fromkeys(ways, Sort.WAY),
         ways=ways,
-        driven=frozenset(one.name for one in uses if one.sort == WAY),
+        driven=frozenset(one.name for one in uses if one.sort == Sort.WAY),
         unturned=unturned,
         still=frozenset({GROUND, *(one.name for one in uses if one.still)}),
     )

@@ -10,7 +10,7 @@ from gearcam.designs.faults import Fault, show
 from gearcam.designs.slips import did_you_mean, nearest
 from gearcam.kinds.mechanism import names
 from gearcam.kinds.mechanism.asked import Amount, Output, coordinates
-from gearcam.kinds.mechanism.keys import JOINT, SHAFT
+from gearcam.kinds.mechanism.keys import Sort
 
 if TYPE_CHECKING:
     from gearcam.designs.kind import Examined
@@ -30,7 +30,7 @@ class OutputNames:
 
     def __init__(self, tables: names.Tables) -> None:
         self.tables = tables
-        self.parts = [part for _, part in names.told_parts(tables)]
+        self.parts = [part for _, _, part in names.told_parts(tables)]
 
     @cached_property
     def known(self) -> Known:
@@ -51,20 +51,20 @@ class OutputNames:
             found |= part.outputs()
         for joint in self.joints:
             found.setdefault(joint, coordinates(joint))
-        for member in (name for part in self.parts for name in part.turning):
-            name = f"{member}.angle"
-            found[name] = (Output(name, member, name, True),)
+        for one in (use for part in self.parts for use in part.given() if use.turns):
+            name = f"{one.name}.angle"
+            found[name] = (Output(name, one.name, name, True),)
         for drive in self.tables.get("drive", ()):
             for word, sort in drive.shafts.items():
                 name = f"{drive.name}.{word}"
-                found[name] = (Output(name, name.replace(".", "_"), name, sort == SHAFT),)
+                found[name] = (Output(name, name.replace(".", "_"), name, sort == Sort.SHAFT),)
         return found
 
     @cached_property
     def joints(self) -> list[str]:
         """The joints that move."""
         uses = names.given(self.tables)
-        return [one.name for one in uses if one.sort == JOINT and not one.still]
+        return [one.name for one in uses if one.sort == Sort.JOINT and not one.still]
 
     @property
     def usual(self) -> list[str]:

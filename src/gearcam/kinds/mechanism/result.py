@@ -15,9 +15,8 @@ from numpy.typing import ArrayLike
 from gearcam.base.errors import ABOVE, DesignError, InfeasibleError, Problem, beyond_limit
 from gearcam.base.findings import Finding, in_order, run_checks
 from gearcam.base.numerals import formatted, in_range
-from gearcam.kinds.mechanism.asked import DEG, RATES, Amount, Output
+from gearcam.kinds.mechanism.asked import DEG, RATES, TABLES, Amount, Output
 from gearcam.kinds.mechanism.design import MechanismDesign
-from gearcam.kinds.mechanism.keys import TABLES
 from gearcam.kinds.mechanism.linkage import make_linkage
 from gearcam.kinds.mechanism.names import tables_of
 from gearcam.kinds.mechanism.outputs import OutputNames, paths_asked

@@ -17,7 +17,6 @@ from gearcam.base.facts import Fact, Facts, extent
 from gearcam.base.numerals import formatted
 from gearcam.kinds.mechanism.asked import DEG, RATES
 from gearcam.kinds.mechanism.names import tables_of, told_parts
-from gearcam.kinds.mechanism.parts import PARTS
 from gearcam.kinds.mechanism.parts.part import at_peak
 from gearcam.linkages.measures import STILL
 from gearcam.linkages.transmission import ADMISSIBLE, pressure_angle
@@ -83,7 +82,7 @@ def facts(result: MechanismResult) -> Facts:
 
 def _called(result: MechanismResult) -> str:
     """Return what the mechanism is, by its dyads and its drives."""
-    parts = (part.called for _, part in told_parts(tables_of(result.design)))
+    parts = (part.called for _, _, part in told_parts(tables_of(result.design)))
     groups = " + ".join(name for name in parts if name) or "linkage"
     keys = [one.key for one in result.design.drive]
     drives = (_counted(keys.count(key), key) for key in dict.fromkeys(keys))
@@ -99,16 +98,16 @@ def _counted(number: int, key: str) -> str:
 def _machine(result: MechanismResult) -> Tree:
     """Return its range, and what its parts tell: how dyads stand, and the positions of chains."""
     low, high = result.linkage.span
-    groups: dict[str, Tree] = {group: {} for part in PARTS.values() for group in part.groups}
-    for where, part in told_parts(tables_of(result.design)):
-        for group, name, facts in part.facts(result, int(where.rpartition("[")[2].rstrip("]"))):
-            groups[group][name] = facts
+    groups: dict[str, Tree] = {}
+    for _, number, part in told_parts(tables_of(result.design)):
+        for group, name, facts in part.facts(result, number):
+            groups.setdefault(group, {})[name] = facts
     return {
         "from_deg": DEG * low,
         "to_deg": DEG * high,
         "closed": result.linkage.closed,
         "mobility": 1,
-        **{group: found or None for group, found in groups.items()},
+        **groups,
     }
 
 

@@ -15,7 +15,8 @@ import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.findings import Remark, check
-from gearcam.kinds.mechanism.keys import JOINT, MEMBER, SHAFT, TABLES, WAY, WithNames
+from gearcam.kinds.mechanism.asked import TABLES
+from gearcam.kinds.mechanism.keys import Sort, WithNames
 from gearcam.linkages.coordinates import (
     MemberTurn,
     NamedCoordinate,
@@ -37,10 +38,10 @@ if TYPE_CHECKING:
 MOST: Final = 1e9
 """Largest force, N, torque, N m, and the like."""
 
-MOVING: Final = f"{JOINT} or {MEMBER} or {SHAFT} or {WAY}"
+MOVING: Final = f"{Sort.JOINT} or {Sort.MEMBER} or {Sort.SHAFT} or {Sort.WAY}"
 """What may be loaded."""
 
-TURNS: Final = (MEMBER, SHAFT)
+TURNS: Final = (Sort.MEMBER, Sort.SHAFT)
 """What a torque acts on."""
 
 SLACK: Final = 1e-9
@@ -88,7 +89,7 @@ class Acted(ShortRepr):
         """
         if direction is not None:
             return PointWay(self.joint(name), GROUND, cmath.exp(1j * direction))
-        if self.sorts[name] == MEMBER:
+        if self.sorts[name] == Sort.MEMBER:
             return MemberTurn(name)
         return self.ways.get(name) or NamedCoordinate(name)
 

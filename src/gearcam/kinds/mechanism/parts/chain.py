@@ -16,16 +16,8 @@ from gearcam.base.findings import Remark, check
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import REQUIRED, TEXT, param, positive_length
 from gearcam.base.rules import Breach
-from gearcam.kinds.mechanism.keys import (
-    JOINT,
-    MEMBER,
-    SHAFT,
-    TABLES,
-    angle_param,
-    center_of,
-    named,
-    point_param,
-)
+from gearcam.kinds.mechanism.asked import TABLES
+from gearcam.kinds.mechanism.keys import Sort, angle_param, center_of, named, point_param
 from gearcam.kinds.mechanism.parts.part import MachinePart, Setting, Tree, not_closing
 from gearcam.linkages.chain import LeverChain, roots_in
 
@@ -48,8 +40,38 @@ _BACK: Final = 1e-5
 """How far from where it was a shaft may be after a cycle, rad: the error of its law."""
 
 
+class WoundPart(MachinePart):
+    """A part that a wheel moves by a chain.
+
+    Parameters
+    ----------
+    on, wind : str
+        The wheel's shaft, and its turn that winds the chain up: ``ccw`` or ``cw``.
+    """
+
+    on: str
+    wind: str
+
+    @property
+    def side(self) -> float:
+        """+1 if turning counter-clockwise winds the chain up, -1 if clockwise."""
+        return 1.0 if self.wind == "ccw" else -1.0
+
+    def demand(self, linkage: Linkage, where: str) -> None:
+        """Refuse a chain on a shaft that turns without end (see `MachinePart`)."""
+        if not linkage.closed:
+            return
+        first, last = np.asarray(linkage.track(self.on, linkage.knots[[0, -1]], 0).c[0])
+        if abs(last - first) > _BACK:
+            raise InfeasibleError(
+                "its chain is not back after a turn of the master",
+                where=where,
+                nearest="give drive[0].range_deg, over which it winds up and off",
+            )
+
+
 @dataclass(frozen=True, kw_only=True)
-class ChainSpec(MachinePart):
+class ChainSpec(WoundPart):
     """A chain on a wheel that swings a lever, as of a door.
 
     Examples
@@ -60,9 +82,7 @@ class ChainSpec(MachinePart):
     'door'
     """
 
-    groups = ("chains",)
-
-    on: str = named(needs=SHAFT, doc="the wheel's shaft", example="pair.wheel2")
+    on: str = named(needs=Sort.SHAFT, doc="the wheel's shaft", example="pair.wheel2")
     at: tuple[float, float] = point_param(doc="the wheel's centre", example=[600, 300])
     radius: float = positive_length(
         default=REQUIRED, example=100, doc="of the wheel, to the chain's middle"
@@ -70,8 +90,8 @@ class ChainSpec(MachinePart):
     wind: str = param(
         TEXT, default="ccw", choices=("ccw", "cw"), doc="turn of the wheel that winds the chain up"
     )
-    joint: str = named(gives=JOINT, doc="name of the joint at the chain's end", example="B")
-    lever: str = named(gives=MEMBER, doc="name of the lever", example="door")
+    joint: str = named(gives=Sort.JOINT, doc="name of the joint at the chain's end", example="B")
+    lever: str = named(gives=Sort.MEMBER, turns=True, doc="name of the lever", example="door")
     hinge: tuple[float, float] = point_param(
         word="",
         default=(0.0, 0.0),
@@ -117,11 +137,6 @@ class ChainSpec(MachinePart):
                 yield "range", side, what, f"{word} {formatted(math.degrees(limit), 8)}"
 
     @property
-    def side(self) -> float:
-        """+1 if turning counter-clockwise winds the chain up, -1 if clockwise."""
-        return 1.0 if self.wind == "ccw" else -1.0
-
-    @property
     def _chain(self) -> LeverChain:
         return LeverChain(
             self.lever,
@@ -139,10 +154,6 @@ class ChainSpec(MachinePart):
     def elements(self, setting: Setting, where: str) -> Iterator[LeverChain]:
         """Yield lever and chain (see `MachinePart`)."""
         yield self._chain
-
-    def demand(self, linkage: Linkage, where: str) -> None:
-        """Refuse a chain on a shaft that turns without end (see `MachinePart`)."""
-        demand_back(linkage, self.on, where)
 
     def refusal(self, error: NotClosingError, linkage: Linkage, where: str) -> InfeasibleError:
         """Return which limit the lever reaches, and which would do (see `MachinePart`)."""
@@ -175,11 +186,6 @@ class ChainSpec(MachinePart):
             nearest=note,
             adjustments=[Adjustment(near={key: value})],
         )
-
-    @property
-    def turning(self) -> tuple[str, ...]:
-        """The lever."""
-        return (self.lever,)
 
     def usual(self, *, last: bool) -> Iterator[tuple[int, str]]:
         """Yield the direction of the lever."""
@@ -225,34 +231,6 @@ def _angle_within_wider(chain: LeverChain, side: int, known: Known) -> float | N
 
 
 # --- chains on wheels ----------------------------------------------------------------------------
-
-
-def demand_back(linkage: Linkage, shaft: str, where: str) -> None:
-    """Refuse a chain that is not back after a cycle of the master.
-
-    Parameters
-    ----------
-    linkage : Linkage
-        With the shaft.
-    shaft : str
-        Of its wheel.
-    where : str
-        Of its table.
-
-    Raises
-    ------
-    InfeasibleError
-        If the shaft turns without end.
-    """
-    if not linkage.closed:
-        return
-    first, last = np.asarray(linkage.track(shaft, linkage.knots[[0, -1]], 0).c[0])
-    if abs(last - first) > _BACK:
-        raise InfeasibleError(
-            "its chain is not back after a turn of the master",
-            where=where,
-            nearest="give drive[0].range_deg, over which it winds up and off",
-        )
 
 
 def shaft_place(result: Any, shaft: str) -> complex:

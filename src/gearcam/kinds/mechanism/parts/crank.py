@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.quantities import REQUIRED, positive_length
 from gearcam.base.rules import Breach
-from gearcam.kinds.mechanism.keys import JOINT, MEMBER, SHAFT, angle_param, center_of, named
+from gearcam.kinds.mechanism.keys import Sort, angle_param, center_of, named
 from gearcam.kinds.mechanism.parts.part import MachinePart, Setting
 from gearcam.linkages.elements import Crank
 
@@ -30,13 +30,13 @@ class CrankSpec(MachinePart):
     CrankSpec(name='crank', on='motor', joint='B', length=40)
     """
 
-    name: str = named(gives=MEMBER, doc="its name", example="crank")
+    name: str = named(gives=Sort.MEMBER, turns=True, doc="its name", example="crank")
     on: str = named(
-        needs=SHAFT,
+        needs=Sort.SHAFT,
         doc="the shaft: the name of an even drive, pair.wheel2, cam.follower",
         example="motor",
     )
-    joint: str = named(gives=JOINT, doc="name of its joint", example="B")
+    joint: str = named(gives=Sort.JOINT, doc="name of its joint", example="B")
     length: float = positive_length(default=REQUIRED, example=40, doc="from the shaft to the joint")
     angle: float | None = angle_param(
         doc="its direction at the drive's zero; 0 if left out", default=None, example=0
@@ -47,7 +47,7 @@ class CrankSpec(MachinePart):
         example=90,
     )
     at: str | None = named(
-        needs=JOINT,
+        needs=Sort.JOINT,
         doc="joint in which the shaft stands, if not that of the drive",
         default=None,
         example="A",
@@ -76,11 +76,6 @@ class CrankSpec(MachinePart):
             )
         turn = -self.arm_angle if drive.spec.mirror else self.arm_angle
         return cmath.phase(drive.vector(cmath.exp(1j * arm))) + turn
-
-    @property
-    def turning(self) -> tuple[str, ...]:
-        """Itself."""
-        return (self.name,)
 
     def usual(self, *, last: bool) -> Iterator[tuple[int, str]]:
         """Yield the direction of the last crank, if there are no other members."""

@@ -15,16 +15,7 @@ from gearcam.base.numerals import formatted
 from gearcam.base.quantities import COUNT, LENGTH, LONGEST, TEXT, param
 from gearcam.base.rules import Breach
 from gearcam.kinds.mechanism.asked import DEG, Output, coordinates
-from gearcam.kinds.mechanism.keys import (
-    GUIDE,
-    JOINT,
-    MEMBER,
-    WAY,
-    NameUse,
-    angle_param,
-    named,
-    point_param,
-)
+from gearcam.kinds.mechanism.keys import NameUse, Sort, angle_param, named, point_param
 from gearcam.kinds.mechanism.parts.part import (
     MachinePart,
     Setting,
@@ -75,16 +66,15 @@ class DyadSpec(MachinePart):
     DyadSpec(type='RRT', first='B', last='bed', joint='C', members=('rod', 'ram'), lengths=(120, 0))
     """
 
-    groups = ("dyads", "four_bars")
-
     type: str = param(
         TEXT, choices=TYPES, doc="its joints in order: R a hinge, T a slide", example="RRR"
     )
     first: str = named(doc="joint or guide at which member 1 begins", word="from", example="B")
     last: str = named(doc="joint or guide at which member 2 begins", word="to", example="D")
-    joint: str = named(gives=JOINT, doc="name of the joint between its members", example="C")
+    joint: str = named(gives=Sort.JOINT, doc="name of the joint between its members", example="C")
     members: tuple[str, str] = named(
-        gives=MEMBER,
+        gives=Sort.MEMBER,
+        turns=True,
         doc="names of its members",
         order="first and second",
         example=["coupler", "rocker"],
@@ -126,7 +116,7 @@ class DyadSpec(MachinePart):
         doc="what it keeps at a change point, where both positions meet",
     )
     driven: str | None = named(
-        needs=WAY,
+        needs=Sort.WAY,
         doc="the slide that is added to the first length, of RTRR",
         default=None,
         example="cylinder",
@@ -215,7 +205,7 @@ class DyadSpec(MachinePart):
         yield from super().needed()
         guides = DYADS[self.formula].guides
         for name, key, guided in zip((self.first, self.last), ("from", "to"), guides, strict=True):
-            yield NameUse(name, GUIDE if guided else JOINT, (key,))
+            yield NameUse(name, Sort.GUIDE if guided else Sort.JOINT, (key,))
 
     def elements(self, setting: Setting, where: str) -> Iterator[Dyad]:
         """Yield the dyad (see `MachinePart`)."""
@@ -309,15 +299,9 @@ class DyadSpec(MachinePart):
         place = Output(self.joint, self.joint, self.moves, False)
         return {self.joint: (place,) if self.moves else coordinates(self.joint)}
 
-    @property
-    def turning(self) -> tuple[str, ...]:
-        """Its members."""
-        return self.members
-
     def usual(self, *, last: bool) -> Iterator[tuple[int, str]]:
         """Yield the place of its joint on a guide; the direction of the last member."""
-        if self.moves:
-            yield 0, self.joint
+        yield from super().usual(last=last)
         if last:
             yield 1, f"{self.members[1]}.angle"
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from gearcam.base.quantities import COUNT, REQUIRED, param, positive_length
 from gearcam.kinds.mechanism.asked import Output
-from gearcam.kinds.mechanism.keys import JOINT, MEMBER, SHAFT, angle_param, center_of, named
+from gearcam.kinds.mechanism.keys import Sort, angle_param, center_of, named
 from gearcam.kinds.mechanism.parts.part import MachinePart, Setting
 from gearcam.linkages.geneva import SLOTS, GenevaWheel
 
@@ -27,10 +27,10 @@ class GenevaSpec(MachinePart):
     GenevaSpec(name='wheel', on='motor', slots=6, length=60)
     """
 
-    name: str = named(gives=MEMBER, doc="name of the wheel", example="wheel")
-    on: str = named(needs=SHAFT, doc="the crank's shaft", example="motor")
+    name: str = named(gives=Sort.MEMBER, doc="name of the wheel", example="wheel")
+    on: str = named(needs=Sort.SHAFT, doc="the crank's shaft", example="motor")
     at: str | None = named(
-        needs=JOINT,
+        needs=Sort.JOINT,
         doc="joint in which the shaft stands, if not that of the drive",
         default=None,
         example="A",
@@ -58,10 +58,6 @@ class GenevaSpec(MachinePart):
         """Return its turn."""
         turn = f"{self.name}.turn"
         return {turn: (Output(turn, self.name, turn, True),)}
-
-    def usual(self, *, last: bool) -> Iterator[tuple[int, str]]:
-        """Yield its turn."""
-        yield 0, f"{self.name}.turn"
 
     def draw(self, picture: Picture) -> None:
         """Draw the wheel and its crank."""

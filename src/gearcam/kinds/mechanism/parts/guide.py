@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from gearcam.base.rules import Breach
-from gearcam.kinds.mechanism.keys import GUIDE, MEMBER, STANDING, angle_param, named, point_param
+from gearcam.kinds.mechanism.keys import STANDING, Sort, angle_param, named, point_param
 from gearcam.kinds.mechanism.parts.part import MachinePart, Setting
 from gearcam.linkages.elements import GROUND, GuideLine
 
@@ -26,8 +26,8 @@ class GuideSpec(MachinePart):
     GuideSpec(name='bed', at=(180, 0))
     """
 
-    name: str = named(gives=GUIDE, doc="its name", example="bed")
-    on: str = named(needs=MEMBER, doc="the member that carries it", default="ground")
+    name: str = named(gives=Sort.GUIDE, doc="its name", example="bed")
+    on: str = named(needs=Sort.MEMBER, doc="the member that carries it", default="ground")
     at: tuple[float, float] = point_param(
         doc="a point of it, from which places count, in the member's frame", default=(0.0, 0.0)
     )

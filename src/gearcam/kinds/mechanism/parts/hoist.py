@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
@@ -13,32 +13,22 @@ import numpy as np
 from gearcam.base.findings import Remark, check
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import REQUIRED, TEXT, param, positive_length
-from gearcam.kinds.mechanism.asked import Output
-from gearcam.kinds.mechanism.keys import (
-    JOINT,
-    MEMBER,
-    SHAFT,
-    TABLES,
-    angle_param,
-    center_of,
-    named,
-    point_param,
-)
-from gearcam.kinds.mechanism.parts.chain import NEAR, demand_back, numbers, shaft_place
-from gearcam.kinds.mechanism.parts.part import MachinePart, Setting
-from gearcam.linkages.coordinates import PointWay
+from gearcam.kinds.mechanism.asked import TABLES
+from gearcam.kinds.mechanism.keys import Sort, angle_param, center_of, named, point_param
+from gearcam.kinds.mechanism.parts.chain import NEAR, WoundPart, numbers, shaft_place
+from gearcam.kinds.mechanism.parts.part import Setting
+from gearcam.kinds.mechanism.parts.slide import PushedPart
 from gearcam.linkages.elements import Element, GuideLine, PushedSlide, WoundWay
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.parts.picture import Picture
-    from gearcam.linkages.linkage import Linkage
 
 _BESIDE: Final = 1e-3
 """How far its chain may pass beside its wheel, relative to the radius, to be drawn straight."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class HoistSpec(MachinePart):
+class HoistSpec(PushedPart, WoundPart):
     """What a wheel lifts by a chain or a rope, straight along a guide.
 
     Examples
@@ -48,9 +38,11 @@ class HoistSpec(MachinePart):
     HoistSpec(name='door', on='pair.wheel2', joint='hook', radius=100)
     """
 
-    name: str = named(gives=MEMBER, doc="name of what is lifted", example="door")
-    on: str = named(needs=SHAFT, doc="the wheel's shaft", example="pair.wheel2")
-    joint: str = named(gives=JOINT, doc="name of its joint, where the chain ends", example="hook")
+    name: str = named(gives=Sort.MEMBER, doc="name of what is lifted", example="door")
+    on: str = named(needs=Sort.SHAFT, doc="the wheel's shaft", example="pair.wheel2")
+    joint: str = named(
+        gives=Sort.JOINT, doc="name of its joint, where the chain ends", example="hook"
+    )
     radius: float = positive_length(
         default=REQUIRED, example=100, doc="of the wheel, to the chain's middle"
     )
@@ -72,44 +64,11 @@ class HoistSpec(MachinePart):
         """Name of its guide."""
         return f"{self.name}.guide"
 
-    @property
-    def side(self) -> float:
-        """+1 if turning counter-clockwise winds the chain up, -1 if clockwise."""
-        return 1.0 if self.wind == "ccw" else -1.0
-
     def elements(self, setting: Setting, where: str) -> Iterator[Element]:
         """Yield what is wound up, its guide, and what is lifted (see `MachinePart`)."""
         yield WoundWay(self.way, self.on, self.side * self.radius)
         yield GuideLine(self.guide, complex(*self.at), self.direction)
         yield PushedSlide(self.name, self.way, self.guide, self.joint)
-
-    def demand(self, linkage: Linkage, where: str) -> None:
-        """Refuse a chain on a shaft that turns without end (see `MachinePart`)."""
-        demand_back(linkage, self.on, where)
-
-    def outputs(self) -> Mapping[str, tuple[Output, ...]]:
-        """Return how far it is lifted."""
-        return {self.name: (Output(self.name, self.name, self.way, False),)}
-
-    def usual(self, *, last: bool) -> Iterator[tuple[int, str]]:
-        """Yield how far it is lifted."""
-        yield 0, self.name
-
-    @property
-    def ways(self) -> Mapping[str, PointWay]:
-        """It and its joint go along its guide."""
-        way = PointWay(self.joint, self.guide, slide=self.way)
-        return dict.fromkeys((self.name, self.joint), way)
-
-    @property
-    def unturned(self) -> Mapping[str, str]:
-        """It keeps its direction."""
-        return {self.name: self.joint}
-
-    def on_guide(self, guide: str) -> Iterator[str]:
-        """Yield its place on its guide."""
-        if guide == self.guide:
-            yield self.way
 
     def draw(self, picture: Picture) -> None:
         """Draw it, its chain, and the wheel on its shaft."""

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from gearcam.kinds.mechanism.keys import JOINT, named, point_param
+from gearcam.kinds.mechanism.keys import Sort, named, point_param
 from gearcam.kinds.mechanism.parts.part import MachinePart, Setting
 from gearcam.linkages.elements import MemberPoint
 
@@ -25,7 +25,7 @@ class JointSpec(MachinePart):
     JointSpec(name='D', at=(110, 0))
     """
 
-    name: str = named(gives=JOINT, still=True, doc="its name", example="D")
+    name: str = named(gives=Sort.JOINT, still=True, doc="its name", example="D")
     at: tuple[float, float] = point_param(doc="where it stands", example=[110, 0])
 
     def elements(self, setting: Setting, where: str) -> Iterator[MemberPoint]:

@@ -13,7 +13,7 @@ from gearcam.base.errors import beyond_limit
 from gearcam.base.quantities import FORCE, LENGTH, LONGEST, TEXT, TORQUE, Row, param
 from gearcam.base.rules import Breach, exactly_one, needs
 from gearcam.designs.faults import Fault
-from gearcam.kinds.mechanism.keys import JOINT, WAY, angle_param, later, named
+from gearcam.kinds.mechanism.keys import Sort, angle_param, later, named
 from gearcam.kinds.mechanism.parts.action import (
     MOST,
     MOVING,
@@ -203,10 +203,10 @@ class MachineLoad(MachineAction, WrittenLoad):
         elif self.torque is not None:
             what = f"acts on {self.on}, which is a {sort}"
             yield Fault(("torque_nm",), what, allowed="force_n, or a member or shaft")
-        elif sort == JOINT and not self.has_direction:
+        elif sort == Sort.JOINT and not self.has_direction:
             what = f"has no direction, and {self.on} slides along no guide"
             yield Fault((self.key,), what, allowed="direction_deg, or force_n = [x, y]")
-        if sort != WAY and self.travel is not None:
+        if sort != Sort.WAY and self.travel is not None:
             what = f"is of {self.on}, which slides along no guide"
             yield Fault(("travel_mm",), what, self.travel, "from_deg and to_deg")
 

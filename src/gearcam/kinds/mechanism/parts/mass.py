@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from gearcam.base.quantities import INERTIA, MASS, param
 from gearcam.base.rules import Breach
 from gearcam.designs.faults import Fault
-from gearcam.kinds.mechanism.keys import JOINT, MEMBER, SHAFT, named, point_param
+from gearcam.kinds.mechanism.keys import Sort, named, point_param
 from gearcam.kinds.mechanism.parts.action import Acted, LoadedLinkage, MachineAction
 from gearcam.linkages.coordinates import MemberTurn, NamedCoordinate
 from gearcam.linkages.efforts import GRAVITY, Effort, InertiaForce, force_on
@@ -32,10 +32,12 @@ class MemberMass(MachineAction):
 
     moved = "of"
 
-    of: str = named(needs=f"{MEMBER} or {SHAFT}", example="rod", doc="the member, or a shaft")
+    of: str = named(
+        needs=f"{Sort.MEMBER} or {Sort.SHAFT}", example="rod", doc="the member, or a shaft"
+    )
     mass: float | None = param(MASS, default=None, gt=0, le=1e9, example=0.35, doc="its mass")
     center: str | None = named(
-        needs=JOINT, default=None, example="G", doc="joint or point in its centre of mass"
+        needs=Sort.JOINT, default=None, example="G", doc="joint or point in its centre of mass"
     )
     at: tuple[float, float] | None = point_param(
         default=None,
@@ -59,7 +61,7 @@ class MemberMass(MachineAction):
     def unfit(self, acted: Acted) -> Iterator[Fault]:
         """Yield a mass of a shaft, and one without a centre of mass."""
         placed = self.center is not None or self.at is not None
-        if acted.sorts[self.of] == SHAFT and self.mass is not None:
+        if acted.sorts[self.of] == Sort.SHAFT and self.mass is not None:
             what = "does not count for a shaft: its centre stands still"
             yield Fault(("mass_kg",), what, allowed="inertia_kg_m2")
         elif self.mass is not None and not placed and self.of not in acted.unturned:
@@ -84,7 +86,7 @@ class MemberMass(MachineAction):
     def efforts(self, on: LoadedLinkage, number: int) -> Iterator[Effort]:
         """Yield its inertia and its weight (see `MachineAction`)."""
         if self.inertia:
-            turns = NamedCoordinate if on.acted.sorts[self.of] == SHAFT else MemberTurn
+            turns = NamedCoordinate if on.acted.sorts[self.of] == Sort.SHAFT else MemberTurn
             yield InertiaForce.of_turn(turns(self.of), self.inertia, self.of)
         if self.mass:
             center = self._center(on.acted, number)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.numerals import formatted
@@ -83,9 +83,6 @@ class MachinePart(WithNames):
     and needs. All parts are asked by these methods, each of which has an answer for parts that it
     does not concern; `where` is the place of the table in the design, such as ``crank[0]``.
     """
-
-    groups: ClassVar[tuple[str, ...]] = ()
-    """Groups of facts about the machine to which such parts add (see `facts`)."""
 
     # --- the linkage -----------------------------------------------------------------------------
 
@@ -166,11 +163,6 @@ class MachinePart(WithNames):
         """Return the quantities that its names stand for, but for joints and directions."""
         return {}
 
-    @property
-    def turning(self) -> tuple[str, ...]:
-        """Names of members that have a direction of their own."""
-        return ()
-
     def usual(self, *, last: bool) -> Iterator[tuple[int, str]]:
         """Yield what is given where a design does not say, with a rank: only the first is given.
 
@@ -184,10 +176,10 @@ class MachinePart(WithNames):
         int, str
             0: a slide or a point; 1: a direction; 2: another direction. The name of the output.
         """
-        return iter(())
+        return ((0, name) for name, several in self.outputs().items() if len(several) == 1)
 
     def facts(self, result: Any, number: int) -> Iterator[tuple[str, str, Tree]]:
-        """Yield facts about a machine: the group, of `groups`, a name in it, and the facts.
+        """Yield facts about a machine: a group, a name in it, and the facts.
 
         Parameters
         ----------
@@ -229,7 +221,7 @@ class MachinePart(WithNames):
 
     def on_guide(self, guide: str) -> Iterator[str]:
         """Yield the quantities that are places of it on a guide, by the guide's name."""
-        return iter(())
+        return (one.slide for one in self.ways.values() if one.guide == guide)
 
     def draw(self, picture: Picture) -> None:
         """Draw what moves."""

@@ -16,7 +16,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from gearcam.kinds.mechanism.keys import JOINT
+from gearcam.kinds.mechanism.keys import Sort
 from gearcam.kinds.mechanism.parts.part import MachinePart, Setting
 from gearcam.linkages.elements import Known
 from gearcam.numeric.arrays import Array, Plane
@@ -128,7 +128,7 @@ class Picture:
     @cached_property
     def places(self) -> dict[str, Plane]:
         """The places of all joints by name; first those with a table of their own."""
-        named = [one for part in self.parts for one in part.given() if one.sort == JOINT]
+        named = [one for part in self.parts for one in part.given() if one.sort == Sort.JOINT]
         named.sort(key=lambda one: one.path != ("name",))
         return {one.name: self.place(one.name) for one in named}
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from gearcam.kinds.mechanism.keys import JOINT, MEMBER, named, point_param
+from gearcam.kinds.mechanism.keys import Sort, named, point_param
 from gearcam.kinds.mechanism.parts.part import MachinePart, Setting
 from gearcam.linkages.elements import GROUND, MemberPoint
 
@@ -25,8 +25,8 @@ class PointSpec(MachinePart):
     PointSpec(name='P', on='coupler', at=(50, 35))
     """
 
-    name: str = named(gives=JOINT, doc="its name", example="P")
-    on: str = named(needs=MEMBER, doc="the member", example="coupler")
+    name: str = named(gives=Sort.JOINT, doc="its name", example="P")
+    on: str = named(needs=Sort.MEMBER, doc="the member", example="coupler")
     at: tuple[float, float] = point_param(doc="the point in its frame", example=[50, 35])
 
     def elements(self, setting: Setting, where: str) -> Iterator[MemberPoint]:

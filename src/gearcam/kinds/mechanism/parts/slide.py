@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from gearcam.kinds.mechanism.asked import Output
-from gearcam.kinds.mechanism.keys import JOINT, MEMBER, WAY, named, point_param, way_of
+from gearcam.kinds.mechanism.keys import Sort, named, point_param, way_of
 from gearcam.kinds.mechanism.parts.part import MachinePart, Setting
 from gearcam.linkages.coordinates import PointWay
 from gearcam.linkages.elements import Element, MemberPoint, PushedSlide
@@ -16,8 +16,46 @@ if TYPE_CHECKING:
     from gearcam.kinds.mechanism.parts.picture import Picture
 
 
+class PushedPart(MachinePart):
+    """A member that is pushed along a guide.
+
+    Parameters
+    ----------
+    name, joint : str
+        Of the member, and of its joint.
+    """
+
+    name: str
+    joint: str
+
+    @property
+    def way(self) -> str:
+        """Name of the quantity that is its place on its guide."""
+        raise NotImplementedError
+
+    @property
+    def guide(self) -> str:
+        """Name of its guide."""
+        raise NotImplementedError
+
+    def outputs(self) -> Mapping[str, tuple[Output, ...]]:
+        """Return its place."""
+        return {self.name: (Output(self.name, self.name, self.way, False),)}
+
+    @property
+    def ways(self) -> Mapping[str, PointWay]:
+        """It and its joint go along its guide."""
+        way = PointWay(self.joint, self.guide, slide=self.way)
+        return dict.fromkeys((self.name, self.joint), way)
+
+    @property
+    def unturned(self) -> Mapping[str, str]:
+        """It keeps its direction."""
+        return {self.name: self.joint}
+
+
 @dataclass(frozen=True, kw_only=True)
-class SlideSpec(MachinePart):
+class SlideSpec(PushedPart):
     """A member that a drive pushes along a straight guide: a follower, a rack, a slide.
 
     Examples
@@ -27,13 +65,13 @@ class SlideSpec(MachinePart):
     SlideSpec(name='tool', on='cam.follower', joint='T')
     """
 
-    name: str = named(gives=MEMBER, doc="its name", example="tool")
+    name: str = named(gives=Sort.MEMBER, doc="its name", example="tool")
     on: str = named(
-        needs=WAY,
+        needs=Sort.WAY,
         doc="what pushes it: cam.follower, pair.rack, or the name of a slide",
         example="cam.follower",
     )
-    joint: str = named(gives=JOINT, doc="name of its joint", example="T")
+    joint: str = named(gives=Sort.JOINT, doc="name of its joint", example="T")
     at: tuple[float, float] = point_param(
         doc="the joint in the frame of the follower's end, the rack or the slide, x along its way",
         default=(0.0, 0.0),
@@ -43,33 +81,19 @@ class SlideSpec(MachinePart):
         """Yield the slide, and its joint beside its place on the guide (see `MachinePart`)."""
         beside = any(self.at)
         joint = f"{self.name}.end" if beside else self.joint
-        yield PushedSlide(self.name, self.on, way_of(self.on), joint)
+        yield PushedSlide(self.name, self.way, self.guide, joint)
         if beside:
             yield MemberPoint(self.joint, complex(*self.at), self.name)
 
-    def outputs(self) -> Mapping[str, tuple[Output, ...]]:
-        """Return its place."""
-        return {self.name: (Output(self.name, self.name, self.on, False),)}
-
-    def usual(self, *, last: bool) -> Iterator[tuple[int, str]]:
-        """Yield its place."""
-        yield 0, self.name
+    @property
+    def way(self) -> str:
+        """What pushes it."""
+        return self.on
 
     @property
-    def ways(self) -> Mapping[str, PointWay]:
-        """It and its joint go along its guide."""
-        way = PointWay(self.joint, way_of(self.on), slide=self.on)
-        return dict.fromkeys((self.name, self.joint), way)
-
-    @property
-    def unturned(self) -> Mapping[str, str]:
-        """It keeps its direction."""
-        return {self.name: self.joint}
-
-    def on_guide(self, guide: str) -> Iterator[str]:
-        """Yield its place on its guide."""
-        if guide == way_of(self.on):
-            yield self.on
+    def guide(self) -> str:
+        """That along which its drive goes."""
+        return way_of(self.on)
 
     def draw(self, picture: Picture) -> None:
         """Draw its link, and its block unless it is on a follower or a rack, which is drawn."""
@@ -80,4 +104,4 @@ class SlideSpec(MachinePart):
     def stand(self, picture: Picture) -> None:
         """Draw its guide, unless a follower or a rack goes along it."""
         if not picture.setting.movers[self.on].drawn:
-            picture.way(way_of(self.on))
+            picture.way(self.guide)

@@ -24,7 +24,7 @@ from gearcam.base.quantities import (
 )
 from gearcam.base.rules import Breach, exactly_one
 from gearcam.designs.faults import Fault
-from gearcam.kinds.mechanism.keys import JOINT, MEMBER, named
+from gearcam.kinds.mechanism.keys import Sort, named
 from gearcam.kinds.mechanism.parts.action import (
     MOST,
     MOVING,
@@ -79,7 +79,7 @@ class MachineSpring(MachineAction):
         doc="a slide that is joined to its guide, or a member or shaft that is joined to the frame",
     )
     between: tuple[str, str] | None = named(
-        needs=f"{JOINT} or {MEMBER}",
+        needs=f"{Sort.JOINT} or {Sort.MEMBER}",
         default=None,
         order="first and second",
         example=["P", "D"],
@@ -168,7 +168,7 @@ class MachineSpring(MachineAction):
         turns = {acted.sorts[name] in TURNS for name in ends}
         if len(turns) > 1:
             yield Fault((key,), "joins a joint to a member", list(ends), wanted)
-        elif key == "on" and acted.sorts[ends[0]] == JOINT:
+        elif key == "on" and acted.sorts[ends[0]] == Sort.JOINT:
             yield Fault((key,), "slides along no guide", ends[0], wanted)
         elif turns == {True} and self.straight:
             what = "has the keys of a straight spring about an angle"
@@ -196,7 +196,7 @@ class MachineSpring(MachineAction):
             # between the slide and its guide, which may move
             return NamedCoordinate(on.slide) if isinstance(on, PointWay) else on
         first, second = self.between
-        if acted.sorts[first] == MEMBER:
+        if acted.sorts[first] == Sort.MEMBER:
             return MemberTurn(second, first)
         return JointDistance(acted.joint(first), acted.joint(second))
 
