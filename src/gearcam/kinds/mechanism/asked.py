@@ -20,13 +20,7 @@ from gearcam.kinds.mechanism.keys import (
     point_param,
     sweep_param,
 )
-from gearcam.linkages.dwells import (
-    WHOLE,
-    DriverRange,
-    ShortRangeError,
-    last_travels,
-    longest_dwell,
-)
+from gearcam.linkages.dwells import WHOLE, DriverRange, ShortRangeError, last_travels, longest_dwell
 
 if TYPE_CHECKING:
     from gearcam.linkages.measures import TrackMeasures
@@ -284,8 +278,7 @@ class DwellSpec(Amount):
         default=None, word="within", example=0.5, doc="the same of an angle"
     )
     least: float = sweep_param(
-        default=math.radians(10.0),
-        doc="the master's angle over which it must last",
+        default=math.radians(10.0), doc="the master's angle over which it must last"
     )
 
     rules = (exactly_one("within", "within_angle"),)

@@ -16,22 +16,9 @@ from gearcam.base.quantities import ANGLE, COUNT, LENGTH, TEXT, fixed, param
 from gearcam.base.rules import distinct
 from gearcam.designs.design import Design
 from gearcam.designs.outputs import OutputSpec, files_param, pose_param, studies_param
+from gearcam.kinds.mechanism import parts
 from gearcam.kinds.mechanism.asked import DwellSpec, IntervalSpec, StretchSpec
 from gearcam.kinds.mechanism.drives import CompareSpec, MachineDrive
-from gearcam.kinds.mechanism.parts import (
-    ChainSpec,
-    CrankSpec,
-    DyadSpec,
-    GenevaSpec,
-    GuideSpec,
-    HoistSpec,
-    JointSpec,
-    MachineLoad,
-    MachineSpring,
-    MemberMass,
-    PointSpec,
-    SlideSpec,
-)
 from gearcam.kinds.shared import AccuracySpec, GoalSpec
 from gearcam.mechanics.mass import GravitySpec
 
@@ -197,21 +184,21 @@ class MechanismDesign(Design):
 
     drive: tuple[MachineDrive, ...]
     compare: tuple[CompareSpec, ...] = ()
-    joint: tuple[JointSpec, ...] = ()
-    crank: tuple[CrankSpec, ...] = ()
-    slide: tuple[SlideSpec, ...] = ()
-    guide: tuple[GuideSpec, ...] = ()
-    dyad: tuple[DyadSpec, ...] = ()
-    point: tuple[PointSpec, ...] = ()
-    chain: tuple[ChainSpec, ...] = ()
-    hoist: tuple[HoistSpec, ...] = ()
-    geneva: tuple[GenevaSpec, ...] = ()
+    joint: tuple[parts.JointSpec, ...] = ()
+    crank: tuple[parts.CrankSpec, ...] = ()
+    slide: tuple[parts.SlideSpec, ...] = ()
+    guide: tuple[parts.GuideSpec, ...] = ()
+    dyad: tuple[parts.DyadSpec, ...] = ()
+    point: tuple[parts.PointSpec, ...] = ()
+    chain: tuple[parts.ChainSpec, ...] = ()
+    hoist: tuple[parts.HoistSpec, ...] = ()
+    geneva: tuple[parts.GenevaSpec, ...] = ()
     stretch: tuple[StretchSpec, ...] = ()
     interval: tuple[IntervalSpec, ...] = ()
     dwell: tuple[DwellSpec, ...] = ()
-    load: tuple[MachineLoad, ...] = ()
-    mass: tuple[MemberMass, ...] = ()
-    spring: tuple[MachineSpring, ...] = ()
+    load: tuple[parts.MachineLoad, ...] = ()
+    mass: tuple[parts.MemberMass, ...] = ()
+    spring: tuple[parts.MachineSpring, ...] = ()
     gravity: GravitySpec = field(default_factory=GravitySpec)
     torque: TorqueSpec = field(default_factory=TorqueSpec)
     output: MechanismOutput = field(default_factory=MechanismOutput)

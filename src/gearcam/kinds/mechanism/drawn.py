@@ -4,22 +4,25 @@ The drawings are the machine at an angle of its master, and the paths of its poi
 symbols, wheels and cams are those of the pair or the cam itself, moved as the linkage takes them:
 by the drive's laws. Layers begin with the name of the point whose PATH is on them, or with the
 wheel.
+
+The distance of a path from its chord is measured at three angles inside the chord. It falls with
+the square of the step: this gives the number of chords that one is divided into.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from gearcam.base.errors import InfeasibleError
 from gearcam.base.numerals import formatted
 from gearcam.kinds.mechanism.names import parts_of, tables_of, told_parts
 from gearcam.kinds.mechanism.parts.part import Setting
 from gearcam.kinds.mechanism.parts.picture import CHAIN, CHAIN_WHEEL, PIN, Picture
-from gearcam.kinds.mechanism.traces import CHORDS, distances, path_within
 from gearcam.linkages.linkage import in_cycle
 from gearcam.numeric.arrays import divided
 from gearcam.numeric.pose import Pose
@@ -41,6 +44,7 @@ from gearcam.pictures.drawings import (
 from gearcam.pictures.labels import Label, labelled
 from gearcam.pictures.markup import PIXELS, with_room
 from gearcam.pictures.scenes import PLACES, MovingBody, Scene, still
+from gearcam.results.ladders import CHORD_ORDER, ROUNDING, SHARES, Ladder, tolerances_around
 from gearcam.results.nested import within
 
 if TYPE_CHECKING:
@@ -70,6 +74,22 @@ _SMALLER: Final = 0.8
 """Height of the letters of other angles, relative to that of names."""
 
 
+CHORDS: Final = 0.01
+"""Chord tolerance of paths if the design has none, mm."""
+
+_BETWEEN: Final = 12
+"""Chords between knots at first."""
+
+_INSIDE: Final = np.array([0.25, 0.5, 0.75])
+"""Shares of a chord at which the distance is measured."""
+
+_MARGIN: Final = 0.9
+"""Allowed measured distance, as a share of the tolerance: between the angles it may be larger."""
+
+_MOST: Final = 1_000_000
+"""Largest number of chords of a path."""
+
+
 def bodies(result: MechanismResult, q: Array, before: int = 0) -> tuple[MovingBody, ...]:
     """Return the bodies of a mechanism.
 
@@ -90,11 +110,11 @@ def bodies(result: MechanismResult, q: Array, before: int = 0) -> tuple[MovingBo
         that of its drive before it; what stands still is named ``frame``.
     """
     tables = tables_of(result.design)
-    parts = [part for _, _, part in parts_of(tables)]
+    parts = [part for *_, part in parts_of(tables)]
     picture = Picture(parts, Setting(parts, result.drives), q, result.linkage.at(q, 0))
     for part in parts:
         part.draw(picture)
-    for _, _, part in told_parts(tables):
+    for *_, part in told_parts(tables):
         part.stand(picture)
     driven = [one for number in range(len(result.drives)) for one in _driven(result, number, q)]
     fixed = [tuple(picture.grounds()), tuple(_paths(result, picture, before))]
@@ -107,21 +127,16 @@ def _named(picture: Picture, every: tuple[MovingBody, ...]) -> Iterator[MovingBo
     """Yield bodies with names: of joints, each on the first body that carries it, and their own."""
     places = dict(picture.places)
     for body in every:
-        own: list[tuple[str, complex]] = []
+        own, pins = list[tuple[str, complex]](), pins_of(body)
         for name, joint in list(places.items()):
             at = complex(body.pose[0].inverse.apply(joint[0]))
-            if _carries(body, at) and np.abs(body.pose.apply(at) - joint).max() < _ROUNDING:
+            pinned = body.name == "frame" or (np.abs(pins - at) < _ROUNDING).any()
+            if pinned and np.abs(body.pose.apply(at) - joint).max() < _ROUNDING:
                 own.append((name, at))
                 del places[name]
-        pins = pins_of(body)
         if any(one.kind == MEMBER for one in body.features) and body.called != CHAIN:
             own.append((body.called, complex(pins.mean()) if len(pins) else 0j))
         yield replace(body, names=tuple(own)) if own else body
-
-
-def _carries(body: MovingBody, at: complex) -> bool:
-    """Return whether a joint at a place in a body's frame may be named on it."""
-    return body.name == "frame" or bool((np.abs(pins_of(body) - at) < _ROUNDING).any())
 
 
 def pins_of(body: MovingBody) -> Plane:
@@ -137,7 +152,7 @@ def pins_of(body: MovingBody) -> Plane:
 def traced(result: MechanismResult) -> tuple[str, ...]:
     """Return the names of the points whose paths are drawn: all, and joints that are asked for."""
     parts = parts_of(tables_of(result.design))
-    points = [name for _, _, part in parts for name in part.traced]
+    points = [name for *_, part in parts for name in part.traced]
     asked = [one.name for one in result.outputs if one.quantity == f"{one.name}.x"]
     return tuple(dict.fromkeys([*points, *asked]))
 
@@ -148,8 +163,8 @@ def _paths(result: MechanismResult, picture: Picture, before: int) -> Iterator[F
         points = picture.place(name)[before:]
         if float(np.abs(points - points[0]).max()) > 0.0:
             once = _once(points[:-1]) if closed else None
-            shape = Path(points=points, closed=closed)
-            shape = shape if once is None else Path(points=once, closed=False)
+            whole = Path(points=points, closed=closed)
+            shape = whole if once is None else Path(points=once, closed=False)
             yield Feature(layer=TRACE, shape=shape)
 
 
@@ -245,7 +260,7 @@ def scene(result: MechanismResult, places: int = PLACES) -> Scene:
     q = np.linspace(low, high, places * turns + 1)
     return Scene(
         title=result.design.name,
-        driver=f"{result.driver[1]}, deg",
+        driver=result.axis,
         places=np.degrees(q),
         closed=result.linkage.closed,
         start=math.degrees(shown_at(result)),
@@ -407,3 +422,109 @@ def _layer(name: str, taken: set[str]) -> str:
         own, number = f"{name}_{number}", number + 1
     taken.add(own.casefold())
     return f"{own}_{TRACE}"
+
+
+# --- paths as chains of chords --------------------------------------------------------------------
+
+
+def path_within(
+    place: Callable[[Array], Plane], knots: Array, tolerance: float
+) -> tuple[Array, Plane]:
+    """Return points of a path, no chord between them farther from it than a tolerance.
+
+    Parameters
+    ----------
+    place : callable
+        ``place(q)`` returns the point at angles (n,) of the master, complex, mm.
+    knots : (k,) array, rad
+        The master's angles from the first to the last one; between them the path is smooth.
+    tolerance : float, mm
+        Largest distance.
+
+    Returns
+    -------
+    q : (n,) array, rad
+        The master's angles, with both ends and all knots.
+    points : (n,) complex array, mm
+
+    Raises
+    ------
+    InfeasibleError
+        If the tolerance needs too many chords.
+    """
+    q, counts = knots, np.full(len(knots) - 1, _BETWEEN)
+    while counts.sum() <= _MOST:
+        q = divided(q, counts)
+        points = place(q)
+        inner = q[:-1] + np.outer(_INSIDE, np.diff(q))
+        seen = place(inner.ravel()).reshape(inner.shape)
+        off = distances(seen, points[:-1], points[1:]).max(axis=0)
+        counts = np.maximum(np.ceil(np.sqrt(off / (_MARGIN * tolerance))), 1.0).astype(np.int64)
+        if counts.max() == 1:
+            return q, points
+    raise InfeasibleError(
+        f"a path would have more than {_MOST} chords",
+        where="output.chord_tolerance_mm",
+        value=tolerance,
+        unit="mm",
+        nearest="a larger one",
+    )
+
+
+def distances(points: Plane, start: Plane, end: Plane) -> Array:
+    """Return distances of points from chords.
+
+    Parameters
+    ----------
+    points : (m, n) complex array, mm
+        Points that belong to n chords.
+    start, end : (n,) complex arrays, mm
+        The ends of the chords.
+
+    Returns
+    -------
+    (m, n) array, mm
+    """
+    chord = end - start
+    square = np.abs(chord) ** 2
+    share = ((points - start) * chord.conj()).real / np.where(square > 0.0, square, 1.0)
+    return np.abs(points - start - np.clip(share, 0.0, 1.0) * chord)
+
+
+def _path_ladder(result: MechanismResult) -> Ladder:
+    """Return the distance of the path of the first point from its chords, over their tolerance."""
+    path = next(iter(result.paths.values()), None)
+    if path is None:
+        raise InfeasibleError(
+            "no point is asked for: there is no path",
+            where="output.outputs",
+            nearest="ask for a joint or a point that draws one",
+        )
+
+    def place(q: Array) -> Plane:
+        return np.asarray(path.track(q, 0).c[0], dtype=np.complex128)
+
+    def make(tolerance: float) -> tuple[Array, Plane]:
+        return path_within(place, path.knots, tolerance)
+
+    def measure(made: tuple[Array, Plane]) -> tuple[float, int]:
+        q, points = made
+        inner = place((q[:-1] + np.outer(SHARES, np.diff(q))).ravel()).reshape(len(SHARES), -1)
+        return float(distances(inner, points[:-1], points[1:]).max()), len(q)
+
+    own = result.design.output.chord_tolerance or CHORDS
+    return Ladder(
+        refined="chord tolerance, mm",
+        measured="chords of the path",
+        unit="mm",
+        levels=tolerances_around(own),
+        own=own,
+        order=CHORD_ORDER,
+        rounding=ROUNDING * path.length.value,
+        make=make,
+        measure=measure,
+    )
+
+
+LADDERS: Final = {"path": _path_ladder}
+"""What `gearcam accuracy` can measure."""

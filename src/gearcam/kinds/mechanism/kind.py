@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.base.registry import DeferredMapping, deferred
-from gearcam.kinds.mechanism import drives, names, outputs
+from gearcam.kinds.mechanism import drives, names
 from gearcam.kinds.mechanism.asked import TABLES
 from gearcam.kinds.mechanism.design import FORMATS, NAME, STUDIES, MechanismDesign
 from gearcam.results.kind import Kind
@@ -20,7 +20,7 @@ _HERE: Final = "gearcam.kinds.mechanism"
 
 def _problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
     faults = [*drives.problems(found), *names.problems(document, found)]
-    faults += outputs.problems(document, found)
+    faults += names.unasked(document, found)
     yield from faults
     yield from names.unfit(found, faults)
 
@@ -55,17 +55,14 @@ KIND: Final = Kind(
         "output": {"files": ["csv", "report"]},
     },
     shown={
-        "goal": {
-            "minimize": "outputs.P_x.acceleration_mm_s2",
-            "maximize": "outputs.P_x.stroke_mm",
-        }
+        "goal": {"minimize": "outputs.P_x.acceleration_mm_s2", "maximize": "outputs.P_x.stroke_mm"}
     },
     facts=deferred(f"{_HERE}.shown:facts"),
     files=DeferredMapping(f"{_HERE}.shown:FILES"),
     charts=DeferredMapping(f"{_HERE}.shown:CHARTS"),
     scene=deferred(f"{_HERE}.drawn:scene"),
     studies=DeferredMapping(f"{_HERE}.torque:STUDIES"),
-    ladders=DeferredMapping(f"{_HERE}.traces:LADDERS"),
+    ladders=DeferredMapping(f"{_HERE}.drawn:LADDERS"),
     public=DeferredMapping(f"{_HERE}.public:PUBLIC"),
     cut=False,
 )

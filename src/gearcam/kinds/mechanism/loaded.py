@@ -8,7 +8,7 @@ from __future__ import annotations
 import cmath
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Final, NamedTuple
+from typing import TYPE_CHECKING, Final
 
 from gearcam.kinds.mechanism.keys import center_of, way_of
 from gearcam.kinds.mechanism.names import acted_on, acting, tables_of
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from gearcam.kinds.mechanism.design import MechanismDesign
     from gearcam.kinds.mechanism.placed import PlacedDrive
     from gearcam.linkages.linkage import Linkage
-    from gearcam.parts.mass import MassProperties
 
 BODY: Final = ".body"
 """Behind the name of a shaft or a way: the member on it."""
@@ -55,71 +54,42 @@ def work_of(
         If a load begins before the slide's whole travel, or its table does not reach over the
         master's range.
     """
-    tables, wheels = tables_of(design), list(_wheel_masses(drives))
+    tables, wheels = tables_of(design), list(_wheels(drives))
     acted = acted_on(tables)
     points = [point for (_, k), one in acting(tables) for point in one.points(acted, k)]
-    points += [one.element for one in wheels]
+    points += [element for element, *_ in wheels]
     whole = replace(linkage, elements=(*linkage.elements, *points))
     on = LoadedLinkage(whole, acted, design.drive[0].speed, design.gravity.pull)
     efforts = [effort for (_, k), one in acting(tables) for effort in one.efforts(on, k)]
-    for wheel in wheels:
-        efforts.append(wheel.effort)
+    for _, center, mass, inertia in wheels:
+        efforts.append(inertia)
         if on.pull:
-            efforts.append(force_on(wheel.center, wheel.mass * on.pull, GRAVITY))
+            efforts.append(force_on(center, mass * on.pull, GRAVITY))
     efforts.sort(key=lambda one: one.part == SPRINGS)  # last, behind all that has a mass
     return VirtualWork(whole, efforts, on.speed, tuple(on.knots))
 
 
-class _WheelMass(NamedTuple):
-    """A wheel or a rack as a mass.
-
-    Attributes
-    ----------
-    element : Element
-        What carries its centre of mass.
-    center : str
-        Joint in its centre of mass.
-    mass : float, kg
-        Its mass.
-    effort : InertiaForce
-        Its inertia.
-    """
-
-    element: Element
-    center: str
-    mass: float
-    effort: InertiaForce
-
-
-def _wheel_masses(drives: Sequence[PlacedDrive]) -> Iterator[_WheelMass]:
-    """Yield the wheels and racks of pairs whose designs give a density.
-
-    Parameters
-    ----------
-    drives : sequence of PlacedDrive
-        Those of a mechanism.
-    """
+def _wheels(drives: Sequence[PlacedDrive]) -> Iterator[tuple[Element, str, float, InertiaForce]]:
+    """Yield wheels and racks with a density: an element, their centre of mass, mass and inertia."""
     from gearcam.parts.mass import mass_properties
 
     for drive in drives:
         if drive.spec.pair is None or drive.result is None:
             continue
-        for number, word in enumerate(drive.moved):
+        for number, (word, moved) in enumerate(drive.moved.items()):
             density = drive.result.design.blank.wheel(number + 1).density
-            if density is not None:
-                found = mass_properties(drive.result.parts[number], density)
-                yield _wheel(drive, word, found)
-
-
-def _wheel(drive: PlacedDrive, word: str, found: MassProperties) -> _WheelMass:
-    name, placed = f"{drive.spec.name}.{word}", complex(*found.centroid[:2])
-    member, center = name + BODY, f"{name}.center of mass"
-    if drive.moved[word].along:  # any point of it has its way
-        element = PushedSlide(member, name, way_of(name), center)
-        inertia = InertiaForce.of_mass(center, found.mass, member)
-        return _WheelMass(element, center, found.mass, inertia)
-    start = cmath.phase(drive.vector(placed))
-    element = Crank(member, name, center_of(name), center, abs(placed), start)
-    # about its shaft, which stands still
-    inertia = InertiaForce.of_turn(NamedCoordinate(name), _M2 * found.inertia, name)
-    return _WheelMass(element, center, found.mass, inertia)
+            if density is None:
+                continue
+            found = mass_properties(drive.result.parts[number], density)
+            name = f"{drive.spec.name}.{word}"
+            member, center = name + BODY, f"{name}.center of mass"
+            if moved.along:  # any point of it has its way
+                element = PushedSlide(member, name, way_of(name), center)
+                inertia = InertiaForce.of_mass(center, found.mass, member)
+            else:
+                off = drive.vector(complex(*found.centroid[:2]))
+                start = cmath.phase(off)
+                element = Crank(member, name, center_of(name), center, abs(off), start)
+                # about its shaft, which stands still
+                inertia = InertiaForce.of_turn(NamedCoordinate(name), _M2 * found.inertia, name)
+            yield element, center, found.mass, inertia

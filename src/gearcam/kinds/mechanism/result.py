@@ -18,13 +18,12 @@ from gearcam.base.numerals import formatted, in_range
 from gearcam.kinds.mechanism.asked import DEG, RATES, TABLES, Amount, Output
 from gearcam.kinds.mechanism.design import MechanismDesign
 from gearcam.kinds.mechanism.linkage import make_linkage
-from gearcam.kinds.mechanism.names import tables_of
-from gearcam.kinds.mechanism.outputs import OutputNames, paths_asked
+from gearcam.kinds.mechanism.names import OutputNames, paths_asked, tables_of
 from gearcam.kinds.mechanism.placed import PlacedDrive, placed
 from gearcam.linkages.checks import KIND, CheckedMachine
 from gearcam.linkages.dwells import DriverRange
 from gearcam.linkages.linkage import Linkage
-from gearcam.linkages.measures import HIGHEST, TrackMeasures
+from gearcam.linkages.measures import HIGHEST, Peak, TrackMeasures
 from gearcam.linkages.paths import PointPath
 from gearcam.linkages.transmission import Transmission, transmissions
 from gearcam.numeric.arguments import angles
@@ -116,6 +115,11 @@ class MechanismResult(Result):
         """Symbol of the master's angle in columns, and what it is called."""
         return _DRIVERS[self.design.drive[0].key]
 
+    @property
+    def axis(self) -> str:
+        """The master's angle as the axis of charts."""
+        return f"{self.driver[1]}, deg"
+
     @cached_property
     def outputs(self) -> tuple[Output, ...]:
         """What is asked for, in order."""
@@ -131,6 +135,10 @@ class MechanismResult(Result):
         low, high = (DEG * end for end in self.linkage.span)
         place = DEG * q
         return in_range(place, low, high) if self.linkage.closed else formatted(place)
+
+    def at(self, peak: Peak) -> str:
+        """Return the place of a `peak` in words."""
+        return f"at {self.degrees(peak.place)} deg"
 
     @property
     def angles(self) -> Array:
@@ -198,19 +206,15 @@ class MechanismResult(Result):
     def _motion_of(self, outputs: Iterable[Output], q: ArrayLike | None) -> Columns:
         where = self.angles if q is None else self._within_range(q)
         columns = {f"{self.driver[0]}_deg": DEG * where}
+        orders, speed = range(1, len(RATES) + 1), self.speed
         for one in outputs:
-            columns |= self._columns(one, where)
+            values, (scale, unit) = self.track(one)(where, len(RATES)).derivatives(), one.unit
+            keys = {order: one.rate_keys(order) for order in orders}
+            columns[f"{one.stem}_{unit}"] = scale * values[0]
+            columns |= {f"{one.stem}_{keys[k][0]}": values[k] for k in orders}
+            if speed is not None:
+                columns |= {f"{one.stem}_{keys[k][1]}": values[k] * speed**k for k in orders}
         return Columns(columns)
-
-    def _columns(self, one: Output, where: Array) -> dict[str, Array]:
-        orders, speed, (scale, unit) = range(1, len(RATES) + 1), self.speed, one.unit
-        values = self.track(one)(where, len(RATES)).derivatives()
-        keys = {order: one.rate_keys(order) for order in orders}
-        columns = {f"{one.stem}_{unit}": scale * values[0]}
-        columns |= {f"{one.stem}_{keys[k][0]}": values[k] for k in orders}
-        if speed is not None:
-            columns |= {f"{one.stem}_{keys[k][1]}": values[k] * speed**k for k in orders}
-        return columns
 
     def track(self, one: Output) -> Callable[[Array, int], Jet]:
         """Return an output as a function: ``track(q, order)`` of the master's angles (n,), rad."""

@@ -17,7 +17,6 @@ from gearcam.base.facts import Fact, Facts, extent
 from gearcam.base.numerals import formatted
 from gearcam.kinds.mechanism.asked import DEG, RATES
 from gearcam.kinds.mechanism.names import tables_of, told_parts
-from gearcam.kinds.mechanism.parts.part import at_peak
 from gearcam.linkages.measures import STILL
 from gearcam.linkages.transmission import ADMISSIBLE, pressure_angle
 from gearcam.numeric.columns import Columns
@@ -74,7 +73,10 @@ def facts(result: MechanismResult) -> Facts:
             for name, other in result.compared.items()
         }
         or None,
-        "accuracy": _accuracy(result),
+        "accuracy": {
+            "lengths_mm": result.closure_error,
+            "how": {"lengths_mm": "largest difference of a length of a member from the one it has"},
+        },
     }
     first = next(iter(result.outputs))
     return Facts(tree, (f"outputs.{first.stem}.stroke_{first.unit[1]}",), _called(result))
@@ -82,7 +84,7 @@ def facts(result: MechanismResult) -> Facts:
 
 def _called(result: MechanismResult) -> str:
     """Return what the mechanism is, by its dyads and its drives."""
-    parts = (part.called for _, _, part in told_parts(tables_of(result.design)))
+    parts = (part.called for *_, part in told_parts(tables_of(result.design)))
     groups = " + ".join(name for name in parts if name) or "linkage"
     keys = [one.key for one in result.design.drive]
     drives = (_counted(keys.count(key), key) for key in dict.fromkeys(keys))
@@ -130,7 +132,7 @@ def _where(
     result: MechanismResult, measures: TrackMeasures, peak: Peak
 ) -> tuple[str, float | None]:
     """Return the place of a peak as text and in degrees; none of what stands still."""
-    return ("", None) if measures.still else (at_peak(result, peak), DEG * peak.place)
+    return ("", None) if measures.still else (result.at(peak), DEG * peak.place)
 
 
 def _dead_centers(measures: TrackMeasures) -> list[float]:
@@ -198,30 +200,23 @@ def _stretches(result: MechanismResult) -> list[Tree] | None:
                 place=_between(one.start, one.end),
                 shown=True,
             ),
-            **_fitted(fit),
-            **_distance(result.paths[one.on], one),
+            **_fitted(result.paths[one.on], one, fit),
         }
         for one, fit in zip(result.design.stretch, result.stretches, strict=True)
     ] or None
 
 
-def _distance(path: PointPath, one: StretchSpec) -> Tree:
-    """Return the smallest and the largest distance of a stretch from a point that is given."""
-    if one.center is None:
-        return {}
-    from gearcam.linkages.path_fits import distances_from
+def _fitted(path: PointPath, one: StretchSpec, fit: LineFit | CircleFit) -> Tree:
+    """Return the length of a line, or radius and centre of a circle; distances from a point."""
+    from gearcam.linkages.path_fits import LineFit, distances_from
 
-    ends = distances_from(path, complex(*one.center), one.start, one.end)
-    return {"distance_mm": extent(*(end.value for end in ends))}
-
-
-def _fitted(fit: LineFit | CircleFit) -> Tree:
-    """Return the length of a line, or radius and centre of a circle."""
-    from gearcam.linkages.path_fits import LineFit
-
-    if isinstance(fit, LineFit):
-        return {"length_mm": fit.length}
-    return {"radius_mm": fit.radius, "center_mm": [fit.center.real, fit.center.imag]}
+    tree: Tree = {"length_mm": fit.length} if isinstance(fit, LineFit) else {
+        "radius_mm": fit.radius, "center_mm": [fit.center.real, fit.center.imag],
+    }  # fmt: skip
+    if one.center is not None:
+        ends = distances_from(path, complex(*one.center), one.start, one.end)
+        tree["distance_mm"] = extent(*(end.value for end in ends))
+    return tree
 
 
 def _between(begin: float, end: float) -> str:
@@ -268,13 +263,6 @@ def _dwells(result: MechanismResult) -> list[Tree] | None:
         }
         for one, found in zip(result.design.dwell, result.dwells, strict=True)
     ] or None
-
-
-def _accuracy(result: MechanismResult) -> Tree:
-    return {
-        "lengths_mm": result.closure_error,
-        "how": {"lengths_mm": "largest difference of a length of a member from the one it has"},
-    }
 
 
 # --- the same behind several drives ---------------------------------------------------------------
@@ -392,19 +380,9 @@ def _marks(result: MechanismResult) -> tuple[MarkedPlace, ...]:
     return (*knot_marks(DEG * result.linkage.knots, DEG * low, DEG * high), *ends)
 
 
-def _label(result: MechanismResult) -> str:
-    return f"{result.driver[1]}, deg"
-
-
-def _drives(result: MechanismResult) -> dict[str, MechanismResult]:
-    """Return the mechanism behind each of its drives, by their names; without one if only one."""
-    compared = result.compared
-    return result.machines if compared else {"": result}
-
-
 def _chart(angle: bool, order: int, result: MechanismResult) -> Chart | None:
     """Return the chart of a derivative of all outputs that are angles, or lengths."""
-    drives = _drives(result)
+    drives = result.machines if result.compared else {"": result}
     outputs = [one for one in result.outputs if one.angle == angle]
     outputs = outputs[: max(1, _MOST // len(drives))]
     if not outputs:
@@ -417,7 +395,7 @@ def _chart(angle: bool, order: int, result: MechanismResult) -> Chart | None:
     called = f"Angular {word}" if angle and order else word.capitalize()
     return Chart(
         title=f"{called} of {names}",
-        x=_label(result),
+        x=result.axis,
         y=f"{called.lower()}, {_unit(angle, order, timed=result.speed is not None)}",
         lines=tuple(lines),
         marks=_marks(result),
@@ -474,7 +452,7 @@ def _transmission_chart(result: MechanismResult) -> Chart | None:
     limits = limits if given is None else {"limit": given}
     return Chart(
         title="Pressure angle: 90 deg less the transmission angle",
-        x=_label(result),
+        x=result.axis,
         y="pressure angle, deg",
         lines=tuple(lines),
         limits=tuple(Limit(label=name, value=DEG * one) for name, one in limits.items()),
@@ -534,8 +512,7 @@ def _dxf(result: MechanismResult, _: Any) -> Files:
     wheels are those of the pair without their kerf.
     """
     from gearcam.export.dxf import DxfStyle, dxf_bytes
-    from gearcam.kinds.mechanism.drawn import paths_drawing
-    from gearcam.kinds.mechanism.traces import CHORDS
+    from gearcam.kinds.mechanism.drawn import CHORDS, paths_drawing
 
     tolerance = result.design.output.chord_tolerance or CHORDS
     style = DxfStyle(tolerance=tolerance, curves="lines", version="R2010")

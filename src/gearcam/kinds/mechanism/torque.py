@@ -18,8 +18,9 @@ from gearcam.base.findings import Remark, check, limit_of, run_checks
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import TORQUE as NEWTON_METRES
 from gearcam.base.quantities import Param
+from gearcam.kinds.mechanism.asked import DEG
 from gearcam.kinds.mechanism.loaded import BODY, work_of
-from gearcam.kinds.mechanism.names import tables_of
+from gearcam.kinds.mechanism.names import acting, tables_of
 from gearcam.kinds.mechanism.parts import ACTIONS
 from gearcam.kinds.shared import accuracy_study
 from gearcam.linkages.efforts import GRAVITY, PARTS, SPRINGS, InertiaForce
@@ -49,8 +50,6 @@ _NOISE: Final = 1e-9
 
 _NOTHING: Final = 1e-6
 """Work, N mm, that is none: what rounding makes of forces that do no work."""
-
-_DEG: Final = math.degrees(1.0)
 
 _BESIDE: Final = np.linspace(-1.0, 1.0, 33)
 """Places beside a largest value, in steps, at which a larger one is looked for."""
@@ -239,7 +238,8 @@ def study_torque(result: MechanismResult, progress: Progress | None) -> StudyRes
         If the mechanism does not close, or a load is not finite.
     """
     _demand(result.design)
-    others = _compared(result)
+    even = None if result.design.compare else result.without_pair
+    others = result.compared if even is None else {EVEN: even}
     if progress is not None:
         progress("torque", 0, 1 + len(others))
     with result.stage("torque"):
@@ -253,11 +253,17 @@ def study_torque(result: MechanismResult, progress: Progress | None) -> StudyRes
         shafts = list(shaft_loads(result, work, q))
         columns |= {one.column: one.values for one in shafts}
         ends = _ends(result, work, shafts, q)
-        effort = _effort(result, work, beside, tuple(_pulls(result, shafts, ends)))
+        top = _largest(work)
+        effort = DriverEffort(
+            peak=_NM * abs(top.value),
+            place=_place(result, top.place),
+            others={name: _NM * abs(_largest(one).value) for name, one in beside.items()},
+            gain=_gain(result.drives[0], work, top.place),
+            pulls=tuple(_pulls(result, shafts, ends)),
+        )
         found = run_checks(CHECKS, effort, result.design.limits)
-    speed = result.speed
-    if speed is not None:
-        columns["power_w"] = columns["torque_nm"] * speed
+    if result.speed is not None:
+        columns["power_w"] = columns["torque_nm"] * result.speed
     return StudyResult(
         result=result,
         study=TORQUE,
@@ -267,12 +273,6 @@ def study_torque(result: MechanismResult, progress: Progress | None) -> StudyRes
         study_findings=found,
         drawn=partial(_charts, result, columns, beside),
     )
-
-
-def _compared(result: MechanismResult) -> Mapping[str, MechanismResult]:
-    """Return the same mechanism behind other drives; behind a pair one that turns evenly too."""
-    even = None if result.design.compare else result.without_pair
-    return result.compared if even is None else {EVEN: even}
 
 
 def _places(result: MechanismResult, work: VirtualWork) -> Array:
@@ -290,19 +290,12 @@ def _columns(result: MechanismResult, work: VirtualWork, q: Array) -> dict[str, 
     if not np.isfinite(total).all():
         where = _place(result, float(q[~np.isfinite(total)][0]))
         raise InfeasibleError(f"a load or spring is not finite at {where}", where="load")
-    columns = {f"{result.driver[0]}_deg": _DEG * q, "torque_nm": total}
+    columns = {f"{result.driver[0]}_deg": DEG * q, "torque_nm": total}
     return columns | {f"{part}_nm": values for part, values in parts.items()}
 
 
 def _place(result: MechanismResult, q: float) -> str:
     return f"{result.driver[0]} = {result.degrees(q)} deg"
-
-
-def _least_and_largest(result: MechanismResult, least: Peak, largest: Peak) -> str:
-    """Return where both are, in words; nothing of what does not change."""
-    if largest.value - least.value <= _NOISE * max(abs(largest.value), abs(least.value)):
-        return ""
-    return f"least {_place(result, least.place)}, largest {_place(result, largest.place)}"
 
 
 def shaft_loads(result: MechanismResult, work: VirtualWork, q: Array) -> Iterator[ShaftLoad]:
@@ -405,34 +398,16 @@ def _lifts(drive: PlacedDrive) -> float:
     return math.copysign(1.0, float(rise)) * (-1.0 if drive.spec.mirror else 1.0)
 
 
-def _effort(
-    result: MechanismResult,
-    work: VirtualWork,
-    beside: Mapping[str, VirtualWork],
-    pulls: tuple[Pull, ...],
-) -> DriverEffort:
-    top = _largest(work)
-    return DriverEffort(
-        peak=_NM * abs(top.value),
-        place=_place(result, top.place),
-        others={name: _NM * abs(_largest(one).value) for name, one in beside.items()},
-        gain=_gain(result, work),
-        pulls=pulls,
-    )
-
-
 def _largest(work: VirtualWork) -> Peak:
     """Return the moment of the largest size."""
     return max(work.largest, work.least, key=lambda one: abs(one.value))
 
 
-def _gain(result: MechanismResult, work: VirtualWork) -> str:
+def _gain(drive: PlacedDrive, work: VirtualWork, place: float) -> str:
     """Return how the pair of the master multiplies the moment on wheel 2, in words."""
-    drive = result.drives[0]
     if "wheel2" not in drive.moved:
         return ""
-    place = np.array([_largest(work).place])
-    track = work.linkage.track(f"{drive.spec.name}.wheel2", place, 1)
+    track = work.linkage.track(f"{drive.spec.name}.wheel2", np.array([place]), 1)
     ratio = abs(float(track.derivatives()[1][0]))
     return f" There the pair multiplies the moment on wheel 2 by its ratio {formatted(ratio, 4)}."
 
@@ -487,19 +462,15 @@ def _range(result: MechanismResult, work: VirtualWork, meaning: str) -> Tree:
 
 def _extent(result: MechanismResult, ends: Ends, meaning: str, scale: float) -> Fact:
     """Return the least and the largest of what is exerted, times a scale, as a fact."""
-    least, largest = (scale * end.value for end in ends)
-    return Fact(
-        extent(least, largest),
-        meaning,
-        place=_least_and_largest(result, *ends),
-        shown=True,
-        noise=_NOISE * max(abs(least), abs(largest)),
-    )
+    (least, low), (largest, high) = ((scale * end.value, _place(result, end.place)) for end in ends)
+    noise = _NOISE * max(abs(least), abs(largest))
+    place = f"least {low}, largest {high}" if largest - least > noise else ""
+    return Fact(extent(least, largest), meaning, place=place, shown=True, noise=noise)
 
 
 def _error(result: MechanismResult, work: VirtualWork) -> float | None:
     """Return the work of what keeps its energy over a cycle, as a share; it should be 0."""
-    damped = any(one.damped for one in result.design.spring)
+    damped = any(one.damped for _, one in acting(tables_of(result.design)))
     kept = [part for part in work.kept if not (damped and part == SPRINGS)]
     found = [work.works[part] for part in kept if part in work.works]
     whole = sum(size for _, size in work.works.values())
@@ -521,21 +492,19 @@ def _assumptions(result: MechanismResult, work: VirtualWork) -> str:
 
 
 def _charts(
-    result: MechanismResult,
-    columns: Mapping[str, Array],
-    beside: Mapping[str, VirtualWork],
+    result: MechanismResult, columns: Mapping[str, Array], beside: Mapping[str, VirtualWork]
 ) -> dict[str, Chart]:
     """Return charts of the driver's moment, its parts, and those behind other drives."""
     angle, design = next(iter(columns.values())), result.design
 
     def chart(title: str, lines: list[Line], *limits: Limit) -> Chart:
-        x = f"{result.driver[1]}, deg"
-        return Chart(title=title, x=x, y="moment, N m", lines=tuple(lines), limits=limits)
+        y = "moment, N m"
+        return Chart(title=title, x=result.axis, y=y, lines=tuple(lines), limits=limits)
 
     lines = [Line(label=design.drive[0].name, x=angle, y=columns["torque_nm"])]
     for name, work in beside.items():
         q = _places(result, work)
-        lines.append(Line(label=name, x=_DEG * q, y=_NM * np.asarray(work.moment(q).c[0])))
+        lines.append(Line(label=name, x=DEG * q, y=_NM * np.asarray(work.moment(q).c[0])))
     most = limit_of(CHECKS, "drive-torque", design.limits) / NEWTON_METRES.factor
     limits = [Limit(label="limit", value=most)] if most else []
     charts = {"torque": chart("Moment of the driver", lines, *limits)}

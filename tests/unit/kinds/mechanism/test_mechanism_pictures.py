@@ -15,9 +15,8 @@ import shapely
 
 import gearcam as gc
 from gearcam.export.dxf import GREY
-from gearcam.kinds.mechanism.drawn import picture
+from gearcam.kinds.mechanism.drawn import distances, path_within, picture
 from gearcam.kinds.mechanism.parts.picture import Picture
-from gearcam.kinds.mechanism.traces import distances, path_within
 from gearcam.numeric.arrays import as_pairs
 from gearcam.pictures.drawings import GHOST, MEMBER, TRACE, Circle, chains
 from gearcam.pictures.scenes import MovingBody, Scene

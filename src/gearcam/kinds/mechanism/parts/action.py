@@ -41,12 +41,6 @@ MOST: Final = 1e9
 MOVING: Final = f"{Sort.JOINT} or {Sort.MEMBER} or {Sort.SHAFT} or {Sort.WAY}"
 """What may be loaded."""
 
-TURNS: Final = (Sort.MEMBER, Sort.SHAFT)
-"""What a torque acts on."""
-
-SLACK: Final = 1e-9
-"""How much a table may be short of the range, rad; distance of joints that meet, as a share."""
-
 
 @dataclass(frozen=True, kw_only=True)
 class Acted(ShortRepr):
@@ -72,6 +66,10 @@ class Acted(ShortRepr):
     driven: frozenset[str]
     unturned: Mapping[str, str]
     still: frozenset[str]
+
+    def turns(self, name: str) -> bool:
+        """Return whether a torque acts on what has a `name`."""
+        return self.sorts[name] in (Sort.MEMBER, Sort.SHAFT)
 
     def joint(self, name: str) -> str:
         """Return the joint of what is pushed, by its `name`, or that is a joint itself."""

@@ -58,7 +58,13 @@ class WoundPart(MachinePart):
         return 1.0 if self.wind == "ccw" else -1.0
 
     def demand(self, linkage: Linkage, where: str) -> None:
-        """Refuse a chain on a shaft that turns without end (see `MachinePart`)."""
+        """Refuse a chain on a shaft that turns without end (see `MachinePart`).
+
+        Raises
+        ------
+        InfeasibleError
+            If it does.
+        """
         if not linkage.closed:
             return
         first, last = np.asarray(linkage.track(self.on, linkage.knots[[0, -1]], 0).c[0])
@@ -93,9 +99,7 @@ class ChainSpec(WoundPart):
     joint: str = named(gives=Sort.JOINT, doc="name of the joint at the chain's end", example="B")
     lever: str = named(gives=Sort.MEMBER, turns=True, doc="name of the lever", example="door")
     hinge: tuple[float, float] = point_param(
-        word="",
-        default=(0.0, 0.0),
-        doc="where the lever is hinged",
+        word="", default=(0.0, 0.0), doc="where the lever is hinged"
     )
     length: float = positive_length(
         default=REQUIRED, example=1735, doc="from the hinge to the joint"

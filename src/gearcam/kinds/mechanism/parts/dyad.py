@@ -16,14 +16,7 @@ from gearcam.base.quantities import COUNT, LENGTH, LONGEST, TEXT, param
 from gearcam.base.rules import Breach
 from gearcam.kinds.mechanism.asked import DEG, Output, coordinates
 from gearcam.kinds.mechanism.keys import NameUse, Sort, angle_param, named, point_param
-from gearcam.kinds.mechanism.parts.part import (
-    MachinePart,
-    Setting,
-    Tree,
-    at_peak,
-    in_degrees,
-    not_closing,
-)
+from gearcam.kinds.mechanism.parts.part import MachinePart, Setting, Tree, in_degrees, not_closing
 from gearcam.linkages.coordinates import PointWay
 from gearcam.linkages.dyads import DYADS, Lengths
 from gearcam.linkages.elements import BRANCH, MOTION, Dyad, Element
@@ -324,12 +317,12 @@ class DyadSpec(MachinePart):
         if worst.pressure_angle is not None:
             peak = worst.pressure_angle
             label, value = f"largest pressure angle of {self.joint}", DEG * peak.value
-            fact = Fact(value, label, place=at_peak(result, peak), shown=shown, noise=1e-9)
+            fact = Fact(value, label, place=result.at(peak), shown=shown, noise=1e-9)
             return {"pressure_angle_deg": fact, "pressure_angle_at_deg": DEG * peak.place}
         if worst.distance is not None:
             peak = worst.distance
             label = f"least distance of the block of {self.joint} from the guide's pivot"
-            fact = Fact(peak.value, label, place=at_peak(result, peak))
+            fact = Fact(peak.value, label, place=result.at(peak))
             return {"guide_distance_mm": fact, "guide_distance_at_deg": DEG * peak.place}
         return {}
 

@@ -14,15 +14,7 @@ from gearcam.base.quantities import FORCE, LENGTH, LONGEST, TEXT, TORQUE, Row, p
 from gearcam.base.rules import Breach, exactly_one, needs
 from gearcam.designs.faults import Fault
 from gearcam.kinds.mechanism.keys import Sort, angle_param, later, named
-from gearcam.kinds.mechanism.parts.action import (
-    MOST,
-    MOVING,
-    SLACK,
-    TURNS,
-    Acted,
-    LoadedLinkage,
-    MachineAction,
-)
+from gearcam.kinds.mechanism.parts.action import MOST, MOVING, Acted, LoadedLinkage, MachineAction
 from gearcam.linkages.coordinates import WorkCoordinate
 from gearcam.linkages.dwells import WHOLE, ShortRangeError, last_travels
 from gearcam.linkages.efforts import ActiveRanges, AppliedForce, Effort, ForceLaw, force_on
@@ -38,6 +30,9 @@ INNER, OUTER = "inner", "outer"
 """Dead centres, where a slide's place is least, and where it is largest."""
 
 _TURN: Final = 2.0 * math.pi
+
+_SLACK: Final = 1e-9
+"""How much a table may be short of the range, rad."""
 
 _KILO: Final = 1e3
 """N mm of a N m."""
@@ -194,7 +189,7 @@ class MachineLoad(MachineAction, WrittenLoad):
             what = f"acts on {self.on}, which moves along its own way only"
             allowed = "force_n of one value, or a joint or point"
             yield Fault(("on",), what, self.on, allowed)
-        if sort in TURNS:
+        if acted.turns(self.on):
             keys = (("force", "force_n"), ("direction", "direction_deg"), ("way", "at_mm"))
             for name, key in keys:
                 if getattr(self, name) is not None:
@@ -225,7 +220,7 @@ class MachineLoad(MachineAction, WrittenLoad):
         law = self._law(on, coordinate, f"load[{number}]")
         if self.against:
             reversals = on.measures(coordinate).extremes[0][0]
-            on.knots += away(reversals, on.linkage.knots, SLACK).tolist()
+            on.knots += away(reversals, on.linkage.knots, _SLACK).tolist()
             law = _opposing(law)
         yield AppliedForce(coordinate, law, active=active)
 
@@ -236,7 +231,7 @@ class MachineLoad(MachineAction, WrittenLoad):
         if self.start is None or self.end is None:
             return None
         period = _TURN if on.linkage.closed else math.inf
-        if self.end - self.start > period + SLACK:
+        if self.end - self.start > period + _SLACK:
             what = "the load acts for more than a turn of the master, with which it repeats"
             note = "without from_deg and to_deg it acts everywhere, by a table in some turns only"
             value, most = math.degrees(self.end), math.degrees(self.start + period)
@@ -259,7 +254,7 @@ class MachineLoad(MachineAction, WrittenLoad):
 
     def _law(self, on: LoadedLinkage, coordinate: WorkCoordinate, where: str) -> ForceLaw:
         """Return its size, N or N mm."""
-        per = _KILO if on.acted.sorts[self.on] in TURNS else 1.0
+        per = _KILO if on.acted.turns(self.on) else 1.0
         if self.formula is not None:
             variable, made = self.read(self.formula)
             name = {"q": "angle", "x": "place", "v": "velocity"}[variable]
@@ -290,7 +285,7 @@ class MachineLoad(MachineAction, WrittenLoad):
         if closed and math.isclose(last - first, _TURN, rel_tol=1e-12):
             return range(math.floor((low - last) / _TURN), math.ceil((high - first) / _TURN) + 1)
         for index, short, limit in ((0, first - low, low), (-1, high - last, high)):
-            if short > SLACK:
+            if short > _SLACK:
                 where = f"{where}.at_deg[{index % len(place)}]"
                 what = "the table does not reach over the master's range"
                 value, most = math.degrees(place[index]), math.degrees(limit)

@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from gearcam.linkages.closing import NotClosingError
     from gearcam.linkages.elements import Element
     from gearcam.linkages.linkage import Linkage
-    from gearcam.linkages.measures import Peak
 
 Tree = dict[str, Any]
 
@@ -244,8 +243,3 @@ def in_degrees(angle: float) -> str:
     """Return an angle as text in degrees; what is left of 0 by rounding is 0."""
     found = math.degrees(angle)
     return formatted(0.0 if abs(found) < 1e-6 else found, 8)
-
-
-def at_peak(result: Any, peak: Peak) -> str:
-    """Return the place of a `peak` in words, in a `result`."""
-    return f"at {result.degrees(peak.place)} deg"

@@ -217,10 +217,7 @@ class Picture:
                 pose=Pose(pose.turn, end),
             ),
             MovingBody(
-                name=member,
-                called=member,
-                features=(shape, *link([0j], 1.2 * half)),
-                pose=pose,
+                name=member, called=member, features=(shape, *link([0j], 1.2 * half)), pose=pose
             ),
         ]
 

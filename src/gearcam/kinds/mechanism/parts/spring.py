@@ -25,15 +25,7 @@ from gearcam.base.quantities import (
 from gearcam.base.rules import Breach, exactly_one
 from gearcam.designs.faults import Fault
 from gearcam.kinds.mechanism.keys import Sort, named
-from gearcam.kinds.mechanism.parts.action import (
-    MOST,
-    MOVING,
-    SLACK,
-    TURNS,
-    Acted,
-    LoadedLinkage,
-    MachineAction,
-)
+from gearcam.kinds.mechanism.parts.action import MOST, MOVING, Acted, LoadedLinkage, MachineAction
 from gearcam.linkages.coordinates import (
     JointDistance,
     MemberTurn,
@@ -51,6 +43,9 @@ if TYPE_CHECKING:
     from gearcam.linkages.linkage import Linkage
     from gearcam.mechanics.mass import GravitySpec
     from gearcam.numeric.jets import Jet
+
+_SLACK: Final = 1e-9
+"""Distance of joints that meet, as a share of their places."""
 
 _STRAIGHT: Final = ("stiffness", "preload", "damping")
 _ANGULAR: Final = ("torsion", "moment", "swing_damping")
@@ -165,7 +160,7 @@ class MachineSpring(MachineAction):
             ends, key, wanted = self.between, "between", "two joints, or two members"
         else:
             ends, key, wanted = (self.on or "",), "on", "a slide, a member or a shaft"
-        turns = {acted.sorts[name] in TURNS for name in ends}
+        turns = {acted.turns(name) for name in ends}
         if len(turns) > 1:
             yield Fault((key,), "joins a joint to a member", list(ends), wanted)
         elif key == "on" and acted.sorts[ends[0]] == Sort.JOINT:
@@ -221,7 +216,7 @@ def _demand_apart(linkage: Linkage, on: JointDistance, where: str) -> None:
     known = linkage.at(q, 0)
     first, second = (np.asarray(known.jet(one).c[0]) for one in (on.first, on.second))
     apart = np.abs(second - first)
-    if apart.min() <= SLACK * max(1.0, float(np.abs(first).max())):
+    if apart.min() <= _SLACK * max(1.0, float(np.abs(first).max())):
         place = formatted(math.degrees(float(q[int(apart.argmin())])), 6)
         what = f"{on.first} and {on.second} are in one place at {place} deg of the master"
         raise InfeasibleError(what, where=where)
