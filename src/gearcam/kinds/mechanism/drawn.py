@@ -20,9 +20,10 @@ import numpy as np
 
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.numerals import formatted
-from gearcam.kinds.mechanism.names import parts_of, tables_of, told_parts
-from gearcam.kinds.mechanism.parts.part import Setting
+from gearcam.kinds.mechanism.keys import Sort
+from gearcam.kinds.mechanism.names import parts_of, standing_places, tables_of, told_parts
 from gearcam.kinds.mechanism.parts.picture import CHAIN, CHAIN_WHEEL, PIN, Picture
+from gearcam.kinds.mechanism.parts.setting import Setting
 from gearcam.linkages.linkage import in_cycle
 from gearcam.numeric.arrays import divided
 from gearcam.numeric.pose import Pose
@@ -111,7 +112,17 @@ def bodies(result: MechanismResult, q: Array, before: int = 0) -> tuple[MovingBo
     """
     tables = tables_of(result.design)
     parts = [part for *_, part in parts_of(tables)]
-    picture = Picture(parts, Setting(parts, result.drives), q, result.linkage.at(q, 0))
+    joints = [use for part in parts for use in part.given() if use.sort == Sort.JOINT]
+    joints.sort(key=lambda one: one.path != ("name",))  # first those with a table of their own
+    picture = Picture(
+        Setting(standing_places(tables), result.drives),
+        q,
+        result.linkage.at(q, 0),
+        [one.name for one in joints],
+        [length for part in parts for length in part.sizes],
+    )
+    for guide, quantity in (one for part in parts for one in part.guided()):
+        picture.sliding[guide].append(quantity)
     for part in parts:
         part.draw(picture)
     for *_, part in told_parts(tables):

@@ -12,8 +12,8 @@ import numpy as np
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import LONGEST
-from gearcam.kinds.mechanism.names import needed, parts_of, told_parts
-from gearcam.kinds.mechanism.parts.part import Setting
+from gearcam.kinds.mechanism.names import needed, parts_of, standing_places, told_parts
+from gearcam.kinds.mechanism.parts.setting import Setting
 from gearcam.linkages.closing import NotClosingError, settled
 from gearcam.linkages.elements import MOTION
 from gearcam.linkages.linkage import Linkage, in_order
@@ -64,7 +64,7 @@ def make_linkage(tables: Tables, drives: Sequence[PlacedDrive]) -> Linkage:
     knots = apart(np.unique(np.concatenate([[low, high], *inner])), _SAME)
     knots[-1] = high  # rather than one that differs by rounding
     knots = with_cells([one.cells_in(low, high) for one in drives], knots)
-    setting = Setting(parts.values(), drives)
+    setting = Setting(standing_places(tables), drives)
     found = [one for number, drive in enumerate(drives) for one in drive.elements(not number)]
     owners = {}
     for where, part in parts.items():

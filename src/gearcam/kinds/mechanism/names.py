@@ -64,6 +64,12 @@ def told_parts(tables: Tables) -> Iterator[tuple[str, int, MachinePart]]:
     yield from parts_of({title: tables[title] for title in PARTS if title in tables})
 
 
+def standing_places(tables: Tables) -> dict[str, complex]:
+    """Return where the joints are that stand still, by name, mm."""
+    found = (part.standing for *_, part in parts_of(tables))
+    return {name: at for one in found for name, at in one.items()}
+
+
 def given(tables: Tables) -> Iterator[NameUse]:
     """Yield the names that the `tables` of a mechanism give."""
     for title, number, one in several(tables):

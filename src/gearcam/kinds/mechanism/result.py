@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property, partial
@@ -48,12 +48,18 @@ _WITNESSES: Final = 1000
 _ENDS: Final = 1e-9
 """How far an angle may be beyond an open range by rounding, rad."""
 
+_TURNING: Final = ("direction", "angular_velocity", "angular_acceleration")
+"""Charts that lead where an angle is asked for first."""
+
 _DRIVERS: Final = {
     "pair": ("phi1", "driver angle phi1"),
     "cam": ("theta", "cam angle theta"),
     "even": ("theta", "crank angle theta"),
 }
 """Symbol and name of the master's angle, by the key of the drive."""
+
+
+Row = dict[str, Any]
 
 
 class MechanismResult(Result):
@@ -241,9 +247,7 @@ class MechanismResult(Result):
     @property
     def charts(self) -> tuple[str, ...]:
         """Names that `chart` accepts, first those of what is asked for first."""
-        from gearcam.kinds.mechanism.shown import TURNING
-
-        first = TURNING if self.outputs[0].angle else ()
+        first = _TURNING if self.outputs[0].angle else ()
         return tuple(sorted(super().charts, key=lambda name: name not in first))
 
     @cached_property
@@ -350,16 +354,30 @@ class MechanismResult(Result):
         )
 
     def comparison(self) -> Columns:
-        """Return what the drives to compare make of each output (see `comparison`)."""
-        from gearcam.kinds.mechanism.shown import comparison
+        """Return what the drives to compare make of each output.
 
-        return Columns(comparison(self))
+        Returns
+        -------
+        Columns
+            A row for each drive and output: ``drive``, the master's range ``range_deg``,
+            ``output``, ``unit``, ``stroke``, the largest sizes of the derivatives by the master's
+            angle with the places, ``velocity`` and ``velocity_at_deg`` and so on, in the unit or
+            rad; with a speed those by time, ``velocity_per_s``, and the range's time, ``range_s``.
+            Places of what stands still are masked.
+        """
+        return _tabled([row for one in self.machines.items() for row in _of_outputs(*one)])
 
     def interval_table(self) -> Columns:
-        """Return the intervals that the design asks for, behind each drive (see `comparison`)."""
-        from gearcam.kinds.mechanism.shown import interval_table
+        """Return the intervals that the design asks for, behind each drive.
 
-        return interval_table(self)
+        Returns
+        -------
+        Columns
+            A row for each drive and interval: ``drive``, ``on``, ``before``, the master's angles
+            ``from_deg``, ``to_deg``, ``angle_deg``, the velocity at the beginning by the master's
+            angle; with a speed the time, ``time_s``, and the velocity by time.
+        """
+        return _tabled([row for one in self.machines.items() for row in _of_intervals(*one)])
 
     @cached_property
     def stretches(self) -> tuple[LineFit | CircleFit, ...]:
@@ -407,3 +425,52 @@ class MechanismResult(Result):
         """Return the one output that a table is about, `asked` for."""
         (found,) = self.output_names.known[asked.on]
         return found
+
+
+# --- rows of tables -------------------------------------------------------------------------------
+
+
+def _tabled(rows: Sequence[Row]) -> Columns:
+    return Columns({key: _column([row[key] for row in rows]) for key in rows[0]})
+
+
+def _column(values: list[Any]) -> ArrayLike:
+    """Return the values of a column, those that are None masked."""
+    missing = [one is None for one in values]
+    if not any(missing):
+        return np.array(values)
+    there = [0.0 if one is None else one for one in values]
+    return np.ma.MaskedArray(there, mask=missing)
+
+
+def _of_outputs(name: str, machine: MechanismResult) -> Iterator[Row]:
+    speed, (low, high) = machine.speed, machine.linkage.span
+    for one in machine.outputs:
+        measures, (scale, unit) = machine.measures[one.stem], one.unit
+        row: Row = {
+            "drive": name, "range_deg": DEG * (high - low), "output": one.stem, "unit": unit,
+            "stroke": scale * measures.stroke,
+        }  # fmt: skip
+        if speed is not None:
+            row["range_s"] = (high - low) / speed
+        for order, word in enumerate(RATES, start=1):
+            peak = measures.size(order)
+            place = None if measures.still else DEG * peak.place
+            row |= {word: peak.value, f"{word}_at_deg": place}
+            if speed is not None:
+                row[f"{word}_per_s"] = peak.value * speed**order
+        yield row
+
+
+def _of_intervals(name: str, machine: MechanismResult) -> Iterator[Row]:
+    speed = machine.speed
+    for one, found, rate in zip(
+        machine.design.interval, machine.intervals, machine.interval_velocities, strict=True
+    ):
+        row = {
+            "drive": name, "on": one.on, "before": one.before, "from_deg": DEG * found.begin,
+            "to_deg": DEG * found.end, "angle_deg": DEG * found.length, "velocity": rate,
+        }  # fmt: skip
+        yield row if speed is None else row | {
+            "time_s": found.length / speed, "velocity_per_s": rate * speed,
+        }  # fmt: skip

@@ -1,4 +1,4 @@
-"""What is shown of a mechanism: facts, tables of comparison, charts, and files.
+"""What is shown of a mechanism: facts, charts, and files.
 
 Velocities and what follows are by time if the master has a speed, else by its angle. Where drives
 are compared, every output has a line for each of them.
@@ -19,14 +19,11 @@ from gearcam.kinds.mechanism.asked import DEG, RATES
 from gearcam.kinds.mechanism.names import tables_of, told_parts
 from gearcam.linkages.measures import STILL
 from gearcam.linkages.transmission import ADMISSIBLE, pressure_angle
-from gearcam.numeric.columns import Columns
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.pictures.charts import Chart, Charts, Limit, Line, MarkedPlace, knot_marks
 from gearcam.report.file import report_files
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
-
     from gearcam.kinds.mechanism.asked import Output, StretchSpec
     from gearcam.kinds.mechanism.result import MechanismResult
     from gearcam.linkages.measures import Peak, TrackMeasures
@@ -35,8 +32,6 @@ if TYPE_CHECKING:
     from gearcam.numeric.arrays import Array
 
 Tree = dict[str, Any]
-
-Row = dict[str, Any]
 
 Files = dict[str, bytes]
 
@@ -265,96 +260,6 @@ def _dwells(result: MechanismResult) -> list[Tree] | None:
     ] or None
 
 
-# --- the same behind several drives ---------------------------------------------------------------
-
-
-def comparison(result: MechanismResult) -> Mapping[str, ArrayLike]:
-    """Return what the drives to compare make of each output.
-
-    Parameters
-    ----------
-    result : MechanismResult
-        The mechanism.
-
-    Returns
-    -------
-    dict of str to (n,) array
-        A row for each drive and output: ``drive``, the master's range ``range_deg``, ``output``,
-        ``unit``, ``stroke``, the largest sizes of the derivatives by the master's angle with the
-        places, ``velocity`` and ``velocity_at_deg`` and so on, in the unit or rad; with a speed
-        those by time, ``velocity_per_s``, and the range's time, ``range_s``. Places of what stands
-        still are masked.
-    """
-    return _tabled(result, _of_outputs)
-
-
-def interval_table(result: MechanismResult) -> Columns:
-    """Return the intervals that a design asks for, behind each drive.
-
-    Parameters
-    ----------
-    result : MechanismResult
-        The mechanism.
-
-    Returns
-    -------
-    Columns
-        A row for each drive and interval: ``drive``, ``on``, ``before``, the master's angles
-        ``from_deg``, ``to_deg``, ``angle_deg``, the velocity at the beginning by the master's
-        angle; with a speed the time, ``time_s``, and the velocity by time.
-    """
-    return Columns(_tabled(result, _of_intervals))
-
-
-def _tabled(
-    result: MechanismResult, rows_of: Callable[[str, MechanismResult], Iterator[Row]]
-) -> Mapping[str, ArrayLike]:
-    rows = [row for name, one in result.machines.items() for row in rows_of(name, one)]
-    return {key: _column([row[key] for row in rows]) for key in rows[0]}
-
-
-def _column(values: list[Any]) -> ArrayLike:
-    """Return the values of a column, those that are None masked."""
-    missing = [one is None for one in values]
-    if not any(missing):
-        return np.array(values)
-    there = [0.0 if one is None else one for one in values]
-    return np.ma.MaskedArray(there, mask=missing)
-
-
-def _of_outputs(name: str, machine: MechanismResult) -> Iterator[Row]:
-    speed, (low, high) = machine.speed, machine.linkage.span
-    for one in machine.outputs:
-        measures, (scale, unit) = machine.measures[one.stem], one.unit
-        row: Row = {
-            "drive": name, "range_deg": DEG * (high - low), "output": one.stem, "unit": unit,
-            "stroke": scale * measures.stroke,
-        }  # fmt: skip
-        if speed is not None:
-            row["range_s"] = (high - low) / speed
-        for order, word in enumerate(RATES, start=1):
-            peak = measures.size(order)
-            place = None if measures.still else DEG * peak.place
-            row |= {word: peak.value, f"{word}_at_deg": place}
-            if speed is not None:
-                row[f"{word}_per_s"] = peak.value * speed**order
-        yield row
-
-
-def _of_intervals(name: str, machine: MechanismResult) -> Iterator[Row]:
-    speed = machine.speed
-    for one, found, rate in zip(
-        machine.design.interval, machine.intervals, machine.interval_velocities, strict=True
-    ):
-        row = {
-            "drive": name, "on": one.on, "before": one.before, "from_deg": DEG * found.begin,
-            "to_deg": DEG * found.end, "angle_deg": DEG * found.length, "velocity": rate,
-        }  # fmt: skip
-        yield row if speed is None else row | {
-            "time_s": found.length / speed, "velocity_per_s": rate * speed,
-        }  # fmt: skip
-
-
 # --- charts ---------------------------------------------------------------------------------------
 
 
@@ -474,9 +379,6 @@ CHARTS: Final[Charts] = {
 }
 """Charts by name; the report leads with the first three."""
 
-TURNING: Final = ("direction", "angular_velocity", "angular_acceleration")
-"""Those that lead where an angle is asked for first."""
-
 
 # --- files ----------------------------------------------------------------------------------------
 
@@ -494,7 +396,7 @@ def _tables(result: MechanismResult, _: Any) -> Files:
 
     files = {"motion.csv": table_bytes(result.motion())}
     if result.design.compare:
-        files["comparison.csv"] = table_bytes(comparison(result))
+        files["comparison.csv"] = table_bytes(result.comparison())
     if result.design.interval:
         files["intervals.csv"] = table_bytes(result.interval_table())
     return files

@@ -12,11 +12,12 @@ from gearcam.base.errors import InfeasibleError
 from gearcam.base.quantities import REQUIRED, positive_length
 from gearcam.base.rules import Breach
 from gearcam.kinds.mechanism.keys import Sort, angle_param, center_of, named
-from gearcam.kinds.mechanism.parts.part import MachinePart, Setting
+from gearcam.kinds.mechanism.parts.part import MachinePart
 from gearcam.linkages.elements import Crank
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.parts.picture import Picture
+    from gearcam.kinds.mechanism.parts.setting import Setting
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,15 +68,15 @@ class CrankSpec(MachinePart):
         """Return its direction at the drive's zero, rad."""
         if self.arm_angle is None:
             return self.angle or 0.0
-        drive, arm = setting.movers[self.on].drive, setting.movers[self.on].moved.arm
-        if math.isnan(arm):
+        mover = setting.movers.get(self.on)
+        if mover is None or math.isnan(mover.moved.arm):
             raise InfeasibleError(
                 f"{self.on} has no arm from which it could count",
                 where=f"{where}.arm_angle_deg",
                 nearest="angle_deg instead",
             )
-        turn = -self.arm_angle if drive.spec.mirror else self.arm_angle
-        return cmath.phase(drive.vector(cmath.exp(1j * arm))) + turn
+        turn = -self.arm_angle if mover.drive.spec.mirror else self.arm_angle
+        return cmath.phase(mover.drive.vector(cmath.exp(1j * mover.moved.arm))) + turn
 
     def usual(self, *, last: bool) -> Iterator[tuple[int, str]]:
         """Yield the direction of the last crank, if there are no other members."""
@@ -93,6 +94,5 @@ class CrankSpec(MachinePart):
 
     def stand(self, picture: Picture) -> None:
         """Draw the pivot of its shaft, unless a wheel or a cam is on it."""
-        mover = picture.setting.movers[self.on]
-        if self.at is None and (not mover.drawn or mover.word == "follower"):
-            picture.pivot(mover.place)
+        if self.at is None and picture.setting.drawn(self.on) in ("", "follower"):
+            picture.pivot(complex(picture.place(center_of(self.on))[0]))

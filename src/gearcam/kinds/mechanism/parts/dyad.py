@@ -16,13 +16,14 @@ from gearcam.base.quantities import COUNT, LENGTH, LONGEST, TEXT, param
 from gearcam.base.rules import Breach
 from gearcam.kinds.mechanism.asked import DEG, Output, coordinates
 from gearcam.kinds.mechanism.keys import NameUse, Sort, angle_param, named, point_param
-from gearcam.kinds.mechanism.parts.part import MachinePart, Setting, Tree, in_degrees, not_closing
+from gearcam.kinds.mechanism.parts.part import MachinePart, Tree, in_degrees, not_closing
 from gearcam.linkages.coordinates import PointWay
 from gearcam.linkages.dyads import DYADS, Lengths
 from gearcam.linkages.elements import BRANCH, MOTION, Dyad, Element
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.parts.picture import Picture
+    from gearcam.kinds.mechanism.parts.setting import Setting
     from gearcam.linkages.closing import Closing, NotClosingError
     from gearcam.linkages.linkage import Linkage
     from gearcam.linkages.transmission import Transmission
@@ -376,11 +377,11 @@ class DyadSpec(MachinePart):
         """Its lengths above 0."""
         return tuple(length for length in self.lengths if length > 0.0)
 
-    def on_guide(self, guide: str) -> Iterator[str]:
-        """Yield the places of its joint on a guide."""
-        for k, owner in enumerate((self.first, self.last)):
-            if owner == guide and DYADS[self.formula].guides[k]:
-                yield f"{self.joint}.guide{k + 1}"
+    def guided(self) -> Iterator[tuple[str, str]]:
+        """Yield the guides at which its members begin, and the places of its joint on them."""
+        for k, name in enumerate((self.first, self.last)):
+            if DYADS[self.formula].guides[k]:
+                yield name, f"{self.joint}.guide{k + 1}"
 
     def draw(self, picture: Picture) -> None:
         """Draw its members; one whose length a drive changes is a cylinder."""

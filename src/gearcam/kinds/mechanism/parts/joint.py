@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from gearcam.kinds.mechanism.keys import Sort, named, point_param
-from gearcam.kinds.mechanism.parts.part import MachinePart, Setting
+from gearcam.kinds.mechanism.parts.part import MachinePart
 from gearcam.linkages.elements import MemberPoint
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.parts.picture import Picture
+    from gearcam.kinds.mechanism.parts.setting import Setting
 
 
 @dataclass(frozen=True, kw_only=True)

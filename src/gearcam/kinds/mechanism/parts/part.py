@@ -7,8 +7,8 @@ linkage, what may be asked of it, how it is drawn, and how its refusals read.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
 
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.numerals import formatted
@@ -18,61 +18,12 @@ from gearcam.linkages.coordinates import PointWay
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.parts.picture import Picture
-    from gearcam.kinds.mechanism.placed import Moved, PlacedDrive
+    from gearcam.kinds.mechanism.parts.setting import Setting
     from gearcam.linkages.closing import NotClosingError
     from gearcam.linkages.elements import Element
     from gearcam.linkages.linkage import Linkage
 
 Tree = dict[str, Any]
-
-
-class Mover(NamedTuple):
-    """A shaft or a slide of a drive: the `drive`, and the `word` behind its name."""
-
-    drive: PlacedDrive
-    word: str
-
-    @property
-    def moved(self) -> Moved:
-        """What is moved."""
-        return self.drive.moved[self.word]
-
-    @property
-    def drawn(self) -> bool:
-        """Whether it is a wheel, a rack, a cam or its follower, which the drive draws."""
-        return self.drive.result is not None
-
-    @property
-    def place(self) -> complex:
-        """Where the shaft stands, or the zero of the slide's places, in the machine, mm."""
-        return self.drive.machine(self.moved.at)
-
-
-class Setting:
-    """What a part finds in its machine: what drives move, and the joints that stand still.
-
-    Parameters
-    ----------
-    parts : iterable of MachinePart
-        All parts of the mechanism.
-    drives : sequence of PlacedDrive
-        Its drives.
-    """
-
-    def __init__(self, parts: Iterable[MachinePart], drives: Sequence[PlacedDrive]) -> None:
-        self.movers = {
-            name: Mover(drive, word)
-            for drive in drives
-            for word in drive.moved
-            for name in drive.spec.names_of(word)
-        }
-        self.standing: dict[str, complex] = {}
-        for one in parts:
-            self.standing |= one.standing
-
-    def place(self, name: str) -> complex:
-        """Return where a joint that stands still, or a shaft of a drive, is, mm."""
-        return self.standing[name] if name in self.standing else self.movers[name].place
 
 
 class MachinePart(WithNames):
@@ -218,9 +169,9 @@ class MachinePart(WithNames):
         """Points whose paths are drawn, whether they are asked for or not."""
         return ()
 
-    def on_guide(self, guide: str) -> Iterator[str]:
-        """Yield the quantities that are places of it on a guide, by the guide's name."""
-        return (one.slide for one in self.ways.values() if one.guide == guide)
+    def guided(self) -> Iterator[tuple[str, str]]:
+        """Yield guides along which it slides, and the quantities that are its places on them."""
+        return ((one.guide, one.slide) for one in self.ways.values())
 
     def draw(self, picture: Picture) -> None:
         """Draw what moves."""

@@ -16,8 +16,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from gearcam.kinds.mechanism.keys import Sort
-from gearcam.kinds.mechanism.parts.part import MachinePart, Setting
+from gearcam.kinds.mechanism.parts.setting import Setting
 from gearcam.linkages.elements import Known
 from gearcam.numeric.arrays import Array, Plane
 from gearcam.numeric.pose import Pose
@@ -75,8 +74,6 @@ class Picture:
 
     Parameters
     ----------
-    parts : iterable of MachinePart
-        Its parts, in the order of the file.
     setting : Setting
         What its drives move.
     q : (n,) array, rad
@@ -84,12 +81,25 @@ class Picture:
         slides on them needs.
     known : Known
         The linkage there.
+    joints : sequence of str
+        The names of all joints.
+    lengths : sequence of float, mm
+        Those of links, above 0.
     """
 
     def __init__(
-        self, parts: Iterable[MachinePart], setting: Setting, q: Array, known: Known
+        self,
+        setting: Setting,
+        q: Array,
+        known: Known,
+        joints: Sequence[str],
+        lengths: Sequence[float],
     ) -> None:
-        self.parts, self.setting, self.q, self.known = tuple(parts), setting, q, known
+        self.setting, self.q, self.known, self.lengths = setting, q, known, lengths
+        self.places = {name: self.place(name) for name in joints}
+        """The places of all joints by name."""
+        self.sliding: defaultdict[str, list[str]] = defaultdict(list)
+        """The quantities that are places on guides, by the guides' names."""
         self.pins: defaultdict[str, list[complex]] = defaultdict(list)
         """Further pins of members, by their names."""
         self.bars: defaultdict[str, list[Bar]] = defaultdict(list)
@@ -120,26 +130,19 @@ class Picture:
 
     def ends(self, guide: str) -> tuple[float, float] | None:
         """Return the first and the last place of what slides on a `guide`; None if nothing does."""
-        places = [self.turn(name) for part in self.parts for name in part.on_guide(guide)]
+        places = [self.turn(name) for name in self.sliding[guide]]
         if not places:
             return None
         return float(min(one.min() for one in places)), float(max(one.max() for one in places))
-
-    @cached_property
-    def places(self) -> dict[str, Plane]:
-        """The places of all joints by name; first those with a table of their own."""
-        named = [one for part in self.parts for one in part.given() if one.sort == Sort.JOINT]
-        named.sort(key=lambda one: one.path != ("name",))
-        return {one.name: self.place(one.name) for one in named}
 
     @cached_property
     def half(self) -> float:
         """Half of the width of a link, mm."""
         places = np.concatenate([*self.places.values()] or [np.zeros(1)])
         size = float(np.hypot(np.ptp(places.real), np.ptp(places.imag)))
-        lengths = [length for part in self.parts for length in part.sizes]
-        size = max(size, *lengths, 1.0) if lengths else size or 1.0
-        return max(_LEAST * size, min(_WIDTH * size, _MOST * min(lengths, default=size)))
+        size = max(size, *self.lengths, 1.0) if self.lengths else size or 1.0
+        shortest = min(self.lengths, default=size)
+        return max(_LEAST * size, min(_WIDTH * size, _MOST * shortest))
 
     def reach(self, least: float, most: float) -> tuple[float, float]:
         """Return the ends of a bar from its member's origin on, with room for the block on it.

@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING
 
 from gearcam.kinds.mechanism.asked import Output
 from gearcam.kinds.mechanism.keys import Sort, named, point_param, way_of
-from gearcam.kinds.mechanism.parts.part import MachinePart, Setting
+from gearcam.kinds.mechanism.parts.part import MachinePart
 from gearcam.linkages.coordinates import PointWay
 from gearcam.linkages.elements import Element, MemberPoint, PushedSlide
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.parts.picture import Picture
+    from gearcam.kinds.mechanism.parts.setting import Setting
 
 
 class PushedPart(MachinePart):
@@ -98,10 +99,10 @@ class SlideSpec(PushedPart):
     def draw(self, picture: Picture) -> None:
         """Draw its link, and its block unless it is on a follower or a rack, which is drawn."""
         pins = [0j, complex(*self.at)] if any(self.at) else [0j]
-        block = () if picture.setting.movers[self.on].drawn else ((0j, 0.0),)
+        block = () if picture.setting.drawn(self.on) else ((0j, 0.0),)
         picture.member(self.name, *pins, blocks=block)
 
     def stand(self, picture: Picture) -> None:
         """Draw its guide, unless a follower or a rack goes along it."""
-        if not picture.setting.movers[self.on].drawn:
+        if not picture.setting.drawn(self.on):
             picture.way(self.guide)
