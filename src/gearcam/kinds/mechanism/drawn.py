@@ -114,13 +114,9 @@ def bodies(result: MechanismResult, q: Array, before: int = 0) -> tuple[MovingBo
     parts = [part for *_, part in parts_of(tables)]
     joints = [use for part in parts for use in part.given() if use.sort == Sort.JOINT]
     joints.sort(key=lambda one: one.path != ("name",))  # first those with a table of their own
-    picture = Picture(
-        Setting(standing_places(tables), result.drives),
-        q,
-        result.linkage.at(q, 0),
-        [one.name for one in joints],
-        [length for part in parts for length in part.sizes],
-    )
+    lengths = [length for part in parts for length in part.sizes()]
+    setting, known = Setting(standing_places(tables), result.drives), result.linkage.at(q, 0)
+    picture = Picture(setting, q, known, [one.name for one in joints], lengths)
     for guide, quantity in (one for part in parts for one in part.guided()):
         picture.sliding[guide].append(quantity)
     for part in parts:
@@ -163,7 +159,7 @@ def pins_of(body: MovingBody) -> Plane:
 def traced(result: MechanismResult) -> tuple[str, ...]:
     """Return the names of the points whose paths are drawn: all, and joints that are asked for."""
     parts = parts_of(tables_of(result.design))
-    points = [name for *_, part in parts for name in part.traced]
+    points = [name for *_, part in parts for name in part.traced()]
     asked = [one.name for one in result.outputs if one.quantity == f"{one.name}.x"]
     return tuple(dict.fromkeys([*points, *asked]))
 

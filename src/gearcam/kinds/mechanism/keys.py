@@ -154,24 +154,9 @@ class NameUse(NamedTuple):
         return self._replace(path=(title, number, *self.path))
 
 
-class NameKey(NamedTuple):
-    """A key with a name, or with several.
-
-    Attributes
-    ----------
-    field : str
-        In the class of its table.
-    use : NameUse
-        What its name is, or must be, and the key; without a name.
-    """
-
-    field: str
-    use: NameUse
-
-
 @cache
-def name_keys(owner: type, use: str) -> tuple[NameKey, ...]:
-    """Return the keys of a table with names.
+def name_keys(owner: type, use: str) -> tuple[tuple[str, NameUse], ...]:
+    """Return the fields of a table with names, and what these are or must be, without a name.
 
     Parameters
     ----------
@@ -179,10 +164,15 @@ def name_keys(owner: type, use: str) -> tuple[NameKey, ...]:
         The class of the table.
     use : str
         `GIVES` or `NEEDS`.
+
+    Returns
+    -------
+    tuple of (str, NameUse)
+        The path of each is its key.
     """
     found = ((one.name, one.metadata) for one in dataclasses.fields(owner))
     return tuple(
-        NameKey(name, NameUse("", said[use], (said["param"].key(name),), *said["how"]))
+        (name, NameUse("", said[use], (said["param"].key(name),), *said["how"]))
         for name, said in found
         if said.get(use) is not None
     )

@@ -92,7 +92,7 @@ def make_linkage(tables: Tables, drives: Sequence[PlacedDrive]) -> Linkage:
 def _period(tables: Tables) -> int:
     """Return after how many turns of their shafts all parts that move others are back."""
     used, parts = {one.name for one in needed(tables)}, (part for *_, part in parts_of(tables))
-    return math.lcm(*(one.period for one in parts if used & {use.name for use in one.given()}))
+    return math.lcm(*(one.period() for one in parts if used & {use.name for use in one.given()}))
 
 
 def _whole_cycle(linkage: Linkage) -> Linkage:

@@ -20,7 +20,6 @@ from gearcam.kinds.mechanism.drives import is_read
 from gearcam.kinds.mechanism.keys import (
     GIVES,
     STANDING,
-    NameKey,
     NameUse,
     Sort,
     WithNames,
@@ -66,7 +65,7 @@ def told_parts(tables: Tables) -> Iterator[tuple[str, int, MachinePart]]:
 
 def standing_places(tables: Tables) -> dict[str, complex]:
     """Return where the joints are that stand still, by name, mm."""
-    found = (part.standing for *_, part in parts_of(tables))
+    found = (part.standing() for *_, part in parts_of(tables))
     return {name: at for one in found for name, at in one.items()}
 
 
@@ -128,9 +127,10 @@ def _unread(found: Examined) -> bool:
 
 
 @cache
-def _giving(kind: str) -> dict[str, tuple[NameKey, ...]]:
+def _giving(kind: str) -> dict[str, list[NameUse]]:
     """Return the keys with names that tables give, by title."""
-    found = {title: name_keys(owner, GIVES) for title, owner in KINDS[kind].tables.items()}
+    tables = KINDS[kind].tables.items()
+    found = {title: [use for _, use in name_keys(owner, GIVES)] for title, owner in tables}
     return {title: keys for title, keys in found.items() if keys}
 
 
@@ -139,7 +139,7 @@ def _of_faulty(document: Mapping[str, Any], found: Examined) -> Iterator[NameUse
     for title, keys in _giving(found.kind).items():
         rows = () if is_read(title, found) else document.get(title)
         for number, row in enumerate(rows if isinstance(rows, list) else ()):
-            for _, use in keys:
+            for use in keys:
                 value = row.get(use.path[0]) if isinstance(row, Mapping) else None
                 for place, name in placed(value, (title, number, *use.path)):
                     known = name if isinstance(name, str) else ""
@@ -204,14 +204,8 @@ def _unsuitable(one: NameUse, names: Mapping[str, NameUse]) -> Iterator[Fault]:
     yield Fault(one.path, f"{show(one.name)}{what}", one.name, allowed, hint)
 
 
-def waits(tables: Tables) -> dict[Path, tuple[str, ...]]:
-    """Return the paths of tables that wait for each other, and the names they wait for.
-
-    Parameters
-    ----------
-    tables : mapping
-        By title; all names exist.
-    """
+def _unreached(tables: Tables) -> Iterator[Fault]:
+    """Yield parts that cannot be solved in any order: the mobility is not 1."""
     known, left = {GROUND}, {}
     for one in given(tables):
         left.setdefault(one.path[:2], ([], []))[0].append(one.name)
@@ -221,16 +215,9 @@ def waits(tables: Tables) -> dict[Path, tuple[str, ...]]:
     while ready := [path for path, (_, wanted) in left.items() if known.issuperset(wanted)]:
         for path in ready:
             known.update(left.pop(path)[0])
-    return {
-        path: tuple(name for name in wanted if name not in known)
-        for path, (_, wanted) in left.items()
-    }
-
-
-def _unreached(tables: Tables) -> Iterator[Fault]:
-    """Yield parts that cannot be solved in any order: the mobility is not 1."""
-    for path, names in waits(tables).items():
-        what = f"waits for {', '.join(names)}, which waits for it: no order solves both"
+    for path, (_, wanted) in left.items():
+        names = ", ".join(name for name in wanted if name not in known)
+        what = f"waits for {names}, which waits for it: no order solves both"
         yield Fault(path, what, allowed="a chain of dyads, each from what is known before it")
 
 
@@ -242,8 +229,8 @@ def acted_on(tables: Tables) -> Acted:
     uses = list(given(tables))
     ways, unturned = {}, {}
     for *_, part in parts_of(tables):
-        ways |= part.ways
-        unturned |= part.unturned
+        ways |= part.ways()
+        unturned |= part.unturned()
     return Acted(
         sorts={GROUND: Sort.MEMBER}
         | {one.name: one.sort for one in uses}
@@ -266,7 +253,11 @@ def unfit(found: Examined, told: Iterable[Fault]) -> Iterator[Fault]:
         Of names: nothing more is said of their tables.
     """
     acted, every = acted_on(found.parts), list(acting(found.parts))
-    vain = [fault for path, one in every for fault in _in_vain(path, one, acted)]
+    vain = []
+    for path, one in every:
+        if one.moved and (name := getattr(one, one.moved)) in acted.still:
+            what = f"{show(name)} stands still: what acts on it does no work"
+            vain.append(Fault((*path, one.moved), what, name, "the name of what moves"))
     yield from vain
     wrong = {one.path[:2] for one in (*found.faults, *told, *vain)}
     wrong |= {one.path[:2] for one in needed(found.parts) if one.name not in acted.sorts}
@@ -281,14 +272,6 @@ def acting(tables: Tables) -> Iterator[tuple[tuple[str, int], MachineAction]]:
     for title, number, one in several(tables):
         if isinstance(one, MachineAction):
             yield (title, number), one
-
-
-def _in_vain(path: tuple[str, int], one: MachineAction, acted: Acted) -> Iterator[Fault]:
-    """Yield that what acts on something that stands still does no work."""
-    name = getattr(one, one.moved) if one.moved else None
-    if name in acted.still:
-        what = f"{show(name)} stands still: what acts on it does no work"
-        yield Fault((*path, one.moved), what, name, "the name of what moves")
 
 
 # --- what may be asked ---------------------------------------------------------------------------
@@ -394,7 +377,7 @@ class OutputNames:
                 "its place on its guide" if len(self.whole[owner]) == 1 else "its two coordinates"
             )
             return f"{owner} is a joint, which has no direction: write {owner}, for {gives}"
-        if any(name in part.standing for part in self.parts):
+        if any(name in part.standing() for part in self.parts):
             return f"{name} stands still"
         owners = [one.rpartition(".")[0] for one in self.whole if "." in one]
         hint = "" if name in owners else did_you_mean(name, self.whole)

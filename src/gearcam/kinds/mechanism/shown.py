@@ -7,6 +7,7 @@ are compared, every output has a line for each of them.
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
 from typing import TYPE_CHECKING, Any, Final
@@ -79,17 +80,13 @@ def facts(result: MechanismResult) -> Facts:
 
 def _called(result: MechanismResult) -> str:
     """Return what the mechanism is, by its dyads and its drives."""
-    parts = (part.called for *_, part in told_parts(tables_of(result.design)))
+    parts = (part.called() for *_, part in told_parts(tables_of(result.design)))
     groups = " + ".join(name for name in parts if name) or "linkage"
-    keys = [one.key for one in result.design.drive]
-    drives = (_counted(keys.count(key), key) for key in dict.fromkeys(keys))
+    drives = []
+    for key, number in Counter(one.key for one in result.design.drive).items():
+        one, several = {"even": ("an even shaft", "even shafts")}.get(key, (f"a {key}", f"{key}s"))
+        drives.append(one if number == 1 else f"{number} {several}")
     return f"{groups} behind {' and '.join(drives)}"
-
-
-def _counted(number: int, key: str) -> str:
-    """Return how many drives of a sort there are, in words."""
-    one, several = {"even": ("an even shaft", "even shafts")}.get(key, (f"a {key}", f"{key}s"))
-    return one if number == 1 else f"{number} {several}"
 
 
 def _machine(result: MechanismResult) -> Tree:

@@ -18,12 +18,11 @@ from gearcam.base.quantities import REQUIRED, TEXT, param, positive_length
 from gearcam.base.rules import Breach
 from gearcam.kinds.mechanism.asked import TABLES
 from gearcam.kinds.mechanism.keys import Sort, angle_param, center_of, named, point_param
-from gearcam.kinds.mechanism.parts.part import MachinePart, Tree, not_closing
+from gearcam.kinds.mechanism.parts.part import MachinePart, Setting, Tree, not_closing
 from gearcam.linkages.chain import LeverChain, roots_in
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.parts.picture import Picture
-    from gearcam.kinds.mechanism.parts.setting import Setting
     from gearcam.linkages.closing import NotClosingError
     from gearcam.linkages.elements import Known
     from gearcam.linkages.linkage import Linkage
@@ -201,9 +200,8 @@ class ChainSpec(WoundPart):
         label = f"positions of {self.lever} within its range"
         yield "chains", self.lever, {"positions": Fact(roots_in(self._chain, 0.0), label, unit="")}
 
-    @property
     def sizes(self) -> tuple[float, ...]:
-        """The lever's length."""
+        """Return the lever's length."""
         return (self.length,)
 
     def draw(self, picture: Picture) -> None:

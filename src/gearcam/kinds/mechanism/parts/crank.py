@@ -12,12 +12,11 @@ from gearcam.base.errors import InfeasibleError
 from gearcam.base.quantities import REQUIRED, positive_length
 from gearcam.base.rules import Breach
 from gearcam.kinds.mechanism.keys import Sort, angle_param, center_of, named
-from gearcam.kinds.mechanism.parts.part import MachinePart
+from gearcam.kinds.mechanism.parts.part import MachinePart, Setting
 from gearcam.linkages.elements import Crank
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.parts.picture import Picture
-    from gearcam.kinds.mechanism.parts.setting import Setting
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -83,9 +82,8 @@ class CrankSpec(MachinePart):
         if last:
             yield 2, f"{self.name}.angle"
 
-    @property
     def sizes(self) -> tuple[float, ...]:
-        """Its length."""
+        """Return its length."""
         return (self.length,)
 
     def draw(self, picture: Picture) -> None:

@@ -16,14 +16,13 @@ from gearcam.base.quantities import COUNT, LENGTH, LONGEST, TEXT, param
 from gearcam.base.rules import Breach
 from gearcam.kinds.mechanism.asked import DEG, Output, coordinates
 from gearcam.kinds.mechanism.keys import NameUse, Sort, angle_param, named, point_param
-from gearcam.kinds.mechanism.parts.part import MachinePart, Tree, in_degrees, not_closing
+from gearcam.kinds.mechanism.parts.part import MachinePart, Setting, Tree, in_degrees, not_closing
 from gearcam.linkages.coordinates import PointWay
 from gearcam.linkages.dyads import DYADS, Lengths
 from gearcam.linkages.elements import BRANCH, MOTION, Dyad, Element
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.parts.picture import Picture
-    from gearcam.kinds.mechanism.parts.setting import Setting
     from gearcam.linkages.closing import Closing, NotClosingError
     from gearcam.linkages.linkage import Linkage
     from gearcam.linkages.transmission import Transmission
@@ -349,32 +348,28 @@ class DyadSpec(MachinePart):
                 "class": Fact(found.name, label), "meaning": found.meaning,
             }  # fmt: skip
 
-    @property
     def called(self) -> str:
-        """Its type."""
+        """Return its type."""
         return self.type
 
     # --- what acts on it -------------------------------------------------------------------------
 
-    @property
     def ways(self) -> Mapping[str, PointWay]:
-        """Its joint, if it slides along a guide that is given."""
+        """Return the way of its joint, if it slides along a guide that is given."""
         if not self.moves:
             return {}
         guide = self.last if self.moves.endswith("2") else self.first
         return {self.joint: PointWay(self.joint, guide, slide=self.moves)}
 
-    @property
     def unturned(self) -> Mapping[str, str]:
-        """The member that slides along a guide, of RRT and TRR."""
+        """Return the member that slides along a guide, of RRT and TRR."""
         number = {"RRT": 1, "TRR": 0}.get(self.type)
         return {} if number is None else {self.members[number]: self.joint}
 
     # --- pictures --------------------------------------------------------------------------------
 
-    @property
     def sizes(self) -> tuple[float, ...]:
-        """Its lengths above 0."""
+        """Return its lengths above 0."""
         return tuple(length for length in self.lengths if length > 0.0)
 
     def guided(self) -> Iterator[tuple[str, str]]:

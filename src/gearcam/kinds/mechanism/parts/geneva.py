@@ -9,12 +9,11 @@ from typing import TYPE_CHECKING
 from gearcam.base.quantities import COUNT, REQUIRED, param, positive_length
 from gearcam.kinds.mechanism.asked import Output
 from gearcam.kinds.mechanism.keys import Sort, angle_param, center_of, named
-from gearcam.kinds.mechanism.parts.part import MachinePart
+from gearcam.kinds.mechanism.parts.part import MachinePart, Setting
 from gearcam.linkages.geneva import SLOTS, GenevaWheel
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.parts.picture import Picture
-    from gearcam.kinds.mechanism.parts.setting import Setting
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,9 +49,8 @@ class GenevaSpec(MachinePart):
             self.internal,
         )  # fmt: skip
 
-    @property
     def period(self) -> int:
-        """Turns of the crank after which it is where it was."""
+        """Return how many turns of the crank lead round."""
         return self.slots
 
     def outputs(self) -> Mapping[str, tuple[Output, ...]]:

@@ -8,12 +8,11 @@ from typing import TYPE_CHECKING
 
 from gearcam.base.rules import Breach
 from gearcam.kinds.mechanism.keys import STANDING, Sort, angle_param, named, point_param
-from gearcam.kinds.mechanism.parts.part import MachinePart
+from gearcam.kinds.mechanism.parts.part import MachinePart, Setting
 from gearcam.linkages.elements import GROUND, GuideLine
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.parts.picture import Picture
-    from gearcam.kinds.mechanism.parts.setting import Setting
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -16,12 +16,12 @@ from gearcam.base.quantities import REQUIRED, TEXT, param, positive_length
 from gearcam.kinds.mechanism.asked import TABLES
 from gearcam.kinds.mechanism.keys import Sort, angle_param, center_of, named, point_param
 from gearcam.kinds.mechanism.parts.chain import NEAR, WoundPart, numbers, shaft_place
+from gearcam.kinds.mechanism.parts.part import Setting
 from gearcam.kinds.mechanism.parts.slide import PushedPart
 from gearcam.linkages.elements import Element, GuideLine, PushedSlide, WoundWay
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.parts.picture import Picture
-    from gearcam.kinds.mechanism.parts.setting import Setting
 
 _BESIDE: Final = 1e-3
 """How far its chain may pass beside its wheel, relative to the radius, to be drawn straight."""

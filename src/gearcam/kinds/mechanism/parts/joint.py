@@ -7,12 +7,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from gearcam.kinds.mechanism.keys import Sort, named, point_param
-from gearcam.kinds.mechanism.parts.part import MachinePart
+from gearcam.kinds.mechanism.parts.part import MachinePart, Setting
 from gearcam.linkages.elements import MemberPoint
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.parts.picture import Picture
-    from gearcam.kinds.mechanism.parts.setting import Setting
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -33,9 +32,8 @@ class JointSpec(MachinePart):
         """Yield the joint (see `MachinePart`)."""
         yield MemberPoint(self.name, complex(*self.at))
 
-    @property
     def standing(self) -> Mapping[str, complex]:
-        """Where it stands."""
+        """Return where it stands."""
         return {self.name: complex(*self.at)}
 
     def stand(self, picture: Picture) -> None:

@@ -14,11 +14,11 @@ from gearcam.base.errors import InfeasibleError
 from gearcam.base.numerals import formatted
 from gearcam.kinds.mechanism.asked import Output
 from gearcam.kinds.mechanism.keys import WithNames
+from gearcam.kinds.mechanism.parts.setting import Setting
 from gearcam.linkages.coordinates import PointWay
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.parts.picture import Picture
-    from gearcam.kinds.mechanism.parts.setting import Setting
     from gearcam.linkages.closing import NotClosingError
     from gearcam.linkages.elements import Element
     from gearcam.linkages.linkage import Linkage
@@ -53,14 +53,12 @@ class MachinePart(WithNames):
         """
         raise NotImplementedError
 
-    @property
     def standing(self) -> Mapping[str, complex]:
-        """Joints of it that stand still, by name, and where, mm."""
+        """Return where joints and shafts of it are that stand still, by name, mm."""
         return {}
 
-    @property
     def period(self) -> int:
-        """Turns of its shaft after which it is where it was, if others move with it."""
+        """Return after how many turns of its shaft it is where it was, if others move with it."""
         return 1
 
     def demand(self, linkage: Linkage, where: str) -> None:
@@ -140,38 +138,33 @@ class MachinePart(WithNames):
         """
         return iter(())
 
-    @property
     def called(self) -> str:
-        """What it is in the headline; empty if that does not name it."""
+        """Return what it is in the headline; empty if that does not name it."""
         return ""
 
     # --- what acts on it -------------------------------------------------------------------------
 
-    @property
     def ways(self) -> Mapping[str, PointWay]:
-        """Names that have a way along a guide, as loads see them."""
+        """Return the ways along guides of what loads may push, by name."""
         return {}
 
-    @property
     def unturned(self) -> Mapping[str, str]:
-        """Members that keep their direction on a guide, each with a joint that has its way."""
+        """Return members that keep their direction, each with a joint that has its way."""
         return {}
 
     # --- pictures --------------------------------------------------------------------------------
 
-    @property
     def sizes(self) -> tuple[float, ...]:
-        """Lengths of links, above 0, mm, which the widths of links suit."""
+        """Return lengths of links, above 0, mm, which the widths of links suit."""
         return ()
 
-    @property
     def traced(self) -> tuple[str, ...]:
-        """Points whose paths are drawn, whether they are asked for or not."""
+        """Return points whose paths are drawn, whether they are asked for or not."""
         return ()
 
     def guided(self) -> Iterator[tuple[str, str]]:
         """Yield guides along which it slides, and the quantities that are its places on them."""
-        return ((one.guide, one.slide) for one in self.ways.values())
+        return ((one.guide, one.slide) for one in self.ways().values())
 
     def draw(self, picture: Picture) -> None:
         """Draw what moves."""

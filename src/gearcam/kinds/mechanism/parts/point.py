@@ -7,12 +7,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from gearcam.kinds.mechanism.keys import Sort, named, point_param
-from gearcam.kinds.mechanism.parts.part import MachinePart
+from gearcam.kinds.mechanism.parts.part import MachinePart, Setting
 from gearcam.linkages.elements import GROUND, MemberPoint
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.parts.picture import Picture
-    from gearcam.kinds.mechanism.parts.setting import Setting
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,9 +37,8 @@ class PointSpec(MachinePart):
         """Yield the point."""
         yield 0, self.name
 
-    @property
     def traced(self) -> tuple[str, ...]:
-        """Itself, if it moves."""
+        """Return itself, if it moves."""
         return () if self.on == GROUND else (self.name,)
 
     def draw(self, picture: Picture) -> None:

@@ -8,13 +8,12 @@ from typing import TYPE_CHECKING
 
 from gearcam.kinds.mechanism.asked import Output
 from gearcam.kinds.mechanism.keys import Sort, named, point_param, way_of
-from gearcam.kinds.mechanism.parts.part import MachinePart
+from gearcam.kinds.mechanism.parts.part import MachinePart, Setting
 from gearcam.linkages.coordinates import PointWay
 from gearcam.linkages.elements import Element, MemberPoint, PushedSlide
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.parts.picture import Picture
-    from gearcam.kinds.mechanism.parts.setting import Setting
 
 
 class PushedPart(MachinePart):
@@ -43,15 +42,13 @@ class PushedPart(MachinePart):
         """Return its place."""
         return {self.name: (Output(self.name, self.name, self.way, False),)}
 
-    @property
     def ways(self) -> Mapping[str, PointWay]:
-        """It and its joint go along its guide."""
+        """Return its way along its guide, which is that of its joint."""
         way = PointWay(self.joint, self.guide, slide=self.way)
         return dict.fromkeys((self.name, self.joint), way)
 
-    @property
     def unturned(self) -> Mapping[str, str]:
-        """It keeps its direction."""
+        """Return that it keeps its direction."""
         return {self.name: self.joint}
 
 
