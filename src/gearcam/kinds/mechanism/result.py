@@ -365,6 +365,10 @@ class MechanismResult(Result):
             rad; with a speed those by time, ``velocity_per_s``, and the range's time, ``range_s``.
             Places of what stands still are masked.
         """
+        return Columns(self.masked_comparison())
+
+    def masked_comparison(self) -> Mapping[str, ArrayLike]:
+        """Return the `comparison` for files: without numbers that are masked."""
         return _tabled([row for one in self.machines.items() for row in _of_outputs(*one)])
 
     def interval_table(self) -> Columns:
@@ -377,7 +381,8 @@ class MechanismResult(Result):
             ``from_deg``, ``to_deg``, ``angle_deg``, the velocity at the beginning by the master's
             angle; with a speed the time, ``time_s``, and the velocity by time.
         """
-        return _tabled([row for one in self.machines.items() for row in _of_intervals(*one)])
+        rows = [row for one in self.machines.items() for row in _of_intervals(*one)]
+        return Columns(_tabled(rows))
 
     @cached_property
     def stretches(self) -> tuple[LineFit | CircleFit, ...]:
@@ -430,8 +435,8 @@ class MechanismResult(Result):
 # --- rows of tables -------------------------------------------------------------------------------
 
 
-def _tabled(rows: Sequence[Row]) -> Columns:
-    return Columns({key: _column([row[key] for row in rows]) for key in rows[0]})
+def _tabled(rows: Sequence[Row]) -> dict[str, ArrayLike]:
+    return {key: _column([row[key] for row in rows]) for key in rows[0]}
 
 
 def _column(values: list[Any]) -> ArrayLike:

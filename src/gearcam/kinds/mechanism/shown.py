@@ -393,7 +393,7 @@ def _tables(result: MechanismResult, _: Any) -> Files:
 
     files = {"motion.csv": table_bytes(result.motion())}
     if result.design.compare:
-        files["comparison.csv"] = table_bytes(result.comparison())
+        files["comparison.csv"] = table_bytes(result.masked_comparison())
     if result.design.interval:
         files["intervals.csv"] = table_bytes(result.interval_table())
     return files
