@@ -236,7 +236,6 @@ def acted_on(tables: Tables) -> Acted:
         | {one.name: one.sort for one in uses}
         | dict.fromkeys(ways, Sort.WAY),
         ways=ways,
-        driven=frozenset(one.name for one in uses if one.sort == Sort.WAY),
         unturned=unturned,
         still=frozenset({GROUND, *(one.name for one in uses if one.still)}),
     )

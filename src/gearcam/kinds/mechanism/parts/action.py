@@ -53,8 +53,6 @@ class Acted(ShortRepr):
         slides along a guide, a member that is pushed or lifted, or what pushes it.
     ways : mapping of str to PointWay
         The ways of those that have one along a guide.
-    driven : set of str
-        Slides of drives.
     unturned : mapping of str to str
         Members that keep their direction, each with a joint that has its way.
     still : set of str
@@ -63,7 +61,6 @@ class Acted(ShortRepr):
 
     sorts: Mapping[str, str]
     ways: Mapping[str, PointWay]
-    driven: frozenset[str]
     unturned: Mapping[str, str]
     still: frozenset[str]
 

@@ -59,11 +59,6 @@ class HoistSpec(PushedPart, WoundPart):
         """Name of the quantity that is its place on its guide."""
         return f"{self.name}.way"
 
-    @property
-    def guide(self) -> str:
-        """Name of its guide."""
-        return f"{self.name}.guide"
-
     def elements(self, setting: Setting, where: str) -> Iterator[Element]:
         """Yield what is wound up, its guide, and what is lifted (see `MachinePart`)."""
         yield WoundWay(self.way, self.on, self.side * self.radius)

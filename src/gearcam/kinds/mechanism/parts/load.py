@@ -185,7 +185,8 @@ class MachineLoad(MachineAction, WrittenLoad):
     def unfit(self, acted: Acted) -> Iterator[Fault]:
         """Yield keys that do not suit what is loaded."""
         sort = acted.sorts[self.on]
-        if self.on in acted.driven and self.has_direction:
+        driven = sort == Sort.WAY and self.on not in acted.ways
+        if driven and self.has_direction:
             what = f"acts on {self.on}, which moves along its own way only"
             allowed = "force_n of one value, or a joint or point"
             yield Fault(("on",), what, self.on, allowed)

@@ -36,7 +36,7 @@ class PushedPart(MachinePart):
     @property
     def guide(self) -> str:
         """Name of its guide."""
-        raise NotImplementedError
+        return way_of(self.way)
 
     def outputs(self) -> Mapping[str, tuple[Output, ...]]:
         """Return its place."""
@@ -87,11 +87,6 @@ class SlideSpec(PushedPart):
     def way(self) -> str:
         """What pushes it."""
         return self.on
-
-    @property
-    def guide(self) -> str:
-        """That along which its drive goes."""
-        return way_of(self.on)
 
     def draw(self, picture: Picture) -> None:
         """Draw its link, and its block unless it is on a follower or a rack, which is drawn."""
