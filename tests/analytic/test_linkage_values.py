@@ -8,7 +8,7 @@ from math import pi, radians
 import numpy as np
 import pytest
 
-from gearcam.linkages.chain import HoistChain, roots_in
+from gearcam.linkages.chain import LeverChain, roots_in
 from gearcam.linkages.closing import NotClosingError, settled
 from gearcam.linkages.dyads import DYADS, Lengths, Solved
 from gearcam.linkages.elements import (
@@ -275,10 +275,10 @@ class TestFurnaceDoor:
         agree(100.0 * turn[1] * 0.8, column(table, "v"))
         agree(100.0 * turn[2] * 0.8**2, column(table, "a"))
 
-    def door(self) -> HoistChain:
+    def door(self) -> LeverChain:
         limits = radians(-90.0), radians(-30.0)
         length = 1735.30026219493133
-        return HoistChain(
+        return LeverChain(
             "door", "B", "q", 0j, 600 + 300j, 100.0, length, radians(-90.0), limits, 1.0
         )
 

@@ -8,7 +8,7 @@ from math import pi, radians
 import numpy as np
 import pytest
 
-from gearcam.linkages.chain import HoistChain
+from gearcam.linkages.chain import LeverChain
 from gearcam.linkages.closing import settled
 from gearcam.linkages.coordinates import (
     Acting,
@@ -186,7 +186,7 @@ class TestFurnaceDoor:
     def work(self) -> VirtualWork:
         knots, length = (0.0, 10.0, 60.0, 171.65), 1735.30026219493133
         limits = radians(-90.0), radians(-30.0)
-        door = HoistChain(
+        door = LeverChain(
             "door", "B", "q", 0j, 600 + 300j, 100.0, length, radians(-90.0), limits, 1.0
         )
         made = linkage(

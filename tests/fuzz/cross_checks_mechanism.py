@@ -13,8 +13,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from gearcam.kinds.mechanism.build import MechanismResult
-from gearcam.kinds.mechanism.tables import DyadSpec
+from gearcam.kinds.mechanism.parts import DyadSpec
+from gearcam.kinds.mechanism.result import MechanismResult
 from gearcam.linkages.linkage import value
 from gearcam.linkages.measures import TrackMeasures
 from gearcam.numeric.arrays import Array
@@ -275,14 +275,16 @@ def _extremes(result: MechanismResult, one: Any) -> Doubts:
 
 def _asked(result: MechanismResult) -> Doubts:
     """Check that dwells and intervals are what they are asked for."""
-    for number, found in enumerate(result.dwells):
-        output, amount = result.asked("dwell", number)
+    for one, found in zip(result.design.dwell, result.dwells, strict=True):
+        output = result.output_of(one)
+        amount = one.amount(angle=output.angle)
         values = _over(result, output, found.begin, found.end)
         if not np.ptp(values) <= amount * (1.0 + 1e-6) + 1e-9:
             yield "dwell", f"{output.stem} moves by {np.ptp(values)} in its dwell"
         yield from _longer(result, output, amount, found.length)
-    for number, found in enumerate(result.intervals):
-        output, travel = result.asked("interval", number)
+    for one, found in zip(result.design.interval, result.intervals, strict=True):
+        output = result.output_of(one)
+        travel = one.amount(angle=output.angle)
         values = _over(result, output, found.begin, found.end)
         if not abs(abs(values[-1] - values[0]) - travel) <= 1e-6 * travel + 1e-9:
             yield "interval", f"{output.stem} travels {values[-1] - values[0]} in its interval"

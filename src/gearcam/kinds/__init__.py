@@ -12,5 +12,6 @@ if TYPE_CHECKING:
     from gearcam.kinds.cam.public import *  # noqa: F403
     from gearcam.kinds.gear_pair.public import *  # noqa: F403
     from gearcam.kinds.globoidal_cam.public import *  # noqa: F403
+    from gearcam.kinds.mechanism.parts import *  # noqa: F403
     from gearcam.kinds.mechanism.public import *  # noqa: F403
     from gearcam.kinds.spatial_cam.public import *  # noqa: F403

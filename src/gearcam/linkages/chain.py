@@ -31,7 +31,7 @@ _TURNED: Final = 1e-14
 
 
 @dataclass(frozen=True)
-class HoistChain(ShortRepr, Element):
+class LeverChain(ShortRepr, Element):
     """A chain between a wheel that stands still and a lever that it swings.
 
     Parameters
@@ -136,12 +136,12 @@ class HoistChain(ShortRepr, Element):
         known.given[self.joint] = frame.at(complex(self.length))
 
 
-def roots_in(chain: HoistChain, turn: float) -> int:
+def roots_in(chain: LeverChain, turn: float) -> int:
     """Return how many positions of the lever within its limits fit a turn of the wheel.
 
     Parameters
     ----------
-    chain : HoistChain
+    chain : LeverChain
         The chain with its lever.
     turn : float, rad
         Of the wheel.

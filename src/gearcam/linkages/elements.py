@@ -89,6 +89,19 @@ class Element(ABC):
     def solve(self, known: Known) -> None:
         """Add what it gives to what is `known`."""
 
+    def knots_with(self, track: Callable[[str, Array, int], Jet], knots: Array) -> Array:
+        """Return the knots of its linkage with its own: where its motion is not smooth.
+
+        Parameters
+        ----------
+        track : callable
+            ``track(name, q, order) -> Jet``: a quantity over the driver's angle.
+        knots : (k,) array, rad
+            Of the linkage: the driver's angles from the first to the last one.
+        """
+        del track
+        return knots
+
     def room(self, known: Known) -> tuple[Jet, ...]:
         """Return shares that are 0 or more where it closes; none if it always does."""
         del known

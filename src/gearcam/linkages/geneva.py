@@ -15,7 +15,9 @@ from __future__ import annotations
 
 import cmath
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Final
 
 import numpy as np
@@ -156,6 +158,10 @@ class GenevaWheel(ShortRepr, Element):
         turns = self.switches(shaft.least().value, shaft.largest().value)
         found = np.concatenate([[], *(shaft.places_of(float(one)) for one in turns)])
         return np.union1d(knots, away(found, knots, _SAME))
+
+    def knots_with(self, track: Callable[[str, Array, int], Jet], knots: Array) -> Array:
+        """Return the knots with those where the pin enters or leaves (see `Element`)."""
+        return self.knots(partial(track, self.shaft), knots)
 
     def wheel_turn(self, turn: Jet) -> Jet:
         """Return the wheel's turn.

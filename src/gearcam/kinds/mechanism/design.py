@@ -1,36 +1,27 @@
-"""The kind ``mechanism``: its design and its tables."""
+"""The kind ``mechanism``: its design and its tables.
+
+Directions and angles are counter-clockwise from the x axis of the machine, which points to the
+right; a point of a member is given in the member's frame, with the origin in its first joint and x
+towards its second one.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Final
 
+from gearcam.base.display import ShortRepr
+from gearcam.base.quantities import ANGLE, COUNT, LENGTH, TEXT, fixed, param
 from gearcam.base.registry import DeferredMapping, deferred
+from gearcam.base.rules import distinct
 from gearcam.designs.design import Design
-from gearcam.kinds.mechanism import load_names, names, outputs, unfit_drives
+from gearcam.designs.outputs import OutputSpec, files_param, pose_param, studies_param
+from gearcam.kinds.mechanism import drives, names, parts
+from gearcam.kinds.mechanism.asked import TABLES, DwellSpec, IntervalSpec, StretchSpec
+from gearcam.kinds.mechanism.drives import CompareSpec, MachineDrive
 from gearcam.kinds.mechanism.keys import NAME
-from gearcam.kinds.mechanism.load_tables import MachineLoad, MachineSpring, MemberMass, TorqueSpec
-from gearcam.kinds.mechanism.tables import (
-    FORMATS,
-    STUDIES,
-    ChainSpec,
-    CompareSpec,
-    CrankSpec,
-    DwellSpec,
-    DyadSpec,
-    GenevaSpec,
-    GuideSpec,
-    HoistSpec,
-    IntervalSpec,
-    JointSpec,
-    MachineDrive,
-    MechanismOutput,
-    PointSpec,
-    SlideSpec,
-    StretchSpec,
-)
-from gearcam.kinds.mechanism.torque_checks import TORQUE
 from gearcam.kinds.shared import AccuracySpec, GoalSpec
 from gearcam.mechanics.mass import GravitySpec
 from gearcam.results.kind import Kind
@@ -38,7 +29,91 @@ from gearcam.results.kind import Kind
 if TYPE_CHECKING:
     from gearcam.designs.faults import Fault
     from gearcam.designs.kind import Examined
-    from gearcam.kinds.mechanism.build import MechanismResult
+    from gearcam.kinds.mechanism.result import MechanismResult
+
+FORMATS: Final = ("csv", "dxf", "svg", "report")
+"""What ``output.files`` may list."""
+
+STUDIES: Final = ("torque", "accuracy")
+"""Its studies, and the titles of the tables of their settings."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class TorqueSpec(ShortRepr):
+    """Places at which the study ``torque`` computes moments.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.TorqueSpec(steps=360)
+    TorqueSpec(steps=360)
+    """
+
+    steps: int = param(
+        COUNT,
+        default=720,
+        ge=12,
+        le=100000,
+        doc="number of even steps of the master's range; both sides of knots and of the ends of "
+        "loads are added",
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class MechanismOutput(OutputSpec):
+    """Which files of a mechanism are written, and what is in them (see `OutputSpec`).
+
+    Parameters
+    ----------
+    pose : float, rad
+        The master's angle in the picture.
+    studies : tuple of str
+        Its studies.
+    kerf, dxf_curves, dxf_version
+        Nothing is cut out.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.MechanismOutput(files=("csv", "svg"), outputs=("slide", "rod.angle"))
+    MechanismOutput(files=('csv', 'svg'), outputs=('slide', 'rod.angle'))
+    """
+
+    files: tuple[str, ...] = files_param(FORMATS)
+    studies: tuple[str, ...] = studies_param(STUDIES)
+    outputs: tuple[str, ...] | None = param(
+        TEXT,
+        default=None,
+        min_length=1,
+        example=["slide", "rod.angle"],
+        doc="joints that slide, points or one coordinate as P.x, and directions as member.angle; "
+        "if left out every slide and point, or without any the direction of the last member",
+    )
+    step: float = param(
+        ANGLE,
+        default=math.radians(1.0),
+        gt=0,
+        le=90,
+        doc="step of the master's angle in motion.csv",
+    )
+    pose: float = pose_param("q", "the master's angle in the picture")
+    chord_tolerance: float | None = param(
+        LENGTH,
+        default=None,
+        ge=1e-6,
+        example=0.01,
+        doc="largest distance of a drawn path from the true one; 0.01 mm if left out",
+    )
+
+    kerf: float = fixed(0.0)
+    dxf_curves: str = fixed("lines")
+    dxf_version: str | None = fixed(None)
+
+    rules = (
+        distinct("files", "format"),
+        distinct("studies", "study"),
+        distinct("outputs", "output"),
+    )
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -112,21 +187,21 @@ class MechanismDesign(Design):
 
     drive: tuple[MachineDrive, ...]
     compare: tuple[CompareSpec, ...] = ()
-    joint: tuple[JointSpec, ...] = ()
-    crank: tuple[CrankSpec, ...] = ()
-    slide: tuple[SlideSpec, ...] = ()
-    guide: tuple[GuideSpec, ...] = ()
-    dyad: tuple[DyadSpec, ...] = ()
-    point: tuple[PointSpec, ...] = ()
-    chain: tuple[ChainSpec, ...] = ()
-    hoist: tuple[HoistSpec, ...] = ()
-    geneva: tuple[GenevaSpec, ...] = ()
+    joint: tuple[parts.JointSpec, ...] = ()
+    crank: tuple[parts.CrankSpec, ...] = ()
+    slide: tuple[parts.SlideSpec, ...] = ()
+    guide: tuple[parts.GuideSpec, ...] = ()
+    dyad: tuple[parts.DyadSpec, ...] = ()
+    point: tuple[parts.PointSpec, ...] = ()
+    chain: tuple[parts.ChainSpec, ...] = ()
+    hoist: tuple[parts.HoistSpec, ...] = ()
+    geneva: tuple[parts.GenevaSpec, ...] = ()
     stretch: tuple[StretchSpec, ...] = ()
     interval: tuple[IntervalSpec, ...] = ()
     dwell: tuple[DwellSpec, ...] = ()
-    load: tuple[MachineLoad, ...] = ()
-    mass: tuple[MemberMass, ...] = ()
-    spring: tuple[MachineSpring, ...] = ()
+    load: tuple[parts.MachineLoad, ...] = ()
+    mass: tuple[parts.MemberMass, ...] = ()
+    spring: tuple[parts.MachineSpring, ...] = ()
     gravity: GravitySpec = field(default_factory=GravitySpec)
     torque: TorqueSpec = field(default_factory=TorqueSpec)
     output: MechanismOutput = field(default_factory=MechanismOutput)
@@ -138,10 +213,10 @@ _HERE: Final = "gearcam.kinds.mechanism"
 
 
 def _problems(document: Mapping[str, Any], found: Examined) -> Iterator[Fault]:
-    faults = [*unfit_drives.problems(found), *names.problems(document, found)]
-    faults += outputs.problems(document, found)
+    faults = [*drives.problems(found), *names.problems(document, found)]
+    faults += names.unasked(document, found)
     yield from faults
-    yield from load_names.problems(found, faults)
+    yield from names.unfit(found, faults)
 
 
 KIND: Final = Kind(
@@ -149,12 +224,12 @@ KIND: Final = Kind(
     doc="a linkage that a pair, a cam or an even shaft drives",
     also=("linkage", "linkages", "four-bar", "machine"),
     design=MechanismDesign,
-    result=deferred(f"{_HERE}.build:MechanismResult"),
+    result=deferred(f"{_HERE}.result:MechanismResult"),
     required=("drive",),
     problems=_problems,
     formats=FORMATS,
-    check_modules=("gearcam.linkages.checks", f"{_HERE}.checks", f"{_HERE}.torque_checks"),
-    check_groups=("mechanisms", "tables of mechanisms", TORQUE),
+    check_modules=("gearcam.linkages.checks", f"{_HERE}.torque"),
+    check_groups=("mechanisms", TABLES, "torque of a mechanism"),
     study_tables={name: name for name in STUDIES},
     example={
         "drive": [{"name": "motor", "even": True, "speed_rpm": 60}],
@@ -174,17 +249,14 @@ KIND: Final = Kind(
         "output": {"files": ["csv", "report"]},
     },
     shown={
-        "goal": {
-            "minimize": "outputs.P_x.acceleration_mm_s2",
-            "maximize": "outputs.P_x.stroke_mm",
-        }
+        "goal": {"minimize": "outputs.P_x.acceleration_mm_s2", "maximize": "outputs.P_x.stroke_mm"}
     },
-    facts=deferred(f"{_HERE}.facts:facts"),
-    files=DeferredMapping(f"{_HERE}.files:FILES"),
-    charts=DeferredMapping(f"{_HERE}.charts:CHARTS"),
-    scene=deferred(f"{_HERE}.scene:scene"),
-    studies=DeferredMapping(f"{_HERE}.studies:STUDIES"),
-    ladders=DeferredMapping(f"{_HERE}.ladder:LADDERS"),
+    facts=deferred(f"{_HERE}.shown:facts"),
+    files=DeferredMapping(f"{_HERE}.shown:FILES"),
+    charts=DeferredMapping(f"{_HERE}.shown:CHARTS"),
+    scene=deferred(f"{_HERE}.drawn:scene"),
+    studies=DeferredMapping(f"{_HERE}.torque:STUDIES"),
+    ladders=DeferredMapping(f"{_HERE}.drawn:LADDERS"),
     public=DeferredMapping(f"{_HERE}.public:PUBLIC"),
     cut=False,
 )

@@ -1,41 +1,66 @@
-"""The drawings of a mechanism: the machine at an angle of its master, and the paths of its points.
+"""The pictures of a mechanism: its bodies, the moving scene, and drawings.
 
-Layers begin with the name of the point whose PATH is on them, or with the wheel.
+The drawings are the machine at an angle of its master, and the paths of its points. Members are
+symbols, wheels and cams are those of the pair or the cam itself, moved as the linkage takes them:
+by the drive's laws. Layers begin with the name of the point whose PATH is on them, or with the
+wheel.
+
+The distance of a path from its chord is measured at three angles inside the chord. It falls with
+the square of the step: this gives the number of chords that one is divided into.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from gearcam.base.errors import InfeasibleError
 from gearcam.base.numerals import formatted
-from gearcam.kinds.mechanism.bodies import CHAIN_WHEEL, PIN, bodies, pins_of, traced
-from gearcam.kinds.mechanism.scene import shown_at
-from gearcam.kinds.mechanism.traces import path_within
+from gearcam.kinds.mechanism.keys import Sort
+from gearcam.kinds.mechanism.names import parts_of, standing_places, tables_of, told_parts
+from gearcam.kinds.mechanism.parts.picture import CHAIN, CHAIN_WHEEL, PIN, Picture
+from gearcam.kinds.mechanism.parts.setting import Setting
 from gearcam.linkages.linkage import in_cycle
 from gearcam.numeric.arrays import divided
+from gearcam.numeric.pose import Pose
+from gearcam.parts.shapes import Circle
 from gearcam.pictures.drawings import (
     GHOST,
+    MEMBER,
     OUTER,
+    PRIME,
     TRACE,
     Drawing,
     Feature,
     Path,
     box,
     chains,
+    mirrored,
     place,
 )
 from gearcam.pictures.labels import Label, labelled
 from gearcam.pictures.markup import PIXELS, with_room
+from gearcam.pictures.scenes import PLACES, MovingBody, Scene, still
+from gearcam.results.ladders import CHORD_ORDER, ROUNDING, SHARES, Ladder, tolerances_around
+from gearcam.results.nested import within
 
 if TYPE_CHECKING:
-    from gearcam.kinds.mechanism.build import MechanismResult
+    from gearcam.kinds.mechanism.placed import Moved, PlacedDrive
+    from gearcam.kinds.mechanism.result import MechanismResult
     from gearcam.numeric.arrays import Array, Plane
-    from gearcam.pictures.scenes import MovingBody
+
+_SAME: Final = 1e-3
+"""Distance of two ways of a path, relative to its length, below which they are drawn as one."""
+
+_ROUNDING: Final = 1e-6
+"""Distance of a joint from where a member carries it that is rounding, mm."""
+
+_TURNS: Final = 4
+"""Largest number of turns of the master for each of which there are so many places."""
 
 _STEPS: Final = 720
 """Angles of the master in a picture."""
@@ -49,8 +74,216 @@ _LETTERS: Final = 15.0
 _SMALLER: Final = 0.8
 """Height of the letters of other angles, relative to that of names."""
 
+
 CHORDS: Final = 0.01
 """Chord tolerance of paths if the design has none, mm."""
+
+_BETWEEN: Final = 12
+"""Chords between knots at first."""
+
+_INSIDE: Final = np.array([0.25, 0.5, 0.75])
+"""Shares of a chord at which the distance is measured."""
+
+_MARGIN: Final = 0.9
+"""Allowed measured distance, as a share of the tolerance: between the angles it may be larger."""
+
+_MOST: Final = 1_000_000
+"""Largest number of chords of a path."""
+
+
+def bodies(result: MechanismResult, q: Array, before: int = 0) -> tuple[MovingBody, ...]:
+    """Return the bodies of a mechanism.
+
+    Parameters
+    ----------
+    result : MechanismResult
+        The mechanism.
+    q : (n,) array, rad
+        Angles of the master; they cover all that it moves through, since guides are as long as what
+        slides on them needs.
+    before : int
+        How many angles come before those of the paths of points.
+
+    Returns
+    -------
+    tuple of MovingBody
+        Later ones are drawn on top. Members, wheels and cams have their names, a wheel or a cam
+        that of its drive before it; what stands still is named ``frame``.
+    """
+    tables = tables_of(result.design)
+    parts = [part for *_, part in parts_of(tables)]
+    joints = [use for part in parts for use in part.given() if use.sort == Sort.JOINT]
+    joints.sort(key=lambda one: one.path != ("name",))  # first those with a table of their own
+    lengths = [length for part in parts for length in part.sizes()]
+    setting, known = Setting(standing_places(tables), result.drives), result.linkage.at(q, 0)
+    picture = Picture(setting, q, known, [one.name for one in joints], lengths)
+    for guide, quantity in (one for part in parts for one in part.guided()):
+        picture.sliding[guide].append(quantity)
+    for part in parts:
+        part.draw(picture)
+    for *_, part in told_parts(tables):
+        part.stand(picture)
+    driven = [one for number in range(len(result.drives)) for one in _driven(result, number, q)]
+    fixed = [tuple(picture.grounds()), tuple(_paths(result, picture, before))]
+    standing, paths = ([still(features, q)] if features else [] for features in fixed)
+    every = (*driven, *standing, *picture.lowest, *picture.lower, *picture.members(), *paths)
+    return tuple(_named(picture, every))
+
+
+def _named(picture: Picture, every: tuple[MovingBody, ...]) -> Iterator[MovingBody]:
+    """Yield bodies with names: of joints, each on the first body that carries it, and their own."""
+    places = dict(picture.places)
+    for body in every:
+        own, pins = list[tuple[str, complex]](), pins_of(body)
+        for name, joint in list(places.items()):
+            at = complex(body.pose[0].inverse.apply(joint[0]))
+            pinned = body.name == "frame" or (np.abs(pins - at) < _ROUNDING).any()
+            if pinned and np.abs(body.pose.apply(at) - joint).max() < _ROUNDING:
+                own.append((name, at))
+                del places[name]
+        if any(one.kind == MEMBER for one in body.features) and body.called != CHAIN:
+            own.append((body.called, complex(pins.mean()) if len(pins) else 0j))
+        yield replace(body, names=tuple(own)) if own else body
+
+
+def pins_of(body: MovingBody) -> Plane:
+    """Return the joints of a member in its frame, (n,) mm; none of other bodies."""
+    pins = [
+        one.shape.center
+        for one in body.features
+        if one.layer == PIN and isinstance(one.shape, Circle)
+    ]
+    return np.array(list(dict.fromkeys(pins)), dtype=np.complex128)
+
+
+def traced(result: MechanismResult) -> tuple[str, ...]:
+    """Return the names of the points whose paths are drawn: all, and joints that are asked for."""
+    parts = parts_of(tables_of(result.design))
+    points = [name for *_, part in parts for name in part.traced()]
+    asked = [one.name for one in result.outputs if one.quantity == f"{one.name}.x"]
+    return tuple(dict.fromkeys([*points, *asked]))
+
+
+def _paths(result: MechanismResult, picture: Picture, before: int) -> Iterator[Feature]:
+    closed = result.linkage.closed
+    for name in traced(result):
+        points = picture.place(name)[before:]
+        if float(np.abs(points - points[0]).max()) > 0.0:
+            once = _once(points[:-1]) if closed else None
+            whole = Path(points=points, closed=closed)
+            shape = whole if once is None else Path(points=once, closed=False)
+            yield Feature(layer=TRACE, shape=shape)
+
+
+def _once(points: Plane) -> Plane | None:
+    """Return one way of a closed path that goes there and back on it; None if it does not.
+
+    Dashes drawn twice would make a full line.
+    """
+    points = np.roll(points, -int(np.abs(points - points[0]).argmax()))
+    half = int(np.abs(points - points[0]).argmax())
+    out, back = points[: half + 1], np.append(points[half:], points[0])
+    off = distances(out[:, None], back[:-1], back[1:]).min(axis=1)
+    return out if off.max() < _SAME * abs(points[half] - points[0]) else None
+
+
+# --- wheels and cams -----------------------------------------------------------------------------
+
+
+def _driven(result: MechanismResult, number: int, q: Array) -> Iterator[MovingBody]:
+    """Yield the bodies of the pair or the cam of a drive."""
+    drive = result.drives[number]
+    if drive.result is None:
+        return
+    with within(f"drive[{number}].{drive.spec.key}"):
+        scene = drive.result.plain.scene(1)
+    x = drive.own(q)
+    for body in scene.bodies:
+        moved = _moved(drive, body.name)
+        yield replace(
+            body,
+            # bodies whose names differ behind an underscore share their colours
+            name=f"{drive.spec.name.replace('_', ' ')}.{body.name}" if moved else body.name,
+            called=f"{body.called} of {drive.spec.name}" if moved else body.called,
+            features=tuple(_seen(drive, body.features)),
+            pose=_placed(drive, _motion(moved, x) @ body.pose[0]),
+            teeth=None,
+        )
+
+
+def _moved(drive: PlacedDrive, body: str) -> Moved | None:
+    """Return what moves a body of a pair or a cam; None if it stands still."""
+    if body == "frame":
+        return None
+    first, last = drive.moved.values()
+    if drive.spec.pair is not None:
+        return first if body == drive.result.parts[0].name else last
+    return last if body == "follower" else first
+
+
+def _motion(moved: Moved | None, x: Array) -> Pose:
+    """Return the motion of a body from its place at the drive's zero, in the drive's frame."""
+    if moved is None:
+        return Pose(np.zeros(x.shape), np.zeros(x.shape, dtype=np.complex128))
+    way = np.asarray(moved.law(x, 0).c[0]) - np.asarray(moved.law(np.zeros(1), 0).c[0])
+    if moved.along:
+        return Pose(np.zeros(x.shape), way * moved.along)
+    return Pose(way, moved.at * (1.0 - np.exp(1j * way)))
+
+
+def _seen(drive: PlacedDrive, features: tuple[Feature, ...]) -> Iterator[Feature]:
+    for one in features:
+        if one.kind == PRIME:  # which says nothing of the machine
+            continue
+        yield replace(one, shape=mirrored(one.shape)) if drive.spec.mirror else one
+
+
+def _placed(drive: PlacedDrive, pose: Pose) -> Pose:
+    """Return a pose in the drive's frame as one in the machine."""
+    if drive.spec.mirror:
+        pose = Pose(-pose.turn, np.conj(pose.shift))
+    return Pose(drive.spec.turn, complex(*drive.spec.at)) @ pose
+
+
+# --- the moving scene -----------------------------------------------------------------------------
+
+
+def scene(result: MechanismResult, places: int = PLACES) -> Scene:
+    """Return the machine in motion.
+
+    Parameters
+    ----------
+    result : MechanismResult
+        The mechanism.
+    places : int
+        Steps of the master in a turn; of many turns the steps are longer.
+
+    Returns
+    -------
+    Scene
+    """
+    low, high = result.linkage.span
+    turns = min(max(round((high - low) / (2.0 * math.pi)), 1), _TURNS)
+    q = np.linspace(low, high, places * turns + 1)
+    return Scene(
+        title=result.design.name,
+        driver=result.axis,
+        places=np.degrees(q),
+        closed=result.linkage.closed,
+        start=math.degrees(shown_at(result)),
+        bodies=bodies(result, q),
+    )
+
+
+def shown_at(result: MechanismResult) -> float:
+    """Return the master's angle in pictures, rad, within its range."""
+    (low, high), pose = result.linkage.span, result.design.output.pose
+    if result.linkage.closed:
+        return low + (pose - low) % (high - low)
+    return min(max(pose, low), high)
+
+
+# --- drawings -------------------------------------------------------------------------------------
 
 
 def _angles(result: MechanismResult) -> tuple[Array, int]:
@@ -196,3 +429,109 @@ def _layer(name: str, taken: set[str]) -> str:
         own, number = f"{name}_{number}", number + 1
     taken.add(own.casefold())
     return f"{own}_{TRACE}"
+
+
+# --- paths as chains of chords --------------------------------------------------------------------
+
+
+def path_within(
+    place: Callable[[Array], Plane], knots: Array, tolerance: float
+) -> tuple[Array, Plane]:
+    """Return points of a path, no chord between them farther from it than a tolerance.
+
+    Parameters
+    ----------
+    place : callable
+        ``place(q)`` returns the point at angles (n,) of the master, complex, mm.
+    knots : (k,) array, rad
+        The master's angles from the first to the last one; between them the path is smooth.
+    tolerance : float, mm
+        Largest distance.
+
+    Returns
+    -------
+    q : (n,) array, rad
+        The master's angles, with both ends and all knots.
+    points : (n,) complex array, mm
+
+    Raises
+    ------
+    InfeasibleError
+        If the tolerance needs too many chords.
+    """
+    q, counts = knots, np.full(len(knots) - 1, _BETWEEN)
+    while counts.sum() <= _MOST:
+        q = divided(q, counts)
+        points = place(q)
+        inner = q[:-1] + np.outer(_INSIDE, np.diff(q))
+        seen = place(inner.ravel()).reshape(inner.shape)
+        off = distances(seen, points[:-1], points[1:]).max(axis=0)
+        counts = np.maximum(np.ceil(np.sqrt(off / (_MARGIN * tolerance))), 1.0).astype(np.int64)
+        if counts.max() == 1:
+            return q, points
+    raise InfeasibleError(
+        f"a path would have more than {_MOST} chords",
+        where="output.chord_tolerance_mm",
+        value=tolerance,
+        unit="mm",
+        nearest="a larger one",
+    )
+
+
+def distances(points: Plane, start: Plane, end: Plane) -> Array:
+    """Return distances of points from chords.
+
+    Parameters
+    ----------
+    points : (m, n) complex array, mm
+        Points that belong to n chords.
+    start, end : (n,) complex arrays, mm
+        The ends of the chords.
+
+    Returns
+    -------
+    (m, n) array, mm
+    """
+    chord = end - start
+    square = np.abs(chord) ** 2
+    share = ((points - start) * chord.conj()).real / np.where(square > 0.0, square, 1.0)
+    return np.abs(points - start - np.clip(share, 0.0, 1.0) * chord)
+
+
+def _path_ladder(result: MechanismResult) -> Ladder:
+    """Return the distance of the path of the first point from its chords, over their tolerance."""
+    path = next(iter(result.paths.values()), None)
+    if path is None:
+        raise InfeasibleError(
+            "no point is asked for: there is no path",
+            where="output.outputs",
+            nearest="ask for a joint or a point that draws one",
+        )
+
+    def place(q: Array) -> Plane:
+        return np.asarray(path.track(q, 0).c[0], dtype=np.complex128)
+
+    def make(tolerance: float) -> tuple[Array, Plane]:
+        return path_within(place, path.knots, tolerance)
+
+    def measure(made: tuple[Array, Plane]) -> tuple[float, int]:
+        q, points = made
+        inner = place((q[:-1] + np.outer(SHARES, np.diff(q))).ravel()).reshape(len(SHARES), -1)
+        return float(distances(inner, points[:-1], points[1:]).max()), len(q)
+
+    own = result.design.output.chord_tolerance or CHORDS
+    return Ladder(
+        refined="chord tolerance, mm",
+        measured="chords of the path",
+        unit="mm",
+        levels=tolerances_around(own),
+        own=own,
+        order=CHORD_ORDER,
+        rounding=ROUNDING * path.length.value,
+        make=make,
+        measure=measure,
+    )
+
+
+LADDERS: Final = {"path": _path_ladder}
+"""What `gearcam accuracy` can measure."""

@@ -1,428 +1,242 @@
-"""What the drives of a mechanism move: shafts and slides as functions of the master's angle.
-
-A pair stands as assembled: wheel 1 turns by -phi1 about the origin, wheel 2 by phi2 about (A, 0); a
-ring turns by -phi2. A rack moves along -y. A cam turns counter-clockwise by theta about the origin,
-or clockwise; its follower is lifted along its guide, or turns about its pivot.
-"""
+"""The tables of what drives a mechanism: drives, and others in the place of the first."""
 
 from __future__ import annotations
 
-import cmath
-import math
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
-from functools import cached_property
-from typing import TYPE_CHECKING, Any, Final
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-import numpy as np
-
-from gearcam.base.display import ShortRepr
-from gearcam.base.numerals import formatted
-from gearcam.base.tolerances import DEFAULT
-from gearcam.linkages.elements import GivenMotion, GuideLine, Law, MemberPoint
-from gearcam.numeric.arrays import Array
-from gearcam.numeric.jets import Jet
+from gearcam.base.quantities import COUNT, RPM, TEXT, nested, param
+from gearcam.base.rules import Breach, exactly_one
+from gearcam.designs.design import Design
+from gearcam.designs.faults import Fault, show
+from gearcam.kinds.mechanism.keys import NameUse, Sort, WithNames, angle_param, named, point_param
 
 if TYPE_CHECKING:
-    from gearcam.kinds.mechanism.tables import MachineDrive
-    from gearcam.laws.displacement import Displacement
-    from gearcam.linkages.elements import Element
-
-_TURN: Final = 2.0 * math.pi
-
-_SIDE: Final = 4.0 * float(np.finfo(float).eps)
-"""Distance beside a knot, as a share of the angle, that rounding does not take away."""
-
-_ROUNDED: Final = 1e-12
-"""How far from a knot rounding may leave an angle, rad."""
-
-_CELLS: Final = 16
-"""Cells of a turn of an even shaft: what turns with it has few harmonics."""
-
-_NAMES: Final = ("the place", "its velocity", "its acceleration", "its jerk")
-"""What a formula of a slide gives, for messages."""
-
-_CENTER, _WAY = "center", "way"
-"""Behind the name of a shaft the joint in which it turns, of a slide the guide it goes along."""
+    from gearcam.designs.kind import Examined
 
 
-def center_of(shaft: str) -> str:
-    """Return the name of the joint in which a `shaft` of a drive turns."""
-    return f"{shaft}.{_CENTER}"
+class WrittenDrive(WithNames):
+    """What moves a mechanism, as tables say it: a pair, a cam, or a shaft that turns evenly."""
+
+    pair: Design | None
+    cam: Design | None
+    even: bool | None
+
+    @property
+    def key(self) -> str:
+        """The key that says what it is: ``pair``, ``cam``, ``even``, ``slide``; empty if none."""
+        given = (key for key in ("pair", "cam", "even", "slide") if getattr(self, key, None))
+        return next(given, "")
+
+    def problems(self) -> Iterator[Breach]:
+        """Yield ``even = false``: field, index, message, what is allowed."""
+        if self.even is False:
+            yield "even", None, "is no drive", "true, or the key left out"
 
 
-def way_of(slide: str) -> str:
-    """Return the name of the guide along which a `slide` of a drive goes."""
-    return f"{slide}.{_WAY}"
+@dataclass(frozen=True, kw_only=True)
+class CompareSpec(WrittenDrive):
+    """Another drive in the place of the first one, to compare the same mechanism behind both.
 
-
-@dataclass(frozen=True)
-class Moved(ShortRepr):
-    """One thing that a drive moves, in the drive's frame.
-
-    Parameters
-    ----------
-    law : callable
-        ``law(x, order) -> Jet`` over the drive's own angle: its turn, rad, or its place, mm.
-    at : complex, mm
-        Where its shaft stands, or the zero of its places.
-    along : complex
-        Direction of its way; 0 for a shaft.
-    arm : float, rad
-        Direction of the arm of an oscillating follower at zero lift; nan if there is none.
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.CompareSpec(name="without_a_pair", even=True)
+    CompareSpec(name='without_a_pair', even=True)
     """
 
-    law: Law
-    at: complex = 0j
-    along: complex = 0j
-    arm: float = math.nan
-
-
-def linear(factor: float, constant: float = 0.0) -> Law:
-    """Return the law ``factor*x + constant``."""
-
-    def law(x: Array, order: int) -> Jet:
-        return Jet.variable(x, order) * factor + constant
-
-    return law
-
-
-def displaced(by: Displacement, factor: float, constant: float = 0.0) -> Law:
-    """Return the law ``factor*y(x) + constant`` of a displacement y.
-
-    Parameters
-    ----------
-    by : Displacement
-        A ratio law or a program of lift.
-    factor, constant : float
-        In the units of its values.
-    """
-
-    def law(x: Array, order: int) -> Jet:
-        found = by.derivatives(x, order)
-        scaled = [factor * value / math.factorial(k) for k, value in enumerate(found)]
-        return Jet([scaled[0] + constant, *scaled[1:]])
-
-    return law
-
-
-def moved_by(drive: MachineDrive, result: Any) -> dict[str, Moved]:
-    """Return what a drive moves.
-
-    Parameters
-    ----------
-    drive : MachineDrive
-        Its table.
-    result : GearPairResult, CamResult or None
-        Of the pair or the cam.
-
-    Returns
-    -------
-    dict of str to Moved
-        By the words of `MachineDrive.shafts`.
-    """
-    if drive.pair is not None:
-        return _of_pair(result)
-    if drive.cam is not None:
-        return _of_cam(result)
-    if drive.slide is not None:
-        return {"slide": Moved(_formula(drive.slide), 0j, 1 + 0j)}
-    return {"shaft": Moved(linear(1.0))}
-
-
-def _of_pair(result: Any) -> dict[str, Moved]:
-    pair = result.pair
-    law, distance = pair.law, pair.center_distance
-    driver = Moved(linear(-1.0))
-    if pair.on_rack:  # its law is the travel over the size that the module gives
-        return {"wheel1": driver, "rack": Moved(displaced(law, -distance), 0j, 1j)}
-    inside = result.design.pair.type == "internal"
-    side, center = (-1.0, -distance) if inside else (1.0, distance)
-    return {"wheel1": driver, "wheel2": Moved(displaced(law, side), complex(center))}
-
-
-def _of_cam(result: Any) -> dict[str, Moved]:
-    follower = result.cam.motions[0].follower
-    program, side = result.program, -1.0 if result.design.cam.rotation == "cw" else 1.0
-    shaft = Moved(linear(side))
-    turn, shift = (
-        float(one[0].real) + 1j * float(one[0].imag) for one in follower.moved(np.ones(1))
+    name: str = named(doc="name of the comparison in tables and charts", example="without_a_pair")
+    pair: Design | None = nested(
+        "gear-pair", default=None, example="pair.toml", doc="the pair that drives it"
     )
-    seen = (lambda z: z) if side > 0.0 else (lambda z: -z.conjugate())
-    if not follower.angular:
-        end = complex(follower.centre(np.array([follower.start]))[0]) if follower.has_centre else 0j
-        return {"shaft": shaft, "follower": Moved(displaced(program, 1.0), seen(end), seen(shift))}
-    spin = turn.real
-    pivot = shift / (1.0 - cmath.exp(1j * spin))
-    arm = math.nan
-    if follower.has_centre:
-        arm = cmath.phase(seen(complex(follower.centre(np.array([follower.start]))[0]) - pivot))
-    return {
-        "shaft": shaft,
-        "follower": Moved(displaced(program, side * spin), seen(pivot), arm=arm),
-    }
-
-
-def _formula(text: str) -> Law:
-    from gearcam.laws.formula_syntax import parse
-
-    made = parse(text, "q")
-
-    def law(x: Array, order: int) -> Jet:
-        found = made.evaluate(Jet.variable(x, order))
-        return found if isinstance(found, Jet) else Jet.variable(x, order) * 0.0 + found
-
-    return law
-
-
-def _formula_cells(text: str, low: float, high: float) -> Array:
-    """Return the cells in which an expansion of the jerk of a slide resolves it."""
-    from gearcam.laws.entry import Axis
-    from gearcam.laws.formula import AxisFunction
-    from gearcam.laws.formula_syntax import parse
-
-    axis = Axis(
-        name="the place",
-        low=low,
-        high=high,
-        place=lambda q: f"{formatted(math.degrees(q), 6)} deg",
-        variable="q",
+    cam: Design | None = nested(
+        "cam", default=None, example="cam.toml", doc="the cam whose follower drives it"
     )
-    function = AxisFunction(axis, parse(text, "q").evaluate, DEFAULT.expansion)
-    return function.demand_smooth(_NAMES)
+    even: bool | None = param(
+        default=None, example=True, doc="true: a shaft that turns with the driver itself"
+    )
+
+    rules = (exactly_one("pair", "cam", "even"),)
 
 
-@dataclass(frozen=True)
-class PlacedDrive(ShortRepr):
-    """A drive in the machine.
+@dataclass(frozen=True, kw_only=True)
+class MachineDrive(WrittenDrive):
+    """A drive of a mechanism; the first one is the master, whose angle all motion is given over.
+
+    The wheels of a pair, the follower of a cam or a slide move as their designs say; an even drive
+    turns with the master. A drive stands in its own frame, which may be moved in the machine.
+
+    Examples
+    --------
+    >>> import gearcam as gc
+    >>> gc.MachineDrive(name="motor", even=True)
+    MachineDrive(name='motor', even=True)
+    """
+
+    name: str = named(
+        gives=Sort.ANY, doc="its name; cranks and slides name a shaft of it", example="pair"
+    )
+    pair: Design | None = nested(
+        "gear-pair", default=None, example="pair.toml", doc="the pair: its wheels or its rack move"
+    )
+    cam: Design | None = nested(
+        "cam", default=None, example="cam.toml", doc="the cam: its follower moves"
+    )
+    even: bool | None = param(
+        default=None, example=True, doc="true: a shaft that turns with the master"
+    )
+    slide: str | None = param(
+        TEXT,
+        default=None,
+        example="20*sin(q)",
+        doc="place of a slide, mm, as a formula in the master's angle q, rad",
+    )
+    speed: float | None = param(
+        RPM, default=None, gt=0, le=1e6, example=180, doc="mean speed of the driver, of the master"
+    )
+    ratio: int = param(
+        COUNT, default=1, ge=-100, le=100, doc="turns of this drive's driver per turn of the master"
+    )
+    phase: float = angle_param(doc="angle of this drive's driver at the master's zero", default=0.0)
+    span: tuple[float, float] | None = angle_param(
+        default=None,
+        word="range",
+        order="first and last",
+        example=[-60, 60],
+        doc="first and last angle of a master that does not turn all the way",
+    )
+    at: tuple[float, float] = point_param(doc="where its frame stands", default=(0.0, 0.0))
+    turn: float = angle_param(doc="direction of its x axis", default=0.0)
+    mirror: bool = param(
+        default=False, doc="whether it is reflected in its x axis: all turns are reversed"
+    )
+
+    rules = (exactly_one("pair", "cam", "even", "slide"),)
+
+    def problems(self) -> Iterator[Breach]:
+        """Yield contradictions: field, index, message, what is allowed."""
+        yield from super().problems()
+        if not self.ratio:
+            yield "ratio", None, "is 0", "a whole number, negative for the other sense of rotation"
+        if self.span is not None and self.slide is not None:
+            yield "span", None, "is not of a drive that turns", "a pair, a cam or even = true"
+        if self.span is not None and self.span[0] >= self.span[1]:
+            yield "span", 1, "is not above the first angle", "rising angles"
+        if self.slide is not None:
+            yield from _formula_problems(self.slide)
+
+    @property
+    def shafts(self) -> dict[str, Sort]:
+        """What it moves, a shaft or a slide, by the words behind the name of the drive."""
+        if self.pair is not None:
+            rack = _moves_a_rack(self.pair)
+            return {"wheel1": Sort.SHAFT} | ({"rack": Sort.WAY} if rack else {"wheel2": Sort.SHAFT})
+        if self.cam is not None:
+            follower = getattr(self.cam, "follower", None)
+            swings = getattr(follower, "motion", "") == "oscillating"
+            return {"shaft": Sort.SHAFT, "follower": Sort.SHAFT if swings else Sort.WAY}
+        return {"shaft": Sort.SHAFT} if self.even else {"slide": Sort.WAY}
+
+    def names_of(self, word: str) -> Iterator[str]:
+        """Yield the names of what it moves, by its `word`: the only thing has that of the drive."""
+        yield f"{self.name}.{word}"
+        if self.even or self.slide is not None:
+            yield self.name
+
+    def given(self) -> Iterator[NameUse]:
+        """Yield the names of what it moves."""
+        for word, sort in self.shafts.items():
+            for name in self.names_of(word):
+                yield NameUse(name, sort, ("name",))
+
+
+def _moves_a_rack(pair: Design) -> bool:
+    from gearcam.laws.ratio.formula import RackLaw
+
+    return isinstance(getattr(pair, "law", None), RackLaw)
+
+
+def _formula_problems(text: str) -> Iterator[Breach]:
+    from gearcam.laws.formula_syntax import FormulaError, parse
+
+    try:
+        parse(text, "q")
+    except FormulaError as error:
+        yield error.breach("slide")
+
+
+# --- drives that cannot be the master or replace another one, and keys that they have in vain -----
+
+
+def is_read(title: str, found: Examined) -> bool:
+    """Return whether the names in the tables of a title are known from the valid tables.
 
     Parameters
     ----------
-    spec : MachineDrive
-        Its table.
-    moved : dict of str to Moved
-        What it moves.
-    knots : (k,) array, rad
-        Places at which its laws are not smooth, over its own angle.
-    cells : (n,) array, rad
-        Ends of the cells in which expansions resolve its laws, over its own angle; those of a
-        formula of a slide depend on the range (see `cells_in`).
-    period : float, rad
-        After which they repeat; of an open one the end of its range.
-    closed : bool
-        Whether it turns all the way.
-    result : Result, optional
-        Of the pair or the cam.
+    title : str
+        The title.
+    found : Examined
+        The valid tables.
     """
-
-    spec: MachineDrive
-    moved: dict[str, Moved]
-    knots: Array
-    cells: Array
-    period: float
-    closed: bool
-    result: Any = None
-
-    def machine(self, point: complex) -> complex:
-        """Return a `point` of the drive's frame in the machine, mm."""
-        return complex(*self.spec.at) + self.vector(point)
-
-    def vector(self, way: complex) -> complex:
-        """Return a direction of the drive's frame in the machine."""
-        seen = way.conjugate() if self.spec.mirror else way
-        return seen * cmath.exp(1j * self.spec.turn)
-
-    def instead_of(self, other: PlacedDrive) -> PlacedDrive:
-        """Return the drive standing where another one stands, with its shafts.
-
-        Parameters
-        ----------
-        other : PlacedDrive
-            A drive of the same sort, or any if this one is even: then all shafts turn evenly, at
-            the mean ratio of a closed pair or a rack, as fast as the driver in the place of an open
-            one.
-        """
-        moved = {}
-        for word, one in other.moved.items():
-            law = self.moved[word].law if word in self.moved else _evenly(one.law, other)
-            moved[word] = replace(one, law=law)
-        if self.result is not None:
-            return replace(self, spec=other.spec, moved=moved)
-        high = other.period if _steady(other) else _furthest(other)
-        ends = np.array([0.0, high])
-        return PlacedDrive(other.spec, moved, ends, _even_cells(high), high, other.closed)
-
-    def elements(self, master: bool) -> Iterator[Element]:
-        """Yield its shafts, where they stand, and the guides of its slides.
-
-        Parameters
-        ----------
-        master : bool
-            Whether the master's angle is its own.
-        """
-        side = -1.0 if self.spec.mirror else 1.0
-        for word, one in self.moved.items():
-            names = [f"{self.spec.name}.{word}"]
-            if self.spec.even or self.spec.slide is not None:
-                names.append(self.spec.name)
-            for name in names:
-                factor = 1.0 if one.along else side
-                yield GivenMotion(name, self._over_master(one.law, factor, master))
-                if one.along:
-                    direction = cmath.phase(self.vector(one.along))
-                    yield GuideLine(way_of(name), self.machine(one.at), direction)
-                else:
-                    yield MemberPoint(center_of(name), self.machine(one.at))
-
-    def own(self, q: Array) -> Array:
-        """Return its own angles, rad.
-
-        Parameters
-        ----------
-        q : (n,) array, rad
-            The master's angles.
-        """
-        return self.spec.ratio * q + self.spec.phase
-
-    def _over_master(self, law: Law, factor: float, master: bool) -> Law:
-        ratio = float(self.spec.ratio)
-
-        def over(q: Array, order: int) -> Jet:
-            x = q if master else self._beside_knots(self.own(q), ratio)
-            found = law(x, order)
-            return Jet([factor * value * ratio**k for k, value in enumerate(found.c)])
-
-        if self.spec.slide is not None:  # its formula is one of the master's angle
-            return law
-        return over
-
-    def _beside_knots(self, x: Array, ratio: float) -> Array:
-        """Return own angles with those at knots, but for rounding, on the side that comes later."""
-        if self.result is None or not self.closed:
-            return x
-        within = x % self.period
-        nearest = np.abs(within[..., None] - self.knots).argmin(axis=-1)
-        at = x - within + self.knots[nearest]
-        late = at + math.copysign(_SIDE, ratio) * (np.abs(at) + self.period)
-        return np.where(np.abs(within - self.knots[nearest]) <= _ROUNDED, late, x)
-
-    def knots_in(self, low: float, high: float) -> Array:
-        """Return where its laws are not smooth.
-
-        Parameters
-        ----------
-        low, high : float, rad
-            The master's angles between which they are looked for.
-
-        Returns
-        -------
-        (k,) array, rad
-            The master's angles.
-        """
-        return self._within(self.knots, low, high)
-
-    def cells_in(self, low: float, high: float) -> Array:
-        """Return the ends of the cells in which expansions resolve its laws.
-
-        Parameters
-        ----------
-        low, high : float, rad
-            The master's angles between which they are looked for.
-
-        Returns
-        -------
-        (k,) array, rad
-            The master's angles, `low` and `high` among them.
-
-        Raises
-        ------
-        InfeasibleError
-            If a formula is not smooth, or not finite, between them.
-        """
-        if self.spec.slide is not None:
-            return _formula_cells(self.spec.slide, low, high)
-        return np.concatenate([[low], self._within(self.cells, low, high), [high]])
-
-    @cached_property
-    def places(self) -> Array:
-        """The master's angles in a turn that show all that its laws do."""
-        return self.places_in(0.0, _TURN)
-
-    def places_in(self, low: float, high: float) -> Array:
-        """Return the same in a range (see `cells_in`)."""
-        ends = self.cells_in(low, high)
-        return np.union1d(ends, 0.5 * (ends[1:] + ends[:-1]))
-
-    def _within(self, places: Array, low: float, high: float) -> Array:
-        """Return where places of its own angle are in a range of the master's."""
-        ends = sorted(self.own(np.array([low, high])))
-        turns = range(math.floor(ends[0] / self.period), math.ceil(ends[1] / self.period) + 1)
-        every = [places + k * self.period for k in turns] if self.closed else [places]
-        found = (np.concatenate(every) - self.spec.phase) / self.spec.ratio
-        return np.unique(found[(found > low) & (found < high)])
+    told = (one.path[0] for one in found.faults if one.path)
+    # what a drive moves depends on several keys, which may contradict each other
+    return title in found.parts and not (title == "drive" and title in told)
 
 
-def placed(spec: MachineDrive, build: Callable[[Any], Any]) -> PlacedDrive:
-    """Return a drive with the laws of its pair or cam.
+def problems(found: Examined) -> Iterator[Fault]:
+    """Yield what is wrong with the drives of a mechanism, and with those to compare.
 
     Parameters
     ----------
-    spec : MachineDrive
-        Its table.
-    build : callable
-        ``build(design)`` returns the result of the pair or the cam.
-
-    Returns
-    -------
-    PlacedDrive
-
-    Raises
-    ------
-    InfeasibleError
-        If the pair or the cam is impossible.
+    found : Examined
+        The valid tables.
     """
-    nested = spec.pair or spec.cam
-    if nested is None:
-        low, high = spec.span or (0.0, _TURN)
-        ends = np.array([low, high])
-        cells = _even_cells(high - low) + low
-        return PlacedDrive(spec, moved_by(spec, None), ends, cells, high - low, spec.span is None)
-    result = build(nested)
-    by = result.pair.law if spec.pair is not None else result.program
-    cells = np.union1d(by.knots, by.driven.knots if spec.pair is not None else by.cuts)
-    knots, cells = (one[(one >= 0.0) & (one <= by.period)] for one in (by.knots, cells))
-    moved, end, closed = moved_by(spec, result), float(by.period), by.closed
-    if spec.pair is not None and result.pair.on_rack:  # the wheel turns as far as it has teeth
-        end, closed = float(result.centrode_angles(2)[-1]), False
-        turns = by.period * np.arange(math.ceil(end / by.period))
-        every = (np.add.outer(turns, one).ravel() for one in (knots, cells))
-        knots, cells = (np.union1d(one[one < end], [0.0, end]) for one in every)
-    return PlacedDrive(spec, moved, knots, cells, end, closed, result)
+    drives, compared = (found.parts.get(title, ()) for title in ("drive", "compare"))
+    yield from _sliding("drive", drives)
+    yield from _sliding("compare", compared)
+    for number, one in enumerate(drives):
+        yield from _without_effect(number, one)
+    if drives and drives[0].slide is not None:
+        what = f"{show(drives[0].slide)} has no angle over which the motion could be given"
+        allowed = "a first drive with pair, cam or even = true, and the slide behind it"
+        yield Fault(("drive", 0, "slide"), what, drives[0].slide, allowed)
+    if drives and is_read("drive", found):
+        for number, one in enumerate(compared):
+            yield from _not_comparable(number, one, drives[0])
 
 
-def _even_cells(period: float) -> Array:
-    """Return cells in which searches see all that follows from a law that is even."""
-    return np.linspace(0.0, period, 1 + math.ceil(_CELLS * period / _TURN))
+def _sliding(
+    title: str, drives: tuple[MachineDrive, ...] | tuple[CompareSpec, ...]
+) -> Iterator[Fault]:
+    """Yield cams without an angle over which motion could be given."""
+    for number, one in enumerate(drives):
+        if getattr(getattr(one.cam, "cam", None), "form", "") == "translating":
+            what = f"the cam {show(getattr(one.cam, 'name', ''))} slides: it has no shaft"
+            yield Fault((title, number, "cam"), what, None, "a cam that turns")
 
 
-def _steady(drive: PlacedDrive) -> bool:
-    """Return whether its mean ratio is that of what stands in its place: not of an open pair."""
-    return drive.closed or any(one.along for one in drive.moved.values())
+def _without_effect(number: int, one: MachineDrive) -> Iterator[Fault]:
+    """Yield keys that a drive is given in vain."""
+    if not number or one.slide is not None:
+        why = "the first drive is the master" if not number else "its formula is in the master's q"
+        for key, value, usual in (("ratio", one.ratio, 1), ("phase_deg", one.phase, 0.0)):
+            if value != usual:
+                yield Fault(("drive", number, key), f"has no effect: {why}", value, f"{usual:g}")
+    if number and one.speed is not None:
+        what = "has no effect: the speed is that of the first drive"
+        yield Fault(("drive", number, "speed_rpm"), what, None, "the key in the first drive")
 
 
-def _travel(law: Law, drive: PlacedDrive) -> tuple[float, float]:
-    """Return where a law of a drive begins, and how far it gets over its range."""
-    first, last = np.asarray(law(np.array([0.0, drive.period]), 0).c[0])
-    return float(first), float(last - first)
-
-
-def _furthest(drive: PlacedDrive) -> float:
-    """Return how far what is driven gets, or the driver if nothing is."""
-    driven = [one for word, one in drive.moved.items() if word not in ("wheel1", "shaft")]
-    return max(abs(_travel(one.law, drive)[1]) for one in driven or drive.moved.values())
-
-
-def _evenly(law: Law, drive: PlacedDrive) -> Law:
-    """Return the even law in the place of another one."""
-    first, way = _travel(law, drive)
-    return linear(way / drive.period if _steady(drive) else math.copysign(1.0, way), first)
+def _not_comparable(number: int, one: CompareSpec, master: MachineDrive) -> Iterator[Fault]:
+    """Yield that a drive to compare does not have the shafts of the first drive."""
+    if one.even:
+        if master.pair is None:
+            what = "cannot replace the first drive, which is not a pair"
+            yield Fault(("compare", number, "even"), what, True, "where a pair is the master")
+        return
+    own = MachineDrive(name=master.name, pair=one.pair, cam=one.cam)
+    if one.key and own.shafts != master.shafts:
+        what = f"does not have the shafts of {master.name}: {', '.join(master.shafts)}"
+        allowed = "a drive of the same sort; an even shaft stands beside a pair with even = true"
+        yield Fault(("compare", number, one.key), what, allowed=allowed)

@@ -4,32 +4,37 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from functools import partial
 from itertools import product
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
+from gearcam.base.display import ShortRepr
 from gearcam.base.errors import DesignError, InfeasibleError, Problem
 from gearcam.base.facts import Fact, extent
-from gearcam.base.findings import limit_of, run_checks
+from gearcam.base.findings import Remark, check, limit_of, run_checks
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import TORQUE as NEWTON_METRES
-from gearcam.kinds.mechanism.loaded import work_of
-from gearcam.kinds.mechanism.torque_checks import TORQUE, DriverEffort, Pull
-from gearcam.kinds.mechanism.wheel_masses import BODY
+from gearcam.base.quantities import Param
+from gearcam.kinds.mechanism.asked import DEG
+from gearcam.kinds.mechanism.loaded import BODY, work_of
+from gearcam.kinds.mechanism.names import acting, tables_of
+from gearcam.kinds.mechanism.parts import ACTIONS
+from gearcam.kinds.shared import accuracy_study
 from gearcam.linkages.efforts import GRAVITY, PARTS, SPRINGS, InertiaForce
 from gearcam.linkages.measures import Peak
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.pictures.charts import Chart, Limit, Line
+from gearcam.results.kind import Study
 from gearcam.results.result import StudyResult
 
 if TYPE_CHECKING:
-    from gearcam.kinds.mechanism.build import MechanismResult
-    from gearcam.kinds.mechanism.drives import PlacedDrive
+    from gearcam.kinds.mechanism.placed import PlacedDrive
+    from gearcam.kinds.mechanism.result import MechanismResult
     from gearcam.linkages.work import VirtualWork
     from gearcam.numeric.arrays import Array
-    from gearcam.results.kind import Study
     from gearcam.results.result import Progress
 
 Tree = dict[str, Any]
@@ -46,13 +51,17 @@ _NOISE: Final = 1e-9
 _NOTHING: Final = 1e-6
 """Work, N mm, that is none: what rounding makes of forces that do no work."""
 
-_DEG: Final = math.degrees(1.0)
-
 _BESIDE: Final = np.linspace(-1.0, 1.0, 33)
 """Places beside a largest value, in steps, at which a larger one is looked for."""
 
 _ROUNDS: Final = 4
 """How often, each time more closely."""
+
+CHECKS: Final = "torque of a mechanism"
+"""Name of the subject of its checks."""
+
+_LESS: Final = 0.99
+"""Share of the driver's moment that is less than it."""
 
 ONE_WALL: Final = "disc"
 """Form of the cams with one wall."""
@@ -61,7 +70,7 @@ EVEN: Final = "even_shaft"
 """What a mechanism behind a pair is compared with if the design does not say."""
 
 
-def demand(design: Any) -> None:
+def _demand(design: Any) -> None:
     """Refuse a design on which nothing acts, or in which a speed is missing.
 
     Raises
@@ -69,23 +78,19 @@ def demand(design: Any) -> None:
     DesignError
         If it is so.
     """
-    if not (design.load or design.spring or design.mass):
+    tables = tables_of(design)
+    every = [one for title in ACTIONS for one in tables[title]]
+    if not every:
+        *words, last = (f"[[{title}]]" for title in tables if title in ACTIONS)
         problem = Problem(
             "nothing acts on the mechanism", file=design.source, key="load",
-            allowed="a table [[load]], [[mass]] or [[spring]]",
+            allowed=f"a table {', '.join(words)} or {last}",
         )  # fmt: skip
         raise DesignError([problem])
-    if design.drive[0].speed is not None:
-        return
-    what = ""
-    if design.mass and not design.gravity.given:
-        what = "is missing: a mass acts by its inertia, which depends on the speed"
-    if any(one.damped for one in design.spring):
-        what = "is missing: a damper depends on the speed"
-    if any(one.of_velocity for one in design.load):
-        what = "is missing: a load depends on the velocity"
-    if what:
-        near = "a speed above 0"
+    reasons = (one.needs_speed(design.gravity) for one in every)
+    why = next((one for one in reasons if one), "")
+    if why and design.drive[0].speed is None:
+        what, near = f"is missing: {why}", "a speed above 0"
         problem = Problem(what, file=design.source, key="drive[0].speed_rpm", allowed=near)
         raise DesignError([problem])
 
@@ -115,15 +120,110 @@ class ShaftLoad(NamedTuple):
         return self._replace(column=f"{drive}_{self.column}", meaning=f"{drive}: {self.meaning}")
 
 
-def study_torque(result: MechanismResult, study: Study, progress: Progress | None) -> StudyResult:
+class Pull(NamedTuple):
+    """The most with which a mechanism pulls a follower off a cam that does not hold it.
+
+    Attributes
+    ----------
+    cam : str
+        Where the cam is in the design.
+    size : float
+        Of the pull, above 0.
+    unit : str
+        N, or N m of an oscillating follower.
+    place : str
+        Where it is, in words.
+    """
+
+    cam: str
+    size: float
+    unit: str
+    place: str
+
+
+@dataclass(frozen=True, kw_only=True)
+class DriverEffort(ShortRepr):
+    """The largest moment that the driver of a mechanism exerts, and those behind other drives.
+
+    Parameters
+    ----------
+    peak : float, N m
+        The largest size of the moment.
+    place : str
+        Where it is, in words.
+    others : mapping of str to float, N m
+        The same behind other drives, by their names.
+    gain : str
+        How a pair multiplies the moment there, as a sentence; empty without one.
+    pulls : tuple of Pull
+        Of followers that the mechanism pulls off their cams.
+    """
+
+    peak: float
+    place: str
+    others: Mapping[str, float]
+    gain: str = ""
+    pulls: tuple[Pull, ...] = ()
+
+
+_LIMIT: Final = (
+    "drive_torque",
+    Param(NEWTON_METRES, ge=0, le=1e9, doc="largest torque of the mechanism's drive; 0: no limit"),
+    0.0,
+)
+
+
+@check(
+    "drive-torque",
+    kind=CHECKS,
+    limit=_LIMIT,
+    relation="at most",
+    severity=("note", "warning"),
+    unit="N m",
+)
+def drive_torque(effort: DriverEffort, limit: float) -> Iterator[Remark]:
+    """Warn if the mechanism needs more torque than its drive has; tell if another drive needs less.
+
+    Looks at: the largest moment of the driver, and of each drive that is compared; behind a pair
+    that of an even shaft, if none is.
+    """
+    if limit and effort.peak > limit / NEWTON_METRES.factor:
+        what = "The mechanism needs more torque than its drive has."
+        yield Remark(what, effort.place, effort.peak, "warning")
+    for name, other in effort.others.items():
+        if other < _LESS * effort.peak:
+            times = formatted(effort.peak / other, 3) if other > 0.0 else "many"
+            message = (
+                f"The driver exerts up to {formatted(effort.peak, 5)} N m, {times} times the "
+                f"{formatted(other, 5)} N m of the same mechanism behind {name!r}."
+                f"{effort.gain}"
+            )
+            yield Remark(message, effort.place, effort.peak, limit=math.inf)
+
+
+@check("lift-off", kind=CHECKS, severity="note")
+def lift_off(effort: DriverEffort, limit: float) -> Iterator[Remark]:  # noqa: ARG001
+    """Tell where a mechanism pulls a follower off its cam, which must be held there.
+
+    Looks at: what each follower exerts in its lift, of cams with one wall, without the springs and
+    loads of the cam's own design.
+    """
+    for pull in effort.pulls:
+        message = (
+            f"The machine pulls the follower off its cam, with up to {formatted(pull.size, 5)} "
+            f"{pull.unit}. A spring in the cam's own design must hold it, or a groove or conjugate "
+            "cams."
+        )
+        yield Remark(message, f"{pull.cam}, {pull.place}", pull.size, unit=pull.unit)
+
+
+def study_torque(result: MechanismResult, progress: Progress | None) -> StudyResult:
     """Return the study of the driver's moment (see `gearcam.linkages.work`).
 
     Parameters
     ----------
     result : MechanismResult
         The mechanism.
-    study : Study
-        The entry of the study.
     progress : callable, optional
         Called with what is computed, the number done and their total.
 
@@ -137,8 +237,9 @@ def study_torque(result: MechanismResult, study: Study, progress: Progress | Non
     InfeasibleError
         If the mechanism does not close, or a load is not finite.
     """
-    demand(result.design)
-    others = _compared(result)
+    _demand(result.design)
+    even = None if result.design.compare else result.without_pair
+    others = result.compared if even is None else {EVEN: even}
     if progress is not None:
         progress("torque", 0, 1 + len(others))
     with result.stage("torque"):
@@ -152,26 +253,26 @@ def study_torque(result: MechanismResult, study: Study, progress: Progress | Non
         shafts = list(shaft_loads(result, work, q))
         columns |= {one.column: one.values for one in shafts}
         ends = _ends(result, work, shafts, q)
-        effort = _effort(result, work, beside, tuple(_pulls(result, shafts, ends)))
-        found = run_checks(TORQUE, effort, result.design.limits)
-    speed = result.speed
-    if speed is not None:
-        columns["power_w"] = columns["torque_nm"] * speed
+        top = _largest(work)
+        effort = DriverEffort(
+            peak=_NM * abs(top.value),
+            place=_place(result, top.place),
+            others={name: _NM * abs(_largest(one).value) for name, one in beside.items()},
+            gain=_gain(result.drives[0], work, top.place),
+            pulls=tuple(_pulls(result, shafts, ends)),
+        )
+        found = run_checks(CHECKS, effort, result.design.limits)
+    if result.speed is not None:
+        columns["power_w"] = columns["torque_nm"] * result.speed
     return StudyResult(
         result=result,
-        study=study,
+        study=TORQUE,
         file="torque.csv",
         table=columns,
         group=_facts(result, work, beside, shafts, ends),
         study_findings=found,
         drawn=partial(_charts, result, columns, beside),
     )
-
-
-def _compared(result: MechanismResult) -> Mapping[str, MechanismResult]:
-    """Return the same mechanism behind other drives; behind a pair one that turns evenly too."""
-    even = None if result.design.compare else result.without_pair
-    return result.compared if even is None else {EVEN: even}
 
 
 def _places(result: MechanismResult, work: VirtualWork) -> Array:
@@ -189,19 +290,12 @@ def _columns(result: MechanismResult, work: VirtualWork, q: Array) -> dict[str, 
     if not np.isfinite(total).all():
         where = _place(result, float(q[~np.isfinite(total)][0]))
         raise InfeasibleError(f"a load or spring is not finite at {where}", where="load")
-    columns = {f"{result.driver[0]}_deg": _DEG * q, "torque_nm": total}
+    columns = {f"{result.driver[0]}_deg": DEG * q, "torque_nm": total}
     return columns | {f"{part}_nm": values for part, values in parts.items()}
 
 
 def _place(result: MechanismResult, q: float) -> str:
     return f"{result.driver[0]} = {result.degrees(q)} deg"
-
-
-def _least_and_largest(result: MechanismResult, least: Peak, largest: Peak) -> str:
-    """Return where both are, in words; nothing of what does not change."""
-    if largest.value - least.value <= _NOISE * max(abs(largest.value), abs(least.value)):
-        return ""
-    return f"least {_place(result, least.place)}, largest {_place(result, largest.place)}"
 
 
 def shaft_loads(result: MechanismResult, work: VirtualWork, q: Array) -> Iterator[ShaftLoad]:
@@ -304,34 +398,16 @@ def _lifts(drive: PlacedDrive) -> float:
     return math.copysign(1.0, float(rise)) * (-1.0 if drive.spec.mirror else 1.0)
 
 
-def _effort(
-    result: MechanismResult,
-    work: VirtualWork,
-    beside: Mapping[str, VirtualWork],
-    pulls: tuple[Pull, ...],
-) -> DriverEffort:
-    top = _largest(work)
-    return DriverEffort(
-        peak=_NM * abs(top.value),
-        place=_place(result, top.place),
-        others={name: _NM * abs(_largest(one).value) for name, one in beside.items()},
-        gain=_gain(result, work),
-        pulls=pulls,
-    )
-
-
 def _largest(work: VirtualWork) -> Peak:
     """Return the moment of the largest size."""
     return max(work.largest, work.least, key=lambda one: abs(one.value))
 
 
-def _gain(result: MechanismResult, work: VirtualWork) -> str:
+def _gain(drive: PlacedDrive, work: VirtualWork, place: float) -> str:
     """Return how the pair of the master multiplies the moment on wheel 2, in words."""
-    drive = result.drives[0]
     if "wheel2" not in drive.moved:
         return ""
-    place = np.array([_largest(work).place])
-    track = work.linkage.track(f"{drive.spec.name}.wheel2", place, 1)
+    track = work.linkage.track(f"{drive.spec.name}.wheel2", np.array([place]), 1)
     ratio = abs(float(track.derivatives()[1][0]))
     return f" There the pair multiplies the moment on wheel 2 by its ratio {formatted(ratio, 4)}."
 
@@ -386,19 +462,15 @@ def _range(result: MechanismResult, work: VirtualWork, meaning: str) -> Tree:
 
 def _extent(result: MechanismResult, ends: Ends, meaning: str, scale: float) -> Fact:
     """Return the least and the largest of what is exerted, times a scale, as a fact."""
-    least, largest = (scale * end.value for end in ends)
-    return Fact(
-        extent(least, largest),
-        meaning,
-        place=_least_and_largest(result, *ends),
-        shown=True,
-        noise=_NOISE * max(abs(least), abs(largest)),
-    )
+    (least, low), (largest, high) = ((scale * end.value, _place(result, end.place)) for end in ends)
+    noise = _NOISE * max(abs(least), abs(largest))
+    place = f"least {low}, largest {high}" if largest - least > noise else ""
+    return Fact(extent(least, largest), meaning, place=place, shown=True, noise=noise)
 
 
 def _error(result: MechanismResult, work: VirtualWork) -> float | None:
     """Return the work of what keeps its energy over a cycle, as a share; it should be 0."""
-    damped = any(one.damped for one in result.design.spring)
+    damped = any(one.damped for _, one in acting(tables_of(result.design)))
     kept = [part for part in work.kept if not (damped and part == SPRINGS)]
     found = [work.works[part] for part in kept if part in work.works]
     whole = sum(size for _, size in work.works.values())
@@ -420,22 +492,20 @@ def _assumptions(result: MechanismResult, work: VirtualWork) -> str:
 
 
 def _charts(
-    result: MechanismResult,
-    columns: Mapping[str, Array],
-    beside: Mapping[str, VirtualWork],
+    result: MechanismResult, columns: Mapping[str, Array], beside: Mapping[str, VirtualWork]
 ) -> dict[str, Chart]:
     """Return charts of the driver's moment, its parts, and those behind other drives."""
     angle, design = next(iter(columns.values())), result.design
 
     def chart(title: str, lines: list[Line], *limits: Limit) -> Chart:
-        x = f"{result.driver[1]}, deg"
-        return Chart(title=title, x=x, y="moment, N m", lines=tuple(lines), limits=limits)
+        y = "moment, N m"
+        return Chart(title=title, x=result.axis, y=y, lines=tuple(lines), limits=limits)
 
     lines = [Line(label=design.drive[0].name, x=angle, y=columns["torque_nm"])]
     for name, work in beside.items():
         q = _places(result, work)
-        lines.append(Line(label=name, x=_DEG * q, y=_NM * np.asarray(work.moment(q).c[0])))
-    most = limit_of(TORQUE, "drive-torque", design.limits) / NEWTON_METRES.factor
+        lines.append(Line(label=name, x=DEG * q, y=_NM * np.asarray(work.moment(q).c[0])))
+    most = limit_of(CHECKS, "drive-torque", design.limits) / NEWTON_METRES.factor
     limits = [Limit(label="limit", value=most)] if most else []
     charts = {"torque": chart("Moment of the driver", lines, *limits)}
     own = [name for name in PARTS if f"{name}_nm" in columns]
@@ -443,3 +513,18 @@ def _charts(
     if len(parts) > 1:
         charts["torque_parts"] = chart("What the driver's moment is made of", parts)
     return charts
+
+
+TORQUE: Final = Study(
+    name="torque",
+    key="torque",
+    doc="Compute the driver's moment under loads, masses and springs; write DIR/NAME/torque.csv.",
+    done="computed",
+    table="torque",
+    compute=study_torque,
+    demand=_demand,
+    repeats=("loads-unused",),  # it uses them
+)
+
+STUDIES: Final[dict[str, Study]] = {one.name: one for one in (TORQUE, accuracy_study())}
+"""The studies by name."""

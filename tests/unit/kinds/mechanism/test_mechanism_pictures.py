@@ -15,9 +15,8 @@ import shapely
 
 import gearcam as gc
 from gearcam.export.dxf import GREY
-from gearcam.kinds.mechanism import bodies as drawn_bodies
-from gearcam.kinds.mechanism.drawn import picture
-from gearcam.kinds.mechanism.traces import distances, path_within
+from gearcam.kinds.mechanism.drawn import distances, path_within, picture
+from gearcam.kinds.mechanism.parts.picture import Picture
 from gearcam.numeric.arrays import as_pairs
 from gearcam.pictures.drawings import GHOST, MEMBER, TRACE, Circle, chains
 from gearcam.pictures.scenes import MovingBody, Scene
@@ -105,13 +104,13 @@ def test_members_of_a_dyad_meet(name: str) -> None:
 
 def test_a_rigid_body_that_lags_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     result = machine("four-bar")
-    true = drawn_bodies._Shown.pose
+    true = Picture.pose
 
     def late(self: Any, name: str) -> Any:
         pose = true(self, name)
         return pose if name != "coupler" else type(pose)(pose.turn + 1e-6, pose.shift)
 
-    monkeypatch.setattr(drawn_bodies._Shown, "pose", late)
+    monkeypatch.setattr(Picture, "pose", late)
     scene = result.scene(FEW)
     first, second = (pins(body(scene, member)) for member in ("coupler", "rocker"))
     assert np.abs(first[:, :, None] - second[:, None, :]).min(axis=(1, 2)).max() > 1e-5

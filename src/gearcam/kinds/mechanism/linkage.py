@@ -1,11 +1,10 @@
-"""Over which turns of its master a mechanism repeats, and how far its drives may turn."""
+"""From the tables of a mechanism to its linkage, over a cycle of its master."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import partial
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -13,16 +12,20 @@ import numpy as np
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import LONGEST
-from gearcam.kinds.mechanism.drives import PlacedDrive
-from gearcam.kinds.mechanism.names import needed, parts_of
-from gearcam.linkages.closing import settled
+from gearcam.kinds.mechanism.names import needed, parts_of, standing_places, told_parts
+from gearcam.kinds.mechanism.parts.setting import Setting
+from gearcam.linkages.closing import NotClosingError, settled
 from gearcam.linkages.elements import MOTION
-from gearcam.linkages.geneva import GenevaWheel
-from gearcam.linkages.linkage import Linkage
-from gearcam.numeric.arrays import Array
+from gearcam.linkages.linkage import Linkage, in_order
+from gearcam.linkages.narrow import with_cells
+from gearcam.numeric.arrays import Array, apart
 
 if TYPE_CHECKING:
-    from gearcam.kinds.mechanism.design import MechanismDesign
+    from gearcam.kinds.mechanism.names import Tables
+    from gearcam.kinds.mechanism.placed import PlacedDrive
+
+_SAME: Final = 1e-9
+"""Knots closer than this are one, rad."""
 
 _TURN: Final = 2.0 * math.pi
 
@@ -36,7 +39,63 @@ _FORMULA: Final = 721
 """Places at which the formula of a slide must be finite."""
 
 
-def whole_cycle(linkage: Linkage) -> Linkage:
+def make_linkage(tables: Tables, drives: Sequence[PlacedDrive]) -> Linkage:
+    """Return the linkage of a mechanism over one cycle of its master.
+
+    Parameters
+    ----------
+    tables : mapping of str to tables
+        Of its design, by title.
+    drives : sequence of PlacedDrive
+        Its drives with their laws.
+
+    Returns
+    -------
+    Linkage
+
+    Raises
+    ------
+    InfeasibleError
+        If it does not close over the master's whole range.
+    """
+    parts = {f"{title}[{number}]": part for title, number, part in parts_of(tables)}
+    (low, high), closed = _cycle_of(drives, _period(tables))
+    inner = [one.knots_in(low, high) for one in drives]
+    knots = apart(np.unique(np.concatenate([[low, high], *inner])), _SAME)
+    knots[-1] = high  # rather than one that differs by rounding
+    knots = with_cells([one.cells_in(low, high) for one in drives], knots)
+    setting = Setting(standing_places(tables), drives)
+    found = [one for number, drive in enumerate(drives) for one in drive.elements(not number)]
+    owners = {}
+    for where, part in parts.items():
+        own = list(part.elements(setting, where))
+        found += own
+        owners |= {one.gives[0]: where for one in own}
+    linkage = Linkage(in_order(found), knots, closed)
+    for one in linkage.elements:
+        linkage = replace(linkage, knots=one.knots_with(linkage.track, linkage.knots))
+    for title, number, part in told_parts(tables):
+        part.demand(linkage, f"{title}[{number}]")
+    for number, one in enumerate(linkage.elements):
+        if one.gives[0] in owners:
+            part = parts[owners[one.gives[0]]]
+            elements = list(linkage.elements)
+            elements[number] = part.chosen(one, linkage, min(max(0.0, low), high))
+            linkage = replace(linkage, elements=tuple(elements))
+    try:
+        return _whole_cycle(linkage)
+    except NotClosingError as error:
+        where = owners[error.closing.element.gives[0]]
+        raise parts[where].refusal(error, linkage, where) from None
+
+
+def _period(tables: Tables) -> int:
+    """Return after how many turns of their shafts all parts that move others are back."""
+    used, parts = {one.name for one in needed(tables)}, (part for *_, part in parts_of(tables))
+    return math.lcm(*(one.period() for one in parts if used & {use.name for use in one.given()}))
+
+
+def _whole_cycle(linkage: Linkage) -> Linkage:
     """Return a settled linkage over a cycle after which its dyads are in their first positions.
 
     A dyad that goes through an odd number of change points in a cycle is in its other position at
@@ -51,22 +110,7 @@ def whole_cycle(linkage: Linkage) -> Linkage:
     return settled(replace(linkage, knots=twice))
 
 
-def with_rests(linkage: Linkage) -> Linkage:
-    """Return a linkage with the knots at which Geneva wheels begin and end to turn."""
-    for one in linkage.elements:
-        if isinstance(one, GenevaWheel):
-            shaft = partial(linkage.track, one.shaft)
-            linkage = replace(linkage, knots=one.knots(shaft, linkage.knots))
-    return linkage
-
-
-def indexed(design: MechanismDesign) -> int:
-    """Return after how many turns of their cranks all Geneva wheels that move others are back."""
-    used = {one.name for one in needed(parts_of(design))}
-    return math.lcm(*(one.slots for one in design.geneva if one.name in used))
-
-
-def cycle_of(drives: Sequence[PlacedDrive], least: int) -> tuple[tuple[float, float], bool]:
+def _cycle_of(drives: Sequence[PlacedDrive], least: int) -> tuple[tuple[float, float], bool]:
     """Return the master's first and last angle, and whether the motion repeats after them.
 
     Parameters
@@ -142,34 +186,6 @@ def _demand_inside(drives: Sequence[PlacedDrive], part: tuple[float, float]) -> 
                 nearest=f"it turns from {allowed[0]} to {allowed[1]} deg: another phase_deg or "
                 "range_deg of the first drive",
             )
-
-
-def demand_part(design: MechanismDesign, linkage: Linkage) -> None:
-    """Refuse chains on shafts that turn without end.
-
-    Parameters
-    ----------
-    design : MechanismDesign
-        With the chains.
-    linkage : Linkage
-        With the shafts, over a cycle.
-
-    Raises
-    ------
-    InfeasibleError
-        If a chain is not back after the cycle.
-    """
-    if not linkage.closed:
-        return
-    for title in ("hoist", "chain"):
-        for number, one in enumerate(getattr(design, title)):
-            first, last = np.asarray(linkage.track(one.on, linkage.knots[[0, -1]], 0).c[0])
-            if abs(last - first) > _WHOLE * _CYCLES:
-                raise InfeasibleError(
-                    "its chain is not back after a turn of the master",
-                    where=f"{title}[{number}]",
-                    nearest="give drive[0].range_deg, over which it winds up and off",
-                )
 
 
 def _back(drive: PlacedDrive, turns: int) -> bool:

@@ -7,7 +7,7 @@ from math import pi, radians
 import numpy as np
 import pytest
 
-from gearcam.linkages.chain import HoistChain, roots_in
+from gearcam.linkages.chain import LeverChain, roots_in
 from gearcam.linkages.closing import NotClosingError, settled
 from gearcam.linkages.elements import GivenMotion
 from gearcam.linkages.linkage import Linkage
@@ -15,7 +15,7 @@ from gearcam.numeric.arrays import Array
 from helpers_linkages import linkage, variable
 
 
-def hoist(rng: np.random.Generator) -> HoistChain:
+def hoist(rng: np.random.Generator) -> LeverChain:
     """A lever that hangs down and a wheel above it, at either side."""
     wind = float(rng.choice([-1.0, 1.0]))
     radius, length = rng.uniform(20.0, 120.0), rng.uniform(400.0, 2000.0)
@@ -23,12 +23,12 @@ def hoist(rng: np.random.Generator) -> HoistChain:
     center = complex(wind * length * rng.uniform(0.3, 0.7), length * rng.uniform(0.1, 0.4))
     start = -0.5 * pi
     swing = sorted([start - wind * 0.05, start + wind * rng.uniform(0.4, 0.8)])
-    return HoistChain(
+    return LeverChain(
         "lever", "B", "q", 0j, center, radius, length, start, (swing[0], swing[1]), wind
     )
 
 
-def over(chain: HoistChain, degrees: float) -> Linkage:
+def over(chain: LeverChain, degrees: float) -> Linkage:
     return linkage(
         GivenMotion("q", lambda q, order: variable(q, order) * chain.wind),
         chain,
@@ -37,7 +37,7 @@ def over(chain: HoistChain, degrees: float) -> Linkage:
     )
 
 
-def touching(chain: HoistChain, joint: Array) -> Array:
+def touching(chain: LeverChain, joint: Array) -> Array:
     """Where the chain leaves the wheel: of two tangents that which turning on winds up."""
     way = joint - chain.center
     found = np.empty(joint.shape, dtype=complex)
@@ -54,7 +54,7 @@ CHAINS = [hoist(np.random.default_rng([48, index])) for index in range(30)]
 
 
 @pytest.mark.parametrize("chain", CHAINS)
-def test_the_free_chain_goes_as_fast_as_the_rim(chain: HoistChain) -> None:
+def test_the_free_chain_goes_as_fast_as_the_rim(chain: LeverChain) -> None:
     made = settled(over(chain, 30.0))
     q = np.linspace(0.0, radians(30.0), 50)
     joint, speed, *_ = made.track("B", q, 3).derivatives()
@@ -70,7 +70,7 @@ def test_the_free_chain_goes_as_fast_as_the_rim(chain: HoistChain) -> None:
 
 
 @pytest.mark.parametrize("chain", CHAINS[:10])
-def test_its_derivatives_are_those_of_its_positions(chain: HoistChain) -> None:
+def test_its_derivatives_are_those_of_its_positions(chain: LeverChain) -> None:
     made, q = settled(over(chain, 30.0)), np.radians(np.linspace(5.0, 25.0, 9))
     exact = made.track("lever.angle", q, 3).derivatives()
     for order in (1, 2, 3):
@@ -85,7 +85,7 @@ def test_its_derivatives_are_those_of_its_positions(chain: HoistChain) -> None:
 
 
 @pytest.mark.parametrize("chain", CHAINS)
-def test_refused_where_the_lever_is_at_its_limit(chain: HoistChain) -> None:
+def test_refused_where_the_lever_is_at_its_limit(chain: LeverChain) -> None:
     """Just inside the range it is not yet there, at its end it is."""
     made = over(chain, 2000.0)
     with pytest.raises(NotClosingError) as caught:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property, partial
@@ -16,23 +15,15 @@ from numpy.typing import ArrayLike
 from gearcam.base.errors import ABOVE, DesignError, InfeasibleError, Problem, beyond_limit
 from gearcam.base.findings import Finding, in_order, run_checks
 from gearcam.base.numerals import formatted, in_range
-from gearcam.kinds.mechanism.asked import fits, last_bits
-from gearcam.kinds.mechanism.checks import TABLES, machine_to_check
+from gearcam.kinds.mechanism.asked import DEG, RATES, TABLES, Amount, Output
 from gearcam.kinds.mechanism.design import MechanismDesign
-from gearcam.kinds.mechanism.drives import PlacedDrive, placed
-from gearcam.kinds.mechanism.make import make_linkage
-from gearcam.kinds.mechanism.names import parts_of
-from gearcam.kinds.mechanism.outputs import (
-    AMOUNTS,
-    RATES,
-    Output,
-    OutputNames,
-    paths_asked,
-)
-from gearcam.linkages.checks import KIND
-from gearcam.linkages.dwells import DriverRange, longest_dwell
+from gearcam.kinds.mechanism.linkage import make_linkage
+from gearcam.kinds.mechanism.names import OutputNames, paths_asked, tables_of
+from gearcam.kinds.mechanism.placed import PlacedDrive, placed
+from gearcam.linkages.checks import KIND, CheckedMachine
+from gearcam.linkages.dwells import DriverRange
 from gearcam.linkages.linkage import Linkage
-from gearcam.linkages.measures import HIGHEST, TrackMeasures
+from gearcam.linkages.measures import HIGHEST, Peak, TrackMeasures
 from gearcam.linkages.paths import PointPath
 from gearcam.linkages.transmission import Transmission, transmissions
 from gearcam.numeric.arguments import angles
@@ -57,6 +48,9 @@ _WITNESSES: Final = 1000
 _ENDS: Final = 1e-9
 """How far an angle may be beyond an open range by rounding, rad."""
 
+_TURNING: Final = ("direction", "angular_velocity", "angular_acceleration")
+"""Charts that lead where an angle is asked for first."""
+
 _DRIVERS: Final = {
     "pair": ("phi1", "driver angle phi1"),
     "cam": ("theta", "cam angle theta"),
@@ -64,7 +58,8 @@ _DRIVERS: Final = {
 }
 """Symbol and name of the master's angle, by the key of the drive."""
 
-_DEG: Final = math.degrees(1.0)
+
+Row = dict[str, Any]
 
 
 class MechanismResult(Result):
@@ -119,12 +114,17 @@ class MechanismResult(Result):
         """The linkage over a cycle of the master."""
         drives = self.drives
         with self.stage("linkage"):
-            return make_linkage(self.design, drives)
+            return make_linkage(tables_of(self.design), drives)
 
     @property
     def driver(self) -> tuple[str, str]:
         """Symbol of the master's angle in columns, and what it is called."""
         return _DRIVERS[self.design.drive[0].key]
+
+    @property
+    def axis(self) -> str:
+        """The master's angle as the axis of charts."""
+        return f"{self.driver[1]}, deg"
 
     @cached_property
     def outputs(self) -> tuple[Output, ...]:
@@ -134,13 +134,17 @@ class MechanismResult(Result):
     @cached_property
     def output_names(self) -> OutputNames:
         """What may be asked for, by name."""
-        return OutputNames(parts_of(self.design))
+        return OutputNames(tables_of(self.design))
 
     def degrees(self, q: float) -> str:
         """Return an angle of the master, rad, in degrees as text: a turn's end is its begin."""
-        low, high = (_DEG * end for end in self.linkage.span)
-        place = _DEG * q
+        low, high = (DEG * end for end in self.linkage.span)
+        place = DEG * q
         return in_range(place, low, high) if self.linkage.closed else formatted(place)
+
+    def at(self, peak: Peak) -> str:
+        """Return the place of a `peak` in words."""
+        return f"at {self.degrees(peak.place)} deg"
 
     @property
     def angles(self) -> Array:
@@ -149,7 +153,7 @@ class MechanismResult(Result):
         least = (high - low) / _MOST_STEPS
         if step < least:
             what = f"the table would have more than {_MOST_STEPS:.0f} rows"
-            value, limit = _DEG * step, _DEG * least
+            value, limit = DEG * step, DEG * least
             raise beyond_limit(
                 what, "output.step_deg", value, limit, near=ABOVE * limit, unit="deg"
             )
@@ -207,20 +211,16 @@ class MechanismResult(Result):
 
     def _motion_of(self, outputs: Iterable[Output], q: ArrayLike | None) -> Columns:
         where = self.angles if q is None else self._within_range(q)
-        columns = {f"{self.driver[0]}_deg": _DEG * where}
+        columns = {f"{self.driver[0]}_deg": DEG * where}
+        orders, speed = range(1, len(RATES) + 1), self.speed
         for one in outputs:
-            columns |= self._columns(one, where)
+            values, (scale, unit) = self.track(one)(where, len(RATES)).derivatives(), one.unit
+            keys = {order: one.rate_keys(order) for order in orders}
+            columns[f"{one.stem}_{unit}"] = scale * values[0]
+            columns |= {f"{one.stem}_{keys[k][0]}": values[k] for k in orders}
+            if speed is not None:
+                columns |= {f"{one.stem}_{keys[k][1]}": values[k] * speed**k for k in orders}
         return Columns(columns)
-
-    def _columns(self, one: Output, where: Array) -> dict[str, Array]:
-        orders, speed, (scale, unit) = range(1, len(RATES) + 1), self.speed, one.unit
-        values = self.track(one)(where, len(RATES)).derivatives()
-        keys = {order: one.rate_keys(order) for order in orders}
-        columns = {f"{one.stem}_{unit}": scale * values[0]}
-        columns |= {f"{one.stem}_{keys[k][0]}": values[k] for k in orders}
-        if speed is not None:
-            columns |= {f"{one.stem}_{keys[k][1]}": values[k] * speed**k for k in orders}
-        return columns
 
     def track(self, one: Output) -> Callable[[Array, int], Jet]:
         """Return an output as a function: ``track(q, order)`` of the master's angles (n,), rad."""
@@ -247,9 +247,7 @@ class MechanismResult(Result):
     @property
     def charts(self) -> tuple[str, ...]:
         """Names that `chart` accepts, first those of what is asked for first."""
-        from gearcam.kinds.mechanism.charts import TURNING
-
-        first = TURNING if self.outputs[0].angle else ()
+        first = _TURNING if self.outputs[0].angle else ()
         return tuple(sorted(super().charts, key=lambda name: name not in first))
 
     @cached_property
@@ -264,7 +262,16 @@ class MechanismResult(Result):
                 with within(key):
                     below += findings_of(key, drive.result.checked, own)
         _ = self.compared
-        machine = machine_to_check(self)
+        even = self.without_pair if self.linkage.closed else None
+        # of one that is not compared only the accelerations are looked at
+        beside = {} if even is None else even.measures if self.design.compare else even.measured(2)
+        machine = CheckedMachine(
+            self.linkage,
+            self.measures,
+            {one.stem: one.rate_unit for one in self.outputs},
+            self.transmissions,
+            beside,
+        )
         with self.stage("checks"):
             subjects = {KIND: machine, TABLES: self}
             own = [run_checks(kind, one, self.design.limits) for kind, one in subjects.items()]
@@ -332,28 +339,50 @@ class MechanismResult(Result):
         InfeasibleError
             If an output does not travel as far.
         """
-        return tuple(last_bits(self))
+        return tuple(
+            one.last_bit(output, self.measures_of(output), f"interval[{number}]")
+            for number, one in enumerate(self.design.interval)
+            for output in [self.output_of(one)]
+        )
 
     @cached_property
     def interval_velocities(self) -> tuple[float, ...]:
         """Velocities at the beginning of the `intervals`, mm/rad or rad/rad."""
         return tuple(
-            float(self.track(output)(np.array([found.begin]), 1).derivatives()[1][0])
-            for number, found in enumerate(self.intervals)
-            for output in [self.asked("interval", number)[0]]
+            float(self.track(self.output_of(one))(np.array([found.begin]), 1).derivatives()[1][0])
+            for one, found in zip(self.design.interval, self.intervals, strict=True)
         )
 
     def comparison(self) -> Columns:
-        """Return what the drives to compare make of each output (see `comparison`)."""
-        from gearcam.kinds.mechanism.comparison import comparison
+        """Return what the drives to compare make of each output.
 
-        return Columns(comparison(self))
+        Returns
+        -------
+        Columns
+            A row for each drive and output: ``drive``, the master's range ``range_deg``,
+            ``output``, ``unit``, ``stroke``, the largest sizes of the derivatives by the master's
+            angle with the places, ``velocity`` and ``velocity_at_deg`` and so on, in the unit or
+            rad; with a speed those by time, ``velocity_per_s``, and the range's time, ``range_s``.
+            Places of what stands still are masked.
+        """
+        return Columns(self.masked_comparison())
+
+    def masked_comparison(self) -> Mapping[str, ArrayLike]:
+        """Return the `comparison` for files: without numbers that are masked."""
+        return _tabled([row for one in self.machines.items() for row in _of_outputs(*one)])
 
     def interval_table(self) -> Columns:
-        """Return the intervals that the design asks for, behind each drive (see `comparison`)."""
-        from gearcam.kinds.mechanism.comparison import interval_table
+        """Return the intervals that the design asks for, behind each drive.
 
-        return interval_table(self)
+        Returns
+        -------
+        Columns
+            A row for each drive and interval: ``drive``, ``on``, ``before``, the master's angles
+            ``from_deg``, ``to_deg``, ``angle_deg``, the velocity at the beginning by the master's
+            angle; with a speed the time, ``time_s``, and the velocity by time.
+        """
+        rows = [row for one in self.machines.items() for row in _of_intervals(*one)]
+        return Columns(_tabled(rows))
 
     @cached_property
     def stretches(self) -> tuple[LineFit | CircleFit, ...]:
@@ -366,7 +395,13 @@ class MechanismResult(Result):
         InfeasibleError
             If it is straight and a circle is asked for.
         """
-        return tuple(fits(self))
+        found: list[LineFit | CircleFit] = []
+        for number, one in enumerate(self.design.stretch):
+            where = f"stretch[{number}]"
+            if not self.linkage.closed:
+                one.demand_within(self.linkage.span, self.design.source, where)
+            found.append(one.fit(self.paths[one.on], where))
+        return tuple(found)
 
     def _within_range(self, q: ArrayLike) -> Array:
         """Return angles of the master; DesignError for one beyond an open range."""
@@ -381,29 +416,66 @@ class MechanismResult(Result):
     @cached_property
     def dwells(self) -> tuple[DriverRange, ...]:
         """The longest ranges in which outputs stay within what the design asks for."""
-        asked = [self.asked("dwell", number) for number in range(len(self.design.dwell))]
-        return tuple(longest_dwell(self.measures_of(one), amount) for one, amount in asked)
+        return tuple(
+            one.longest(output, self.measures_of(output))
+            for one in self.design.dwell
+            for output in [self.output_of(one)]
+        )
 
     def measures_of(self, one: Output) -> TrackMeasures:
         """Return the extremes and the like of any output."""
         return self.measures.get(one.stem) or self._measures(one, HIGHEST)
 
-    def asked(self, title: str, number: int) -> tuple[Output, float]:
-        """Return the one output that a table is about, and the amount that it gives.
+    def output_of(self, asked: Amount) -> Output:
+        """Return the one output that a table is about, `asked` for."""
+        (found,) = self.output_names.known[asked.on]
+        return found
 
-        Parameters
-        ----------
-        title : str
-            ``interval`` or ``dwell``.
-        number : int
-            Of the table, from 0.
 
-        Returns
-        -------
-        Output, float
-            The amount in mm or rad.
-        """
-        table: Any = getattr(self.design, title)[number]
-        (found,) = self.output_names.known[table.on]
-        word = AMOUNTS[title]
-        return found, getattr(table, f"{word}_angle" if found.angle else word)
+# --- rows of tables -------------------------------------------------------------------------------
+
+
+def _tabled(rows: Sequence[Row]) -> dict[str, ArrayLike]:
+    return {key: _column([row[key] for row in rows]) for key in rows[0]}
+
+
+def _column(values: list[Any]) -> ArrayLike:
+    """Return the values of a column, those that are None masked."""
+    missing = [one is None for one in values]
+    if not any(missing):
+        return np.array(values)
+    there = [0.0 if one is None else one for one in values]
+    return np.ma.MaskedArray(there, mask=missing)
+
+
+def _of_outputs(name: str, machine: MechanismResult) -> Iterator[Row]:
+    speed, (low, high) = machine.speed, machine.linkage.span
+    for one in machine.outputs:
+        measures, (scale, unit) = machine.measures[one.stem], one.unit
+        row: Row = {
+            "drive": name, "range_deg": DEG * (high - low), "output": one.stem, "unit": unit,
+            "stroke": scale * measures.stroke,
+        }  # fmt: skip
+        if speed is not None:
+            row["range_s"] = (high - low) / speed
+        for order, word in enumerate(RATES, start=1):
+            peak = measures.size(order)
+            place = None if measures.still else DEG * peak.place
+            row |= {word: peak.value, f"{word}_at_deg": place}
+            if speed is not None:
+                row[f"{word}_per_s"] = peak.value * speed**order
+        yield row
+
+
+def _of_intervals(name: str, machine: MechanismResult) -> Iterator[Row]:
+    speed = machine.speed
+    for one, found, rate in zip(
+        machine.design.interval, machine.intervals, machine.interval_velocities, strict=True
+    ):
+        row = {
+            "drive": name, "on": one.on, "before": one.before, "from_deg": DEG * found.begin,
+            "to_deg": DEG * found.end, "angle_deg": DEG * found.length, "velocity": rate,
+        }  # fmt: skip
+        yield row if speed is None else row | {
+            "time_s": found.length / speed, "velocity_per_s": rate * speed,
+        }  # fmt: skip
