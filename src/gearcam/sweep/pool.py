@@ -91,7 +91,7 @@ class Crew:
     """
 
     def __init__(self, task: bytes, seconds: float, memory: int, count: int = 1) -> None:
-        self._members = [_Member(task, seconds, memory) for _ in range(count)]
+        self._members = [_Process(task, seconds, memory) for _ in range(count)]
 
     def rows(self, jobs: Iterable[Job]) -> Iterator[Built]:
         """Yield a row for each job as it comes; not of those that are stopped.
@@ -112,7 +112,7 @@ class Crew:
                 if one.job is None and (job := next(source, None)) is not None:
                     one.build(job)
             yield from filter(None, found)  # while the next ones are built
-            busy: dict[Any, _Member] = {one.link: one for one in self._members if one.job}
+            busy: dict[Any, _Process] = {one.link: one for one in self._members if one.job}
             if not busy:
                 return
             due = min(one.due for one in busy.values())
@@ -127,7 +127,7 @@ class Crew:
             one.stop()
 
 
-class _Member:
+class _Process:
     """A process and the variant that it has; it begins with the first one."""
 
     def __init__(self, task: bytes, seconds: float, memory: int) -> None:
