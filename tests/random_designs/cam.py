@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from typing import Any, Final
 
+from gearcam.designs.outputs import MESHES
 from gearcam.kinds.cam.tables import GOALS
 from gearcam.laws.motion.base import MOTION_LAWS
 from random_designs.blank import blank
@@ -27,7 +28,7 @@ _DEGREES: Final = 40
 
 _SHARES: Final = {
     "svg": 0.8, "dxf": 0.3, "inspection": 0.3, "cut-svg": 0.2, "drawing-svg": 0.2,
-    "drawing-dxf": 0.05, "stl": 0.1, "3mf": 0.05, "glb": 0.05, "step": 0.01,
+    "drawing-dxf": 0.05, **dict.fromkeys(MESHES, 0.06), "step": 0.01,
     "tool-path": 0.2, "curvature": 0.3, "report": 0.06,
 }  # fmt: skip
 """Share of cams with each kind of file, by its cost."""

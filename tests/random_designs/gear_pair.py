@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from typing import Any, Final
 
+from gearcam.designs.outputs import MESHES
 from gearcam.laws.ratio.base import LAWS
 from random_designs.blank import blank, without_openings
 from random_designs.draw import Draw, short
@@ -18,7 +19,7 @@ from random_designs.output import asked, drive, studies
 
 _SHARES: Final = {
     "svg": 0.7, "dxf": 0.1, "inspection": 0.15, "cut-svg": 0.06, "drawing-svg": 0.08,
-    "drawing-dxf": 0.02, "stl": 0.05, "3mf": 0.02, "glb": 0.03, "step": 0.01, "report": 0.04,
+    "drawing-dxf": 0.02, **dict.fromkeys(MESHES, 0.03), "step": 0.01, "report": 0.04,
 }  # fmt: skip
 """Share of pairs with each kind of file, by its cost."""
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from typing import Any, Final
 
+from gearcam.designs.outputs import MESHES
 from gearcam.laws.motion.base import MOTION_LAWS
 from random_designs.draw import Draw, short
 from random_designs.goals import seek
@@ -21,7 +22,7 @@ _LAWS: Final = tuple(
 )
 """Laws without jumps of the velocity, which are refused."""
 
-_SHARES: Final = {"svg": 0.5, "stl": 0.2, "3mf": 0.03, "glb": 0.03, "report": 0.03}
+_SHARES: Final = {"svg": 0.5, **dict.fromkeys(MESHES, 0.07), "report": 0.03}
 """Share of cams with each kind of file, by its cost."""
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from typing import Any, Final
 
+from gearcam.designs.outputs import MESHES
 from gearcam.laws.motion.base import MOTION_LAWS
 from random_designs.cam import motion_by_phases, motion_of_turn
 from random_designs.draw import Draw, short
@@ -25,7 +26,7 @@ _KEPT: Final = ("type", "angle_deg", "lift_mm", "lift_deg")
 """Keys of a phase with any law."""
 
 _SHARES: Final = {
-    "svg": 0.5, "dxf": 0.2, "stl": 0.15, "3mf": 0.03, "glb": 0.03, "report": 0.03,
+    "svg": 0.5, "dxf": 0.2, **dict.fromkeys(MESHES, 0.06), "report": 0.03,
 }  # fmt: skip
 """Share of cams with each kind of file, by its cost."""
 

@@ -9,9 +9,12 @@ from gearcam.base.display import ShortRepr
 from gearcam.base.quantities import ANGLE, FINEST, LENGTH, TEXT, allowance, param
 from gearcam.base.rules import distinct, excluded
 
+MESHES: Final = ("stl", "3mf", "glb")
+"""Kinds of files of solids made of triangles; `gearcam.export.mesh` has their writers."""
+
 FORMATS: Final = (
-    "dxf", "cut-svg", "svg", "stl", "3mf", "glb", "step", "csv", "drawing-dxf", "drawing-svg",
-    "inspection", "report",
+    "dxf", "cut-svg", "svg", *MESHES, "step", "csv", "drawing-dxf", "drawing-svg", "inspection",
+    "report",
 )  # fmt: skip
 """Kinds of files that ``output.files`` may list."""
 

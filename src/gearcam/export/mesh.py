@@ -96,8 +96,8 @@ def mesh_bytes(kind: str, bodies: Mapping[str, Mesh], name: str) -> bytes:
 
     Parameters
     ----------
-    kind : {"stl", "3mf", "glb"}
-        The format.
+    kind : str
+        The format, one of `gearcam.designs.outputs.MESHES`.
     bodies : mapping of str to Mesh
         Closed, mm, by name.
     name : str
@@ -107,8 +107,10 @@ def mesh_bytes(kind: str, bodies: Mapping[str, Mesh], name: str) -> bytes:
     -------
     bytes
     """
-    writers = {"stl": stl_bytes, "3mf": threemf_bytes, "glb": glb_bytes}
-    return writers[kind](bodies, name)
+    return _WRITERS[kind](bodies, name)
+
+
+_WRITERS: Final = {"stl": stl_bytes, "3mf": threemf_bytes, "glb": glb_bytes}
 
 
 @libraries()

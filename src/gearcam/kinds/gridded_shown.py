@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from gearcam.base.facts import Fact
+from gearcam.designs.outputs import MESHES
 from gearcam.kinds.gridded import ORDERS
 from gearcam.kinds.shared import peak_of
 
@@ -186,7 +187,5 @@ def _mesh_files(kind: str) -> FileMaker:
     return maker
 
 
-MESHES: Final[Mapping[str, Callable[..., Files]]] = {
-    kind: _mesh_files(kind) for kind in ("stl", "3mf", "glb")
-}
+SOLIDS: Final[Mapping[str, Callable[..., Files]]] = {kind: _mesh_files(kind) for kind in MESHES}
 """What makes the solid, by format."""

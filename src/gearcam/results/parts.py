@@ -8,6 +8,7 @@ from dataclasses import replace
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, ClassVar, Final, Self
 
+from gearcam.designs.outputs import MESHES
 from gearcam.results.result import Result
 
 if TYPE_CHECKING:
@@ -28,9 +29,6 @@ Measured = dict[str, Any]
 
 Estimates = Mapping[str, tuple[float, str]]
 """Estimated error and its method, by name."""
-
-MESHES: Final = ("stl", "3mf", "glb")
-"""Formats of meshes."""
 
 _STEP_PART: Final = 2e-3
 """Tolerance of STEP surfaces over that of the outlines: their volumes are then good to 1e-6."""

@@ -12,10 +12,11 @@ from gearcam.base.facts import Fact, Facts, extent
 from gearcam.base.findings import limit_of
 from gearcam.base.numerals import formatted
 from gearcam.cams.checks import KIND, pressure_limits
+from gearcam.designs.outputs import MESHES
 from gearcam.kinds.shared import peak_of
 from gearcam.parts.mass import part_facts
 from gearcam.report.file import report_files
-from gearcam.results.parts import MESHES, Files, Measured, dxf_files, part_files
+from gearcam.results.parts import Files, Measured, dxf_files, part_files
 
 if TYPE_CHECKING:
     from gearcam.cams.measures import Range

@@ -13,6 +13,7 @@ from gearcam.base.facts import Fact, Facts, extent
 from gearcam.base.findings import limit_of
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import RPM
+from gearcam.designs.outputs import MESHES
 from gearcam.gears.pair import gear_tree
 from gearcam.gears.subject import KIND, CheckedPair
 from gearcam.kinds.gear_pair.tables import POINTS
@@ -20,7 +21,7 @@ from gearcam.laws.ratio.span import angle_text
 from gearcam.meshing.drive_checks import side_name
 from gearcam.parts.mass import part_facts, size_fact
 from gearcam.report.file import report_files
-from gearcam.results.parts import MESHES, Files, Measured, part_files
+from gearcam.results.parts import Files, Measured, part_files
 
 if TYPE_CHECKING:
     from gearcam.gears.contact import FlankPairs

@@ -10,7 +10,7 @@ from gearcam.base.registry import DeferredMapping, deferred
 from gearcam.designs.design import Design
 from gearcam.designs.faults import Fault
 from gearcam.designs.nodes import Choice
-from gearcam.designs.outputs import files_param, studies_param
+from gearcam.designs.outputs import MESHES, files_param, studies_param
 from gearcam.designs.table import table_of
 from gearcam.kinds.shared import AccuracySpec, GoalSpec, GriddedOutput
 from gearcam.laws.motion.base import MOTION_LAWS
@@ -39,7 +39,7 @@ INDEX: Final = Choice(
 )
 """The table ``[index]``."""
 
-GLOBOIDAL_FORMATS: Final = ("svg", "stl", "3mf", "glb", "csv", "report")
+GLOBOIDAL_FORMATS: Final = ("svg", *MESHES, "csv", "report")
 """What ``output.files`` may list."""
 
 _FOLLOWED: Final = (

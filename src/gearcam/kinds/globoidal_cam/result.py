@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from gearcam.base.findings import Finding
+from gearcam.designs.outputs import MESHES
 from gearcam.kinds.globoidal_cam.design import GloboidalCamDesign
 from gearcam.kinds.gridded import ROUND, SAGITTA, STEM, GriddedCam, mesh_from
 from gearcam.laws.indexing import IndexProgram, index_program
@@ -57,7 +58,7 @@ class GloboidalCamResult(GriddedCam):
     """
 
     design: GloboidalCamDesign
-    solid_files = frozenset({"stl", "3mf", "glb", "report"})
+    solid_files = frozenset({*MESHES, "report"})
     most_carved = 120
     most_facets = 2_000_000
 

@@ -11,7 +11,7 @@ import numpy as np
 from gearcam.base.facts import Fact, Facts
 from gearcam.base.findings import limit_of
 from gearcam.kinds.gridded_shown import (
-    MESHES,
+    SOLIDS,
     accuracy_facts,
     largest_roller,
     peak_facts,
@@ -139,7 +139,7 @@ def _svg(result: GloboidalCamResult, _: Any) -> Files:
 FILES: Final[Mapping[str, Callable[..., Files]]] = {
     "csv": _tables,
     "svg": _svg,
-    **MESHES,
+    **SOLIDS,
     "report": report_files,
 }
 """What makes the files of each format: contents by name."""

@@ -10,7 +10,7 @@ from gearcam.base.display import ShortRepr
 from gearcam.base.quantities import COUNT, LENGTH, param
 from gearcam.base.registry import DeferredMapping, deferred
 from gearcam.designs.design import Design
-from gearcam.designs.outputs import files_param, studies_param
+from gearcam.designs.outputs import MESHES, files_param, studies_param
 from gearcam.kinds.cam.public import MOTION, circumstances
 from gearcam.kinds.shared import AccuracySpec, GoalSpec, GriddedOutput
 from gearcam.mechanics.drive import DriveSpec
@@ -26,7 +26,7 @@ NAME: Final = "spatial-cam"
 """As in a file."""
 
 SPATIAL_FORMATS: Final = (
-    "dxf", "svg", "stl", "3mf", "glb", "step", "csv", "report", "tool-path", "gcode",
+    "dxf", "svg", *MESHES, "step", "csv", "report", "tool-path", "gcode",
 )  # fmt: skip
 """What ``output.files`` may list."""
 

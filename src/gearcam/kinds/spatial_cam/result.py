@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 from gearcam.base.errors import beyond_limit
 from gearcam.base.findings import Finding
 from gearcam.base.numerals import formatted
+from gearcam.designs.outputs import MESHES
 from gearcam.kinds.cam.public import lift_program
 from gearcam.kinds.gridded import ROUND, SAGITTA, STEM, GriddedCam, mesh_from
 from gearcam.kinds.shared import solved_file
@@ -68,7 +69,7 @@ class SpatialCamResult(GriddedCam):
     """
 
     design: SpatialCamDesign
-    solid_files = frozenset({"stl", "3mf", "glb", "step", "report"})
+    solid_files = frozenset({*MESHES, "step", "report"})
     most_carved = 240
     most_facets = 4_000_000
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from gearcam.base.facts import Fact, Facts, extent
 from gearcam.kinds.gridded_shown import (
-    MESHES,
+    SOLIDS,
     accuracy_facts,
     largest_roller,
     peak_facts,
@@ -240,7 +240,7 @@ FILES: Final[Mapping[str, Callable[..., Files]]] = {
     "csv": _tables,
     "dxf": _dxf,
     "svg": _svg,
-    **MESHES,
+    **SOLIDS,
     "step": _step,
     "report": report_files,
     **MILLED,
