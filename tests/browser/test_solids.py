@@ -124,7 +124,7 @@ def turned(degrees: float, x: float = 0.0) -> np.ndarray:
     return matrix
 
 
-@pytest.mark.parametrize("size", [LAPTOP, PHONE])
+@pytest.mark.parametrize("size", [LAPTOP, pytest.param(PHONE, marks=pytest.mark.slow)])
 def test_cam_and_roller_follow_the_slider(
     size: tuple[int, int], browser: Chrome, cam_page: Path, built: Callable[[str], Any]
 ) -> None:

@@ -322,7 +322,7 @@ def test_jamming_and_a_large_error_are_found() -> None:
 @pytest.mark.parametrize("name", few(["ellipse", "round"]))
 def test_without_backlash_wheels_further_apart_run_free(name: str) -> None:
     document = ROUND if name == "round" else ELLIPSE
-    errors = {"center_mm": 0.01, "eccentricity_mm": 0.01, "steps": 24}
+    errors = {"center_mm": 0.01, "eccentricity_mm": 0.01, "steps": 12}
     pair = document["pair"] | {"backlash_mm": 0}
     found = built(gc.design({**document, "pair": pair, "errors": errors})).study("errors").to_dict()
     alone = found["errors"]["alone"]

@@ -321,6 +321,7 @@ def test_a_file_that_the_user_has_edited_is_neither_removed_nor_written_over(
     given = 'files = ["csv", "stl", "dxf", "svg", "tool-path", "gcode"]'
     text = changed(text, given, 'files = ["csv", "gcode"]')
     text = changed(text, "depth_mm = 1.5", "depth_mm = 5")
+    text = changed(text, "[output]", "[output]\npath_tolerance_mm = 0.1")
     design, out = tmp_path / "cam.toml", tmp_path / "out"
     folder = out / "cam"
 
