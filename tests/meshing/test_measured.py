@@ -93,7 +93,7 @@ def test_a_wheels_own_outline_has_no_error(name: str, written: str, tmp_path: Pa
         else:
             file = next(tmp_path.rglob(f"gear{number}.dxf"))
         keys[f"errors.outline{number}"] = str(file)
-    study = gc.build(result.design.with_({**keys, "errors.steps": 24})).study("errors")
+    study = gc.build(result.design.with_({**keys, "errors.steps": 12})).study("errors")
     radius = 0.5 * result.pair.center_distance
     facts = study.to_dict()
     found, own = facts["errors"], facts["errors"]["without"]
