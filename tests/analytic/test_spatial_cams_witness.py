@@ -98,7 +98,7 @@ def beside(wall: SpatialWall, loss: LostLift, number: int) -> list[tuple[float, 
 
 
 @pytest.mark.parametrize(
-    ("number", "every"), [(20, 5), pytest.param(200, 1, marks=pytest.mark.slow)]
+    ("number", "every"), [(20, 10), pytest.param(200, 1, marks=pytest.mark.slow)]
 )
 def test_undercut_walls_are_those_that_a_swept_roller_leaves(number: int, every: int) -> None:
     """Translating and swinging followers, cylinders and cones, grooves and single walls."""
