@@ -44,7 +44,7 @@ def cams(folder: Path, number: int, seed: int = 44) -> list[SpatialCamResult]:
     raise AssertionError
 
 
-@pytest.mark.parametrize("number", [12, pytest.param(300, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("number", [8, pytest.param(300, marks=pytest.mark.slow)])
 def test_walls_are_where_the_search_finds_them(tmp_path: Path, number: int) -> None:
     """Undercut walls too: there the search is beyond them, by the depth that is taken off."""
     found = cams(tmp_path, number)

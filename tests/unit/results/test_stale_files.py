@@ -259,7 +259,11 @@ def test_a_file_that_was_deleted_is_not_listed(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("study", "file"), [("forces", "forces.csv"), ("accuracy", "accuracy.csv")]
+    ("study", "file"),
+    [
+        ("forces", "forces.csv"),
+        pytest.param("accuracy", "accuracy.csv", marks=pytest.mark.slow),
+    ],
 )
 def test_what_a_study_wrote_stays_with_its_design(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], study: str, file: str
