@@ -194,7 +194,9 @@ def test_a_cutter_burns_only_waste(made: GearPairResult) -> None:
     """The path of the teeth lies within the hole and that of the outside around it."""
     kerf = 0.3
     other = ring_job(
-        ring=made.design.ring, blank=made.design.blank, output=PairOutputSpec(kerf=kerf, chord_tolerance=2e-3)
+        ring=made.design.ring,
+        blank=made.design.blank,
+        output=PairOutputSpec(kerf=kerf, chord_tolerance=2e-3),
     )
     layers = by_layer(files(other, "dxf")["gear2.dxf"])
     assert set(layers) == {"OUTLINE_KERF", "INNER_KERF", "HOLE_KERF", "MARK"}
