@@ -121,7 +121,7 @@ def _lowest_in(
     values = function(theta, x)
     k, j = np.unravel_index(np.argmin(values), values.shape)
     spot = Spot(theta=float(theta[k]), x=float(x[k, j]), value=float(values[k, j]))
-    return spot, boxes[k // counts[0]]
+    return spot, boxes[int(k) // counts[0]]
 
 
 def _narrowed(function: OfPlaces, spot: Spot, box: Box) -> Spot:
