@@ -13,7 +13,7 @@ QUICK = settings(
     derandomize=True,
     database=None,
     deadline=None,
-    max_examples=20,
+    max_examples=10,
     phases=[Phase.generate, Phase.shrink],
     suppress_health_check=[
         HealthCheck.too_slow,

@@ -44,7 +44,7 @@ def cams(folder: Path, number: int, seed: int = 44) -> list[SpatialCamResult]:
     raise AssertionError
 
 
-@pytest.mark.parametrize("number", [12, pytest.param(300, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("number", [8, pytest.param(300, marks=pytest.mark.slow)])
 def test_walls_are_where_the_search_finds_them(tmp_path: Path, number: int) -> None:
     """Undercut walls too: there the search is beyond them, by the depth that is taken off."""
     found = cams(tmp_path, number)
@@ -98,7 +98,7 @@ def beside(wall: SpatialWall, loss: LostLift, number: int) -> list[tuple[float, 
 
 
 @pytest.mark.parametrize(
-    ("number", "every"), [(20, 5), pytest.param(200, 1, marks=pytest.mark.slow)]
+    ("number", "every"), [(20, 10), pytest.param(200, 1, marks=pytest.mark.slow)]
 )
 def test_undercut_walls_are_those_that_a_swept_roller_leaves(number: int, every: int) -> None:
     """Translating and swinging followers, cylinders and cones, grooves and single walls."""

@@ -13,6 +13,7 @@ import pytest
 from selenium.webdriver import ActionChains, Chrome, Keys
 from selenium.webdriver.common.by import By
 
+import gearcam
 from gearcam.compare.page import document as document_of_variants
 from gearcam.compare.variants import variants_of
 from gearcam.report.file import solids_shown
@@ -42,7 +43,7 @@ view.scene.traverse((one) => {
 @pytest.fixture(scope="module")
 def solids_page(built: Callable[[str], Any], tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("solids") / "nail.html"
-    result = built(NAIL)
+    result = gearcam.build(built(NAIL).design.with_({"output.chord_tolerance_mm": 0.02}))
     path.write_bytes(page(document(result), solids=solids_shown(result)))
     return path
 
@@ -105,7 +106,7 @@ def placed(browser: Chrome) -> dict[str, np.ndarray]:
 @pytest.fixture(scope="module")
 def cam_page(built: Callable[[str], Any], tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("solids") / "cam.html"
-    result = built(CAM)
+    result = gearcam.build(built(CAM).design.with_({"output.wall_step_deg": 3}))
     path.write_bytes(page(document(result), solids=solids_shown(result)))
     return path
 
@@ -124,7 +125,7 @@ def turned(degrees: float, x: float = 0.0) -> np.ndarray:
     return matrix
 
 
-@pytest.mark.parametrize("size", [LAPTOP, PHONE])
+@pytest.mark.parametrize("size", [LAPTOP, pytest.param(PHONE, marks=pytest.mark.slow)])
 def test_cam_and_roller_follow_the_slider(
     size: tuple[int, int], browser: Chrome, cam_page: Path, built: Callable[[str], Any]
 ) -> None:

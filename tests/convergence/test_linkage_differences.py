@@ -69,7 +69,7 @@ def test_of_known_linkages(made: Linkage, name: str, q: Array, order: int) -> No
 def far_from_open() -> list[Linkage]:
     """Random linkages that move and are nowhere near where they open: there steps must be less."""
     chosen: list[Linkage] = []
-    for index in range(60):
+    for index in range(40):
         try:
             made = settled(drawn(47, index).linkage)
         except NotClosingError:

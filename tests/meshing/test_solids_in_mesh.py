@@ -29,7 +29,7 @@ ROUND: dict[str, Any] = {
     "law": {"type": "constant"},
     "pair": {"teeth": [20, 30], "module_mm": 2, "face_width_mm": WIDTH},
 }
-SOLID = {"meshing.solids": True, "meshing.steps": 20}
+SOLID = {"meshing.solids": True, "meshing.steps": 12}
 
 
 @pytest.mark.parametrize(
@@ -50,7 +50,7 @@ def test_on_parallel_axes_a_volume_is_the_area_times_the_width(name: str) -> Non
 
 
 def round_setup(overclosure: float = 0.02) -> tuple[Setup, np.ndarray]:
-    design = gc.design(ROUND).with_({"meshing.overclosure_deg": overclosure, "meshing.steps": 40})
+    design = gc.design(ROUND).with_({"meshing.overclosure_deg": overclosure, "meshing.steps": 24})
     assert isinstance(design, GearPairDesign)
     setup = mount(built(gc.design(ROUND)).gears, design.meshing)
     return setup, phases(design.meshing, setup.pairs[DRIVE])
@@ -140,7 +140,7 @@ def test_on_tilted_axes_the_teeth_bear_at_one_end(tilt: list[float], front: bool
     assert end == pytest.approx(0.5 * WIDTH, abs=0.05)
     assert other.min() > -0.2 * WIDTH
     # every phase has a pair that touches
-    assert {*rows["step"][bears].astype(int)} == set(range(20))
+    assert {*rows["step"][bears].astype(int)} == set(range(12))
     assert study.findings == ()
     assert study.facts["meshing.pairs_in_contact"]["min"] >= 1
     assert study.facts["meshing.bearing_length_mm"]["max"] < 0.7 * WIDTH
@@ -168,7 +168,7 @@ def test_a_tooth_moved_by_5_um_is_found_in_3d(tmp_path: Path) -> None:
     """Without backlash a tooth that is ahead presses on its coast side."""
     path = tmp_path / "pitch.csv"
     path.write_text("wheel,tooth,pitch_mm\n1,3,0.005\n", "utf-8")
-    plain = gc.design(ROUND).with_(SOLID | {"meshing.steps": 30})
+    plain = gc.design(ROUND).with_(SOLID | {"meshing.steps": 24})
     moved = plain.with_({"errors.file": str(path)})
     sides = []
     for design in (plain, moved):

@@ -173,7 +173,7 @@ def kind_of(file: str) -> str:
 
 LONG = {
     "nail_machine_three_phase", "ring_uneven", "nautilus", "stepped_ellipse", "conjugate_cams",
-    "shop_order",
+    "shop_order", "translating_cam", "globoidal_indexer", "rotary_axis_cam",
 }  # fmt: skip
 """Whose files take long, and are of the same kinds as those of other files of the gallery."""
 

@@ -1,6 +1,6 @@
 """Every law family at random: wheels that fit each other, or a refusal whose advice holds.
 
-Laws and tooth counts of `random_designs.laws`, up to 200 teeth (the quick runs: 60), and profile
+Laws and tooth counts of `random_designs.laws`, up to 200 teeth (the quick runs: 40), and profile
 shift. The outlines are simple and do not collide in 64 phases for each tooth (by the stepwise
 overlap, and by whole outlines in some phases); a refusal names tooth counts that build while one
 step fewer is refused; at most a fifth are refused.
@@ -30,7 +30,7 @@ from random_designs.laws import parameters, random_law
 
 MODULE = 2.0
 PHASES_PER_TOOTH = 64
-FEW_TEETH, FEW_PHASES = 60, 24
+FEW_TEETH, FEW_PHASES = 40, 16
 
 SHIFTS = (0.0, 0.0, 0.2, -0.2, 0.4)
 """Profile shifts, the frequent one twice."""

@@ -36,7 +36,7 @@ WORDS = st.sampled_from(
 
 
 @given(st.text(max_size=60) | st.lists(WORDS, max_size=25).map("".join))
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=80, deadline=None)
 def test_any_text_is_read_or_refused(text: str) -> None:
     expression = _read(text)
     if isinstance(expression, FormulaError):
@@ -74,7 +74,7 @@ MATH = {name: getattr(math, name) for name in NUMPY}
 
 
 @given(FORMULAS, st.floats(0.01, 6.3))
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=80, deadline=None)
 def test_a_formula_agrees_with_the_same_text_in_math(text: str, angle: float) -> None:
     expression = _read(text)
     if isinstance(expression, FormulaError):

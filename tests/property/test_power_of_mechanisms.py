@@ -68,13 +68,13 @@ def apart(result: Any, work: Any) -> float:
     return float(np.abs(total - moment).max() / max(np.abs(moment).max(), _NONE))
 
 
-@pytest.mark.parametrize("block", few(range(4)))
+@pytest.mark.parametrize("block", few(range(8), 4))
 def test_power_balance(block: int) -> None:
     compared = 0
-    for seed in range(40 * block, 40 * block + 40):
+    for seed in range(20 * block, 20 * block + 20):
         made = loaded(seed)
         if made is not None:
             compared += 1
             assert off(*made) < _OFF, seed
             assert apart(*made) < _ROUNDED, seed
-    assert compared > 3
+    assert compared > 1

@@ -58,6 +58,7 @@ def built(cam: str, tool: str, outer: str = "78.16", rise: str = "120") -> gc.Sp
     return gc.build(design)  # pyright: ignore
 
 
+@cache
 def text_of(cam: str = "", tool: str = "", outer: str = "78.16") -> str:
     """Its program."""
     return built(cam, tool, outer).files("gcode")["cam.nc"].decode()

@@ -194,7 +194,9 @@ def test_a_cutter_burns_only_waste(made: GearPairResult) -> None:
     """The path of the teeth lies within the hole and that of the outside around it."""
     kerf = 0.3
     other = ring_job(
-        ring=made.design.ring, blank=made.design.blank, output=PairOutputSpec(kerf=kerf)
+        ring=made.design.ring,
+        blank=made.design.blank,
+        output=PairOutputSpec(kerf=kerf, chord_tolerance=2e-3),
     )
     layers = by_layer(files(other, "dxf")["gear2.dxf"])
     assert set(layers) == {"OUTLINE_KERF", "INNER_KERF", "HOLE_KERF", "MARK"}
@@ -203,7 +205,7 @@ def test_a_cutter_burns_only_waste(made: GearPairResult) -> None:
     path, hole = outline(layers["INNER_KERF"][0]), shapely.Polygon(made.gear2.outline)
     assert hole.contains(path)
     away = shapely.distance(shapely.points(np.array(path.exterior.coords)), hole.boundary)
-    assert away == pytest.approx(np.full(away.shape, 0.5 * kerf), abs=2e-3)
+    assert away == pytest.approx(np.full(away.shape, 0.5 * kerf), abs=6e-3)
     sheet = ET.fromstring(files(other, "cut-svg")["gear2_cut.svg"])
     assert [g.get("id") for g in sheet if g.get("id")] == ["engrave", "cut-inner", "cut-outer"]
 
@@ -282,13 +284,13 @@ def test_the_mass_of_a_ring_is_that_of_its_metal() -> None:
     result = ring_job(
         ring=RingSpec(outer_diameter=130.0),
         blank=Blank(density=(7800.0, 7800.0), timing_marks=False),
-        output=PairOutputSpec(chord_tolerance=1e-5),
+        output=PairOutputSpec(chord_tolerance=1e-4),
     )
     told = result.facts.document["gears"][1]
-    circle = shapely.Point(0.0, 0.0).buffer(65.0, quad_segs=20000)
+    circle = shapely.Point(0.0, 0.0).buffer(65.0, quad_segs=2000)
     metal = shapely.Polygon(circle.exterior, [result.gear2.outline])
-    assert told["part"]["area_mm2"] == pytest.approx(metal.area, rel=1e-6)
-    assert told["mass"]["mass_kg"] == pytest.approx(metal.area * 10.0 * 7.8e-6, rel=1e-6)
+    assert told["part"]["area_mm2"] == pytest.approx(metal.area, rel=1e-5)
+    assert told["mass"]["mass_kg"] == pytest.approx(metal.area * 10.0 * 7.8e-6, rel=1e-5)
     assert told["mass"]["centroid_mm"][:2] == pytest.approx(
         [metal.centroid.x, metal.centroid.y], abs=1e-4
     )

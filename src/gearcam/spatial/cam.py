@@ -108,7 +108,9 @@ class SpatialCam(RollerCam):
         """Return the largest pressure angle of either wall between two places on the roller."""
 
         def gentle(theta: Array, x: Array) -> Array:
-            return -np.max([self.contact(theta, x, side).pressure for side in self.sides], axis=0)
+            axis = self.axis(theta)  # where a point of it is does not matter
+            both = [touched(axis, self.tool, x, side).pressure for side in self.sides]
+            return -np.max(both, axis=0)
 
         worst = self.least(gentle, (low, high), stretches)
         return replace(worst, value=-worst.value)

@@ -32,6 +32,9 @@ _AROUND: Final = 24
 _FINE: Final = 7
 """Places in each direction around the best one, each time that it is narrowed."""
 
+_BLOCK: Final = 1 << 14
+"""Places at which a function is evaluated at once, many boxes together."""
+
 _INSET: Final = 1e-12
 """Distance from knots at which their sides are looked at, as a share of an interval."""
 
@@ -102,36 +105,37 @@ def lowest(function: OfPlaces, boxes: Sequence[Box]) -> Spot:
     boxes : sequence of Box
         Boxes of one place or more.
     """
-    spots = [
-        _lowest_in(function, box, (_AROUND, _ALONG if box[3] > box[2] else 1)) for box in boxes
-    ]
-    best = min(range(len(spots)), key=lambda k: spots[k].value)
-    return _narrowed(function, spots[best], boxes[best])
+    counts = _AROUND, _ALONG if any(box[3] > box[2] for box in boxes) else 1
+    each = max(1, _BLOCK // (counts[0] * counts[1]))
+    found = [_lowest_in(function, boxes[k : k + each], counts) for k in range(0, len(boxes), each)]
+    return _narrowed(function, *min(found, key=lambda one: one[0].value))
 
 
 def _lowest_in(
-    function: Callable[[Array, Array], Array], box: Sequence[float], counts: tuple[int, int]
-) -> Spot:
-    """Return the lowest point of a grid over a box of cam angles and places."""
-    theta = np.linspace(box[0], box[1], counts[0])
-    x = np.linspace(box[2], box[3], counts[1]) * np.ones((counts[0], 1))
+    function: OfPlaces, boxes: Sequence[Box], counts: tuple[int, int]
+) -> tuple[Spot, Box]:
+    """Return the lowest point of grids over boxes of cam angles and places, and its box."""
+    start, end, low, high = np.array(boxes).T
+    theta = np.linspace(start, end, counts[0], axis=1).ravel()
+    x = np.repeat(np.linspace(low, high, counts[1], axis=1), counts[0], axis=0)
     values = function(theta, x)
     k, j = np.unravel_index(np.argmin(values), values.shape)
-    return Spot(theta=float(theta[k]), x=float(x[k, j]), value=float(values[k, j]))
+    spot = Spot(theta=float(theta[k]), x=float(x[k, j]), value=float(values[k, j]))
+    return spot, boxes[int(k) // counts[0]]
 
 
-def _narrowed(function: Callable[[Array, Array], Array], spot: Spot, box: Sequence[float]) -> Spot:
+def _narrowed(function: OfPlaces, spot: Spot, box: Box) -> Spot:
     """Return the lowest point within a box that begins one step around a point of its grid."""
     sizes = [(box[1] - box[0]) / (_AROUND - 1), (box[3] - box[2]) / (_ALONG - 1)]
     least = [NARROW * (box[1] - box[0]), NARROW * (box[3] - box[2])]
     while sizes[0] > least[0] or sizes[1] > least[1]:
-        near = [
+        near = (
             max(box[0], spot.theta - sizes[0]),
             min(box[1], spot.theta + sizes[0]),
             max(box[2], spot.x - sizes[1]),
             min(box[3], spot.x + sizes[1]),
-        ]
-        found = _lowest_in(function, near, (_FINE, _FINE if sizes[1] else 1))
+        )
+        found, _ = _lowest_in(function, [near], (_FINE, _FINE if sizes[1] else 1))
         spot = min(spot, found, key=lambda one: one.value)
         sizes = [2.0 * size / (_FINE - 1) for size in sizes]
     return spot

@@ -33,7 +33,7 @@ from gearcam.laws.indexing import IndexProgram
 from gearcam.laws.phases_of_lift import TURN
 from gearcam.numeric.arrays import Array, Mask
 from gearcam.numeric.roots import bracketed_root
-from gearcam.spatial.envelope import RollerAxis, RollerContact
+from gearcam.spatial.envelope import RollerAxis, RollerContact, touched
 from gearcam.spatial.extremes import Box, OfPlaces, Spot, boxes_between, lowest
 from gearcam.spatial.guides import Turret, carried
 from gearcam.spatial.walls import ROOT, RollerCam, RollerWall
@@ -291,10 +291,11 @@ class GloboidalWall(RollerWall):
         -------
         (n,) array, mm
         """
-        cam = self.cam
+        cam, axis = self.cam, self.cam.axis(theta, self.side)
 
         def beyond(x: Array) -> Array:
-            return cam.depth(self.contact(theta, x[:, None]).points[:, 0]) - depth
+            points = touched(axis, cam.tool, x[:, None], self.side).points
+            return cam.depth(points[:, 0]) - depth
 
         ends = np.full(len(theta), 0.0), np.full(len(theta), cam.distance)
         return bracketed_root(beyond, *ends, ROOT * cam.distance)

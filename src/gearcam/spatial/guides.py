@@ -215,26 +215,19 @@ def carried(
     back = np.zeros((len(theta), 3, 3))
     back[:, 0, 0], back[:, 0, 1], back[:, 1, 0], back[:, 1, 1], back[:, 2, 2] = c, s, -s, c, 1.0
 
-    def turned(vector: Array) -> Array:
-        return np.einsum("nij,nj->ni", back, vector)
-
-    def by_angle(by_lift: Array) -> Array:
-        f = by_lift[0]
-        f1 = by_lift[1] * first[:, None]
-        f2 = by_lift[2] * first[:, None] ** 2 + by_lift[1] * second[:, None]
-        once = f1 - _about(f)
-        twice = f2 - 2.0 * _about(f1) + _about(_about(f))
-        return np.array([turned(one) for one in (f, once, twice)])
-
-    point, direction = guide.placed(lift)
-    return RollerAxis(
-        point=by_angle(point),
-        direction=by_angle(direction),
-        way=turned(point[1]),
-        swing=turned(direction[1]),
+    still, by_lift, twice_by_lift = np.stack(guide.placed(lift), axis=1)  # points, directions
+    once = by_lift * first[:, None]
+    twice = twice_by_lift * first[:, None] ** 2 + by_lift * second[:, None]
+    rates = (
+        still,
+        once - _about(still),
+        twice - 2.0 * _about(once) + _about(_about(still)),
+        by_lift,
     )
+    point, direction = np.einsum("nij,kbnj->bkni", back, np.stack(rates))
+    return RollerAxis(point=point[:3], direction=direction[:3], way=point[3], swing=direction[3])
 
 
-def _about(vector: Array) -> Array:
+def _about(vectors: Array) -> Array:
     """Return z x vector."""
-    return np.stack([-vector[:, 1], vector[:, 0], np.zeros(len(vector))], axis=1)
+    return vectors[..., [1, 0, 2]] * [-1.0, 1.0, 0.0]

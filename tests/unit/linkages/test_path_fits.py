@@ -21,6 +21,7 @@ from helpers_measured import (
     known_four_bar,
     six_bar_with_dwell,
 )
+from helpers_sampling import few
 
 BEGIN, END = np.radians([100.0, 260.0]).tolist()
 
@@ -68,7 +69,7 @@ def test_the_nearest_circle_against_a_search(round_path: PointPath) -> None:
     )
 
 
-@pytest.mark.parametrize("seed", range(10))
+@pytest.mark.parametrize("seed", few(range(10), 4))
 def test_circles_nearest_to_waves(seed: int) -> None:
     random = np.random.default_rng(seed)
     ways, turns = random.normal(size=5) * 0.05, random.uniform(0.0, 6.0, 5)
@@ -94,7 +95,7 @@ def test_circles_nearest_to_waves(seed: int) -> None:
     assert found.deviation == pytest.approx(best.fun, rel=1e-5)
 
 
-@pytest.mark.parametrize("seed", [0, 1, 2, 3, 4, 5, 9])
+@pytest.mark.parametrize("seed", few([0, 1, 2, 3, 4, 5, 9], 3))
 def test_circles_nearest_to_stretches_that_are_not_round(seed: int) -> None:
     random = np.random.default_rng(seed)
     ways = (random.normal(size=(4, 2)) @ np.array([1.0, 1j])) * [10.0, 6.0, 3.0, 1.0]

@@ -34,7 +34,7 @@ def chart(path: Path, name: str) -> Chart:
     return built(path).chart(name)
 
 
-@pytest.mark.parametrize("path", few(PROFILES, 8), ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", few(PROFILES, 12), ids=lambda path: path.stem)
 def test_every_chart_of_every_design_is_drawn(path):
     import matplotlib.pyplot as plt
 
@@ -92,7 +92,7 @@ def test_a_smoothed_lift_is_drawn_with_the_points_that_were_given():
     assert len(result.chart("velocity").lines) == 1
 
 
-@pytest.mark.parametrize("path", few(PROFILES, 4), ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", few(PROFILES, 7), ids=lambda path: path.stem)
 def test_extremes_are_those_of_the_facts(path):
     result = built(path)
     facts, steps = result.facts, 1e-3

@@ -170,7 +170,7 @@ def test_remedies_are_short_and_nearly_the_least(name: str, folder: Path) -> Non
 
 def test_remedies_of_both_wheels_are_nearly_the_least(folder: Path) -> None:
     blank = {"bore_diameter_mm": 12, "bolts": 6, "bolt_circle_mm": 18, "bolt_diameter_mm": 8}
-    document = pair(CIRCLE, [40, 40], blank=blank | {"timing_marks": False})
+    document = pair(CIRCLE, [24, 24], blank=blank | {"timing_marks": False})
     (found,) = (
         remedy
         for remedy in gearcam.remedies(job_of(document, folder)).found

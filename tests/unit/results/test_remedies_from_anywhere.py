@@ -43,7 +43,7 @@ def test_a_face_keeps_its_least_profile_radius_from_a_base_radius_on(tmp_path: P
         - LIFT * 2 * math.pi / b**2 * math.sin(2 * math.pi * u)
         for u in turns
     )
-    told = {values(face(base), "cam.base_radius_mm", tmp_path)[0] for base in (8, 30, 100, 300)}
+    told = {values(face(base), "cam.base_radius_mm", tmp_path)[0] for base in (8, 300)}
     (value,) = told
     assert least <= value <= least * (1 + 1e-3)
     made = job_of(followed(face(8), {"cam.base_radius_mm": value}), tmp_path)
@@ -66,7 +66,7 @@ STARTS: dict[str, tuple[Any, str, tuple[float, ...]]] = {
         lambda size: cam(ROLLER | {"roller_radius_mm": size}, {"prime_radius_mm": 70}, 20,
                          angles=[60, 60, 60, 180]),
         "follower.roller_radius_mm",
-        (69.0, 64.0, 50.0),
+        (69.0, 50.0),
     ),
     "an arm's cam": (
         lambda size: cam(ARM | {"roller_radius_mm": 15}, {"prime_radius_mm": size}, 15,

@@ -259,7 +259,11 @@ def test_a_file_that_was_deleted_is_not_listed(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("study", "file"), [("forces", "forces.csv"), ("accuracy", "accuracy.csv")]
+    ("study", "file"),
+    [
+        ("forces", "forces.csv"),
+        pytest.param("accuracy", "accuracy.csv", marks=pytest.mark.slow),
+    ],
 )
 def test_what_a_study_wrote_stays_with_its_design(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], study: str, file: str
@@ -321,6 +325,7 @@ def test_a_file_that_the_user_has_edited_is_neither_removed_nor_written_over(
     given = 'files = ["csv", "stl", "dxf", "svg", "tool-path", "gcode"]'
     text = changed(text, given, 'files = ["csv", "gcode"]')
     text = changed(text, "depth_mm = 1.5", "depth_mm = 5")
+    text = changed(text, "[output]", "[output]\npath_tolerance_mm = 0.1")
     design, out = tmp_path / "cam.toml", tmp_path / "out"
     folder = out / "cam"
 

@@ -16,6 +16,7 @@ from gearcam.spatial.cam import SpatialCam
 from gearcam.spatial.guides import RollerGuide, Turret
 from gearcam.spatial.surface import Cylinder, chord_error, roller_surface, surface
 from helpers_pairs import PROFILES
+from helpers_sampling import chosen
 from helpers_spatial import reference, solid, swinging
 
 EXACT = 44298.298
@@ -60,11 +61,11 @@ def test_the_surface_of_a_swinging_follower_is_closed() -> None:
 
 def test_the_volume_converges_with_the_square_of_the_step() -> None:
     cam = reference(height=15.0)
-    steps, whole = (180, 360, 720, 1440), math.pi * 40.0**2 * 60.0
+    steps, whole = (180, 360, 720), math.pi * 40.0**2 * 60.0
     errors = [whole - mesh(cam, n, 1 + n // 60).volume - EXACT for n in steps]
-    slopes = np.diff(np.log(np.abs(errors[:3]))) / np.diff(np.log(steps[:3]))
+    slopes = np.diff(np.log(np.abs(errors))) / np.diff(np.log(steps))
     assert np.abs(slopes + 2.0).max() < 0.1
-    assert abs(errors[-1]) < 0.6
+    assert abs(errors[-1]) < 2.4
 
 
 @pytest.mark.parametrize("rotation", ["ccw", "cw"])
@@ -105,23 +106,21 @@ def overlaps(body: Any, cam: SpatialCam, count: int, more: float) -> list[float]
     return [(body ^ roller(cam, float(theta), more)).volume() for theta in angles]
 
 
-COUNTS = [20, pytest.param(720, marks=pytest.mark.slow)]
-
-
-@pytest.mark.parametrize("count", COUNTS)
+@pytest.mark.parametrize(("steps", "count"), chosen([(360, 12), (720, 720)], (360, 12)))
 @pytest.mark.parametrize("clearance", [0.0, 0.05])
-def test_the_roller_runs_through_the_groove(clearance: float, count: int) -> None:
+def test_the_roller_runs_through_the_groove(clearance: float, steps: int, count: int) -> None:
     """It neither overlaps beyond the chord error nor has a gap beyond that and the clearance."""
-    cam = reference(height=15.0, clearance=clearance, floor=27.99)
-    body, error = solid(mesh(cam)), chord_error(cam, 720, 13)
-    assert error < 2.5e-3
+    cam = reference(height=15.0, clearance=clearance, floor=27.96)
+    places = 1 + steps // 60
+    body, error = solid(mesh(cam, steps, places)), chord_error(cam, steps, places)
+    assert error < 2.5e-3 * (720 / steps) ** 2
     assert max(overlaps(body, cam, count, 0.5 * clearance - 1.1 * error)) == 0.0
     assert min(overlaps(body, cam, count, 0.5 * clearance + 1.1 * error)) > 0.0
 
 
 def test_two_rollers_embrace_a_rib() -> None:
-    cam = reference(height=15.0, apart=24.0, floor=27.99)
-    body, error = solid(mesh(cam, length=100.0)), chord_error(cam, 720, 13)
+    cam = reference(height=15.0, apart=24.0, floor=27.96)
+    body, error = solid(mesh(cam, 360, 7, length=100.0)), chord_error(cam, 360, 7)
     for shift in (12.0, -12.0):
         moved = body.translate((0.0, 0.0, shift))
         assert max(overlaps(moved, cam, 10, -1.1 * error)) == 0.0
@@ -141,7 +140,7 @@ def test_a_wall_that_is_off_by_5_um_is_found(side: int) -> None:
         if tuple(point) in known:  # others coincide with one of these
             moved[known[tuple(point)]] -= 5e-3 * normal
     body = solid(Mesh(vertices=moved, triangles=made.triangles))
-    assert max(overlaps(body, cam, 12, -1.1 * chord_error(cam, 720, 13))) > 0.0
+    assert max(overlaps(body, cam, 6, -1.1 * chord_error(cam, 720, 13))) > 0.0
 
 
 @pytest.mark.parametrize("half_angle", [0.0, 0.1])

@@ -13,7 +13,10 @@ import needs
 from helpers_sampling import few
 
 TABLE = needs.table(needs.PAGE.read_text(encoding="utf-8"))
-SLOW = ("mesh", "accuracy", "compare", "step", "glb", "drawing-dxf")
+SLOW = (
+    *("mesh", "accuracy", "compare", "report"),
+    *("step", "glb", "3mf", "drawing-dxf", "drawing-svg", "cut-svg"),
+)
 """Outputs that take longer than the fast tests may, or need what others need."""
 
 QUICK = {kind: [one for one in needs.outputs(kind) if one not in SLOW] for kind in needs.DESIGNS}
