@@ -19,10 +19,12 @@ from types import SimpleNamespace
 from typing import Any, Final, Protocol, get_args, get_type_hints
 
 from gearcam.base.findings import CHECKS
+from gearcam.base.quantities import params_of
 from gearcam.base.rules import Rule
 from gearcam.designs.faults import Fault
 from gearcam.designs.lines import Path
 from gearcam.designs.nodes import Circumstances, Keys, Many, Node, choices_in, tables_in
+from gearcam.designs.outputs import OutputSpec
 from gearcam.designs.slips import cam_of, keyed, nearest
 from gearcam.designs.table import Key, Table, table_of
 
@@ -180,14 +182,10 @@ class DesignKind:
     later : callable
         ``later(document)`` returns a fault for designs that are not supported, or None. No other
         fault is reported then.
-    formats : tuple of str
-        Kinds of files that ``output.files`` may list.
     check_modules : tuple of str
         Modules that register checks.
     check_groups : tuple of str
         Groups of those checks: what they look at.
-    study_tables : mapping of str to str
-        Titles of the tables with the settings of studies, by the names of the studies.
     example : mapping
         A design that builds without a warning, by title, in the units of a file.
     shown : mapping of str to mapping
@@ -210,10 +208,8 @@ class DesignKind:
     rules: tuple[Rule, ...] = ()
     problems: Callable[[Mapping[str, Any], Examined], Iterable[Fault]] = lambda *_: ()
     later: Callable[[Mapping[str, Any]], Fault | None] = lambda _: None
-    formats: tuple[str, ...]
     check_modules: tuple[str, ...] = ()
     check_groups: tuple[str, ...] = ()
-    study_tables: Mapping[str, str] = field(default_factory=dict)
     example: Mapping[str, Any]
     shown: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     notes: Mapping[str, str] = field(default_factory=dict)
@@ -251,6 +247,17 @@ class DesignKind:
     def titles(self) -> tuple[str, ...]:
         """The top-level keys and tables of a file of this kind."""
         return ("kind", "name", *self.tree, "limits", *FAMILY)
+
+    @property
+    def formats(self) -> tuple[str, ...]:
+        """Kinds of files that ``output.files`` may list."""
+        return params_of(self.tables["output"])["files"].choices or ()
+
+    @property
+    def study_tables(self) -> Mapping[str, str]:
+        """Titles of the tables with the settings of studies, by the names of the studies."""
+        output: type[OutputSpec] = self.tables["output"]
+        return output.study_tables
 
     def meant(self, document: Mapping[str, Any]) -> DesignKind:
         """Return the kind that a `document` of this kind is of: another one for some variants."""

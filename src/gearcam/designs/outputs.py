@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any, ClassVar, Final
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.quantities import ANGLE, FINEST, LENGTH, TEXT, allowance, param
@@ -26,10 +27,10 @@ def files_param(formats: tuple[str, ...]) -> Any:
     return param(TEXT, default=("csv",), choices=formats, doc=_FILES)
 
 
-def studies_param(names: tuple[str, ...]) -> Any:
-    """Return the field of the studies to include, any of some `names`."""
+def studies_param(tables: Mapping[str, str]) -> Any:
+    """Return the field of the studies to include, any of those with some `tables` of settings."""
     doc = "studies to include in summary and report, by the names of their commands"
-    return param(TEXT, default=(), choices=names, doc=doc)
+    return param(TEXT, default=(), choices=tuple(tables), doc=doc)
 
 
 def pose_param(word: str, doc: str) -> Any:
@@ -55,8 +56,11 @@ class OutputSpec(ShortRepr):
         How outlines are drawn, and the version of the files.
     """
 
+    study_tables: ClassVar[Mapping[str, str]] = {}
+    """Titles of the tables with the settings of studies, by the names of the studies."""
+
     files: tuple[str, ...] = files_param(FORMATS)
-    studies: tuple[str, ...] = studies_param(())
+    studies: tuple[str, ...] = studies_param(study_tables)
     chord_tolerance: float | None = param(
         LENGTH,
         default=None,

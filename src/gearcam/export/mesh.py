@@ -107,10 +107,8 @@ def mesh_bytes(kind: str, bodies: Mapping[str, Mesh], name: str) -> bytes:
     -------
     bytes
     """
-    return _WRITERS[kind](bodies, name)
-
-
-_WRITERS: Final = {"stl": stl_bytes, "3mf": threemf_bytes, "glb": glb_bytes}
+    writers = {"stl": stl_bytes, "3mf": threemf_bytes, "glb": glb_bytes}
+    return writers[kind](bodies, name)
 
 
 @libraries()

@@ -7,9 +7,10 @@ to x; the origin is the shaft of the crank.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -72,8 +73,10 @@ class StrokeSpec:
 
 @dataclass(frozen=True, kw_only=True)
 class SliderOutput(OutputSpec):
+    study_tables: ClassVar[Mapping[str, str]] = {"slide": "stroke"}
+
     files: tuple[str, ...] = files_param(FORMATS)
-    studies: tuple[str, ...] = studies_param(("slide",))
+    studies: tuple[str, ...] = studies_param(study_tables)
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -283,7 +286,6 @@ KIND = Kind(
     design=SliderCrankDesign,
     result=SliderCrank,
     required=("drive", "crank", "rod"),
-    formats=FORMATS,
     example={
         "drive": {
             "pair": {
@@ -302,5 +304,4 @@ KIND = Kind(
     charts={"motion": motion_chart},
     scene=scene,
     studies={"slide": SLIDE},
-    study_tables={"slide": "stroke"},
 )

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -35,8 +36,10 @@ class WeightSpec:
 
 @dataclass(frozen=True, kw_only=True)
 class SpacerOutput(OutputSpec):
+    study_tables: ClassVar[Mapping[str, str]] = {"weigh": "weight"}
+
     files: tuple[str, ...] = files_param(FORMATS)
-    studies: tuple[str, ...] = studies_param(("weigh",))
+    studies: tuple[str, ...] = studies_param(study_tables)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -123,10 +126,8 @@ KIND = Kind(
     design=SpacerDesign,
     result=Spacer,
     required=("ring",),
-    formats=FORMATS,
     example={"ring": {"bore_mm": 20}},
     facts=facts,
     files=FILES,
     studies={"weigh": WEIGH},
-    study_tables={"weigh": "weight"},
 )

@@ -292,7 +292,6 @@ KIND = Kind(
     design=TrainDesign,
     result=Result,
     required=("drive",),
-    formats=("csv",),
     example={"drive": [{"of": PAIR}, {"of": PAIR, "turns": 2}]},
 )
 '''

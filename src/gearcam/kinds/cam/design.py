@@ -30,7 +30,6 @@ from gearcam.designs.validate import placed_faults
 from gearcam.kinds.cam.forms.base import FORMS, VARIANTS
 from gearcam.kinds.cam.motion import MOTION, circumstances
 from gearcam.kinds.cam.tables import (
-    CAM_FORMATS,
     GOALS,
     BoundsSpec,
     CamBlank,
@@ -329,7 +328,6 @@ KIND: Final = Kind(
     required=("motion", "follower", "cam"),
     rules=RULES,
     problems=problems,
-    formats=CAM_FORMATS,
     check_modules=(
         "gearcam.cams.checks",
         "gearcam.laws.row_checks",
@@ -337,7 +335,6 @@ KIND: Final = Kind(
         "gearcam.parts.checks",
     ),
     check_groups=(CAM, "rows of tables", PARTS, FOLLOWED, FITTED, FORCES, PRECISION),
-    study_tables={name: name for name in ("follow", "forces", "precision", "accuracy")},
     example={
         "motion": [
             {"type": "rise", "angle_deg": 120, "law": "cycloidal", "lift_mm": 10},

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any, ClassVar, Final
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.quantities import (
@@ -221,8 +221,12 @@ class CamOutputSpec(OutputSpec):
     CamOutputSpec(files=('dxf', 'tool-path'), tool_radius=4)
     """
 
+    study_tables: ClassVar[Mapping[str, str]] = {
+        one: one for one in ("follow", "forces", "precision", "accuracy")
+    }
+
     files: tuple[str, ...] = files_param(CAM_FORMATS)
-    studies: tuple[str, ...] = studies_param(("follow", "forces", "precision", "accuracy"))
+    studies: tuple[str, ...] = studies_param(study_tables)
     chord_tolerance: float | None = param(
         LENGTH,
         default=None,

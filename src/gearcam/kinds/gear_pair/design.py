@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field, fields
-from typing import TYPE_CHECKING, Any, Final, TypeGuard
+from typing import TYPE_CHECKING, Any, ClassVar, Final, TypeGuard
 
 from gearcam.base.quantities import COUNT, param
 from gearcam.base.registry import DeferredMapping, deferred, name_of
@@ -13,7 +13,7 @@ from gearcam.designs.design import Design
 from gearcam.designs.faults import Fault, show
 from gearcam.designs.kind import Examined
 from gearcam.designs.nodes import Choice
-from gearcam.designs.outputs import FORMATS, OutputSpec, pose_param, studies_param
+from gearcam.designs.outputs import OutputSpec, pose_param, studies_param
 from gearcam.designs.table import table_of
 from gearcam.gears.spec import PairSpec, Rack, RingSpec, StepsSpec
 from gearcam.gears.subject import KIND as TEETH
@@ -58,7 +58,13 @@ class PairOutputSpec(OutputSpec):
     PairOutputSpec(files=('dxf', 'csv'), chord_tolerance=0.005)
     """
 
-    studies: tuple[str, ...] = studies_param(("mesh", "errors", "accuracy"))
+    study_tables: ClassVar[Mapping[str, str]] = {
+        "mesh": "meshing",
+        "errors": "errors",
+        "accuracy": "accuracy",
+    }
+
+    studies: tuple[str, ...] = studies_param(study_tables)
     pose: float = pose_param("phi1", "driver angle of the assembly drawing")
     inspection_points: int = param(
         COUNT, default=9, ge=2, le=1000, doc="number of points on each flank in inspection.csv"
@@ -240,7 +246,6 @@ KIND: Final = Kind(
     rules=RULES,
     problems=problems,
     later=planetary,
-    formats=FORMATS,
     check_modules=(
         "gearcam.gears.checks",
         "gearcam.laws.row_checks",
@@ -249,7 +254,6 @@ KIND: Final = Kind(
         "gearcam.parts.checks",
     ),
     check_groups=(TEETH, "rows of tables", MESHING, ERRORS, PARTS),
-    study_tables={"mesh": "meshing", "errors": "errors", "accuracy": "accuracy"},
     example={
         "law": {
             "type": "phases",

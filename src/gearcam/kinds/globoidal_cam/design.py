@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 from gearcam.base.registry import DeferredMapping, deferred
 from gearcam.designs.design import Design
@@ -78,8 +78,10 @@ class GloboidalOutput(GriddedOutput):
     GloboidalOutput(files=('stl', 'csv'), wall_points=25)
     """
 
+    study_tables: ClassVar[Mapping[str, str]] = {"accuracy": "accuracy"}
+
     files: tuple[str, ...] = files_param(GLOBOIDAL_FORMATS)
-    studies: tuple[str, ...] = studies_param(("accuracy",))
+    studies: tuple[str, ...] = studies_param(study_tables)
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -142,10 +144,8 @@ KIND: Final = Kind(
     nodes={"index": INDEX},
     required=("index", "turret", "cam"),
     later=not_made,
-    formats=GLOBOIDAL_FORMATS,
     check_modules=("gearcam.spatial.globoidal_checks", "gearcam.laws.row_checks"),
     check_groups=("globoidal cams", "rows of tables", "solids of globoidal cams"),
-    study_tables={"accuracy": "accuracy"},
     example={
         "index": {"law": "modified-sine", "angle_deg": 120},
         "turret": {"stops": 8, "roller_radius_mm": 6, "roller_length_mm": 11, "reach_mm": 47},

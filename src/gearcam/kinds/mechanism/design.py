@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.quantities import ANGLE, COUNT, LENGTH, TEXT, fixed, param
@@ -33,9 +33,6 @@ if TYPE_CHECKING:
 
 FORMATS: Final = ("csv", "dxf", "svg", "report")
 """What ``output.files`` may list."""
-
-STUDIES: Final = ("torque", "accuracy")
-"""Its studies, and the titles of the tables of their settings."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,8 +76,10 @@ class MechanismOutput(OutputSpec):
     MechanismOutput(files=('csv', 'svg'), outputs=('slide', 'rod.angle'))
     """
 
+    study_tables: ClassVar[Mapping[str, str]] = {"torque": "torque", "accuracy": "accuracy"}
+
     files: tuple[str, ...] = files_param(FORMATS)
-    studies: tuple[str, ...] = studies_param(STUDIES)
+    studies: tuple[str, ...] = studies_param(study_tables)
     outputs: tuple[str, ...] | None = param(
         TEXT,
         default=None,
@@ -227,10 +226,8 @@ KIND: Final = Kind(
     result=deferred(f"{_HERE}.result:MechanismResult"),
     required=("drive",),
     problems=_problems,
-    formats=FORMATS,
     check_modules=("gearcam.linkages.checks", f"{_HERE}.torque"),
     check_groups=("mechanisms", TABLES, "torque of a mechanism"),
-    study_tables={name: name for name in STUDIES},
     example={
         "drive": [{"name": "motor", "even": True, "speed_rpm": 60}],
         "joint": [{"name": "D", "at_mm": [110, 0]}],

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, ClassVar, Final
 
 from gearcam.base.display import ShortRepr
 from gearcam.base.quantities import COUNT, LENGTH, param
@@ -42,8 +42,10 @@ class SpatialOutput(GriddedOutput):
     SpatialOutput(files=('stl', 'csv'), wall_points=25)
     """
 
+    study_tables: ClassVar[Mapping[str, str]] = {"developed": "developed", "accuracy": "accuracy"}
+
     files: tuple[str, ...] = files_param(SPATIAL_FORMATS)
-    studies: tuple[str, ...] = studies_param(("developed", "accuracy"))
+    studies: tuple[str, ...] = studies_param(study_tables)
     path_tolerance: float = param(
         LENGTH,
         default=0.005,
@@ -141,10 +143,8 @@ KIND: Final = Kind(
     nodes={"motion": MOTION},
     circumstances=circumstances,
     required=("motion", "follower", "cam"),
-    formats=SPATIAL_FORMATS,
     check_modules=("gearcam.spatial.checks", "gearcam.laws.row_checks"),
     check_groups=("cams in space", "rows of tables", "solids of cams in space"),
-    study_tables={name: name for name in ("developed", "accuracy")},
     example={
         "motion": [
             {"type": "rise", "angle_deg": 150, "law": "cycloidal", "lift_mm": 25},

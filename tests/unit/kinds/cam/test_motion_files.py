@@ -97,7 +97,7 @@ def test_the_same_from_python(tmp_path: Path) -> None:
     with pytest.raises(DesignError, match=r"motion\.theta_deg\[3\]: .* is given twice"):
         CamDesign(motion=MotionTable(theta=(0.0, 1, 2, 2, 3, 4, 5), lift=(0.0, 1, 2, 3, 4, 3, 1)),
                   **parts)  # fmt: skip
-    with pytest.raises(DesignError, match=r"motion: is a str\n.*of tuple or MotionTable or M"):
+    with pytest.raises(DesignError, match=r"motion: is a str\n.*of tuple or MotionFormula or M"):
         CamDesign(motion="rows.csv", **parts)  # pyright: ignore
     function: Any = MotionFormula(lift=lambda x: 5.0 * (1.0 - np.cos(x)))
     by_function = CamDesign(motion=function, **parts)
