@@ -20,7 +20,6 @@ from gearcam.version import __version__
 if TYPE_CHECKING:
     import os
     from collections.abc import Mapping
-    from typing import Protocol, TypeVar
 
     from gearcam import laws
     from gearcam.base.errors import (
@@ -35,16 +34,11 @@ if TYPE_CHECKING:
     from gearcam.base.tolerances import Tolerances
     from gearcam.designs import Design
     from gearcam.kinds import *  # noqa: F403
+    from gearcam.kinds import build
     from gearcam.laws import motion as motion_laws
     from gearcam.numeric.columns import Columns
     from gearcam.results.advice import Remedies
     from gearcam.results.result import Result, StudyResult
-
-    _R = TypeVar("_R", covariant=True)
-
-    class _Buildable(Protocol[_R]):
-        @property
-        def _built(self) -> _R: ...
 
 
 __all__ = [
@@ -61,6 +55,7 @@ _HOMES = {
     ),
     "gearcam.base.facts": ("Facts",),
     "gearcam.base.findings": ("Finding",),
+    "gearcam.kinds": ("build",),
     "gearcam.laws": ("laws",),
     "gearcam.laws.motion": ("motion_laws",),
     "gearcam.numeric.columns": ("Columns",),
@@ -179,42 +174,6 @@ def design(document: Mapping[str, Any]) -> Design:
     from gearcam.numeric.arguments import instance
 
     return made(instance("document", document, Mapping, "a mapping of the keys of a design file"))
-
-
-def build(design: _Buildable[_R], tolerances: Tolerances | None = None) -> _R:
-    """Return the result of a design, which computes values when they are first used.
-
-    Parameters
-    ----------
-    design : Design
-        From `load`, `loads` or `design`.
-    tolerances : Tolerances, optional
-        Accuracy of the internal computations.
-
-    Returns
-    -------
-    Result
-        Its class depends on the kind of design. Its attributes raise `InfeasibleError` if what they
-        describe cannot be made.
-
-    Raises
-    ------
-    DesignError
-        If the argument is not a design.
-
-    Examples
-    --------
-    >>> import gearcam as gc
-    >>> result = gc.build(gc.load("profiles/ellipse.toml"))
-    >>> round(result.contact_ratio, 3)
-    1.705
-    """
-    from gearcam.designs import KINDS, Design
-    from gearcam.numeric.arguments import instance
-
-    kind = instance("design", design, Design, "a design, as returned by load").kind
-    given = () if tolerances is None else (tolerances,)
-    return KINDS[kind].result(design, *given)
 
 
 def remedies(

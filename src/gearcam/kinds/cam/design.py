@@ -51,7 +51,6 @@ from gearcam.results.kind import Kind
 if TYPE_CHECKING:
     from gearcam.kinds.cam.forms.translating import PlateBlank
     from gearcam.kinds.cam.motion import Motion
-    from gearcam.kinds.cam.result import CamResult
     from gearcam.parts.blank import WheelBlank
 
 NAME: Final = "cam"
@@ -111,11 +110,6 @@ class CamDesign(Design):
     """
 
     kind = NAME
-
-    if TYPE_CHECKING:
-
-        @property
-        def _built(self) -> CamResult: ...
 
     motion: Motion
     follower: FollowerSpec

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field, fields
-from typing import TYPE_CHECKING, Any, ClassVar, Final, TypeGuard
+from typing import Any, ClassVar, Final, TypeGuard
 
 from gearcam.base.quantities import COUNT, param
 from gearcam.base.registry import DeferredMapping, deferred, name_of
@@ -25,9 +25,6 @@ from gearcam.meshing.settings import KIND as MESHING
 from gearcam.parts.blank import KIND as PARTS
 from gearcam.parts.blank import Blank, serving
 from gearcam.results.kind import Kind
-
-if TYPE_CHECKING:
-    from gearcam.kinds.gear_pair.result import GearPairResult
 
 NAME: Final = "gear-pair"
 """As in a file."""
@@ -111,11 +108,6 @@ class GearPairDesign(Design):
     """
 
     kind = NAME
-
-    if TYPE_CHECKING:
-
-        @property
-        def _built(self) -> GearPairResult: ...
 
     law: Any
     pair: PairSpec

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, ClassVar, Final
+from typing import Any, ClassVar, Final
 
 from gearcam.base.registry import DeferredMapping, deferred
 from gearcam.designs.design import Design
@@ -18,9 +18,6 @@ from gearcam.mechanics.drive import DriveSpec
 from gearcam.results.kind import Kind
 from gearcam.spatial.globoidal_spec import GloboidalSpec, IndexSpec, TurretSpec
 from gearcam.spatial.spec import CylinderBlank
-
-if TYPE_CHECKING:
-    from gearcam.kinds.globoidal_cam.result import GloboidalCamResult
 
 NAME: Final = "globoidal-cam"
 """Name of the kind, as in a file."""
@@ -118,11 +115,6 @@ class GloboidalCamDesign(Design):
     """
 
     kind = NAME
-
-    if TYPE_CHECKING:
-
-        @property
-        def _built(self) -> GloboidalCamResult: ...
 
     index: IndexSpec
     turret: TurretSpec

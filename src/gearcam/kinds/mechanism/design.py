@@ -29,7 +29,6 @@ from gearcam.results.kind import Kind
 if TYPE_CHECKING:
     from gearcam.designs.faults import Fault
     from gearcam.designs.kind import Examined
-    from gearcam.kinds.mechanism.result import MechanismResult
 
 FORMATS: Final = ("csv", "dxf", "svg", "report")
 """What ``output.files`` may list."""
@@ -178,11 +177,6 @@ class MechanismDesign(Design):
     """
 
     kind = NAME
-
-    if TYPE_CHECKING:
-
-        @property
-        def _built(self) -> MechanismResult: ...
 
     drive: tuple[MachineDrive, ...]
     compare: tuple[CompareSpec, ...] = ()

@@ -20,7 +20,6 @@ from gearcam.spatial.tool import MillSpec
 
 if TYPE_CHECKING:
     from gearcam.kinds.cam.public import Motion
-    from gearcam.kinds.spatial_cam.result import SpatialCamResult
 
 NAME: Final = "spatial-cam"
 """As in a file."""
@@ -111,11 +110,6 @@ class SpatialCamDesign(Design):
     """
 
     kind = NAME
-
-    if TYPE_CHECKING:
-
-        @property
-        def _built(self) -> SpatialCamResult: ...
 
     motion: Motion
     follower: SpatialFollower
