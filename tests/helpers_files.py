@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from gearcam.base.errors import DesignError, Problem
-from gearcam.cams.sliding import SlidingCam
+from gearcam.cams.translating import TranslatingCam
 from gearcam.designs import loads
 from gearcam.kinds.cam.design import CamDesign
 from gearcam.kinds.cam.result import CamResult
@@ -157,9 +157,9 @@ def built(text: str, *changes: tuple[str, str]) -> CamResult:
     return shared(read(text, *changes))
 
 
-def sliding_of(result: CamResult) -> SlidingCam:
+def sliding_of(result: CamResult) -> TranslatingCam:
     """The cam of a result, which slides."""
-    assert isinstance(result.cam, SlidingCam)
+    assert isinstance(result.cam, TranslatingCam)
     return result.cam
 
 

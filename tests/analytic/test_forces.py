@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import gearcam as gc
-from gearcam.cams.burdens import Loads
+from gearcam.cams.follower_loads import Loads
 from gearcam.cams.statics import Statics, solve
 from gearcam.cams.supports import StraightGuide
 from gearcam.kinds.cam.under_load import loads_of, places
@@ -79,8 +79,8 @@ def studied(result: Any) -> tuple[Statics, Loads, np.ndarray]:
     x = np.concatenate([x[:: int(one)] for one in loads.ways])
     motion, design = loads.motion(x, way), result.design
     share = lambda radius: design.follower.dragged(design.friction, radius)  # noqa: E731
-    burden, friction = loads.burden(motion), design.friction
-    found = solve(result.cam.touches, loads.support, x, motion.ds, burden, friction, share, way)
+    total_load, friction = loads.total_load(motion), design.friction
+    found = solve(result.cam.touches, loads.support, x, motion.ds, total_load, friction, share, way)
     return found, loads, x
 
 
@@ -434,14 +434,14 @@ def test_the_sign_of_the_load_tells_the_wall_that_carries(name: str) -> None:
 
 
 def balanced(
-    pushed: list[Any], burden: tuple[float, complex, float], support: Any, friction: Any
+    pushed: list[Any], total_load: tuple[float, complex, float], support: Any, friction: Any
 ) -> tuple[int, float]:
     """The touch and its normal force, by bisection of the balance of forces at one place.
 
-    `pushed` holds point of contact and unit force of each touch; `burden` load, force on the
+    `pushed` holds point of contact and unit force of each touch; `total_load` load, force on the
     support, sign of the velocity.
     """
-    made, (against, resultant, sense) = [], burden
+    made, (against, resultant, sense) = [], total_load
     for number, (at, unit) in enumerate(pushed):
 
         def left(force: float, at: complex = at, unit: complex = unit) -> float:
@@ -484,7 +484,7 @@ def test_the_wall_that_carries_has_a_positive_force_with_friction(
     result = held(follower, load=load, **groove, **changes, **friction)
     found, loads, x = studied(result)
     motion = loads.motion(x)
-    burden, given = loads.burden(motion), result.design.friction
+    total_load, given = loads.total_load(motion), result.design.friction
     share = result.design.follower.dragged(given, result.follower.radius)
     pushes = [touch.push(x, motion.ds, loads.support, share)[0] for touch in result.cam.touches]
     assert not found.lifted.any()
@@ -492,7 +492,7 @@ def test_the_wall_that_carries_has_a_positive_force_with_friction(
     assert set(found.carrying) == {0, 1}
     for k in range(0, len(x), 7):
         pushed = [(one.at[k], one.unit[k]) for one in pushes]
-        here = (burden.against[k], burden.resultant[k], burden.sense[k])
+        here = (total_load.against[k], total_load.resultant[k], total_load.sense[k])
         number, force = balanced(pushed, here, loads.support, given)
         assert found.force[k] == pytest.approx(force, rel=1e-9, abs=1e-6)
         assert force < 1e-6 or found.carrying[k] == number

@@ -8,7 +8,7 @@ from statistics import NormalDist
 import numpy as np
 
 import gearcam as gc
-from gearcam.designs.family import family_of
+from gearcam.designs.sweep_tables import family_of
 from gearcam.sweep.axes import axes_of
 from gearcam.sweep.plan import Plan
 from gearcam.sweep.rows import measured

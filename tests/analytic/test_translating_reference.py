@@ -15,8 +15,8 @@ from gearcam.cams.follow import follow
 from gearcam.cams.lost_motion import Rest
 from gearcam.cams.measures import over_the_end
 from gearcam.cams.placing import make_follower_over_plate
-from gearcam.cams.sliding import SlidingCam, make_sliding
 from gearcam.cams.spec import PlateFollower
+from gearcam.cams.translating import TranslatingCam, make_translating
 from gearcam.laws.phases_of_lift import DwellPhase, ReturnPhase, RisePhase
 from gearcam.laws.program import make_program
 from helpers_cams import law, there_and_back
@@ -52,7 +52,7 @@ LENGTHS = ("arm", "pivot_distance", "pivot_height")
 
 def made(
     name: str = "upright", radius: float = 6.0, run: float = 0.0, scale: float = 1.0, **sizes: Any
-) -> SlidingCam:
+) -> TranslatingCam:
     given = {
         key: scale ** (key in LENGTHS) * x if key != "motion" else x
         for key, x in FOLLOWERS[name].items()
@@ -71,7 +71,7 @@ def made(
     follower = make_follower_over_plate(spec)
     sizes = {"height": 60.0, "tolerance": 1e-3} | sizes
     lengths = {key: value if key == "groove" else scale * value for key, value in sizes.items()}
-    return make_sliding(program, follower, **{"groove": True} | lengths)
+    return make_translating(program, follower, **{"groove": True} | lengths)
 
 
 @pytest.mark.parametrize("way", POINTS)

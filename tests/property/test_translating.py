@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from gearcam.base.errors import InfeasibleError
 from gearcam.base.tolerances import DEFAULT
 from gearcam.cams.placing import make_follower_over_plate
-from gearcam.cams.sliding import SlidingCam, make_sliding
 from gearcam.cams.spec import PlateFollower
+from gearcam.cams.translating import TranslatingCam, make_translating
 from gearcam.laws.phases_of_lift import DwellPhase, SegmentPhase
 from gearcam.laws.program import make_program
 from helpers_cams import close
@@ -48,7 +48,7 @@ def plates(draw: st.DrawFn) -> Given:
     )
 
 
-def made_of(design: Given) -> SlidingCam | InfeasibleError:
+def made_of(design: Given) -> TranslatingCam | InfeasibleError:
     follower, way, clearance, runs, phases = design
     if any(isinstance(one, SegmentPhase) for one in phases):
         phases = [
@@ -63,7 +63,7 @@ def made_of(design: Given) -> SlidingCam | InfeasibleError:
         motion = make_program(
             [*before, *phases, *after], DEFAULT, oscillating=spec.oscillating, closed=False
         )
-        made = make_sliding(
+        made = make_translating(
             motion,
             make_follower_over_plate(spec),
             height=HIGH,
@@ -78,7 +78,7 @@ def made_of(design: Given) -> SlidingCam | InfeasibleError:
     return made
 
 
-def centers_of(design: Given, made: SlidingCam) -> Any:
+def centers_of(design: Given, made: TranslatingCam) -> Any:
     """Middles of rollers in the cam's frame, by the geometry of the follower."""
     given, motion = design[0], made.motion.program
     way = np.union1d(np.linspace(0.0, made.travel, 8001), motion.knots)

@@ -27,14 +27,14 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from gearcam.base.display import ShortRepr
-from gearcam.cams.burdens import DrivenMotion
 from gearcam.cams.carriers import Rotating
 from gearcam.cams.curve import CamCurve
+from gearcam.cams.follower_loads import DrivenMotion
 from gearcam.cams.followers import Contact, Follower
 from gearcam.cams.placing import followers_of
 from gearcam.cams.spec import FollowerSpec
 from gearcam.cams.statics import pushing
-from gearcam.cams.supports import Burden
+from gearcam.cams.supports import TotalLoad
 from gearcam.laws.program import Program
 from gearcam.mechanics.friction import FrictionSpec
 from gearcam.numeric.arrays import Array, Mask
@@ -112,8 +112,8 @@ class Load(ShortRepr):
 
     Parameters
     ----------
-    burden : callable
-        ``burden(motion)`` returns what the cam has to move.
+    total_load : callable
+        ``total_load(motion)`` returns what the cam has to move.
     friction : FrictionSpec
         Coefficients.
     dragged : callable
@@ -124,7 +124,7 @@ class Load(ShortRepr):
         Where loads jump or bend.
     """
 
-    burden: Callable[[DrivenMotion], Burden]
+    total_load: Callable[[DrivenMotion], TotalLoad]
     friction: FrictionSpec
     dragged: Callable[[Any], Any]
     most: float
@@ -285,7 +285,7 @@ class Sizing:
         past = carrier.passing(at) - support.velocity(at) * ds
         push, _ = pushing(at, tangent, past, load.dragged(ends))
         force, left = support.normal_force(
-            push, load.burden(DrivenMotion(places.theta, s, ds, d2s)), load.friction
+            push, load.total_load(DrivenMotion(places.theta, s, ds, d2s)), load.friction
         )
         bend = contact.turning.c[0] / contact.pitch_speed.c[0]
         # 1/(1/bend - radius) + 1/radius

@@ -29,7 +29,7 @@ import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.cams.followers import Follower
-from gearcam.cams.supports import Burden, Push, Support
+from gearcam.cams.supports import Push, Support, TotalLoad
 from gearcam.cams.wall import Wall
 from gearcam.mechanics.friction import FrictionSpec
 from gearcam.numeric.arrays import Array, Ints, Mask, Plane
@@ -218,7 +218,7 @@ def solve(
     support: Support,
     x: Array,
     ds: Array,
-    burden: Burden,
+    total_load: TotalLoad,
     friction: FrictionSpec,
     share: Callable[[float], float],
     way: Array | float = 1.0,
@@ -233,7 +233,7 @@ def solve(
         What holds the follower.
     x, ds : (n,) arrays
         Positions of the driver, and velocities of the follower.
-    burden : Burden
+    total_load : TotalLoad
         What has to be moved.
     friction : FrictionSpec
         Coefficients.
@@ -252,14 +252,14 @@ def solve(
     lost = {name: np.zeros(count) for name in ("contact", "support", "bearing")}
     torque, bearing = np.zeros(count), np.zeros(count, dtype=complex)
     curvature, reactions = np.full(count, np.nan), dict[str, Array]()
-    holding = burden.holding(support, friction)
+    holding = total_load.holding(support, friction)
     if len(touches) == 1:  # a spring that is solved for leaves rounding where it just holds
-        holding[np.abs(holding) <= _ROUNDING * np.abs(burden.against).max(initial=0.0)] = 0.0
+        holding[np.abs(holding) <= _ROUNDING * np.abs(total_load.against).max(initial=0.0)] = 0.0
     for number, touch in enumerate(touches):
         part = share(touch.end.radius)
         push, slide = touch.push(x, ds, support, part, way)
         asked = holding * support.lifting(push.normal, push.at) >= 0.0
-        found, left = support.normal_force(push, burden, friction)
+        found, left = support.normal_force(push, total_load, friction)
         stuck = asked & (left <= 0.0)
         carries = asked & (left > 0.0) & (carrying < 0)
         found = np.maximum(found, 0.0)  # rounding, where the load passes through 0
@@ -274,9 +274,9 @@ def solve(
         bearing += pressed * push.unit
         lost["bearing"] += drag
         lost["contact"] += part * pressed * np.abs(slide)
-        rubbed = support.friction_of(pressed, push, burden, friction) * np.abs(ds)
+        rubbed = support.friction_of(pressed, push, total_load, friction) * np.abs(ds)
         lost["support"] += np.where(carries, rubbed, 0.0)
-        for name, values in support.reactions(pressed, push, burden, friction).items():
+        for name, values in support.reactions(pressed, push, total_load, friction).items():
             held = reactions.setdefault(name, np.full(count, np.nan))
             held[carries] = values[carries]
         curvature = np.where(carries, touch.curvature(x), curvature)
@@ -291,9 +291,9 @@ def solve(
         lifted=none & ~locked,
         reserve=reserve,
         torque=torque,
-        against=burden.against,
-        useful=burden.against * ds,
-        moving=burden.sense != 0.0,
+        against=total_load.against,
+        useful=total_load.against * ds,
+        moving=total_load.sense != 0.0,
         lost=lost,
         reactions=reactions,
         bearing=bearing,

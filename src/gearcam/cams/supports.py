@@ -68,7 +68,7 @@ class Push:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Burden:
+class TotalLoad:
     """What a cam has to move.
 
     Parameters
@@ -124,7 +124,7 @@ class Support(ABC, ShortRepr):
 
     @abstractmethod
     def normal_force(
-        self, push: Push, burden: Burden, friction: FrictionSpec
+        self, push: Push, total_load: TotalLoad, friction: FrictionSpec
     ) -> tuple[Array, Array]:
         """Return the normal force, N, and the reserve.
 
@@ -132,7 +132,7 @@ class Support(ABC, ShortRepr):
         ----------
         push : Push
             The force of the cam.
-        burden : Burden
+        total_load : TotalLoad
             What it has to move.
         friction : FrictionSpec
             Coefficients of friction.
@@ -160,26 +160,26 @@ class Support(ABC, ShortRepr):
 
     @abstractmethod
     def friction_of(
-        self, force: Array, push: Push, burden: Burden, friction: FrictionSpec
+        self, force: Array, push: Push, total_load: TotalLoad, friction: FrictionSpec
     ) -> Array:
         """Return the friction of the support, N or N mm.
 
         Parameters
         ----------
         force : (n,) array, N
-            Normal force of the `push`, which moves the `burden` against `friction`.
+            Normal force of the `push`, which moves the `total_load` against `friction`.
         """
 
     @abstractmethod
     def reactions(
-        self, force: Array, push: Push, burden: Burden, friction: FrictionSpec
+        self, force: Array, push: Push, total_load: TotalLoad, friction: FrictionSpec
     ) -> dict[str, Array]:
         """Return what the support exerts on the follower, as columns of output.
 
         Parameters
         ----------
         force : (n,) array, N
-            Normal force of the `push`, which moves the `burden` against `friction`.
+            Normal force of the `push`, which moves the `total_load` against `friction`.
         """
 
     def lifting(self, direction: Plane, at: Plane) -> Array:
@@ -214,20 +214,20 @@ class StraightGuide(Support):
         """Return the component of a force across the guide, N."""
         return (force * np.conj(-1j * self.direction)).real
 
-    def _sideways(self, push: Push, burden: Burden) -> tuple[Array, Array, Array]:
+    def _sideways(self, push: Push, total_load: TotalLoad) -> tuple[Array, Array, Array]:
         """Return forces across the guide by N and of loads, and the moment about it by N."""
         moment = (np.conj(push.at - self.middle) * push.unit).imag
-        return self._across(push.unit), self._across(burden.resultant), moment
+        return self._across(push.unit), self._across(total_load.resultant), moment
 
     def normal_force(
-        self, push: Push, burden: Burden, friction: FrictionSpec
+        self, push: Push, total_load: TotalLoad, friction: FrictionSpec
     ) -> tuple[Array, Array]:
         """Return force and reserve (see `Support.normal_force`)."""
-        side, loaded, moment = self._sideways(push, burden)
+        side, loaded, moment = self._sideways(push, total_load)
         plain = self.lifting(push.normal, push.at)
         upward = np.sign(plain)
-        effect, load = upward * self.lifting(push.unit, push.at), upward * burden.against
-        drag = upward * burden.sense * friction.guide
+        effect, load = upward * self.lifting(push.unit, push.at), upward * total_load.against
+        drag = upward * total_load.sense * friction.guide
         forms = [(side, loaded)]
         if friction.guide_length:
             forms.append((2.0 / friction.guide_length * moment, np.zeros_like(moment)))
@@ -246,20 +246,20 @@ class StraightGuide(Support):
         return friction.guide * np.abs(self._across(force))
 
     def friction_of(
-        self, force: Array, push: Push, burden: Burden, friction: FrictionSpec
+        self, force: Array, push: Push, total_load: TotalLoad, friction: FrictionSpec
     ) -> Array:
         """Return the friction in the guide, N (see `Support.friction_of`)."""
-        side, loaded, moment = self._sideways(push, burden)
+        side, loaded, moment = self._sideways(push, total_load)
         pressed = np.abs(side * force + loaded)
         if friction.guide_length:
             pressed = np.maximum(pressed, 2.0 / friction.guide_length * np.abs(moment * force))
-        return friction.guide * pressed * np.abs(burden.sense)
+        return friction.guide * pressed * np.abs(total_load.sense)
 
     def reactions(
-        self, force: Array, push: Push, burden: Burden, friction: FrictionSpec
+        self, force: Array, push: Push, total_load: TotalLoad, friction: FrictionSpec
     ) -> dict[str, Array]:
         """Return forces across and their moment, with a length at both ends (see `Support`)."""
-        side, loaded, moment = self._sideways(push, burden)
+        side, loaded, moment = self._sideways(push, total_load)
         across, turning = -(side * force + loaded), -moment * force
         columns = {"guide_n": across, "guide_moment_nmm": turning}
         if friction.guide_length:
@@ -297,13 +297,17 @@ class Pivot(Support):
         return friction.journal * math.sin(math.atan(friction.joint))
 
     def normal_force(
-        self, push: Push, burden: Burden, friction: FrictionSpec
+        self, push: Push, total_load: TotalLoad, friction: FrictionSpec
     ) -> tuple[Array, Array]:
         """Return force and reserve (see `Support.normal_force`)."""
         plain = self.lifting(push.normal, push.at)
         upward = np.sign(plain)
-        effect, load = upward * self.lifting(push.unit, push.at), upward * burden.against
-        sense, circle, other = upward * burden.sense, self._circle(friction), burden.resultant
+        effect, load = upward * self.lifting(push.unit, push.at), upward * total_load.against
+        sense, circle, other = (
+            upward * total_load.sense,
+            self._circle(friction),
+            total_load.resultant,
+        )
         square, size = circle**2 * np.abs(sense), np.abs(push.unit)
         a = effect**2 - square * size**2
         b = effect * load + square * (push.unit * np.conj(other)).real
@@ -320,19 +324,19 @@ class Pivot(Support):
         return self._circle(friction) * np.abs(force)
 
     def friction_of(
-        self, force: Array, push: Push, burden: Burden, friction: FrictionSpec
+        self, force: Array, push: Push, total_load: TotalLoad, friction: FrictionSpec
     ) -> Array:
         """Return the moment of friction in the pivot, N mm (see `Support.friction_of`)."""
-        pressed = self.drag(force * push.unit + burden.resultant, friction)
-        return pressed * np.abs(burden.sense)
+        pressed = self.drag(force * push.unit + total_load.resultant, friction)
+        return pressed * np.abs(total_load.sense)
 
     def reactions(
         self,
         force: Array,
         push: Push,
-        burden: Burden,
+        total_load: TotalLoad,
         friction: FrictionSpec,  # noqa: ARG002
     ) -> dict[str, Array]:
         """Return the force of the pivot and its components (see `Support.reactions`)."""
-        reaction = -(force * push.unit + burden.resultant)
+        reaction = -(force * push.unit + total_load.resultant)
         return {"pivot_n": np.abs(reaction), "pivot_x_n": reaction.real, "pivot_y_n": reaction.imag}

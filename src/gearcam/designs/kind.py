@@ -146,7 +146,7 @@ class Variants:
 
 FAMILY: Final = {"sweep": "what `gearcam sweep` gives to keys: values, ranges, distributions"}
 """Tables about many designs, which a build leaves out, and what they say (see
-`gearcam.designs.family`)."""
+`gearcam.designs.sweep_tables`)."""
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)

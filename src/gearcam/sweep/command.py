@@ -14,7 +14,7 @@ from gearcam.base.numerals import formatted
 from gearcam.commands import GOOD, IMPOSSIBLE, INTERRUPTED, Options, add_output, each
 from gearcam.console import complain, progress_bar, say
 from gearcam.designs.design import Design, load
-from gearcam.designs.family import family_of
+from gearcam.designs.sweep_tables import family_of
 from gearcam.sweep.axes import FORM, Varied, axes_of, settings_of
 from gearcam.sweep.engine import MEMORY, SECONDS, Engine
 from gearcam.sweep.log import Log

@@ -12,7 +12,7 @@ from gearcam.base.facts import Fact, extent
 from gearcam.base.findings import limit_of, run_checks
 from gearcam.base.numerals import formatted, shortened
 from gearcam.base.quantities import TORQUE
-from gearcam.cams.burdens import Loads
+from gearcam.cams.follower_loads import Loads
 from gearcam.cams.force_checks import Loaded, on_way
 from gearcam.cams.spec import FORCES
 from gearcam.cams.statics import Statics

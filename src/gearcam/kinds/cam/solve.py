@@ -259,7 +259,7 @@ def _load_on(cam: CamResult, most: float) -> Load:
     """Return what a cam carries under a largest pressure, MPa."""
     design, width = cam.design, cam.form.contact_width
     return Load(
-        burden=loads_of(cam).burden,
+        total_load=loads_of(cam).total_load,
         friction=design.friction,
         dragged=np.vectorize(partial(design.follower.dragged, design.friction), otypes=[float]),
         most=math.pi * width * most**2 / design.material.contact_modulus,

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from gearcam.base.errors import DesignError, InfeasibleError, Problem, beyond_limit
-from gearcam.cams.burdens import Loads
+from gearcam.cams.follower_loads import Loads
 from gearcam.cams.statics import Statics, solve
 from gearcam.mechanics.hertz import line_pressure
 from gearcam.numeric import narrowing
@@ -236,7 +236,7 @@ def _statics(result: CamResult, loads: Loads, x: Array, way: Array) -> Statics:
         loads.support,
         x,
         motion.ds,
-        loads.burden(motion),
+        loads.total_load(motion),
         design.friction,
         partial(design.follower.dragged, design.friction),
         way,

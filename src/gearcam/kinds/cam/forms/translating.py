@@ -23,7 +23,6 @@ from gearcam.base.quantities import (
 )
 from gearcam.base.rules import Breach, below, needs, only_with
 from gearcam.cams.placing import make_follower_over_plate
-from gearcam.cams.sliding import SlidingCam, make_sliding
 from gearcam.cams.spec import (
     GROOVE_SIDE,
     ROLLER_CLEARANCE,
@@ -31,6 +30,7 @@ from gearcam.cams.spec import (
     PlateFollower,
     form_param,
 )
+from gearcam.cams.translating import TranslatingCam, make_translating
 from gearcam.designs.faults import Fault, show
 from gearcam.kinds.cam.forms.base import FORMS, Form
 from gearcam.kinds.cam.forms.disc import STEM, TOOL_PATH, workpiece
@@ -43,7 +43,7 @@ from gearcam.mechanics.load import SlideLoadSpec
 from gearcam.numeric.pose import Pose
 
 if TYPE_CHECKING:
-    from gearcam.cams.sliding import SlidingWall
+    from gearcam.cams.translating import TranslatingWall
     from gearcam.numeric.contour import Contour
     from gearcam.parts.body import Opening, Part
     from gearcam.pictures.drawings import Drawing, Path, Shape
@@ -206,7 +206,7 @@ class PlateOutput(CamOutputSpec):
     )
 
 
-class Translating(Form[SlidingCam, PlateSpec, PlateFollower]):
+class Translating(Form[TranslatingCam, PlateSpec, PlateFollower]):
     """A plate that slides past its follower."""
 
     name = "translating"
@@ -257,14 +257,14 @@ class Translating(Form[SlidingCam, PlateSpec, PlateFollower]):
             closed=False,
         )
 
-    def make(self, program: Program) -> SlidingCam:
+    def make(self, program: Program) -> TranslatingCam:
         """Return the cam."""
         travel = program.period
         if self.output.place > travel:
             what = "the assembly drawing is beyond the travel of the cam"
             rule, key = "the limit is its whole travel, included", "output.travel_mm"
             raise beyond_limit(what, key, self.output.place, travel, rule, near=travel)
-        return make_sliding(
+        return make_translating(
             program,
             make_follower_over_plate(self.follower),
             height=self.blank.height,
@@ -324,12 +324,12 @@ class Translating(Form[SlidingCam, PlateSpec, PlateFollower]):
             shape = Circle(center=complex(middle + aside, low), diameter=blank.bolt_diameter)
             yield Opening(kind="HOLE", shape=shape, name=f"bolt hole {number + 1}")
 
-    def _cut(self) -> SlidingCam:
+    def _cut(self) -> TranslatingCam:
         """Return the finished cam: a single wall is moved back by the clearance of the blank."""
         cam, clearance = self.cam, self.blank.clearance
         if not clearance:
             return cam
-        lower: SlidingWall = cam.lower
+        lower: TranslatingWall = cam.lower
         wide = replace(lower.follower, radius=lower.follower.radius + clearance)
         return replace(cam, lower=replace(lower, follower=wide))
 

@@ -75,7 +75,7 @@ class Plate(ShortRepr):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class SlidingWall(Wall):
+class TranslatingWall(Wall):
     """An open wall; its contour is that of the metal behind it.
 
     Parameters
@@ -149,7 +149,7 @@ class SlidingWall(Wall):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class SlidingCam(ShortRepr, Cam):
+class TranslatingCam(ShortRepr, Cam):
     """A translating cam.
 
     Parameters
@@ -158,9 +158,9 @@ class SlidingCam(ShortRepr, Cam):
         Motion of its follower.
     roller : Round
         That follower.
-    lower : SlidingWall
+    lower : TranslatingWall
         The wall below the follower.
-    upper : SlidingWall or None
+    upper : TranslatingWall or None
         For a groove: the wall above it.
     """
 
@@ -168,11 +168,11 @@ class SlidingCam(ShortRepr, Cam):
 
     motion: PitchMotion
     roller: Round
-    lower: SlidingWall
-    upper: SlidingWall | None = None
+    lower: TranslatingWall
+    upper: TranslatingWall | None = None
 
     @property
-    def walls(self) -> tuple[SlidingWall, ...]:
+    def walls(self) -> tuple[TranslatingWall, ...]:
         """The wall below the follower, and for a groove also that above it."""
         return (self.lower,) if self.upper is None else (self.lower, self.upper)
 
@@ -249,7 +249,7 @@ class SlidingCam(ShortRepr, Cam):
         return renderer().outlines(self.facts.headline, edges, [self.lower.pitch_line])
 
 
-def make_sliding(
+def make_translating(
     program: Program,
     follower: Round,
     *,
@@ -258,7 +258,7 @@ def make_sliding(
     groove: bool = False,
     clearance: float = 0.0,
     tolerance: float = CHORD_TOLERANCE,
-) -> SlidingCam:
+) -> TranslatingCam:
     """Return a translating cam, verified for its follower and its plate.
 
     Parameters
@@ -281,7 +281,7 @@ def make_sliding(
 
     Returns
     -------
-    SlidingCam
+    TranslatingCam
 
     Raises
     ------
@@ -295,14 +295,14 @@ def make_sliding(
     wide = replace(follower, radius=follower.radius + (0.5 * clearance if groove else 0.0))
     plate = _plate(motion, wide, height, length, groove)
 
-    def wall(side: int, key: str, called: str) -> SlidingWall:
+    def wall(side: int, key: str, called: str) -> TranslatingWall:
         place = {"side": side, "of": motion, "key": key, "called": called}
-        return SlidingWall(follower=wide, plate=plate, **place, **common)
+        return TranslatingWall(follower=wide, plate=plate, **place, **common)
 
     if not groove:
-        return SlidingCam(motion=motion, roller=follower, lower=wall(1, "", "profile"))
+        return TranslatingCam(motion=motion, roller=follower, lower=wall(1, "", "profile"))
     lower, upper = wall(1, "lower", "lower wall"), wall(-1, "upper", "upper wall")
-    return SlidingCam(motion=motion, roller=follower, lower=lower, upper=upper)
+    return TranslatingCam(motion=motion, roller=follower, lower=lower, upper=upper)
 
 
 def _plate(

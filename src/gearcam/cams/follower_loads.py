@@ -35,7 +35,7 @@ import numpy as np
 
 from gearcam.base.display import ShortRepr
 from gearcam.cams.followers import Follower
-from gearcam.cams.supports import Burden, Support
+from gearcam.cams.supports import Support, TotalLoad
 from gearcam.laws.program import Program
 from gearcam.mechanics.friction import FrictionSpec
 from gearcam.mechanics.load import LoadSpec
@@ -228,7 +228,7 @@ class Loads(ShortRepr):
         """The force against a rise by which the loads are too small to hold the follower."""
 
         def missing(motion: DrivenMotion) -> Array:
-            return -self.burden(motion).holding(self.support, self.friction)
+            return -self.total_load(motion).holding(self.support, self.friction)
 
         return self._largest(missing)[0]
 
@@ -297,10 +297,10 @@ class Loads(ShortRepr):
             total = total + (self.solved["preload"] if force == "solve" else force)
         return total
 
-    def burden(self, motion: DrivenMotion) -> Burden:
+    def total_load(self, motion: DrivenMotion) -> TotalLoad:
         """Return what the cam has to move."""
         square = (self.speed or 0.0) ** 2
-        return Burden(
+        return TotalLoad(
             against=self.held_still(motion) + self.inertia * square * motion.d2s,
             resultant=self._pressing(motion),
             sense=self._sense(motion),
