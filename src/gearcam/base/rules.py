@@ -33,8 +33,8 @@ class Value:
     ----------
     key : str
         Its key: ``module_mm``, or ``pair.module_mm`` among those of all tables.
-    text : str
-        Key and value as in a file: ``module_mm = 2``.
+    shown : callable
+        ``shown()`` returns key and value as in a file: ``module_mm = 2``.
     unit : str
         Its unit; empty without one.
     content : object
@@ -51,13 +51,18 @@ class Value:
     """
 
     key: str
-    text: str
+    shown: Callable[[], str]
     unit: str
     content: Any
     default: Any
     zero_is_none: bool
     wrong: bool
     contents: tuple[Any, ...] = ()
+
+    @property
+    def text(self) -> str:
+        """Key and value as in a file."""
+        return self.shown()
 
     @property
     def right(self) -> Any:

@@ -228,7 +228,7 @@ def _without_asked(
 
 def _wrong_units(known: Table, raw: Any, at: Path, given: Circumstances) -> Iterator[Fault]:
     """Yield the faults of keys for other circumstances, each with the right key."""
-    if not given or not isinstance(raw, Mapping):
+    if not known.varies or not isinstance(raw, Mapping):
         return
     right = {entry.name: key for key, entry in known.bound(given).entries.items()}
     for key, entry in known.entries.items():

@@ -13,7 +13,7 @@ import types
 import typing
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import Any
 
 from gearcam.base.quantities import OPPOSITES, REQUIRED, Param, Solve, params_of
@@ -123,9 +123,14 @@ class Table:
             if entry.param.choices and entry.length is None
         }
 
+    @cached_property
+    def varies(self) -> bool:
+        """Whether some keys depend on circumstances."""
+        return any(entry.param.when for entry in self.entries.values())
+
     def bound(self, circumstances: Collection[str]) -> Table:
         """Return the table with the keys for some `circumstances` (see `Param.when`)."""
-        if not any(entry.param.when for entry in self.entries.values()):
+        if not self.varies:
             return self
         kept = {}
         for key, entry in self.entries.items():

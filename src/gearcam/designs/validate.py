@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from itertools import islice
 from typing import Any
 
@@ -125,7 +126,7 @@ def _values(
             content, path = content[wheel] if wheel < len(content) else None, (key, wheel)
         values[title + entry.name] = Value(
             key=title + key,
-            text=f"{title}{key} = {show(short(default) if content is None else content)}",
+            shown=partial(_line, title + key, content, default),
             unit=entry.param.quantity.unit,
             content=content,
             default=default,
@@ -134,6 +135,11 @@ def _values(
             contents=contents,
         )
     return values
+
+
+def _line(key: str, content: Any, default: Any) -> str:
+    """Return a key and its value, or its default, as in a file; only messages need it."""
+    return f"{key} = {show(short(default) if content is None else content)}"
 
 
 def rule_faults(table: Table, raw: Any, faults: Iterable[Fault], at: Path) -> Iterator[Fault]:
