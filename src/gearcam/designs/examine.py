@@ -281,14 +281,11 @@ def home_of(kind: DesignKind, key: str, value: Any) -> str:
     """
     if words := keyed(key if value is True else value, kind.words):
         return f"did you mean {words}?"
-    homes: dict[str, str] = {}
-    # the first of several tables is the likeliest, one whose keys a word chooses the least likely
-    for title in (*kind.tables, *kind.nodes):
-        homes = {**homes_of(kind.node(title), title), **homes}
-    homes |= dict.fromkeys(
-        ("kind", "name"), "this key belongs at the top of the file, above all tables"
-    )
-    return homes.get(key, "")
+    if key in ("kind", "name"):
+        return "this key belongs at the top of the file, above all tables"
+    # the first of several tables is the likeliest; those whose keys a word chooses load all laws
+    homes = (homes_of(kind.node(title), title) for title in (*kind.tables, *kind.nodes))
+    return next((found[key] for found in homes if key in found), "")
 
 
 def _owners(what: str, kind: DesignKind, has: Callable[[DesignKind], bool]) -> str:

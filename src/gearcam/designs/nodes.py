@@ -134,6 +134,9 @@ class Choice:
         return tuple(map(self.class_of, self.entries))
 
 
+_Among: TypeAlias = Callable[[Sequence[Any], Circumstances, Mapping[str, Any]], Iterable[Item]]
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Many:
     """Any number of tables.
@@ -145,15 +148,13 @@ class Many:
     least : int
         Least number of them.
     among : callable
-        ``among(made, raw, circumstances, document)`` yields what is wrong among them; what cannot
-        be read is None in ``made``.
+        ``among(made, circumstances, document)`` yields what is wrong among them; what cannot be
+        read is None in ``made``.
     """
 
     item: Keys | Choice
     least: int = 0
-    among: Callable[
-        [Sequence[Any], Sequence[Any], Circumstances, Mapping[str, Any]], Iterable[Item]
-    ] = lambda *_: ()
+    among: _Among = lambda *_: ()
 
 
 class Case(NamedTuple):
@@ -348,8 +349,7 @@ def _wanted_of_choice(node: Choice, part: Any, at: str) -> Iterator[Wanted]:
 def choices_in(node: Node) -> Iterator[Choice]:
     """Yield the choices in a node, without loading what a registry chooses from."""
     if isinstance(node, Either):
-        for case in node.cases[:1]:
-            yield from choices_in(case.node())
+        yield from choices_in(node.cases[0].node())
     elif isinstance(node, Many):
         yield from choices_in(node.item)
     elif isinstance(node, Choice):

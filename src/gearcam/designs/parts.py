@@ -91,7 +91,7 @@ class Reading:
             return Made(None, False)
         made = [self.read(node.item, one, (*at, number)) for number, one in enumerate(raw)]
         parts, before = [one.part for one in made], len(self.faults)
-        for number, name, message, rule in node.among(parts, raw, self.given, self.document):
+        for number, name, message, rule in node.among(parts, self.given, self.document):
             if number is None:
                 self.faults.append(Fault(at, message, allowed=rule))
             elif parts[number] is not None:

@@ -148,8 +148,8 @@ def aside(path: Path, content: bytes, written: str = "") -> Path | None:
     Returns
     -------
     Path or None
-        A free name. None if there is no file, or if its content is the new one or what gearcam
-        wrote last.
+        A free name; None if no file must be moved: there is none, its content is the new one, or
+        gearcam wrote it and nobody has changed it since.
 
     Raises
     ------

@@ -94,7 +94,6 @@ PHASE: Final = Choice(
 
 def _program_problems(
     phases: Sequence[Phase | None],
-    _: Sequence[Any],
     given: Circumstances,
     document: Mapping[str, Any],
 ) -> Iterator[Item]:

@@ -59,7 +59,7 @@ def parts_of(tables: Tables) -> Iterator[tuple[str, int, MachinePart]]:
 
 
 def told_parts(tables: Tables) -> Iterator[tuple[str, int, MachinePart]]:
-    """Yield the parts in the order in which a mechanism tells of them (see `parts_of`)."""
+    """Yield the parts in the order of the register `PARTS` (see `parts_of`)."""
     yield from parts_of({title: tables[title] for title in PARTS if title in tables})
 
 

@@ -39,11 +39,11 @@ PARTS: Final[Mapping[str, type[MachinePart]]] = {
     "crank": CrankSpec,
     "chain": ChainSpec,
 }
-"""The parts by the titles of their tables, in the order in which a mechanism tells of them."""
+"""The parts by the titles of their tables, in the order of its lists, charts and facts."""
 
 ACTIONS: Final[Mapping[str, type[MachineAction]]] = {
     "load": MachineLoad,
     "spring": MachineSpring,
     "mass": MemberMass,
 }
-"""What acts on mechanisms, by the titles of their tables, in the order in which it is told."""
+"""What acts on mechanisms, by the titles of their tables, in the order of messages."""
