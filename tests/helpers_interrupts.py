@@ -150,6 +150,7 @@ def prepare() -> None:
     Path("warm").mkdir()
     for words in (BUILD, COMPARE, MESH, FOLLOW, ACCURACY):
         assert main([*words, "-o", "warm"]) in (0, 1), words
+    assert main(["new", "cam", "warm/new.toml"]) == 0  # looks for what other packages bring
 
 
 def run(name: str, signal_name: str, home: Path) -> dict[str, Any]:

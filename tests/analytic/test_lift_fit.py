@@ -9,9 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from gearcam.base.registry import name_of
 from gearcam.laws.lift_fit import FittedLift, fit_lift
-from gearcam.laws.motion.base import MOTION_LAWS
+from gearcam.laws.motion import MOTION_LAWS
 from gearcam.laws.phases_of_lift import DwellPhase, ReturnPhase, RisePhase
 from gearcam.numeric.arrays import Array, Mask
 from helpers_sampling import few
@@ -105,7 +104,7 @@ def double_dwell(law: str) -> list[Move]:
 
 def named(fitted: FittedLift, k: int) -> list[str]:
     laws = [fitted.model.laws[k], *(one.law for one in fitted.alike[k])]
-    return [name_of(MOTION_LAWS, law) for law in laws]
+    return [MOTION_LAWS.name_of(law) for law in laws]
 
 
 def demand_found(fitted: FittedLift, moves: Sequence[Move]) -> None:

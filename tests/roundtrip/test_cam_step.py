@@ -24,7 +24,7 @@ from gearcam.base.tolerances import DEFAULT
 from gearcam.export.step import step_bytes
 from gearcam.export.step_bands import banded_solid
 from gearcam.export.step_shapes import occt
-from gearcam.laws.motion.base import MOTION_LAWS
+from gearcam.laws.motion import MOTION_LAWS
 from gearcam.laws.phases_of_lift import DwellPhase, ReturnPhase, RisePhase
 from gearcam.laws.program import make_program
 from gearcam.numeric.pose import UNMOVED

@@ -18,6 +18,7 @@ from inspect import get_annotations
 from types import SimpleNamespace
 from typing import Any, Final, Protocol, get_args, get_type_hints
 
+from gearcam.base.brought import brought, group_of, load_brought
 from gearcam.base.findings import CHECKS
 from gearcam.base.quantities import params_of
 from gearcam.base.rules import Rule
@@ -194,6 +195,9 @@ class DesignKind:
         Comments on tables of the example.
     processes : mapping of str to mapping
         Additions to the example for each process: ``printing``, ``laser`` or ``wire``.
+    brought : str
+        Group of the tables that other packages bring and that a file may give several times; empty
+        if they cannot. The settings of their studies are tables anyway.
     """
 
     name: str
@@ -214,14 +218,50 @@ class DesignKind:
     shown: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     notes: Mapping[str, str] = field(default_factory=dict)
     processes: Mapping[str, Mapping[str, Mapping[str, Any]]] = field(default_factory=dict)
+    brought: str = ""
 
     def __repr__(self) -> str:
         return f'<{type(self).__name__} "{self.name}">'
 
     @cached_property
+    def added(self) -> dict[str, Any]:
+        """Tables that other packages bring, as in `tree`; none before `take_brought`."""
+        return {}
+
+    @cached_property
     def tree(self) -> Mapping[str, Any]:
         """The titles of a file with the types of their fields, as the class of designs has them."""
-        return get_annotations(self.design)
+        return get_annotations(self.design) | self.added
+
+    def take_brought(self) -> None:
+        """Know the tables that other packages bring, too: parts, and settings of studies.
+
+        Raises
+        ------
+        DesignError
+            If a package cannot be loaded.
+        """
+        studies = group_of(self.name, "studies")
+        found = {
+            title: tuple[load_brought(self.brought, title), ...] for title in brought(self.brought)
+        }
+        found |= {title: load_brought(studies, title).settings for title in brought(studies)}
+        if new := {title: one for title, one in found.items() if title not in self.tree}:
+            self.added.update(new)
+            for name in ("tree", "several", "tables"):
+                vars(self).pop(name, None)
+
+    def made(self, parts: Mapping[str, Any], source: str) -> Any:
+        """Return the design of valid `parts` by the names of its fields, from a file `source`."""
+        added = {title: part for title, part in parts.items() if title in self.added}
+        own = {name: part for name, part in parts.items() if name not in added}
+        return self.design(source=source, examined=True, added=added, **own)
+
+    def titles_with(self, given: Collection[str]) -> list[str]:
+        """Return the titles of its own tables, and those of other packages that are `given`."""
+        if any(title not in self.titles for title in given):
+            self.take_brought()
+        return [title for title in self.tree if title not in self.added or title in given]
 
     @cached_property
     def several(self) -> tuple[str, ...]:
@@ -249,7 +289,7 @@ class DesignKind:
         return ("kind", "name", *self.tree, "limits", *FAMILY)
 
     @property
-    def formats(self) -> tuple[str, ...]:
+    def formats(self) -> Collection[str]:
         """Kinds of files that ``output.files`` may list."""
         return params_of(self.tables["output"])["files"].choices or ()
 
@@ -257,7 +297,8 @@ class DesignKind:
     def study_tables(self) -> Mapping[str, str]:
         """Titles of the tables with the settings of studies, by the names of the studies."""
         output: type[OutputSpec] = self.tables["output"]
-        return output.study_tables
+        settings = (title for title in self.added if title not in self.several)
+        return {**output.study_tables, **{title: title for title in settings}}
 
     def meant(self, document: Mapping[str, Any]) -> DesignKind:
         """Return the kind that a `document` of this kind is of: another one for some variants."""

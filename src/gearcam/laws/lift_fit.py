@@ -35,7 +35,7 @@ from gearcam.base.errors import beyond_limit
 from gearcam.base.numerals import formatted
 from gearcam.laws.lift_model import SPAN, LiftModel, Name, crossed, improved, number_of
 from gearcam.laws.lift_rows import LAG, LiftRows, noise_of, runs_of
-from gearcam.laws.motion.base import MOTION_LAWS
+from gearcam.laws.motion import MOTION_LAWS
 from gearcam.laws.phases_of_lift import TURN, DwellPhase, Phase, ReturnPhase, RisePhase
 from gearcam.numeric.arrays import Array, Ints, Mask
 

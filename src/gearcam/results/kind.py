@@ -72,6 +72,9 @@ class Study:
         Codes of findings of the design that the study gives anew.
     many : bool
         Whether its command takes several design files.
+    settings : type, optional
+        The class of that table: of a study of another package, whose table has the study's name.
+        Else a field of the design says it.
     """
 
     name: str
@@ -86,6 +89,7 @@ class Study:
     demand: Callable[[Design], None] = _anything
     repeats: tuple[str, ...] = ()
     many: bool = True
+    settings: type | None = None
 
     def __repr__(self) -> str:
         return f'<Study "{self.name}">'

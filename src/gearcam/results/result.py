@@ -179,7 +179,7 @@ class Result(NotebookView):
         InfeasibleError
             If the design, or its study, is impossible.
         """
-        entry = self.kind.studies[one_of("name", name, (*self.kind.studies,))]
+        entry = self.kind.studies[one_of("name", name, self.kind.studies)]
         outcome = self._studied.get(name)
         if outcome is None or outcome.interrupted:
             entry.demand(self.design)

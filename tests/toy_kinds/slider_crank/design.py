@@ -75,8 +75,8 @@ class StrokeSpec:
 class SliderOutput(OutputSpec):
     study_tables: ClassVar[Mapping[str, str]] = {"slide": "stroke"}
 
-    files: tuple[str, ...] = files_param(FORMATS)
-    studies: tuple[str, ...] = studies_param(study_tables)
+    files: tuple[str, ...] = files_param(FORMATS, "slider-crank")
+    studies: tuple[str, ...] = studies_param(study_tables, "slider-crank")
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)

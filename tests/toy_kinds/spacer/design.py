@@ -38,8 +38,8 @@ class WeightSpec:
 class SpacerOutput(OutputSpec):
     study_tables: ClassVar[Mapping[str, str]] = {"weigh": "weight"}
 
-    files: tuple[str, ...] = files_param(FORMATS)
-    studies: tuple[str, ...] = studies_param(study_tables)
+    files: tuple[str, ...] = files_param(FORMATS, "spacer")
+    studies: tuple[str, ...] = studies_param(study_tables, "spacer")
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

@@ -28,6 +28,9 @@ from gearcam.base.rules import Breach, needs
 from gearcam.designs.outputs import FORMATS, OutputSpec, files_param, pose_param, studies_param
 from gearcam.parts.blank import OPENING_RULES, WheelBlank, least_metal, widening_rules
 
+NAME: Final = "cam"
+"""As in a file."""
+
 CAM_FORMATS: Final = (*FORMATS, "tool-path", "curvature")
 """What ``output.files`` of a cam may list."""
 
@@ -225,8 +228,8 @@ class CamOutputSpec(OutputSpec):
         one: one for one in ("follow", "forces", "precision", "accuracy")
     }
 
-    files: tuple[str, ...] = files_param(CAM_FORMATS)
-    studies: tuple[str, ...] = studies_param(study_tables)
+    files: tuple[str, ...] = files_param(CAM_FORMATS, NAME)
+    studies: tuple[str, ...] = studies_param(study_tables, NAME)
     chord_tolerance: float | None = param(
         LENGTH,
         default=None,

@@ -6,19 +6,20 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field, fields
 from typing import Any, ClassVar, Final, TypeGuard
 
+from gearcam.base.brought import group_of
 from gearcam.base.quantities import COUNT, param
-from gearcam.base.registry import DeferredMapping, deferred, name_of
+from gearcam.base.registry import DeferredMapping, deferred
 from gearcam.base.rules import Breach, Rule, Values, at_most, only_with
 from gearcam.designs.design import Design
 from gearcam.designs.faults import Fault, show
 from gearcam.designs.kind import Examined
 from gearcam.designs.nodes import Choice
-from gearcam.designs.outputs import OutputSpec, pose_param, studies_param
+from gearcam.designs.outputs import FORMATS, OutputSpec, files_param, pose_param, studies_param
 from gearcam.designs.table import table_of
 from gearcam.gears.spec import PairSpec, Rack, RingSpec, StepsSpec
 from gearcam.gears.subject import KIND as TEETH
 from gearcam.kinds.shared import AccuracySpec, GoalSpec
-from gearcam.laws.ratio.base import LAWS
+from gearcam.laws.ratio import LAWS
 from gearcam.mechanics.drive import DriveSpec
 from gearcam.meshing.settings import ERRORS, ErrorsSpec, MeshingSpec
 from gearcam.meshing.settings import KIND as MESHING
@@ -61,7 +62,8 @@ class PairOutputSpec(OutputSpec):
         "accuracy": "accuracy",
     }
 
-    studies: tuple[str, ...] = studies_param(study_tables)
+    files: tuple[str, ...] = files_param(FORMATS, NAME)
+    studies: tuple[str, ...] = studies_param(study_tables, NAME)
     pose: float = pose_param("phi1", "driver angle of the assembly drawing")
     inspection_points: int = param(
         COUNT, default=9, ge=2, le=1000, doc="number of points on each flank in inspection.csv"
@@ -125,7 +127,7 @@ class GearPairDesign(Design):
     @property
     def law_type(self) -> str:
         """Name of the law in the registry; empty if it is not a law."""
-        return name_of(LAWS, self.law)
+        return LAWS.name_of(self.law)
 
 
 LAW: Final = Choice(
@@ -287,11 +289,11 @@ KIND: Final = Kind(
         "pair": "give center_distance_mm or module_mm; the other is computed",
     },
     facts=deferred(f"{_HERE}.shown:facts"),
-    files=DeferredMapping(f"{_HERE}.shown:FILES"),
+    files=DeferredMapping(f"{_HERE}.shown:FILES", group_of(NAME, "formats")),
     charts=DeferredMapping(f"{_HERE}.drawn:CHARTS"),
     scene=deferred(f"{_HERE}.drawn:scene"),
     advice=deferred(f"{_HERE}.advice:PairAdvice"),
-    studies=DeferredMapping(f"{_HERE}.studies:STUDIES"),
+    studies=DeferredMapping(f"{_HERE}.studies:STUDIES", group_of(NAME, "studies")),
     ladders=DeferredMapping(f"{_HERE}.studies:LADDERS"),
     public=DeferredMapping(f"{_HERE}.public:PUBLIC"),
 )

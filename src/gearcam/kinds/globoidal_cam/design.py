@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, ClassVar, Final
 
+from gearcam.base.brought import group_of
 from gearcam.base.registry import DeferredMapping, deferred
 from gearcam.designs.design import Design
 from gearcam.designs.faults import Fault
@@ -13,7 +14,7 @@ from gearcam.designs.nodes import Choice
 from gearcam.designs.outputs import MESHES, files_param, studies_param
 from gearcam.designs.table import table_of
 from gearcam.kinds.shared import AccuracySpec, GoalSpec, GriddedOutput
-from gearcam.laws.motion.base import MOTION_LAWS
+from gearcam.laws.motion import MOTION_LAWS
 from gearcam.mechanics.drive import DriveSpec
 from gearcam.results.kind import Kind
 from gearcam.spatial.globoidal_spec import GloboidalSpec, IndexSpec, TurretSpec
@@ -77,8 +78,8 @@ class GloboidalOutput(GriddedOutput):
 
     study_tables: ClassVar[Mapping[str, str]] = {"accuracy": "accuracy"}
 
-    files: tuple[str, ...] = files_param(GLOBOIDAL_FORMATS)
-    studies: tuple[str, ...] = studies_param(study_tables)
+    files: tuple[str, ...] = files_param(GLOBOIDAL_FORMATS, NAME)
+    studies: tuple[str, ...] = studies_param(study_tables, NAME)
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -162,10 +163,10 @@ KIND: Final = Kind(
         "turret": "a wheel with a roller for each stop",
     },
     facts=deferred(f"{_HERE}.shown:facts"),
-    files=DeferredMapping(f"{_HERE}.shown:FILES"),
+    files=DeferredMapping(f"{_HERE}.shown:FILES", group_of(NAME, "formats")),
     charts=DeferredMapping(f"{_HERE}.drawn:CHARTS"),
     scene=deferred(f"{_HERE}.drawn:scene"),
-    studies=DeferredMapping(f"{_HERE}.studies:STUDIES"),
+    studies=DeferredMapping(f"{_HERE}.studies:STUDIES", group_of(NAME, "studies")),
     ladders=DeferredMapping(f"{_HERE}.studies:LADDERS"),
     public=DeferredMapping(f"{_HERE}.public:PUBLIC"),
 )

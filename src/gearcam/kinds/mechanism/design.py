@@ -12,6 +12,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar, Final
 
+from gearcam.base.brought import group_of
 from gearcam.base.display import ShortRepr
 from gearcam.base.quantities import ANGLE, COUNT, LENGTH, TEXT, fixed, param
 from gearcam.base.registry import DeferredMapping, deferred
@@ -77,8 +78,8 @@ class MechanismOutput(OutputSpec):
 
     study_tables: ClassVar[Mapping[str, str]] = {"torque": "torque", "accuracy": "accuracy"}
 
-    files: tuple[str, ...] = files_param(FORMATS)
-    studies: tuple[str, ...] = studies_param(study_tables)
+    files: tuple[str, ...] = files_param(FORMATS, NAME)
+    studies: tuple[str, ...] = studies_param(study_tables, NAME)
     outputs: tuple[str, ...] | None = param(
         TEXT,
         default=None,
@@ -243,11 +244,12 @@ KIND: Final = Kind(
         "goal": {"minimize": "outputs.P_x.acceleration_mm_s2", "maximize": "outputs.P_x.stroke_mm"}
     },
     facts=deferred(f"{_HERE}.shown:facts"),
-    files=DeferredMapping(f"{_HERE}.shown:FILES"),
+    files=DeferredMapping(f"{_HERE}.shown:FILES", group_of(NAME, "formats")),
     charts=DeferredMapping(f"{_HERE}.shown:CHARTS"),
     scene=deferred(f"{_HERE}.drawn:scene"),
-    studies=DeferredMapping(f"{_HERE}.torque:STUDIES"),
+    studies=DeferredMapping(f"{_HERE}.torque:STUDIES", group_of(NAME, "studies")),
     ladders=DeferredMapping(f"{_HERE}.drawn:LADDERS"),
     public=DeferredMapping(f"{_HERE}.public:PUBLIC"),
+    brought=group_of(NAME, "parts"),
     cut=False,
 )

@@ -41,7 +41,7 @@ Tables = Mapping[str, Any]
 
 def tables_of(design: Any) -> dict[str, Any]:
     """Return the tables of a mechanism's `design` by title."""
-    return {one.name: getattr(design, one.name) for one in fields(design)}
+    return {one.name: getattr(design, one.name) for one in fields(design)} | design.added
 
 
 def several(tables: Tables) -> Iterator[tuple[str, int, WithNames]]:
@@ -59,8 +59,9 @@ def parts_of(tables: Tables) -> Iterator[tuple[str, int, MachinePart]]:
 
 
 def told_parts(tables: Tables) -> Iterator[tuple[str, int, MachinePart]]:
-    """Yield the parts in the order of the register `PARTS` (see `parts_of`)."""
-    yield from parts_of({title: tables[title] for title in PARTS if title in tables})
+    """Yield the parts in the order of the register `PARTS`, then others (see `parts_of`)."""
+    titles = dict.fromkeys((*PARTS, *tables))
+    yield from parts_of({title: tables[title] for title in titles if title in tables})
 
 
 def standing_places(tables: Tables) -> dict[str, complex]:
@@ -126,10 +127,13 @@ def _unread(found: Examined) -> bool:
     return not alone <= {"kind", "name"}
 
 
-@cache
 def _giving(kind: str) -> dict[str, list[NameUse]]:
     """Return the keys with names that tables give, by title."""
-    tables = KINDS[kind].tables.items()
+    return _giving_of(tuple(KINDS[kind].tables.items()))
+
+
+@cache
+def _giving_of(tables: tuple[tuple[str, type], ...]) -> dict[str, list[NameUse]]:
     found = {title: [use for _, use in name_keys(owner, GIVES)] for title, owner in tables}
     return {title: keys for title, keys in found.items() if keys}
 

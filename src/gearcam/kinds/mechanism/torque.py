@@ -20,8 +20,9 @@ from gearcam.base.quantities import TORQUE as NEWTON_METRES
 from gearcam.base.quantities import Param
 from gearcam.kinds.mechanism.asked import DEG
 from gearcam.kinds.mechanism.loaded import BODY, work_of
-from gearcam.kinds.mechanism.names import acting, tables_of
+from gearcam.kinds.mechanism.names import acting, several, tables_of
 from gearcam.kinds.mechanism.parts import ACTIONS
+from gearcam.kinds.mechanism.parts.action import MachineAction
 from gearcam.kinds.shared import accuracy_study
 from gearcam.linkages.efforts import GRAVITY, PARTS, SPRINGS, InertiaForce
 from gearcam.linkages.measures import Peak
@@ -79,7 +80,7 @@ def _demand(design: Any) -> None:
         If it is so.
     """
     tables = tables_of(design)
-    every = [one for title in ACTIONS for one in tables[title]]
+    every = [one for *_, one in several(tables) if isinstance(one, MachineAction)]
     if not every:
         *words, last = (f"[[{title}]]" for title in tables if title in ACTIONS)
         problem = Problem(

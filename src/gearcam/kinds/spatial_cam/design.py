@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, ClassVar, Final
 
+from gearcam.base.brought import group_of
 from gearcam.base.display import ShortRepr
 from gearcam.base.quantities import COUNT, LENGTH, param
 from gearcam.base.registry import DeferredMapping, deferred
@@ -43,8 +44,8 @@ class SpatialOutput(GriddedOutput):
 
     study_tables: ClassVar[Mapping[str, str]] = {"developed": "developed", "accuracy": "accuracy"}
 
-    files: tuple[str, ...] = files_param(SPATIAL_FORMATS)
-    studies: tuple[str, ...] = studies_param(study_tables)
+    files: tuple[str, ...] = files_param(SPATIAL_FORMATS, NAME)
+    studies: tuple[str, ...] = studies_param(study_tables, NAME)
     path_tolerance: float = param(
         LENGTH,
         default=0.005,
@@ -178,10 +179,10 @@ KIND: Final = Kind(
     },
     notes={"motion": "Phases of the motion, one after the other, 360 deg in all."},
     facts=deferred(f"{_HERE}.shown:facts"),
-    files=DeferredMapping(f"{_HERE}.shown:FILES"),
+    files=DeferredMapping(f"{_HERE}.shown:FILES", group_of(NAME, "formats")),
     charts=DeferredMapping(f"{_HERE}.drawn:CHARTS"),
     scene=deferred(f"{_HERE}.drawn:scene"),
-    studies=DeferredMapping(f"{_HERE}.studies:STUDIES"),
+    studies=DeferredMapping(f"{_HERE}.studies:STUDIES", group_of(NAME, "studies")),
     ladders=DeferredMapping(f"{_HERE}.studies:LADDERS"),
     public=DeferredMapping(f"{_HERE}.public:PUBLIC"),
 )

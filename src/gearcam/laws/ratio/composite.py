@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import zip_longest
+from typing import Final
 
 import numpy as np
 
@@ -27,7 +28,7 @@ from gearcam.base.rules import Breach
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import LawEntry
 from gearcam.laws.formula import derivative
-from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
+from gearcam.laws.ratio.base import RatioLaw, make_law
 from gearcam.laws.ratio.phases import ARCS, SMOOTH, arcs_law, knot_problems, one_lobe, open_span
 from gearcam.laws.ratio.span import NO_DWELL, SAME, Lobes, Span, angle_text, open_travel
 from gearcam.numeric.jets import Jet, harmonics, polynomial, primitive
@@ -214,7 +215,7 @@ class Fourier(ShortRepr):
         return make_law(lobes, knots, pieces, tolerances)
 
 
-LAWS.register(
+ENTRIES: Final = (
     LawEntry(
         name="multispeed",
         example=Multispeed(

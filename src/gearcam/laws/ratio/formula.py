@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from typing import Final
 
 import numpy as np
 
@@ -23,7 +24,7 @@ from gearcam.laws.formula import (
     function_of,
     values_of,
 )
-from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
+from gearcam.laws.ratio.base import RatioLaw, make_law
 from gearcam.laws.ratio.driver import demand_positive, law_of_centrode
 from gearcam.laws.ratio.span import (
     NO_DWELL,
@@ -246,7 +247,7 @@ class RackLaw(ShortRepr):
         return replace(law, function_errors=function.errors)
 
 
-LAWS.register(
+ENTRIES: Final = (
     LawEntry(
         name="formula",
         example=Formula(phi2="phi1 - 0.08*sin(2*phi1)"),

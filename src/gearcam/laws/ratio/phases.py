@@ -31,7 +31,7 @@ from gearcam.base.quantities import (
 from gearcam.base.rules import Breach
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import LawEntry
-from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
+from gearcam.laws.ratio.base import RatioLaw, make_law
 from gearcam.laws.ratio.span import NO_DWELL, SAME, Lobes, Span, open_travel, own_travel, span_of
 from gearcam.numeric.jets import Jet, Value, cos, polynomial, primitive, sin
 from gearcam.numeric.piecewise import Piece
@@ -451,12 +451,12 @@ def _solve_knot(
     return filled(place), {f"knots_deg[{index}]": math.degrees(place)}
 
 
-LAWS.register(
+ENTRIES: Final = (
     LawEntry(
         name="phases",
         example=Phases(knots=(0.0, math.radians(160), 2 * math.pi), ratios=(1.6, 0.4, 1.6)),
         doc="ratios at knots, joined by arcs with zero slope at each knot; closed or open",
         continuity="C1 at the knots; C2 for quintic arcs",
         source="Niculescu, sections 2.2.2.1 to 2.2.2.3 and 3.2.2",
-    )
+    ),
 )

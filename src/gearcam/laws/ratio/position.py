@@ -17,7 +17,7 @@ from gearcam.base.rules import Breach, exactly_one, excludes, needs
 from gearcam.base.tolerances import Tolerances
 from gearcam.laws.entry import VARIABLE, Axis, LawEntry
 from gearcam.laws.formula import Given, formula_problems, function_of, values_of
-from gearcam.laws.ratio.base import LAWS, RatioLaw, make_law
+from gearcam.laws.ratio.base import RatioLaw, make_law
 from gearcam.laws.ratio.formula import axis_of, from_phi2
 from gearcam.laws.ratio.slider import NARROWEST, crank_angle, make_slide
 from gearcam.laws.ratio.span import OPEN, Lobes, Span, open_travel, span_of
@@ -132,7 +132,7 @@ class MotionLaw(ShortRepr):
         return replace(law, function_errors=errors)
 
 
-LAWS.register(
+ENTRIES: Final = (
     LawEntry(
         name="motion",
         example=MotionLaw(
@@ -141,5 +141,5 @@ LAWS.register(
         doc="position y(x) of the driven element, or of a slide that the driven crank moves",
         continuity="analytic if the formula is",
         source="Niculescu, Table 1.1, second hypothesis; section 1.4.1",
-    )
+    ),
 )

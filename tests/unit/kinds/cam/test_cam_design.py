@@ -24,7 +24,7 @@ from gearcam.kinds.cam.design import CamDesign, CamOutputSpec
 from gearcam.kinds.cam.studies import FORCES
 from gearcam.kinds.cam.tables import CamBlank
 from gearcam.kinds.gear_pair.studies import MESH
-from gearcam.laws.motion.base import MOTION_LAWS
+from gearcam.laws.motion import MOTION_LAWS
 from gearcam.laws.phases_of_lift import (
     PHASES,
     DwellPhase,

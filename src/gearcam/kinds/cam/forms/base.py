@@ -221,13 +221,8 @@ class Form(ABC, Generic[C, S, F]):
 
 FORMS: Registry[type[Form[Any, Any, Any]]] = Registry(
     "a form of cams",
-    {
-        "gearcam.kinds.cam.forms.disc": ("disc",),
-        "gearcam.kinds.cam.forms.groove": ("groove",),
-        "gearcam.kinds.cam.forms.conjugate": ("conjugate",),
-        "gearcam.kinds.cam.forms.yoke": ("yoke",),
-        "gearcam.kinds.cam.forms.translating": ("translating",),
-    },
+    "gearcam.kinds.cam.forms",
+    {name: (name,) for name in ("disc", "groove", "conjugate", "yoke", "translating")},
 )
 """The forms by name, each loaded when it is asked for."""
 

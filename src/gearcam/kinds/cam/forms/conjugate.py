@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Final
 
 from gearcam.base.facts import Fact
 from gearcam.base.quantities import ANGLE, LENGTH, LONGEST, param, positive_length
@@ -19,7 +19,7 @@ from gearcam.cams.spec import (
     form_param,
 )
 from gearcam.designs.faults import Fault
-from gearcam.kinds.cam.forms.base import FORMS, Form
+from gearcam.kinds.cam.forms.base import Form
 from gearcam.kinds.cam.forms.disc import TOOL_PATH, Plates
 
 if TYPE_CHECKING:
@@ -260,4 +260,4 @@ class Conjugate(Plates[ConjugateCam, ConjugateSpec, ConjugateFollower]):
         return [name.replace("part.", f"part.{number}.") for name in own_names]
 
 
-FORMS.register(Conjugate)
+ENTRIES: Final = (Conjugate,)

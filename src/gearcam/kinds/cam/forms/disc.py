@@ -9,7 +9,7 @@ from gearcam.base.facts import Fact
 from gearcam.cams.disc import DiscCam, make_cam
 from gearcam.cams.placing import make_follower
 from gearcam.cams.spec import CamSpec, FollowerSpec
-from gearcam.kinds.cam.forms.base import FORMS, C, F, Form, S
+from gearcam.kinds.cam.forms.base import C, F, Form, S
 
 if TYPE_CHECKING:
     from gearcam.laws.program import Program
@@ -136,4 +136,4 @@ class Disc(Plates[DiscCam, CamSpec, FollowerSpec]):
         return self.disc(program)
 
 
-FORMS.register(Disc)
+ENTRIES: Final = (Disc,)

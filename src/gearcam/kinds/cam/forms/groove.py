@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Final
 
 from gearcam.base.errors import beyond_limit
 from gearcam.base.facts import Fact
@@ -21,7 +21,7 @@ from gearcam.cams.spec import (
     form_param,
 )
 from gearcam.designs.faults import Fault, show
-from gearcam.kinds.cam.forms.base import FORMS, Form
+from gearcam.kinds.cam.forms.base import Form
 from gearcam.kinds.cam.forms.disc import STEM, TOOL_PATH, workpiece
 from gearcam.kinds.cam.tables import CamBlank
 from gearcam.parts.blank import OPENING_RULES
@@ -290,4 +290,4 @@ def milled_faults(parts: Mapping[str, Any], groove: str) -> Iterator[Fault]:
         yield Fault(("output", "files"), f"not for {groove}, which is milled", "cut-svg", rule)
 
 
-FORMS.register(Groove)
+ENTRIES: Final = (Groove,)

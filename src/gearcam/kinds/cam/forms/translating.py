@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, ClassVar, cast
+from typing import TYPE_CHECKING, Any, ClassVar, Final, cast
 
 import numpy as np
 
@@ -32,7 +32,7 @@ from gearcam.cams.spec import (
 )
 from gearcam.cams.translating import TranslatingCam, make_translating
 from gearcam.designs.faults import Fault, show
-from gearcam.kinds.cam.forms.base import FORMS, Form
+from gearcam.kinds.cam.forms.base import Form
 from gearcam.kinds.cam.forms.disc import STEM, TOOL_PATH, workpiece
 from gearcam.kinds.cam.forms.groove import milled_faults
 from gearcam.kinds.cam.tables import CamBlank, CamOutputSpec
@@ -434,4 +434,4 @@ class Translating(Form[TranslatingCam, PlateSpec, PlateFollower]):
         )
 
 
-FORMS.register(Translating)
+ENTRIES: Final = (Translating,)

@@ -15,7 +15,7 @@ from gearcam.base.rules import excluded
 from gearcam.cams.disc import YokeCam, make_yoke
 from gearcam.cams.spec import FACE_RULES, GUIDE_RULES, CamSpec, FollowerSpec, form_param
 from gearcam.designs.nodes import written
-from gearcam.kinds.cam.forms.base import FORMS, Form
+from gearcam.kinds.cam.forms.base import Form
 from gearcam.kinds.cam.forms.disc import Plates
 from gearcam.laws.half_turns import agreeing, completed, miss
 from gearcam.laws.phases_of_lift import fill_half
@@ -148,4 +148,4 @@ def _demand_opposite(program: Program, motion: Motion) -> None:
     raise beyond_limit(what, where, off.value, _MISS, rule, adjustments=adjustments, unit="mm")
 
 
-FORMS.register(Yoke)
+ENTRIES: Final = (Yoke,)
