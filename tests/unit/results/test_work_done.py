@@ -50,7 +50,7 @@ WATCHED = {
     "gearcam.parts.mass": ("mass_properties",),
     "gearcam.parts.solids": ("solid",),
     "gearcam.kinds.cam.drawn": ("cam_drawing",),
-    "gearcam.kinds.gear_pair.drawn": ("pair_drawing",),
+    "gearcam.kinds.gear_pair.drawings": ("pair_drawing",),
     "gearcam.kinds.gear_pair.sheet": ("pair_sheet",),
     "gearcam.pictures.drawings": ("wheel_drawing",),
     "gearcam.sheets": ("wheel_sheet",),

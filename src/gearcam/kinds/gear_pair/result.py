@@ -312,7 +312,7 @@ class GearPairResult(PartsResult):
     @cached_property
     def centrode_paths(self) -> tuple[Path, Path]:
         """Both centrodes as chains, each in its wheel's own frame, driver first."""
-        from gearcam.kinds.gear_pair.drawn import centrode_path
+        from gearcam.kinds.gear_pair.drawings import centrode_path
 
         lobes = self.law.lobes
         end = self.centrode_angles(2)[-1] if self.pair.on_rack else lobes.n2 * lobes.period
@@ -324,7 +324,7 @@ class GearPairResult(PartsResult):
     @cached_property
     def drawing(self) -> Drawing:
         """The assembled pair, with its centrodes."""
-        from gearcam.kinds.gear_pair.drawn import pair_drawing
+        from gearcam.kinds.gear_pair.drawings import pair_drawing
 
         return pair_drawing(self.parts, self.pair.shift, self.centrode_paths, poses=self.poses)
 
@@ -509,9 +509,13 @@ class GearPairResult(PartsResult):
     @cached_property
     def error_rows(self) -> Estimates:
         """Error estimates and their methods by name, without those of chords and files."""
-        from gearcam.kinds.gear_pair.parts import error_rows
+        from gearcam.kinds.gear_pair.parts import tooth_errors, volume_errors
 
-        return error_rows(self)
+        rows = tooth_errors(self.subject)
+        if self.ordered:
+            flank, _ = rows["flank_mm"]
+            rows |= volume_errors(self.parts, self.steps, self.design, flank, self.tolerances)
+        return rows
 
     @property
     def main_errors(self) -> Sequence[tuple[str, Sequence[str]]]:
