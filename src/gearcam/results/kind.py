@@ -59,7 +59,7 @@ class Study:
         Title of the table of its settings in a design; the command has an option for each key.
     compute : callable
         ``compute(result, progress)`` returns its outcome, a `StudyResult`; the settings are those
-        of the design.
+        of the design, but for those that a method of its results gives by name.
     options : mapping of str to str
         Names of options that differ from those of their keys.
     argument : str
@@ -79,7 +79,7 @@ class Study:
     doc: str
     done: str
     table: str
-    compute: Callable[[Any, Any], Any]
+    compute: Callable[..., Any]
     options: Mapping[str, str] = field(default_factory=dict)
     argument: str = ""
     metavar: str = ""

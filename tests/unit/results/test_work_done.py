@@ -49,7 +49,7 @@ WATCHED = {
     "gearcam.parts.tools": ("tool_limits",),
     "gearcam.parts.mass": ("mass_properties",),
     "gearcam.parts.solids": ("solid",),
-    "gearcam.kinds.cam.drawn": ("cam_drawing",),
+    "gearcam.kinds.cam.drawings": ("cam_drawing",),
     "gearcam.kinds.gear_pair.drawings": ("pair_drawing",),
     "gearcam.kinds.gear_pair.sheet": ("pair_sheet",),
     "gearcam.pictures.drawings": ("wheel_drawing",),

@@ -285,8 +285,7 @@ class FittedDesign:
         x = driver.scale * rows.theta
         ends = np.degrees(np.concatenate([model.starts, model.ends])) % 360.0
         marks = tuple(MarkedPlace(label="phases", value=one) for one in np.unique(ends).tolist())
-        label = f"{driver.called} {driver.symbol}, {driver.unit}"
-        chart = partial(Chart, x=label, marks=marks)
+        chart = partial(Chart, x=driver.label, marks=marks)
         noise = 2.0 * scale * rows.noise
         fitted = Line(label="fitted design", x=x, y=self.columns["s_fitted"])
         return {

@@ -16,7 +16,7 @@ from gearcam.cams.follower_loads import Loads
 from gearcam.cams.force_checks import Loaded, on_way
 from gearcam.cams.spec import FORCES
 from gearcam.cams.statics import Statics
-from gearcam.kinds.cam.drawn import knots_of, places_of
+from gearcam.kinds.cam.charts import over_driver
 from gearcam.kinds.cam.hints import enlarged
 from gearcam.kinds.cam.under_load import efficiency_away_from_rest, pressure_of, under_load
 from gearcam.mechanics.hertz import half_width
@@ -68,9 +68,9 @@ def study_forces(result: CamResult, study: Study, progress: Progress | None) -> 
         progress("forces", 0, 1)
     design, cam = result.design, result.cam
     with result.stage("forces"):
-        loads, x, way, statics = under_load(result)
+        loads, x, way, statics = under_load(result, result.places_under_load)
         pressure = pressure_of(result, statics)
-        per_width = statics.force / result.form.contact_width
+        per_width = statics.force / result.contact_width
         half = half_width(per_width, statics.curvature, design.material)
         width = np.where(np.isinf(pressure), np.nan, half)
         only_presses = len(cam.touches) == 1
@@ -312,7 +312,7 @@ def _along(result: CamResult, loaded: Loaded, columns: Mapping[str, Any]) -> Cha
 
 def _charts(result: CamResult, loaded: Loaded, columns: Mapping[str, Any]) -> dict[str, Chart]:
     """Return charts of forces over the driver, and of the pressure along the profile."""
-    column, label = places_of(result)
+    chart, column = over_driver(result), result.driver.column
     given = result.design.limits
     limits = {
         "pressure_mpa": limit_of(FORCES, "contact-pressure", given),
@@ -324,9 +324,8 @@ def _charts(result: CamResult, loaded: Loaded, columns: Mapping[str, Any]) -> di
         if values is None or not np.isfinite(values).any():
             continue
         most = limits.get(name)
-        charts[name.partition("_")[0]] = Chart(
+        charts[name.partition("_")[0]] = chart(
             title=title,
-            x=label,
             y=axis,
             lines=tuple(
                 Line(
@@ -337,7 +336,6 @@ def _charts(result: CamResult, loaded: Loaded, columns: Mapping[str, Any]) -> di
                 for way, rows in _on_each_way(loaded)
             ),
             limits=(Limit(label="limit", value=most),) if most else (),
-            marks=knots_of(result),
         )
     along = _along(result, loaded, columns)
     return charts if along is None else charts | {"profile_pressure": along}

@@ -21,9 +21,10 @@ from gearcam.cams.precision import (
     sensitivities,
 )
 from gearcam.cams.spec import PRECISION
+from gearcam.kinds.cam.charts import over_driver
 from gearcam.kinds.cam.tables import SIZES, PrecisionSpec
 from gearcam.numeric.piecewise import with_both_sides
-from gearcam.pictures.charts import Chart, Limit, Line, knot_marks
+from gearcam.pictures.charts import Chart, Limit, Line
 from gearcam.results.result import StudyResult
 
 if TYPE_CHECKING:
@@ -225,26 +226,20 @@ def _charts(result: CamResult) -> dict[str, Chart]:
         for name, how in _COMBINATIONS.items() if errors else ():
             label = f"{name.replace('_', ' ')}{on}"
             deviations.append(Line(label=label, x=x, y=scale * how(one.by_size, errors)))
-    common = {
-        "x": f"{driver.called} {driver.symbol}, {driver.unit}",
-        "marks": knot_marks(driver.scale * np.asarray(program.knots), 0.0, driver.whole),
-    }
-    charts = {}
+    chart, charts = over_driver(result), {}
     if deviations:
         ends = () if spec.wanted is None else (scale * spec.wanted, -scale * spec.wanted)
-        charts["precision"] = Chart(
+        charts["precision"] = chart(
             title="Deviation of the lift by the tolerances",
             y=f"deviation, {unit}",
             lines=tuple(deviations),
             limits=tuple(Limit(label="wanted", value=end) for end in ends),
-            **common,
         )
     for per, lines in groups.items():
         if lines:
-            charts[f"sensitivity_{per}"] = Chart(
+            charts[f"sensitivity_{per}"] = chart(
                 title=f"Sensitivity of the lift to {'angles' if per == ANGLE.unit else 'lengths'}",
                 y=f"lift per error, {unit}/{per}",
                 lines=tuple(lines),
-                **common,
             )
     return charts

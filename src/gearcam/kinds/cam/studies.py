@@ -121,9 +121,11 @@ def _fit(
     return replace(study, group=facts | {"fit": fit}, lines=lines)
 
 
-def _follow(result: CamResult, progress: Progress | None) -> StudyResult:
-    given = result.design.follow
-    return follow(result, given.file or "", given.wall, progress, fit=given.fit)
+def _follow(result: CamResult, progress: Progress | None, **given: Any) -> StudyResult:
+    """Return the motion on a `given` profile, wall and fit, by default those of the design."""
+    spec = result.design.follow
+    asked = given or {"profile": spec.file or "", "wall": spec.wall, "fit": spec.fit}
+    return follow(result, progress=progress, **asked)
 
 
 def _demand(design: Any) -> None:

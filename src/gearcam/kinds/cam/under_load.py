@@ -18,7 +18,7 @@ from gearcam.numeric.piecewise import with_both_sides
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from gearcam.kinds.cam.result import CamResult
+    from gearcam.kinds.cam.made import MadeCam
     from gearcam.numeric.arrays import Array, Ints
 
 _TOLD: Final = 0.1
@@ -61,14 +61,17 @@ def demand(design: Any) -> None:
         raise DesignError([problem])
 
 
-def loads_of(result: CamResult) -> Loads:
+def loads_of(result: MadeCam) -> Loads:
     """Return what acts on the follower of a cam, its `result`, beside the cam.
 
     Raises
     ------
+    DesignError
+        If it needs a speed, and none is given.
     InfeasibleError
         If no stiffness of a spring keeps the follower on the cam.
     """
+    demand(result.design)
     design, motion = result.design, result.cam.motions[0]
     pull = design.gravity.pull
     follower, highest = motion.follower, motion.program.range[1]
@@ -102,7 +105,7 @@ def _no_stiffness(loads: Loads) -> InfeasibleError:
     return beyond_limit(what, where, scale * given, needed, rule, unit=unit)
 
 
-def places(result: CamResult) -> Array:
+def places(result: MadeCam) -> Array:
     """Return the positions of the driver that are studied; they rise.
 
     Beside even steps these are both sides of knots of the lift and of the loads, and of places
@@ -122,7 +125,7 @@ def places(result: CamResult) -> Array:
     return x
 
 
-def _changes(result: CamResult, loads: Loads, x: Array) -> Array:
+def _changes(result: MadeCam, loads: Loads, x: Array) -> Array:
     """Return both sides of where something else carries, between positions `x`."""
     x, way = _to_and_fro(loads, x)
 
@@ -141,7 +144,7 @@ def _changes(result: CamResult, loads: Loads, x: Array) -> Array:
     return np.concatenate(narrowing.changes(function, x[at], x[at + 1], tolerance))
 
 
-def _extremes(result: CamResult, loads: Loads, x: Array) -> Array:
+def _extremes(result: MadeCam, loads: Loads, x: Array) -> Array:
     """Return where the quantities of the facts are largest, or least, near positions `x`."""
     x, way = _to_and_fro(loads, x)
 
@@ -173,7 +176,7 @@ def _extremes(result: CamResult, loads: Loads, x: Array) -> Array:
 
 
 def _beside(
-    result: CamResult, loads: Loads, known: tuple[Array, Array, Statics], at: Ints
+    result: MadeCam, loads: Loads, known: tuple[Array, Array, Statics], at: Ints
 ) -> Callable[[Array, Ints], Statics]:
     """Return the forces at places in brackets, each on the way of the known position in `at`.
 
@@ -182,7 +185,7 @@ def _beside(
 
     Parameters
     ----------
-    result : CamResult
+    result : MadeCam
         The cam.
     loads : Loads
         Its loads.
@@ -228,7 +231,7 @@ def _to_and_fro(loads: Loads, x: Array) -> tuple[Array, Array]:
     return np.concatenate([x[:: int(one)] for one in loads.ways]), way
 
 
-def _statics(result: CamResult, loads: Loads, x: Array, way: Array) -> Statics:
+def _statics(result: MadeCam, loads: Loads, x: Array, way: Array) -> Statics:
     """Return the forces of a cam at positions of the driver, and ways."""
     design, motion = result.design, loads.motion(x, way)
     return solve(
@@ -243,20 +246,27 @@ def _statics(result: CamResult, loads: Loads, x: Array, way: Array) -> Statics:
     )
 
 
-def under_load(result: CamResult) -> tuple[Loads, Array, Array, Statics]:
-    """Return the loads of a cam, the positions and ways that are studied, and the forces there."""
-    demand(result.design)
+def under_load(result: MadeCam, positions: Array) -> tuple[Loads, Array, Array, Statics]:
+    """Return the loads of a cam, the positions and ways that are studied, and the forces there.
+
+    Parameters
+    ----------
+    result : MadeCam
+        The cam.
+    positions : (n,) array, rad or mm
+        Positions of the driver that are studied, as they rise (see `places`).
+    """
     loads = loads_of(result)
-    x, way = _to_and_fro(loads, result.places_under_load)
+    x, way = _to_and_fro(loads, positions)
     return loads, x, way, _statics(result, loads, x, way)
 
 
-def pressure_of(result: CamResult, statics: Statics) -> Array:
+def pressure_of(result: MadeCam, statics: Statics) -> Array:
     """Return the contact pressure, MPa; infinite where an edge of cam or follower carries.
 
     Parameters
     ----------
-    result : CamResult
+    result : MadeCam
         The cam.
     statics : Statics
         Its forces at n positions.
@@ -265,18 +275,18 @@ def pressure_of(result: CamResult, statics: Statics) -> Array:
     -------
     (n,) array, MPa
     """
-    per_width = statics.force / result.form.contact_width
+    per_width = statics.force / result.contact_width
     return line_pressure(per_width, statics.curvature, result.design.material)
 
 
-def largest_pressure(result: CamResult) -> float:
+def largest_pressure(result: MadeCam) -> float:
     """Return the largest contact pressure of a cam, MPa; 0 without any contact under load.
 
     It is infinite where an edge of the cam or the follower carries.
 
     Parameters
     ----------
-    result : CamResult
+    result : MadeCam
         The cam.
 
     Raises
@@ -284,7 +294,7 @@ def largest_pressure(result: CamResult) -> float:
     DesignError, InfeasibleError
         As those of the study.
     """
-    *_, statics = under_load(result)
+    *_, statics = under_load(result, places(result))
     return float(np.nanmax(pressure_of(result, statics), initial=0.0))
 
 
