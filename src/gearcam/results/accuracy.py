@@ -24,7 +24,8 @@ from gearcam.numeric.arguments import whole
 from gearcam.pictures.charts import Chart, Line
 from gearcam.results.kind import KINDS
 from gearcam.results.ladders import Ladder
-from gearcam.results.result import Progress, Result
+from gearcam.results.result import Result
+from gearcam.results.study import Progress
 
 REPEATS: Final = 5
 """Default number of runs of each level."""

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from gearcam.cams.wall import Wall
     from gearcam.kinds.cam.design import CamDesign
     from gearcam.kinds.cam.result import CamResult
-    from gearcam.results.result import StudyResult
+    from gearcam.results.study import StudyResult
 
 _FORMS: Final = ("disc", "groove", "conjugate")
 """Forms of cams whose phases fill a turn."""

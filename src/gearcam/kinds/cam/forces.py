@@ -21,7 +21,7 @@ from gearcam.kinds.cam.hints import enlarged
 from gearcam.kinds.cam.under_load import efficiency_away_from_rest, pressure_of, under_load
 from gearcam.mechanics.hertz import half_width
 from gearcam.pictures.charts import Chart, Limit, Line
-from gearcam.results.result import StudyResult
+from gearcam.results.study import StudyResult
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from gearcam.kinds.cam.result import CamResult
     from gearcam.numeric.arrays import Array, Ints
     from gearcam.results.kind import Study
-    from gearcam.results.result import Progress
+    from gearcam.results.study import Progress
 
 Tree = dict[str, Any]
 

@@ -345,7 +345,7 @@ _SMALLER: Final = 0.01
 
 _ALSO: Final[Mapping[str, Callable[[Any], object]]] = {
     "csv": lambda result: result.angles,
-    "tool-path": lambda result: result.paths,
+    "tool-path": lambda result: result.paths(),
     "dxf": kerf_paths,
     "cut-svg": kerf_paths,
     "curvature": lambda result: result.files("curvature"),

@@ -15,12 +15,12 @@ from gearcam.numeric.arrays import Array
 from gearcam.numeric.contour import Contour
 from gearcam.numeric.pose import Pose
 from gearcam.results.parts import PartsResult
+from gearcam.results.table_rows import TableRows
 
 if TYPE_CHECKING:
     from gearcam.cams.cam import Cam
     from gearcam.cams.carriers import Carrier, DriverAxis
     from gearcam.cams.followers import Follower
-    from gearcam.laws.columns import Given
     from gearcam.parts.body import Part
     from gearcam.parts.checks import CheckedParts
     from gearcam.pictures.drawings import Drawing, Path
@@ -63,13 +63,13 @@ class MadeCam(PartsResult):
     def cam(self) -> Cam:
         """The cam; its curves and measures are computed on demand."""
         program = self.program
-        with self.stage("cam"), self.naming_rows():
+        with self.stage("cam"), self.rows.named():
             return self.form.make(program)
 
-    @property
-    def given_rows(self) -> list[tuple[str, Given]]:
-        """The rows of tables that should lie on curves (see `Result`)."""
-        return self._given_rows(oscillating=self.design.follower.oscillating)
+    @cached_property
+    def rows(self) -> TableRows:
+        """The rows of the tables of the design (see `Staged`)."""
+        return TableRows(self.design, oscillating=self.design.follower.oscillating)
 
     @property
     def follower(self) -> Follower:
@@ -163,9 +163,8 @@ class MadeCam(PartsResult):
         """Width of the contact between cam and follower, mm."""
         return self.form.contact_width(self.cam)
 
-    @property
     def paths(self) -> Mapping[str, Contour | Path]:
-        """Paths of a cutter's centre, by the stems of their files."""
+        """Return paths of a cutter's centre, by the stems of their files."""
         return self.form.paths(self.cam, self.parts)
 
     @cached_property

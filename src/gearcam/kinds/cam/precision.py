@@ -25,14 +25,14 @@ from gearcam.kinds.cam.charts import over_driver
 from gearcam.kinds.cam.tables import SIZES, PrecisionSpec
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.pictures.charts import Chart, Limit, Line
-from gearcam.results.result import StudyResult
+from gearcam.results.study import StudyResult
 
 if TYPE_CHECKING:
     from gearcam.cams.cam import Cam
     from gearcam.kinds.cam.result import CamResult
     from gearcam.numeric.arrays import Array
     from gearcam.results.kind import Study
-    from gearcam.results.result import Progress
+    from gearcam.results.study import Progress
 
 Tree = dict[str, Any]
 

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from gearcam.cams.wall import PitchMotion, Wall
     from gearcam.kinds.cam.solve import Solution
     from gearcam.numeric.arrays import Ints, Plane
-    from gearcam.results.result import Progress, StudyResult
+    from gearcam.results.study import Progress, StudyResult
 
 _HINTED: Final = ("pressure-angle", "jamming", "sharp-profile", "undercut", "coarse-rows")
 """Findings whose messages name values that help."""
@@ -242,7 +242,7 @@ class CamResult(MadeCam):
         cam = self.cam
         with self.stage("checks"):
             found = run_checks(KIND, cam, self.design.limits)
-            found += self.row_findings
+            found += self.rows.findings
         if self.ordered:
             subject = self.part_subject
             with self.stage("checks"):

@@ -230,7 +230,7 @@ def _tool_path(result: CamResult, measured: Measured) -> Files:
     from gearcam.export.table import outline_bytes
     from gearcam.pictures.drawings import TOOL, Drawing, Feature, reach
 
-    paths = result.paths
+    paths = result.paths()
     tables = {f"{name}.csv": outline_bytes(reach(path)) for name, path in paths.items()}
     drawings = [
         Drawing(name=name, features=(Feature(layer=TOOL, shape=path),))

@@ -26,7 +26,7 @@ from gearcam.results.ladders import (
     solid_ladder,
     tolerances_around,
 )
-from gearcam.results.result import StudyResult
+from gearcam.results.study import StudyResult
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from gearcam.kinds.cam.result import CamResult
-    from gearcam.results.result import Progress
+    from gearcam.results.study import Progress
 
 _FILE: Final = "followed.csv"
 

@@ -33,14 +33,14 @@ from gearcam.numeric.arrays import as_complex
 from gearcam.numeric.bulges import flatten_bulges
 from gearcam.pictures.charts import Chart, Line
 from gearcam.results.outline_file import read_closed
-from gearcam.results.result import StudyResult
+from gearcam.results.study import StudyResult
 
 if TYPE_CHECKING:
     from gearcam.kinds.gear_pair.result import GearPairResult
     from gearcam.meshing.half_teeth import HalfTeeth
     from gearcam.numeric.arrays import Array
     from gearcam.results.kind import Study
-    from gearcam.results.result import Progress
+    from gearcam.results.study import Progress
 
 Tree = dict[str, Any]
 Run = Callable[[Assembly], Running]

@@ -40,7 +40,7 @@ from gearcam.numeric.sampling import MARGIN
 from gearcam.parts.blank import KIND as PARTS_KIND
 from gearcam.parts.blank import Blank
 from gearcam.results.parts import CHORDS, Estimates, PartsResult
-from gearcam.results.result import Progress, StudyResult
+from gearcam.results.study import Progress, StudyResult
 
 if TYPE_CHECKING:
     from gearcam.gears.contact import FlankPairs
@@ -103,7 +103,7 @@ class GearPairResult(PartsResult):
     def law(self) -> RatioLaw:
         """The ratio law."""
         parameters, pair = self.design.law, self.design.pair
-        with self.stage("law"), self.naming_rows():
+        with self.stage("law"), self.rows.named():
             if not is_open(parameters):
                 demand_ring(pair)
             law = parameters.build(lobes_of(pair), self.tolerances)
@@ -114,7 +114,7 @@ class GearPairResult(PartsResult):
     def pair(self) -> GearPair:
         """The centrodes with their cutters."""
         law = self.law
-        with self.stage("centrodes"), self.naming_rows():
+        with self.stage("centrodes"), self.rows.named():
             return make_pair(
                 law,
                 self.design.pair,
@@ -226,7 +226,7 @@ class GearPairResult(PartsResult):
         steps, limits = self.steps, self.design.limits
         parts = self.parts_subject if self.ordered else None
         with self.stage("checks"):
-            findings = [*run_checks(KIND, self.subject, limits), *self.row_findings]
+            findings = [*run_checks(KIND, self.subject, limits), *self.rows.findings]
             for number, gears in enumerate(steps[1:], start=2):
                 findings += (
                     replace(finding, where=f"step {number}, {finding.where}")

@@ -29,7 +29,7 @@ from gearcam.results.ladders import (
     solid_ladder,
     tolerances_around,
 )
-from gearcam.results.result import StudyResult
+from gearcam.results.study import StudyResult
 
 if TYPE_CHECKING:
     from gearcam.kinds.gear_pair.design import GearPairDesign
@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from gearcam.numeric.arrays import Ints
     from gearcam.pictures.charts import Chart
     from gearcam.pictures.scenes import ContactPoints, Scene
-    from gearcam.results.result import Progress
+    from gearcam.results.study import Progress
 
 _CLOSE: Final = 1e-9
 """Driver angles closer than this, degrees, are the same."""
