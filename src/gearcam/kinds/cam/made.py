@@ -1,4 +1,4 @@
-"""A cam as its design says: program, cam, profiles and parts, each computed when it is needed."""
+"""A cam as its design says: program, cam, profiles and parts, on demand."""
 
 from __future__ import annotations
 
