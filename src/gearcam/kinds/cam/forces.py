@@ -28,7 +28,6 @@ if TYPE_CHECKING:
 
     from gearcam.kinds.cam.result import CamResult
     from gearcam.numeric.arrays import Array, Ints
-    from gearcam.results.kind import Study
     from gearcam.results.study import Progress
 
 Tree = dict[str, Any]
@@ -42,15 +41,13 @@ _NOISE: Final = 1e-9
 """Share of the largest force that is 0: where another wall begins to carry little is left."""
 
 
-def study_forces(result: CamResult, study: Study, progress: Progress | None) -> StudyResult:
+def study_forces(result: CamResult, progress: Progress | None) -> StudyResult:
     """Return the study of the forces of a cam (see `gearcam.cams.statics`).
 
     Parameters
     ----------
     result : CamResult
         The cam.
-    study : Study
-        The entry of the study.
     progress : callable, optional
         Called with what is computed, the number done and their total.
 
@@ -94,7 +91,7 @@ def study_forces(result: CamResult, study: Study, progress: Progress | None) -> 
     columns = _columns(result, loaded, width)
     return StudyResult(
         result=result,
-        study=study,
+        study=result.kind.studies["forces"],
         file="forces.csv",
         table=columns,
         group=_facts(result, loads, loaded, release),

@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from gearcam.cams.cam import Cam
     from gearcam.kinds.cam.result import CamResult
     from gearcam.numeric.arrays import Array
-    from gearcam.results.kind import Study
     from gearcam.results.study import Progress
 
 Tree = dict[str, Any]
@@ -49,15 +48,13 @@ class _Values(NamedTuple):
     by_size: dict[str, Array]
 
 
-def study_precision(result: CamResult, study: Study, progress: Progress | None) -> StudyResult:
+def study_precision(result: CamResult, progress: Progress | None) -> StudyResult:
     """Return the study of the precision of a cam (see `gearcam.cams.precision`).
 
     Parameters
     ----------
     result : CamResult
         The cam.
-    study : Study
-        The entry of the study.
     progress : callable, optional
         Called with what is computed, the number done and their total.
 
@@ -84,7 +81,7 @@ def study_precision(result: CamResult, study: Study, progress: Progress | None) 
         columns |= _columns(one, spec, scale, unit)
     return StudyResult(
         result=result,
-        study=study,
+        study=result.kind.studies["precision"],
         file="precision.csv",
         table=columns,
         group=facts,

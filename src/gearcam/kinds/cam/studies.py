@@ -10,6 +10,7 @@ import numpy as np
 
 from gearcam.base.errors import DesignError, Problem
 from gearcam.base.facts import Fact
+from gearcam.base.registry import deferred
 from gearcam.cams.three_points import three_point_curvature
 from gearcam.kinds.cam.curvature import curvature_at, pitch_points
 from gearcam.kinds.cam.given_profile import followed
@@ -154,12 +155,6 @@ FOLLOW: Final = Study(
 )
 
 
-def _precision(result: CamResult, progress: Progress | None) -> StudyResult:
-    from gearcam.kinds.cam.precision import study_precision
-
-    return study_precision(result, PRECISION, progress)
-
-
 PRECISION: Final = Study(
     name="precision",
     key="precision",
@@ -167,20 +162,8 @@ PRECISION: Final = Study(
     done="studied",
     table="precision",
     options={"lift_error_deg": "swing-error"},
-    compute=_precision,
+    compute=deferred("gearcam.kinds.cam.precision:study_precision"),
 )
-
-
-def _forces(result: CamResult, progress: Progress | None) -> StudyResult:
-    from gearcam.kinds.cam.forces import study_forces
-
-    return study_forces(result, FORCES, progress)
-
-
-def _demand_speed(design: Any) -> None:
-    from gearcam.kinds.cam.under_load import demand
-
-    demand(design)
 
 
 FORCES: Final = Study(
@@ -189,8 +172,8 @@ FORCES: Final = Study(
     doc="Compute forces, torque, efficiency and contact pressure; write DIR/NAME/forces.csv.",
     done="computed",
     table="forces",
-    compute=_forces,
-    demand=_demand_speed,
+    compute=deferred("gearcam.kinds.cam.forces:study_forces"),
+    demand=deferred("gearcam.kinds.cam.under_load:demand"),
 )
 
 STUDIES: Final[dict[str, Study]] = {

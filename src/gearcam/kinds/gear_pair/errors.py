@@ -39,7 +39,6 @@ if TYPE_CHECKING:
     from gearcam.kinds.gear_pair.result import GearPairResult
     from gearcam.meshing.half_teeth import HalfTeeth
     from gearcam.numeric.arrays import Array
-    from gearcam.results.kind import Study
     from gearcam.results.study import Progress
 
 Tree = dict[str, Any]
@@ -71,15 +70,13 @@ _SAGITTA: Final = 0.01
 """Chord error of flattened arcs of a measured outline, in chord tolerances of the design."""
 
 
-def study_errors(result: GearPairResult, study: Study, progress: Progress | None) -> StudyResult:
+def study_errors(result: GearPairResult, progress: Progress | None) -> StudyResult:
     """Return the study of the errors of a pair (see `gearcam.meshing.errors`).
 
     Parameters
     ----------
     result : GearPairResult
         The pair.
-    study : Study
-        The entry of the study.
     progress : callable, optional
         Called with what is computed, the number done and their total.
 
@@ -138,7 +135,7 @@ def study_errors(result: GearPairResult, study: Study, progress: Progress | None
     lines |= {_WORDS[name]: one for name, one in running.items()}
     return StudyResult(
         result=result,
-        study=study,
+        study=result.kind.studies["errors"],
         file="errors.csv",
         table=_columns(phi1, without, together, running),
         group=group,

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from gearcam.base.findings import run_checks
+from gearcam.base.registry import deferred
 from gearcam.gears.pair import COARSEST, FINEST, FLANK_POINTS, make_gear
 from gearcam.gears.track import WHEELS
 from gearcam.kinds.shared import accuracy_study
@@ -201,19 +202,13 @@ MESH: Final = Study(
 )
 
 
-def _errors(result: GearPairResult, progress: Progress | None) -> StudyResult:
-    from gearcam.kinds.gear_pair.errors import study_errors
-
-    return study_errors(result, ERRORS, progress)
-
-
 ERRORS: Final = Study(
     name="errors",
     key="errors",
     doc="Study errors of mounting and making of gear pairs; write DIR/NAME/errors.csv.",
     done="studied",
     table="errors",
-    compute=_errors,
+    compute=deferred("gearcam.kinds.gear_pair.errors:study_errors"),
     options={"eccentricity_deg": "eccentricity-angle", "file": "pitch"},
 )
 
