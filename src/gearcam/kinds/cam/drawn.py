@@ -26,7 +26,6 @@ from gearcam.pictures.charts import Chart, Charts, Limit, Line
 from gearcam.pictures.drawings import (
     CENTER,
     FOLLOWER,
-    Feature,
     place,
 )
 from gearcam.pictures.scenes import PLACES, ColouredCurve, ContactPoints, MovingBody, Scene, still
@@ -277,7 +276,10 @@ def scene(result: CamResult, places: int = PLACES) -> Scene:
         MovingBody(
             name=part.name,
             called=f"cam {number}" if several else "cam",
-            features=place(_of_part(plates, part.name if several else ""), back),
+            features=place(
+                [one for one in plates if not several or one.layer.startswith(part.name.upper())],
+                back,
+            ),
             pose=moving,
         )
         for number, part in enumerate(result.parts, start=1)
@@ -293,11 +295,6 @@ def scene(result: CamResult, places: int = PLACES) -> Scene:
         contacts=_contacts(result, theta, moving),
         coloured=coloured(result, theta),
     )
-
-
-def _of_part(features: list[Feature], name: str) -> list[Feature]:
-    """Return the features on layers that begin with the name of a part."""
-    return [one for one in features if one.layer.startswith(name.upper())]
 
 
 def _pose(motion: PitchMotion, theta: Array) -> Pose:

@@ -15,7 +15,6 @@ from gearcam.base.quantities import TORQUE
 from gearcam.cams.follower_loads import Loads
 from gearcam.cams.force_checks import Loaded, on_way
 from gearcam.cams.spec import FORCES
-from gearcam.cams.statics import Statics
 from gearcam.kinds.cam.charts import over_driver
 from gearcam.kinds.cam.hints import enlarged
 from gearcam.kinds.cam.under_load import efficiency_away_from_rest, pressure_of, under_load
@@ -112,16 +111,12 @@ def _holding(loads: Loads) -> str:
     return f"spring[0].{key} = {formatted(least)}"
 
 
-def _effort(result: CamResult) -> tuple[str, float]:
-    """Return name and factor of the column of loads."""
-    return ("load_nm", 1e-3) if result.follower.angular else ("load_n", 1.0)
-
-
 def _columns(result: CamResult, loaded: Loaded, width: Array) -> dict[str, Array]:
     """Return the columns of ``forces.csv``."""
     x, statics, pressure = loaded.x, loaded.statics, loaded.pressure
     driver, drive, motion = result.driver, result.design.drive, result.cam.motions[0]
-    (load, load_scale), (effort, scale) = _effort(result), drive.effort
+    load, load_scale = ("load_nm", 1e-3) if result.follower.angular else ("load_n", 1.0)
+    effort, scale = drive.effort
     sign = -1.0 if motion.clockwise else 1.0
     columns = {
         driver.column: driver.scale * x,
@@ -167,6 +162,7 @@ def _facts(
     statics, design = loaded.statics, result.design
     effort, scale = design.drive.effort
     without = design.follower.without_friction(design.friction)
+    walls = statics.carrying[statics.carrying >= 0]
     tree: Tree = {
         "normal_n": _extreme(
             loaded, np.where(statics.lifted, 0.0, statics.force), "normal force", "N"
@@ -182,7 +178,7 @@ def _facts(
         **_largest_pressure(loaded),
         "locked": bool(statics.locked.any()),
         "lifted": bool(statics.lifted.any()),
-        "reversals": _reversals(statics),
+        "reversals": int(np.count_nonzero(np.diff(walls))) or None,
         "spring": _spring(loads) or None,
         "friction": Fact(", ".join(without), "friction left out", shown=True) if without else None,
     }
@@ -244,13 +240,6 @@ def _efficiency(loaded: Loaded) -> Tree | None:
 
 def _integral(x: Array, y: Array) -> float:
     return float(np.sum(0.5 * (y[1:] + y[:-1]) * np.abs(np.diff(x))))
-
-
-def _reversals(statics: Statics) -> int | None:
-    """Return how often the follower changes walls; None with one wall."""
-    walls = statics.carrying[statics.carrying >= 0]
-    changes = int(np.count_nonzero(np.diff(walls)))
-    return changes or None
 
 
 def _spring(loads: Loads) -> Tree:

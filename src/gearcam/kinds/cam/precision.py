@@ -10,7 +10,7 @@ import numpy as np
 
 from gearcam.base.facts import Fact
 from gearcam.base.findings import Finding, run_checks
-from gearcam.base.quantities import ANGLE, Quantity
+from gearcam.base.quantities import ANGLE
 from gearcam.cams.precision import (
     COMBINED,
     Largest,
@@ -160,7 +160,7 @@ def _size_facts(
             value,
             f"largest sensitivity to {words}",
             place=found.place,
-            unit=_per(unit, quantity),
+            unit=f"{unit}/{quantity.unit}",
             shown=not tolerance and not allowed,
         ),
         f"deviation_{unit}": scale * found.value * tolerance,
@@ -172,10 +172,6 @@ def _size_facts(
             label = f"tolerance of {words} allowed, with equal shares"
             tree[f"allowed_together{suffix}"] = Fact(together, label, shown=True)
     return tree
-
-
-def _per(unit: str, quantity: Quantity) -> str:
-    return f"{unit}/{quantity.unit}"
 
 
 def _findings(cam: Cam, spec: PrecisionSpec) -> tuple[Finding, ...]:

@@ -22,7 +22,7 @@ from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
 from gearcam.numeric.pose import Pose
 from gearcam.parts.body import Part
-from gearcam.pictures.charts import Chart, Charts, Limit, Line, MarkedPlace, knot_marks
+from gearcam.pictures.charts import Chart, Charts, Limit, Line, knot_marks
 from gearcam.pictures.drawings import (
     CENTER,
     CENTRODE,
@@ -50,12 +50,6 @@ _NOISE: Final = 1e-12
 """Share of a turn by which a knot may lie before its end: rounding."""
 
 
-def _knots(result: GearPairResult) -> tuple[MarkedPlace, ...]:
-    """Return the knots of the law within the driver's turn, or its travel."""
-    end = float(result.phases[-1]) * (1.0 - _NOISE)
-    return knot_marks(np.degrees(result.knots), 0.0, math.degrees(end))
-
-
 def _chart(
     result: GearPairResult,
     title: str,
@@ -65,13 +59,14 @@ def _chart(
     limits: Sequence[Limit] = (),
 ) -> Chart:
     """Return a chart over driver angles, degrees, with the lines by label and the knots."""
+    end = float(result.phases[-1]) * (1.0 - _NOISE)
     return Chart(
         title=title,
         x=DRIVER,
         y=y,
         lines=tuple(Line(label=label, x=phi1, y=values) for label, values in lines.items()),
         limits=tuple(limits),
-        marks=_knots(result),
+        marks=knot_marks(np.degrees(result.knots), 0.0, math.degrees(end)),
     )
 
 

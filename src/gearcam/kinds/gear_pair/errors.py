@@ -345,15 +345,12 @@ def _charts(lines: Mapping[str, Running], trials: Array, unit: str) -> dict[str,
     if len(found):
         bars = min(_BARS, 5 + math.isqrt(len(found)))
         counts, edges = np.histogram(found, bars)
+        # a stepped line with two points at each edge
+        heights = np.concatenate([[0.0], np.repeat(counts, 2), [0.0]])
         charts["trials"] = Chart(
             title="Transmission error of random assemblies",
             x=f"transmission error, peak to peak, {unit}",
             y="assemblies",
-            lines=(Line(label="assemblies", x=np.repeat(edges, 2), y=_steps(counts)),),
+            lines=(Line(label="assemblies", x=np.repeat(edges, 2), y=heights),),
         )
     return charts
-
-
-def _steps(counts: Array) -> Array:
-    """Return counts as the heights of a stepped line with two points at each edge."""
-    return np.concatenate([[0.0], np.repeat(counts, 2), [0.0]])

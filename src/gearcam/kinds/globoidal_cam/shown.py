@@ -36,7 +36,7 @@ def facts(result: GloboidalCamResult) -> Facts:
     """Return the facts of a globoidal cam, its `result`."""
     tree: Tree = {
         "indexer": _indexer(result),
-        "motion": _motion(result),
+        "motion": {"unit": "deg"} | peak_facts(result, math.degrees(1.0), "deg", " of the turret"),
         "cam": _cam(result),
         "solid": solid_facts(result),
         "accuracy": accuracy_facts(result, "rollers that cut it", {}),
@@ -58,11 +58,6 @@ def _indexer(result: GloboidalCamResult) -> Tree:
             math.degrees(cam.clearance / cam.reach), "backlash of the turret at rest"
         ),
     }
-
-
-def _motion(result: GloboidalCamResult) -> Tree:
-    """Return the peaks of the turret's derivatives that are finite, by cam angle and by time."""
-    return {"unit": "deg"} | peak_facts(result, math.degrees(1.0), "deg", " of the turret")
 
 
 def _cam(result: GloboidalCamResult) -> Tree:
