@@ -326,8 +326,10 @@ class Arm(Round):
         """Return the derivatives by the arm and the place of the pivot (see `Round.centre_by`)."""
         out, still = -self.hand * unit(-self.hand * p), np.ones(np.shape(p), dtype=np.complex128)
         return -1j * self.hand * self.arm * out, {
-            "arm": out, "pivot_distance": self.hand * still, "pivot_height": 1j * still,
-        }  # fmt: skip
+            "arm": out,
+            "pivot_distance": self.hand * still,
+            "pivot_height": 1j * still,
+        }
 
     def axes(self, p: Jet | Array) -> tuple[Pair, Pair]:
         """Return ``exp(i*hand*p)``, and ``i*hand*arm - i*exp(i*hand*p)*pivot``.

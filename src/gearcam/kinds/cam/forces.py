@@ -32,8 +32,12 @@ if TYPE_CHECKING:
 Tree = dict[str, Any]
 
 _MIRRORED: Final = (
-    "guide_n", "guide_moment_nmm", "guide_low_n", "guide_high_n", "pivot_x_n",
-)  # fmt: skip
+    "guide_n",
+    "guide_moment_nmm",
+    "guide_low_n",
+    "guide_high_n",
+    "pivot_x_n",
+)
 """Reactions that change their sign in the mirror image, which a cam that turns clockwise is."""
 
 _NOISE: Final = 1e-9

@@ -36,12 +36,25 @@ if TYPE_CHECKING:
     Parts = Sequence[Part]
 
 ROWS: Final = (
-    "cam.follower", "cam.roller_radius_mm", "cam.dome_radius_mm", "cam.pivot_distance_mm",
-    "cam.arm_mm", "cam.face_offset_mm", "cam.offset_mm", "motion.total_lift",
-    "cam.prime_radius_mm", "cam.base_radius_mm", "cam.rotation", "cam.pressure_angle_deg.rise_max",
-    "cam.pressure_angle_deg.return_max", "cam.profile.clearance_mm", "part.density_kg_m3",
-    "part.mass.mass_kg", "part.mass.centroid_mm", "part.mass.unbalance_g_mm",
-)  # fmt: skip
+    "cam.follower",
+    "cam.roller_radius_mm",
+    "cam.dome_radius_mm",
+    "cam.pivot_distance_mm",
+    "cam.arm_mm",
+    "cam.face_offset_mm",
+    "cam.offset_mm",
+    "motion.total_lift",
+    "cam.prime_radius_mm",
+    "cam.base_radius_mm",
+    "cam.rotation",
+    "cam.pressure_angle_deg.rise_max",
+    "cam.pressure_angle_deg.return_max",
+    "cam.profile.clearance_mm",
+    "part.density_kg_m3",
+    "part.mass.mass_kg",
+    "part.mass.centroid_mm",
+    "part.mass.unbalance_g_mm",
+)
 """Facts in the tables of all drawings."""
 
 C = TypeVar("C", bound=Cam)

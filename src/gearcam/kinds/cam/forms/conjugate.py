@@ -31,9 +31,13 @@ if TYPE_CHECKING:
     from gearcam.pictures.drawings import Drawing
 
 _OF_SECOND = (
-    "prime_radius_mm", "base_radius_mm", "roller_radius_mm", "arm_mm",
-    "pressure_angle_deg.rise_max", "pressure_angle_deg.return_max",
-)  # fmt: skip
+    "prime_radius_mm",
+    "base_radius_mm",
+    "roller_radius_mm",
+    "arm_mm",
+    "pressure_angle_deg.rise_max",
+    "pressure_angle_deg.return_max",
+)
 """Facts of the second cam that replace those of the first in the table of its drawing."""
 
 

@@ -124,9 +124,13 @@ class Groove(Form[GrooveCam, GrooveSpec, GrooveFollower]):
         "blank": GrooveBlank,
     }
     rows = (
-        "cam.outer_diameter_mm", "cam.groove.width_mm", "cam.groove.depth_mm",
-        "cam.roller2_radius_mm", "cam.roller_clearance_mm", "cam.lost_motion",
-    )  # fmt: skip
+        "cam.outer_diameter_mm",
+        "cam.groove.width_mm",
+        "cam.groove.depth_mm",
+        "cam.roller2_radius_mm",
+        "cam.roller_clearance_mm",
+        "cam.lost_motion",
+    )
 
     def contact_width(self, cam: GrooveCam) -> float:
         """Return the depth of the groove, mm, of which each of two rollers has half."""

@@ -113,12 +113,14 @@ class PlateSpec(CamSpec):
 
     rules = (
         only_with(
-            ("groove_depth", "roller_clearance", "side"), "walls", "both",
+            ("groove_depth", "roller_clearance", "side"),
+            "walls",
+            "both",
             why="does not apply to a cam with one wall",
         ),
         below("groove_depth", "thickness", why="the groove would have no floor"),
         needs("side", "groove_depth"),
-    )  # fmt: skip
+    )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -224,9 +226,16 @@ class Translating(Form[TranslatingCam, PlateSpec, PlateFollower]):
     }
     moves = "sliding"
     rows = (
-        "cam.travel_mm", "cam.run_in_mm", "cam.run_out_mm", "cam.axis_deg", "cam.pivot_height_mm",
-        "cam.groove.width_mm", "cam.groove.depth_mm", "cam.roller_clearance_mm", "cam.lost_motion",
-    )  # fmt: skip
+        "cam.travel_mm",
+        "cam.run_in_mm",
+        "cam.run_out_mm",
+        "cam.axis_deg",
+        "cam.pivot_height_mm",
+        "cam.groove.width_mm",
+        "cam.groove.depth_mm",
+        "cam.roller_clearance_mm",
+        "cam.lost_motion",
+    )
 
     @property
     def step(self) -> tuple[str, float]:
