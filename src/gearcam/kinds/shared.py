@@ -210,7 +210,7 @@ def _demand(design: Design) -> None:
     stages_of(design, design.accuracy.stage)  # pyright: ignore[reportAttributeAccessIssue]
 
 
-def _measure(result: Result, progress: Progress | None) -> StudyResult:
+def _measure(result: Result, progress: Progress) -> StudyResult:
     from gearcam.report.page import charts_page
     from gearcam.results.accuracy import accuracy
     from gearcam.results.study import StudyResult

@@ -25,7 +25,7 @@ from gearcam.pictures.charts import Chart, Line
 from gearcam.results.kind import KINDS
 from gearcam.results.ladders import Ladder
 from gearcam.results.result import Result
-from gearcam.results.study import Progress
+from gearcam.results.study import Progress, silent
 
 REPEATS: Final = 5
 """Default number of runs of each level."""
@@ -262,6 +262,7 @@ def accuracy(
     2.0
     """
     count, names = whole("repeat", repeat, 1), stages_of(result.design, stages)
+    tell = progress or silent
     makers = result.kind.ladders
     first: dict[tuple[str, float], tuple[float, int]] = {}
     refused: dict[tuple[str, float], str] = {}
@@ -275,14 +276,12 @@ def accuracy(
             refused[name, math.nan] = str(error)
     total, done = (count + 1) * len(ladders), itertools.count()
     for name, ladder in ladders.items():
-        if progress is not None:
-            progress(name, next(done), total)
+        tell(name, next(done), total)
         _first_round(name, ladder, first, refused)
     samples: dict[tuple[str, float], list[float]] = {rung: [] for rung in first}
     for number in range(count):
         for name, ladder in ladders.items():
-            if progress is not None:
-                progress(name, next(done), total)
+            tell(name, next(done), total)
             levels = [level for whose, level in first if whose == name]
             # rotate the levels: the first one meets cold caches
             cut = number % len(levels)

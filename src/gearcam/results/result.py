@@ -22,7 +22,7 @@ from gearcam.base.tolerances import DEFAULT, Tolerances
 from gearcam.numeric.arguments import one_of, refused
 from gearcam.results.goals import demand_facts, goals_of
 from gearcam.results.staged import Staged
-from gearcam.results.study import Progress, StudyResult, merged
+from gearcam.results.study import Progress, StudyResult, merged, silent
 from gearcam.results.written import BuildOutput, demand_formats
 
 if TYPE_CHECKING:
@@ -46,7 +46,6 @@ _OF_STUDIES: Final = (
     "_studied",
     "_running",
     "_drawn",
-    "rows",
     "design_facts",
     "facts",
     "findings",
@@ -133,7 +132,7 @@ class Result(Staged):
             entry.demand(self.design)
             self._running.add(name)
             try:
-                outcome = self._studied[name] = entry.compute(self, progress)
+                outcome = self._studied[name] = entry.compute(self, progress or silent)
             finally:
                 self._running.discard(name)
         return outcome
@@ -443,8 +442,8 @@ class Result(Staged):
         steps = [*self.stages, *studies, *formats, "writing"]
 
         def tell(step: str, *_: int) -> None:
-            if progress is not None and step in steps:
-                progress(step, steps.index(step), len(steps))
+            if step in steps:
+                (progress or silent)(step, steps.index(step), len(steps))
 
         for step, attribute in self.stages.items():
             tell(step)

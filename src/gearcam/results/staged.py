@@ -72,7 +72,7 @@ class Staged(NotebookView):
         """
         return self.checked
 
-    @cached_property
+    @property
     def rows(self) -> TableRows:
         """The rows of the tables of the design."""
         return TableRows(self.design, oscillating=False)

@@ -27,6 +27,10 @@ Progress = Callable[[str, int, int], None]
 """Called with the name of the next stage, the number of stages done and their total."""
 
 
+def silent(stage: str, done: int, total: int) -> None:
+    """Tell nobody of progress (see `Progress`)."""
+
+
 def merged(checked: Sequence[Finding], studies: Collection[StudyResult]) -> tuple[Finding, ...]:
     """Return the findings of `studies`, and those `checked` that they do not repeat, in order."""
     repeated = {code for one in studies for code in one.study.repeats}

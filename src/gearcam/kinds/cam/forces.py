@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.base.facts import Fact, extent
+from gearcam.base.facts import Fact, Tree, extent
 from gearcam.base.findings import limit_of, run_checks
 from gearcam.base.numerals import formatted, shortened
 from gearcam.base.quantities import TORQUE
@@ -29,8 +29,6 @@ if TYPE_CHECKING:
     from gearcam.numeric.arrays import Array, Ints
     from gearcam.results.study import Progress
 
-Tree = dict[str, Any]
-
 _MIRRORED: Final = (
     "guide_n",
     "guide_moment_nmm",
@@ -44,14 +42,14 @@ _NOISE: Final = 1e-9
 """Share of the largest force that is 0: where another wall begins to carry little is left."""
 
 
-def study_forces(result: CamResult, progress: Progress | None) -> StudyResult:
+def study_forces(result: CamResult, progress: Progress) -> StudyResult:
     """Return the study of the forces of a cam (see `gearcam.cams.statics`).
 
     Parameters
     ----------
     result : CamResult
         The cam.
-    progress : callable, optional
+    progress : Progress
         Called with what is computed, the number done and their total.
 
     Returns
@@ -64,8 +62,7 @@ def study_forces(result: CamResult, progress: Progress | None) -> StudyResult:
     InfeasibleError
         If the cam is impossible, or no stiffness keeps the follower on it.
     """
-    if progress is not None:
-        progress("forces", 0, 1)
+    progress("forces", 0, 1)
     design, cam = result.design, result.cam
     with result.stage("forces"):
         loads, x, way, statics = under_load(result, result.places_under_load)

@@ -157,14 +157,14 @@ def compared(wall: Wall, theta: Array, lift: Array) -> tuple[dict[str, Array], d
     return columns, facts
 
 
-def study_follow(result: CamResult, progress: Progress | None, **given: Any) -> StudyResult:
+def study_follow(result: CamResult, progress: Progress, **given: Any) -> StudyResult:
     """Return the study of a profile.
 
     Parameters
     ----------
     result : CamResult
         The cam.
-    progress : callable, optional
+    progress : Progress
         Called with what is computed, the number done and their total.
     **given
         The arguments of `CamResult.follow`; by default the settings of the design.
@@ -193,7 +193,7 @@ def demand(design: Any) -> None:
 
 def _follow(
     result: CamResult,
-    progress: Progress | None,
+    progress: Progress,
     profile: str | Path | ArrayLike,
     wall: str | None = None,
     *,
@@ -203,11 +203,9 @@ def _follow(
     if fit:
         return _fit(result, progress, profile, wall)
     chosen = result.wall(wall)
-    if progress is not None:
-        progress("profile", 0, 2)
+    progress("profile", 0, 2)
     outline, bulges = read_profile(profile, chosen)
-    if progress is not None:
-        progress("follow", 1, 2)
+    progress("follow", 1, 2)
     with result.stage("follow"):
         limits = result.design.limits
         columns, facts, found = followed(chosen, outline, bulges, result.angles, limits)
@@ -223,7 +221,7 @@ def _follow(
 
 def _fit(
     result: CamResult,
-    progress: Progress | None,
+    progress: Progress,
     profile: str | Path | ArrayLike,
     wall: str | None,
 ) -> StudyResult:
@@ -245,8 +243,7 @@ def _fit(
     else:
         (theta, lift), found, error = rows, (), None
         columns, facts = compared(chosen, theta, lift)
-    if progress is not None:
-        progress("fit", 0, 1)
+    progress("fit", 0, 1)
     with result.stage("fit"):
         one = fitting.fit(result, chosen, theta, lift, error=error, source=profile)
         columns, facts = columns | one.columns, facts | {"fit": one.facts}

@@ -66,7 +66,7 @@ class MadeCam(PartsResult):
         with self.stage("cam"), self.rows.named():
             return self.form.make(program)
 
-    @cached_property
+    @property
     def rows(self) -> TableRows:
         """The rows of the tables of the design (see `Staged`)."""
         return TableRows(self.design, oscillating=self.design.follower.oscillating)

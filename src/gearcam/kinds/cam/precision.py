@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
-from gearcam.base.facts import Fact
+from gearcam.base.facts import Fact, Tree
 from gearcam.base.findings import Finding, run_checks
 from gearcam.base.quantities import ANGLE
 from gearcam.cams.precision import (
@@ -33,8 +33,6 @@ if TYPE_CHECKING:
     from gearcam.numeric.arrays import Array
     from gearcam.results.study import Progress
 
-Tree = dict[str, Any]
-
 _COMBINATIONS: Final = {"worst_case": added, "root_of_squares": rooted}
 
 _NO_INFLUENCE: Final = 1e-12
@@ -48,14 +46,14 @@ class _Values(NamedTuple):
     by_size: dict[str, Array]
 
 
-def study_precision(result: CamResult, progress: Progress | None) -> StudyResult:
+def study_precision(result: CamResult, progress: Progress) -> StudyResult:
     """Return the study of the precision of a cam (see `gearcam.cams.precision`).
 
     Parameters
     ----------
     result : CamResult
         The cam.
-    progress : callable, optional
+    progress : Progress
         Called with what is computed, the number done and their total.
 
     Returns
@@ -68,8 +66,7 @@ def study_precision(result: CamResult, progress: Progress | None) -> StudyResult
         most: dict[str, Largest] = {}
         sizes = dict.fromkeys(size for one in values for size in one.by_size)
         for number, size in enumerate(sizes):
-            if progress is not None:
-                progress("precision", number, len(sizes))
+            progress("precision", number, len(sizes))
             found = largest(cam, lambda by_size, size=size: _of(by_size, size))
             if found is not None:
                 most[size] = found

@@ -26,6 +26,7 @@ from gearcam.numeric.piecewise import with_both_sides
 from gearcam.parts.blank import KIND as PARTS_KIND
 from gearcam.parts.mass import quadrature_error
 from gearcam.results.parts import CHORDS, Estimates
+from gearcam.results.study import silent
 
 if TYPE_CHECKING:
     from gearcam.cams.cam import Cam
@@ -287,7 +288,7 @@ class CamResult(MadeCam):
             If it is not a profile, or the file cannot be read.
         """
         study = self.kind.studies["follow"]
-        return study.compute(self, progress, profile=profile, wall=wall, fit=fit)
+        return study.compute(self, progress or silent, profile=profile, wall=wall, fit=fit)
 
 
 def pressure_column(motion: PitchMotion) -> str:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
-from gearcam.base.facts import Fact, Facts, extent
+from gearcam.base.facts import Fact, Facts, Tree, extent
 from gearcam.base.numerals import formatted
 from gearcam.designs.outputs import MESHES
 from gearcam.kinds.cam.wall_facts import pressure
@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from gearcam.laws.program import Program
     from gearcam.numeric.arrays import Array
     from gearcam.numeric.contour import Contour
-
-Tree = dict[str, Any]
 
 _DERIVATIVES: Final = ("velocity", "acceleration", "jerk")
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from gearcam.base.facts import Fact, extent
+from gearcam.base.facts import Fact, Tree, extent
 from gearcam.base.findings import limit_of
 from gearcam.cams.checks import KIND, pressure_limits
 
@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from gearcam.cams.measures import Range
     from gearcam.cams.wall import PitchMotion, Wall
     from gearcam.numeric.contour import Contour
-
-Tree = dict[str, Any]
 
 _RADII: Final = {
     "profile_min_mm": "smallest radius of the profile",

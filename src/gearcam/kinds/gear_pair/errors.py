@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from gearcam.base.errors import InfeasibleError
-from gearcam.base.facts import Fact, extent
+from gearcam.base.facts import Fact, Tree, extent
 from gearcam.base.findings import limit_of, run_checks
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import ARCSEC
@@ -41,7 +41,6 @@ if TYPE_CHECKING:
     from gearcam.numeric.arrays import Array
     from gearcam.results.study import Progress
 
-Tree = dict[str, Any]
 Run = Callable[[Assembly], Running]
 
 _SIZES: Final[Mapping[str, tuple[str, str, Callable[[Assembly], float]]]] = {
@@ -70,14 +69,14 @@ _SAGITTA: Final = 0.01
 """Chord error of flattened arcs of a measured outline, in chord tolerances of the design."""
 
 
-def study_errors(result: GearPairResult, progress: Progress | None) -> StudyResult:
+def study_errors(result: GearPairResult, progress: Progress) -> StudyResult:
     """Return the study of the errors of a pair (see `gearcam.meshing.errors`).
 
     Parameters
     ----------
     result : GearPairResult
         The pair.
-    progress : callable, optional
+    progress : Progress
         Called with what is computed, the number done and their total.
 
     Returns
@@ -98,8 +97,7 @@ def study_errors(result: GearPairResult, progress: Progress | None) -> StudyResu
     count = 2 + len(each) + spec.assemblies
 
     def report(done: int) -> None:
-        if progress is not None:
-            progress("errors", done, count)
+        progress("errors", done, count)
 
     with result.stage("errors"):
         phi1 = cycle(gears, spec.steps, alike=every.alike and spec.alike)

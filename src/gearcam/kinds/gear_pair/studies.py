@@ -45,7 +45,7 @@ _CLOSE: Final = 1e-9
 """Driver angles closer than this, degrees, are the same."""
 
 
-def _mesh(result: GearPairResult, progress: Progress | None) -> StudyResult:
+def _mesh(result: GearPairResult, progress: Progress) -> StudyResult:
     """Return the meshing of a pair as mounted; incomplete if it was interrupted."""
     from gearcam.kinds.gear_pair.shown import meshing_facts
     from gearcam.meshing.checks import KIND

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.base.facts import Fact, Facts
+from gearcam.base.facts import Fact, Facts, Tree
 from gearcam.base.findings import limit_of
 from gearcam.kinds.gridded_shown import (
     SOLIDS,
@@ -28,8 +28,7 @@ from gearcam.spatial.globoidal_surface import outer_radius
 
 if TYPE_CHECKING:
     from gearcam.kinds.globoidal_cam.result import GloboidalCamResult
-
-Tree = dict[str, Any]
+    from gearcam.results.kind import Files
 
 
 def facts(result: GloboidalCamResult) -> Facts:
@@ -90,9 +89,6 @@ def _pressure(result: GloboidalCamResult) -> Fact:
     limit = math.degrees(limit_of(KIND, "pressure-angle", result.design.limits))
     angle = math.degrees(spot.value)
     return Fact(angle, "largest pressure angle", at_most=limit, place=spot.place, shown=True)
-
-
-Files = dict[str, bytes]
 
 
 def _tables(result: GloboidalCamResult, _: Any) -> Files:

@@ -123,7 +123,7 @@ class SpatialCamResult(GriddedCam):
         """Factor and unit of the lift in output."""
         return (math.degrees(1.0), "deg") if self.design.follower.oscillating else (1.0, "mm")
 
-    @cached_property
+    @property
     def rows(self) -> TableRows:
         """The rows of the tables of the design (see `Staged`)."""
         return TableRows(self.design, oscillating=self.design.follower.oscillating)
