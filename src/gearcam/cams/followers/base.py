@@ -24,11 +24,8 @@ UPRIGHT = 0.5 * math.pi
 Values = TypeVar("Values", Jet, Array)
 """Jets, or numbers alone."""
 
-Line = tuple[complex, ...]
-"""Points of an open line, mm."""
-
-Disc = tuple[complex, float]
-"""Centre and radius, mm."""
+Symbol = tuple[list[tuple[complex, ...]], list[tuple[complex, float]]]
+"""Points of open lines, mm, and discs by centre and radius, mm."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -184,6 +181,31 @@ class Follower(ShortRepr, ABC):
         InfeasibleError
             If it passes a position that it cannot take, or loses its contact.
         """
+
+    def demand_within(self, program: Program, limits: tuple[float, float], passing: str) -> None:
+        """Refuse a lift with which a follower that swings takes positions not between limits.
+
+        Parameters
+        ----------
+        program : Program
+            The lift.
+        limits : (float, float), rad
+            Least and largest position.
+        passing : str
+            What it passes there, in words.
+
+        Raises
+        ------
+        InfeasibleError
+            If a position is not between them.
+        """
+        (low, high), (least, most) = (self.start + lift for lift in program.range), limits
+        if least < low and high < most:
+            return
+        position, limit = (low, least) if low <= least else (high, most)
+        value, limit = (math.degrees(angle - self.start) for angle in (position, limit))
+        what, note = f"the arm swings too far: it {passing}", "value and limit are lifts"
+        raise beyond_limit(what, "motion", value, limit, note, unit="deg")
 
     @abstractmethod
     def contact(self, carrier: Carrier, p: Jet, ds: Jet, inset: float) -> Contact:
@@ -345,7 +367,7 @@ class Follower(ShortRepr, ABC):
         """
 
     @abstractmethod
-    def symbol(self, p: float, reach: float, wide: float) -> tuple[list[Line], list[Disc]]:
+    def symbol(self, p: float, reach: float, wide: float) -> Symbol:
         """Return lines and discs that show the follower.
 
         Parameters
@@ -398,36 +420,6 @@ class Follower(ShortRepr, ABC):
         inset : float, mm
             Depth below a round follower's centre.
         """
-
-
-def demand_within(
-    follower: Follower, program: Program, limits: tuple[float, float], passing: str
-) -> None:
-    """Refuse an arm whose positions are not between two limits.
-
-    Parameters
-    ----------
-    follower : Follower
-        The arm, or the swinging face.
-    program : Program
-        Its lift.
-    limits : (float, float), rad
-        Least and largest position.
-    passing : str
-        What it passes there, in words.
-
-    Raises
-    ------
-    InfeasibleError
-        If a position is not between them.
-    """
-    (low, high), (least, most) = (follower.start + lift for lift in program.range), limits
-    if least < low and high < most:
-        return
-    position, limit = (low, least) if low <= least else (high, most)
-    value, limit = (math.degrees(angle - follower.start) for angle in (position, limit))
-    what, note = f"the arm swings too far: it {passing}", "value and limit are lifts"
-    raise beyond_limit(what, "motion", value, limit, note, unit="deg")
 
 
 def polar(across: Jet, y: Jet) -> tuple[Jet, Jet]:

@@ -13,17 +13,7 @@ import numpy as np
 from gearcam.base.errors import beyond_limit
 from gearcam.base.numerals import rounded_down
 from gearcam.cams.carriers import Carrier, unit
-from gearcam.cams.followers.base import (
-    UPRIGHT,
-    Contact,
-    Disc,
-    Follower,
-    Line,
-    Values,
-    demand_within,
-    dot,
-    polar,
-)
+from gearcam.cams.followers.base import UPRIGHT, Contact, Follower, Symbol, Values, dot, polar
 from gearcam.cams.followers.rounds import Arm
 from gearcam.cams.supports import Pivot, Support, guide
 from gearcam.laws.program import Program
@@ -149,7 +139,7 @@ class FlatStem(Face):
             "face_angle": dot(normal, 1j * (point - foot)),
         }
 
-    def symbol(self, p: float, reach: float, wide: float) -> tuple[list[Line], list[Disc]]:
+    def symbol(self, p: float, reach: float, wide: float) -> Symbol:
         """Return face and stem (see `Follower.symbol`)."""
         foot = complex(self.offset, p)
         return [(complex(-wide, p), complex(wide, p)), (foot, foot + 0.5j * reach)], []
@@ -205,7 +195,7 @@ class FlatArm(Face):
     def demand(self, program: Program) -> None:
         """Refuse a face that turns too far or falls too fast (see `Follower.demand`)."""
         across = "is perpendicular to the line of centres"
-        demand_within(self, program, (-UPRIGHT, UPRIGHT), across)
+        self.demand_within(program, (-UPRIGHT, UPRIGHT), across)
         slowest = program.range_of(1)[0]
         if not slowest > -1.0 + _STANDSTILL:
             what = "the face swings down faster than the cam turns: no profile can support it"
@@ -250,7 +240,7 @@ class FlatArm(Face):
             "face_offset": dot(normal, -1j * unit(-p)),
         }
 
-    def symbol(self, p: float, reach: float, wide: float) -> tuple[list[Line], list[Disc]]:  # noqa: ARG002
+    def symbol(self, p: float, reach: float, wide: float) -> Symbol:  # noqa: ARG002
         """Return the face, and its distance from the pivot (see `Follower.symbol`)."""
         along = cmath.exp(-1j * p)
         foot = self.pivot - self.offset * 1j * along

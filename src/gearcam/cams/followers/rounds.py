@@ -11,17 +11,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from gearcam.cams.carriers import Carrier, Pair, unit
-from gearcam.cams.followers.base import (
-    UPRIGHT,
-    Contact,
-    Disc,
-    Follower,
-    Line,
-    Values,
-    demand_within,
-    dot,
-    polar,
-)
+from gearcam.cams.followers.base import UPRIGHT, Contact, Follower, Symbol, Values, dot, polar
 from gearcam.cams.supports import Pivot, Support, guide
 from gearcam.laws.program import Program
 from gearcam.mechanics.friction import FrictionSpec
@@ -48,7 +38,7 @@ class Round(Follower):
         """Largest distance from the origin to its centre, mm, over all positions."""
         return math.inf
 
-    def _end(self, p: float) -> tuple[complex, list[Disc]]:
+    def _end(self, p: float) -> tuple[complex, list[tuple[complex, float]]]:
         """Return the centre, and its end as discs: none of a point."""
         centre = complex(self.centre(np.array(p)))
         return centre, [(centre, self.radius)] if self.radius else []
@@ -218,7 +208,7 @@ class Stem(Round):
             1j * cmath.exp(1j * self.tilt) * rise, dtype=np.complex128
         )
 
-    def symbol(self, p: float, reach: float, wide: float) -> tuple[list[Line], list[Disc]]:  # noqa: ARG002
+    def symbol(self, p: float, reach: float, wide: float) -> Symbol:  # noqa: ARG002
         """Return the stem and its end (see `Follower.symbol`)."""
         centre, ends = self._end(p)
         up = math.copysign(0.5 * reach, self.start) * 1j * cmath.exp(1j * self.tilt)
@@ -278,10 +268,10 @@ class Arm(Round):
     def demand(self, program: Program) -> None:
         """Refuse an arm over the line of centres, or across a travel (see `Follower.demand`)."""
         if self.hand > 0:
-            demand_within(self, program, (0.0, self.highest), "passes the line of centres")
+            self.demand_within(program, (0.0, self.highest), "passes the line of centres")
         else:
             across = "gets perpendicular to the cam's travel"
-            demand_within(self, program, (-UPRIGHT, UPRIGHT), across)
+            self.demand_within(program, (-UPRIGHT, UPRIGHT), across)
 
     def with_end(self, radius: float, arm: float) -> Self:
         """Return the arm with another end (see `Round.with_end`)."""
@@ -392,7 +382,7 @@ class Arm(Round):
         turn = -self.hand * rise
         return turn, self.pivot * (1.0 - unit(turn))
 
-    def symbol(self, p: float, reach: float, wide: float) -> tuple[list[Line], list[Disc]]:  # noqa: ARG002
+    def symbol(self, p: float, reach: float, wide: float) -> Symbol:  # noqa: ARG002
         """Return the arm and its end (see `Follower.symbol`)."""
         centre, ends = self._end(p)
         return [(self.pivot, centre)], ends
