@@ -17,7 +17,7 @@ from gearcam.cams.force_checks import Loaded, on_way
 from gearcam.cams.spec import FORCES
 from gearcam.kinds.cam.charts import over_driver
 from gearcam.kinds.cam.hints import enlarged
-from gearcam.kinds.cam.under_load import efficiency_away_from_rest, pressure_of, under_load
+from gearcam.kinds.cam.under_load import UnderLoad, efficiency_away_from_rest
 from gearcam.mechanics.hertz import half_width
 from gearcam.pictures.charts import Chart, Limit, Line
 from gearcam.results.study import StudyResult
@@ -65,8 +65,10 @@ def study_forces(result: CamResult, progress: Progress) -> StudyResult:
     progress("forces", 0, 1)
     design, cam = result.design, result.cam
     with result.stage("forces"):
-        loads, x, way, statics = under_load(result, result.places_under_load)
-        pressure = pressure_of(result, statics)
+        under = UnderLoad(result)
+        loads, (x, way) = under.loads, under.to_and_fro(result.places_under_load)
+        statics = under.statics(x, way)
+        pressure = under.pressure(statics)
         per_width = statics.force / result.contact_width
         half = half_width(per_width, statics.curvature, design.material)
         width = np.where(np.isinf(pressure), np.nan, half)
