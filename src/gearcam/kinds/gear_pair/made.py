@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from functools import cached_property
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, TypeAlias
 
-from gearcam.base.errors import beyond_limit
+from gearcam.base.errors import Adjustment, InfeasibleError, beyond_limit
 from gearcam.base.findings import limit_of
 from gearcam.base.numerals import formatted
 from gearcam.gears.pair import Gear, GearPair, leads, lobes_of, make_gear, make_pair, stepped
@@ -15,10 +16,9 @@ from gearcam.gears.rack_limits import demand_rim, demand_ring
 from gearcam.gears.spec import Finish
 from gearcam.gears.subject import KIND, CheckedPair
 from gearcam.gears.track import Wheel
-from gearcam.kinds.gear_pair.bores import Bores, demand_bore
 from gearcam.kinds.gear_pair.design import GearPairDesign
 from gearcam.laws.ratio.base import RatioLaw
-from gearcam.laws.ratio.span import is_open
+from gearcam.laws.ratio.span import angle_text, is_open
 from gearcam.numeric.sampling import MARGIN
 from gearcam.parts.blank import Blank
 from gearcam.results.parts import Estimates, PartsResult
@@ -33,7 +33,12 @@ _PLAIN: Final = frozenset({"csv", "inspection"})
 """Files that need only the teeth."""
 
 WHOLE: Final = 1e-9
-"""Share of a lobe or travel by which an end may exceed it: rounding."""
+"""Share of a lobe, travel or ratio that is rounding."""
+
+Bores: TypeAlias = tuple[float | None, float | None]
+"""Diameters, mm, of both wheels, including keyways; None of what has no bore."""
+
+_BORE: Final = "blank.bore_diameter_mm"
 
 
 class MadePair(PartsResult):
@@ -215,6 +220,84 @@ class MadePair(PartsResult):
             flank, _ = rows["flank_mm"]
             rows |= volume_errors(self.parts, self.steps, self.design, flank, self.tolerances)
         return rows
+
+
+def demand_bore(
+    gear: Gear, bores: Bores, design: GearPairDesign, driven: Callable[[], Gear]
+) -> None:
+    """Refuse a bore that reaches the roots of a wheel, and that of its mate if it does, too.
+
+    Parameters
+    ----------
+    gear : Gear
+        The wheel.
+    bores : two float or None, mm
+        Bore diameters of both wheels.
+    design : GearPairDesign
+        The design.
+    driven : callable
+        ``driven()`` returns the driven wheel, which is made after the driver.
+
+    Raises
+    ------
+    InfeasibleError
+        With the largest bores.
+    """
+    if not _too_wide(gear, bores):
+        return
+    wheels = [gear]
+    if gear.wheel == 1:
+        with suppress(InfeasibleError):
+            mate = driven()
+            wheels += [mate] * _too_wide(mate, bores)
+    names = [f"{_BORE}[{one.wheel - 1}]" for one in wheels]
+    # the limit holds for the circle around bore and keyway
+    limits = [2.0 * one.least_radius for one in wheels]
+    given = [bores[one.wheel - 1] or 0.0 for one in wheels]
+    diameters = [design.blank.wheel(one.wheel).bore for one in wheels]
+    rim = 2.0 * limit_of(KIND, "thin-rim", design.limits) * gear.pair.module
+    # the largest bore that keeps the limit of the rim, or without any that meets the roots
+    near = [
+        diameters[k] - given[k] + limit - (rim if rim < 0.9 * limit else 0.0)
+        for k, limit in enumerate(limits)
+    ]
+    worst, notes = limits.index(min(limits)), [*map(_room, wheels)]
+    where = f"wheel {gear.wheel}, {names[0]}"
+    if len(wheels) > 1:
+        where = f"wheels 1 and 2, {_BORE}"
+        notes.append(f"both take less than {formatted(limits[worst])} mm")
+        if diameters[0] == diameters[1]:
+            names, near, limits = [_BORE], [min(near)], [limits[worst]]
+    if diameters != given:
+        notes.append("limits hold for the circle around bore and keyway")
+    what = "the bore reaches the root of the teeth"
+    adjustments = (
+        Adjustment(
+            near=dict(zip(names, near, strict=True)),
+            far={name: 0.1 * limit for name, limit in zip(names, limits, strict=True)},
+        ),
+    )
+    raise beyond_limit(
+        what, where, given[worst], min(limits), "; ".join(notes), adjustments=adjustments
+    )
+
+
+def _too_wide(gear: Gear, bores: Bores) -> bool:
+    bore = bores[gear.wheel - 1]
+    return bore is not None and 0.5 * bore >= gear.least_radius
+
+
+def _room(gear: Gear) -> str:
+    """Return how wide the bore of a wheel may be, and why its root comes so near to the axis."""
+    ends = gear.pair.law.ratio_range
+    (place, ratio), (_, other) = ends if gear.wheel == 1 else reversed(ends)
+    room = f"wheel {gear.wheel} takes less than {formatted(2.0 * gear.least_radius)} mm"
+    if math.isclose(ratio, other, rel_tol=WHOLE):
+        return room
+    return (
+        f"{room}: its teeth come nearest to the axis at {angle_text(place)}, where the law's ratio "
+        f"is {formatted(ratio)}"
+    )
 
 
 def _demand_reached(pose: float, law: RatioLaw) -> None:
