@@ -101,6 +101,11 @@ class Follower(ShortRepr, ABC):
         return (math.degrees(1.0), "deg") if self.angular else (1.0, "mm")
 
     @property
+    def load_unit(self) -> tuple[float, str, str]:
+        """Factor from loads, N or N mm, to their unit in output, that unit, and its suffix."""
+        return (1e-3, "N m", "nm") if self.angular else (1.0, "N", "n")
+
+    @property
     def lever(self) -> float:
         """Millimetres per unit of lift."""
         return 1.0

@@ -107,24 +107,23 @@ def _holding(loads: Loads) -> str:
     lack = loads.lack
     if not loads.springs or lack <= 0.0:
         return ""
-    key, scale = ("preload_nm", 1e-3) if loads.follower.angular else ("preload_n", 1.0)
+    scale, _, suffix = loads.follower.load_unit
     force = loads.springs[0].force
     given = loads.solved.get("preload", 0.0) if force == "solve" else float(force)
     least = shortened(scale * (given + lack), scale * lack, 3)
-    return f"spring[0].{key} = {formatted(least)}"
+    return f"spring[0].preload_{suffix} = {formatted(least)}"
 
 
 def _columns(result: CamResult, loaded: Loaded, width: Array) -> dict[str, Array]:
     """Return the columns of ``forces.csv``."""
     x, statics, pressure = loaded.x, loaded.statics, loaded.pressure
     driver, drive, motion = result.driver, result.design.drive, result.cam.motions[0]
-    load, load_scale = ("load_nm", 1e-3) if result.follower.angular else ("load_n", 1.0)
-    effort, scale = drive.effort
+    (load_scale, _, suffix), (effort, scale) = result.follower.load_unit, drive.effort
     sign = -1.0 if motion.clockwise else 1.0
     columns = {
         driver.column: driver.scale * x,
         **({} if loaded.way is None else {"direction": loaded.way.astype(int)}),
-        load: load_scale * statics.against,
+        f"load_{suffix}": load_scale * statics.against,
         "normal_n": statics.force,
         "wall": statics.carrying + 1,
         **{
@@ -247,15 +246,13 @@ def _integral(x: Array, y: Array) -> float:
 
 def _spring(loads: Loads) -> Tree:
     """Return the solved values of springs as facts."""
-    swings, made = loads.follower.angular, {}
-    names = {"preload": "preload_nm", "stiffness": "stiffness_nm_rad"}
-    scale = 1e-3
-    if not swings:
-        names, scale = {"preload": "preload_n", "stiffness": "stiffness_n_mm"}, 1.0
-    for what, value in loads.solved.items():
-        label = f"least {what} of the spring"
-        made[names[what]] = Fact(scale * value, label, shown=True)
-    return made
+    scale, _, suffix = loads.follower.load_unit
+    per = "rad" if loads.follower.angular else "mm"
+    names = {"preload": f"preload_{suffix}", "stiffness": f"stiffness_{suffix}_{per}"}
+    return {
+        names[what]: Fact(scale * value, f"least {what} of the spring", shown=True)
+        for what, value in loads.solved.items()
+    }
 
 
 TITLES: Final = {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import partial
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -29,6 +29,7 @@ from gearcam.results.study import StudyResult
 
 if TYPE_CHECKING:
     from gearcam.cams.cam import Cam
+    from gearcam.cams.wall import Wall
     from gearcam.kinds.cam.result import CamResult
     from gearcam.numeric.arrays import Array
     from gearcam.results.study import Progress
@@ -37,13 +38,6 @@ _COMBINATIONS: Final = {"worst_case": added, "root_of_squares": rooted}
 
 _NO_INFLUENCE: Final = 1e-12
 """Sensitivity, mm per mm or rad per rad, that is rounding only."""
-
-
-class _Values(NamedTuple):
-    """Sensitivities on a wall, with the wall's key."""
-
-    key: str
-    by_size: dict[str, Array]
 
 
 def study_precision(result: CamResult, progress: Progress) -> StudyResult:
@@ -64,7 +58,7 @@ def study_precision(result: CamResult, progress: Progress) -> StudyResult:
     with result.stage("precision"):
         values = _values(cam, theta)
         most: dict[str, Largest] = {}
-        sizes = dict.fromkeys(size for one in values for size in one.by_size)
+        sizes = dict.fromkeys(size for _, by_size in values for size in by_size)
         for number, size in enumerate(sizes):
             progress("precision", number, len(sizes))
             found = largest(cam, lambda by_size, size=size: _of(by_size, size))
@@ -72,10 +66,9 @@ def study_precision(result: CamResult, progress: Progress) -> StudyResult:
                 most[size] = found
         facts = _facts(cam, spec, most)
         findings = _findings(cam, spec)
-    driver, (scale, unit) = result.driver, result.follower.lift_unit
-    columns = {driver.column: driver.scale * theta}
-    for one in values:
-        columns |= _columns(one, spec, scale, unit)
+    columns = {result.driver.column: result.driver.scale * theta}
+    for wall, by_size in values:
+        columns |= _columns(wall, by_size, spec)
     return StudyResult(
         result=result,
         study=result.kind.studies["precision"],
@@ -87,8 +80,9 @@ def study_precision(result: CamResult, progress: Progress) -> StudyResult:
     )
 
 
-def _values(cam: Cam, theta: Array) -> list[_Values]:
-    return [_Values(wall.key, sensitivities(wall, cam.linked(wall), theta)) for wall in cam.walls]
+def _values(cam: Cam, theta: Array) -> list[tuple[Wall, dict[str, Array]]]:
+    """Return the sensitivities on each wall, by size."""
+    return [(wall, sensitivities(wall, cam.linked(wall), theta)) for wall in cam.walls]
 
 
 def _of(by_size: Mapping[str, Array], size: str) -> Array:
@@ -180,17 +174,15 @@ def _findings(cam: Cam, spec: PrecisionSpec) -> tuple[Finding, ...]:
     return run_checks(PRECISION, LiftError(found, spec.wanted, spec.combined), {})
 
 
-def _columns(values: _Values, spec: PrecisionSpec, scale: float, unit: str) -> dict[str, Array]:
+def _columns(wall: Wall, by_size: Mapping[str, Array], spec: PrecisionSpec) -> dict[str, Array]:
     """Return the columns of ``precision.csv`` for a wall."""
-    key = f"_{values.key}" if values.key else ""
-    columns = {}
-    for size, each in values.by_size.items():
+    (scale, unit), key, columns = wall.follower.lift_unit, wall.ending, {}
+    for size, each in by_size.items():
         quantity = SIZES[size].quantity
         columns[f"by_{size}{key}_{unit}_per{quantity.suffix}"] = scale * quantity.factor * each
-    errors = _known(values.by_size, spec.tolerances)
-    if errors:
-        for name, how in _COMBINATIONS.items():
-            columns[f"{name}{key}_{unit}"] = scale * how(values.by_size, errors)
+    errors = _known(by_size, spec.tolerances)
+    for name, how in _COMBINATIONS.items() if errors else ():
+        columns[f"{name}{key}_{unit}"] = scale * how(by_size, errors)
     return {name: np.ma.masked_invalid(column) for name, column in columns.items()}
 
 
@@ -202,9 +194,9 @@ def _charts(result: CamResult) -> dict[str, Chart]:
     scale, unit = result.follower.lift_unit
     x, groups = driver.scale * turn, {"mm": [], "deg": []}
     deviations: list[Line] = []
-    for one in _values(result.cam, turn):
-        on = f", {one.key}" if one.key else ""
-        for size, each in one.by_size.items():
+    for wall, by_size in _values(result.cam, turn):
+        on = f", {wall.key}" if wall.key else ""
+        for size, each in by_size.items():
             quantity, label = SIZES[size].quantity, f"{size.replace('_', ' ')}{on}"
             if np.nanmax(np.abs(each), initial=0.0) > _NO_INFLUENCE:
                 values = scale * quantity.factor * each
@@ -212,10 +204,10 @@ def _charts(result: CamResult) -> dict[str, Chart]:
                 if size in spec.tolerances:
                     values = scale * each * spec.tolerances[size]
                     deviations.append(Line(label=label, x=x, y=values))
-        errors = _known(one.by_size, spec.tolerances)
+        errors = _known(by_size, spec.tolerances)
         for name, how in _COMBINATIONS.items() if errors else ():
             label = f"{name.replace('_', ' ')}{on}"
-            deviations.append(Line(label=label, x=x, y=scale * how(one.by_size, errors)))
+            deviations.append(Line(label=label, x=x, y=scale * how(by_size, errors)))
     chart, charts = over_driver(result), {}
     if deviations:
         ends = () if spec.wanted is None else (scale * spec.wanted, -scale * spec.wanted)

@@ -96,12 +96,10 @@ def _no_stiffness(loads: Loads) -> InfeasibleError:
     number = next(k for k, one in enumerate(loads.springs) if one.rate == "solve")
     spring = loads.springs[number]
     given = spring.force if isinstance(spring.force, float) else 0.0
-    name, unit, scale = "preload_n", "N", 1.0
-    if loads.follower.angular:
-        name, unit, scale = "preload_nm", "N m", 1e-3
+    scale, unit, suffix = loads.follower.load_unit
     what = "no stiffness keeps the follower on the cam: at zero lift only a preload does"
     needed = scale * (given + loads.preload_at_rest)
-    where, rule = f"spring[{number}].{name}", "the limit is the least preload"
+    where, rule = f"spring[{number}].preload_{suffix}", "the limit is the least preload"
     return beyond_limit(what, where, scale * given, needed, rule, unit=unit)
 
 
