@@ -66,8 +66,8 @@ BEFORE, AFTER = "before", "after"
 CASES: dict[str, tuple[tuple[str, ...], str, int, str]] = {
     # the command, what it calls when the signal comes, the how manyth call, which state is left
     "reading": (BUILD, "gearcam.designs.reader.read", 1, BEFORE),
-    "law": (BUILD, "gearcam.kinds.gear_pair.result.make_pair", 1, BEFORE),
-    "outline": (BUILD, "gearcam.kinds.gear_pair.result.make_gear", 2, BEFORE),
+    "law": (BUILD, "gearcam.kinds.gear_pair.made.make_pair", 1, BEFORE),
+    "outline": (BUILD, "gearcam.kinds.gear_pair.made.make_gear", 2, BEFORE),
     "checks": (BUILD, "gearcam.kinds.gear_pair.result.run_checks", 1, BEFORE),
     "parts": (BUILD, "gearcam.kinds.gear_pair.parts.make_part", 2, BEFORE),
     "files": (BUILD, "gearcam.export.table.table_bytes", 1, BEFORE),

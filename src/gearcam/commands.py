@@ -33,7 +33,8 @@ from gearcam.designs.kind import as_written
 from gearcam.results.kind import KINDS, Kind, Study
 
 if TYPE_CHECKING:
-    from gearcam.results.result import Progress, Result
+    from gearcam.results.result import Result
+    from gearcam.results.study import Progress
     from gearcam.results.written import BuildOutput
 
 GOOD, FINDINGS, WRONG, IMPOSSIBLE, FAULT, INTERRUPTED = 0, 1, 2, 3, 4, 130

@@ -13,7 +13,7 @@ import gearcam as gc
 from gearcam.cams.follower_loads import Loads
 from gearcam.cams.statics import Statics, solve
 from gearcam.cams.supports import StraightGuide
-from gearcam.kinds.cam.under_load import loads_of, places
+from gearcam.kinds.cam.under_load import UnderLoad, loads_of
 
 CAM = """
 kind = "cam"
@@ -74,7 +74,7 @@ def loaded(name: str, **friction: float) -> Any:
 
 
 def studied(result: Any) -> tuple[Statics, Loads, np.ndarray]:
-    loads, x = loads_of(result), places(result)
+    loads, x = loads_of(result), UnderLoad(result).places()
     way = np.repeat(loads.ways, len(x))
     x = np.concatenate([x[:: int(one)] for one in loads.ways])
     motion, design = loads.motion(x, way), result.design

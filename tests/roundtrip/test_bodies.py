@@ -19,7 +19,7 @@ from gearcam.export.mesh import glb_bytes, stl_bytes, threemf_bytes
 from gearcam.export.sheet_dxf import sheet_dxf
 from gearcam.export.sheet_svg import sheet_svg
 from gearcam.export.svg import svg_bytes
-from gearcam.kinds.gear_pair.drawn import pair_drawing
+from gearcam.kinds.gear_pair.drawings import pair_drawing
 from gearcam.numeric.moments import Moments
 from gearcam.parts.body import Mark, Opening, Part
 from gearcam.parts.mass import mass_properties, volume_moments

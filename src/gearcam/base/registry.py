@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Callable, Collection, Mapping
+from functools import partial
 from types import MappingProxyType
 from typing import Any, Generic, Protocol, TypeVar
 
@@ -74,11 +75,11 @@ class Registry(Open, Mapping[str, E], Generic[E]):
 
 def deferred(place: str) -> Callable[..., Any]:
     """Return a function that imports the one at a `place`, ``package.module:name``, to call it."""
+    return partial(_call, place)
 
-    def call(*arguments: Any, **named: Any) -> Any:
-        return _imported(place)(*arguments, **named)
 
-    return call
+def _call(place: str, /, *arguments: Any, **named: Any) -> Any:
+    return _imported(place)(*arguments, **named)
 
 
 class DeferredMapping(Open, Mapping[str, Any]):

@@ -78,6 +78,11 @@ class PitchMotion(ShortRepr):
     key: str = ""
     called: str = "profile"
 
+    @property
+    def ending(self) -> str:
+        """What its key adds to names of files and columns; empty for a cam's only motion."""
+        return f"_{self.key}" if self.key else ""
+
     @cached_property
     def pitch_curve(self) -> CamCurve:
         """The pitch curve, or the profile below a face, of the cam turning counter-clockwise."""

@@ -189,7 +189,7 @@ class DesignKind:
         Groups of those checks: what they look at.
     example : mapping
         A design that builds without a warning, by title, in the units of a file.
-    shown : mapping of str to mapping
+    samples : mapping of str to mapping
         Values that the template shows of optional keys, by title: where each kind has its own.
     notes : mapping of str to str
         Comments on tables of the example.
@@ -215,7 +215,7 @@ class DesignKind:
     check_modules: tuple[str, ...] = ()
     check_groups: tuple[str, ...] = ()
     example: Mapping[str, Any]
-    shown: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    samples: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     notes: Mapping[str, str] = field(default_factory=dict)
     processes: Mapping[str, Mapping[str, Mapping[str, Any]]] = field(default_factory=dict)
     brought: str = ""

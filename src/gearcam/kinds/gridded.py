@@ -168,7 +168,7 @@ class GriddedCam(Result):
         """
         limits = self.design.limits
         with self.stage("checks"):
-            found = [*run_checks(kind, subject, limits), *self.row_findings]
+            found = [*run_checks(kind, subject, limits), *self.rows.findings]
             if self.solid_asked and self.carved:
                 found += run_checks(solid, (self.solid_steps, self.chord_error), limits)
             return in_order(found)

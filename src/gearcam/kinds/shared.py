@@ -21,7 +21,8 @@ if TYPE_CHECKING:
     from gearcam.laws.program import Program
     from gearcam.numeric.arrays import Array
     from gearcam.results.kind import Study
-    from gearcam.results.result import Progress, Result, StudyResult
+    from gearcam.results.result import Result
+    from gearcam.results.study import Progress, StudyResult
 
 TABLE: Final = "accuracy.csv"
 PAGE: Final = "accuracy.html"
@@ -209,10 +210,10 @@ def _demand(design: Design) -> None:
     stages_of(design, design.accuracy.stage)  # pyright: ignore[reportAttributeAccessIssue]
 
 
-def _measure(result: Result, progress: Progress | None) -> StudyResult:
+def _measure(result: Result, progress: Progress) -> StudyResult:
     from gearcam.report.page import charts_page
     from gearcam.results.accuracy import accuracy
-    from gearcam.results.result import StudyResult
+    from gearcam.results.study import StudyResult
 
     settings: AccuracySpec = result.design.accuracy
     outcome = accuracy(result, settings.stage, settings.repeat, progress)

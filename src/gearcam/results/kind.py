@@ -21,7 +21,10 @@ if TYPE_CHECKING:
     from gearcam.pictures.charts import Chart
     from gearcam.pictures.scenes import Scene
 
-FileMaker = Callable[[Any, dict[str, Any]], dict[str, bytes]]
+Files = dict[str, bytes]
+"""Contents by file name."""
+
+FileMaker = Callable[[Any, dict[str, Any]], Files]
 """``maker(result, measured)`` returns contents by file name, and adds groups of facts measured on
 them to `measured`. Paragraphs of its docstring list the names of the files (``Files: ...``) and say
 what they hold."""
@@ -58,8 +61,9 @@ class Study:
     table : str
         Title of the table of its settings in a design; the command has an option for each key.
     compute : callable
-        ``compute(result, progress)`` returns its outcome, a `StudyResult`; the settings are those
-        of the design.
+        ``compute(result, progress)`` tells of its `progress` and returns its outcome, a
+        `StudyResult`; the settings are those of the design, but for those that a method of its
+        results gives by name.
     options : mapping of str to str
         Names of options that differ from those of their keys.
     argument : str
@@ -82,7 +86,7 @@ class Study:
     doc: str
     done: str
     table: str
-    compute: Callable[[Any, Any], Any]
+    compute: Callable[..., Any]
     options: Mapping[str, str] = field(default_factory=dict)
     argument: str = ""
     metavar: str = ""

@@ -340,7 +340,7 @@ KIND: Final = Kind(
         "blank": {"bore_diameter_mm": 8},
         "output": {"files": ["dxf", "csv", "report"]},
     },
-    shown={
+    samples={
         "goal": {
             "minimize": "cam.profile.radius_mm.max",
             "maximize": "cam.curvature.profile_convex_min_mm",

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from gearcam.cams.wall import Wall
     from gearcam.kinds.cam.design import CamDesign
     from gearcam.kinds.cam.result import CamResult
-    from gearcam.results.result import StudyResult
+    from gearcam.results.study import StudyResult
 
 _FORMS: Final = ("disc", "groove", "conjugate")
 """Forms of cams whose phases fill a turn."""
@@ -284,8 +284,7 @@ class FittedDesign:
         x = driver.scale * rows.theta
         ends = np.degrees(np.concatenate([model.starts, model.ends])) % 360.0
         marks = tuple(MarkedPlace(label="phases", value=one) for one in np.unique(ends).tolist())
-        label = f"{driver.called} {driver.symbol}, {driver.unit}"
-        chart = partial(Chart, x=label, marks=marks)
+        chart = partial(Chart, x=driver.label, marks=marks)
         noise = 2.0 * scale * rows.noise
         fitted = Line(label="fitted design", x=x, y=self.columns["s_fitted"])
         return {

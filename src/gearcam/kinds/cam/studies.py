@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from gearcam.base.errors import DesignError, Problem
-from gearcam.base.facts import Fact
+from gearcam.base.registry import deferred
 from gearcam.cams.three_points import three_point_curvature
 from gearcam.kinds.cam.curvature import curvature_at, pitch_points
 from gearcam.kinds.cam.given_profile import followed
@@ -26,116 +25,11 @@ from gearcam.results.ladders import (
     solid_ladder,
     tolerances_around,
 )
-from gearcam.results.result import StudyResult
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
-    from numpy.typing import ArrayLike
-
     from gearcam.kinds.cam.result import CamResult
-    from gearcam.results.result import Progress
 
-_FILE: Final = "followed.csv"
-
-
-def follow(
-    result: CamResult,
-    profile: str | Path | ArrayLike,
-    wall: str | None = None,
-    progress: Progress | None = None,
-    *,
-    fit: bool = False,
-) -> StudyResult:
-    """Return the motion of a cam's follower on a given profile (see `CamResult.follow`)."""
-    from gearcam.kinds.cam.given_profile import followed, read_profile
-
-    if fit:
-        return _fit(result, profile, wall, progress)
-    chosen = result.wall(wall)
-    if progress is not None:
-        progress("profile", 0, 2)
-    outline, bulges = read_profile(profile, chosen)
-    if progress is not None:
-        progress("follow", 1, 2)
-    with result.stage("follow"):
-        limits = result.design.limits
-        columns, facts, found = followed(chosen, outline, bulges, result.angles, limits)
-    return StudyResult(
-        result=result,
-        study=FOLLOW,
-        file=_FILE,
-        table=columns,
-        group=facts,
-        study_findings=found,
-    )
-
-
-def _fit(
-    result: CamResult,
-    profile: str | Path | ArrayLike,
-    wall: str | None,
-    progress: Progress | None,
-) -> StudyResult:
-    """Return the same with the design that has this motion."""
-    from gearcam.kinds.cam import fit as fitting
-    from gearcam.kinds.cam.given_profile import compared
-
-    fitting.demand_fit(result.design)
-    chosen = result.wall(wall)
-    rows = fitting.read_lift(profile, chosen)
-    if rows is None:
-        study = follow(result, profile, wall, progress)
-        columns, found = fitting.of_turn(study), study.study_findings
-        facts: dict[str, Any] = dict(study.group)
-        scale = chosen.follower.lift_unit[0]
-        theta, lift = np.radians(columns["theta_deg"]), columns["s"] / scale
-        chords = float(np.sqrt(np.mean(columns["error"] ** 2))) / scale
-        # arcs and splines are as far from the true curve as their tolerance allows
-        error = max(chords, chosen.tolerance / chosen.follower.lever)
-    else:
-        (theta, lift), found, error = rows, (), None
-        columns, facts = compared(chosen, theta, lift)
-    if progress is not None:
-        progress("fit", 0, 1)
-    with result.stage("fit"):
-        one = fitting.fit(result, chosen, theta, lift, error=error, source=profile)
-        columns, facts = columns | one.columns, facts | {"fit": one.facts}
-    # the motion of the given design stands only for another one
-    facts |= {"largest_difference": replace(facts["largest_difference"], shown=False)}
-    found = tuple(finding for finding in found if finding.code != "other-profile")
-    study = StudyResult(
-        result=one.named_as_given,
-        study=FOLLOW,
-        file=_FILE,
-        table=columns,
-        group=facts,
-        study_findings=(*found, *one.findings),
-        drawn=one.charts,
-        pages={fitting.FILE: one.page},
-    )
-    # the headline of a build is that of the given design; that of the study itself is this one
-    _, *sizes = one.named_as_given.design_facts.headline
-    fit = {"design": Fact(", ".join(sizes), "fitted design", shown=True), **facts["fit"]}
-    lines = tuple(study.facts.lines(f"{FOLLOW.key}."))
-    return replace(study, group=facts | {"fit": fit}, lines=lines)
-
-
-def _follow(result: CamResult, progress: Progress | None) -> StudyResult:
-    given = result.design.follow
-    return follow(result, given.file or "", given.wall, progress, fit=given.fit)
-
-
-def _demand(design: Any) -> None:
-    if design.follow.fit:
-        from gearcam.kinds.cam.fit import demand_fit
-
-        demand_fit(design)
-    if design.follow.file is None:
-        rule = "a DXF or CSV file of a closed profile"
-        problem = Problem("is missing", file=design.source, key="follow.file", allowed=rule)
-        raise DesignError([problem])
-
+_HERE: Final = "gearcam.kinds.cam"
 
 FOLLOW: Final = Study(
     name="follow",
@@ -144,18 +38,12 @@ FOLLOW: Final = Study(
     "find the design that moves like this; write DIR/NAME/fitted.toml too.",
     done="followed",
     table="follow",
-    compute=_follow,
+    compute=deferred(f"{_HERE}.given_profile:study_follow"),
     argument="file",
     metavar="PROFILE",
-    demand=_demand,
+    demand=deferred(f"{_HERE}.given_profile:demand"),
     many=False,
 )
-
-
-def _precision(result: CamResult, progress: Progress | None) -> StudyResult:
-    from gearcam.kinds.cam.precision import study_precision
-
-    return study_precision(result, PRECISION, progress)
 
 
 PRECISION: Final = Study(
@@ -165,20 +53,8 @@ PRECISION: Final = Study(
     done="studied",
     table="precision",
     options={"lift_error_deg": "swing-error"},
-    compute=_precision,
+    compute=deferred(f"{_HERE}.precision:study_precision"),
 )
-
-
-def _forces(result: CamResult, progress: Progress | None) -> StudyResult:
-    from gearcam.kinds.cam.forces import study_forces
-
-    return study_forces(result, FORCES, progress)
-
-
-def _demand_speed(design: Any) -> None:
-    from gearcam.kinds.cam.under_load import demand
-
-    demand(design)
 
 
 FORCES: Final = Study(
@@ -187,8 +63,8 @@ FORCES: Final = Study(
     doc="Compute forces, torque, efficiency and contact pressure; write DIR/NAME/forces.csv.",
     done="computed",
     table="forces",
-    compute=_forces,
-    demand=_demand_speed,
+    compute=deferred(f"{_HERE}.forces:study_forces"),
+    demand=deferred(f"{_HERE}.under_load:demand"),
 )
 
 STUDIES: Final[dict[str, Study]] = {

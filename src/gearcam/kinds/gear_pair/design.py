@@ -259,7 +259,7 @@ KIND: Final = Kind(
         "blank": {"bore_diameter_mm": 8},
         "output": {"files": ["dxf", "csv", "report"]},
     },
-    shown={
+    samples={
         "goal": {
             "minimize": "pair.center_distance_mm",
             "maximize": "mesh.contact_ratio.forward.least",

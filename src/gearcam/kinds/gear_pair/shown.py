@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.base.facts import Fact, Facts, extent
+from gearcam.base.facts import Fact, Facts, Tree, extent
 from gearcam.base.findings import limit_of
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import RPM
@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from gearcam.gears.contact import FlankPairs
     from gearcam.gears.pair import Gear
     from gearcam.kinds.gear_pair.result import GearPairResult
-
-Tree = dict[str, Any]
 
 
 def facts(result: GearPairResult) -> Facts:

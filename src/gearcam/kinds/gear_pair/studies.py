@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from gearcam.base.findings import run_checks
+from gearcam.base.registry import deferred
 from gearcam.gears.pair import COARSEST, FINEST, FLANK_POINTS, make_gear
 from gearcam.gears.track import WHEELS
 from gearcam.kinds.shared import accuracy_study
@@ -29,7 +30,7 @@ from gearcam.results.ladders import (
     solid_ladder,
     tolerances_around,
 )
-from gearcam.results.result import StudyResult
+from gearcam.results.study import StudyResult
 
 if TYPE_CHECKING:
     from gearcam.kinds.gear_pair.design import GearPairDesign
@@ -38,13 +39,13 @@ if TYPE_CHECKING:
     from gearcam.numeric.arrays import Ints
     from gearcam.pictures.charts import Chart
     from gearcam.pictures.scenes import ContactPoints, Scene
-    from gearcam.results.result import Progress
+    from gearcam.results.study import Progress
 
 _CLOSE: Final = 1e-9
 """Driver angles closer than this, degrees, are the same."""
 
 
-def _mesh(result: GearPairResult, progress: Progress | None) -> StudyResult:
+def _mesh(result: GearPairResult, progress: Progress) -> StudyResult:
     """Return the meshing of a pair as mounted; incomplete if it was interrupted."""
     from gearcam.kinds.gear_pair.shown import meshing_facts
     from gearcam.meshing.checks import KIND
@@ -201,19 +202,13 @@ MESH: Final = Study(
 )
 
 
-def _errors(result: GearPairResult, progress: Progress | None) -> StudyResult:
-    from gearcam.kinds.gear_pair.errors import study_errors
-
-    return study_errors(result, ERRORS, progress)
-
-
 ERRORS: Final = Study(
     name="errors",
     key="errors",
     doc="Study errors of mounting and making of gear pairs; write DIR/NAME/errors.csv.",
     done="studied",
     table="errors",
-    compute=_errors,
+    compute=deferred("gearcam.kinds.gear_pair.errors:study_errors"),
     options={"eccentricity_deg": "eccentricity-angle", "file": "pitch"},
 )
 

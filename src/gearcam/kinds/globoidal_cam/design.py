@@ -151,7 +151,7 @@ KIND: Final = Kind(
         "blank": {"bore_diameter_mm": 20},
         "output": {"files": ["stl", "csv", "report"]},
     },
-    shown={"goal": {"minimize": "cam.pressure_angle_deg.max", "maximize": "cam.least_rib_mm"}},
+    samples={"goal": {"minimize": "cam.pressure_angle_deg.max", "maximize": "cam.least_rib_mm"}},
     processes={
         "printing": {
             "cam": {"roller_clearance_mm": 0.06, "floor_clearance_mm": 0.5},

@@ -240,7 +240,7 @@ KIND: Final = Kind(
         "point": [{"name": "P", "on": "coupler", "at_mm": [49, 34]}],
         "output": {"files": ["csv", "report"]},
     },
-    shown={
+    samples={
         "goal": {"minimize": "outputs.P_x.acceleration_mm_s2", "maximize": "outputs.P_x.stroke_mm"}
     },
     facts=deferred(f"{_HERE}.shown:facts"),

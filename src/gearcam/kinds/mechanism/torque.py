@@ -29,14 +29,14 @@ from gearcam.linkages.measures import Peak
 from gearcam.numeric.piecewise import with_both_sides
 from gearcam.pictures.charts import Chart, Limit, Line
 from gearcam.results.kind import Study
-from gearcam.results.result import StudyResult
+from gearcam.results.study import StudyResult
 
 if TYPE_CHECKING:
     from gearcam.kinds.mechanism.placed import PlacedDrive
     from gearcam.kinds.mechanism.result import MechanismResult
     from gearcam.linkages.work import VirtualWork
     from gearcam.numeric.arrays import Array
-    from gearcam.results.result import Progress
+    from gearcam.results.study import Progress
 
 Tree = dict[str, Any]
 

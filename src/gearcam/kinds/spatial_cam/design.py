@@ -160,7 +160,7 @@ KIND: Final = Kind(
         "blank": {"bore_diameter_mm": 20},
         "output": {"files": ["stl", "csv", "report"]},
     },
-    shown={
+    samples={
         "goal": {
             "minimize": "cam.pressure_angle_deg.max",
             "maximize": "cam.largest_roller_mm.in_space",

@@ -23,6 +23,7 @@ from gearcam.laws.program import Program
 from gearcam.numeric.arrays import Array
 from gearcam.numeric.columns import Columns
 from gearcam.parts.solids import Mesh, carved
+from gearcam.results.table_rows import TableRows
 from gearcam.spatial.cam import SpatialCam, SpatialWall
 from gearcam.spatial.carving import roller_corners, scallop
 from gearcam.spatial.make import make_cylinder
@@ -35,7 +36,6 @@ from gearcam.spatial.surface import (
 )
 
 if TYPE_CHECKING:
-    from gearcam.laws.columns import Given
     from gearcam.numeric.pose import SpacePose
     from gearcam.parts.bands import BandedBody
     from gearcam.spatial.milling import RotaryPath
@@ -110,7 +110,7 @@ class SpatialCamResult(GriddedCam):
     def cam(self) -> SpatialCam:
         """The cam; its walls and measures are computed on demand."""
         program, design = self.program, self.solved
-        with self.stage("cam"), self.naming_rows():
+        with self.stage("cam"), self.rows.named():
             return make_cylinder(program, design.follower, design.cam, design.blank.bore)
 
     @property
@@ -124,9 +124,9 @@ class SpatialCamResult(GriddedCam):
         return (math.degrees(1.0), "deg") if self.design.follower.oscillating else (1.0, "mm")
 
     @property
-    def given_rows(self) -> list[tuple[str, Given]]:
-        """The rows of tables that should lie on curves (see `Result`)."""
-        return self._given_rows(oscillating=self.design.follower.oscillating)
+    def rows(self) -> TableRows:
+        """The rows of the tables of the design (see `Staged`)."""
+        return TableRows(self.design, oscillating=self.design.follower.oscillating)
 
     @cached_property
     def checked(self) -> tuple[Finding, ...]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from gearcam.base.facts import Fact, Facts, extent
+from gearcam.base.facts import Fact, Facts, Tree, extent
 from gearcam.kinds.gridded_shown import (
     SOLIDS,
     accuracy_facts,
@@ -29,9 +29,8 @@ from gearcam.spatial.trimmed import lost_lift
 
 if TYPE_CHECKING:
     from gearcam.kinds.spatial_cam.result import SpatialCamResult
+    from gearcam.results.kind import Files
     from gearcam.spatial.cam import SpatialWall
-
-Tree = dict[str, Any]
 
 
 def facts(result: SpatialCamResult) -> Facts:
@@ -169,9 +168,6 @@ def _accuracy(result: SpatialCamResult) -> Tree | None:
     exact = result.solid_asked and "step" in result.design.output.files
     more = {"step_mm": (result.bands.error, how)} if exact else {}
     return accuracy_facts(result, "roller that cuts it", more)
-
-
-Files = dict[str, bytes]
 
 
 def _tables(result: SpatialCamResult, _: Any) -> Files:

@@ -14,7 +14,7 @@ from gearcam.kinds.shared import accuracy_study
 from gearcam.pictures.charts import Chart, Line
 from gearcam.results.kind import Study
 from gearcam.results.ladders import Ladder, Ladders, grid_ladder
-from gearcam.results.result import StudyResult
+from gearcam.results.study import StudyResult
 from gearcam.spatial.developed import developed
 from gearcam.spatial.extremes import Spot
 
