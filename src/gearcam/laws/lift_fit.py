@@ -6,8 +6,9 @@ the first is the true one, where d is what the second misses of it, with the dev
 ``2*d*sqrt(v)``. The true law then loses by ``S_a - S_b > T`` with a chance that is largest for
 ``d^2 = T``: that of ``sqrt(T/v)`` standard deviations. So laws whose sums differ by less than
 ``16*v``, four deviations, *cannot be distinguished*. Of these one without a number to choose is
-taken, one without a dwell by the same rule, and one that misses more by less than ``2*v`` for each
-law that it has in more than one move.
+taken, one without a dwell by the same rule, and of such the one with the *shortest description*:
+the sum of squares over v is twice the length of the errors in natural units, to within a constant,
+and the name of one of n laws has the length ``ln(n)``. A law is named once, for all its moves.
 
 The variance is that of what the best model misses, or of the noise in the rows if that is larger,
 times the number of neighbouring rows whose errors are alike (the sum of the autocorrelation). An
@@ -17,7 +18,8 @@ the turn.
 Sizes are rounded one after the other to the roundest number within two standard deviations, as long
 as the sum of squares grows by less than ``9*v`` when the others have adapted themselves.
 
-Source: derived anew; least squares as in `gearcam.laws.lift_model`.
+Source: Rissanen, Modeling by shortest data description, Automatica 14 (1978), for the choice among
+laws; the rest derived anew; least squares as in `gearcam.laws.lift_model`.
 """
 
 from __future__ import annotations
@@ -56,9 +58,6 @@ _APART: Final = 16.0
 
 _ROUNDED: Final = 9.0
 """Largest growth of the sum of squares by rounding a size, in variances."""
-
-_SIMPLER: Final = 2.0
-"""What a law that no other move has must take off the sum of squares, in variances."""
 
 _NEAR: Final = 2.0
 """Standard deviations within which sizes are rounded, and which their errors are."""
@@ -415,10 +414,11 @@ class _Trials:
         """Return the models that cannot be distinguished from one, the simplest and best first."""
         most = squares + _APART * variance
         good = [one for one, squares in self.squares.items() if squares <= most]
+        name = 2.0 * math.log(len(_choices()))
 
         def order(laws: tuple[Choice, ...]) -> tuple[int, float]:
             model = self.models[laws]
-            more = _APART * len(model.parameters) + _SIMPLER * len(set(laws))
+            more = _APART * len(model.parameters) + name * len(set(laws))
             return len(model.free), self.squares[laws] + more * variance
 
         return [self.models[one] for one in sorted(good, key=order)]
