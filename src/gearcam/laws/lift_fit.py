@@ -6,8 +6,9 @@ the first is the true one, where d is what the second misses of it, with the dev
 ``2*d*sqrt(v)``. The true law then loses by ``S_a - S_b > T`` with a chance that is largest for
 ``d^2 = T``: that of ``sqrt(T/v)`` standard deviations. So laws whose sums differ by less than
 ``16*v``, four deviations, *cannot be distinguished*. Of these one without a number to choose is
-taken, one without a dwell by the same rule, and one that misses more by less than ``2*v`` for each
-law that it has in more than one move.
+taken, one without a dwell by the same rule, and of such the one with the *shortest description*:
+the sum of squares over v is twice the length of the errors in natural units, to within a constant,
+and the name of one of n laws has the length ``ln(n)``. A law is named once, for all its moves.
 
 The variance is that of what the best model misses, or of the noise in the rows if that is larger,
 times the number of neighbouring rows whose errors are alike (the sum of the autocorrelation). An
@@ -17,7 +18,8 @@ the turn.
 Sizes are rounded one after the other to the roundest number within two standard deviations, as long
 as the sum of squares grows by less than ``9*v`` when the others have adapted themselves.
 
-Source: derived anew; least squares as in `gearcam.laws.lift_model`.
+Source: Rissanen, Modeling by shortest data description, Automatica 14 (1978), for the choice among
+laws; the rest derived anew; least squares as in `gearcam.laws.lift_model`.
 """
 
 from __future__ import annotations
@@ -56,9 +58,6 @@ _APART: Final = 16.0
 
 _ROUNDED: Final = 9.0
 """Largest growth of the sum of squares by rounding a size, in variances."""
-
-_SIMPLER: Final = 2.0
-"""What a law that no other move has must take off the sum of squares, in variances."""
 
 _NEAR: Final = 2.0
 """Standard deviations within which sizes are rounded, and which their errors are."""
@@ -164,15 +163,15 @@ class FittedLift:
         widths, dwells = model.gaps
         dwells = dwells.copy()
         dwells[first - 1] -= before
-        found: list[Phase] = list(_dwell(before))
+        phases: list[Phase] = list(_dwell(before))
         for k in (*range(first, count), *range(first)):
             rise = self.scale * float(model.after[k] - model.levels[k])
             last = (k + 1) % count == first
             make = ReturnPhase if rise < 0.0 else RisePhase
             lift = None if last else float(f"{abs(rise):.12g}") / self.scale
-            found.append(make(angle=_angle(widths[k]), law=model.laws[k], lift=lift))
-            found += _dwell(float(dwells[k]))
-        return (*found[:-1], replace(found[-1], angle="rest"))
+            phases.append(make(angle=_angle(widths[k]), law=model.laws[k], lift=lift))
+            phases += _dwell(float(dwells[k]))
+        return (*phases[:-1], replace(phases[-1], angle="rest"))
 
 
 def _dwell(width: float) -> Iterator[Phase]:
@@ -338,14 +337,14 @@ Choice = tuple[Any, bool]
 @cache
 def _choices() -> tuple[Choice, ...]:
     """Return the laws without numbers to choose, and those with one: at its default, then free."""
-    found = []
+    choices = []
     for entry in MOTION_LAWS.values():
         law, known = entry.parameters, fields(entry.parameters)
         if not known:
-            found.append((law(), False))
+            choices.append((law(), False))
         elif len(known) == 1 and isinstance(known[0].default, float):
-            found += [(law(), False), (law(), True)]
-    return tuple(found)
+            choices += [(law(), False), (law(), True)]
+    return tuple(choices)
 
 
 @dataclass(frozen=True, eq=False)
@@ -381,21 +380,21 @@ class _Trials:
         """
         plain = [one for one in _choices() if not one[1]]
         count = len(self.start.laws)
-        found = self.swept(min(((one,) * count for one in plain), key=self.cost), plain)
-        for k, tied in enumerate(self.models[found].tied):
+        laws = self.swept(min(((one,) * count for one in plain), key=self.cost), plain)
+        for k, tied in enumerate(self.models[laws].tied):
             if tied:
-                found = min(self.in_pairs(found, k, plain), key=self.cost)
-        return self.models[self.swept(found, _choices())]
+                laws = min(self.in_pairs(laws, k, plain), key=self.cost)
+        return self.models[self.swept(laws, _choices())]
 
-    def swept(self, found: tuple[Choice, ...], choices: Iterable[Choice]) -> tuple[Choice, ...]:
+    def swept(self, laws: tuple[Choice, ...], choices: Iterable[Choice]) -> tuple[Choice, ...]:
         """Return the best laws, tried move by move."""
         for _ in range(_SWEEPS):
-            before = found
-            for k in range(len(found)):
-                found = min((_changed(found, {k: one}) for one in choices), key=self.cost)
-            if found == before:
+            before = laws
+            for k in range(len(laws)):
+                laws = min((_changed(laws, {k: one}) for one in choices), key=self.cost)
+            if laws == before:
                 break
-        return found
+        return laws
 
     def in_pairs(
         self, found: tuple[Choice, ...], k: int, choices: Iterable[Choice]
@@ -415,10 +414,11 @@ class _Trials:
         """Return the models that cannot be distinguished from one, the simplest and best first."""
         most = squares + _APART * variance
         good = [one for one, squares in self.squares.items() if squares <= most]
+        name = 2.0 * math.log(len(_choices()))
 
         def order(laws: tuple[Choice, ...]) -> tuple[int, float]:
             model = self.models[laws]
-            more = _APART * len(model.parameters) + _SIMPLER * len(set(laws))
+            more = _APART * len(model.parameters) + name * len(set(laws))
             return len(model.free), self.squares[laws] + more * variance
 
         return [self.models[one] for one in sorted(good, key=order)]

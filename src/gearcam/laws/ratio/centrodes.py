@@ -39,6 +39,8 @@ from gearcam.numeric.roots import newton_in_bracket
 
 T = TypeVar("T", Array, Jet)
 
+_TO_AND_FRO: Final = "with a return the pair turns without end, with a travel to and fro"
+
 
 @dataclass(frozen=True, kw_only=True)
 class EccentricCircle:
@@ -172,12 +174,7 @@ class LogSpiral(ShortRepr):
         "ratio goes a little beyond both",
     )
 
-    rules = (
-        exactly_one(
-            "return_angle", "driven_travel",
-            note="with a return the pair turns without end, with a travel to and fro",
-        ),
-    )  # fmt: skip
+    rules = (exactly_one("return_angle", "driven_travel", note=_TO_AND_FRO),)
 
     def problems(self) -> Iterator[Breach]:
         """Yield what is wrong by reading: field, index, message, allowed."""
