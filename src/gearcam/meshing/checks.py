@@ -166,8 +166,8 @@ def clearances(meshing: Meshing) -> list[Array]:
     turning, pairs = meshing.setup.turning, meshing.setup.pairs[DRIVE]
     result = []
     for own, mate, toothing in (
-        (turning.driver, turning.driven, pairs.toothings[0]),
-        (turning.driven, turning.driver, pairs.toothings[1]),
+        (turning.driver, turning.driven, pairs.wheels[0].toothing),
+        (turning.driven, turning.driver, pairs.wheels[1].toothing),
     ):
         places = toothing.tooth_places[toothing.whole]
         phi1 = turning.rolling.arc.angle(places)

@@ -74,10 +74,10 @@ def contact_ratio(subject: Sided, limit: float) -> Iterator[Remark]:
     """
     places_by_message: dict[str, list[tuple[float, str]]] = {}
     for pairs in subject.sides:
-        worst, found = float(pairs.contact_ratios.min()), non_contact(pairs)
+        worst, found = float(pairs.arcs.ratios.min()), non_contact(pairs)
         if worst >= limit and not found:
             continue
-        tooth = int(pairs.tooth(1, pairs.numbers)[pairs.weakest])
+        tooth = int(pairs.wheels[0].number(pairs.numbers)[pairs.arcs.weakest])
         message = _FEW
         if found and all(stretch.edges for stretch in found):
             apart = max(stretch.apart for stretch in found)

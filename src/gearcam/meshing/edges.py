@@ -253,7 +253,7 @@ def to_pitch_line(pairs: FlankPairs, phi1: Array) -> Array:
     (n,) array
         The driven radius times the cosine of the pitch line's slope; for a rack the cosine alone.
     """
-    guide, one = pairs.guide, pairs.toothings[0].frames(phi1, curved=False)
+    guide, one = pairs.guide, pairs.wheels[0].toothing.frames(phi1, curved=False)
     pitch_point = (np.abs(one.p) - guide.place).astype(complex)
     return -guide.lever(pitch_point, one.t * np.exp(-1j * phi1))
 
@@ -275,7 +275,7 @@ def known_to(pairs: FlankPairs, phi1: Array) -> Array:
         centrode is long and the shafts are apart, and that of driver angles. It moves a flank along
         its normal, and so turns the driven wheel by as much over the lever arm of the normal.
     """
-    guide, one = pairs.guide, pairs.toothings[0]
+    guide, one = pairs.guide, pairs.wheels[0].toothing
     frames = one.frames(phi1, curved=False)
     size = pairs.track.length + abs(pairs.distance)
     turn = np.maximum(np.abs(phi1), 2.0 * np.pi)
@@ -322,7 +322,7 @@ def non_contact(pairs: FlankPairs) -> list[NonContact]:
     list of NonContact
         In order.
     """
-    start, end, carrying = pairs.stretches
+    start, end, carrying = pairs.arcs.stretches
     lobe = pairs.track.arc.period if pairs.closed and pairs.even else pairs.travel
     at = np.flatnonzero((carrying == 0) & (start < lobe * (1.0 - _ROUNDING)))
     phi1 = (start[at, None] + (end - start)[at, None] * _BETWEEN).ravel()

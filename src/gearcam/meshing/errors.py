@@ -199,7 +199,7 @@ class Running(ShortRepr):
         """Least contact ratio of all pairs of teeth on the driving side; None if not known."""
         if self.measured:
             return None
-        return min(float(one.contact_ratios.min()) for one in self.driving)
+        return min(float(one.arcs.ratios.min()) for one in self.driving)
 
     @cached_property
     def peak_to_peak(self) -> float:

@@ -373,8 +373,8 @@ def phases(spec: MeshingSpec, pairs: FlankPairs) -> Array:
     if spec.teeth is None:
         return phi1
     track = pairs.track
-    wanted = np.isin(pairs.tooth(1, pairs.numbers), spec.teeth)
-    start, end = (track.arc_length(edge[wanted]) for edge in pairs.arcs)
+    wanted = np.isin(pairs.wheels[0].number(pairs.numbers), spec.teeth)
+    start, end = (track.arc_length(edge[wanted]) for edge in (pairs.arcs.start, pairs.arcs.end))
     apart = track.arc_length(phi1)[:, None] - start
     margin = _BESIDE * pairs.pitch
     if pairs.closed:
