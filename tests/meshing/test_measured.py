@@ -16,7 +16,8 @@ import shapely
 import gearcam as gc
 from gearcam.base.errors import DesignError, InfeasibleError
 from gearcam.gears.contact import COAST, DRIVE, Mounting, flank_pairs
-from gearcam.meshing.errors import Assembly, cycle, run
+from gearcam.meshing.assembly import Assembly
+from gearcam.meshing.errors import cycle, run
 from gearcam.meshing.half_teeth import HalfTeeth, half_teeth
 from gearcam.meshing.measured import as_half_teeth, chord_error, demand_near, outline_leads
 from gearcam.meshing.overlap import Turning

@@ -22,9 +22,10 @@ from gearcam.base.numerals import formatted
 from gearcam.gears.contact import COAST, DRIVE, FlankPairs, Mounting, flank_pairs
 from gearcam.gears.outline import Outline
 from gearcam.gears.pair import FINEST, Gear, GearPair
+from gearcam.meshing.assembly import Assembly, demand
 from gearcam.meshing.contact import contacts
 from gearcam.meshing.edges import first_touch, to_pitch_line
-from gearcam.meshing.errors import Assembly, demand, first_of
+from gearcam.meshing.errors import first_of
 from gearcam.meshing.half_teeth import half_teeth
 from gearcam.meshing.overlap import Overlaps, Turning
 from gearcam.meshing.patches import patches
