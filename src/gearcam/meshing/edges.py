@@ -151,8 +151,8 @@ def touches(pairs: FlankPairs, phi1: ArrayLike, *, exact: bool = True) -> Touche
     Touches
         Ordered by phase, then by pair.
     """
-    found, low, high = _facing(pairs, np.atleast_1d(np.asarray(phi1, dtype=float)))
-    many = found.select(np.repeat(np.arange(len(low)), _SAMPLES))
+    facing, low, high = _facing(pairs, np.atleast_1d(np.asarray(phi1, dtype=float)))
+    many = facing.select(np.repeat(np.arange(len(low)), _SAMPLES))
     angle = np.linspace(low, high, _SAMPLES, axis=1)
     turn, slope = (values.reshape(angle.shape) for values in many.compare(angle.ravel()))
     # on the driving side the largest turn counts, on the other the smallest
@@ -164,7 +164,7 @@ def touches(pairs: FlankPairs, phi1: ArrayLike, *, exact: bool = True) -> Touche
     left = np.where(falling[rows, best] > 0.0, best, before)
     right = np.where(falling[rows, best] > 0.0, after, best)
     inner = np.flatnonzero((falling[rows, left] > 0.0) & (falling[rows, right] <= 0.0))
-    extreme, some = turn[rows, best], found.select(inner)
+    extreme, some = turn[rows, best], facing.select(inner)
     if exact:
         at = bracketed_root(
             lambda x: some.compare(x)[1],
@@ -174,7 +174,7 @@ def touches(pairs: FlankPairs, phi1: ArrayLike, *, exact: bool = True) -> Touche
         )
         extreme[inner] = -pairs.side * some.compare(at)[0]
     return Touches(
-        step=found.step, pair=found.pair, turn=-pairs.side * extreme, edge=~np.isin(rows, inner)
+        step=facing.step, pair=facing.pair, turn=-pairs.side * extreme, edge=~np.isin(rows, inner)
     )
 
 

@@ -310,16 +310,16 @@ def _mountings(gears: tuple[Gear, Gear], spec: MeshingSpec, condition: Condition
     demand(gears, condition.errors)
     pair = gears[0].pair
     distance, depth = _distance(pair, spec), 2.0 * pair.rack.addendum * pair.module
-    found = [condition.errors.mounting(distance)]
+    mountings = [condition.errors.mounting(distance)]
     if condition.errors.tilt:
-        found += condition.errors.mountings(distance, condition.low, condition.high)
-    apart = max(abs(abs(one.distance) - abs(distance)) for one in found)
+        mountings += condition.errors.mountings(distance, condition.low, condition.high)
+    apart = max(abs(abs(one.distance) - abs(distance)) for one in mountings)
     if not pair.on_rack and apart >= depth:
         where = "errors.tilt_deg" if condition.errors.tilt else "errors.center_mm"
         what = f"with this error the teeth are up to {formatted(apart, 3)} mm out of mesh"
         note = f"the teeth reach {formatted(depth, 3)} mm into each other"
         raise InfeasibleError(what, where=where, nearest=note)
-    return found
+    return mountings
 
 
 def stretch(spec: MeshingSpec, pairs: FlankPairs) -> tuple[float, float]:

@@ -217,12 +217,12 @@ def longest_pieces(
         First and last points of the pieces, in order.
     """
     start, last = rows.first, rows.last
-    found: list[tuple[Ints, Ints]] = []
+    pieces: list[tuple[Ints, Ints]] = []
     low, high, trial = start + 1, last, last
     while start.size:
         done = high - low <= near * (low - start)
         if done.any():
-            found.append((start[done], low[done]))
+            pieces.append((start[done], low[done]))
             trial = np.where(done, 2 * low - start, trial)
             start = np.where(done, low, start)
             left = start < last
@@ -246,5 +246,5 @@ def longest_pieces(
         growth = (tolerance / np.maximum(error, tolerance / _GROWTH**order)) ** (1 / order)
         high = np.where((trial == low) & (growth <= 1 + near), low, high)
         trial = start + np.rint(_AIM * growth * (trial - start)).astype(np.int64)
-    starts, ends = (np.sort(np.concatenate(one)) for one in zip(*found, strict=True))
+    starts, ends = (np.sort(np.concatenate(one)) for one in zip(*pieces, strict=True))
     return starts, ends

@@ -182,10 +182,14 @@ class Board:
         line = complex(at, low) if vertical else complex(low, at)
         self._measure(
             LinearDimension(
-                first=first, second=second, line=line, place=place, vertical=vertical,
+                first=first,
+                second=second,
+                line=line,
+                place=place,
+                vertical=vertical,
                 prefix=prefix,
             )
-        )  # fmt: skip
+        )
 
     def round(self, dimension: RoundDimension, angles: Array | None = None) -> bool:
         """Draw a diameter or radius where there is space.

@@ -350,8 +350,9 @@ def picture(result: MechanismResult) -> tuple[Drawing, tuple[Label, ...]]:
     names = labelled(_names(every), lines, size, size)
     less, angles = _SMALLER * size, _other_angles(every, q[:count], size)
     return Drawing(name="poses", features=features), (
-        *names, *labelled(angles, lines, less, 0.5 * less, names)
-    )  # fmt: skip
+        *names,
+        *labelled(angles, lines, less, 0.5 * less, names),
+    )
 
 
 def legend(result: MechanismResult) -> str:
@@ -372,15 +373,15 @@ def _other_angles(
     moving = [one for one in every if len(pins_of(one)) and one.name != CHAIN_WHEEL and _moves(one)]
     if not moving:
         return []
-    pins, found = pins_of(moving[0]), dict[complex, list[str]]()
+    pins, angles = pins_of(moving[0]), dict[complex, list[str]]()
     end = complex(pins[int(np.abs(pins).argmax())])
     for index in range(1, len(q)):
         if math.isclose(q[index], q[0], abs_tol=1e-9):
             continue
         at = complex(moving[0].pose[index].apply(end))
-        at = next((one for one in found if abs(one - at) < near), at)
-        found.setdefault(at, []).append(f"{formatted(math.degrees(q[index]), 4)}°")
-    return [(", ".join(texts), at) for at, texts in found.items()]
+        at = next((one for one in angles if abs(one - at) < near), at)
+        angles.setdefault(at, []).append(f"{formatted(math.degrees(q[index]), 4)}°")
+    return [(", ".join(texts), at) for at, texts in angles.items()]
 
 
 def _moves(body: MovingBody) -> bool:

@@ -344,9 +344,14 @@ class DyadSpec(MachinePart):
         if base:
             found = grashof(FourBarLengths(crank.length, lengths[0], lengths[1], base))
             label = f"Grashof's class of {self.joint}"
-            yield "four_bars", self.joint, {
-                "class": Fact(found.name, label), "meaning": found.meaning,
-            }  # fmt: skip
+            yield (
+                "four_bars",
+                self.joint,
+                {
+                    "class": Fact(found.name, label),
+                    "meaning": found.meaning,
+                },
+            )
 
     def called(self) -> str:
         """Return its type."""
