@@ -31,7 +31,7 @@ from gearcam.gears.rolling import Guide
 from gearcam.meshing.edges import of_leading_pair
 from gearcam.meshing.half_teeth import HalfTeeth
 from gearcam.meshing.overlap import Turning
-from gearcam.numeric.arrays import Array, Ints, Plane, as_complex, as_pairs
+from gearcam.numeric.arrays import Array, Ints, Plane, as_complex, as_pairs, lengths_along
 
 _NEAR: Final = 0.4
 """Largest distance between the measured outline and the wheel's own, in modules: a flank that is
@@ -262,7 +262,7 @@ def as_half_teeth(outline: Plane, own: HalfTeeth, chord_error: float) -> HalfTee
     """
     ring: Any = shapely.LinearRing(as_pairs(outline))
     corners = as_complex(ring.coords)
-    way = np.append(0.0, np.cumsum(np.abs(np.diff(corners))))
+    way = lengths_along(corners)
     parts = []
     for start, end in zip(own.starts[:-1], own.starts[1:], strict=True):
         if len(parts) == own.count:  # the body of an open wheel
@@ -292,7 +292,7 @@ def _between(corners: Plane, way: Array, first: float, last: float) -> Plane:
     along = np.concatenate([way[:-1], way[:-1] + whole])
     inside = np.flatnonzero((along > first) & (along < end))
     places = np.concatenate([[first], along[inside], [end]]) % whole
-    return np.interp(places, way, corners.real) + 1j * np.interp(places, way, corners.imag)
+    return np.interp(places, way, corners)
 
 
 def outline_leads(turning: Turning, pairs: FlankPairs, phi1: Array) -> Array:

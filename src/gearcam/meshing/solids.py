@@ -22,6 +22,7 @@ import shapely
 from gearcam.meshing.half_teeth import HalfTeeth
 from gearcam.meshing.overlap import Turning
 from gearcam.numeric.arrays import Array, Ints, Plane
+from gearcam.numeric.contour import polygon_area
 
 _ALONG = 20.0
 """Points along a patch in a picture."""
@@ -197,12 +198,7 @@ def bodies(turning: Turning, make: PrismMaker, tilt: complex, low: float, high: 
 def _outlines(wheel: HalfTeeth) -> list[Plane]:
     """Return the outlines of half-teeth, then of the body, counter-clockwise."""
     every = [wheel.points[a:b] for a, b in zip(wheel.starts[:-1], wheel.starts[1:], strict=True)]
-    return [one if _twice_area(one) > 0.0 else one[::-1] for one in every]
-
-
-def _twice_area(outline: Plane) -> float:
-    middle = outline - outline.mean()
-    return float((np.conj(middle) * np.roll(middle, -1)).imag.sum())
+    return [one if polygon_area(one) > 0.0 else one[::-1] for one in every]
 
 
 def _about_z(angle: Array) -> Array:

@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from gearcam.numeric.arrays import Array, Ints, Plane
+from gearcam.numeric.arrays import Array, Ints, Plane, in_groups
 
 BLOCK = 20_000
 """Distances computed at once in the search for the nearest of all pieces."""
@@ -94,8 +94,8 @@ def divided(start: Plane, chord: Plane, bends: Array, count: Ints) -> tuple[Plan
     piece : (m,) int array
         The number of its piece.
     """
-    piece = np.repeat(np.arange(len(start)), count)
-    share = (np.arange(len(piece)) - np.repeat(np.cumsum(count) - count, count)) / count[piece]
+    piece, place = in_groups(count)
+    share = place / count[piece]
     return start[piece] + on_arcs(chord[piece], bends[piece], share)[0], piece
 
 

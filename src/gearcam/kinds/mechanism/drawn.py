@@ -299,16 +299,8 @@ def _angles(result: MechanismResult) -> tuple[Array, int]:
     return np.concatenate([first, np.linspace(low, high, _STEPS * turns + 1)]), len(first)
 
 
-def posed(every: tuple[MovingBody, ...], index: int = 0) -> Iterator[Feature]:
-    """Yield the features of bodies in their places, but for paths.
-
-    Parameters
-    ----------
-    every : tuple of MovingBody
-        The bodies.
-    index : int
-        Number of the place.
-    """
+def posed(every: tuple[MovingBody, ...]) -> Iterator[Feature]:
+    """Yield the features of bodies, `every`, in their first places, but for paths."""
     for body in every:
         part = body.name.rpartition(".")[2]
         prefix = f"{part.upper()}_" if part.startswith("gear") else ""
@@ -316,7 +308,7 @@ def posed(every: tuple[MovingBody, ...], index: int = 0) -> Iterator[Feature]:
         if prefix:
             # a ring begins with its inner teeth: its blank would cover them
             shown.sort(key=lambda one: one.kind not in OUTER)
-        yield from place(shown, body.pose[index], prefix)
+        yield from place(shown, body.pose[0], prefix)
 
 
 def _ghosts(every: tuple[MovingBody, ...], count: int) -> Iterator[Feature]:
