@@ -362,7 +362,12 @@ def _other_angles(
 
     The first of the angles (n,), rad, is that of the machine itself.
     """
-    moving = [one for one in every if len(pins_of(one)) and one.name != CHAIN_WHEEL and _moves(one)]
+    moving = [
+        one
+        for one in every
+        if len(pins_of(one)) and one.name != CHAIN_WHEEL
+        if np.ptp(one.pose.turn) or np.ptp(np.abs(one.pose.shift - one.pose.shift[0]))
+    ]
     if not moving:
         return []
     pins, angles = pins_of(moving[0]), dict[complex, list[str]]()
@@ -374,10 +379,6 @@ def _other_angles(
         at = next((one for one in angles if abs(one - at) < near), at)
         angles.setdefault(at, []).append(f"{formatted(math.degrees(q[index]), 4)}°")
     return [(", ".join(texts), at) for at, texts in angles.items()]
-
-
-def _moves(body: MovingBody) -> bool:
-    return bool(np.ptp(body.pose.turn) or np.ptp(np.abs(body.pose.shift - body.pose.shift[0])))
 
 
 def _names(every: tuple[MovingBody, ...]) -> list[tuple[str, complex]]:
