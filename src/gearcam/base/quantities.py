@@ -35,9 +35,11 @@ REQUIRED: Final = dataclasses.MISSING
 """Default of required parameters."""
 
 OPPOSITES: Final = {
-    "translating": "oscillating", "oscillating": "translating",
-    "turning": "sliding", "sliding": "turning",
-}  # fmt: skip
+    "translating": "oscillating",
+    "oscillating": "translating",
+    "turning": "sliding",
+    "sliding": "turning",
+}
 """Circumstances on which units depend: the motion of a cam's follower, and that of the cam."""
 
 

@@ -32,7 +32,7 @@ from gearcam.cams.followers import Follower
 from gearcam.cams.supports import Push, Support, TotalLoad
 from gearcam.cams.wall import Wall
 from gearcam.mechanics.friction import FrictionSpec
-from gearcam.numeric.arrays import Array, Ints, Mask, Plane
+from gearcam.numeric.arrays import Array, Ints, Mask, Plane, lengths_along
 
 _ROUNDING = 1e-12
 """Load over the largest that is rounding."""
@@ -132,7 +132,7 @@ class Touch(ShortRepr):
         wall, touching = self.wall, self.wall.follower
         inset = wall.side * touching.radius
         path, _ = touching.trace(wall.carrier, x, touching.start + s, ds, inset)
-        return np.concatenate([[0.0], np.cumsum(np.abs(np.diff(path)))])
+        return lengths_along(path)
 
     def curvature(self, x: Array) -> Array:
         """Return the relative curvature of wall and follower, 1/mm; infinite on an edge."""

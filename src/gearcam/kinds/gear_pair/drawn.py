@@ -315,5 +315,5 @@ def _contacts(result: GearPairResult, phi1: Array, side: Side) -> ContactPoints:
         start=np.searchsorted(touching.step[chosen], np.append(at, at[-1] + 1)),
         point=touching.point[chosen],
         force=touching.force[chosen],
-        teeth=np.column_stack([pairs.tooth(1, j), pairs.tooth(2, j)]) - first + 1,
+        teeth=np.column_stack([wheel.number(j) for wheel in pairs.wheels]) - first + 1,
     )

@@ -15,19 +15,9 @@ from gearcam.base.facts import Fact, Tree, extent
 from gearcam.base.findings import limit_of, run_checks
 from gearcam.base.numerals import formatted
 from gearcam.base.quantities import ARCSEC
+from gearcam.meshing.assembly import Assembly, alone, demand, given, random_assemblies
 from gearcam.meshing.error_checks import TRANSMISSION
-from gearcam.meshing.errors import (
-    Assembly,
-    Running,
-    alone,
-    cycle,
-    demand,
-    given,
-    largest,
-    of_error,
-    random_assemblies,
-    run,
-)
+from gearcam.meshing.errors import Running, cycle, largest, of_error, run
 from gearcam.meshing.settings import ERRORS
 from gearcam.numeric.arrays import as_complex
 from gearcam.numeric.bulges import flatten_bulges
@@ -70,7 +60,7 @@ _SAGITTA: Final = 0.01
 
 
 def study_errors(result: GearPairResult, progress: Progress) -> StudyResult:
-    """Return the study of the errors of a pair (see `gearcam.meshing.errors`).
+    """Return the study of the errors of a pair (see `gearcam.meshing.assembly`).
 
     Parameters
     ----------

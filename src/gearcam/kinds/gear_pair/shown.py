@@ -190,7 +190,7 @@ def _contact_ratios(sides: tuple[FlankPairs, ...], limit: float) -> Iterator[tup
     """Yield the contact ratio of each side; one line is shown if both are equal."""
     rows = []
     for pairs in reversed(sides):
-        ratios = pairs.contact_ratios
+        ratios = pairs.arcs.ratios
         rows.append((pairs, {"least": float(ratios.min()), "mean": float(ratios.mean())}))
     alike = all(
         math.isclose(rows[0][1][name], rows[1][1][name], rel_tol=1e-9) for name in ("least", "mean")

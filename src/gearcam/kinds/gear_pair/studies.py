@@ -77,7 +77,7 @@ def _mesh(result: GearPairResult, progress: Progress) -> StudyResult:
 
 def _condition(design: GearPairDesign) -> Condition:
     """Return the errors of a design, and how to make its solids, if it asks for them."""
-    from gearcam.meshing.errors import given
+    from gearcam.meshing.assembly import given
     from gearcam.meshing.study import Condition
 
     spec, width, count = design.meshing, design.pair.face_width, design.steps.count

@@ -175,15 +175,15 @@ def _misspelt(found: Examined, compared: Sequence[NameUse]) -> Iterator[Fault]:
 def _twice(uses: Sequence[NameUse], names: dict[str, NameUse]) -> Iterator[Fault]:
     """Yield names that are given twice, and collect all of them."""
     told = set[tuple[str | int, ...]]()
-    for one in (one for one in uses if one.name):
-        first = names.setdefault(one.name, one)
-        if first is one or one.path in told:
+    for use in (one for one in uses if one.name):
+        first = names.setdefault(use.name, use)
+        if first is use or use.path in told:
             continue
-        told.add(one.path)
-        name = one.name.partition(".")[0]
+        told.add(use.path)
+        name = use.name.partition(".")[0]
         where = f"first by {dotted(first.path)}" if first.path else "first to the frame"
         what = f"the name {show(name)} is given twice, {where}"
-        yield Fault(one.path, what, name, "a name for one thing")
+        yield Fault(use.path, what, name, "a name for one thing")
 
 
 def _suits(one: NameUse, sort: str) -> bool:
@@ -309,19 +309,19 @@ class OutputNames:
     @cached_property
     def whole(self) -> Known:
         """What may be asked for, but for single coordinates."""
-        found: Known = {}
+        outputs: Known = {}
         for part in self.parts:
-            found |= part.outputs()
+            outputs |= part.outputs()
         for joint in self.joints:
-            found.setdefault(joint, coordinates(joint))
+            outputs.setdefault(joint, coordinates(joint))
         for one in (use for part in self.parts for use in part.given() if use.turns):
             name = f"{one.name}.angle"
-            found[name] = (Output(name, one.name, name, True),)
+            outputs[name] = (Output(name, one.name, name, True),)
         for drive in self.tables.get("drive", ()):
             for word, sort in drive.shafts.items():
                 name = f"{drive.name}.{word}"
-                found[name] = (Output(name, name.replace(".", "_"), name, sort == Sort.SHAFT),)
-        return found
+                outputs[name] = (Output(name, name.replace(".", "_"), name, sort == Sort.SHAFT),)
+        return outputs
 
     @cached_property
     def joints(self) -> list[str]:

@@ -84,9 +84,11 @@ def _demand(design: Any) -> None:
     if not every:
         *words, last = (f"[[{title}]]" for title in tables if title in ACTIONS)
         problem = Problem(
-            "nothing acts on the mechanism", file=design.source, key="load",
+            "nothing acts on the mechanism",
+            file=design.source,
+            key="load",
             allowed=f"a table {', '.join(words)} or {last}",
-        )  # fmt: skip
+        )
         raise DesignError([problem])
     reasons = (one.needs_speed(design.gravity) for one in every)
     why = next((one for one in reasons if one), "")
@@ -352,24 +354,24 @@ def _ends(
     result: MechanismResult, work: VirtualWork, shafts: list[ShaftLoad], q: Array
 ) -> dict[str, Ends]:
     """Return the least and the largest of what each shaft exerts, between the rows too."""
-    found = {}
-    for one, side in product(shafts, (-1.0, 1.0)):
-        top = int((side * one.values).argmax())
-        found[one.column, side] = Peak(side * float(one.values[top]), float(q[top]))
+    peaks = {}
+    for load, side in product(shafts, (-1.0, 1.0)):
+        top = int((side * load.values).argmax())
+        peaks[load.column, side] = Peak(side * float(load.values[top]), float(q[top]))
     step = float(q[-1] - q[0]) / result.design.torque.steps
     for _ in range(_ROUNDS):
-        near = np.clip([peak.place + step * _BESIDE for peak in found.values()], q[0], q[-1])
+        near = np.clip([peak.place + step * _BESIDE for peak in peaks.values()], q[0], q[-1])
         again = {one.column: one.values for one in shaft_loads(result, work, near.ravel())}
-        for number, ((column, side), peak) in enumerate(list(found.items())):
+        for number, ((column, side), peak) in enumerate(list(peaks.items())):
             values = side * again[column].reshape(near.shape)[number]
             top = int(values.argmax())
             closer = Peak(float(values[top]), float(near[number, top]))
-            found[column, side] = max(peak, closer, key=lambda one: one.value)
+            peaks[column, side] = max(peak, closer, key=lambda one: one.value)
         step *= 2.0 / (_BESIDE.size - 1)
     return {
         one.column: (
-            found[one.column, -1.0]._replace(value=-found[one.column, -1.0].value),
-            found[one.column, 1.0],
+            peaks[one.column, -1.0]._replace(value=-peaks[one.column, -1.0].value),
+            peaks[one.column, 1.0],
         )
         for one in shafts
     }
