@@ -60,8 +60,8 @@ EXPECTED: dict[str, dict[str, Number]] = {
         "pair.center_distance_mm": (42.0, 1e-12),
     },
     "formula": {
-        "pair.center_distance_mm": (formula_distance(), 1e-11),
-        "gears[0].centrode.min_convex_radius_mm": (formula_least_radius(), 1e-11),
+        "pair.center_distance_mm": (formula_distance, 1e-11),
+        "gears[0].centrode.min_convex_radius_mm": (formula_least_radius, 1e-11),
         "pair.ratio.min": (0.84, 1e-13),
         "pair.ratio.max": (1.16, 1e-13),
     },
