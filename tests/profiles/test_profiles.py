@@ -18,6 +18,7 @@ from gearcam.base.errors import GearcamError
 from helpers_built import built
 from helpers_gallery import CAM_NUMBERS, MACHINE_NUMBERS, NUMBERS, Number, misses
 from helpers_pairs import PROFILES, profile
+from helpers_sampling import chosen
 
 
 def formula_distance() -> float:
@@ -171,16 +172,14 @@ def kind_of(file: str) -> str:
     return ("drawing-" if path.stem.endswith("_drawing") else "") + path.suffix[1:]
 
 
-LONG = {
-    "nail_machine_three_phase", "ring_uneven", "nautilus", "stepped_ellipse", "conjugate_cams",
-    "shop_order", "translating_cam", "globoidal_indexer", "rotary_axis_cam",
-}  # fmt: skip
-"""Whose files take long, and are of the same kinds as those of other files of the gallery."""
+WRITTEN = (
+    "flat_follower", "lathe_slide", "valve_train", "tappet", "cylinder_cam", "ring_ellipse",
+    "nail_machine_two_phase", "straight_line", "four_bar",
+)  # fmt: skip
+"""Which are written each time: of each kind of design those of many kinds of files, soon made."""
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param(one, marks=[pytest.mark.slow] * (one in LONG)) for one in sorted(ALL)]
-)
+@pytest.mark.parametrize("name", chosen(sorted(ALL), *WRITTEN))
 def test_a_file_writes_what_it_lists(name: str, tmp_path: Path) -> None:
     made = profile(name) if name in EXPECTED else built(PROFILES / f"{name}.toml")
     try:

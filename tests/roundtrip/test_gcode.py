@@ -157,7 +157,7 @@ def test_without_a_speed_the_program_stops_until_the_spindle_turns() -> None:
     assert "no speed is given" in text
 
 
-@pytest.mark.parametrize("cam", chosen(CAMS, "clockwise", "lower"))
+@pytest.mark.parametrize("cam", chosen(CAMS, "clockwise"))
 def test_a_wrapped_axis_goes_where_a_growing_one_goes(cam: str) -> None:
     growing, text = text_of(cam, SMALL), text_of(cam, WRAPPED)
     program, same = read(text, wrapped=True), read(growing)
