@@ -34,8 +34,11 @@ def test_every_kind_can_be_begun_for_each_process() -> None:
         assert set(KINDS[kind].processes) == printed | cut | milled
 
 
-LONG = {("spatial-cam", ""), ("globoidal-cam", ""), ("globoidal-cam", "printing")}
-"""Solids of cams in space are made for printing a cylinder cam."""
+LONG = {
+    *(("spatial-cam", ""), ("globoidal-cam", ""), ("globoidal-cam", "printing")),
+    *(("gear-pair", ""), ("gear-pair", "wire"), ("cam", "wire")),
+}
+"""Solids of cams in space are made for printing a cylinder cam, kerfs for the laser."""
 
 
 @pytest.mark.parametrize(
