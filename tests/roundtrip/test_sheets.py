@@ -14,7 +14,6 @@ import pytest
 from ezdxf.entities.dimension import Dimension
 from ezdxf.lldxf.encoding import decode_dxf_unicode
 
-import gearcam
 from gearcam.export.dxf import DxfStyle
 from gearcam.export.dxf_read import measure_dxf, read_dxf
 from gearcam.export.sheet_dxf import sheet_dxf
@@ -32,6 +31,7 @@ from gearcam.pictures.drawings import Drawing, reach
 from gearcam.pictures.drawings import Path as Chain
 from gearcam.sheets import wheel_sheet
 from gearcam.sheets.sheet import Sheet
+from helpers_built import built
 from helpers_contour import disc_contour, edges, gear_contour
 from helpers_pairs import PROFILES
 
@@ -369,6 +369,6 @@ def test_a_stepped_part_shows_its_steps() -> None:
     ],
 )  # fmt: skip
 def test_the_table_tells_what_the_part_is_made_by(profile: str, rows: tuple[str, ...]) -> None:
-    made = gearcam.build(gearcam.load(PROFILES / f"{profile}.toml")).files("drawing-svg")
+    made = built(PROFILES / f"{profile}.toml").files("drawing-svg")
     text = next(iter(made.values())).decode()
     assert [row for row in rows if f">{row}</text>" not in text] == []

@@ -22,6 +22,7 @@ from gearcam.base.display import ShortRepr, line, word
 from gearcam.console import all_lines
 from gearcam.designs import loads
 from gearcam.laws.ratio.ellipse import Ellipse
+from helpers_built import built
 from helpers_pairs import PROFILES, job, profile
 
 DEEP, EACH = 6, 3
@@ -29,7 +30,7 @@ DEEP, EACH = 6, 3
 
 
 def build(name: str) -> Any:
-    return gearcam.build(gearcam.load(PROFILES / f"{name}.toml"))
+    return built(PROFILES / f"{name}.toml")
 
 
 def reached(start: object) -> Iterator[tuple[str, object]]:

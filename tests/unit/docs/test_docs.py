@@ -29,6 +29,7 @@ from gearcam.designs import KINDS
 from gearcam.laws.motion.base import MOTION_LAWS
 from gearcam.laws.ratio.base import LAWS
 from gearcam.laws.ratio.span import Lobes
+from helpers_built import built
 from helpers_tables import law_table, phase_table, rise_table, turn_tables
 from random_designs.law_draw import LawDraw
 from random_designs.laws import parameters, random_law, random_motion_law
@@ -147,7 +148,7 @@ def unknown(summary: dict[str, Any], page: str) -> set[str]:
     ],
 )  # fmt: skip
 def test_every_key_of_the_summary_is_described(name: str, tmp_path: Path) -> None:
-    result = gearcam.build(gearcam.load(rules.ROOT / "profiles" / f"{name}.toml"))
+    result = built(rules.ROOT / "profiles" / f"{name}.toml")
     files = ["dxf", "csv", "stl"] if name in {"ring_ellipse", "plate_cam_offset_roller"} else []
     written = result.write(tmp_path, files=files)
     assert unknown(written.summary, SUMMARY) == set()

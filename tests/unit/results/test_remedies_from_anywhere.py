@@ -77,9 +77,10 @@ STARTS: dict[str, tuple[Any, str, tuple[float, ...]]] = {
 }  # fmt: skip
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
-    ["a roller", *(pytest.param(name, marks=pytest.mark.slow) for name in list(STARTS)[::2])],
+    list(STARTS),
 )
 def test_the_remedy_does_not_depend_on_the_start(name: str, tmp_path: Path) -> None:
     make, key, starts = STARTS[name]
@@ -89,6 +90,7 @@ def test_the_remedy_does_not_depend_on_the_start(name: str, tmp_path: Path) -> N
     assert max(sizes) <= min(sizes) * 1.011
 
 
+@pytest.mark.slow
 def test_where_a_ratio_that_closes_is_not_enough_the_search_goes_on(tmp_path: Path) -> None:
     law = {"type": "phases", "knots_deg": [0, 120, 360], "ratios": [0.5, 2, 0.5]}
     document = pair(law, [12, 12])

@@ -25,6 +25,7 @@ from gearcam.spatial.globoidal_surface import (
     turret_surface,
 )
 from gearcam.spatial.surface import revolved
+from helpers_built import built as shared
 from helpers_globoidal import DESIGN, indexer
 from helpers_pairs import PROFILES
 from helpers_sampling import chosen
@@ -319,7 +320,7 @@ def test_a_solid_of_too_many_facets_is_refused_with_the_least_step(
 
 @pytest.mark.parametrize("file", ["globoidal_indexer", "cylinder_cam"])
 def test_the_number_of_facets_is_about_that_of_what_a_solid_is_made_from(file: str) -> None:
-    result: Any = gc.build(gc.load(PROFILES / f"{file}.toml"))
+    result = shared(PROFILES / f"{file}.toml")
     for steps, places in ((90, 5), (180, 9)):
         if file == "cylinder_cam":
             count = len(result.solid_of(steps, places).triangles)
