@@ -106,6 +106,7 @@ def test_where_a_ratio_that_closes_is_not_enough_the_search_goes_on(tmp_path: Pa
         assert not [one for one in made.findings if one.severity == "error"]
 
 
+@pytest.mark.slow
 def test_a_list_that_is_changed_as_a_whole_stands_alone(tmp_path: Path) -> None:
     law = {"type": "phases", "knots_deg": [0, 120, 360], "ratios": [0.5, 2, 0.5]}
     found = gearcam.remedies(job_of(pair(law, [20, 20]), tmp_path)).found
@@ -243,6 +244,7 @@ def test_a_rim_that_allows_no_bore_of_use_asks_for_more_teeth(
         assert ("more teeth (a smaller module)" in finding.message) != named
 
 
+@pytest.mark.slow
 def test_a_change_that_leaves_errors_is_not_listed_as_tried_in_vain(tmp_path: Path) -> None:
     """A smaller cutter fits the groove, whose walls lose the corners of a jump of the velocity."""
     motion = [

@@ -191,6 +191,7 @@ def test_the_scene_moves_rollers_along_the_grooves() -> None:
     assert np.abs(edges - at).min() == pytest.approx(half, rel=0.02)
 
 
+@pytest.mark.slow
 def test_tables_import_no_other_kind_and_make_no_solid(tmp_path: Path) -> None:
     text = TEXT.replace("density_kg_m3 = 7850", "")
     design = tmp_path / "plain.toml"
