@@ -174,6 +174,7 @@ def test_solids_that_were_folded_are_moved_when_they_are_unfolded(
     assert placed(browser)["cam"] == pytest.approx(turned(90.0), abs=1e-6)
 
 
+@pytest.mark.slow
 def test_solids_stay_in_sight_at_all_places(browser: Chrome, solids_page: Path) -> None:
     """The wheels are not round: one that is in sight may leave it as it turns."""
     open_page(browser, solids_page, PHONE)

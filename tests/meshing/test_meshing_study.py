@@ -32,7 +32,7 @@ TURN = np.radians(np.arange(360.0))
 
 FORWARDS = [(name, OVERCLOSURE) for name in NAILS]
 BACKWARDS = [(name, -OVERCLOSURE) for name in NAILS]
-TURNS = [*few(FORWARDS), *few(reversed(BACKWARDS))]
+TURNS = few([*FORWARDS, *reversed(BACKWARDS)], 6)
 """Pairs that are turned once, forwards or backwards."""
 
 

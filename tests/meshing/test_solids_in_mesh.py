@@ -104,6 +104,7 @@ def test_tilted_solids_overlap_as_their_sections_do() -> None:
     assert missed[1] < 0.6 * missed[0]
 
 
+@pytest.mark.slow
 def test_a_tilted_patch_has_the_volume_of_its_closed_form() -> None:
     """Depths delta + z*t along the normal: areas go with their power 3/2 over the width."""
     setup, phi1 = round_setup(0.005)

@@ -34,6 +34,7 @@ from gearcam.sheets.sheet import Sheet
 from helpers_built import built
 from helpers_contour import disc_contour, edges, gear_contour
 from helpers_pairs import PROFILES
+from helpers_sampling import chosen
 
 STYLE = DxfStyle(tolerance=1e-3)
 R12 = DxfStyle(tolerance=1e-3, curves="lines", version="R12")
@@ -141,7 +142,7 @@ def faults(data: bytes, expected: list[float], text: str) -> list[float]:
     return missing + found
 
 
-@pytest.fixture(scope="module", params=list(WHEELS))
+@pytest.fixture(scope="module", params=chosen(list(WHEELS), "plain", "d"))
 def wheel(request: pytest.FixtureRequest) -> tuple[Part, list[float], Sheet]:
     make, sizes = WHEELS[request.param]
     part = make()

@@ -62,8 +62,11 @@ def _got(one: object, name: str) -> object:
 @pytest.mark.parametrize(
     "name",
     [
-        *("feeder", "valve_lever", "undercut_cam", "groove_cam"),
-        *(pytest.param(name, marks=pytest.mark.slow) for name in ("shop_order", "stepped_ellipse")),
+        *("valve_lever", "groove_cam"),
+        *(
+            pytest.param(name, marks=pytest.mark.slow)
+            for name in ("feeder", "undercut_cam", "shop_order", "stepped_ellipse")
+        ),
     ],
 )
 def test_everything_that_is_reached_shows_itself_in_one_line(name: str) -> None:

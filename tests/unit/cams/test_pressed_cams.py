@@ -142,7 +142,10 @@ def test_a_groove_keeps_its_rim(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("document", "words"),
     [
-        (cam(ROLLER, {"prime_radius_mm": 20}, angles=SUDDEN), "No prime radius up"),
+        pytest.param(
+            cam(ROLLER, {"prime_radius_mm": 20}, angles=SUDDEN), "No prime radius up",
+            marks=pytest.mark.slow,
+        ),
         (cam(ROLLER | {"offset_mm": 5}, {"prime_radius_mm": 20}, angles=SUDDEN),
          "or a smaller offset."),
         (cam(ARM, {"prime_radius_mm": 30}, 80, angles=STEEP), "or another arm or pivot distance."),

@@ -299,7 +299,8 @@ LATE = {
 """Designs without and with a file that is refused though the parts are made, and what helped."""
 
 
-@pytest.mark.parametrize("name", few(LATE, 8))
+@pytest.mark.slow
+@pytest.mark.parametrize("name", list(LATE))
 def test_a_remedy_makes_all_files_that_are_asked_for(name: str, folder: Path) -> None:
     document, output, key = LATE[name]
 

@@ -209,6 +209,7 @@ def test_ratios_that_close_a_law_are_those_of_the_file(name: str, tmp_path: Path
         _ = job_of(followed(pair(law, teeth), dict(way.near)), tmp_path).law
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "law",
     few([

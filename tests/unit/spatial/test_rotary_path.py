@@ -233,7 +233,7 @@ def test_a_path_that_is_10_um_off_is_found(name: str, axis: int) -> None:
             (6.0, {}),
             (8.0, {}),
         ],
-        3,
+        7,
     ),
 )
 def test_the_whole_way_of_the_roller_is_cut(diameter: float, cut: dict[str, Any]) -> None:

@@ -143,6 +143,7 @@ def carving(cam: SpatialCam, steps: int, places: int) -> Mesh:
 ROUND = math.pi * (40.0**2 - 10.0**2) * 110.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("count", chosen([30, 45, 90], 30))
 def test_the_carved_solid_has_the_volume_of_the_search(count: int) -> None:
     cam = cut(25.0)

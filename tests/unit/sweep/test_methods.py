@@ -60,7 +60,9 @@ def mixed(teeth: int, law: str, share: float) -> tuple[float, float]:
     return (teeth - 34) ** 2 / 50 + (share - 0.4) ** 2 + bend * np.sin(9 * teeth), 0.0
 
 
-@pytest.mark.parametrize(("method", "trials"), few([("scipy", 300), ("tpe", 150), ("nsga2", 600)]))
+@pytest.mark.parametrize(
+    ("method", "trials"), few([("scipy", 300), ("tpe", 150), ("nsga2", 600)], 3)
+)
 def test_whole_numbers_and_choices_against_all_combinations(method: str, trials: int) -> None:
     axes = axes_of({"teeth": "20:50:1", "law": ["x", "y", "z"], "share": "0:1"})
     found = min(searched(method, Quest(axes, 1, trials, 3), mixed), key=lambda one: one[1])

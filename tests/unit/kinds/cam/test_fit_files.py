@@ -92,6 +92,7 @@ def test_what_noise_hides_is_said(tmp_path: Path) -> None:
     assert "cannot be distinguished from" in study.files["fitted.toml"].decode()
 
 
+@pytest.mark.slow
 def test_a_motion_without_a_law_is_said(tmp_path: Path) -> None:
     wave = 4.0 * np.exp(2.0 * (np.cos(np.radians(ANGLES)) - 1.0))
     study = gearcam.build(gearcam.load(PLATE)).follow(
